@@ -1,0 +1,47 @@
+//! Probability laws on attitudes, as unit quaternions on the sphere S³.
+//!
+//! * [`UniformAttitude`]: every attitude equally likely (Haar measure).
+//! * [`RadiallyConstrainedGaussian`] (RCG): a Gaussian in ℝ⁴ conditioned on unit length (Nicewarner
+//!   & Sanderson 1994; Peck 2003, Eq. 20-26), the Fisher-Bingham law on S³ with a mean attitude.
+//! * [`FisherBingham`]: the general member of that family, density ∝ exp(−½ xᵀPx + bᵀx).
+//!
+//! Draws are exact and independent (no Markov chain), for any covariance; the normaliser and the
+//! moments are computed to machine precision by a contour integral.
+//!
+//! # Conventions
+//! Quaternions are Hamilton's, written scalar last, x = (x₁, x₂, x₃, x₄), which is the order of
+//! `nalgebra`'s coordinates. Densities are with respect to surface measure on S³ (total 2π²)
+//! unless another measure is named. q and −q are the same attitude: a law on S³ need not treat
+//! them alike, the density of an *attitude* adds both.
+//!
+//! ```
+//! use gyradius_attitude::RadiallyConstrainedGaussian;
+//! use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector4};
+//! use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+//! use rand_distr::Distribution;
+//!
+//! // The example of Peck (2003), Eq. 27.
+//! let mean = UnitQuaternion::from_quaternion(Quaternion::new(0.9996, 0.0249, 0.0005, -0.0100));
+//! let covariance = Matrix4::from_diagonal(&Vector4::new(2e-5, 6e-4, 6e-4, 0.6));
+//! let law = RadiallyConstrainedGaussian::new(mean, covariance)?;
+//!
+//! let mut rng = ChaCha8Rng::seed_from_u64(2003);
+//! let q = law.sample(&mut rng);
+//! assert!(law.ln_density(&q).is_finite());
+//! assert!(law.acceptance() > 0.999);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod chart;
+mod circle;
+mod contour;
+mod fisher_bingham;
+mod hyperspherical;
+mod jacobi;
+mod rcg;
+mod uniform;
+
+pub use fisher_bingham::{FisherBingham, FisherBinghamError, Method};
+pub use hyperspherical::{HypersphericalAngles, HypersphericalError};
+pub use rcg::{RadiallyConstrainedGaussian, RcgError};
+pub use uniform::UniformAttitude;

@@ -1,0 +1,709 @@
+use nalgebra::{Complex, Matrix4, UnitQuaternion, Vector4};
+use rand::Rng;
+use rand_distr::Distribution;
+
+use crate::{FisherBingham, HypersphericalAngles, Method, fisher_bingham::check_symmetric, jacobi};
+
+/// Range of the eigenvalues of Σ: beyond it the law is uniform, or a point, to rounding.
+const EIGENVALUES: std::ops::RangeInclusive<f64> = 1e-14..=1e14;
+
+/// Why a mean and a covariance are not the parameters of a [`RadiallyConstrainedGaussian`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RcgError {
+    /// The mean is not a unit quaternion.
+    #[error("mean quaternion of norm {norm}: it must have norm 1")]
+    Mean {
+        /// The norm.
+        norm: f64,
+    },
+    /// An entry of the covariance is NaN or infinite.
+    #[error("covariance entry ({row}, {column}) = {value}: it must be finite")]
+    Entry {
+        /// Row, from 1.
+        row: usize,
+        /// Column, from 1.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// The covariance is not symmetric.
+    #[error(
+        "covariance entries ({row}, {column}) = {upper} and ({column}, {row}) = {lower}: the \
+         matrix must be symmetric"
+    )]
+    NotSymmetric {
+        /// Row of the upper entry, from 1.
+        row: usize,
+        /// Column of the upper entry, from 1.
+        column: usize,
+        /// The entry above the diagonal.
+        upper: f64,
+        /// The entry below the diagonal.
+        lower: f64,
+    },
+    /// The covariance is not positive definite, or out of range.
+    #[error(
+        "covariance with eigenvalue {eigenvalue:e}: it must be positive definite, with eigenvalues \
+         between 1e-14 and 1e14"
+    )]
+    Eigenvalue {
+        /// The smallest eigenvalue, or the largest if that is what is out of range.
+        eigenvalue: f64,
+    },
+}
+
+/// The radially constrained Gaussian (RCG) on unit quaternions.
+///
+/// # Definition
+/// A Gaussian N(m, Σ) in ℝ⁴, |m| = 1, conditioned on unit length (Nicewarner & Sanderson 1994,
+/// doi:10.1109/ROBOT.1994.351131; Peck 2003, Eq. 20-26):
+///
+/// f(x) = exp(−½ (x − m)ᵀ Σ⁻¹ (x − m)) / C, with respect to surface measure on S³,
+///
+/// x = (x₁, x₂, x₃, x₄) scalar last, C the normaliser that makes it integrate to one.
+///
+/// # Two lobes
+/// q and −q are one attitude, and the law knows nothing of it. Where Σ is wide along m, a second
+/// lobe of probability appears near the reflection of m: with the covariance of Peck (2003,
+/// Eq. 30) it lies near (m₁, m₂, m₃, −m₄) and holds 3.4 % of the mass. As attitudes those draws lie
+/// about the *inverse* of the mean. Use [`in_mean_half`](Self::in_mean_half) to keep to the half
+/// sphere around the mean.
+///
+/// # Algorithm
+/// See [`FisherBingham`].
+///
+/// # Limits
+/// Eigenvalues of Σ between 1e-14 and 1e14, any ratio.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Parameters", into = "Parameters")
+)]
+pub struct RadiallyConstrainedGaussian {
+    mean: UnitQuaternion<f64>,
+    covariance: Matrix4<f64>,
+    precision: Matrix4<f64>,
+    law: FisherBingham,
+}
+
+impl RadiallyConstrainedGaussian {
+    /// The law with mean attitude m and covariance Σ, rows and columns in the order of
+    /// x = (x₁, x₂, x₃, x₄), scalar last.
+    ///
+    /// # Errors
+    /// The mean is not a unit quaternion, or Σ is not finite, symmetric and positive definite.
+    pub fn new(mean: UnitQuaternion<f64>, covariance: Matrix4<f64>) -> Result<Self, RcgError> {
+        let norm = mean.norm();
+        if !((norm - 1.0).abs() < 1e-9) {
+            return Err(RcgError::Mean { norm });
+        }
+        for row in 0..4 {
+            for column in 0..4 {
+                let value = covariance[(row, column)];
+                if !value.is_finite() {
+                    return Err(RcgError::Entry {
+                        row: row + 1,
+                        column: column + 1,
+                        value,
+                    });
+                }
+            }
+        }
+        check_symmetric(&covariance).map_err(|[row, column]| RcgError::NotSymmetric {
+            row: row + 1,
+            column: column + 1,
+            upper: covariance[(row, column)],
+            lower: covariance[(column, row)],
+        })?;
+        if let Some(&eigenvalue) = covariance
+            .diagonal()
+            .iter()
+            .find(|s| !EIGENVALUES.contains(*s))
+        {
+            return Err(RcgError::Eigenvalue { eigenvalue });
+        }
+        let (eigenvalues, axes) = jacobi::eigen(&covariance);
+        let smallest = eigenvalues.into_iter().fold(f64::INFINITY, f64::min);
+        let largest = eigenvalues.into_iter().fold(0.0, f64::max);
+        if !EIGENVALUES.contains(&smallest) || !is_definite(&covariance) {
+            return Err(RcgError::Eigenvalue {
+                eigenvalue: smallest,
+            });
+        }
+        if !EIGENVALUES.contains(&largest) {
+            return Err(RcgError::Eigenvalue {
+                eigenvalue: largest,
+            });
+        }
+        let mean = UnitQuaternion::new_normalize(mean.into_inner());
+        let lambda = eigenvalues.map(|s| 1.0 / s);
+        let center = axes.tr_mul(&mean.coords);
+        let precision = axes * Matrix4::from_diagonal(&lambda.into()) * axes.transpose();
+        let law = FisherBingham::centered(axes, lambda, center.into(), 0.0);
+        Ok(Self {
+            mean,
+            covariance,
+            precision,
+            law,
+        })
+    }
+
+    /// The mean attitude m, about which the Gaussian in ℝ⁴ is centred.
+    #[must_use]
+    pub fn mean(&self) -> UnitQuaternion<f64> {
+        self.mean
+    }
+
+    /// The covariance Σ of the Gaussian in ℝ⁴.
+    #[must_use]
+    pub fn covariance(&self) -> Matrix4<f64> {
+        self.covariance
+    }
+
+    /// Σ⁻¹.
+    #[must_use]
+    pub fn precision(&self) -> Matrix4<f64> {
+        self.precision
+    }
+
+    /// ln C = ln ∫ exp(−½ (x − m)ᵀ Σ⁻¹ (x − m)) dS over S³; the c of Peck (2003, Eq. 21) is 1/C.
+    #[must_use]
+    pub fn ln_normaliser(&self) -> f64 {
+        self.law.ln_centered_normaliser()
+    }
+
+    /// The logarithm of the density at q, with respect to surface measure on S³.
+    #[must_use]
+    pub fn ln_density(&self, q: &UnitQuaternion<f64>) -> f64 {
+        self.law.ln_density(q)
+    }
+
+    /// The logarithm of the density of the *attitude*, at q and −q together, with respect to
+    /// surface measure on the half of S³ that represents every attitude once (total π²).
+    #[must_use]
+    pub fn ln_attitude_density(&self, q: &UnitQuaternion<f64>) -> f64 {
+        let (a, b) = (self.ln_density(q), self.ln_density(&opposite(q)));
+        a.max(b) + libm::log1p(libm::exp(-(a - b).abs()))
+    }
+
+    /// The logarithm of the density of Φ with respect to dθ₁ dθ₂ dθ₃ (Peck 2003, Eq. 26): that on
+    /// S³ times the Jacobian determinant sin²θ₁ sin θ₂.
+    #[must_use]
+    pub fn ln_density_of_angles(&self, angles: &HypersphericalAngles) -> f64 {
+        self.ln_density(&angles.quaternion()) + libm::log(angles.jacobian())
+    }
+
+    /// E[x], a vector inside the unit ball.
+    #[must_use]
+    pub fn mean_vector(&self) -> Vector4<f64> {
+        self.law.mean_vector()
+    }
+
+    /// E[x xᵀ], of trace one.
+    #[must_use]
+    pub fn second_moment(&self) -> Matrix4<f64> {
+        self.law.second_moment()
+    }
+
+    /// Expectations of polynomials in x: see [`FisherBingham::expect`].
+    pub fn expect<const N: usize>(
+        &self,
+        polynomials: impl Fn(&[Complex<f64>; 4]) -> [Complex<f64>; N],
+    ) -> [f64; N] {
+        self.law.expect(polynomials)
+    }
+
+    /// Whether q lies in the half sphere around the mean, x·m ≥ 0.
+    #[must_use]
+    pub fn in_mean_half(&self, q: &UnitQuaternion<f64>) -> bool {
+        q.coords.dot(&self.mean.coords) >= 0.0
+    }
+
+    /// The share of proposals that the sampler accepts.
+    #[must_use]
+    pub fn acceptance(&self) -> f64 {
+        self.law.acceptance()
+    }
+
+    /// How the law is sampled.
+    #[must_use]
+    pub fn method(&self) -> Method {
+        self.law.method()
+    }
+}
+
+impl Distribution<UnitQuaternion<f64>> for RadiallyConstrainedGaussian {
+    #[inline]
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> UnitQuaternion<f64> {
+        self.law.sample(rng)
+    }
+}
+
+fn opposite(q: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_unchecked(-q.into_inner())
+}
+
+/// Definite with room for rounding, whatever the scales of the four coordinates.
+fn is_definite(covariance: &Matrix4<f64>) -> bool {
+    let d = covariance.diagonal().map(f64::sqrt);
+    let correlation = Matrix4::from_fn(|i, j| covariance[(i, j)] / (d[i] * d[j]));
+    (correlation - Matrix4::identity() * (16.0 * f64::EPSILON))
+        .cholesky()
+        .is_some()
+}
+
+/// The serialized form: mean scalar last, covariance by rows.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parameters {
+    mean: [f64; 4],
+    covariance: [[f64; 4]; 4],
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Parameters> for RadiallyConstrainedGaussian {
+    type Error = RcgError;
+
+    fn try_from(p: Parameters) -> Result<Self, RcgError> {
+        let mean = UnitQuaternion::new_unchecked(Vector4::from(p.mean).into());
+        Self::new(mean, Matrix4::from_fn(|i, j| p.covariance[i][j]))
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<RadiallyConstrainedGaussian> for Parameters {
+    fn from(law: RadiallyConstrainedGaussian) -> Self {
+        Self {
+            mean: law.mean.coords.into(),
+            covariance: std::array::from_fn(|i| std::array::from_fn(|j| law.covariance[(i, j)])),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Quaternion;
+    use proptest::prelude::*;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+    /// Reference values of a law with a diagonal covariance, from the contour integral in 200-bit
+    /// arithmetic; the mean is normalised first.
+    struct Case {
+        name: &'static str,
+        mean: [f64; 4],
+        variances: [f64; 4],
+        ln_normaliser: f64,
+        mean_vector: [f64; 4],
+        /// Lower triangle of E[x xᵀ] by rows.
+        second_moment: [f64; 10],
+    }
+
+    fn reference() -> Vec<Case> {
+        vec![
+            Case {
+                name: "paper",
+                mean: [0.0249, 0.0005, -0.01, 0.9996],
+                variances: [2e-05, 0.0006, 0.0006, 0.6],
+                ln_normaliser: -10.035477697452611,
+                mean_vector: [
+                    0.02490154679418918,
+                    0.0005003551755707711,
+                    -0.010007103511415422,
+                    0.9299096550480864,
+                ],
+                second_moment: [
+                    0.0006400874794873405,
+                    1.2459617942002008e-05,
+                    0.0006006526746273734,
+                    -0.00024919235884004017,
+                    -5.007107534015433e-06,
+                    0.0007005444699309814,
+                    0.02315561389445006,
+                    0.0004649380923373893,
+                    -0.009298761846747786,
+                    0.9980587153759543,
+                ],
+            },
+            Case {
+                name: "iso1",
+                mean: [0.0, 0.0, 0.0, 1.0],
+                variances: [1.0, 1.0, 1.0, 1.0],
+                ln_normaliser: 2.1051061453278597,
+                mean_vector: [0.0, 0.0, 0.0, 0.24019372387008975],
+                second_moment: [
+                    0.24019372387008975,
+                    0.0,
+                    0.24019372387008975,
+                    0.0,
+                    0.0,
+                    0.24019372387008975,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.27941882838973076,
+                ],
+            },
+            Case {
+                name: "diag1234",
+                mean: [1.0, 2.0, 3.0, 4.0],
+                variances: [0.1, 0.2, 0.3, 0.4],
+                ln_normaliser: 0.3458571649223226,
+                mean_vector: [
+                    0.1714838973168175,
+                    0.29154448146123724,
+                    0.36719867677087126,
+                    0.41737777666940246,
+                ],
+                second_moment: [
+                    0.12118547795454061,
+                    0.04383992680209719,
+                    0.22833220347508526,
+                    0.05359869977206694,
+                    0.08287501868197618,
+                    0.30059362651557814,
+                    0.05985849976616203,
+                    0.09189564569429172,
+                    0.10993689971892281,
+                    0.349888692054796,
+                ],
+            },
+            Case {
+                name: "aniso",
+                mean: [1.0, -1.0, 1.0, -1.0],
+                variances: [1e-06, 0.0001, 0.01, 1.0],
+                ln_normaliser: -9.770789315952086,
+                mean_vector: [
+                    0.5000027366843739,
+                    -0.5002738853332012,
+                    0.5291912302172037,
+                    -0.10240548964626271,
+                ],
+                second_moment: [
+                    0.25000373670080805,
+                    -0.2501383121042209,
+                    0.2503740495885614,
+                    0.26459707467923554,
+                    -0.2647416623049857,
+                    0.2903539303625083,
+                    -0.051202546024309036,
+                    0.051182849413806075,
+                    -0.04904726128489428,
+                    0.20926828334812225,
+                ],
+            },
+            Case {
+                name: "bimodal_antipodal_s4",
+                mean: [0.02, -0.01, 0.03, 0.999],
+                variances: [0.0001, 0.0002, 0.0003, 100.0],
+                ln_normaliser: -9.478599176362945,
+                mean_vector: [
+                    0.020008017720486052,
+                    -0.010005021981804337,
+                    0.030018107135323817,
+                    0.00997265958500535,
+                ],
+                second_moment: [
+                    0.000500330903257712,
+                    -0.0002001806651573454,
+                    0.0003001409734900034,
+                    0.0006006028557529055,
+                    -0.00030033185801688745,
+                    0.0012011780729828984,
+                    0.0001994931602752837,
+                    -9.973668084019878e-05,
+                    0.0002991803384889109,
+                    0.9979983500502694,
+                ],
+            },
+        ]
+    }
+
+    fn law(mean: [f64; 4], variances: [f64; 4]) -> RadiallyConstrainedGaussian {
+        let mean = UnitQuaternion::from_quaternion(Quaternion::from(Vector4::from(mean)));
+        RadiallyConstrainedGaussian::new(mean, Matrix4::from_diagonal(&variances.into())).unwrap()
+    }
+
+    fn paper() -> RadiallyConstrainedGaussian {
+        law([0.0249, 0.0005, -0.0100, 0.9996], [2e-5, 6e-4, 6e-4, 0.6])
+    }
+
+    #[test]
+    fn normaliser_and_moments_match_the_reference() {
+        for case in reference() {
+            let law = law(case.mean, case.variances);
+            let error = law.ln_normaliser() - case.ln_normaliser;
+            assert!(error.abs() < 1e-13, "{}: ln C off by {error:e}", case.name);
+            let second = law.second_moment();
+            let mut k = 0;
+            for i in 0..4 {
+                let error = law.mean_vector()[i] - case.mean_vector[i];
+                assert!(
+                    error.abs() < 1e-13,
+                    "{}: E x{i} off by {error:e}",
+                    case.name
+                );
+                for j in 0..=i {
+                    let error = second[(i, j)] - case.second_moment[k];
+                    assert!(
+                        error.abs() < 1e-13,
+                        "{}: E x{i}x{j} off by {error:e}",
+                        case.name
+                    );
+                    k += 1;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn acceptance_is_useful() {
+        for case in reference() {
+            let law = law(case.mean, case.variances);
+            assert!(
+                law.acceptance() > 0.4,
+                "{}: {}",
+                case.name,
+                law.acceptance()
+            );
+        }
+        assert!(paper().acceptance() > 0.9995, "{}", paper().acceptance());
+        assert_eq!(paper().method(), Method::Chart);
+    }
+
+    /// χ² of one coordinate in 40 bins against the marginal density by quadrature over the sphere.
+    fn chi_squared(
+        samples: impl Iterator<Item = UnitQuaternion<f64>>,
+        law: &RadiallyConstrainedGaussian,
+    ) -> f64 {
+        // Marginal of x₄: integrate the density over the two-sphere of (x₁, x₂, x₃), Gauss-Legendre
+        // being unnecessary where the integrand is periodic and smooth.
+        const BINS: usize = 40;
+        const POINTS: usize = 64;
+        let pi = std::f64::consts::PI;
+        let density = |x4: f64| {
+            let r = (1.0 - x4 * x4).sqrt();
+            let mut sum = 0.0;
+            for i in 0..POINTS {
+                let z = -1.0 + 2.0 * (i as f64 + 0.5) / POINTS as f64;
+                for j in 0..POINTS {
+                    let (s, c) = (2.0 * pi * j as f64 / POINTS as f64).sin_cos();
+                    let rho = r * (1.0 - z * z).sqrt();
+                    let q = Quaternion::new(x4, rho * c, rho * s, r * z);
+                    sum += law.ln_density(&UnitQuaternion::new_unchecked(q)).exp();
+                }
+            }
+            r * sum * 4.0 * pi / (POINTS * POINTS) as f64
+        };
+        let mut expected = [0.0; BINS];
+        for (bin, mass) in expected.iter_mut().enumerate() {
+            for k in 0..8 {
+                let x = -1.0 + (bin as f64 + (k as f64 + 0.5) / 8.0) * 2.0 / BINS as f64;
+                *mass += density(x) * 2.0 / (8 * BINS) as f64;
+            }
+        }
+        assert!((expected.iter().sum::<f64>() - 1.0).abs() < 2e-3);
+        let mut counts = [0.0; BINS];
+        let mut n = 0.0;
+        for q in samples {
+            counts[(((q.w + 1.0) * 0.5 * BINS as f64) as usize).min(BINS - 1)] += 1.0;
+            n += 1.0;
+        }
+        counts
+            .iter()
+            .zip(expected)
+            .map(|(c, e)| (c - n * e) * (c - n * e) / (n * e))
+            .sum()
+    }
+
+    /// Draws of a mild law follow its density; draws with the Jacobian counted twice, or with one
+    /// lobe missing, do not, and the same test sees it at the same n.
+    #[test]
+    fn draws_follow_the_density_and_wrong_ones_do_not() {
+        use rand::RngExt;
+        const N: usize = 100_000;
+        let law = law([0.2, -0.1, 0.3, 0.9], [0.3, 0.4, 0.5, 0.8]);
+        let draws = || {
+            let mut rng = ChaCha8Rng::seed_from_u64(11);
+            let law = law.clone();
+            std::iter::repeat_with(move || law.sample(&mut rng))
+        };
+        // 39 degrees of freedom: 72 is exceeded once in a thousand.
+        let right = chi_squared(draws().take(N), &law);
+        assert!(right < 72.0, "{right}");
+        let mut rng = ChaCha8Rng::seed_from_u64(12);
+        let doubled =
+            draws().filter(|q| rng.random::<f64>() < HypersphericalAngles::of(q).jacobian());
+        assert!(chi_squared(doubled.take(N), &law) > 1000.0);
+        let one_lobe = draws().filter(|q| law.in_mean_half(q));
+        assert!(chi_squared(one_lobe.take(N), &law) > 1000.0);
+    }
+
+    /// The far half of the paper's example holds 3.4 % of the mass.
+    #[test]
+    fn the_far_lobe_is_there() {
+        const N: usize = 400_000;
+        let law = paper();
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let far = (0..N)
+            .filter(|_| !law.in_mean_half(&law.sample(&mut rng)))
+            .count();
+        let share = far as f64 / N as f64;
+        let z = (share - FAR_SHARE) / (FAR_SHARE * (1.0 - FAR_SHARE) / N as f64).sqrt();
+        assert!(z.abs() < 3.5, "share {share}, z = {z}");
+    }
+
+    /// P(x·m < 0) for the paper's example, by adaptive quadrature of the slice normaliser (scipy).
+    const FAR_SHARE: f64 = 0.034;
+
+    #[test]
+    fn densities_are_consistent() {
+        let law = paper();
+        let q = UnitQuaternion::from_euler_angles(0.05, 0.01, -0.02);
+        let angles = HypersphericalAngles::of(&q);
+        let by_angles = law.ln_density_of_angles(&angles) - angles.jacobian().ln();
+        assert!((by_angles - law.ln_density(&q)).abs() < 1e-9);
+        let sum = law.ln_density(&q).exp() + law.ln_density(&opposite(&q)).exp();
+        assert!((law.ln_attitude_density(&q) - sum.ln()).abs() < 1e-12);
+        assert_eq!(
+            law.ln_attitude_density(&q),
+            law.ln_attitude_density(&opposite(&q))
+        );
+        // At the mean the exponent is zero.
+        assert!((law.ln_density(&law.mean()) + law.ln_normaliser()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn bad_parameters_are_named() {
+        let mean = UnitQuaternion::identity();
+        let one = Matrix4::<f64>::identity();
+        let with = |i, j, value| {
+            let mut m = one;
+            m[(i, j)] = value;
+            m[(j, i)] = value;
+            RadiallyConstrainedGaussian::new(mean, m)
+        };
+        assert!(matches!(
+            with(1, 1, f64::NAN),
+            Err(RcgError::Entry {
+                row: 2,
+                column: 2,
+                ..
+            })
+        ));
+        assert!(matches!(
+            with(1, 2, f64::INFINITY),
+            Err(RcgError::Entry { .. })
+        ));
+        for bad in [0.0, -1.0, 1e-300, 1e300, -0.0] {
+            assert!(
+                matches!(with(3, 3, bad), Err(RcgError::Eigenvalue { .. })),
+                "{bad}"
+            );
+        }
+        assert!(
+            matches!(with(0, 1, 1.0), Err(RcgError::Eigenvalue { .. })),
+            "singular"
+        );
+        assert!(
+            matches!(with(0, 1, 1.1), Err(RcgError::Eigenvalue { .. })),
+            "indefinite"
+        );
+        let mut skew = one;
+        skew[(2, 0)] = 0.3;
+        assert!(matches!(
+            RadiallyConstrainedGaussian::new(mean, skew),
+            Err(RcgError::NotSymmetric {
+                row: 1,
+                column: 3,
+                ..
+            })
+        ));
+        for bad in [
+            Quaternion::new(2.0, 0.0, 0.0, 0.0),
+            Quaternion::new(f64::NAN, 0.0, 0.0, 0.0),
+        ] {
+            let bad = UnitQuaternion::new_unchecked(bad);
+            assert!(matches!(
+                RadiallyConstrainedGaussian::new(bad, one),
+                Err(RcgError::Mean { .. })
+            ));
+        }
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn serde_goes_through_the_constructor() {
+        let law = paper();
+        let json = serde_json::to_string(&law).unwrap();
+        let back: RadiallyConstrainedGaussian = serde_json::from_str(&json).unwrap();
+        assert_eq!(back.covariance(), law.covariance());
+        let bad = json.replace("0.6]", "-0.6]");
+        assert!(serde_json::from_str::<RadiallyConstrainedGaussian>(&bad).is_err());
+    }
+
+    /// The first draws of the paper's example from a fixed seed: they change only on purpose.
+    #[test]
+    fn value_stability() {
+        let law = paper();
+        let mut rng = ChaCha8Rng::seed_from_u64(2003);
+        let draws: [[f64; 4]; 3] = std::array::from_fn(|_| law.sample(&mut rng).coords.into());
+        assert_eq!(draws, STABLE, "{draws:?}");
+    }
+
+    const STABLE: [[f64; 4]; 3] = [
+        [
+            0.02193133527153861,
+            0.01468945853695853,
+            0.01757696380815038,
+            0.9994970168461661,
+        ],
+        [
+            0.018031798318248055,
+            0.0026331112665549865,
+            -0.03405680469429733,
+            0.9992537490690152,
+        ],
+        [
+            0.031236492581134926,
+            -0.01173439095962631,
+            0.01910542160584136,
+            0.9992605108105185,
+        ],
+    ];
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(128))]
+        /// Any covariance is served, with a usable acceptance and a finite normaliser.
+        #[test]
+        fn any_covariance_is_served(
+            x in prop::array::uniform16(-1.0..1.0f64),
+            level in -8.0..0.0f64,
+            spread in prop::array::uniform4(0.0..8.0f64),
+            mean in prop::array::uniform4(-1.0..1.0f64),
+            seed in 0..u64::MAX,
+        ) {
+            let turn = Matrix4::from_row_slice(&x).qr().q();
+            let variances = spread.map(|s| 10f64.powf(level + s));
+            let covariance = turn * Matrix4::from_diagonal(&variances.into()) * turn.transpose();
+            let covariance = (covariance + covariance.transpose()) * 0.5;
+            let mean = Vector4::from(mean);
+            prop_assume!(mean.norm() > 0.1);
+            let mean = UnitQuaternion::from_quaternion(Quaternion::from(mean));
+            let law = match RadiallyConstrainedGaussian::new(mean, covariance) {
+                Ok(law) => law,
+                Err(error) => return Err(TestCaseError::fail(error.to_string())),
+            };
+            prop_assert!(law.acceptance() > 0.25, "{} {:?}", law.acceptance(), law.method());
+            prop_assert!(law.ln_normaliser().is_finite() && law.ln_normaliser() < 3.0);
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            for _ in 0..10 {
+                let q = law.sample(&mut rng);
+                prop_assert!((q.norm() - 1.0).abs() < 1e-15 && law.ln_density(&q).is_finite());
+            }
+        }
+    }
+}

@@ -1,0 +1,282 @@
+use nalgebra::{Matrix3, UnitQuaternion};
+
+use crate::{InertiaMatrix, InertiaMatrixError, PrincipalAxes, SecondMoments, SecondMomentsError};
+
+/// Why a matrix is not the inertia of any body.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RealizabilityError {
+    /// Not even a finite symmetric matrix.
+    #[error(transparent)]
+    Matrix(#[from] InertiaMatrixError),
+    /// A second mass moment is negative: the triangle inequality fails for that axis.
+    #[error(
+        "no body has this inertia: its principal moments are {}, {} and {} kg·m², and the sum of \
+         any two must be at least the third (short by {:.3} % of the trace)",
+        .moments[0], .moments[1], .moments[2], .shortfall_percent
+    )]
+    NotRealizable {
+        /// Principal moments, kg·m².
+        moments: [f64; 3],
+        /// How far the smallest K_k lies below zero, in percent of tr(I).
+        shortfall_percent: f64,
+    },
+    /// Second moments out of range.
+    #[error(transparent)]
+    SecondMoments(#[from] SecondMomentsError),
+}
+
+/// The inertia of a rigid body that could be built: finite, symmetric, Σ = ½ tr(I)·1 − I ⪰ 0.
+///
+/// About the mass centre, in body axes, in kg·m²; products as tensor entries (I₁₂ = −∫ x₁x₂ dm).
+/// The type cannot hold anything else: every way in checks, or builds from second mass moments
+/// K_k ≥ 0, which is realizable by construction (Peck 2003, Eq. 7-11).
+///
+/// Boundary bodies are realizable: rods (two K_k zero), plates (one), points (all three). Whether
+/// an inertia can be inverted is a separate question: [`Inertia::is_invertible`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "[[f64; 3]; 3]", into = "[[f64; 3]; 3]")
+)]
+pub struct Inertia(InertiaMatrix);
+
+impl Inertia {
+    /// Takes a full matrix.
+    ///
+    /// # Errors
+    /// The matrix is not finite, not symmetric, or not realizable.
+    pub fn new(matrix: Matrix3<f64>) -> Result<Self, RealizabilityError> {
+        InertiaMatrix::new(matrix)?.try_into()
+    }
+
+    /// Builds I_B = R(q)ᵀ I_P R(q) from principal moments and the attitude that takes body
+    /// components to principal components.
+    ///
+    /// # Errors
+    /// The moments are not finite or break the triangle inequality.
+    pub fn from_principal_moments(
+        moments: [f64; 3],
+        attitude: &UnitQuaternion<f64>,
+    ) -> Result<Self, RealizabilityError> {
+        // Judged before the rotation, where nothing has been rounded yet.
+        let principal = Self::try_from(InertiaMatrix::from_entries(moments, [0.0; 3])?)?;
+        Ok(Self(principal.0.rotated(&attitude.inverse())))
+    }
+
+    /// Builds the inertia of second mass moments K (kg·m²) about principal axes at `attitude`,
+    /// which takes body components to principal components: I_B = tr(K)·1 − R(q)ᵀ K R(q).
+    ///
+    /// Nothing can go wrong: whatever the K_k ≥ 0, the result is realizable (Peck 2003, Eq. 7).
+    #[must_use]
+    pub fn from_second_moments(moments: SecondMoments, attitude: &UnitQuaternion<f64>) -> Self {
+        let k = moments.values();
+        let r = attitude.to_rotation_matrix();
+        let r = r.matrix();
+        let sigma = |a: usize, b: usize| {
+            k[0] * (r[(0, a)] * r[(0, b)])
+                + k[1] * (r[(1, a)] * r[(1, b)])
+                + k[2] * (r[(2, a)] * r[(2, b)])
+        };
+        let (s11, s22, s33) = (sigma(0, 0), sigma(1, 1), sigma(2, 2));
+        let (i12, i13, i23) = (-sigma(0, 1), -sigma(0, 2), -sigma(1, 2));
+        Self(InertiaMatrix::symmetrized(&Matrix3::new(
+            s22 + s33,
+            i12,
+            i13,
+            i12,
+            s11 + s33,
+            i23,
+            i13,
+            i23,
+            s11 + s22,
+        )))
+    }
+
+    /// The full matrix.
+    #[must_use]
+    pub fn matrix(&self) -> &Matrix3<f64> {
+        self.0.matrix()
+    }
+
+    /// The six entries in the order I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.
+    #[must_use]
+    pub fn entries(&self) -> [f64; 6] {
+        self.0.entries()
+    }
+
+    /// The same inertia, its realizability forgotten.
+    #[must_use]
+    pub fn as_inertia_matrix(&self) -> &InertiaMatrix {
+        &self.0
+    }
+
+    /// The same body in axes turned by `rotation`: R I Rᵀ, where R takes old components to new.
+    #[must_use]
+    pub fn rotated(&self, rotation: &UnitQuaternion<f64>) -> Self {
+        Self(self.0.rotated(rotation))
+    }
+
+    /// Principal moments and axes; see [`PrincipalAxes`] for their order and signs.
+    #[must_use]
+    pub fn principal_axes(&self) -> PrincipalAxes {
+        self.0.principal_axes()
+    }
+
+    /// Second mass moments about the principal axes, in their order.
+    #[must_use]
+    pub fn second_moments(&self) -> SecondMoments {
+        // What rounding left below zero is zero: the type promises no less.
+        SecondMoments::clamped(self.principal_axes().second_moments())
+    }
+
+    /// Whether angular velocity follows from angular momentum: false for rods along their axis
+    /// and for points.
+    #[must_use]
+    pub fn is_invertible(&self) -> bool {
+        self.0.inverse().is_some()
+    }
+}
+
+impl TryFrom<InertiaMatrix> for Inertia {
+    type Error = RealizabilityError;
+
+    fn try_from(matrix: InertiaMatrix) -> Result<Self, Self::Error> {
+        if matrix.is_realizable() {
+            return Ok(Self(matrix));
+        }
+        let axes = matrix.principal_axes();
+        let smallest = axes
+            .second_moments()
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
+        let size = matrix.matrix().amax();
+        let trace: f64 = axes.moments().iter().map(|i| (i / size).abs()).sum();
+        Err(RealizabilityError::NotRealizable {
+            moments: axes.moments(),
+            shortfall_percent: -100.0 * (smallest / size) / trace,
+        })
+    }
+}
+
+impl TryFrom<[[f64; 3]; 3]> for Inertia {
+    type Error = RealizabilityError;
+
+    fn try_from(rows: [[f64; 3]; 3]) -> Result<Self, Self::Error> {
+        InertiaMatrix::try_from(rows)?.try_into()
+    }
+}
+
+impl From<Inertia> for InertiaMatrix {
+    fn from(inertia: Inertia) -> Self {
+        inertia.0
+    }
+}
+
+impl From<Inertia> for [[f64; 3]; 3] {
+    fn from(inertia: Inertia) -> Self {
+        inertia.0.into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::RootSecondMoments;
+    use proptest::prelude::*;
+
+    fn any_attitude() -> impl Strategy<Value = UnitQuaternion<f64>> {
+        prop::array::uniform3(-3.0..3.0f64)
+            .prop_map(|v| UnitQuaternion::from_scaled_axis(nalgebra::Vector3::from(v)))
+    }
+
+    #[test]
+    fn the_message_says_what_is_wrong_and_what_is_allowed() {
+        let error = Inertia::try_from([[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 6.0]]);
+        let message = error.unwrap_err().to_string();
+        assert!(
+            message.contains('6') && message.contains("at least the third"),
+            "{message}"
+        );
+        assert!(
+            message.contains("16.667 %"),
+            "K3 = -1.5 of a trace of 9: {message}"
+        );
+    }
+
+    #[test]
+    fn moments_that_break_the_triangle_are_refused_at_any_attitude() {
+        let q = UnitQuaternion::from_euler_angles(0.3, -0.2, 1.0);
+        assert!(Inertia::from_principal_moments([1.0, 2.0, 3.1], &q).is_err());
+        assert!(Inertia::from_principal_moments([1.0, 2.0, f64::NAN], &q).is_err());
+        assert!(Inertia::from_principal_moments([1.0, 2.0, 3.0], &q).is_ok());
+    }
+
+    #[test]
+    fn boundary_bodies_are_realizable_and_some_cannot_be_inverted() {
+        let identity = UnitQuaternion::identity();
+        let of = |k| Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &identity);
+        assert!(of([1.0, 1.0, 0.0]).is_invertible(), "plate");
+        assert!(!of([1.0, 0.0, 0.0]).is_invertible(), "rod");
+        assert!(!of([0.0, 0.0, 0.0]).is_invertible(), "point");
+    }
+
+    #[test]
+    fn attitude_takes_body_to_principal_components() {
+        // Principal axis 1 along body axis 2: R(q) e₂ = e₁, a turn of -90° about axis 3.
+        let q = UnitQuaternion::from_axis_angle(
+            &nalgebra::Vector3::z_axis(),
+            -std::f64::consts::FRAC_PI_2,
+        );
+        let inertia = Inertia::from_principal_moments([5.0, 4.0, 3.0], &q).unwrap();
+        let [i11, i22, i33, ..] = inertia.entries();
+        assert!((i11 - 4.0).abs() < 1e-14 && (i22 - 5.0).abs() < 1e-14 && i33 == 3.0);
+    }
+
+    proptest! {
+        #[test]
+        fn any_root_second_moments_make_a_body(
+            k in prop::array::uniform3(-1e3..1e3f64),
+            q in any_attitude(),
+        ) {
+            let moments = RootSecondMoments::new(k).unwrap().squared();
+            let inertia = Inertia::from_second_moments(moments, &q);
+            prop_assert!(inertia.as_inertia_matrix().is_realizable());
+            // The K_k come back, in some order.
+            let mut expected = moments.values();
+            let mut found = inertia.second_moments().values();
+            expected.sort_by(f64::total_cmp);
+            found.sort_by(f64::total_cmp);
+            let size = expected[2].max(f64::MIN_POSITIVE);
+            for (a, b) in expected.iter().zip(found) {
+                prop_assert!((a - b).abs() <= 1e-13 * size, "{expected:?} {found:?}");
+            }
+        }
+
+        #[test]
+        fn both_constructions_agree(
+            k in prop::array::uniform3(0.0..1e3f64),
+            q in any_attitude(),
+        ) {
+            let moments = SecondMoments::new(k).unwrap();
+            let a = Inertia::from_second_moments(moments, &q);
+            let b = Inertia::from_principal_moments(moments.principal_moments(), &q).unwrap();
+            prop_assert!((a.matrix() - b.matrix()).amax() <= 1e-14 * a.matrix().amax());
+        }
+
+        #[test]
+        fn rotation_keeps_the_trace_and_comes_back(
+            k in prop::array::uniform3(0.1..1e3f64),
+            q in any_attitude(),
+            turn in any_attitude(),
+        ) {
+            let inertia = Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &q);
+            let there = inertia.rotated(&turn);
+            let size = inertia.matrix().amax();
+            prop_assert!((there.matrix().trace() - inertia.matrix().trace()).abs() < 1e-13 * size);
+            let back = there.rotated(&turn.inverse());
+            prop_assert!((back.matrix() - inertia.matrix()).amax() < 1e-13 * size);
+        }
+    }
+}

@@ -1,0 +1,391 @@
+use nalgebra::{Matrix3, UnitQuaternion};
+
+use crate::{MAX_ENTRY, PrincipalAxes, RELATIVE_TOLERANCE};
+
+/// Why a matrix is not an [`InertiaMatrix`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InertiaMatrixError {
+    /// An entry is NaN, infinite, or larger in magnitude than [`MAX_ENTRY`].
+    #[error(
+        "entry I{row}{column} = {value:e} kg·m²: it must be finite and at most {MAX_ENTRY:.1e}"
+    )]
+    Entry {
+        /// Row, from 1.
+        row: usize,
+        /// Column, from 1.
+        column: usize,
+        /// The entry, kg·m².
+        value: f64,
+    },
+    /// Entries across the diagonal differ by more than rounding.
+    #[error(
+        "I{row}{column} = {upper} kg·m² but I{column}{row} = {lower} kg·m²: an inertia matrix is \
+         symmetric"
+    )]
+    NotSymmetric {
+        /// Row of the upper entry, from 1.
+        row: usize,
+        /// Column of the upper entry, from 1.
+        column: usize,
+        /// The entry above the diagonal, kg·m².
+        upper: f64,
+        /// The entry below the diagonal, kg·m².
+        lower: f64,
+    },
+}
+
+/// A finite, symmetric 3×3 matrix in the place of an inertia matrix, in kg·m².
+///
+/// It need not belong to any body: that is what [`Inertia`](crate::Inertia) adds. Keep this type
+/// where matrices come from elsewhere and are yet to be judged, or where unphysical ones are kept
+/// on purpose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "[[f64; 3]; 3]", into = "[[f64; 3]; 3]")
+)]
+pub struct InertiaMatrix(Matrix3<f64>);
+
+impl InertiaMatrix {
+    /// Takes a full matrix. Entries across the diagonal may differ by rounding
+    /// ([`RELATIVE_TOLERANCE`] of the largest entry) and are replaced by their mean.
+    ///
+    /// # Errors
+    /// An entry is not finite or too large, or the matrix is not symmetric.
+    pub fn new(matrix: Matrix3<f64>) -> Result<Self, InertiaMatrixError> {
+        for row in 0..3 {
+            for column in 0..3 {
+                let value = matrix[(row, column)];
+                // Negated so that NaN is refused too.
+                if !(value.abs() <= MAX_ENTRY) {
+                    return Err(InertiaMatrixError::Entry {
+                        row: row + 1,
+                        column: column + 1,
+                        value,
+                    });
+                }
+            }
+        }
+        let allowed = RELATIVE_TOLERANCE * matrix.amax();
+        for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+            let (upper, lower) = (matrix[(row, column)], matrix[(column, row)]);
+            if (upper - lower).abs() > allowed {
+                return Err(InertiaMatrixError::NotSymmetric {
+                    row: row + 1,
+                    column: column + 1,
+                    upper,
+                    lower,
+                });
+            }
+        }
+        Ok(Self::symmetrized(&matrix))
+    }
+
+    /// Takes the moments (I₁₁, I₂₂, I₃₃) and the products (I₁₂, I₁₃, I₂₃) of inertia, the products
+    /// as tensor entries: I₁₂ = −∫ x₁x₂ dm.
+    ///
+    /// # Errors
+    /// An entry is not finite or too large.
+    pub fn from_entries(
+        [i11, i22, i33]: [f64; 3],
+        [i12, i13, i23]: [f64; 3],
+    ) -> Result<Self, InertiaMatrixError> {
+        Self::new(Matrix3::new(i11, i12, i13, i12, i22, i23, i13, i23, i33))
+    }
+
+    /// For matrices known to be finite, in range and symmetric up to rounding.
+    pub(crate) fn symmetrized(m: &Matrix3<f64>) -> Self {
+        let mean = |i, j| 0.5 * (m[(i, j)] + m[(j, i)]);
+        let (i12, i13, i23) = (mean(0, 1), mean(0, 2), mean(1, 2));
+        Self(Matrix3::new(
+            m[(0, 0)],
+            i12,
+            i13,
+            i12,
+            m[(1, 1)],
+            i23,
+            i13,
+            i23,
+            m[(2, 2)],
+        ))
+    }
+
+    /// The full matrix.
+    #[must_use]
+    pub fn matrix(&self) -> &Matrix3<f64> {
+        &self.0
+    }
+
+    /// The six entries in the order I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.
+    #[must_use]
+    pub fn entries(&self) -> [f64; 6] {
+        let m = &self.0;
+        [
+            m[(0, 0)],
+            m[(1, 1)],
+            m[(2, 2)],
+            m[(0, 1)],
+            m[(0, 2)],
+            m[(1, 2)],
+        ]
+    }
+
+    /// The second-moment matrix Σ = ½ tr(I)·1 − I = ∫ x xᵀ dm, whose eigenvalues are the K_k.
+    #[must_use]
+    pub fn second_moment_matrix(&self) -> Matrix3<f64> {
+        // ½ tr(I) − I_kk, without the cancellation of forming the trace first.
+        let m = &self.0;
+        let k = |a: usize, b: usize, c: usize| 0.5 * (m[(b, b)] + m[(c, c)] - m[(a, a)]);
+        let mut sigma = -m;
+        sigma[(0, 0)] = k(0, 1, 2);
+        sigma[(1, 1)] = k(1, 2, 0);
+        sigma[(2, 2)] = k(2, 0, 1);
+        sigma
+    }
+
+    /// The same dyadic in axes turned by `rotation`: R I Rᵀ, where R takes old components to new.
+    #[must_use]
+    pub fn rotated(&self, rotation: &UnitQuaternion<f64>) -> Self {
+        let r = rotation.to_rotation_matrix();
+        Self::symmetrized(&(r.matrix() * self.0 * r.matrix().transpose()))
+    }
+
+    /// Principal moments and axes; see [`PrincipalAxes`] for their order and signs.
+    #[must_use]
+    pub fn principal_axes(&self) -> PrincipalAxes {
+        PrincipalAxes::of(self)
+    }
+
+    /// Whether some distribution of non-negative mass has this inertia: Σ ⪰ 0, decided to
+    /// [`RELATIVE_TOLERANCE`] of the size of the matrix. Rods, plates and the point mass (zero
+    /// matrix) are realizable.
+    #[must_use]
+    pub fn is_realizable(&self) -> bool {
+        let size = self.0.amax();
+        if size == 0.0 {
+            return true;
+        }
+        // Dividing, not multiplying by 1/size, which overflows for subnormal sizes.
+        let sigma = Self(self.0.map(|x| x / size)).second_moment_matrix();
+        is_positive_semidefinite(sigma + Matrix3::from_diagonal_element(RELATIVE_TOLERANCE))
+    }
+
+    /// The inverse, if the matrix is positive definite (so that kinetic energy is positive) and
+    /// its smallest principal moment is more than [`RELATIVE_TOLERANCE`] of its largest entry.
+    #[must_use]
+    pub fn inverse(&self) -> Option<Matrix3<f64>> {
+        let size = self.0.amax();
+        if size == 0.0 {
+            return None;
+        }
+        let scaled = self.0.map(|x| x / size);
+        let shifted = scaled - Matrix3::from_diagonal_element(RELATIVE_TOLERANCE);
+        shifted.cholesky()?;
+        let inverse = scaled.cholesky()?.inverse().map(|x| x / size);
+        inverse.iter().all(|x| x.is_finite()).then_some(inverse)
+    }
+}
+
+/// Semidefiniteness by elimination with diagonal pivoting, which is backward stable, so that the
+/// caller's shift by a tolerance decides and not rounding: leading minors lose rank-one matrices.
+fn is_positive_semidefinite(s: Matrix3<f64>) -> bool {
+    let pivot = s.diagonal().imax();
+    let (q, r) = ((pivot + 1) % 3, (pivot + 2) % 3);
+    let d = s[(pivot, pivot)];
+    if d <= 0.0 {
+        return false;
+    }
+    let (a, b) = (s[(pivot, q)] / d, s[(pivot, r)] / d);
+    let qq = s[(q, q)] - a * s[(pivot, q)];
+    let rr = s[(r, r)] - b * s[(pivot, r)];
+    let qr = s[(q, r)] - a * s[(pivot, r)];
+    qq >= 0.0 && rr >= 0.0 && qq * rr >= qr * qr
+}
+
+impl TryFrom<[[f64; 3]; 3]> for InertiaMatrix {
+    type Error = InertiaMatrixError;
+
+    fn try_from(rows: [[f64; 3]; 3]) -> Result<Self, Self::Error> {
+        Self::new(Matrix3::from_fn(|i, j| rows[i][j]))
+    }
+}
+
+impl From<InertiaMatrix> for [[f64; 3]; 3] {
+    fn from(inertia: InertiaMatrix) -> Self {
+        std::array::from_fn(|i| std::array::from_fn(|j| inertia.0[(i, j)]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn diagonal(moments: [f64; 3]) -> InertiaMatrix {
+        InertiaMatrix::from_entries(moments, [0.0; 3]).unwrap()
+    }
+
+    pub(crate) fn any_attitude() -> impl Strategy<Value = UnitQuaternion<f64>> {
+        prop::array::uniform4(-1.0..1.0f64)
+            .prop_filter("length", |q| q.iter().map(|x| x * x).sum::<f64>() > 1e-2)
+            .prop_map(|[x, y, z, w]| {
+                UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z))
+            })
+    }
+
+    #[test]
+    fn refuses_what_is_not_a_number_or_not_symmetric() {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308] {
+            let error = InertiaMatrix::from_entries([1.0, bad, 1.0], [0.0; 3]).unwrap_err();
+            assert!(matches!(
+                error,
+                InertiaMatrixError::Entry {
+                    row: 2,
+                    column: 2,
+                    ..
+                }
+            ));
+        }
+        let mut m = Matrix3::identity();
+        m[(0, 2)] = 1e-12;
+        let error = InertiaMatrix::new(m).unwrap_err();
+        assert!(matches!(
+            error,
+            InertiaMatrixError::NotSymmetric {
+                row: 1,
+                column: 3,
+                ..
+            }
+        ));
+        assert!(error.to_string().contains("I13"), "{error}");
+    }
+
+    #[test]
+    fn decides_the_classic_shapes() {
+        assert!(diagonal([0.0; 3]).is_realizable(), "point");
+        assert!(diagonal([0.0, 1.0, 1.0]).is_realizable(), "rod");
+        assert!(diagonal([1.0, 2.0, 3.0]).is_realizable(), "plate");
+        assert!(diagonal([1.0, 1.0, 1.0]).is_realizable(), "ball");
+        assert!(
+            !diagonal([-1.0, 1.0, 1.0]).is_realizable(),
+            "negative moment"
+        );
+        assert!(
+            !diagonal([-1.0, -1.0, -1.0]).is_realizable(),
+            "negative ball"
+        );
+        assert!(
+            !diagonal([1.0, 2.0, 3.003]).is_realizable(),
+            "triangle by 1e-3"
+        );
+        assert!(
+            !diagonal([1.0, 2.0, 3.0 + 3e-12]).is_realizable(),
+            "triangle by 1e-12"
+        );
+        let leaning =
+            InertiaMatrix::from_entries([100.0, 200.0, 300.0], [5.0, 10.0, 20.0]).unwrap();
+        assert!(
+            !leaning.is_realizable(),
+            "a plate pushed out by its products"
+        );
+    }
+
+    #[test]
+    fn scale_does_not_matter() {
+        for scale in [5e-324, 1e-310, 1e-300, 1e-150, 1.0, 1e150, 1e300] {
+            assert!(diagonal([scale; 3]).is_realizable(), "{scale:e}");
+            assert!(
+                !diagonal([scale, scale, 3.0 * scale]).is_realizable(),
+                "{scale:e}"
+            );
+        }
+        for scale in [1e-300, 1e300] {
+            assert!(diagonal([scale, 2.0 * scale, 3.0 * scale]).is_realizable());
+            let short = 3.0 * scale * (1.0 + 1e-9);
+            assert!(!diagonal([scale, 2.0 * scale, short]).is_realizable());
+        }
+    }
+
+    #[test]
+    fn inverse_only_of_what_can_carry_energy() {
+        assert!(diagonal([0.0, 1.0, 1.0]).inverse().is_none());
+        assert!(diagonal([-1.0, 1.0, 1.0]).inverse().is_none());
+        assert!(diagonal([0.0; 3]).inverse().is_none());
+        assert!(
+            diagonal([1e-310; 3]).inverse().is_none(),
+            "its inverse overflows"
+        );
+        let m = InertiaMatrix::from_entries([5000.0, 4000.0, 3000.0], [20.0, 2.0, -50.0]).unwrap();
+        let product = m.inverse().unwrap() * m.matrix();
+        assert!((product - Matrix3::identity()).amax() < 1e-14);
+    }
+
+    proptest! {
+        #[test]
+        fn boundary_bodies_survive_any_frame(
+            q in any_attitude(),
+            a in 0.0..10.0f64,
+            b in 0.0..10.0f64,
+            exponent in -300..300i32,
+        ) {
+            let scale = 10f64.powi(exponent);
+            let plate = diagonal([a * scale, b * scale, (a + b) * scale]);
+            prop_assert!(plate.rotated(&q).is_realizable());
+            let rod = diagonal([0.0, a * scale, a * scale]);
+            prop_assert!(rod.rotated(&q).is_realizable());
+        }
+
+        #[test]
+        fn a_violation_of_one_part_in_a_billion_is_refused_in_any_frame(
+            q in any_attitude(),
+            a in 0.1..10.0f64,
+            b in 0.1..10.0f64,
+        ) {
+            let wrong = diagonal([a, b, (a + b) * (1.0 + 1e-9)]);
+            prop_assert!(!wrong.rotated(&q).is_realizable());
+        }
+
+        #[test]
+        fn any_cloud_of_points_is_realizable(
+            points in prop::collection::vec((prop::array::uniform3(-1e3..1e3f64), 0.0..1e3f64), 1..8)
+        ) {
+            let mut inertia = Matrix3::zeros();
+            for (x, mass) in points {
+                let x = nalgebra::Vector3::from(x);
+                inertia += (Matrix3::identity() * x.norm_squared() - x * x.transpose()) * mass;
+            }
+            prop_assert!(InertiaMatrix::new(inertia).unwrap().is_realizable());
+        }
+
+        #[test]
+        fn second_moments_are_what_the_definition_says(
+            moments in prop::array::uniform3(0.0..10.0f64),
+            products in prop::array::uniform3(-1.0..1.0f64),
+        ) {
+            let m = InertiaMatrix::from_entries(moments, products).unwrap();
+            let direct = Matrix3::identity() * (0.5 * m.matrix().trace()) - m.matrix();
+            prop_assert!((m.second_moment_matrix() - direct).amax() < 1e-14);
+        }
+
+        #[test]
+        fn no_input_panics(entries in prop::array::uniform6(prop::num::f64::ANY)) {
+            let [a, b, c, d, e, f] = entries;
+            if let Ok(m) = InertiaMatrix::from_entries([a, b, c], [d, e, f]) {
+                let _ = (m.is_realizable(), m.inverse(), m.principal_axes());
+            }
+        }
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn serde_goes_through_the_constructor() {
+        let m = diagonal([1.0, 2.0, 3.0]);
+        let json = serde_json::to_string(&m).unwrap();
+        assert_eq!(json, "[[1.0,0.0,0.0],[0.0,2.0,0.0],[0.0,0.0,3.0]]");
+        assert_eq!(serde_json::from_str::<InertiaMatrix>(&json).unwrap(), m);
+        let lopsided = "[[1.0,0.5,0.0],[0.0,2.0,0.0],[0.0,0.0,3.0]]";
+        assert!(serde_json::from_str::<InertiaMatrix>(lopsided).is_err());
+    }
+}

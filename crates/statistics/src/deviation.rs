@@ -1,0 +1,239 @@
+//! Intervals for a standard deviation.
+
+use crate::moments::Centred;
+use crate::{Confidence, Interval, Moments, SortedSample, StatisticsError, law};
+
+impl Moments {
+    /// Normal-theory interval for the standard deviation, `s·√((n−1)/χ²)` with the two quantiles
+    /// of χ² at `n − 1` degrees of freedom.
+    ///
+    /// Exact for independent draws of a normal law and **only** there: the variance of `s²` grows
+    /// with the kurtosis κ, so that the coverage tends to `2Φ(z·√(2/(κ−1))) − 1` as `n` grows, not
+    /// to the nominal level. At 95 % that is 0.78 for a Laplace law (κ = 6), 0.67 for an
+    /// exponential (κ = 9) and above 0.99 for a uniform (κ = 1.8). See
+    /// [`Deviation::interval`] for data of unknown law.
+    pub fn normal_deviation_interval(&self, confidence: Confidence) -> Interval {
+        let (freedom, s) = (self.n() as f64 - 1.0, self.standard_deviation());
+        let bound = |chi_squared: f64| s * (freedom / chi_squared).sqrt();
+        Interval::ordered(
+            bound(law::chi_squared_upper(confidence.tail(), freedom)),
+            bound(law::chi_squared_lower(confidence.tail(), freedom)),
+            confidence,
+        )
+    }
+}
+
+/// A standard deviation with what its distribution-robust intervals need.
+///
+/// The intervals of Bonett rest on the delta method: `Var(ln s²) ≈ (κ − (n−3)/n)/(n−1)` for any
+/// law of kurtosis κ, with κ estimated about a trimmed mean,
+/// `κ̂ = n·Σ(x − m)⁴/(Σ(x − x̄)²)²`, `m` the mean without `⌊n/(2√(n−4))⌋` values at either end.
+/// That estimate is less biased for skewed laws than the plain `m₄/m₂²`.
+///
+/// # Limits
+///
+/// The draws are independent and **the law has a finite kurtosis**. Coverage at a nominal 95 % by
+/// simulation (`tests/coverage.rs` repeats the starred ones):
+///
+/// | law | κ | n = 10 | n = 50 | n = 1000* |
+/// | --- | --- | --- | --- | --- |
+/// | uniform | 1.8 | 0.97 | 0.95 | 0.95 |
+/// | normal | 3 | 0.96 | 0.94 | 0.95 |
+/// | Laplace | 6 | 0.92 | 0.92 | 0.95 |
+/// | exponential | 9 | 0.89 | 0.90 | 0.95 |
+/// | Student's t, 5 degrees | 9 | 0.94 | 0.91 | 0.93 |
+/// | Student's t, 3 degrees | none | 0.86 | 0.77 | 0.79 |
+///
+/// Where the kurtosis is infinite, as in the last row, `s²` converges slower than `1/√n` and `κ̂`
+/// grows with `n` without a limit: intervals keep being computed and no sample size makes them
+/// honest. Summarise such data by [quantiles](SortedSample::quantile_interval).
+///
+/// ```
+/// use gyradius_statistics::{Confidence, Deviation};
+///
+/// let deviation = Deviation::new(&[15.8, 16.0, 16.2, 15.6, 16.4, 15.9, 16.1, 17.3])?;
+/// let interval = deviation.interval(Confidence::default())?;
+/// assert!(interval.contains(deviation.standard_deviation()));
+/// # Ok::<(), gyradius_statistics::StatisticsError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Deviation {
+    n: usize,
+    standard_deviation: f64,
+    kurtosis: f64,
+}
+
+impl Deviation {
+    /// The deviation of a sample of five values or more that are not all equal.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::TooFew`] below five values, [`StatisticsError::Constant`] if the
+    /// standard deviation is 0, and those of [`Moments::new`].
+    pub fn new(sample: &[f64]) -> Result<Self, StatisticsError> {
+        let n = sample.len();
+        if n < 5 {
+            return Err(StatisticsError::TooFew { n, required: 5 });
+        }
+        let moments = Moments::new(sample)?;
+        let standard_deviation = moments.standard_deviation();
+        if standard_deviation == 0.0 {
+            return Err(StatisticsError::Constant);
+        }
+        let centred = Centred::new(sample, moments.minimum(), moments.maximum());
+        let deviations: Vec<f64> = sample.iter().map(|&x| centred.map(x)).collect();
+        let trimmed_mean = trimmed_mean(&deviations)?;
+        let fourth: f64 = deviations.iter().map(|u| (u - trimmed_mean).powi(4)).sum();
+        let second: f64 = deviations.iter().map(|u| u * u).sum();
+        Ok(Self {
+            n,
+            standard_deviation,
+            kurtosis: n as f64 * fourth / (second * second),
+        })
+    }
+
+    /// Number of values.
+    pub fn n(&self) -> usize {
+        self.n
+    }
+
+    /// Standard deviation with divisor `n − 1`.
+    pub fn standard_deviation(&self) -> f64 {
+        self.standard_deviation
+    }
+
+    /// The estimate κ̂ of the kurtosis about the trimmed mean; 3 for a normal law.
+    pub fn kurtosis(&self) -> f64 {
+        self.kurtosis
+    }
+
+    /// Bonett's interval for the standard deviation of a law of unknown shape,
+    /// `exp(½(ln(c·s²) ± z·c·√((κ̂ − (n−3)/n)/(n−1))))` with `c = n/(n − z)` (Bonett 2006,
+    /// doi:10.1016/j.csda.2004.10.003).
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::TooFew`] unless `n` exceeds the normal quantile `z`: at five values,
+    /// beyond a confidence of 1 − 6·10⁻⁷.
+    pub fn interval(&self, confidence: Confidence) -> Result<Interval, StatisticsError> {
+        let z = law::normal(confidence.tail());
+        let correction = self.correction(z)?;
+        let centre = self.standard_deviation * correction.sqrt();
+        let half = 0.5 * z * correction * self.log_variance(self.kurtosis).sqrt();
+        Ok(Interval::around_log(centre, half, confidence))
+    }
+
+    /// `c = n/(n − z)`, which evens the tails out in small samples.
+    pub(crate) fn correction(&self, z: f64) -> Result<f64, StatisticsError> {
+        let count = self.n as f64;
+        if count > z {
+            Ok(count / (count - z))
+        } else {
+            Err(StatisticsError::TooFew {
+                n: self.n,
+                required: z as usize + 1,
+            })
+        }
+    }
+
+    /// `Var(ln s²)` at the given kurtosis: positive, for no sample kurtosis is below 1.
+    pub(crate) fn log_variance(&self, kurtosis: f64) -> f64 {
+        let count = self.n as f64;
+        (kurtosis - (count - 3.0) / count) / (count - 1.0)
+    }
+}
+
+/// Mean without a share `1/(2√(n−4))` of the values at either end; the median of five.
+fn trimmed_mean(sample: &[f64]) -> Result<f64, StatisticsError> {
+    let sorted = SortedSample::new(sample)?;
+    let count = sample.len() as f64;
+    let cut = (count / (2.0 * (count - 4.0).sqrt())) as usize;
+    let kept = &sorted.values()[cut..sample.len() - cut];
+    Ok(kept.iter().sum::<f64>() / kept.len() as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const X: [f64; 8] = [15.8, 16.0, 16.2, 15.6, 16.4, 15.9, 16.1, 17.3];
+
+    fn assert_bounds(interval: Interval, lower: f64, upper: f64) {
+        assert!((interval.lower() / lower - 1.0).abs() < 1e-12, "{interval}");
+        assert!((interval.upper() / upper - 1.0).abs() < 1e-12, "{interval}");
+    }
+
+    #[test]
+    fn normal_interval_agrees_with_scipy() {
+        // scipy 1.17.1 `s*sqrt(7/chi2.isf(0.025, 7))` and `s*sqrt(7/chi2.ppf(0.025, 7))`.
+        let interval = Moments::new(&X)
+            .unwrap()
+            .normal_deviation_interval(Confidence::default());
+        assert_bounds(interval, 0.3443505161041908, 1.060003625537068);
+        let constant = Moments::new(&[2.0; 3]).unwrap();
+        let interval = constant.normal_deviation_interval(Confidence::default());
+        assert_eq!((interval.lower(), interval.upper()), (0.0, 0.0));
+    }
+
+    #[test]
+    fn robust_interval_agrees_with_the_formula() {
+        // The formula in NumPy 2.4.6, as in `.varCI.bonett` of the R package DescTools.
+        let deviation = Deviation::new(&X).unwrap();
+        assert!((deviation.kurtosis() - 5.552677712763627).abs() < 1e-10);
+        let interval = deviation.interval(Confidence::default()).unwrap();
+        assert_bounds(interval, 0.20172023721619445, 1.7810279517641803);
+        let interval = deviation.interval(Confidence::new(0.99).unwrap()).unwrap();
+        assert_bounds(interval, 0.12850300705893153, 3.113243536555837);
+    }
+
+    #[test]
+    fn trimming_leaves_the_median_of_five() {
+        assert_eq!(trimmed_mean(&[9.0, 1.0, 2.0, 100.0, 4.0]), Ok(4.0));
+        assert_eq!(trimmed_mean(&[9.0, 1.0, 2.0, 100.0, 4.0, 5.0]), Ok(4.5));
+    }
+
+    #[test]
+    fn unusable_requests_are_refused() {
+        let too_few = StatisticsError::TooFew { n: 4, required: 5 };
+        assert_eq!(Deviation::new(&[1.0, 2.0, 3.0, 4.0]), Err(too_few));
+        assert_eq!(Deviation::new(&[1.0; 9]), Err(StatisticsError::Constant));
+        let five = Deviation::new(&[1.0, 2.0, 3.0, 4.0, 5.0]).unwrap();
+        assert_eq!(
+            five.interval(Confidence::new(1.0 - 1e-9).unwrap()),
+            Err(StatisticsError::TooFew { n: 5, required: 7 })
+        );
+    }
+
+    #[test]
+    fn the_ends_of_the_range_of_floats_are_no_exception() {
+        for unit in [1e300, 1e-300, 5e-324] {
+            let sample: Vec<f64> = (0..50).map(|i| f64::from(i * i) * unit).collect();
+            let one: Vec<f64> = (0..50).map(|i| f64::from(i * i)).collect();
+            let (extreme, one) = (
+                Deviation::new(&sample).unwrap(),
+                Deviation::new(&one).unwrap(),
+            );
+            assert!((extreme.kurtosis() - one.kurtosis()).abs() < 1e-12);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn intervals_are_in_order_and_nested(
+            sample in prop::collection::vec(any::<f64>(), 5..12),
+            level in 0.5..0.99f64,
+        ) {
+            let Ok(deviation) = Deviation::new(&sample) else { return Ok(()) };
+            // Bonett's lower bound exceeds s in tiny samples at low levels, so s need not be in.
+            let interval = deviation.interval(Confidence::new(level).unwrap()).unwrap();
+            prop_assert!(interval.lower() <= interval.upper() && interval.lower() >= 0.0);
+            let moments = Moments::new(&sample).unwrap();
+            let inner = moments.normal_deviation_interval(Confidence::new(level).unwrap());
+            let outer = moments.normal_deviation_interval(Confidence::new(0.99).unwrap());
+            prop_assert!(outer.lower() <= inner.lower() && inner.upper() <= outer.upper());
+        }
+    }
+}

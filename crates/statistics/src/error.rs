@@ -1,0 +1,154 @@
+//! What can be wrong with a sample or a request.
+
+/// Why a summary was refused: what was wrong, the value, and what is allowed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StatisticsError {
+    /// A value of the sample is NaN or infinite.
+    #[error("value {index} of the sample is {value}; every value must be finite")]
+    NotFinite {
+        /// Position in the sample, from 0.
+        index: usize,
+        /// The value found there.
+        value: f64,
+    },
+    /// The sample is too small for what was asked of it.
+    #[error("the sample has {n} values; at least {required} are needed")]
+    TooFew {
+        /// Number of values in the sample.
+        n: usize,
+        /// The least number that would do.
+        required: usize,
+    },
+    /// The standard deviation is 0 where a formula divides by it.
+    #[error("the standard deviation of the sample is 0; it must be positive")]
+    Constant,
+    /// The standard deviation is larger than the largest `f64`.
+    #[error("values from {minimum:e} to {maximum:e} have a standard deviation beyond f64::MAX")]
+    TooSpread {
+        /// The smallest value.
+        minimum: f64,
+        /// The largest value.
+        maximum: f64,
+    },
+    /// The level is no confidence level.
+    #[error("the confidence level is {value}; it must lie strictly between 0 and 1")]
+    Confidence {
+        /// The level given.
+        value: f64,
+    },
+    /// The number is no probability.
+    #[error("the probability is {value}; it must lie between 0 and 1")]
+    Probability {
+        /// The probability given.
+        value: f64,
+    },
+    /// The bounds are out of order or NaN.
+    #[error("the interval runs from {lower} to {upper}; the bounds must be numbers in order")]
+    Bounds {
+        /// The lower bound given.
+        lower: f64,
+        /// The upper bound given.
+        upper: f64,
+    },
+    /// The counts make no proportion.
+    #[error(
+        "{successes} successes in {trials} trials; trials must be 1 to {}, successes no more",
+        crate::Proportion::MAX_TRIALS
+    )]
+    Proportion {
+        /// The successes given.
+        successes: u64,
+        /// The trials given.
+        trials: u64,
+    },
+    /// The number of bins is out of range.
+    #[error("{bins} bins; there must be 1 to {}", crate::BinEdges::MAX_BINS)]
+    Bins {
+        /// The number of bins given.
+        bins: usize,
+    },
+    /// A bin edge is not finite or not above the one before.
+    #[error("bin edge {index} is {value}; edges must be at least two, finite and increasing")]
+    Edge {
+        /// Position among the edges, from 0.
+        index: usize,
+        /// The edge found there, NaN where it is missing.
+        value: f64,
+    },
+    /// A distribution function returned something that is no probability.
+    #[error("the distribution function is {value} at {at}; it must lie between 0 and 1")]
+    DistributionFunction {
+        /// Where it was evaluated.
+        at: f64,
+        /// What it returned.
+        value: f64,
+    },
+    /// Observed and expected counts do not pair up.
+    #[error("{observed} observed counts and {expected} expected; there must be as many of each")]
+    Classes {
+        /// The number of observed counts.
+        observed: usize,
+        /// The number of expected counts.
+        expected: usize,
+    },
+    /// An expected count is not a positive number.
+    #[error("expected count {index} is {value}; it must be positive and finite")]
+    Expected {
+        /// Position among the expected counts, from 0.
+        index: usize,
+        /// The count found there.
+        value: f64,
+    },
+    /// Observed and expected counts do not add up to the same total.
+    #[error("{observed} observed in all and {expected} expected; the totals must agree to 1e-8")]
+    Totals {
+        /// Sum of the observed counts.
+        observed: f64,
+        /// Sum of the expected counts.
+        expected: f64,
+    },
+    /// No degree of freedom is left for a test.
+    #[error("{classes} classes and {fitted} fitted parameters; classes must exceed them by 2")]
+    DegreesOfFreedom {
+        /// The number of classes.
+        classes: usize,
+        /// The number of parameters fitted to the same data.
+        fitted: usize,
+    },
+}
+
+/// Refuses a sample with fewer than `required` values or with a value that is not finite.
+pub(crate) fn validate(sample: &[f64], required: usize) -> Result<(), StatisticsError> {
+    if sample.len() < required {
+        return Err(StatisticsError::TooFew {
+            n: sample.len(),
+            required,
+        });
+    }
+    match sample.iter().position(|value| !value.is_finite()) {
+        Some(index) => Err(StatisticsError::NotFinite {
+            index,
+            value: sample[index],
+        }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_name_the_value_and_what_is_allowed() {
+        let text = validate(&[1.0, f64::NAN], 2).unwrap_err().to_string();
+        assert_eq!(
+            text,
+            "value 1 of the sample is NaN; every value must be finite"
+        );
+        let text = validate(&[1.0], 2).unwrap_err().to_string();
+        assert_eq!(text, "the sample has 1 values; at least 2 are needed");
+        let text = StatisticsError::Bins { bins: 0 }.to_string();
+        assert_eq!(text, "0 bins; there must be 1 to 1000");
+    }
+}

@@ -1,0 +1,236 @@
+//! Confidence levels and the intervals that carry them.
+
+use std::fmt;
+
+use crate::StatisticsError;
+
+/// A confidence level, strictly between 0 and 1; 0.95 by default.
+///
+/// The share of samples whose interval covers the true value, not a probability about the one
+/// interval at hand.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "f64", into = "f64"))]
+pub struct Confidence(f64);
+
+impl Confidence {
+    /// A level strictly between 0 and 1.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::Confidence`] for any other number.
+    pub fn new(level: f64) -> Result<Self, StatisticsError> {
+        if level > 0.0 && level < 1.0 {
+            Ok(Self(level))
+        } else {
+            Err(StatisticsError::Confidence { value: level })
+        }
+    }
+
+    /// The level.
+    pub fn level(self) -> f64 {
+        self.0
+    }
+
+    /// The probability left to either side, `(1 − level)/2`.
+    pub(crate) fn tail(self) -> f64 {
+        (1.0 - self.0) / 2.0
+    }
+}
+
+impl Default for Confidence {
+    fn default() -> Self {
+        Self(0.95)
+    }
+}
+
+impl TryFrom<f64> for Confidence {
+    type Error = StatisticsError;
+
+    fn try_from(level: f64) -> Result<Self, StatisticsError> {
+        Self::new(level)
+    }
+}
+
+impl From<Confidence> for f64 {
+    fn from(confidence: Confidence) -> f64 {
+        confidence.0
+    }
+}
+
+/// A two-sided confidence interval, both bounds included.
+///
+/// A bound is infinite where the sample is too small to give one, or where the bound is beyond
+/// `f64`. JSON knows no infinity: `serde_json` writes `null` and refuses to read it back.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
+pub struct Interval {
+    lower: f64,
+    upper: f64,
+    confidence: Confidence,
+}
+
+impl Interval {
+    /// The interval from `lower` to `upper`.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::Bounds`] unless `lower ≤ upper`.
+    pub fn new(lower: f64, upper: f64, confidence: Confidence) -> Result<Self, StatisticsError> {
+        if lower <= upper {
+            Ok(Self {
+                lower,
+                upper,
+                confidence,
+            })
+        } else {
+            Err(StatisticsError::Bounds { lower, upper })
+        }
+    }
+
+    /// Bounds already known to be in order.
+    pub(crate) fn ordered(lower: f64, upper: f64, confidence: Confidence) -> Self {
+        Self {
+            lower,
+            upper,
+            confidence,
+        }
+    }
+
+    /// `centre ± half_width`; where both are infinite the bound between them is unknown.
+    pub(crate) fn around(centre: f64, half_width: f64, confidence: Confidence) -> Self {
+        let or = |bound: f64, unknown: f64| if bound.is_nan() { unknown } else { bound };
+        Self {
+            lower: or(centre - half_width, f64::NEG_INFINITY),
+            upper: or(centre + half_width, f64::INFINITY),
+            confidence,
+        }
+    }
+
+    /// `exp(ln(centre) ± half_width)`.
+    pub(crate) fn around_log(centre: f64, half_width: f64, confidence: Confidence) -> Self {
+        // Bounded, so that a centre beyond `f64` is never divided by infinity.
+        let factor = half_width.exp().min(f64::MAX);
+        Self {
+            lower: centre / factor,
+            upper: centre * factor,
+            confidence,
+        }
+    }
+
+    /// The lower bound.
+    pub fn lower(&self) -> f64 {
+        self.lower
+    }
+
+    /// The upper bound.
+    pub fn upper(&self) -> f64 {
+        self.upper
+    }
+
+    /// The nominal confidence level.
+    pub fn confidence(&self) -> Confidence {
+        self.confidence
+    }
+
+    /// Whether `value` lies between the bounds or on one.
+    pub fn contains(&self, value: f64) -> bool {
+        (self.lower..=self.upper).contains(&value)
+    }
+}
+
+/// `[lower, upper]`, with the precision asked for.
+impl fmt::Display for Interval {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("[")?;
+        self.lower.fmt(f)?;
+        f.write_str(", ")?;
+        self.upper.fmt(f)?;
+        f.write_str("]")
+    }
+}
+
+/// What is read before it is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct Unchecked {
+    lower: f64,
+    upper: f64,
+    confidence: Confidence,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for Interval {
+    type Error = StatisticsError;
+
+    fn try_from(raw: Unchecked) -> Result<Self, StatisticsError> {
+        Self::new(raw.lower, raw.upper, raw.confidence)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn levels_outside_the_open_unit_interval_are_refused() {
+        for level in [0.0, 1.0, -0.1, 95.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(
+                Confidence::new(level),
+                Err(StatisticsError::Confidence { .. })
+            ));
+        }
+        assert_eq!(Confidence::default(), Confidence::new(0.95).unwrap());
+        assert_eq!(f64::from(Confidence::try_from(0.5).unwrap()), 0.5);
+    }
+
+    #[test]
+    fn display_follows_the_precision() {
+        let interval = Interval::new(1.0, 2.5, Confidence::default()).unwrap();
+        assert_eq!(format!("{interval:.2}"), "[1.00, 2.50]");
+    }
+
+    #[test]
+    fn infinite_centre_and_width_leave_the_bound_open() {
+        let interval = Interval::around(f64::INFINITY, f64::INFINITY, Confidence::default());
+        assert_eq!(
+            (interval.lower(), interval.upper()),
+            (f64::NEG_INFINITY, f64::INFINITY)
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn an_interval_is_in_order_or_refused(lower: f64, upper: f64) {
+            match Interval::new(lower, upper, Confidence::default()) {
+                Ok(interval) => {
+                    prop_assert!(lower <= upper);
+                    prop_assert!(interval.contains(lower) && interval.contains(upper));
+                }
+                Err(_) => prop_assert!(lower.is_nan() || upper.is_nan() || lower > upper),
+            }
+        }
+    }
+
+    #[cfg(feature = "serde")]
+    mod serde {
+        use super::*;
+
+        #[test]
+        fn json_round_trips_and_is_checked() {
+            let interval = Interval::new(1.0, 2.5, Confidence::default()).unwrap();
+            let text = serde_json::to_string(&interval).unwrap();
+            assert_eq!(text, r#"{"lower":1.0,"upper":2.5,"confidence":0.95}"#);
+            assert_eq!(serde_json::from_str::<Interval>(&text).unwrap(), interval);
+            for bad in [
+                r#"{"lower":3.0,"upper":2.5,"confidence":0.95}"#,
+                r#"{"lower":1.0,"upper":2.5,"confidence":95.0}"#,
+            ] {
+                assert!(serde_json::from_str::<Interval>(bad).is_err());
+            }
+        }
+    }
+}
