@@ -204,7 +204,10 @@ mod tests {
 
     proptest! {
         #[test]
-        fn an_interval_is_in_order_or_refused(lower: f64, upper: f64) {
+        fn an_interval_is_in_order_or_refused(
+            lower in prop::num::f64::ANY,
+            upper in prop::num::f64::ANY,
+        ) {
             match Interval::new(lower, upper, Confidence::default()) {
                 Ok(interval) => {
                     prop_assert!(lower <= upper);

@@ -13,8 +13,8 @@ use crate::error::validate;
 /// Two passes find the mean and its rounding residue, a third sums powers of deviations divided by
 /// the largest of them (a two-pass scheme in the sense of Chan, Golub & LeVeque 1983,
 /// doi:10.1080/00031305.1983.10483115). Data of huge mean and small spread lose no digit that
-/// they hold, and nothing overflows or underflows between 5e-324 and 1e308. Sums run in the order
-/// of the data.
+/// they hold, and no sum overflows or underflows whatever their unit. Sums run in the order of the
+/// data.
 ///
 /// ```
 /// use gyradius_statistics::Moments;

@@ -1,0 +1,243 @@
+use gyradius_inertia::InertiaMatrix;
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+/// Why a body cannot take part in a separation.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BodyError {
+    /// The mass is not positive and finite.
+    #[error("mass = {value} kg: it must be positive and finite")]
+    Mass {
+        /// The mass, kg.
+        value: f64,
+    },
+    /// The inertia matrix is singular or has a negative moment.
+    #[error(
+        "inertia with principal moments {}, {} and {} kg·m²: all three must be positive for the \
+         body to turn",
+        .moments[0], .moments[1], .moments[2]
+    )]
+    NotPositiveDefinite {
+        /// Principal moments, kg·m².
+        moments: [f64; 3],
+    },
+    /// Position, velocity, attitude or angular velocity holds something that is not a number.
+    #[error("{field} = {value}: it must be finite")]
+    NotFinite {
+        /// Which vector.
+        field: &'static str,
+        /// The entry.
+        value: f64,
+    },
+}
+
+/// A rigid body: mass, and an inertia matrix that can be inverted.
+///
+/// The inertia need not be realizable: what unphysical matrices lead to is a question that this
+/// crate can be asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    mass: f64,
+    inertia: InertiaMatrix,
+    inverse: Matrix3<f64>,
+}
+
+impl Body {
+    /// Mass in kg and inertia in kg·m², about the mass centre in body axes.
+    ///
+    /// # Errors
+    /// The mass is not positive and finite, or the matrix not positive definite.
+    pub fn new(mass_kg: f64, inertia: impl Into<InertiaMatrix>) -> Result<Self, BodyError> {
+        if !(mass_kg > 0.0 && mass_kg.is_finite()) {
+            return Err(BodyError::Mass { value: mass_kg });
+        }
+        let inertia = inertia.into();
+        let Some(inverse) = inertia.inverse() else {
+            let moments = inertia.principal_axes().moments();
+            return Err(BodyError::NotPositiveDefinite { moments });
+        };
+        Ok(Self {
+            mass: mass_kg,
+            inertia,
+            inverse,
+        })
+    }
+
+    /// The same mass with another inertia.
+    ///
+    /// # Errors
+    /// The matrix is not positive definite.
+    pub fn with_inertia(&self, inertia: impl Into<InertiaMatrix>) -> Result<Self, BodyError> {
+        Self::new(self.mass, inertia)
+    }
+
+    /// Mass, kg.
+    #[must_use]
+    pub fn mass_kg(&self) -> f64 {
+        self.mass
+    }
+
+    /// Inertia, kg·m².
+    #[must_use]
+    pub fn inertia(&self) -> &InertiaMatrix {
+        &self.inertia
+    }
+
+    /// I⁻¹, 1/(kg·m²).
+    #[must_use]
+    pub fn inverse_inertia(&self) -> &Matrix3<f64> {
+        &self.inverse
+    }
+
+    /// The body at rest, its axes along the inertial ones, its mass centre at `position` (m).
+    #[must_use]
+    pub fn at(self, position: Vector3<f64>) -> MovingBody {
+        MovingBody {
+            body: self,
+            state: BodyState {
+                position,
+                ..BodyState::default()
+            },
+        }
+    }
+
+    /// The body in the given state.
+    #[must_use]
+    pub fn moving(self, state: BodyState) -> MovingBody {
+        MovingBody { body: self, state }
+    }
+}
+
+/// Where a body is and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    /// Mass centre, inertial axes, m.
+    pub position: Vector3<f64>,
+    /// Velocity of the mass centre, inertial axes, m/s.
+    pub velocity: Vector3<f64>,
+    /// Takes body components to inertial components.
+    pub attitude: UnitQuaternion<f64>,
+    /// Angular velocity, body axes, rad/s.
+    pub angular_velocity: Vector3<f64>,
+}
+
+impl Default for BodyState {
+    /// At rest at the origin, axes along the inertial ones.
+    fn default() -> Self {
+        Self {
+            position: Vector3::zeros(),
+            velocity: Vector3::zeros(),
+            attitude: UnitQuaternion::identity(),
+            angular_velocity: Vector3::zeros(),
+        }
+    }
+}
+
+impl BodyState {
+    pub(crate) fn check(&self) -> Result<(), BodyError> {
+        let fields: [(&'static str, &[f64]); 4] = [
+            ("position", self.position.as_slice()),
+            ("velocity", self.velocity.as_slice()),
+            ("attitude", self.attitude.coords.as_slice()),
+            ("angular velocity", self.angular_velocity.as_slice()),
+        ];
+        for (field, values) in fields {
+            if let Some(&value) = values.iter().find(|x| !x.is_finite()) {
+                return Err(BodyError::NotFinite { field, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A body and its state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MovingBody {
+    body: Body,
+    state: BodyState,
+}
+
+impl MovingBody {
+    /// The body.
+    #[must_use]
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// Its state.
+    #[must_use]
+    pub fn state(&self) -> &BodyState {
+        &self.state
+    }
+
+    /// Linear momentum m v, inertial axes, kg·m/s.
+    #[must_use]
+    pub fn momentum(&self) -> Vector3<f64> {
+        self.state.velocity * self.body.mass
+    }
+
+    /// Angular momentum about the mass centre, I ω, body axes, kg·m²/s.
+    #[must_use]
+    pub fn spin_angular_momentum(&self) -> Vector3<f64> {
+        self.body.inertia.matrix() * self.state.angular_velocity
+    }
+
+    /// Angular momentum about the inertial origin, m r × v + I ω, inertial axes, kg·m²/s.
+    #[must_use]
+    pub fn angular_momentum(&self) -> Vector3<f64> {
+        self.state.position.cross(&self.momentum())
+            + self.state.attitude * self.spin_angular_momentum()
+    }
+
+    /// Kinetic energy, translation and rotation, J.
+    #[must_use]
+    pub fn kinetic_energy(&self) -> f64 {
+        let spin = self
+            .state
+            .angular_velocity
+            .dot(&self.spin_angular_momentum());
+        0.5 * (self.body.mass * self.state.velocity.norm_squared() + spin)
+    }
+
+    pub(crate) fn with_body(&self, body: Body) -> Self {
+        Self {
+            body,
+            state: self.state,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_bodies_are_refused() {
+        let good = InertiaMatrix::from_entries([1.0, 2.0, 2.5], [0.0; 3]).unwrap();
+        for mass in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(
+                matches!(Body::new(mass, good), Err(BodyError::Mass { .. })),
+                "{mass}"
+            );
+        }
+        for moments in [[0.0, 1.0, 1.0], [-1.0, 1.0, 1.0]] {
+            let bad = InertiaMatrix::from_entries(moments, [0.0; 3]).unwrap();
+            let error = Body::new(1.0, bad).unwrap_err();
+            assert!(matches!(error, BodyError::NotPositiveDefinite { .. }));
+        }
+        // Unphysical and yet invertible: allowed here.
+        let triangle = InertiaMatrix::from_entries([1.0, 1.0, 3.0], [0.0; 3]).unwrap();
+        assert!(Body::new(1.0, triangle).is_ok());
+        let state = BodyState {
+            velocity: Vector3::new(0.0, f64::NAN, 0.0),
+            ..Default::default()
+        };
+        assert!(matches!(
+            state.check(),
+            Err(BodyError::NotFinite {
+                field: "velocity",
+                ..
+            })
+        ));
+    }
+}

@@ -1,0 +1,210 @@
+use gyradius_inertia::InertiaMatrix;
+use nalgebra::{Unit, Vector3};
+
+/// What became of the spin: the measures of Peck (2003, Eq. 32-37), in rad.
+///
+/// The spin axis s is a direction fixed in the body. a₁ is the principal axis nearest to it,
+/// pointing along it (a₁·s ≥ 0), with moment I₁; I₂ and I₃ belong to the next two principal axes in
+/// cyclic order, H = Iω and E are angular momentum and rotational energy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct SpinMetrics {
+    spin_rate: f64,
+    wobble: f64,
+    nutation: Option<f64>,
+    nutation_2: Option<f64>,
+    nutation_3: Option<f64>,
+    cone: Option<f64>,
+    inertia_ratio: f64,
+}
+
+impl SpinMetrics {
+    /// Of a body with the given inertia and angular velocity (rad/s), both in body axes, meant to
+    /// spin about `spin_axis`.
+    #[must_use]
+    pub fn new(
+        inertia: &InertiaMatrix,
+        angular_velocity: &Vector3<f64>,
+        spin_axis: &Unit<Vector3<f64>>,
+    ) -> Self {
+        let principal = inertia.principal_axes();
+        let axes = *principal.axes().matrix();
+        let along = axes.tr_mul(spin_axis.as_ref());
+        let first = along.iamax();
+        let (second, third) = ((first + 1) % 3, (first + 2) % 3);
+        let a1: Vector3<f64> = axes.column(first) * 1.0_f64.copysign(along[first]);
+        let moments = principal.moments();
+        let (i1, i2, i3) = (moments[first], moments[second], moments[third]);
+
+        let momentum = inertia.matrix() * angular_velocity;
+        let turns = momentum.norm_squared() > 0.0;
+        let w = axes.tr_mul(angular_velocity);
+        let (w2, w3) = (w[second], w[third]);
+        let square = momentum.norm_squared();
+        // Eq. 35 as sin², free of cancellation:
+        // 1 − cos²θ₂ = I₂[I₂ω₂² + I₃ω₃²(I₃ − I₁)/(I₂ − I₁)]/H².
+        let extreme = |ia: f64, wa: f64, ib: f64, wb: f64| {
+            let steady = (ia > i1 && ib > i1) || (ia < i1 && ib < i1);
+            if !(turns && steady) {
+                return None;
+            }
+            let sine = ia * (ia * wa * wa + ib * (wb * wb) * ((ib - i1) / (ia - i1))) / square;
+            (0.0..=1.0).contains(&sine).then(|| libm::asin(sine.sqrt()))
+        };
+
+        Self {
+            spin_rate: angular_velocity.norm(),
+            wobble: angle(spin_axis, &a1),
+            nutation: turns.then(|| angle(&a1, &momentum)),
+            nutation_2: extreme(i2, w2, i3, w3),
+            nutation_3: extreme(i3, w3, i2, w2),
+            cone: turns.then(|| angle(spin_axis, &momentum)),
+            inertia_ratio: inertia_ratio(i1, i2, i3),
+        }
+    }
+
+    /// |ω|, rad/s.
+    #[must_use]
+    pub fn spin_rate(&self) -> f64 {
+        self.spin_rate
+    }
+
+    /// Angle between the spin axis and the nearest principal axis (Eq. 33), rad.
+    #[must_use]
+    pub fn wobble(&self) -> f64 {
+        self.wobble
+    }
+
+    /// Angle between a₁ and H (Eq. 34), rad; none if the body does not turn.
+    #[must_use]
+    pub fn nutation(&self) -> Option<f64> {
+        self.nutation
+    }
+
+    /// Nutation where the free motion passes the 1-2 plane (Eq. 35, θ₂), rad; one of the two
+    /// extremes. None where it means nothing: s belongs to the intermediate axis, or H circles
+    /// another one.
+    #[must_use]
+    pub fn nutation_2(&self) -> Option<f64> {
+        self.nutation_2
+    }
+
+    /// Nutation where the free motion passes the 1-3 plane (Eq. 35, θ₃), rad; the other extreme.
+    #[must_use]
+    pub fn nutation_3(&self) -> Option<f64> {
+        self.nutation_3
+    }
+
+    /// Angle between the spin axis and H (Eq. 36), rad; none if the body does not turn.
+    #[must_use]
+    pub fn cone(&self) -> Option<f64> {
+        self.cone
+    }
+
+    /// Inertia ratio σ (Eq. 37), roll to pitch: above 1 for spin about the axis of largest moment,
+    /// 1 for the intermediate.
+    #[must_use]
+    pub fn inertia_ratio(&self) -> f64 {
+        self.inertia_ratio
+    }
+}
+
+fn inertia_ratio(i1: f64, i2: f64, i3: f64) -> f64 {
+    let product = (1.0 - i1 / i2) * (1.0 - i1 / i3);
+    if product > 0.0 {
+        1.0 + product.sqrt().copysign(i1 - i2)
+    } else {
+        1.0
+    }
+}
+
+/// Angle between two directions, accurate near 0 and π, where acos is not.
+fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    libm::atan2(a.cross(b).norm(), a.dot(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const X: Unit<Vector3<f64>> = Unit::new_unchecked(Vector3::new(1.0, 0.0, 0.0));
+
+    fn matrix(moments: [f64; 3], products: [f64; 3]) -> InertiaMatrix {
+        InertiaMatrix::from_entries(moments, products).unwrap()
+    }
+
+    /// Peck (2003), Results: "the central values … are 1.408 and 1.144°".
+    #[test]
+    fn the_papers_central_values() {
+        let payload = matrix([5000.0, 4000.0, 3000.0], [20.0, 2.0, -50.0]);
+        let m = SpinMetrics::new(&payload, &Vector3::x(), &X);
+        assert!((m.inertia_ratio() - 1.4082601276539386).abs() < 1e-13);
+        assert!((m.wobble().to_degrees() - 1.1442306542559595).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_body_at_rest_has_no_nutation() {
+        let m = SpinMetrics::new(&matrix([3.0, 2.0, 2.5], [0.0; 3]), &Vector3::zeros(), &X);
+        assert_eq!((m.nutation(), m.cone(), m.nutation_2()), (None, None, None));
+        assert_eq!(m.wobble(), 0.0);
+    }
+
+    #[test]
+    fn spin_about_the_intermediate_axis_has_ratio_one_and_no_extremes() {
+        let m = SpinMetrics::new(&matrix([2.5, 2.0, 3.0], [0.0; 3]), &Vector3::x(), &X);
+        assert_eq!(m.inertia_ratio(), 1.0);
+        assert_eq!((m.nutation_2(), m.nutation_3()), (None, None));
+    }
+
+    #[test]
+    fn a_disc_and_a_pencil() {
+        // Axisymmetric: σ is the plain ratio I₁/I₂, and nutation is constant.
+        for (spin, transverse) in [(2.0, 1.5), (0.5, 2.0)] {
+            let body = matrix([spin, transverse, transverse], [0.0; 3]);
+            let m = SpinMetrics::new(&body, &Vector3::new(1.0, 0.1, -0.2), &X);
+            assert!((m.inertia_ratio() - spin / transverse).abs() < 1e-15);
+            let nutation = m.nutation().unwrap();
+            assert!((m.nutation_2().unwrap() - nutation).abs() < 1e-14);
+            assert!((m.nutation_3().unwrap() - nutation).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_spin_axis_may_be_any_axis_and_the_rate_negative() {
+        let s = Unit::new_normalize(Vector3::new(0.0, 0.1, -1.0));
+        let m = SpinMetrics::new(&matrix([3.0, 2.0, 2.5], [0.0; 3]), &-Vector3::z(), &s);
+        assert!((m.wobble() - 0.1_f64.atan()).abs() < 1e-15);
+        assert_eq!(m.nutation(), Some(0.0));
+        let backwards = SpinMetrics::new(&matrix([3.0, 2.0, 2.5], [0.0; 3]), &Vector3::z(), &s);
+        assert!((backwards.nutation().unwrap() - std::f64::consts::PI).abs() < 1e-15);
+    }
+
+    proptest! {
+        /// Eq. 35 as printed, where its arc cosine is well conditioned, and the bounds it means.
+        #[test]
+        fn extremes_agree_with_the_printed_formula_and_bound_the_nutation(
+            i2 in 1.0..4.0f64,
+            i3 in 1.0..4.0f64,
+            w2 in -0.3..0.3f64,
+            w3 in -0.3..0.3f64,
+        ) {
+            prop_assume!(i2 + i3 > 4.5 && (i2 - i3).abs() < 3.0);
+            let i1 = 4.5;
+            let body = matrix([i1, i2, i3], [0.0; 3]);
+            let w = Vector3::new(1.0, w2, w3);
+            let m = SpinMetrics::new(&body, &w, &X);
+            let h = body.matrix() * w;
+            let (energy2, square) = (w.dot(&h), h.norm_squared());
+            let printed = |i: f64| {
+                (i1 * (energy2 * i - square) / ((i - i1) * square)).abs().sqrt().acos()
+            };
+            if let (Some(t2), Some(t3)) = (m.nutation_2(), m.nutation_3()) {
+                prop_assert!((t2 - printed(i2)).abs() < 1e-7, "{t2} {}", printed(i2));
+                prop_assert!((t3 - printed(i3)).abs() < 1e-7);
+                let now = m.nutation().unwrap();
+                prop_assert!(now >= t2.min(t3) - 1e-12 && now <= t2.max(t3) + 1e-12);
+            }
+        }
+    }
+}

@@ -1,0 +1,70 @@
+use nalgebra::{Unit, Vector3};
+
+use crate::{MovingBody, SpinMetrics};
+
+/// The two bodies at the release of the last spring, from where they move freely.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    pub(crate) release_times: Vec<f64>,
+    pub(crate) payload: MovingBody,
+    pub(crate) stage: MovingBody,
+    pub(crate) steps: u32,
+    pub(crate) evaluations: u32,
+}
+
+impl Outcome {
+    /// When each spring let go, s, in the order of the springs.
+    #[must_use]
+    pub fn release_times(&self) -> &[f64] {
+        &self.release_times
+    }
+
+    /// When the last spring let go, s.
+    #[must_use]
+    pub fn release_time(&self) -> f64 {
+        self.release_times.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The payload after the last release.
+    #[must_use]
+    pub fn payload(&self) -> &MovingBody {
+        &self.payload
+    }
+
+    /// The stage after the last release.
+    #[must_use]
+    pub fn stage(&self) -> &MovingBody {
+        &self.stage
+    }
+
+    /// Velocity of the payload's mass centre relative to the stage's, inertial axes, m/s.
+    #[must_use]
+    pub fn relative_velocity(&self) -> Vector3<f64> {
+        self.payload.state().velocity - self.stage.state().velocity
+    }
+
+    /// Speed at which the mass centres part, m/s.
+    #[must_use]
+    pub fn relative_speed(&self) -> f64 {
+        self.relative_velocity().norm()
+    }
+
+    /// Wobble, nutation, coning and the rest, of the payload about the given body axis.
+    #[must_use]
+    pub fn spin_metrics(&self, spin_axis: &Unit<Vector3<f64>>) -> SpinMetrics {
+        let angular_velocity = &self.payload.state().angular_velocity;
+        SpinMetrics::new(self.payload.body().inertia(), angular_velocity, spin_axis)
+    }
+
+    /// Integration steps taken, those repeated to land on a release among them.
+    #[must_use]
+    pub fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    /// Evaluations of the equations of motion.
+    #[must_use]
+    pub fn evaluations(&self) -> u32 {
+        self.evaluations
+    }
+}

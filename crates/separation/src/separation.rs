@@ -1,0 +1,208 @@
+use gyradius_inertia::InertiaMatrix;
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+use crate::{Body, BodyError, BodyState, MovingBody, Outcome, RunError, Settings, Spring, run};
+
+/// Pads nearer than this share of their stroke count as touching.
+const TOUCHING: f64 = 1e-6;
+
+/// Why bodies and springs do not make a separation.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SeparationError {
+    /// Something is wrong with a body or its state.
+    #[error("{body}: {source}")]
+    Body {
+        /// `payload` or `stage`.
+        body: &'static str,
+        /// What.
+        source: BodyError,
+    },
+    /// There is no spring.
+    #[error("no springs: there must be at least one")]
+    NoSprings,
+    /// The two points of a spring coincide at the start, which leaves its direction undefined.
+    #[error(
+        "spring {spring}: its points are {distance:e} m apart at the start: they must be apart by \
+         more than a millionth of the stroke ({stroke} m), for the line between them is the \
+         direction of the force; touching pads have none, and nearly touching ones turn with the \
+         slightest motion"
+    )]
+    TouchingPads {
+        /// Which spring, from 1.
+        spring: usize,
+        /// Distance of the points, m.
+        distance: f64,
+        /// Its stroke, m.
+        stroke: f64,
+    },
+}
+
+/// A payload, a stage and the springs between them, at the moment the clamp opens.
+///
+/// Cheap to clone: the springs are shared.
+#[derive(Clone, Debug)]
+pub struct Separation {
+    payload: MovingBody,
+    stage: MovingBody,
+    springs: Arc<[Spring]>,
+    free_lengths: Arc<[f64]>,
+}
+
+impl Separation {
+    /// Puts bodies and springs together. The free length of each spring is the distance of its
+    /// points in the given states plus its stroke.
+    ///
+    /// # Errors
+    /// A state is not finite, there is no spring, or a spring's points touch.
+    pub fn new(
+        payload: MovingBody,
+        stage: MovingBody,
+        springs: &[Spring],
+    ) -> Result<Self, SeparationError> {
+        for (body, moving) in [("payload", &payload), ("stage", &stage)] {
+            moving
+                .state()
+                .check()
+                .map_err(|source| SeparationError::Body { body, source })?;
+        }
+        if springs.is_empty() {
+            return Err(SeparationError::NoSprings);
+        }
+        let mut free_lengths = Vec::with_capacity(springs.len());
+        for (i, spring) in springs.iter().enumerate() {
+            let distance = spring_vector(payload.state(), stage.state(), spring).norm();
+            let stroke = spring.stroke_m();
+            if !(distance > TOUCHING * stroke) {
+                return Err(SeparationError::TouchingPads {
+                    spring: i + 1,
+                    distance,
+                    stroke,
+                });
+            }
+            free_lengths.push(distance + stroke);
+        }
+        Ok(Self {
+            payload,
+            stage,
+            springs: springs.into(),
+            free_lengths: free_lengths.into(),
+        })
+    }
+
+    /// The same separation with other inertia matrices.
+    ///
+    /// # Errors
+    /// A matrix is not positive definite.
+    pub fn with_inertias(
+        &self,
+        payload: impl Into<InertiaMatrix>,
+        stage: impl Into<InertiaMatrix>,
+    ) -> Result<Self, SeparationError> {
+        let replace = |name, old: &MovingBody, inertia: InertiaMatrix| {
+            let body: Result<Body, BodyError> = old.body().with_inertia(inertia);
+            body.map(|b| old.with_body(b))
+                .map_err(|source| SeparationError::Body { body: name, source })
+        };
+        Ok(Self {
+            payload: replace("payload", &self.payload, payload.into())?,
+            stage: replace("stage", &self.stage, stage.into())?,
+            springs: Arc::clone(&self.springs),
+            free_lengths: Arc::clone(&self.free_lengths),
+        })
+    }
+
+    /// The payload at the start.
+    #[must_use]
+    pub fn payload(&self) -> &MovingBody {
+        &self.payload
+    }
+
+    /// The stage at the start.
+    #[must_use]
+    pub fn stage(&self) -> &MovingBody {
+        &self.stage
+    }
+
+    /// The springs, in the order given.
+    #[must_use]
+    pub fn springs(&self) -> &[Spring] {
+        &self.springs
+    }
+
+    /// Free length of each spring, m.
+    #[must_use]
+    pub fn free_lengths(&self) -> &[f64] {
+        &self.free_lengths
+    }
+
+    /// Energy stored in the springs at the start, J.
+    #[must_use]
+    pub fn stored_energy(&self) -> f64 {
+        self.springs.iter().map(Spring::stored_energy).sum()
+    }
+
+    /// Integrates to the release of the last spring.
+    ///
+    /// # Errors
+    /// A spring is not released within the horizon, or the integration cannot go on.
+    pub fn run(&self, settings: &Settings) -> Result<Outcome, RunError> {
+        run::run(self, settings)
+    }
+}
+
+/// From the stage point to the payload point, inertial axes, m.
+fn spring_vector(payload: &BodyState, stage: &BodyState, spring: &Spring) -> Vector3<f64> {
+    (payload.position - stage.position) + payload.attitude * spring.payload_point_m()
+        - stage.attitude * spring.stage_point_m()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn body() -> Body {
+        Body::new(
+            1.0,
+            InertiaMatrix::from_entries([1.0; 3], [0.0; 3]).unwrap(),
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn touching_pads_and_missing_springs_are_refused() {
+        let (up, down) = (Vector3::z() * 1.0, Vector3::z() * -1.0);
+        let spring = |gap: f64| {
+            let half = Vector3::z() * (1.0 - 0.5 * gap);
+            Spring::new(1.0, 0.1, -half, half).unwrap()
+        };
+        let with = |springs: &[Spring]| Separation::new(body().at(up), body().at(down), springs);
+        assert!(matches!(with(&[]), Err(SeparationError::NoSprings)));
+        for gap in [0.0, 1e-9] {
+            let error = with(&[spring(0.2), spring(gap)]).unwrap_err();
+            assert!(
+                matches!(error, SeparationError::TouchingPads { spring: 2, .. }),
+                "{error}"
+            );
+        }
+        let ok = with(&[spring(1e-5)]).unwrap();
+        assert!((ok.free_lengths()[0] - 0.10001).abs() < 1e-15);
+    }
+
+    #[test]
+    fn states_that_are_not_numbers_are_refused() {
+        let spring = Spring::new(1.0, 0.1, Vector3::zeros(), Vector3::zeros()).unwrap();
+        let state = BodyState {
+            angular_velocity: Vector3::x() * f64::NAN,
+            ..Default::default()
+        };
+        let error = Separation::new(body().at(Vector3::z()), body().moving(state), &[spring]);
+        assert!(
+            error
+                .unwrap_err()
+                .to_string()
+                .starts_with("stage: angular velocity = NaN")
+        );
+    }
+}
