@@ -59,9 +59,7 @@ impl Chart {
             }
             let problem = Problem::new(lambda, center, ln_integral, k);
             if let Some(chart) = problem.best_proposal().map(|p| problem.chart(&p))
-                && best
-                    .as_ref()
-                    .is_none_or(|b| b.acceptance < chart.acceptance)
+                && best.as_ref().is_none_or(|b| b.acceptance < chart.acceptance)
             {
                 best = Some(chart);
             }
@@ -155,11 +153,7 @@ impl Weight {
             let t = libm::tanh(x);
             let derivative = (1.0 - t * t) / x - t / (x * x) + 2.0 / (x * x * x);
             let newton = x - value / derivative;
-            let next = if newton > low && newton < high {
-                newton
-            } else {
-                0.5 * (low + high)
-            };
+            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
             if (next - x).abs() <= 1e-15 * x {
                 break;
             }
@@ -238,17 +232,9 @@ impl Problem {
         let floor = self.lambda.into_iter().fold(f64::INFINITY, f64::min);
         let mu = floor - smallest;
         let precision = self.lambda.map(|l| (l - floor) + smallest);
-        let weight = Weight {
-            slope: self.slope,
-            bend: self.dropped_lambda - mu,
-        };
+        let weight = Weight { slope: self.slope, bend: self.dropped_lambda - mu };
         // ln of the constant in front of Gaussian × ψ, relative to C.
-        let gain: f64 = self
-            .linear
-            .iter()
-            .zip(precision)
-            .map(|(b, p)| 0.5 * b * b / p)
-            .sum();
+        let gain: f64 = self.linear.iter().zip(precision).map(|(b, p)| 0.5 * b * b / p).sum();
         let front = self.constant + gain - 0.5 * mu;
         let h0 = self.belt_edge(&precision, &weight, front)?;
         let ln_peak = weight.ln_peak(h0);
@@ -276,11 +262,7 @@ impl Problem {
         }
         for _ in 0..10 {
             let middle = 0.5 * (low + high);
-            if negligible(middle) {
-                low = middle
-            } else {
-                high = middle
-            }
+            if negligible(middle) { low = middle } else { high = middle }
         }
         Some(low)
     }
@@ -290,10 +272,8 @@ impl Problem {
         const STEP: f64 = 0.5;
         let widest = self.lambda.into_iter().fold(self.dropped_lambda, f64::max);
         let (start, end) = (libm::log(0.25), libm::log(4.0 * widest + 100.0));
-        let score = |t: f64| {
-            self.proposal(libm::exp(t))
-                .map_or(f64::NEG_INFINITY, |p| p.ln_acceptance)
-        };
+        let score =
+            |t: f64| self.proposal(libm::exp(t)).map_or(f64::NEG_INFINITY, |p| p.ln_acceptance);
         let steps = ((end - start) / STEP) as usize;
         let (best, value) = (0..=steps)
             .map(|i| start + STEP * i as f64)
@@ -363,11 +343,7 @@ fn distance_to_sphere(p: &[f64; 3], a: &[f64; 3], square_radius: f64) -> f64 {
     }
     for _ in 0..12 {
         let middle = 0.5 * (low + high);
-        if terms(middle).1 > 0.0 {
-            low = middle
-        } else {
-            high = middle
-        }
+        if terms(middle).1 > 0.0 { low = middle } else { high = middle }
     }
     terms(low).0.max(0.0)
 }

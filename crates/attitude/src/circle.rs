@@ -78,11 +78,7 @@ impl Circle {
         });
         // A forecast above one came of too coarse a ladder and is worth nothing.
         let forecast = |p: &Plan| {
-            if p.ln_acceptance > 0.01 {
-                f64::MIN
-            } else {
-                p.ln_acceptance
-            }
+            if p.ln_acceptance > 0.01 { f64::MIN } else { p.ln_acceptance }
         };
         plans.sort_by(|a, b| forecast(b).total_cmp(&forecast(a)));
         let [first, rest @ ..] = plans;
@@ -116,11 +112,7 @@ impl Circle {
             if !(w > 0.0) {
                 continue;
             }
-            let row = self
-                .rows
-                .partition_point(|&edge| edge <= w)
-                .clamp(1, self.keep.len())
-                - 1;
+            let row = self.rows.partition_point(|&edge| edge <= w).clamp(1, self.keep.len()) - 1;
             if rng.random::<f64>() >= self.keep[row] {
                 continue;
             }
@@ -165,25 +157,14 @@ impl Target {
         let cos = cosine_range(angle, 0.0);
         let sin = cosine_range(angle, 0.5 * PI);
         let gap = |factor: (f64, f64), c: f64| {
-            let low = if factor.0 < 0.0 {
-                r.1 * factor.0
-            } else {
-                r.0 * factor.0
-            };
-            let high = if factor.1 > 0.0 {
-                r.1 * factor.1
-            } else {
-                r.0 * factor.1
-            };
+            let low = if factor.0 < 0.0 { r.1 * factor.0 } else { r.0 * factor.0 };
+            let high = if factor.1 > 0.0 { r.1 * factor.1 } else { r.0 * factor.1 };
             (low - c).max(c - high).max(0.0)
         };
         let (dx, dz) = (gap(cos, self.center[0]), gap(sin, self.center[1]));
         let squares = -0.5 * (self.lambda[0] * dx * dx + self.lambda[1] * dz * dz);
 
-        let linear = [
-            self.lambda[0] * self.center[0],
-            self.lambda[1] * self.center[1],
-        ];
+        let linear = [self.lambda[0] * self.center[0], self.lambda[1] * self.center[1]];
         let strength = libm::hypot(linear[0], linear[1]);
         let toward = cosine_range(angle, libm::atan2(linear[1], linear[0])).1;
         let push = strength * toward * if toward > 0.0 { r.1 } else { r.0 };
@@ -191,17 +172,10 @@ impl Target {
         let cos_square = if cos.0 <= 0.0 && cos.1 >= 0.0 {
             (0.0, (cos.0 * cos.0).max(cos.1 * cos.1))
         } else {
-            (
-                (cos.0 * cos.0).min(cos.1 * cos.1),
-                (cos.0 * cos.0).max(cos.1 * cos.1),
-            )
+            ((cos.0 * cos.0).min(cos.1 * cos.1), (cos.0 * cos.0).max(cos.1 * cos.1))
         };
         // λ_m w cos² + λ_n w sin², least where cos² leans to the smaller λ.
-        let share = if self.lambda[0] < self.lambda[1] {
-            cos_square.1
-        } else {
-            cos_square.0
-        };
+        let share = if self.lambda[0] < self.lambda[1] { cos_square.1 } else { cos_square.0 };
         let quadratic = w.0 * (self.lambda[0] * share + self.lambda[1] * (1.0 - share));
         let parts = push - 0.5 * (quadratic + constant);
         // Rounding of the terms that cancel in `parts`.
@@ -220,16 +194,8 @@ fn cosine_range(arc: (f64, f64), toward: f64) -> (f64, f64) {
     };
     let slack = 2.0 * f64::EPSILON;
     (
-        if contains(toward + PI) {
-            -1.0
-        } else {
-            (a.min(b) - slack).max(-1.0)
-        },
-        if contains(toward) {
-            1.0
-        } else {
-            (a.max(b) + slack).min(1.0)
-        },
+        if contains(toward + PI) { -1.0 } else { (a.min(b) - slack).max(-1.0) },
+        if contains(toward) { 1.0 } else { (a.max(b) + slack).min(1.0) },
     )
 }
 
@@ -280,10 +246,7 @@ impl Plan {
                 front += 0.5 * linear[j] * linear[j] / precision[j];
                 front -= 0.5 * linear[j] * center[index];
             }
-            let peak = ladder
-                .iter()
-                .map(|(w, h)| h + 0.5 * mu * w)
-                .fold(f64::MIN, f64::max);
+            let peak = ladder.iter().map(|(w, h)| h + 0.5 * mu * w).fold(f64::MIN, f64::max);
             let volume = libm::log(TAU) - 0.5 * libm::log(precision[0] * precision[1]);
             (mu, precision, front, -(front + volume + peak))
         };
@@ -296,24 +259,12 @@ impl Plan {
         let location = proposals.location;
         let (near, far) = (0..2).fold((0.0, 0.0), |(near, far), j| {
             let reach = 5.0 / precision[j].sqrt();
-            let (low, high) = (
-                (location[j].abs() - reach).max(0.0),
-                location[j].abs() + reach,
-            );
+            let (low, high) = ((location[j].abs() - reach).max(0.0), location[j].abs() + reach);
             (near + low * low, far + high * high)
         });
         let rows = row_edges(1.0 - far, 1.0 - near);
         let target = Target { mu, ..free };
-        Self {
-            gaussian,
-            circle,
-            proposals,
-            target,
-            rows,
-            arcs,
-            front,
-            ln_acceptance,
-        }
+        Self { gaussian, circle, proposals, target, rows, arcs, front, ln_acceptance }
     }
 
     fn build(self) -> Circle {
@@ -335,14 +286,11 @@ impl Plan {
             totals.push(peak + libm::log(masses.iter().sum()));
             let table = alias_table(&masses);
             cells.extend(
-                bounds
-                    .into_iter()
-                    .zip(table)
-                    .map(|(ln_bound, (threshold, alias))| Cell {
-                        ln_bound,
-                        threshold,
-                        alias,
-                    }),
+                bounds.into_iter().zip(table).map(|(ln_bound, (threshold, alias))| Cell {
+                    ln_bound,
+                    threshold,
+                    alias,
+                }),
             );
         }
         let used: Vec<bool> = self
@@ -351,12 +299,8 @@ impl Plan {
             .zip(&totals)
             .map(|(row, total)| !self.proposals.never(row[0], row[1], self.front + total))
             .collect();
-        let peak = totals
-            .iter()
-            .zip(&used)
-            .filter(|(_, u)| **u)
-            .map(|(t, _)| *t)
-            .fold(f64::MIN, f64::max);
+        let peak =
+            totals.iter().zip(&used).filter(|(_, u)| **u).map(|(t, _)| *t).fold(f64::MIN, f64::max);
         let keep = |(total, used): (&f64, &bool)| if *used { libm::exp(total - peak) } else { 0.0 };
         Circle {
             gaussian: self.gaussian,
@@ -384,11 +328,7 @@ impl Proposals {
     fn new(linear: [f64; 2], precision: [f64; 2]) -> Self {
         let ln_volume = libm::log(TAU) - 0.5 * libm::log(precision[0] * precision[1]);
         let location = std::array::from_fn(|j| linear[j] / precision[j]);
-        Self {
-            location,
-            precision,
-            ln_volume,
-        }
+        Self { location, precision, ln_volume }
     }
 
     /// Whether a row w₀..w₁ of weight e^ln may be left out, because it is so far from the location
@@ -397,9 +337,7 @@ impl Proposals {
         // Room for the number of rows.
         const LN_NEGLIGIBLE: f64 = -64.0 * LN_2 - 7.0;
         let center = libm::hypot(self.location[0], self.location[1]);
-        let gap = ((1.0 - w1).sqrt() - center)
-            .max(center - (1.0 - w0).sqrt())
-            .max(0.0);
+        let gap = ((1.0 - w1).sqrt() - center).max(center - (1.0 - w0).sqrt()).max(0.0);
         let tightest = self.precision[0].min(self.precision[1]);
         // A Gaussian in the plane is at least d standard deviations away with at most e^{−d²/2}.
         self.ln_volume + ln - 0.5 * tightest * gap * gap < LN_NEGLIGIBLE
@@ -456,10 +394,8 @@ impl Target {
 
     /// ln ∫ t(w, B) dB by the midpoint rule on the arcs: enough to choose μ.
     fn ln_circle_integral(&self, w: f64, arcs: &[f64]) -> f64 {
-        let values: Vec<(f64, f64)> = arcs
-            .windows(2)
-            .map(|a| (a[1] - a[0], self.ln_polar(w, 0.5 * (a[0] + a[1]))))
-            .collect();
+        let values: Vec<(f64, f64)> =
+            arcs.windows(2).map(|a| (a[1] - a[0], self.ln_polar(w, 0.5 * (a[0] + a[1])))).collect();
         let peak = values.iter().map(|v| v.1).fold(f64::MIN, f64::max);
         peak + libm::log(values.iter().map(|(d, v)| d * libm::exp(v - peak)).sum())
     }
@@ -480,11 +416,7 @@ fn row_edges(low: f64, high: f64) -> Vec<f64> {
         })
     };
     let mut edges = vec![0.0, 1.0];
-    edges.extend(
-        (0..=CORE_ROWS)
-            .map(|i| low + width * i as f64)
-            .filter(|e| *e > 0.0 && *e < 1.0),
-    );
+    edges.extend((0..=CORE_ROWS).map(|i| low + width * i as f64).filter(|e| *e > 0.0 && *e < 1.0));
     edges.extend(doubling(low, -1.0));
     edges.extend(doubling(high, 1.0));
     edges.sort_by(f64::total_cmp);

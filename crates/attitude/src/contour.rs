@@ -40,11 +40,7 @@ impl Contour {
         let slack = 1.0 - center.iter().map(|c| c * c).sum::<f64>();
         // Rounding in |c| = 1 must not be amplified by a large saddle point.
         let slack = if slack.abs() < 1e-12 { 0.0 } else { slack };
-        let k = Exponent {
-            theta,
-            center,
-            slack,
-        };
+        let k = Exponent { theta, center, slack };
 
         let t0 = k.saddle();
         let at_saddle = k.value_real(t0);
@@ -66,11 +62,7 @@ impl Contour {
         let mut start = 0.0;
         for _ in 0..12 {
             let middle = 0.5 * (start + end);
-            if depth(middle) < DEPTH {
-                start = middle
-            } else {
-                end = middle
-            }
+            if depth(middle) < DEPTH { start = middle } else { end = middle }
         }
 
         let step = end / NODES as f64;
@@ -81,12 +73,7 @@ impl Contour {
         let sum: f64 = nodes.iter().map(|(_, w): &(C64, C64)| w.im).sum();
         let ln_integral = at_saddle + libm::log(2.0 * step / PI * sum);
         let nodes = nodes.map(|(z, w)| (z, w / sum));
-        Self {
-            theta,
-            center,
-            nodes,
-            ln_integral,
-        }
+        Self { theta, center, nodes, ln_integral }
     }
 
     /// ln ∫ exp(−½ Σ λ_j (y_j − c_j)²) dS over S³.
@@ -102,11 +89,7 @@ impl Contour {
             for i in 0..4 {
                 first[i] += (g[i] * w).im;
                 for j in 0..=i {
-                    let own = if i == j {
-                        variance[i]
-                    } else {
-                        C64::new(0.0, 0.0)
-                    };
+                    let own = if i == j { variance[i] } else { C64::new(0.0, 0.0) };
                     second[(i, j)] += ((g[i] * g[j] + own) * w).im;
                 }
             }
@@ -175,14 +158,9 @@ impl Exponent {
     }
 
     fn value_real(&self, t: f64) -> f64 {
-        let sums = self
-            .terms()
-            .fold((0.0, 0.0), |(rational, ln), (theta, cc)| {
-                (
-                    rational + cc / (theta + t),
-                    ln + libm::log((theta + t) / PI),
-                )
-            });
+        let sums = self.terms().fold((0.0, 0.0), |(rational, ln), (theta, cc)| {
+            (rational + cc / (theta + t), ln + libm::log((theta + t) / PI))
+        });
         self.slack * t + t * t * sums.0 - 0.5 * sums.1
     }
 
@@ -226,11 +204,7 @@ impl Exponent {
                 high = d
             }
             let newton = d - k1 / k2;
-            let next = if newton > low && newton < high {
-                newton
-            } else {
-                0.5 * (low + high)
-            };
+            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
             if (next - d).abs() <= 1e-14 * d {
                 break;
             }
@@ -271,11 +245,7 @@ fn sqrt(z: C64) -> C64 {
         return C64::new(0.0, 0.0);
     }
     let other = 0.5 * z.im / root;
-    if z.re >= 0.0 {
-        C64::new(root, other)
-    } else {
-        C64::new(other.abs(), root.copysign(z.im))
-    }
+    if z.re >= 0.0 { C64::new(root, other) } else { C64::new(other.abs(), root.copysign(z.im)) }
 }
 
 #[cfg(test)]
@@ -287,17 +257,11 @@ mod tests {
     #[test]
     fn isotropic_is_a_bessel_function() {
         // I₁(1) and I₁(10) e^{-10}, DLMF 10.25.2 summed in 50 digits.
-        for (s, scaled_bessel) in [
-            (1.0, 0.207_910_415_349_708_45),
-            (0.1, 0.121_262_681_384_455_52),
-        ] {
+        for (s, scaled_bessel) in [(1.0, 0.207_910_415_349_708_45), (0.1, 0.121_262_681_384_455_52)]
+        {
             let law = Contour::new([1.0 / s; 4], [0.0, 0.6, 0.0, 0.8]);
             let exact = (4.0 * PI * PI * s * scaled_bessel).ln();
-            assert!(
-                (law.ln_integral() - exact).abs() < 1e-14,
-                "{} {exact}",
-                law.ln_integral()
-            );
+            assert!((law.ln_integral() - exact).abs() < 1e-14, "{} {exact}", law.ln_integral());
         }
     }
 
@@ -312,14 +276,8 @@ mod tests {
 
     #[test]
     fn complex_roots_are_the_principal_ones() {
-        for (re, im) in [
-            (3.0, 4.0),
-            (-3.0, 4.0),
-            (-3.0, -4.0),
-            (0.0, 1.0),
-            (0.0, 0.0),
-            (-1.0, 0.0),
-        ] {
+        for (re, im) in [(3.0, 4.0), (-3.0, 4.0), (-3.0, -4.0), (0.0, 1.0), (0.0, 0.0), (-1.0, 0.0)]
+        {
             let z = C64::new(re, im);
             let root = sqrt(z);
             assert!((root * root - z).norm() < 1e-15 && root.re >= 0.0);

@@ -88,10 +88,8 @@ impl FisherBingham {
     /// # Errors
     /// An entry is not finite or larger than 1e14, or P is not symmetric to rounding.
     pub fn new(precision: Matrix4<f64>, linear: Vector4<f64>) -> Result<Self, FisherBinghamError> {
-        if let Some(&value) = precision
-            .iter()
-            .chain(linear.iter())
-            .find(|x| !(x.abs() <= MAX_SPREAD))
+        if let Some(&value) =
+            precision.iter().chain(linear.iter()).find(|x| !(x.abs() <= MAX_SPREAD))
         {
             return Err(FisherBinghamError::Entry { value });
         }
@@ -119,12 +117,8 @@ impl FisherBingham {
     ) -> Self {
         let contour = Box::new(Contour::new(lambda, center));
         let (first, second) = contour.moments();
-        let sampler = Sampler::choose(
-            lambda,
-            center,
-            second.diagonal().into(),
-            contour.ln_integral(),
-        );
+        let sampler =
+            Sampler::choose(lambda, center, second.diagonal().into(), contour.ln_integral());
         Self {
             axes,
             lambda,
@@ -141,9 +135,7 @@ impl FisherBingham {
     #[must_use]
     pub fn ln_density(&self, q: &UnitQuaternion<f64>) -> f64 {
         let y = self.axes.tr_mul(&q.coords);
-        let square: f64 = (0..4)
-            .map(|j| self.lambda[j] * (y[j] - self.center[j]).powi(2))
-            .sum();
+        let square: f64 = (0..4).map(|j| self.lambda[j] * (y[j] - self.center[j]).powi(2)).sum();
         -0.5 * square - self.contour.ln_integral()
     }
 
@@ -190,9 +182,7 @@ impl FisherBingham {
     ) -> [f64; N] {
         self.contour.expect(|y| {
             let x = std::array::from_fn(|i| {
-                (0..4)
-                    .map(|j| y[j] * self.axes[(i, j)])
-                    .sum::<Complex<f64>>()
+                (0..4).map(|j| y[j] * self.axes[(i, j)]).sum::<Complex<f64>>()
             });
             polynomials(&x)
         })
@@ -228,9 +218,8 @@ impl Distribution<UnitQuaternion<f64>> for FisherBingham {
             Sampler::Uniform(_) => loop {
                 let q: UnitQuaternion<f64> = UniformAttitude.sample(rng);
                 let y: [f64; 4] = q.coords.into();
-                let square: f64 = (0..4)
-                    .map(|j| self.lambda[j] * (y[j] - self.center[j]).powi(2))
-                    .sum();
+                let square: f64 =
+                    (0..4).map(|j| self.lambda[j] * (y[j] - self.center[j]).powi(2)).sum();
                 if rng.random::<f64>() < libm::exp(-0.5 * square) {
                     break y;
                 }
@@ -281,11 +270,8 @@ pub(crate) fn check_symmetric(m: &Matrix4<f64>) -> Result<(), [usize; 2]> {
 fn centering_shift(eigenvalues: [f64; 4], b: [f64; 4]) -> f64 {
     let floor = eigenvalues.into_iter().fold(f64::INFINITY, f64::min);
     // In d = μ + min P > 0.
-    let square = |d: f64| -> f64 {
-        (0..4)
-            .map(|j| (b[j] / ((eigenvalues[j] - floor) + d)).powi(2))
-            .sum()
-    };
+    let square =
+        |d: f64| -> f64 { (0..4).map(|j| (b[j] / ((eigenvalues[j] - floor) + d)).powi(2)).sum() };
     let (mut low, mut high) = (1.0, 2.0);
     if square(low) <= 1.0 {
         return low - floor;
@@ -296,11 +282,7 @@ fn centering_shift(eigenvalues: [f64; 4], b: [f64; 4]) -> f64 {
     }
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
-        if square(middle) > 1.0 {
-            low = middle
-        } else {
-            high = middle
-        }
+        if square(middle) > 1.0 { low = middle } else { high = middle }
     }
     high - floor
 }
@@ -337,12 +319,7 @@ mod tests {
         const N: usize = 200_000;
         for (name, p, b) in zoo() {
             let law = law(p, b);
-            assert!(
-                law.acceptance() > 0.3,
-                "{name}: {} by {:?}",
-                law.acceptance(),
-                law.method()
-            );
+            assert!(law.acceptance() > 0.3, "{name}: {} by {:?}", law.acceptance(), law.method());
             let mut rng = ChaCha8Rng::seed_from_u64(7);
             let (mut sum, mut squares) = ([0.0; 14], [0.0; 14]);
             for _ in 0..N {
@@ -388,10 +365,7 @@ mod tests {
     fn methods_are_all_in_use() {
         let methods: Vec<Method> = zoo().iter().map(|(_, p, b)| law(*p, *b).method()).collect();
         for method in [Method::Chart, Method::Circle, Method::Uniform] {
-            assert!(
-                methods.contains(&method),
-                "{method:?} unused in {methods:?}"
-            );
+            assert!(methods.contains(&method), "{method:?} unused in {methods:?}");
         }
     }
 

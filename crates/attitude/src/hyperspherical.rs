@@ -63,11 +63,7 @@ impl HypersphericalAngles {
         Self([
             libm::atan2(libm::hypot(planar, x3), x4),
             libm::atan2(planar, x3),
-            if azimuth < 0.0 {
-                azimuth + TAU
-            } else {
-                azimuth
-            },
+            if azimuth < 0.0 { azimuth + TAU } else { azimuth },
         ])
     }
 
@@ -114,21 +110,11 @@ mod tests {
 
     #[test]
     fn poles_and_out_of_range() {
-        assert_eq!(
-            HypersphericalAngles::of(&UnitQuaternion::identity()).values(),
-            [0.0; 3]
-        );
-        for bad in [
-            [-0.1, 1.0, 1.0],
-            [1.0, 3.2, 1.0],
-            [1.0, 1.0, 6.3],
-            [f64::NAN, 1.0, 1.0],
-        ] {
+        assert_eq!(HypersphericalAngles::of(&UnitQuaternion::identity()).values(), [0.0; 3]);
+        for bad in [[-0.1, 1.0, 1.0], [1.0, 3.2, 1.0], [1.0, 1.0, 6.3], [f64::NAN, 1.0, 1.0]] {
             assert!(HypersphericalAngles::new(bad).is_err());
         }
-        let error = HypersphericalAngles::new([1.0, 4.0, 1.0])
-            .unwrap_err()
-            .to_string();
+        let error = HypersphericalAngles::new([1.0, 4.0, 1.0]).unwrap_err().to_string();
         assert!(error.contains("theta_2 = 4"), "{error}");
     }
 

@@ -3,6 +3,7 @@
 //! * [`UniformAttitude`]: every attitude equally likely (Haar measure).
 //! * [`RadiallyConstrainedGaussian`] (RCG): a Gaussian in ℝ⁴ conditioned on unit length (Nicewarner
 //!   & Sanderson 1994; Peck 2003, Eq. 20-26), the Fisher-Bingham law on S³ with a mean attitude.
+//! * [`MeanHalf`]: the same, kept to the half sphere around its mean.
 //! * [`FisherBingham`]: the general member of that family, density ∝ exp(−½ xᵀPx + bᵀx).
 //!
 //! Draws are exact and independent (no Markov chain), for any covariance; the normaliser and the
@@ -38,10 +39,12 @@ mod contour;
 mod fisher_bingham;
 mod hyperspherical;
 mod jacobi;
+mod mean_half;
 mod rcg;
 mod uniform;
 
 pub use fisher_bingham::{FisherBingham, FisherBinghamError, Method};
 pub use hyperspherical::{HypersphericalAngles, HypersphericalError};
+pub use mean_half::MeanHalf;
 pub use rcg::{RadiallyConstrainedGaussian, RcgError};
 pub use uniform::UniformAttitude;

@@ -67,7 +67,7 @@ pub enum RcgError {
 /// q and −q are one attitude, and the law knows nothing of it. Where Σ is wide along m, a second
 /// lobe of probability appears near the reflection of m: with the covariance of Peck (2003,
 /// Eq. 30) it lies near (m₁, m₂, m₃, −m₄) and holds 3.4 % of the mass. As attitudes those draws lie
-/// about the *inverse* of the mean. Use [`in_mean_half`](Self::in_mean_half) to keep to the half
+/// about the *inverse* of the mean. Use [`MeanHalf`](crate::MeanHalf) to keep to the half
 /// sphere around the mean.
 ///
 /// # Algorithm
@@ -103,11 +103,7 @@ impl RadiallyConstrainedGaussian {
             for column in 0..4 {
                 let value = covariance[(row, column)];
                 if !value.is_finite() {
-                    return Err(RcgError::Entry {
-                        row: row + 1,
-                        column: column + 1,
-                        value,
-                    });
+                    return Err(RcgError::Entry { row: row + 1, column: column + 1, value });
                 }
             }
         }
@@ -117,10 +113,7 @@ impl RadiallyConstrainedGaussian {
             upper: covariance[(row, column)],
             lower: covariance[(column, row)],
         })?;
-        if let Some(&eigenvalue) = covariance
-            .diagonal()
-            .iter()
-            .find(|s| !EIGENVALUES.contains(*s))
+        if let Some(&eigenvalue) = covariance.diagonal().iter().find(|s| !EIGENVALUES.contains(*s))
         {
             return Err(RcgError::Eigenvalue { eigenvalue });
         }
@@ -128,26 +121,17 @@ impl RadiallyConstrainedGaussian {
         let smallest = eigenvalues.into_iter().fold(f64::INFINITY, f64::min);
         let largest = eigenvalues.into_iter().fold(0.0, f64::max);
         if !EIGENVALUES.contains(&smallest) || !is_definite(&covariance) {
-            return Err(RcgError::Eigenvalue {
-                eigenvalue: smallest,
-            });
+            return Err(RcgError::Eigenvalue { eigenvalue: smallest });
         }
         if !EIGENVALUES.contains(&largest) {
-            return Err(RcgError::Eigenvalue {
-                eigenvalue: largest,
-            });
+            return Err(RcgError::Eigenvalue { eigenvalue: largest });
         }
         let mean = UnitQuaternion::new_normalize(mean.into_inner());
         let lambda = eigenvalues.map(|s| 1.0 / s);
         let center = axes.tr_mul(&mean.coords);
         let precision = axes * Matrix4::from_diagonal(&lambda.into()) * axes.transpose();
         let law = FisherBingham::centered(axes, lambda, center.into(), 0.0);
-        Ok(Self {
-            mean,
-            covariance,
-            precision,
-            law,
-        })
+        Ok(Self { mean, covariance, precision, law })
     }
 
     /// The mean attitude m, about which the Gaussian in ℝ⁴ is centred.
@@ -249,9 +233,7 @@ fn opposite(q: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
 fn is_definite(covariance: &Matrix4<f64>) -> bool {
     let d = covariance.diagonal().map(f64::sqrt);
     let correlation = Matrix4::from_fn(|i, j| covariance[(i, j)] / (d[i] * d[j]));
-    (correlation - Matrix4::identity() * (16.0 * f64::EPSILON))
-        .cholesky()
-        .is_some()
+    (correlation - Matrix4::identity() * (16.0 * f64::EPSILON)).cholesky().is_some()
 }
 
 /// The serialized form: mean scalar last, covariance by rows.
@@ -441,18 +423,10 @@ mod tests {
             let mut k = 0;
             for i in 0..4 {
                 let error = law.mean_vector()[i] - case.mean_vector[i];
-                assert!(
-                    error.abs() < 1e-13,
-                    "{}: E x{i} off by {error:e}",
-                    case.name
-                );
+                assert!(error.abs() < 1e-13, "{}: E x{i} off by {error:e}", case.name);
                 for j in 0..=i {
                     let error = second[(i, j)] - case.second_moment[k];
-                    assert!(
-                        error.abs() < 1e-13,
-                        "{}: E x{i}x{j} off by {error:e}",
-                        case.name
-                    );
+                    assert!(error.abs() < 1e-13, "{}: E x{i}x{j} off by {error:e}", case.name);
                     k += 1;
                 }
             }
@@ -463,12 +437,7 @@ mod tests {
     fn acceptance_is_useful() {
         for case in reference() {
             let law = law(case.mean, case.variances);
-            assert!(
-                law.acceptance() > 0.4,
-                "{}: {}",
-                case.name,
-                law.acceptance()
-            );
+            assert!(law.acceptance() > 0.4, "{}: {}", case.name, law.acceptance());
         }
         assert!(paper().acceptance() > 0.9995, "{}", paper().acceptance());
         assert_eq!(paper().method(), Method::Chart);
@@ -512,11 +481,7 @@ mod tests {
             counts[(((q.w + 1.0) * 0.5 * BINS as f64) as usize).min(BINS - 1)] += 1.0;
             n += 1.0;
         }
-        counts
-            .iter()
-            .zip(expected)
-            .map(|(c, e)| (c - n * e) * (c - n * e) / (n * e))
-            .sum()
+        counts.iter().zip(expected).map(|(c, e)| (c - n * e) * (c - n * e) / (n * e)).sum()
     }
 
     /// Draws of a mild law follow its density; draws with the Jacobian counted twice, or with one
@@ -548,9 +513,7 @@ mod tests {
         const N: usize = 400_000;
         let law = paper();
         let mut rng = ChaCha8Rng::seed_from_u64(3);
-        let far = (0..N)
-            .filter(|_| !law.in_mean_half(&law.sample(&mut rng)))
-            .count();
+        let far = (0..N).filter(|_| !law.in_mean_half(&law.sample(&mut rng))).count();
         let share = far as f64 / N as f64;
         let z = (share - FAR_SHARE) / (FAR_SHARE * (1.0 - FAR_SHARE) / N as f64).sqrt();
         assert!(z.abs() < 3.5, "share {share}, z = {z}");
@@ -568,10 +531,7 @@ mod tests {
         assert!((by_angles - law.ln_density(&q)).abs() < 1e-9);
         let sum = law.ln_density(&q).exp() + law.ln_density(&opposite(&q)).exp();
         assert!((law.ln_attitude_density(&q) - sum.ln()).abs() < 1e-12);
-        assert_eq!(
-            law.ln_attitude_density(&q),
-            law.ln_attitude_density(&opposite(&q))
-        );
+        assert_eq!(law.ln_attitude_density(&q), law.ln_attitude_density(&opposite(&q)));
         // At the mean the exponent is zero.
         assert!((law.ln_density(&law.mean()) + law.ln_normaliser()).abs() < 1e-12);
     }
@@ -586,46 +546,20 @@ mod tests {
             m[(j, i)] = value;
             RadiallyConstrainedGaussian::new(mean, m)
         };
-        assert!(matches!(
-            with(1, 1, f64::NAN),
-            Err(RcgError::Entry {
-                row: 2,
-                column: 2,
-                ..
-            })
-        ));
-        assert!(matches!(
-            with(1, 2, f64::INFINITY),
-            Err(RcgError::Entry { .. })
-        ));
+        assert!(matches!(with(1, 1, f64::NAN), Err(RcgError::Entry { row: 2, column: 2, .. })));
+        assert!(matches!(with(1, 2, f64::INFINITY), Err(RcgError::Entry { .. })));
         for bad in [0.0, -1.0, 1e-300, 1e300, -0.0] {
-            assert!(
-                matches!(with(3, 3, bad), Err(RcgError::Eigenvalue { .. })),
-                "{bad}"
-            );
+            assert!(matches!(with(3, 3, bad), Err(RcgError::Eigenvalue { .. })), "{bad}");
         }
-        assert!(
-            matches!(with(0, 1, 1.0), Err(RcgError::Eigenvalue { .. })),
-            "singular"
-        );
-        assert!(
-            matches!(with(0, 1, 1.1), Err(RcgError::Eigenvalue { .. })),
-            "indefinite"
-        );
+        assert!(matches!(with(0, 1, 1.0), Err(RcgError::Eigenvalue { .. })), "singular");
+        assert!(matches!(with(0, 1, 1.1), Err(RcgError::Eigenvalue { .. })), "indefinite");
         let mut skew = one;
         skew[(2, 0)] = 0.3;
         assert!(matches!(
             RadiallyConstrainedGaussian::new(mean, skew),
-            Err(RcgError::NotSymmetric {
-                row: 1,
-                column: 3,
-                ..
-            })
+            Err(RcgError::NotSymmetric { row: 1, column: 3, .. })
         ));
-        for bad in [
-            Quaternion::new(2.0, 0.0, 0.0, 0.0),
-            Quaternion::new(f64::NAN, 0.0, 0.0, 0.0),
-        ] {
+        for bad in [Quaternion::new(2.0, 0.0, 0.0, 0.0), Quaternion::new(f64::NAN, 0.0, 0.0, 0.0)] {
             let bad = UnitQuaternion::new_unchecked(bad);
             assert!(matches!(
                 RadiallyConstrainedGaussian::new(bad, one),
@@ -655,24 +589,9 @@ mod tests {
     }
 
     const STABLE: [[f64; 4]; 3] = [
-        [
-            0.02193133527153861,
-            0.01468945853695853,
-            0.01757696380815038,
-            0.9994970168461661,
-        ],
-        [
-            0.018031798318248055,
-            0.0026331112665549865,
-            -0.03405680469429733,
-            0.9992537490690152,
-        ],
-        [
-            0.031236492581134926,
-            -0.01173439095962631,
-            0.01910542160584136,
-            0.9992605108105185,
-        ],
+        [0.02193133527153861, 0.01468945853695853, 0.01757696380815038, 0.9994970168461661],
+        [0.018031798318248055, 0.0026331112665549865, -0.03405680469429733, 0.9992537490690152],
+        [0.031236492581134926, -0.01173439095962631, 0.01910542160584136, 0.9992605108105185],
     ];
 
     proptest! {

@@ -1,1 +1,50 @@
-//! TODO
+//! Random rigid-body inertia: the mass properties of a body that nobody has weighed yet.
+//!
+//! * [`PrincipalDispersion`]: second mass moments from the square of any law of their roots, axes
+//!   from any law of attitudes (Peck 2003). Every draw is an [`Inertia`], a body that could be
+//!   built, whatever the variances.
+//! * [`EntrywiseGaussian`]: six independent Gaussians, the common practice; draws are
+//!   [`InertiaMatrix`]es, some of which no body has.
+//!
+//! All are [`Distribution`](rand_distr::Distribution)s. For the first with Gaussian roots and a
+//! radially constrained Gaussian of the axes, [`EntryMoments`] are the mean and covariance of the
+//! six entries by quadrature, not by sampling.
+//!
+//! ```
+//! use gyradius_attitude::RadiallyConstrainedGaussian;
+//! use gyradius_dispersion::{GaussianRoots, PrincipalDispersion};
+//! use gyradius_inertia::Inertia;
+//! use nalgebra::{Matrix3, Matrix4, Vector4};
+//! use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+//! use rand_distr::Distribution;
+//!
+//! let nominal = Inertia::new(Matrix3::new(
+//!     5000.0, 20.0, 2.0, //
+//!     20.0, 4000.0, -50.0, //
+//!     2.0, -50.0, 3000.0,
+//! ))?;
+//! let axes = nominal.principal_axes();
+//! let covariance = Matrix4::from_diagonal(&Vector4::new(2e-5, 6e-4, 6e-4, 0.6));
+//! let law = PrincipalDispersion::new(
+//!     GaussianRoots::new(nominal.second_moments().roots(), [0.125, 0.1, 0.075])?,
+//!     RadiallyConstrainedGaussian::new(axes.attitude(), covariance)?,
+//! );
+//! let body: Inertia = law.sample(&mut ChaCha8Rng::seed_from_u64(2003));
+//! assert!(body.as_inertia_matrix().is_realizable());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`Inertia`]: gyradius_inertia::Inertia
+//! [`InertiaMatrix`]: gyradius_inertia::InertiaMatrix
+
+mod entry_moments;
+mod entrywise;
+mod jacobian_twice;
+mod principal;
+mod roots;
+
+pub use entry_moments::EntryMoments;
+pub use entrywise::{EntrywiseError, EntrywiseGaussian};
+pub use jacobian_twice::JacobianTwice;
+pub use principal::{PrincipalDispersion, PrincipalDraw};
+pub use roots::{GaussianRoots, GaussianRootsError};

@@ -147,10 +147,7 @@ impl TryFrom<InertiaMatrix> for Inertia {
             return Ok(Self(matrix));
         }
         let axes = matrix.principal_axes();
-        let smallest = axes
-            .second_moments()
-            .into_iter()
-            .fold(f64::INFINITY, f64::min);
+        let smallest = axes.second_moments().into_iter().fold(f64::INFINITY, f64::min);
         let size = matrix.matrix().amax();
         let trace: f64 = axes.moments().iter().map(|i| (i / size).abs()).sum();
         Err(RealizabilityError::NotRealizable {
@@ -195,14 +192,8 @@ mod tests {
     fn the_message_says_what_is_wrong_and_what_is_allowed() {
         let error = Inertia::try_from([[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 6.0]]);
         let message = error.unwrap_err().to_string();
-        assert!(
-            message.contains('6') && message.contains("at least the third"),
-            "{message}"
-        );
-        assert!(
-            message.contains("16.667 %"),
-            "K3 = -1.5 of a trace of 9: {message}"
-        );
+        assert!(message.contains('6') && message.contains("at least the third"), "{message}");
+        assert!(message.contains("16.667 %"), "K3 = -1.5 of a trace of 9: {message}");
     }
 
     #[test]

@@ -99,17 +99,7 @@ impl InertiaMatrix {
     pub(crate) fn symmetrized(m: &Matrix3<f64>) -> Self {
         let mean = |i, j| 0.5 * (m[(i, j)] + m[(j, i)]);
         let (i12, i13, i23) = (mean(0, 1), mean(0, 2), mean(1, 2));
-        Self(Matrix3::new(
-            m[(0, 0)],
-            i12,
-            i13,
-            i12,
-            m[(1, 1)],
-            i23,
-            i13,
-            i23,
-            m[(2, 2)],
-        ))
+        Self(Matrix3::new(m[(0, 0)], i12, i13, i12, m[(1, 1)], i23, i13, i23, m[(2, 2)]))
     }
 
     /// The full matrix.
@@ -122,14 +112,7 @@ impl InertiaMatrix {
     #[must_use]
     pub fn entries(&self) -> [f64; 6] {
         let m = &self.0;
-        [
-            m[(0, 0)],
-            m[(1, 1)],
-            m[(2, 2)],
-            m[(0, 1)],
-            m[(0, 2)],
-            m[(1, 2)],
-        ]
+        [m[(0, 0)], m[(1, 1)], m[(2, 2)], m[(0, 1)], m[(0, 2)], m[(1, 2)]]
     }
 
     /// The second-moment matrix Σ = ½ tr(I)·1 − I = ∫ x xᵀ dm, whose eigenvalues are the K_k.
@@ -239,26 +222,12 @@ mod tests {
     fn refuses_what_is_not_a_number_or_not_symmetric() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308] {
             let error = InertiaMatrix::from_entries([1.0, bad, 1.0], [0.0; 3]).unwrap_err();
-            assert!(matches!(
-                error,
-                InertiaMatrixError::Entry {
-                    row: 2,
-                    column: 2,
-                    ..
-                }
-            ));
+            assert!(matches!(error, InertiaMatrixError::Entry { row: 2, column: 2, .. }));
         }
         let mut m = Matrix3::identity();
         m[(0, 2)] = 1e-12;
         let error = InertiaMatrix::new(m).unwrap_err();
-        assert!(matches!(
-            error,
-            InertiaMatrixError::NotSymmetric {
-                row: 1,
-                column: 3,
-                ..
-            }
-        ));
+        assert!(matches!(error, InertiaMatrixError::NotSymmetric { row: 1, column: 3, .. }));
         assert!(error.to_string().contains("I13"), "{error}");
     }
 
@@ -268,38 +237,20 @@ mod tests {
         assert!(diagonal([0.0, 1.0, 1.0]).is_realizable(), "rod");
         assert!(diagonal([1.0, 2.0, 3.0]).is_realizable(), "plate");
         assert!(diagonal([1.0, 1.0, 1.0]).is_realizable(), "ball");
-        assert!(
-            !diagonal([-1.0, 1.0, 1.0]).is_realizable(),
-            "negative moment"
-        );
-        assert!(
-            !diagonal([-1.0, -1.0, -1.0]).is_realizable(),
-            "negative ball"
-        );
-        assert!(
-            !diagonal([1.0, 2.0, 3.003]).is_realizable(),
-            "triangle by 1e-3"
-        );
-        assert!(
-            !diagonal([1.0, 2.0, 3.0 + 3e-12]).is_realizable(),
-            "triangle by 1e-12"
-        );
+        assert!(!diagonal([-1.0, 1.0, 1.0]).is_realizable(), "negative moment");
+        assert!(!diagonal([-1.0, -1.0, -1.0]).is_realizable(), "negative ball");
+        assert!(!diagonal([1.0, 2.0, 3.003]).is_realizable(), "triangle by 1e-3");
+        assert!(!diagonal([1.0, 2.0, 3.0 + 3e-12]).is_realizable(), "triangle by 1e-12");
         let leaning =
             InertiaMatrix::from_entries([100.0, 200.0, 300.0], [5.0, 10.0, 20.0]).unwrap();
-        assert!(
-            !leaning.is_realizable(),
-            "a plate pushed out by its products"
-        );
+        assert!(!leaning.is_realizable(), "a plate pushed out by its products");
     }
 
     #[test]
     fn scale_does_not_matter() {
         for scale in [5e-324, 1e-310, 1e-300, 1e-150, 1.0, 1e150, 1e300] {
             assert!(diagonal([scale; 3]).is_realizable(), "{scale:e}");
-            assert!(
-                !diagonal([scale, scale, 3.0 * scale]).is_realizable(),
-                "{scale:e}"
-            );
+            assert!(!diagonal([scale, scale, 3.0 * scale]).is_realizable(), "{scale:e}");
         }
         for scale in [1e-300, 1e300] {
             assert!(diagonal([scale, 2.0 * scale, 3.0 * scale]).is_realizable());
@@ -313,10 +264,7 @@ mod tests {
         assert!(diagonal([0.0, 1.0, 1.0]).inverse().is_none());
         assert!(diagonal([-1.0, 1.0, 1.0]).inverse().is_none());
         assert!(diagonal([0.0; 3]).inverse().is_none());
-        assert!(
-            diagonal([1e-310; 3]).inverse().is_none(),
-            "its inverse overflows"
-        );
+        assert!(diagonal([1e-310; 3]).inverse().is_none(), "its inverse overflows");
         let m = InertiaMatrix::from_entries([5000.0, 4000.0, 3000.0], [20.0, 2.0, -50.0]).unwrap();
         let product = m.inverse().unwrap() * m.matrix();
         assert!((product - Matrix3::identity()).amax() < 1e-14);

@@ -62,11 +62,7 @@ impl PrincipalAxes {
     #[must_use]
     pub fn second_moments(&self) -> [f64; 3] {
         let [i1, i2, i3] = self.moments;
-        [
-            0.5 * (i2 + i3 - i1),
-            0.5 * (i1 + i3 - i2),
-            0.5 * (i1 + i2 - i3),
-        ]
+        [0.5 * (i2 + i3 - i1), 0.5 * (i1 + i3 - i2), 0.5 * (i1 + i2 - i3)]
     }
 }
 
@@ -149,11 +145,7 @@ fn nearest_about(values: [f64; 3], v: &Matrix3<f64>, odd: usize) -> ([f64; 3], M
 fn quaternion(axes: &Matrix3<f64>) -> UnitQuaternion<f64> {
     let q =
         UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes.transpose()));
-    if q.w < 0.0 {
-        UnitQuaternion::new_unchecked(-q.into_inner())
-    } else {
-        q
-    }
+    if q.w < 0.0 { UnitQuaternion::new_unchecked(-q.into_inner()) } else { q }
 }
 
 #[cfg(test)]
@@ -162,9 +154,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn axes_of(moments: [f64; 3], products: [f64; 3]) -> PrincipalAxes {
-        InertiaMatrix::from_entries(moments, products)
-            .unwrap()
-            .principal_axes()
+        InertiaMatrix::from_entries(moments, products).unwrap().principal_axes()
     }
 
     fn reconstruct(p: &PrincipalAxes) -> Matrix3<f64> {
@@ -178,11 +168,7 @@ mod tests {
     fn the_papers_payload() {
         let p = axes_of([5000.0, 4000.0, 3000.0], [20.0, 2.0, -50.0]);
         let moments = [5000.400340853638, 4002.0979168828417, 2997.501742263521];
-        let q = [
-            0.024935566015959365,
-            0.0004991664980075949,
-            -0.009972645510243931,
-        ];
+        let q = [0.024935566015959365, 0.0004991664980075949, -0.009972645510243931];
         for (found, expected) in p.moments().iter().zip(moments) {
             assert!((found - expected).abs() < 2e-12, "{found} {expected}");
         }
@@ -196,11 +182,7 @@ mod tests {
     #[test]
     fn the_papers_upper_stage_ties_and_the_larger_moment_goes_first() {
         let p = axes_of([6700.0, 6700.0, 2000.0], [0.0, 20.0, -20.0]);
-        let q = [
-            0.0011514237297395697,
-            0.0027797827843850944,
-            0.38268170015168,
-        ];
+        let q = [0.0011514237297395697, 0.0027797827843850944, 0.38268170015168];
         assert!(p.moments()[0] > p.moments()[1]);
         for (found, expected) in p.attitude().imag().iter().zip(q) {
             assert!((found - expected).abs() < 1e-11, "{found} {expected}");
@@ -209,18 +191,9 @@ mod tests {
 
     #[test]
     fn equal_moments_stay_near_the_body_axes() {
-        assert_eq!(
-            axes_of([2.0; 3], [0.0; 3]).attitude(),
-            UnitQuaternion::identity()
-        );
-        assert_eq!(
-            axes_of([0.0; 3], [0.0; 3]).attitude(),
-            UnitQuaternion::identity()
-        );
-        assert_eq!(
-            axes_of([2.0, 2.0, 1.0], [0.0; 3]).attitude(),
-            UnitQuaternion::identity()
-        );
+        assert_eq!(axes_of([2.0; 3], [0.0; 3]).attitude(), UnitQuaternion::identity());
+        assert_eq!(axes_of([0.0; 3], [0.0; 3]).attitude(), UnitQuaternion::identity());
+        assert_eq!(axes_of([2.0, 2.0, 1.0], [0.0; 3]).attitude(), UnitQuaternion::identity());
         // Axisymmetric about an axis tilted by 0.1 rad in the 2-3 plane: the nearest attitude is
         // that tilt and nothing else, whatever plane the eigen solver turned in.
         let tilt = UnitQuaternion::from_scaled_axis(Vector3::new(0.1, 0.0, 0.0));
@@ -234,16 +207,9 @@ mod tests {
     fn an_odd_axis_between_two_body_axes_follows_the_tie_rule() {
         let turn =
             UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, 0.25 * std::f64::consts::PI));
-        let small = InertiaMatrix::from_entries([3.0, 5.0, 5.0], [0.0; 3])
-            .unwrap()
-            .rotated(&turn);
-        let large = InertiaMatrix::from_entries([7.0, 5.0, 5.0], [0.0; 3])
-            .unwrap()
-            .rotated(&turn);
-        let (small, large) = (
-            small.principal_axes().moments(),
-            large.principal_axes().moments(),
-        );
+        let small = InertiaMatrix::from_entries([3.0, 5.0, 5.0], [0.0; 3]).unwrap().rotated(&turn);
+        let large = InertiaMatrix::from_entries([7.0, 5.0, 5.0], [0.0; 3]).unwrap().rotated(&turn);
+        let (small, large) = (small.principal_axes().moments(), large.principal_axes().moments());
         assert!(small[1] < 4.0 && large[0] > 6.0, "{small:?} {large:?}");
     }
 

@@ -57,10 +57,7 @@ impl SecondMoments {
     /// A value is negative, NaN or larger than [`MAX_ENTRY`].
     pub fn new(values: [f64; 3]) -> Result<Self, SecondMomentsError> {
         match values.iter().position(|k| !(0.0..=MAX_ENTRY).contains(k)) {
-            Some(i) => Err(SecondMomentsError::SecondMoment {
-                axis: i + 1,
-                value: values[i],
-            }),
+            Some(i) => Err(SecondMomentsError::SecondMoment { axis: i + 1, value: values[i] }),
             None => Ok(Self(values)),
         }
     }
@@ -121,10 +118,7 @@ impl RootSecondMoments {
     /// A value is NaN or its square is larger than [`MAX_ENTRY`].
     pub fn new(values: [f64; 3]) -> Result<Self, SecondMomentsError> {
         match values.iter().position(|k| !(k * k <= MAX_ENTRY)) {
-            Some(i) => Err(SecondMomentsError::Root {
-                axis: i + 1,
-                value: values[i],
-            }),
+            Some(i) => Err(SecondMomentsError::Root { axis: i + 1, value: values[i] }),
             None => Ok(Self(values)),
         }
     }
@@ -159,10 +153,7 @@ impl RadiiOfGyration {
     /// A value is negative, NaN or infinite.
     pub fn new(values: [f64; 3]) -> Result<Self, SecondMomentsError> {
         match values.iter().position(|r| !(*r >= 0.0 && r.is_finite())) {
-            Some(i) => Err(SecondMomentsError::Radius {
-                axis: i + 1,
-                value: values[i],
-            }),
+            Some(i) => Err(SecondMomentsError::Radius { axis: i + 1, value: values[i] }),
             None => Ok(Self(values)),
         }
     }
@@ -184,11 +175,7 @@ impl RadiiOfGyration {
 }
 
 fn check_mass(value: f64) -> Result<(), SecondMomentsError> {
-    if value > 0.0 && value.is_finite() {
-        Ok(())
-    } else {
-        Err(SecondMomentsError::Mass { value })
-    }
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(SecondMomentsError::Mass { value }) }
 }
 
 macro_rules! conversions {

@@ -56,11 +56,7 @@ impl Body {
             let moments = inertia.principal_axes().moments();
             return Err(BodyError::NotPositiveDefinite { moments });
         };
-        Ok(Self {
-            mass: mass_kg,
-            inertia,
-            inverse,
-        })
+        Ok(Self { mass: mass_kg, inertia, inverse })
     }
 
     /// The same mass with another inertia.
@@ -92,13 +88,7 @@ impl Body {
     /// The body at rest, its axes along the inertial ones, its mass centre at `position` (m).
     #[must_use]
     pub fn at(self, position: Vector3<f64>) -> MovingBody {
-        MovingBody {
-            body: self,
-            state: BodyState {
-                position,
-                ..BodyState::default()
-            },
-        }
+        MovingBody { body: self, state: BodyState { position, ..BodyState::default() } }
     }
 
     /// The body in the given state.
@@ -192,18 +182,12 @@ impl MovingBody {
     /// Kinetic energy, translation and rotation, J.
     #[must_use]
     pub fn kinetic_energy(&self) -> f64 {
-        let spin = self
-            .state
-            .angular_velocity
-            .dot(&self.spin_angular_momentum());
+        let spin = self.state.angular_velocity.dot(&self.spin_angular_momentum());
         0.5 * (self.body.mass * self.state.velocity.norm_squared() + spin)
     }
 
     pub(crate) fn with_body(&self, body: Body) -> Self {
-        Self {
-            body,
-            state: self.state,
-        }
+        Self { body, state: self.state }
     }
 }
 
@@ -215,10 +199,7 @@ mod tests {
     fn bad_bodies_are_refused() {
         let good = InertiaMatrix::from_entries([1.0, 2.0, 2.5], [0.0; 3]).unwrap();
         for mass in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(
-                matches!(Body::new(mass, good), Err(BodyError::Mass { .. })),
-                "{mass}"
-            );
+            assert!(matches!(Body::new(mass, good), Err(BodyError::Mass { .. })), "{mass}");
         }
         for moments in [[0.0, 1.0, 1.0], [-1.0, 1.0, 1.0]] {
             let bad = InertiaMatrix::from_entries(moments, [0.0; 3]).unwrap();
@@ -228,16 +209,7 @@ mod tests {
         // Unphysical and yet invertible: allowed here.
         let triangle = InertiaMatrix::from_entries([1.0, 1.0, 3.0], [0.0; 3]).unwrap();
         assert!(Body::new(1.0, triangle).is_ok());
-        let state = BodyState {
-            velocity: Vector3::new(0.0, f64::NAN, 0.0),
-            ..Default::default()
-        };
-        assert!(matches!(
-            state.check(),
-            Err(BodyError::NotFinite {
-                field: "velocity",
-                ..
-            })
-        ));
+        let state = BodyState { velocity: Vector3::new(0.0, f64::NAN, 0.0), ..Default::default() };
+        assert!(matches!(state.check(), Err(BodyError::NotFinite { field: "velocity", .. })));
     }
 }

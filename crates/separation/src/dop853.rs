@@ -10,22 +10,9 @@ const A: [&[(usize, f64)]; STAGES] = [
     &[(0, 0.05260015195876773)],
     &[(0, 0.0197250569845379), (1, 0.0591751709536137)],
     &[(0, 0.02958758547680685), (2, 0.08876275643042054)],
-    &[
-        (0, 0.2413651341592667),
-        (2, -0.8845494793282861),
-        (3, 0.924834003261792),
-    ],
-    &[
-        (0, 0.037037037037037035),
-        (3, 0.17082860872947386),
-        (4, 0.12546768756682242),
-    ],
-    &[
-        (0, 0.037109375),
-        (3, 0.17025221101954405),
-        (4, 0.06021653898045596),
-        (5, -0.017578125),
-    ],
+    &[(0, 0.2413651341592667), (2, -0.8845494793282861), (3, 0.924834003261792)],
+    &[(0, 0.037037037037037035), (3, 0.17082860872947386), (4, 0.12546768756682242)],
+    &[(0, 0.037109375), (3, 0.17025221101954405), (4, 0.06021653898045596), (5, -0.017578125)],
     &[
         (0, 0.03709200011850479),
         (3, 0.17038392571223998),
@@ -154,20 +141,13 @@ pub(crate) fn step<const N: usize>(
         // Zero, or not a number, which must not pass for zero.
         fifth
     };
-    Step {
-        state: std::array::from_fn(|i| state[i] + h * increment[i]),
-        error,
-    }
+    Step { state: std::array::from_fn(|i| state[i] + h * increment[i]), error }
 }
 
 /// The factor by which the next step is to differ from this one.
 pub(crate) fn next_factor(error: f64) -> f64 {
     // Bounds and safety factor of Hairer, Nørsett & Wanner.
-    if error == 0.0 {
-        6.0
-    } else {
-        (0.9 * libm::pow(error, -0.125)).clamp(1.0 / 3.0, 6.0)
-    }
+    if error == 0.0 { 6.0 } else { (0.9 * libm::pow(error, -0.125)).clamp(1.0 / 3.0, 6.0) }
 }
 
 #[inline]
@@ -201,11 +181,7 @@ mod tests {
         // Quadrature conditions Σ b c^q = 1/(q+1) up to order 8.
         for q in 0..8 {
             let moment: f64 = B.iter().map(|&(j, b)| b * nodes[j].powi(q)).sum();
-            assert!(
-                (moment - 1.0 / f64::from(q + 1)).abs() < 1e-13,
-                "order {}",
-                q + 1
-            );
+            assert!((moment - 1.0 / f64::from(q + 1)).abs() < 1e-13, "order {}", q + 1);
         }
     }
 
@@ -222,9 +198,7 @@ mod tests {
             })
             .to_vec();
         let n = errors.len() as f64;
-        let (mx, my) = errors
-            .iter()
-            .fold((0.0, 0.0), |m, e| (m.0 + e.0 / n, m.1 + e.1 / n));
+        let (mx, my) = errors.iter().fold((0.0, 0.0), |m, e| (m.0 + e.0 / n, m.1 + e.1 / n));
         let (sxy, sxx) = errors.iter().fold((0.0, 0.0), |s, e| {
             (s.0 + (e.0 - mx) * (e.1 - my), s.1 + (e.0 - mx) * (e.0 - mx))
         });

@@ -1,6 +1,6 @@
 use nalgebra::{Matrix3, Vector3};
 
-use crate::{BodyState, MovingBody, Separation};
+use crate::{BodyState, MovingBody, Separation, Spring};
 
 /// Length of the state: relative position and velocity of the mass centres (inertial axes), then
 /// quaternion and angular velocity (body axes) of the payload and of the stage. The mass centre of
@@ -49,11 +49,7 @@ impl Dynamics {
             inertia: *body.body().inertia().matrix(),
             inverse: *body.body().inverse_inertia(),
         };
-        let springs = separation
-            .springs()
-            .iter()
-            .zip(separation.free_lengths())
-            .enumerate();
+        let springs = separation.springs().iter().zip(separation.free_lengths()).enumerate();
         Self {
             active: springs
                 .map(|(index, (spring, &free_length))| ActiveSpring {
@@ -272,17 +268,14 @@ pub(crate) fn bodies(separation: &Separation, y: &State, time: f64) -> (MovingBo
         )),
         angular_velocity: vector(y, at + 4),
     };
-    (
-        payload.body().moving(state(PAYLOAD, fl)),
-        stage.body().moving(state(STAGE, -fp)),
-    )
+    (payload.body().moving(state(PAYLOAD, fl)), stage.body().moving(state(STAGE, -fp)))
 }
 
 /// The size of each entry of the state that the springs can bring about: what errors are measured
 /// against.
 pub(crate) fn scales(separation: &Separation) -> State {
     let springs = separation.springs();
-    let length = springs.iter().map(|s| s.stroke_m()).fold(0.0, f64::max);
+    let length = springs.iter().map(Spring::stroke_m).fold(0.0, f64::max);
     let reduced = 1.0
         / (1.0 / separation.payload().body().mass_kg() + 1.0 / separation.stage().body().mass_kg());
     let speed = (2.0 * separation.stored_energy() / reduced).sqrt();

@@ -111,11 +111,7 @@ impl SpinMetrics {
 
 fn inertia_ratio(i1: f64, i2: f64, i3: f64) -> f64 {
     let product = (1.0 - i1 / i2) * (1.0 - i1 / i3);
-    if product > 0.0 {
-        1.0 + product.sqrt().copysign(i1 - i2)
-    } else {
-        1.0
-    }
+    if product > 0.0 { 1.0 + product.sqrt().copysign(i1 - i2) } else { 1.0 }
 }
 
 /// Angle between two directions, accurate near 0 and π, where acos is not.

@@ -62,10 +62,7 @@ impl Separation {
         springs: &[Spring],
     ) -> Result<Self, SeparationError> {
         for (body, moving) in [("payload", &payload), ("stage", &stage)] {
-            moving
-                .state()
-                .check()
-                .map_err(|source| SeparationError::Body { body, source })?;
+            moving.state().check().map_err(|source| SeparationError::Body { body, source })?;
         }
         if springs.is_empty() {
             return Err(SeparationError::NoSprings);
@@ -75,20 +72,11 @@ impl Separation {
             let distance = spring_vector(payload.state(), stage.state(), spring).norm();
             let stroke = spring.stroke_m();
             if !(distance > TOUCHING * stroke) {
-                return Err(SeparationError::TouchingPads {
-                    spring: i + 1,
-                    distance,
-                    stroke,
-                });
+                return Err(SeparationError::TouchingPads { spring: i + 1, distance, stroke });
             }
             free_lengths.push(distance + stroke);
         }
-        Ok(Self {
-            payload,
-            stage,
-            springs: springs.into(),
-            free_lengths: free_lengths.into(),
-        })
+        Ok(Self { payload, stage, springs: springs.into(), free_lengths: free_lengths.into() })
     }
 
     /// The same separation with other inertia matrices.
@@ -163,11 +151,7 @@ mod tests {
     use super::*;
 
     fn body() -> Body {
-        Body::new(
-            1.0,
-            InertiaMatrix::from_entries([1.0; 3], [0.0; 3]).unwrap(),
-        )
-        .unwrap()
+        Body::new(1.0, InertiaMatrix::from_entries([1.0; 3], [0.0; 3]).unwrap()).unwrap()
     }
 
     #[test]
@@ -181,10 +165,7 @@ mod tests {
         assert!(matches!(with(&[]), Err(SeparationError::NoSprings)));
         for gap in [0.0, 1e-9] {
             let error = with(&[spring(0.2), spring(gap)]).unwrap_err();
-            assert!(
-                matches!(error, SeparationError::TouchingPads { spring: 2, .. }),
-                "{error}"
-            );
+            assert!(matches!(error, SeparationError::TouchingPads { spring: 2, .. }), "{error}");
         }
         let ok = with(&[spring(1e-5)]).unwrap();
         assert!((ok.free_lengths()[0] - 0.10001).abs() < 1e-15);
@@ -193,16 +174,8 @@ mod tests {
     #[test]
     fn states_that_are_not_numbers_are_refused() {
         let spring = Spring::new(1.0, 0.1, Vector3::zeros(), Vector3::zeros()).unwrap();
-        let state = BodyState {
-            angular_velocity: Vector3::x() * f64::NAN,
-            ..Default::default()
-        };
+        let state = BodyState { angular_velocity: Vector3::x() * f64::NAN, ..Default::default() };
         let error = Separation::new(body().at(Vector3::z()), body().moving(state), &[spring]);
-        assert!(
-            error
-                .unwrap_err()
-                .to_string()
-                .starts_with("stage: angular velocity = NaN")
-        );
+        assert!(error.unwrap_err().to_string().starts_with("stage: angular velocity = NaN"));
     }
 }

@@ -50,9 +50,7 @@ impl Spring {
     ) -> Result<Self, SpringError> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         if !positive(stiffness_n_per_m) {
-            return Err(SpringError::Stiffness {
-                value: stiffness_n_per_m,
-            });
+            return Err(SpringError::Stiffness { value: stiffness_n_per_m });
         }
         if !positive(stroke_m) {
             return Err(SpringError::Stroke { value: stroke_m });
@@ -109,14 +107,8 @@ mod tests {
     fn bad_springs_are_refused() {
         let o = Vector3::zeros();
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(
-                Spring::new(bad, 1.0, o, o),
-                Err(SpringError::Stiffness { .. })
-            ));
-            assert!(matches!(
-                Spring::new(1.0, bad, o, o),
-                Err(SpringError::Stroke { .. })
-            ));
+            assert!(matches!(Spring::new(bad, 1.0, o, o), Err(SpringError::Stiffness { .. })));
+            assert!(matches!(Spring::new(1.0, bad, o, o), Err(SpringError::Stroke { .. })));
         }
         let nan = Vector3::new(0.0, f64::NAN, 0.0);
         let error = Spring::new(1.0, 1.0, o, nan).unwrap_err();

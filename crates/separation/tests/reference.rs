@@ -28,9 +28,7 @@ fn body(value: &Value) -> MovingBody {
         ))),
         angular_velocity: vector(&value["rate_rad_per_s"]),
     };
-    Body::new(value["mass_kg"].as_f64().unwrap(), inertia)
-        .unwrap()
-        .moving(state)
+    Body::new(value["mass_kg"].as_f64().unwrap(), inertia).unwrap().moving(state)
 }
 
 fn separation(input: &Value) -> Separation {
@@ -59,10 +57,7 @@ fn fields(outcome: &Outcome) -> Vec<(&'static str, Vec<f64>)> {
     vec![
         ("release_time_of_spring_s", outcome.release_times().to_vec()),
         ("relative_speed_m_per_s", vec![outcome.relative_speed()]),
-        (
-            "payload_w_rad_per_s",
-            p.angular_velocity.as_slice().to_vec(),
-        ),
+        ("payload_w_rad_per_s", p.angular_velocity.as_slice().to_vec()),
         ("stage_w_rad_per_s", s.angular_velocity.as_slice().to_vec()),
         ("spin_rate_rad_per_s", vec![metrics.spin_rate()]),
         ("wobble_deg", degrees(Some(metrics.wobble()))),
@@ -75,10 +70,7 @@ fn fields(outcome: &Outcome) -> Vec<(&'static str, Vec<f64>)> {
         ("payload_velocity_m_per_s", p.velocity.as_slice().to_vec()),
         ("stage_position_m", s.position.as_slice().to_vec()),
         ("stage_velocity_m_per_s", s.velocity.as_slice().to_vec()),
-        (
-            "payload_attitude_xyzw",
-            p.attitude.coords.as_slice().to_vec(),
-        ),
+        ("payload_attitude_xyzw", p.attitude.coords.as_slice().to_vec()),
         ("stage_attitude_xyzw", s.attitude.coords.as_slice().to_vec()),
     ]
 }
@@ -87,32 +79,30 @@ fn fields(outcome: &Outcome) -> Vec<(&'static str, Vec<f64>)> {
 fn relative(found: &[f64], expected: &[f64]) -> f64 {
     assert_eq!(found.len(), expected.len());
     let size = expected.iter().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
-    found
-        .iter()
-        .zip(expected)
-        .fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()))
-        / size
+    found.iter().zip(expected).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / size
 }
 
 #[test]
 fn outcomes_match_the_reference() {
     let mut worst = (0.0, String::new());
     for case in reference()["cases"].as_array().unwrap() {
-        let outcome = separation(&case["input"])
-            .run(&Settings::default())
-            .unwrap();
+        let outcome = separation(&case["input"]).run(&Settings::default()).unwrap();
         for (name, found) in fields(&outcome) {
+            if found.is_empty() {
+                // Eq. 35 means nothing there: in one case the spin is about the intermediate axis,
+                // in the other H circles another axis and the argument of the root is negative. The
+                // reference evaluates the formula all the same.
+                let case = case["name"].as_str().unwrap();
+                assert!(
+                    ["nominal_but_intermediate_spin_axis", "three_springs_skewed"].contains(&case)
+                );
+                continue;
+            }
             let value = &case["outcome"][name];
             let expected: Vec<f64> = match value {
                 Value::Array(a) => a.iter().map(|x| x.as_f64().unwrap()).collect(),
                 number => vec![number.as_f64().unwrap()],
             };
-            if found.is_empty() {
-                // Eq. 35 about the intermediate axis: the reference evaluates the formula, which
-                // means nothing there.
-                println!("NONE {} {}", case["name"], name);
-                continue;
-            }
             let rounding = case["rounding"][name].as_f64().unwrap_or(0.0);
             let size = expected.iter().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
             let error = relative(&found, &expected);
@@ -126,27 +116,17 @@ fn outcomes_match_the_reference() {
             }
         }
         let times = outcome.release_times();
-        for (found, expected) in times
-            .iter()
-            .zip(array_of(&case["outcome"]["release_time_of_spring_s"]))
+        for (found, expected) in
+            times.iter().zip(array_of(&case["outcome"]["release_time_of_spring_s"]))
         {
-            assert!(
-                (found - expected).abs() < 1e-12,
-                "{}: {found} {expected}",
-                case["name"]
-            );
+            assert!((found - expected).abs() < 1e-12, "{}: {found} {expected}", case["name"]);
         }
     }
     println!("largest relative difference {:e}: {}", worst.0, worst.1);
 }
 
 fn array_of(value: &Value) -> Vec<f64> {
-    value
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|x| x.as_f64().unwrap())
-        .collect()
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
 /// The nearer the pads, the more the outcome depends on nothing: the table in the documentation.
@@ -162,18 +142,11 @@ fn nearly_touching_pads_are_unstable() {
             spring["stage_point_m"][2] = (1.0 - 0.5 * gap).into();
         }
         let outcome = separation(&input).run(&Settings::default()).unwrap();
-        let cone = outcome
-            .spin_metrics(&Vector3::x_axis())
-            .cone()
-            .unwrap()
-            .to_degrees();
+        let cone = outcome.spin_metrics(&Vector3::x_axis()).cone().unwrap().to_degrees();
         let expected = row["cone_deg"].as_f64().unwrap();
         let allowed =
             1e-9 * expected + 100.0 * row["cone_double_conditioning_deg"].as_f64().unwrap();
-        assert!(
-            (cone - expected).abs() < allowed,
-            "gap {gap} m: cone {cone}° not {expected}°"
-        );
+        assert!((cone - expected).abs() < allowed, "gap {gap} m: cone {cone}° not {expected}°");
     }
 }
 
@@ -242,11 +215,8 @@ fn coaxial_springs_have_a_closed_form() {
 fn closing_bodies_bounce_and_slow_ones_are_reported() {
     let ball = InertiaMatrix::from_entries([1.0; 3], [0.0; 3]).unwrap();
     let spring = Spring::new(100.0, 0.1, -Vector3::z() * 0.5, Vector3::z() * 0.5).unwrap();
-    let closing = BodyState {
-        position: Vector3::z(),
-        velocity: Vector3::z() * -0.5,
-        ..BodyState::default()
-    };
+    let closing =
+        BodyState { position: Vector3::z(), velocity: Vector3::z() * -0.5, ..BodyState::default() };
     let body = Body::new(2.0, ball).unwrap();
     let separation =
         Separation::new(body.moving(closing), body.at(-Vector3::z()), &[spring]).unwrap();
@@ -257,8 +227,5 @@ fn closing_bodies_bounce_and_slow_ones_are_reported() {
 
     let hasty = Settings::new(1e-12, 1e-3).unwrap();
     let error = separation.run(&hasty).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "springs [1] had not let go after 0.001 s"
-    );
+    assert_eq!(error.to_string(), "springs [1] had not let go after 0.001 s");
 }

@@ -86,11 +86,7 @@ impl Deviation {
         let trimmed_mean = trimmed_mean(&deviations)?;
         let fourth: f64 = deviations.iter().map(|u| (u - trimmed_mean).powi(4)).sum();
         let second: f64 = deviations.iter().map(|u| u * u).sum();
-        Ok(Self {
-            n,
-            standard_deviation,
-            kurtosis: n as f64 * fourth / (second * second),
-        })
+        Ok(Self { n, standard_deviation, kurtosis: n as f64 * fourth / (second * second) })
     }
 
     /// Number of values.
@@ -130,10 +126,7 @@ impl Deviation {
         if count > z {
             Ok(count / (count - z))
         } else {
-            Err(StatisticsError::TooFew {
-                n: self.n,
-                required: z as usize + 1,
-            })
+            Err(StatisticsError::TooFew { n: self.n, required: z as usize + 1 })
         }
     }
 
@@ -169,9 +162,7 @@ mod tests {
     #[test]
     fn normal_interval_agrees_with_scipy() {
         // scipy 1.17.1 `s*sqrt(7/chi2.isf(0.025, 7))` and `s*sqrt(7/chi2.ppf(0.025, 7))`.
-        let interval = Moments::new(&X)
-            .unwrap()
-            .normal_deviation_interval(Confidence::default());
+        let interval = Moments::new(&X).unwrap().normal_deviation_interval(Confidence::default());
         assert_bounds(interval, 0.3443505161041908, 1.060003625537068);
         let constant = Moments::new(&[2.0; 3]).unwrap();
         let interval = constant.normal_deviation_interval(Confidence::default());
@@ -212,10 +203,7 @@ mod tests {
         for unit in [1e300, 1e-300, 5e-324] {
             let sample: Vec<f64> = (0..50).map(|i| f64::from(i * i) * unit).collect();
             let one: Vec<f64> = (0..50).map(|i| f64::from(i * i)).collect();
-            let (extreme, one) = (
-                Deviation::new(&sample).unwrap(),
-                Deviation::new(&one).unwrap(),
-            );
+            let (extreme, one) = (Deviation::new(&sample).unwrap(), Deviation::new(&one).unwrap());
             assert!((extreme.kurtosis() - one.kurtosis()).abs() < 1e-12);
         }
     }

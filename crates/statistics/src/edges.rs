@@ -31,10 +31,7 @@ impl BinEdges {
             before = value;
         }
         if edges.len() < 2 {
-            return Err(StatisticsError::Edge {
-                index: edges.len(),
-                value: f64::NAN,
-            });
+            return Err(StatisticsError::Edge { index: edges.len(), value: f64::NAN });
         }
         Ok(Self(edges))
     }
@@ -79,42 +76,25 @@ impl BinEdges {
         if samples.is_empty() {
             return Err(StatisticsError::TooFew { n: 0, required: 1 });
         }
-        let lower = samples
-            .iter()
-            .map(|s| s.minimum())
-            .fold(f64::INFINITY, f64::min);
-        let upper = samples
-            .iter()
-            .map(|s| s.maximum())
-            .fold(f64::NEG_INFINITY, f64::max);
+        let lower = samples.iter().map(|s| s.minimum()).fold(f64::INFINITY, f64::min);
+        let upper = samples.iter().map(|s| s.maximum()).fold(f64::NEG_INFINITY, f64::max);
         if lower == upper {
             let margin = f64::max(0.5, 2.0 * f64::EPSILON * lower.abs());
-            return Ok(Self(vec![
-                (lower - margin).max(f64::MIN),
-                (upper + margin).min(f64::MAX),
-            ]));
+            return Ok(Self(vec![(lower - margin).max(f64::MIN), (upper + margin).min(f64::MAX)]));
         }
-        let width = samples
-            .iter()
-            .filter_map(|s| half_width(s))
-            .fold(f64::INFINITY, f64::min);
+        let width = samples.iter().filter_map(|s| half_width(s)).fold(f64::INFINITY, f64::min);
         let bins = if width.is_finite() {
             ((upper / 2.0 - lower / 2.0) / width).ceil()
         } else {
             sturges(samples.iter().map(|s| s.n()).sum())
         };
         // The cast saturates and sends NaN to 0.
-        Ok(Self::divide(
-            lower,
-            upper,
-            (bins as usize).clamp(1, Self::MAX_BINS),
-        ))
+        Ok(Self::divide(lower, upper, (bins as usize).clamp(1, Self::MAX_BINS)))
     }
 
     fn divide(lower: f64, upper: f64, bins: usize) -> Self {
-        let mut edges: Vec<f64> = (0..bins)
-            .map(|i| lerp(lower, upper, i as f64 / bins as f64))
-            .collect();
+        let mut edges: Vec<f64> =
+            (0..bins).map(|i| lerp(lower, upper, i as f64 / bins as f64)).collect();
         edges.push(upper);
         edges.dedup();
         Self(edges)
@@ -197,32 +177,16 @@ mod tests {
         // IQR 0: Sturges, ⌈log₂ 9⌉ + 1.
         let mut spike = vec![1.0; 8];
         spike.push(2.0);
-        assert_eq!(
-            BinEdges::freedman_diaconis(&[&sorted(&spike)])
-                .unwrap()
-                .bins(),
-            5
-        );
+        assert_eq!(BinEdges::freedman_diaconis(&[&sorted(&spike)]).unwrap().bins(), 5);
         // Two different constants: Sturges on both together.
         let (one, two) = (sorted(&[1.0; 4]), sorted(&[2.0; 4]));
-        assert_eq!(
-            BinEdges::freedman_diaconis(&[&one, &two]).unwrap().bins(),
-            4
-        );
+        assert_eq!(BinEdges::freedman_diaconis(&[&one, &two]).unwrap().bins(), 4);
         // One constant: one bin around it.
-        assert_eq!(
-            BinEdges::freedman_diaconis(&[&one]).unwrap().values(),
-            [0.5, 1.5]
-        );
+        assert_eq!(BinEdges::freedman_diaconis(&[&one]).unwrap().values(), [0.5, 1.5]);
         // An outlier: the cap.
         let mut outlier = ranks(1000).values().to_vec();
         outlier.push(1e12);
-        assert_eq!(
-            BinEdges::freedman_diaconis(&[&sorted(&outlier)])
-                .unwrap()
-                .bins(),
-            1000
-        );
+        assert_eq!(BinEdges::freedman_diaconis(&[&sorted(&outlier)]).unwrap().bins(), 1000);
         assert!(BinEdges::freedman_diaconis(&[]).is_err());
     }
 
@@ -236,22 +200,11 @@ mod tests {
             vec![f64::NAN, 1.0],
             vec![0.0, f64::INFINITY],
         ] {
-            assert!(matches!(
-                BinEdges::new(edges),
-                Err(StatisticsError::Edge { .. })
-            ));
+            assert!(matches!(BinEdges::new(edges), Err(StatisticsError::Edge { .. })));
         }
-        assert_eq!(
-            BinEdges::uniform(0.0, 1.0, 0),
-            Err(StatisticsError::Bins { bins: 0 })
-        );
+        assert_eq!(BinEdges::uniform(0.0, 1.0, 0), Err(StatisticsError::Bins { bins: 0 }));
         assert!(BinEdges::uniform(0.0, 1.0, usize::MAX).is_err());
-        for (lower, upper) in [
-            (1.0, 1.0),
-            (2.0, 1.0),
-            (f64::NAN, 1.0),
-            (0.0, f64::INFINITY),
-        ] {
+        for (lower, upper) in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
             assert!(matches!(
                 BinEdges::uniform(lower, upper, 3),
                 Err(StatisticsError::Bounds { .. })

@@ -121,16 +121,10 @@ pub enum StatisticsError {
 /// Refuses a sample with fewer than `required` values or with a value that is not finite.
 pub(crate) fn validate(sample: &[f64], required: usize) -> Result<(), StatisticsError> {
     if sample.len() < required {
-        return Err(StatisticsError::TooFew {
-            n: sample.len(),
-            required,
-        });
+        return Err(StatisticsError::TooFew { n: sample.len(), required });
     }
     match sample.iter().position(|value| !value.is_finite()) {
-        Some(index) => Err(StatisticsError::NotFinite {
-            index,
-            value: sample[index],
-        }),
+        Some(index) => Err(StatisticsError::NotFinite { index, value: sample[index] }),
         None => Ok(()),
     }
 }
@@ -142,10 +136,7 @@ mod tests {
     #[test]
     fn messages_name_the_value_and_what_is_allowed() {
         let text = validate(&[1.0, f64::NAN], 2).unwrap_err().to_string();
-        assert_eq!(
-            text,
-            "value 1 of the sample is NaN; every value must be finite"
-        );
+        assert_eq!(text, "value 1 of the sample is NaN; every value must be finite");
         let text = validate(&[1.0], 2).unwrap_err().to_string();
         assert_eq!(text, "the sample has 1 values; at least 2 are needed");
         let text = StatisticsError::Bins { bins: 0 }.to_string();

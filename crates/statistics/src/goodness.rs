@@ -49,10 +49,7 @@ impl GoodnessOfFit {
             statistic = statistic.max(above).max(value - i as f64 / count);
         }
         let root = count.sqrt();
-        Ok(Self {
-            statistic,
-            p_value: kolmogorov_tail(statistic * (root + 0.12 + 0.11 / root)),
-        })
+        Ok(Self { statistic, p_value: kolmogorov_tail(statistic * (root + 0.12 + 0.11 / root)) })
     }
 
     /// Pearson's test of observed against expected counts (Pearson 1900,
@@ -74,40 +71,23 @@ impl GoodnessOfFit {
     ) -> Result<Self, StatisticsError> {
         let classes = observed.len();
         if classes != expected.len() {
-            return Err(StatisticsError::Classes {
-                observed: classes,
-                expected: expected.len(),
-            });
+            return Err(StatisticsError::Classes { observed: classes, expected: expected.len() });
         }
         if let Some(index) = expected.iter().position(|e| !(*e > 0.0 && e.is_finite())) {
-            return Err(StatisticsError::Expected {
-                index,
-                value: expected[index],
-            });
+            return Err(StatisticsError::Expected { index, value: expected[index] });
         }
         let freedom = classes.saturating_sub(1).saturating_sub(fitted);
         if freedom == 0 {
             return Err(StatisticsError::DegreesOfFreedom { classes, fitted });
         }
-        let totals = (
-            observed.iter().map(|&o| o as f64).sum::<f64>(),
-            expected.iter().sum::<f64>(),
-        );
+        let totals =
+            (observed.iter().map(|&o| o as f64).sum::<f64>(), expected.iter().sum::<f64>());
         if (totals.0 / totals.1 - 1.0).abs() > 1e-8 {
-            return Err(StatisticsError::Totals {
-                observed: totals.0,
-                expected: totals.1,
-            });
+            return Err(StatisticsError::Totals { observed: totals.0, expected: totals.1 });
         }
-        let statistic = observed
-            .iter()
-            .zip(expected)
-            .map(|(&o, &e)| (o as f64 - e).powi(2) / e);
+        let statistic = observed.iter().zip(expected).map(|(&o, &e)| (o as f64 - e).powi(2) / e);
         let statistic: f64 = statistic.sum();
-        Ok(Self {
-            statistic,
-            p_value: law::chi_squared_tail(statistic, freedom as f64),
-        })
+        Ok(Self { statistic, p_value: law::chi_squared_tail(statistic, freedom as f64) })
     }
 
     /// The statistic: `D` of Kolmogorov–Smirnov or `X²` of Pearson.
@@ -139,10 +119,7 @@ mod tests {
     use super::*;
 
     fn assert_close(value: f64, reference: f64, tolerance: f64) {
-        assert!(
-            (value - reference).abs() <= tolerance,
-            "{value} is not {reference}"
-        );
+        assert!((value - reference).abs() <= tolerance, "{value} is not {reference}");
     }
 
     #[test]
@@ -157,24 +134,18 @@ mod tests {
         ] {
             assert_close(kolmogorov_tail(x), reference, 1e-14);
         }
-        assert_close(
-            kolmogorov_tail(1.18),
-            kolmogorov_tail(1.18f64.next_down()),
-            1e-14,
-        );
+        assert_close(kolmogorov_tail(1.18), kolmogorov_tail(1.18f64.next_down()), 1e-14);
         assert_eq!((kolmogorov_tail(0.0), kolmogorov_tail(40.0)), (1.0, 0.0));
     }
 
     #[test]
     fn kolmogorov_smirnov_agrees_with_scipy() {
         // d = (i/n − 0.1/n)²; scipy 1.17.1 `kstest(d, "uniform")`, exact p-values.
-        for (n, statistic, p_value, tolerance) in [
-            (5, 0.2636, 0.8001391320260608, 0.02),
-            (20, 0.254975, 0.12381609606040422, 0.002),
-        ] {
-            let sample: Vec<f64> = (1..=n)
-                .map(|i| ((f64::from(i) - 0.1) / f64::from(n)).powi(2))
-                .collect();
+        for (n, statistic, p_value, tolerance) in
+            [(5, 0.2636, 0.8001391320260608, 0.02), (20, 0.254975, 0.12381609606040422, 0.002)]
+        {
+            let sample: Vec<f64> =
+                (1..=n).map(|i| ((f64::from(i) - 0.1) / f64::from(n)).powi(2)).collect();
             let sample = SortedSample::new(&sample).unwrap();
             let test = GoodnessOfFit::kolmogorov_smirnov(&sample, |x| x).unwrap();
             assert_close(test.statistic(), statistic, 1e-12);
@@ -184,10 +155,7 @@ mod tests {
 
     #[test]
     fn chi_squared_agrees_with_scipy() {
-        let (observed, expected) = (
-            [16, 18, 16, 14, 12, 12],
-            [16.0, 16.0, 16.0, 16.0, 16.0, 8.0],
-        );
+        let (observed, expected) = ([16, 18, 16, 14, 12, 12], [16.0, 16.0, 16.0, 16.0, 16.0, 8.0]);
         // scipy 1.17.1 `stats.chisquare(observed, expected, ddof)`.
         for (fitted, p_value) in [(0, 0.6233876277495822), (2, 0.3207621208056397)] {
             let test = GoodnessOfFit::chi_squared(&observed, &expected, fitted).unwrap();
@@ -211,20 +179,11 @@ mod tests {
             ));
         }
         let test = GoodnessOfFit::chi_squared;
-        assert!(matches!(
-            test(&[1], &[0.5, 0.5], 0),
-            Err(StatisticsError::Classes { .. })
-        ));
-        assert!(matches!(
-            test(&[], &[], 0),
-            Err(StatisticsError::DegreesOfFreedom { .. })
-        ));
+        assert!(matches!(test(&[1], &[0.5, 0.5], 0), Err(StatisticsError::Classes { .. })));
+        assert!(matches!(test(&[], &[], 0), Err(StatisticsError::DegreesOfFreedom { .. })));
         assert!(matches!(
             test(&[1, 1], &[1.0, 1.0], 1),
-            Err(StatisticsError::DegreesOfFreedom {
-                classes: 2,
-                fitted: 1
-            })
+            Err(StatisticsError::DegreesOfFreedom { classes: 2, fitted: 1 })
         ));
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(
@@ -234,10 +193,7 @@ mod tests {
         }
         // The second sum overflows.
         for count in [2.0, f64::MAX] {
-            assert!(matches!(
-                test(&[1, 1], &[count; 2], 0),
-                Err(StatisticsError::Totals { .. })
-            ));
+            assert!(matches!(test(&[1, 1], &[count; 2], 0), Err(StatisticsError::Totals { .. })));
         }
     }
 

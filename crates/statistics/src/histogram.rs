@@ -29,18 +29,12 @@ impl Histogram {
     /// The counts of the sample between the edges.
     pub fn new(sample: &SortedSample, edges: &BinEdges) -> Self {
         let values = edges.values();
-        let mut below: Vec<usize> = values
-            .iter()
-            .map(|&edge| sample.count_below(edge))
-            .collect();
+        let mut below: Vec<usize> = values.iter().map(|&edge| sample.count_below(edge)).collect();
         let last = values.len() - 1;
         below[last] = sample.count_to(values[last]);
         Self {
             edges: edges.clone(),
-            counts: below
-                .windows(2)
-                .map(|pair| (pair[1] - pair[0]) as u64)
-                .collect(),
+            counts: below.windows(2).map(|pair| (pair[1] - pair[0]) as u64).collect(),
             underflow: below[0] as u64,
             overflow: (sample.n() - below[last]) as u64,
         }
@@ -76,11 +70,7 @@ impl Histogram {
     pub fn density(&self) -> Vec<f64> {
         let total = self.total() as f64;
         let widths = self.edges.values().windows(2).map(|pair| pair[1] - pair[0]);
-        self.counts
-            .iter()
-            .zip(widths)
-            .map(|(&count, width)| count as f64 / total / width)
-            .collect()
+        self.counts.iter().zip(widths).map(|(&count, width)| count as f64 / total / width).collect()
     }
 }
 
@@ -96,14 +86,7 @@ mod tests {
         let edges = BinEdges::new(vec![0.0, 1.0, 2.0]).unwrap();
         let histogram = Histogram::new(&sample, &edges);
         assert_eq!(histogram.counts(), [2, 3]);
-        assert_eq!(
-            (
-                histogram.underflow(),
-                histogram.overflow(),
-                histogram.total()
-            ),
-            (1, 1, 7)
-        );
+        assert_eq!((histogram.underflow(), histogram.overflow(), histogram.total()), (1, 1, 7));
         assert_eq!(histogram.density(), [2.0 / 7.0, 3.0 / 7.0]);
     }
 

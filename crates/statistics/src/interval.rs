@@ -79,11 +79,7 @@ impl Interval {
     /// [`StatisticsError::Bounds`] unless `lower ≤ upper`.
     pub fn new(lower: f64, upper: f64, confidence: Confidence) -> Result<Self, StatisticsError> {
         if lower <= upper {
-            Ok(Self {
-                lower,
-                upper,
-                confidence,
-            })
+            Ok(Self { lower, upper, confidence })
         } else {
             Err(StatisticsError::Bounds { lower, upper })
         }
@@ -91,11 +87,7 @@ impl Interval {
 
     /// Bounds already known to be in order.
     pub(crate) fn ordered(lower: f64, upper: f64, confidence: Confidence) -> Self {
-        Self {
-            lower,
-            upper,
-            confidence,
-        }
+        Self { lower, upper, confidence }
     }
 
     /// `centre ± half_width`; where both are infinite the bound between them is unknown.
@@ -112,11 +104,7 @@ impl Interval {
     pub(crate) fn around_log(centre: f64, half_width: f64, confidence: Confidence) -> Self {
         // Bounded, so that a centre beyond `f64` is never divided by infinity.
         let factor = half_width.exp().min(f64::MAX);
-        Self {
-            lower: centre / factor,
-            upper: centre * factor,
-            confidence,
-        }
+        Self { lower: centre / factor, upper: centre * factor, confidence }
     }
 
     /// The lower bound.
@@ -178,10 +166,7 @@ mod tests {
     #[test]
     fn levels_outside_the_open_unit_interval_are_refused() {
         for level in [0.0, 1.0, -0.1, 95.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(
-                Confidence::new(level),
-                Err(StatisticsError::Confidence { .. })
-            ));
+            assert!(matches!(Confidence::new(level), Err(StatisticsError::Confidence { .. })));
         }
         assert_eq!(Confidence::default(), Confidence::new(0.95).unwrap());
         assert_eq!(f64::from(Confidence::try_from(0.5).unwrap()), 0.5);
@@ -196,10 +181,7 @@ mod tests {
     #[test]
     fn infinite_centre_and_width_leave_the_bound_open() {
         let interval = Interval::around(f64::INFINITY, f64::INFINITY, Confidence::default());
-        assert_eq!(
-            (interval.lower(), interval.upper()),
-            (f64::NEG_INFINITY, f64::INFINITY)
-        );
+        assert_eq!((interval.lower(), interval.upper()), (f64::NEG_INFINITY, f64::INFINITY));
     }
 
     proptest! {

@@ -74,16 +74,9 @@ mod tests {
 
     #[test]
     fn constant_samples_give_points() {
-        let (one, three) = (
-            Moments::new(&[1.0; 4]).unwrap(),
-            Moments::new(&[3.0; 4]).unwrap(),
-        );
+        let (one, three) = (Moments::new(&[1.0; 4]).unwrap(), Moments::new(&[3.0; 4]).unwrap());
         assert_bounds(one.mean_interval(Confidence::default()), 1.0, 1.0);
-        assert_bounds(
-            one.mean_difference_interval(&three, Confidence::default()),
-            -2.0,
-            -2.0,
-        );
+        assert_bounds(one.mean_difference_interval(&three, Confidence::default()), -2.0, -2.0);
         // One constant sample leaves the other's degrees of freedom.
         let x = Moments::new(&X).unwrap();
         let own = x.mean_interval(Confidence::default());

@@ -47,9 +47,7 @@ impl Moments {
         validate(sample, 2)?;
         let (minimum, maximum) = sample
             .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
-                (low.min(x), high.max(x))
-            });
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
         let n = sample.len();
         if minimum == maximum {
             // Rounding in the mean must not leave a spread behind.
@@ -156,12 +154,7 @@ impl Centred {
         let count = sample.len() as f64;
         let anchor = sample.iter().map(|x| x * scale).sum::<f64>() / count;
         let residue = sample.iter().map(|x| x * scale - anchor).sum::<f64>() / count;
-        let mut centred = Self {
-            scale,
-            anchor,
-            residue,
-            unit: 1.0,
-        };
+        let mut centred = Self { scale, anchor, residue, unit: 1.0 };
         centred.unit = centred.map(minimum).abs().max(centred.map(maximum).abs());
         centred
     }
@@ -193,10 +186,7 @@ mod tests {
         assert_close(moments.standard_deviation(), 0.5208166663999916, 1e-14);
         assert_close(moments.skewness().unwrap(), 1.3372850335239066, 1e-12);
         assert_close(moments.kurtosis().unwrap(), 3.994657532999813, 1e-12);
-        assert_eq!(
-            (moments.minimum(), moments.maximum(), moments.n()),
-            (15.6, 17.3, 8)
-        );
+        assert_eq!((moments.minimum(), moments.maximum(), moments.n()), (15.6, 17.3, 8));
     }
 
     #[test]
@@ -218,11 +208,7 @@ mod tests {
             let moments = Moments::new(&sample).unwrap();
             // Subnormal results are rounded to whole multiples of 5e-324.
             let tolerance = if unit < 1e-310 { 0.02 } else { 1e-14 };
-            assert_close(
-                moments.standard_deviation() / unit,
-                (55.0f64 / 6.0).sqrt(),
-                tolerance,
-            );
+            assert_close(moments.standard_deviation() / unit, (55.0f64 / 6.0).sqrt(), tolerance);
             assert_close(moments.kurtosis().unwrap(), 1.7757575757575759, 1e-14);
         }
         assert!(matches!(
@@ -233,24 +219,15 @@ mod tests {
 
     #[test]
     fn unusable_samples_are_refused() {
-        assert_eq!(
-            Moments::new(&[]),
-            Err(StatisticsError::TooFew { n: 0, required: 2 })
-        );
-        assert_eq!(
-            Moments::new(&[1.0]),
-            Err(StatisticsError::TooFew { n: 1, required: 2 })
-        );
+        assert_eq!(Moments::new(&[]), Err(StatisticsError::TooFew { n: 0, required: 2 }));
+        assert_eq!(Moments::new(&[1.0]), Err(StatisticsError::TooFew { n: 1, required: 2 }));
         assert!(matches!(
             Moments::new(&[1.0, 2.0, f64::NAN]),
             Err(StatisticsError::NotFinite { index: 2, value }) if value.is_nan()
         ));
         assert_eq!(
             Moments::new(&[f64::NEG_INFINITY, 2.0]),
-            Err(StatisticsError::NotFinite {
-                index: 0,
-                value: f64::NEG_INFINITY
-            })
+            Err(StatisticsError::NotFinite { index: 0, value: f64::NEG_INFINITY })
         );
     }
 

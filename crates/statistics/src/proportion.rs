@@ -61,16 +61,8 @@ impl Proportion {
     pub fn interval(&self, confidence: Confidence) -> Interval {
         let tail = confidence.tail();
         let (k, n) = (self.successes as f64, self.trials as f64);
-        let lower = if k == 0.0 {
-            0.0
-        } else {
-            law::beta_lower(tail, k, n - k + 1.0)
-        };
-        let upper = if k == n {
-            1.0
-        } else {
-            law::beta_upper(tail, k + 1.0, n - k)
-        };
+        let lower = if k == 0.0 { 0.0 } else { law::beta_lower(tail, k, n - k + 1.0) };
+        let upper = if k == n { 1.0 } else { law::beta_upper(tail, k + 1.0, n - k) };
         Interval::ordered(lower, upper, confidence)
     }
 }
@@ -90,17 +82,10 @@ mod tests {
             (999, 1000, 0.9944410757201734, 0.9999746825125088),
             (500_000, 1_000_000, 0.49901951919531184, 0.5009804808046882),
         ] {
-            let interval = Proportion::new(successes, trials)
-                .unwrap()
-                .interval(Confidence::default());
-            assert!(
-                (interval.lower() - lower).abs() < 1e-12 * lower,
-                "{interval}"
-            );
-            assert!(
-                (interval.upper() - upper).abs() < 1e-12 * upper,
-                "{interval}"
-            );
+            let interval =
+                Proportion::new(successes, trials).unwrap().interval(Confidence::default());
+            assert!((interval.lower() - lower).abs() < 1e-12 * lower, "{interval}");
+            assert!((interval.upper() - upper).abs() < 1e-12 * upper, "{interval}");
         }
     }
 
@@ -109,14 +94,10 @@ mod tests {
         for trials in [1, 10, 1000, Proportion::MAX_TRIALS] {
             // 1 − (α/2)^(1/n)
             let bound = -((0.025f64.ln() / trials as f64).exp_m1());
-            let none = Proportion::new(0, trials)
-                .unwrap()
-                .interval(Confidence::default());
+            let none = Proportion::new(0, trials).unwrap().interval(Confidence::default());
             assert_eq!(none.lower(), 0.0);
             assert!((none.upper() - bound).abs() < 1e-12 * bound, "{none}");
-            let all = Proportion::new(trials, trials)
-                .unwrap()
-                .interval(Confidence::default());
+            let all = Proportion::new(trials, trials).unwrap().interval(Confidence::default());
             assert_eq!(all.upper(), 1.0);
             assert!((all.lower() - (1.0 - bound)).abs() < 1e-12);
         }

@@ -103,25 +103,14 @@ impl SortedSample {
         let lower = first(n, |k| law::beta_cdf(rest(k), k as f64, 1.0 - p, p) > tail) - 1;
         let upper = first(n, |k| law::beta_cdf(k as f64, rest(k), p, 1.0 - p) <= tail);
         let at = |rank: usize, none: f64| {
-            rank.checked_sub(1)
-                .and_then(|i| self.0.get(i))
-                .copied()
-                .unwrap_or(none)
+            rank.checked_sub(1).and_then(|i| self.0.get(i)).copied().unwrap_or(none)
         };
-        Ok(Interval::ordered(
-            at(lower, f64::NEG_INFINITY),
-            at(upper, f64::INFINITY),
-            confidence,
-        ))
+        Ok(Interval::ordered(at(lower, f64::NEG_INFINITY), at(upper, f64::INFINITY), confidence))
     }
 
     /// Empirical distribution function: the share of values that are at most `x`; NaN at NaN.
     pub fn distribution(&self, x: f64) -> f64 {
-        if x.is_nan() {
-            x
-        } else {
-            self.count_to(x) as f64 / self.n() as f64
-        }
+        if x.is_nan() { x } else { self.count_to(x) as f64 / self.n() as f64 }
     }
 
     /// Number of values below `x`.
@@ -136,11 +125,7 @@ impl SortedSample {
 }
 
 fn probability(p: f64) -> Result<(), StatisticsError> {
-    if (0.0..=1.0).contains(&p) {
-        Ok(())
-    } else {
-        Err(StatisticsError::Probability { value: p })
-    }
+    if (0.0..=1.0).contains(&p) { Ok(()) } else { Err(StatisticsError::Probability { value: p }) }
 }
 
 /// The least of `1..=n` at which `reached` is true, or `n + 1`.
@@ -160,11 +145,8 @@ fn first(n: usize, reached: impl Fn(usize) -> bool) -> usize {
 /// From `a` at 0 to `b` at 1, never outside, for any finite `a ≤ b`.
 pub(crate) fn lerp(a: f64, b: f64, t: f64) -> f64 {
     let span = b - a;
-    let value = if span.is_finite() {
-        a + t * span
-    } else {
-        2.0 * (a / 2.0 + t * (b / 2.0 - a / 2.0))
-    };
+    let value =
+        if span.is_finite() { a + t * span } else { 2.0 * (a / 2.0 + t * (b / 2.0 - a / 2.0)) };
     value.clamp(a, b)
 }
 
@@ -182,14 +164,9 @@ mod tests {
     fn type_7_agrees_with_numpy() {
         let sample = SortedSample::new(&[3.0, 1.0, 2.0, 10.0]).unwrap();
         // NumPy 2.4.6 `quantile([3, 1, 2, 10], p)`.
-        for (p, reference) in [
-            (0.0, 1.0),
-            (0.1, 1.3),
-            (0.25, 1.75),
-            (0.33, 1.99),
-            (0.9, 7.9),
-            (1.0, 10.0),
-        ] {
+        for (p, reference) in
+            [(0.0, 1.0), (0.1, 1.3), (0.25, 1.75), (0.33, 1.99), (0.9, 7.9), (1.0, 10.0)]
+        {
             assert!((sample.quantile(p).unwrap() - reference).abs() < 1e-14);
         }
         assert_eq!(SortedSample::new(&[7.0]).unwrap().quantile(0.3), Ok(7.0));
@@ -209,37 +186,21 @@ mod tests {
             (50, 0.0, below, 1.0),
             (50, 1.0, 50.0, above),
         ] {
-            let interval = ranks(n)
-                .quantile_interval(p, Confidence::default())
-                .unwrap();
-            assert_eq!(
-                (interval.lower(), interval.upper()),
-                (lower, upper),
-                "n {n}, p {p}"
-            );
+            let interval = ranks(n).quantile_interval(p, Confidence::default()).unwrap();
+            assert_eq!((interval.lower(), interval.upper()), (lower, upper), "n {n}, p {p}");
         }
     }
 
     #[test]
     fn unusable_requests_are_refused() {
-        assert_eq!(
-            SortedSample::new(&[]),
-            Err(StatisticsError::TooFew { n: 0, required: 1 })
-        );
+        assert_eq!(SortedSample::new(&[]), Err(StatisticsError::TooFew { n: 0, required: 1 }));
         assert!(matches!(
             SortedSample::new(&[0.0, f64::NAN]),
             Err(StatisticsError::NotFinite { index: 1, .. })
         ));
         for p in [-0.1, 1.1, f64::NAN, f64::INFINITY] {
-            assert!(matches!(
-                ranks(9).quantile(p),
-                Err(StatisticsError::Probability { .. })
-            ));
-            assert!(
-                ranks(9)
-                    .quantile_interval(p, Confidence::default())
-                    .is_err()
-            );
+            assert!(matches!(ranks(9).quantile(p), Err(StatisticsError::Probability { .. })));
+            assert!(ranks(9).quantile_interval(p, Confidence::default()).is_err());
         }
     }
 

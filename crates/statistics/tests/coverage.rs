@@ -32,11 +32,7 @@ impl Law {
                 Self::Exponential => Exp1.sample(rng),
                 Self::Laplace => {
                     let magnitude: f64 = Exp1.sample(rng);
-                    if uniform(rng) < 0.5 {
-                        -magnitude
-                    } else {
-                        magnitude
-                    }
+                    if uniform(rng) < 0.5 { -magnitude } else { magnitude }
                 }
                 Self::StudentsT(freedom) => StudentT::new(freedom).unwrap().sample(rng),
             })
@@ -85,19 +81,14 @@ fn assert_share(what: &str, share: f64, expected: f64, repetitions: u64, slack: 
 fn robust(law: Law, n: usize, repetitions: u64) -> f64 {
     share(repetitions, |rng| {
         let deviation = Deviation::new(&law.draw(rng, n)).unwrap();
-        deviation
-            .interval(Confidence::default())
-            .unwrap()
-            .contains(law.deviation())
+        deviation.interval(Confidence::default()).unwrap().contains(law.deviation())
     })
 }
 
 fn chi_squared(law: Law, n: usize, repetitions: u64) -> f64 {
     share(repetitions, |rng| {
         let moments = Moments::new(&law.draw(rng, n)).unwrap();
-        moments
-            .normal_deviation_interval(Confidence::default())
-            .contains(law.deviation())
+        moments.normal_deviation_interval(Confidence::default()).contains(law.deviation())
     })
 }
 
@@ -115,13 +106,7 @@ fn robust_deviation_interval() {
         assert_share(what, robust(law, 1000, r), 0.95, r, slack);
     }
     assert_share("normal, 10", robust(Law::Normal, 10, r), 0.955, r, 0.0);
-    assert_share(
-        "exponential, 10",
-        robust(Law::Exponential, 10, r),
-        0.89,
-        r,
-        0.0,
-    );
+    assert_share("exponential, 10", robust(Law::Exponential, 10, r), 0.89, r, 0.0);
     assert_share("Laplace, 50", robust(Law::Laplace, 50, r), 0.915, r, 0.0);
 }
 
@@ -164,11 +149,7 @@ fn ratio_intervals() {
             let x = Deviation::new(&a.draw(rng, n)).unwrap();
             let y = Deviation::new(&b.draw(rng, m)).unwrap();
             let confidence = Confidence::default();
-            pooled += u64::from(
-                x.pooled_ratio_interval(&y, confidence)
-                    .unwrap()
-                    .contains(truth),
-            );
+            pooled += u64::from(x.pooled_ratio_interval(&y, confidence).unwrap().contains(truth));
             x.ratio_interval(&y, confidence).unwrap().contains(truth)
         });
         (separate, pooled as f64 / r as f64)
@@ -201,9 +182,7 @@ fn normal_ratio_interval_is_exact_for_normal_data_only() {
         share(4000, |rng| {
             let x = Moments::new(&law.draw(rng, 20)).unwrap();
             let y = Moments::new(&law.draw(rng, 50)).unwrap();
-            x.normal_ratio_interval(&y, Confidence::default())
-                .unwrap()
-                .contains(1.0)
+            x.normal_ratio_interval(&y, Confidence::default()).unwrap().contains(1.0)
         })
     };
     assert_share("normal", ratio(Law::Normal), 0.95, 4000, 0.0);
@@ -216,30 +195,18 @@ fn mean_intervals() {
     let confidence = Confidence::default();
     let mean = |law: Law, n: usize| {
         share(r, |rng| {
-            Moments::new(&law.draw(rng, n))
-                .unwrap()
-                .mean_interval(confidence)
-                .contains(law.mean())
+            Moments::new(&law.draw(rng, n)).unwrap().mean_interval(confidence).contains(law.mean())
         })
     };
     assert_share("normal, 3", mean(Law::Normal, 3), 0.95, r, 0.0);
-    assert_share(
-        "exponential, 300",
-        mean(Law::Exponential, 300),
-        0.95,
-        r,
-        0.01,
-    );
+    assert_share("exponential, 300", mean(Law::Exponential, 300), 0.95, r, 0.01);
     // Negative control: skewness at five values.
     assert!(mean(Law::Exponential, 5) < 0.91);
     let difference = share(r, |rng| {
         let wide: Vec<f64> = Law::Normal.draw(rng, 6).iter().map(|x| 5.0 * x).collect();
-        let (wide, narrow) = (
-            Moments::new(&wide).unwrap(),
-            Moments::new(&Law::Normal.draw(rng, 30)).unwrap(),
-        );
-        wide.mean_difference_interval(&narrow, confidence)
-            .contains(0.0)
+        let (wide, narrow) =
+            (Moments::new(&wide).unwrap(), Moments::new(&Law::Normal.draw(rng, 30)).unwrap());
+        wide.mean_difference_interval(&narrow, confidence).contains(0.0)
     });
     assert_share("Welch", difference, 0.95, r, 0.0);
 }
@@ -248,16 +215,12 @@ fn mean_intervals() {
 fn quantile_interval_covers_for_any_law() {
     let r = 4000;
     let ln_2 = std::f64::consts::LN_2;
-    for (what, law, median) in [
-        ("exponential", Law::Exponential, ln_2),
-        ("t with 3 degrees", Law::StudentsT(3.0), 0.0),
-    ] {
+    for (what, law, median) in
+        [("exponential", Law::Exponential, ln_2), ("t with 3 degrees", Law::StudentsT(3.0), 0.0)]
+    {
         let coverage = share(r, |rng| {
             let sample = SortedSample::new(&law.draw(rng, 101)).unwrap();
-            sample
-                .quantile_interval(0.5, Confidence::default())
-                .unwrap()
-                .contains(median)
+            sample.quantile_interval(0.5, Confidence::default()).unwrap().contains(median)
         });
         // The binomial law gives the attained level: ranks 41 and 61 of 101 cover with 0.9540.
         assert_share(what, coverage, 0.9540, r, 0.0);
@@ -273,10 +236,7 @@ fn tests_of_fit_have_their_size_and_power() {
         share(r, |rng| {
             let sample: Vec<f64> = (0..n).map(|_| law.sample(rng)).collect();
             let sample = SortedSample::new(&sample).unwrap();
-            GoodnessOfFit::kolmogorov_smirnov(&sample, normal)
-                .unwrap()
-                .p_value()
-                < 0.05
+            GoodnessOfFit::kolmogorov_smirnov(&sample, normal).unwrap().p_value() < 0.05
         })
     };
     assert_share("KS, 10", rejected(10, 0.0), 0.05, r, 0.0);
@@ -289,10 +249,7 @@ fn tests_of_fit_have_their_size_and_power() {
             for u in Law::Uniform.draw(rng, 200) {
                 observed[(4.0 * u) as usize] += 1;
             }
-            GoodnessOfFit::chi_squared(&observed, &expected, 0)
-                .unwrap()
-                .p_value()
-                < 0.05
+            GoodnessOfFit::chi_squared(&observed, &expected, 0).unwrap().p_value() < 0.05
         })
     };
     assert_share("χ²", rejected([50.0; 4]), 0.05, r, 0.0);

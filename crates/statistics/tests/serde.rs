@@ -27,10 +27,7 @@ fn results_are_written_field_by_field() {
         json!({"edges": [2.0, 3.0, 4.0], "counts": [1, 2], "underflow": 1, "overflow": 1})
     );
     let test = GoodnessOfFit::chi_squared(&[1, 1], &[1.0, 1.0], 0).unwrap();
-    assert_eq!(
-        to_value(test).unwrap(),
-        json!({"statistic": 0.0, "p_value": 1.0})
-    );
+    assert_eq!(to_value(test).unwrap(), json!({"statistic": 0.0, "p_value": 1.0}));
 }
 
 #[test]
@@ -39,8 +36,5 @@ fn a_confidence_level_is_a_checked_number() {
     let read = serde_json::from_value::<Confidence>;
     assert_eq!(read(json!(0.9)).unwrap(), Confidence::new(0.9).unwrap());
     let text = read(json!(95.0)).unwrap_err().to_string();
-    assert!(
-        text.contains("95") && text.contains("between 0 and 1"),
-        "{text}"
-    );
+    assert!(text.contains("95") && text.contains("between 0 and 1"), "{text}");
 }

@@ -1,0 +1,189 @@
+use gyradius_attitude::RadiallyConstrainedGaussian;
+use nalgebra::{Complex, SMatrix, SVector};
+
+use crate::{GaussianRoots, PrincipalDispersion};
+
+type C64 = Complex<f64>;
+
+/// The entries in the order I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.
+const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+/// An entry is Σ_k K_k M_k with eighteen quadratic forms M of the axes…
+const FORMS: usize = 18;
+/// …and second moments need their products as well.
+const POLYNOMIALS: usize = FORMS + FORMS * (FORMS + 1) / 2;
+
+/// Mean and covariance of the six entries I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ of a random inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EntryMoments {
+    mean: [f64; 6],
+    covariance: SMatrix<f64, 6, 6>,
+}
+
+impl EntryMoments {
+    /// Of Gaussian roots about axes from a radially constrained Gaussian, by quadrature.
+    ///
+    /// An entry is I_ab = Σ_k K_k(δ_ab − r_ka r_kb) with r_k the k-th row of R(q), so its second
+    /// moments are polynomials of degree 8 in the quaternion, of which the attitude law knows the
+    /// expectations to machine precision; those of K are in closed form.
+    #[must_use]
+    pub fn of(law: &PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>) -> Self {
+        let expectations = law.axes().expect(|x| {
+            let forms = forms(x);
+            let mut all = [C64::new(0.0, 0.0); POLYNOMIALS];
+            all[..FORMS].copy_from_slice(&forms);
+            let mut n = FORMS;
+            for i in 0..FORMS {
+                for j in 0..=i {
+                    all[n] = forms[i] * forms[j];
+                    n += 1;
+                }
+            }
+            all
+        });
+        let first = |k: usize, e: usize| expectations[6 * k + e];
+        let second = |k: usize, e: usize, l: usize, f: usize| {
+            let (i, j) = (6 * k + e, 6 * l + f);
+            let (i, j) = (i.max(j), i.min(j));
+            expectations[FORMS + i * (i + 1) / 2 + j]
+        };
+
+        let means = law.roots().second_moment_means();
+        let variances = law.roots().second_moment_variances();
+        let mean: [f64; 6] = std::array::from_fn(|e| (0..3).map(|k| means[k] * first(k, e)).sum());
+        // Cov = Σ_kl E[K_k]E[K_l] Cov(M_k, M_l) + Σ_k Var K_k E[M_k M_k].
+        let covariance = SMatrix::from_fn(|e, f| {
+            let mut sum = 0.0;
+            for k in 0..3 {
+                sum += variances[k] * second(k, e, k, f);
+                for l in 0..3 {
+                    let spread = second(k, e, l, f) - first(k, e) * first(l, f);
+                    sum += means[k] * means[l] * spread;
+                }
+            }
+            sum
+        });
+        Self { mean, covariance }
+    }
+
+    /// E I₁₁, E I₂₂, E I₃₃, E I₁₂, E I₁₃, E I₂₃, kg·m².
+    #[must_use]
+    pub fn mean(&self) -> [f64; 6] {
+        self.mean
+    }
+
+    /// Covariance of the six entries, (kg·m²)².
+    #[must_use]
+    pub fn covariance(&self) -> &SMatrix<f64, 6, 6> {
+        &self.covariance
+    }
+
+    /// Standard deviations of the six entries, kg·m².
+    #[must_use]
+    pub fn deviations(&self) -> [f64; 6] {
+        // Rounding may leave a variance of zero a hair below it.
+        let variances: SVector<f64, 6> = self.covariance.diagonal();
+        std::array::from_fn(|e| variances[e].max(0.0).sqrt())
+    }
+}
+
+/// δ_ab − r_ka r_kb for each k and entry ab, R(q) in its form that is homogeneous in q.
+fn forms(q: &[C64; 4]) -> [C64; FORMS] {
+    let [x, y, z, w] = *q;
+    let two = 2.0;
+    let r = [
+        [x * x - y * y - z * z + w * w, (x * y - z * w) * two, (x * z + y * w) * two],
+        [(x * y + z * w) * two, -x * x + y * y - z * z + w * w, (y * z - x * w) * two],
+        [(x * z - y * w) * two, (y * z + x * w) * two, -x * x - y * y + z * z + w * w],
+    ];
+    std::array::from_fn(|i| {
+        let (k, (a, b)) = (i / 6, ENTRIES[i % 6]);
+        let delta = if a == b { 1.0 } else { 0.0 };
+        -r[k][a] * r[k][b] + delta
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gyradius_inertia::{Inertia, InertiaMatrix};
+    use nalgebra::{Matrix4, Vector4};
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    use rand_distr::Distribution;
+
+    type Law = PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>;
+
+    fn law(moments: [f64; 3], products: [f64; 3], roots: [f64; 3], axes: [f64; 4]) -> Law {
+        let nominal =
+            Inertia::try_from(InertiaMatrix::from_entries(moments, products).unwrap()).unwrap();
+        PrincipalDispersion::new(
+            GaussianRoots::new(nominal.second_moments().roots(), roots).unwrap(),
+            RadiallyConstrainedGaussian::new(
+                nominal.principal_axes().attitude(),
+                Matrix4::from_diagonal(&Vector4::from(axes)),
+            )
+            .unwrap(),
+        )
+    }
+
+    /// The law as derived for the paper's two bodies; deviations by importance sampling with 8e6
+    /// draws (standard error 0.05 %), independent of this code.
+    #[test]
+    fn the_papers_bodies() {
+        let axes = [2e-5, 6e-4, 6e-4, 0.6];
+        let payload = law([5000.0, 4000.0, 3000.0], [20.0, 2.0, -50.0], [0.125, 0.1, 0.075], axes);
+        let stage =
+            law([6700.0, 6700.0, 2000.0], [0.0, 20.0, -20.0], [0.0067, 0.0067, 0.002], axes);
+        let expected = [
+            (payload, [41.863, 37.55, 36.6, 49.285, 97.492, 20.79]),
+            (stage, [15.757, 8.231, 17.697, 7.196, 212.52, 96.297]),
+        ];
+        for (law, deviations) in expected {
+            for (found, expected) in EntryMoments::of(&law).deviations().iter().zip(deviations) {
+                assert!((found / expected - 1.0).abs() < 2e-3, "{found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn draws_agree() {
+        const N: usize = 200_000;
+        let law = law([5.0, 4.0, 3.0], [0.3, 0.2, -0.5], [0.3, 0.1, 0.05], [0.02, 0.1, 0.3, 0.8]);
+        let moments = EntryMoments::of(&law);
+        let mut rng = ChaCha8Rng::seed_from_u64(6);
+        let draws: Vec<[f64; 6]> = (0..N)
+            .map(|_| {
+                let body: Inertia = law.sample(&mut rng);
+                body.entries()
+            })
+            .collect();
+        let n = N as f64;
+        for e in 0..6 {
+            let mean = draws.iter().map(|d| d[e]).sum::<f64>() / n;
+            let z = (mean - moments.mean()[e]) / (moments.covariance()[(e, e)] / n).sqrt();
+            assert!(z.abs() < 4.0, "mean {e}: z = {z}");
+            for f in 0..=e {
+                let products: Vec<f64> = draws
+                    .iter()
+                    .map(|d| (d[e] - moments.mean()[e]) * (d[f] - moments.mean()[f]))
+                    .collect();
+                let mean = products.iter().sum::<f64>() / n;
+                let variance = products.iter().map(|p| (p - mean).powi(2)).sum::<f64>() / n;
+                let z = (mean - moments.covariance()[(e, f)]) / (variance / n).sqrt();
+                assert!(z.abs() < 4.0, "covariance {e}{f}: z = {z}");
+            }
+        }
+    }
+
+    /// Without any spread of the axes, only the moments vary.
+    #[test]
+    fn fixed_axes_leave_the_closed_form() {
+        let law = law([5.0, 4.0, 3.0], [0.0; 3], [0.1, 0.2, 0.3], [1e-13; 4]);
+        let moments = EntryMoments::of(&law);
+        let [v1, v2, v3] = law.roots().second_moment_variances();
+        let expected = [v2 + v3, v1 + v3, v1 + v2];
+        for (found, expected) in moments.deviations().iter().zip(expected) {
+            assert!((found * found - expected).abs() < 1e-9, "{found} {expected}");
+        }
+        assert!((moments.covariance()[(0, 1)] - v3).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,111 @@
+use gyradius_inertia::{Inertia, RootSecondMoments};
+use nalgebra::UnitQuaternion;
+use rand::Rng;
+use rand_distr::Distribution;
+
+/// Random principal moments about random principal axes, independent of each other (Peck 2003).
+///
+/// # Definition
+/// Roots k of the second mass moments from the law `K`, the attitude q that takes body components
+/// to principal components from the law `A`; then K_k = k_k², I₁ = K₂ + K₃ and so on (Eq. 11), and
+/// I_B = R(q)ᵀ I_P R(q).
+///
+/// # Realizability
+/// By construction, for any laws: squares are not negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipalDispersion<K, A> {
+    roots: K,
+    axes: A,
+}
+
+/// A draw with what it was made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipalDraw {
+    /// The inertia in body axes.
+    pub inertia: Inertia,
+    /// Roots of the second mass moments.
+    pub roots: RootSecondMoments,
+    /// The attitude that takes body components to principal components, as drawn.
+    pub axes: UnitQuaternion<f64>,
+}
+
+impl<K, A> PrincipalDispersion<K, A> {
+    /// From a law of the roots and a law of the axes.
+    pub fn new(roots: K, axes: A) -> Self {
+        Self { roots, axes }
+    }
+
+    /// The law of the roots.
+    pub fn roots(&self) -> &K {
+        &self.roots
+    }
+
+    /// The law of the axes.
+    pub fn axes(&self) -> &A {
+        &self.axes
+    }
+}
+
+impl<K, A> Distribution<PrincipalDraw> for PrincipalDispersion<K, A>
+where
+    K: Distribution<RootSecondMoments>,
+    A: Distribution<UnitQuaternion<f64>>,
+{
+    #[inline]
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> PrincipalDraw {
+        let roots = self.roots.sample(rng);
+        let axes = self.axes.sample(rng);
+        PrincipalDraw { inertia: Inertia::from_second_moments(roots.squared(), &axes), roots, axes }
+    }
+}
+
+impl<K, A> Distribution<Inertia> for PrincipalDispersion<K, A>
+where
+    K: Distribution<RootSecondMoments>,
+    A: Distribution<UnitQuaternion<f64>>,
+{
+    #[inline]
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Inertia {
+        let draw: PrincipalDraw = self.sample(rng);
+        draw.inertia
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::GaussianRoots;
+    use gyradius_attitude::UniformAttitude;
+    use proptest::prelude::*;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+    proptest! {
+        #[test]
+        fn no_draw_is_unrealizable(
+            k in prop::array::uniform3(0.0..100.0f64),
+            variances in prop::array::uniform3(0.0..1e4f64),
+            seed in 0..u64::MAX,
+        ) {
+            let roots = GaussianRoots::new(RootSecondMoments::new(k).unwrap(), variances).unwrap();
+            let law = PrincipalDispersion::new(roots, UniformAttitude);
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            for _ in 0..100 {
+                let body: Inertia = law.sample(&mut rng);
+                prop_assert!(body.as_inertia_matrix().is_realizable());
+            }
+        }
+    }
+
+    #[test]
+    fn a_draw_is_made_of_its_parts() {
+        let roots =
+            GaussianRoots::new(RootSecondMoments::new([1.0, 2.0, 3.0]).unwrap(), [0.1; 3]).unwrap();
+        let law = PrincipalDispersion::new(roots, UniformAttitude);
+        let draw: PrincipalDraw = law.sample(&mut ChaCha8Rng::seed_from_u64(1));
+        let again =
+            Inertia::from_principal_moments(draw.roots.squared().principal_moments(), &draw.axes);
+        assert!((draw.inertia.matrix() - again.unwrap().matrix()).amax() < 1e-13);
+        let alone: Inertia = law.sample(&mut ChaCha8Rng::seed_from_u64(1));
+        assert_eq!(alone, draw.inertia);
+    }
+}

@@ -1,0 +1,135 @@
+use gyradius_inertia::RootSecondMoments;
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+/// Draws farther out than this many deviations have probability 1e-349.
+const FAR: f64 = 40.0;
+
+/// Why variances are refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GaussianRootsError {
+    /// A variance is negative, NaN or infinite, or so large that squares would overflow.
+    #[error(
+        "variance of k_{axis} = {value} kg·m²: it must be finite and not negative, and squares of \
+         draws must not overflow"
+    )]
+    Variance {
+        /// Axis, from 1.
+        axis: usize,
+        /// The variance, kg·m².
+        value: f64,
+    },
+}
+
+/// Independent Gaussian roots k_k = √K_k of the second mass moments (Peck 2003, Eq. 10).
+///
+/// # Definition
+/// k_k ~ N(k̄_k, σ_k²), K_k = k_k². Then K_k/σ_k² is noncentral χ² with one degree of freedom, so
+/// E K = k̄² + σ² and Var K = 4k̄²σ² + 2σ⁴. A root may come out negative; its square does not care.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GaussianRoots {
+    mean: RootSecondMoments,
+    deviations: [f64; 3],
+}
+
+impl GaussianRoots {
+    /// Mean roots k̄ in √kg·m and the variances of the roots in kg·m²; zero keeps a root fixed.
+    ///
+    /// # Errors
+    /// A variance is negative, not finite, or so large that squares of draws could overflow.
+    pub fn new(mean: RootSecondMoments, variances: [f64; 3]) -> Result<Self, GaussianRootsError> {
+        for (i, (k, value)) in mean.values().into_iter().zip(variances).enumerate() {
+            let reach = k.abs() + FAR * value.sqrt();
+            if !(value >= 0.0 && RootSecondMoments::new([reach; 3]).is_ok()) {
+                return Err(GaussianRootsError::Variance { axis: i + 1, value });
+            }
+        }
+        Ok(Self { mean, deviations: variances.map(f64::sqrt) })
+    }
+
+    /// k̄, √kg·m.
+    #[must_use]
+    pub fn mean(&self) -> RootSecondMoments {
+        self.mean
+    }
+
+    /// Deviations of the roots, √kg·m.
+    #[must_use]
+    pub fn deviations(&self) -> [f64; 3] {
+        self.deviations
+    }
+
+    /// E K_k = k̄² + σ², kg·m².
+    #[must_use]
+    pub fn second_moment_means(&self) -> [f64; 3] {
+        let k = self.mean.values();
+        std::array::from_fn(|i| k[i] * k[i] + self.deviations[i] * self.deviations[i])
+    }
+
+    /// Var K_k = 4k̄²σ² + 2σ⁴, (kg·m²)².
+    #[must_use]
+    pub fn second_moment_variances(&self) -> [f64; 3] {
+        let k = self.mean.values();
+        std::array::from_fn(|i| {
+            let variance = self.deviations[i] * self.deviations[i];
+            2.0 * variance * (2.0 * k[i] * k[i] + variance)
+        })
+    }
+}
+
+impl Distribution<RootSecondMoments> for GaussianRoots {
+    #[inline]
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> RootSecondMoments {
+        let mean = self.mean.values();
+        loop {
+            let draw = std::array::from_fn(|i| {
+                let z: f64 = StandardNormal.sample(rng);
+                mean[i] + self.deviations[i] * z
+            });
+            // Never refused within 40 deviations.
+            if let Ok(roots) = RootSecondMoments::new(draw) {
+                return roots;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+    fn roots(k: [f64; 3]) -> RootSecondMoments {
+        RootSecondMoments::new(k).unwrap()
+    }
+
+    #[test]
+    fn bad_variances_are_named() {
+        for bad in [-1.0, f64::NAN, f64::INFINITY, 1e306] {
+            let error = GaussianRoots::new(roots([1.0; 3]), [0.1, bad, 0.1]).unwrap_err();
+            assert!(error.to_string().contains("k_2"), "{error}");
+        }
+        assert!(GaussianRoots::new(roots([0.0; 3]), [0.0; 3]).is_ok());
+    }
+
+    #[test]
+    fn squares_have_the_moments_of_noncentral_chi_squared() {
+        const N: usize = 400_000;
+        let law = GaussianRoots::new(roots([30.0, 1.0, 0.0]), [0.1, 4.0, 2.0]).unwrap();
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let draws: Vec<[f64; 3]> =
+            (0..N).map(|_| law.sample(&mut rng).squared().values()).collect();
+        for i in 0..3 {
+            let expected = (law.second_moment_means()[i], law.second_moment_variances()[i]);
+            let n = N as f64;
+            let mean = draws.iter().map(|k| k[i]).sum::<f64>() / n;
+            let z = (mean - expected.0) / (expected.1 / n).sqrt();
+            assert!(z.abs() < 4.0, "mean of K_{}: z = {z}", i + 1);
+            let moment = |p| draws.iter().map(|k| (k[i] - mean).powi(p)).sum::<f64>() / n;
+            let (variance, fourth) = (moment(2), moment(4));
+            let z = (variance - expected.1) / ((fourth - variance * variance) / n).sqrt();
+            assert!(z.abs() < 4.0, "variance of K_{}: z = {z}", i + 1);
+        }
+    }
+}
