@@ -48,3 +48,7 @@ pub use hyperspherical::{HypersphericalAngles, HypersphericalError};
 pub use mean_half::MeanHalf;
 pub use rcg::{RadiallyConstrainedGaussian, RcgError};
 pub use uniform::UniformAttitude;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

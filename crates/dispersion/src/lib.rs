@@ -48,3 +48,7 @@ pub use entrywise::{EntrywiseError, EntrywiseGaussian};
 pub use jacobian_twice::JacobianTwice;
 pub use principal::{PrincipalDispersion, PrincipalDraw};
 pub use roots::{GaussianRoots, GaussianRootsError};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

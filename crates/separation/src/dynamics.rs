@@ -76,18 +76,21 @@ impl Dynamics {
         self.active.iter().map(|s| s.index + 1).collect()
     }
 
-    /// Lets go of every spring that is at its free length, to `tolerance` of it, and lengthening.
-    pub(crate) fn release(
+    /// Lets go of the spring that is longest for its free length, and of those that are as long to
+    /// rounding: in a state where the first of them reaches it.
+    pub(crate) fn release_longest(
         &mut self,
         state: &State,
         slope: &State,
-        tolerance: f64,
         mut released: impl FnMut(usize),
     ) {
         let motion = Motion::of(state, slope);
+        let longest = self.active.iter().map(|s| motion.gap(s).value).fold(f64::MIN, f64::max);
         self.active.retain(|spring| {
-            let gap = motion.gap(spring);
-            let free = gap.value >= -tolerance * spring.free_length && gap.rate > 0.0;
+            // A gap is the difference of coordinates and no more accurate than they are.
+            let reach =
+                motion.offset.norm() + spring.payload_point.norm() + spring.stage_point.norm();
+            let free = motion.gap(spring).value >= longest - 4.0 * f64::EPSILON * reach;
             if free {
                 released(spring.index);
             }

@@ -51,3 +51,7 @@ pub use outcome::Outcome;
 pub use run::{RunError, Settings, SettingsError};
 pub use separation::{Separation, SeparationError};
 pub use spring::{Spring, SpringError};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -4,8 +4,8 @@ use crate::{
     dynamics::{Dynamics, Gap, N, State, bodies, initial_state, normalize, scales, time_scale},
 };
 
-/// A spring this near its free length, as a share of it, has reached it.
-const AT_FREE_LENGTH: f64 = 4.0 * f64::EPSILON;
+/// Steps after which a separation is given up: a hundred thousand times what one takes.
+const MAX_STEPS: u32 = 2_000_000;
 
 /// Corrections to a landing below this share of a step are made along the tangent: what that
 /// neglects is the square.
@@ -84,9 +84,9 @@ pub enum RunError {
         /// The horizon, s.
         horizon: f64,
     },
-    /// The step has become too small to move time on, or the state is no longer finite.
+    /// Steps have become too small or too many, or the state is no longer finite.
     #[error("integration failed at {time} s: the motion there is too violent to follow")]
-    StepUnderflow {
+    TooViolent {
         /// When, s.
         time: f64,
     },
@@ -113,8 +113,8 @@ pub(crate) fn run(separation: &Separation, settings: &Settings) -> Result<Outcom
             });
         }
         // Relative to the motion, not to the time since the start.
-        if !(h > 1e-13 * start) {
-            return Err(RunError::StepUnderflow { time });
+        if !(h > 1e-13 * start) || integration.steps > MAX_STEPS {
+            return Err(RunError::TooViolent { time });
         }
         let trial = integration.step(&state, &slope, h);
         if !(trial.error <= 1.0) {
@@ -132,7 +132,7 @@ pub(crate) fn run(separation: &Separation, settings: &Settings) -> Result<Outcom
             }
             Crossing::Near(guess) => {
                 (taken, next, next_slope) = integration.land(&state, &slope, guess, h);
-                integration.dynamics.release(&next, &next_slope, AT_FREE_LENGTH, |index| {
+                integration.dynamics.release_longest(&next, &next_slope, |index| {
                     release_times[index] = time + taken;
                 });
                 // A force that ends with a kink leaves the step size be.

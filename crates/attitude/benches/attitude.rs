@@ -1,0 +1,66 @@
+//! Draws of attitudes, one at a time, and the construction of a law.
+#![allow(missing_docs, reason = "criterion's macros make public items")]
+#![allow(clippy::unwrap_used, reason = "a bench that cannot be set up has to stop")]
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use gyradius_attitude::{Method, RadiallyConstrainedGaussian, UniformAttitude};
+use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector4};
+use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::Distribution;
+use std::hint::black_box;
+
+/// Mean and variances, scalar last.
+type Parameters = ([f64; 4], [f64; 4]);
+
+/// Peck (2003), Eq. 27 and 30.
+const PAPER: Parameters = ([0.0249, 0.0005, -0.0100, 0.9996], [2e-5, 6e-4, 6e-4, 0.6]);
+const ISOTROPIC: Parameters = ([0.0, 0.0, 0.0, 1.0], [1.0; 4]);
+/// Four scales, none of them along the mean: neither a chart nor uniform proposals serve it.
+const FOUR_SCALES: Parameters = ([0.5, -0.5, 0.5, -0.5], [1e-6, 1e-4, 1e-2, 1.0]);
+
+fn law((mean, variances): Parameters) -> RadiallyConstrainedGaussian {
+    let mean = UnitQuaternion::from_quaternion(Quaternion::from(Vector4::from(mean)));
+    RadiallyConstrainedGaussian::new(mean, Matrix4::from_diagonal(&variances.into())).unwrap()
+}
+
+fn uniform(c: &mut Criterion) {
+    fn draw<R: Rng + SeedableRng>(b: &mut criterion::Bencher<'_>) {
+        let mut rng = R::seed_from_u64(1);
+        b.iter(|| UniformAttitude.sample(&mut rng));
+    }
+    let mut group = c.benchmark_group("uniform");
+    group.throughput(Throughput::Elements(1));
+    group.bench_function("chacha8", draw::<ChaCha8Rng>);
+    group.bench_function("xoshiro256++", draw::<Xoshiro256PlusPlus>);
+    group.finish();
+}
+
+fn rcg(c: &mut Criterion) {
+    let mut group = c.benchmark_group("rcg");
+    group.throughput(Throughput::Elements(1));
+    for (name, parameters, method) in [
+        ("peck-2003", PAPER, Method::Chart),
+        ("isotropic", ISOTROPIC, Method::Uniform),
+        ("four-scales", FOUR_SCALES, Method::Circle),
+    ] {
+        let law = law(parameters);
+        assert_eq!(law.method(), method, "{name}");
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        group.bench_function(name, |b| b.iter(|| black_box(&law).sample(&mut rng)));
+    }
+    group.finish();
+}
+
+/// Construction: the normaliser, the moments and the set-up of the sampler.
+fn normaliser(c: &mut Criterion) {
+    let mut group = c.benchmark_group("normaliser");
+    group.throughput(Throughput::Elements(1));
+    for (name, parameters) in [("peck-2003", PAPER), ("four-scales", FOUR_SCALES)] {
+        group.bench_function(name, |b| b.iter(|| law(black_box(parameters)).ln_normaliser()));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, uniform, rcg, normaliser);
+criterion_main!(benches);

@@ -1,0 +1,192 @@
+//! The program as a user meets it: exit codes, messages, and what it leaves alone.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+use tempfile::TempDir;
+
+struct Shell(TempDir);
+
+impl Shell {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_gyradius"))
+            .current_dir(self.path())
+            .args(arguments)
+            .output()
+            .unwrap()
+    }
+
+    /// Runs what must be refused: exit code 2, nothing on standard output, a message.
+    fn refused(&self, arguments: &[&str]) -> String {
+        let output = self.run(arguments);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(output.stdout.is_empty(), "{:?}", output.stdout);
+        assert!(!message.contains("panicked"), "{message}");
+        message
+    }
+
+    /// A scenario file: that of a study, with a replacement.
+    fn scenario(&self, from: &str, to: &str) -> String {
+        let resolved = self.path().join("base/scenario.toml");
+        if !resolved.exists() {
+            let output = self.run(&["study", "--runs", "5", "--out", "base"]);
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        }
+        let text = fs::read_to_string(resolved).unwrap();
+        assert!(text.contains(from), "nothing to replace: {from}\n{text}");
+        fs::write(self.path().join("changed.toml"), text.replacen(from, to, 1)).unwrap();
+        "changed.toml".to_owned()
+    }
+}
+
+#[test]
+fn a_study_leaves_its_folder_and_a_table() {
+    let shell = Shell::new();
+    let output = shell.run(&["study", "--runs", "20", "--threads", "1"]);
+    let (table, messages) =
+        (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert!(output.status.success(), "{messages}");
+    assert!(messages.is_empty(), "no progress bar where there is no terminal: {messages}");
+    for word in ["proposed", "published", "naive", "naive-matched", "wobble", "inertia ratio"] {
+        assert!(table.contains(word), "{word} is missing:\n{table}");
+    }
+    let folder = shell.path().join("target/study/peck-2003");
+    assert!(table.contains("target/study/peck-2003/report.html"), "{table}");
+    for name in ["scenario.toml", "summary.json", "report.html", "runs/naive/runs.parquet"] {
+        assert!(folder.join(name).is_file(), "{name} is missing");
+    }
+    let leftovers = fs::read_dir(&folder).unwrap().count();
+    assert_eq!(leftovers, 5, "only what a study leaves behind");
+}
+
+#[test]
+fn help_has_examples_and_is_no_error() {
+    let shell = Shell::new();
+    let output = shell.run(&["study", "--help"]);
+    let help = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && help.contains("Examples:"), "{help}");
+    for flag in ["--scenario", "--runs", "--seed", "--out", "--threads", "--force"] {
+        assert!(help.contains(flag), "{flag} is missing");
+    }
+    assert!(shell.run(&["--version"]).status.success());
+}
+
+#[test]
+fn bad_flags_are_refused() {
+    let shell = Shell::new();
+    assert!(shell.refused(&["study", "--runs", "0"]).contains("runs: 0: it must be between 1"));
+    assert!(shell.refused(&["study", "--runs", "-3"]).contains("-3"));
+    assert!(shell.refused(&["study", "--runs", "many"]).contains("many"));
+    assert!(shell.refused(&["study", "--threads", "0"]).contains("threads: 0: it must be between"));
+    assert!(shell.refused(&["study", "--seed", "18446744073709551615"]).contains("seed: 184467"));
+    assert!(shell.refused(&["study", "--wibble"]).contains("--wibble"));
+    assert!(shell.refused(&["launch"]).contains("launch"));
+    assert!(shell.refused(&[]).contains("Usage"));
+    assert_eq!(fs::read_dir(shell.path()).unwrap().count(), 0, "nothing was written");
+}
+
+#[test]
+fn bad_scenarios_name_field_value_and_what_is_allowed() {
+    let shell = Shell::new();
+    let missing = shell.refused(&["study", "--scenario", "nowhere.toml"]);
+    assert!(missing.contains("cannot read nowhere.toml"), "{missing}");
+    let folder = shell.refused(&["study", "--scenario", "."]);
+    assert!(folder.contains("cannot read"), "{folder}");
+    let cases = [
+        (
+            "mass_kg = 10000.0",
+            "mass_kg = -3.0",
+            "payload.mass_kg: mass = -3 kg: it must be positive",
+        ),
+        ("mass_kg = 10000.0", "mass_kg = inf", "payload.mass_kg: mass = inf kg"),
+        ("mass_kg = 10000.0", "mass = 10000.0", "unknown field `mass`"),
+        ("mass_kg = 10000.0", "mass_kg = \"ten\"", "invalid type"),
+        ("mass_kg = 10000.0", "mass_kg = ", "line"),
+        ("5000.0", "9000.0", "payload.inertia_kg_m2: no body has this inertia"),
+        ("0.00002", "-0.00002", "payload.dispersion.axes_covariance: covariance with eigenvalue"),
+        ("0.00002", "0.0", "must be positive definite"),
+        ("runs = 5", "runs = 0", "runs: 0: it must be between 1"),
+        ("stroke_m = 0.1", "stroke_m = 0.0", "springs[1]: stroke = 0 m"),
+    ];
+    for (from, to, expected) in cases {
+        let file = shell.scenario(from, to);
+        let message = shell.refused(&["study", "--scenario", &file, "--out", "never"]);
+        assert!(message.contains(expected), "{from} -> {to}: {message}");
+        assert!(message.contains("changed.toml"), "the file is named: {message}");
+        assert!(!shell.path().join("never").exists(), "nothing was written");
+    }
+}
+
+#[test]
+fn touching_pads_are_refused() {
+    let shell = Shell::new();
+    shell.scenario("runs = 5", "runs = 5");
+    let path = shell.path().join("changed.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("-0.9", "-1.0").replace("0.9", "1.0")).unwrap();
+    let message = shell.refused(&["study", "--scenario", "changed.toml", "--out", "never"]);
+    assert!(message.contains("springs: spring 1") && message.contains("touching"), "{message}");
+}
+
+#[test]
+fn empty_and_binary_scenarios_are_refused() {
+    let shell = Shell::new();
+    let (empty, binary) = (shell.path().join("empty.toml"), shell.path().join("binary.toml"));
+    fs::write(&empty, "").unwrap();
+    fs::write(&binary, [0_u8, 159, 146, 150]).unwrap();
+    assert!(shell.refused(&["study", "--scenario", "empty.toml"]).contains("missing field"));
+    assert!(shell.refused(&["study", "--scenario", "binary.toml"]).contains("cannot read"));
+}
+
+#[test]
+fn another_study_is_not_overwritten_without_force() {
+    let shell = Shell::new();
+    assert!(shell.run(&["study", "--runs", "5", "--out", "here"]).status.success());
+    let report = shell.path().join("here/report.html");
+    let before = fs::read(&report).unwrap();
+
+    let message = shell.refused(&["study", "--runs", "6", "--out", "here"]);
+    assert!(message.contains("another study") && message.contains("--force"), "{message}");
+    assert_eq!(fs::read(&report).unwrap(), before, "nothing was overwritten");
+
+    // The same study may be run again, and another one by force.
+    assert!(shell.run(&["study", "--runs", "5", "--out", "here"]).status.success());
+    assert_eq!(fs::read(&report).unwrap(), before, "the same study has the same report");
+    assert!(shell.run(&["study", "--runs", "6", "--out", "here", "--force"]).status.success());
+    assert_ne!(fs::read(&report).unwrap(), before);
+}
+
+#[test]
+fn folders_with_other_things_are_left_alone() {
+    let shell = Shell::new();
+    let folder = shell.path().join("thesis");
+    fs::create_dir(&folder).unwrap();
+    fs::write(folder.join("chapter-1.txt"), "precious").unwrap();
+    shell.refused(&["study", "--runs", "5", "--out", "thesis"]);
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+    // Even by force, only what a study writes is replaced.
+    assert!(shell.run(&["study", "--runs", "5", "--out", "thesis", "--force"]).status.success());
+    assert_eq!(fs::read_to_string(folder.join("chapter-1.txt")).unwrap(), "precious");
+}
+
+#[test]
+fn unwritable_places_are_refused_before_any_work() {
+    let shell = Shell::new();
+    fs::write(shell.path().join("file"), "not a folder").unwrap();
+    let message = shell.refused(&["study", "--out", "file"]);
+    assert!(message.contains("output folder file: it is not a folder"), "{message}");
+    let message = shell.refused(&["study", "--out", "file/below"]);
+    assert!(message.contains("output folder file/below: it cannot be written"), "{message}");
+    assert_eq!(fs::read_to_string(shell.path().join("file")).unwrap(), "not a folder");
+}

@@ -1,0 +1,48 @@
+//! Draws of the paper's payload by each law, and the moments of its entries by quadrature.
+#![allow(missing_docs, reason = "criterion's macros make public items")]
+#![allow(clippy::unwrap_used, reason = "a bench that cannot be set up has to stop")]
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use gyradius_attitude::RadiallyConstrainedGaussian;
+use gyradius_dispersion::{
+    EntryMoments, EntrywiseGaussian, GaussianRoots, JacobianTwice, PrincipalDispersion,
+};
+use gyradius_inertia::{Inertia, InertiaMatrix};
+use nalgebra::{Matrix4, Vector4};
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use rand_distr::Distribution;
+use std::hint::black_box;
+
+/// Peck (2003), Table 1 and Eq. 30.
+fn payload() -> (InertiaMatrix, GaussianRoots, RadiallyConstrainedGaussian) {
+    let matrix = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0]).unwrap();
+    let nominal = Inertia::try_from(matrix).unwrap();
+    let roots = GaussianRoots::new(nominal.second_moments().roots(), [0.125, 0.1, 0.075]).unwrap();
+    let covariance = Matrix4::from_diagonal(&Vector4::new(2e-5, 6e-4, 6e-4, 0.6));
+    let attitude = nominal.principal_axes().attitude();
+    (matrix, roots, RadiallyConstrainedGaussian::new(attitude, covariance).unwrap())
+}
+
+fn inertia(c: &mut Criterion) {
+    let (nominal, roots, axes) = payload();
+    let twice = PrincipalDispersion::new(roots, JacobianTwice::new(axes.clone()).unwrap());
+    let principal = PrincipalDispersion::new(roots, axes);
+    let entrywise = EntrywiseGaussian::new(nominal, EntryMoments::of(&principal).deviations());
+    let entrywise = entrywise.unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+
+    let mut group = c.benchmark_group("inertia");
+    group.throughput(Throughput::Elements(1));
+    group.bench_function("principal", |b| {
+        b.iter(|| -> Inertia { black_box(&principal).sample(&mut rng) });
+    });
+    group.bench_function("jacobian-twice", |b| {
+        b.iter(|| -> Inertia { black_box(&twice).sample(&mut rng) });
+    });
+    group.bench_function("entrywise", |b| b.iter(|| black_box(&entrywise).sample(&mut rng)));
+    group.bench_function("entry-moments", |b| b.iter(|| EntryMoments::of(black_box(&principal))));
+    group.finish();
+}
+
+criterion_group!(benches, inertia);
+criterion_main!(benches);

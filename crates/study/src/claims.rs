@@ -1,0 +1,388 @@
+//! The paper's claims, judged by what the runs show.
+
+use serde::Serialize;
+
+use crate::{
+    row::{Entry, Quantity},
+    scenario::Scenario,
+    summary::{ComparisonSummary, ModelSummary, Summary},
+    table::RunTable,
+};
+
+/// "Considerably more" is taken to mean a deviation larger by at least this factor, with the whole
+/// of its interval.
+pub(crate) const CONSIDERABLE: f64 = 1.10;
+/// Deviations count as identical within this share.
+pub(crate) const IDENTICAL: f64 = 0.05;
+/// A skewness beyond this is one-sided; a Gaussian has none.
+pub(crate) const ONE_SIDED: f64 = 1.0;
+
+/// Whether a claim stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Verdict {
+    /// It does.
+    Holds,
+    /// For some of what it says, or under one reading.
+    HoldsInPart,
+    /// It does not.
+    DoesNotHold,
+    /// These runs cannot tell.
+    NotTested,
+}
+
+impl Verdict {
+    /// In words.
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::HoldsInPart => "holds in part",
+            Self::DoesNotHold => "does not hold",
+            Self::NotTested => "not tested",
+        }
+    }
+
+    /// All hold: holds. None: does not. Otherwise in part.
+    fn of_all(parts: &[Self]) -> Self {
+        let known: Vec<Self> = parts.iter().copied().filter(|p| *p != Self::NotTested).collect();
+        match known.as_slice() {
+            [] => Self::NotTested,
+            all if all.iter().all(|p| *p == Self::Holds) => Self::Holds,
+            all if all.iter().all(|p| *p == Self::DoesNotHold) => Self::DoesNotHold,
+            _ => Self::HoldsInPart,
+        }
+    }
+}
+
+/// A claim, what the runs show, and whether it stands.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Claim {
+    pub(crate) claim: String,
+    /// One finding for each reading.
+    pub(crate) findings: Vec<String>,
+    pub(crate) verdict: Verdict,
+}
+
+pub(crate) fn judge(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Vec<Claim> {
+    let mut claims = vec![always_realizable(summary), naive_unphysical(summary)];
+    claims.extend(central_values(scenario, summary));
+    if summary.comparisons.is_empty() {
+        return claims;
+    }
+    claims.push(same_deviations(summary));
+    for (quantity, claim) in [
+        (Quantity::InertiaRatio, "The naive model spreads the inertia ratio considerably more."),
+        (Quantity::Wobble, "The naive model spreads the wobble angle considerably more."),
+        (Quantity::Nutation, "The naive model spreads the nutation angle considerably more."),
+        (Quantity::Cone, "The naive model spreads the cone angle considerably more."),
+    ] {
+        claims.push(spreads_more(summary, quantity, claim));
+    }
+    claims.push(reduces(summary));
+    claims.push(shapes(summary, tables));
+    claims
+}
+
+fn always_realizable(summary: &Summary) -> Claim {
+    let physical: Vec<&ModelSummary> =
+        summary.models.iter().filter(|m| m.given_deviations_kg_m2.is_none()).collect();
+    let findings = physical.iter().map(|m| unrealizable(m)).collect();
+    let parts: Vec<Verdict> = physical
+        .iter()
+        .map(|m| if m.unrealizable.count == 0 { Verdict::Holds } else { Verdict::DoesNotHold })
+        .collect();
+    Claim {
+        claim: "Moments from squared roots and axes from unit quaternions are physically \
+                realizable, always."
+            .into(),
+        findings,
+        verdict: Verdict::of_all(&parts),
+    }
+}
+
+fn naive_unphysical(summary: &Summary) -> Claim {
+    let naive: Vec<&ModelSummary> =
+        summary.models.iter().filter(|m| m.given_deviations_kg_m2.is_some()).collect();
+    let parts: Vec<Verdict> = naive
+        .iter()
+        .map(|m| if m.unrealizable.count > 0 { Verdict::Holds } else { Verdict::DoesNotHold })
+        .collect();
+    Claim {
+        claim: "Independent Gaussian entries yield matrices that no body can have.".into(),
+        findings: naive.iter().map(|m| unrealizable(m)).collect(),
+        verdict: Verdict::of_all(&parts),
+    }
+}
+
+fn unrealizable(model: &ModelSummary) -> String {
+    let share = &model.unrealizable;
+    format!(
+        "{}: {} of {} runs drew an unrealizable payload or stage (share at most {:.2} %).",
+        model.name,
+        share.count,
+        share.of,
+        100.0 * share.interval.upper()
+    )
+}
+
+fn central_values(scenario: &Scenario, summary: &Summary) -> Option<Claim> {
+    let (title, ratio, wobble) = scenario.source()?;
+    let checks: Vec<(Quantity, f64)> =
+        [(Quantity::InertiaRatio, ratio), (Quantity::Wobble, wobble)]
+            .into_iter()
+            .filter_map(|(q, printed)| Some((q, printed?)))
+            .collect();
+    let mut parts = Vec::new();
+    let mut findings = Vec::new();
+    let mut printed_values = Vec::new();
+    for (quantity, printed) in &checks {
+        let found = summary.nominal_value(*quantity)?;
+        // Printed to three decimals.
+        let agrees = (found - printed).abs() <= 0.000_5 + 1e-12;
+        parts.push(if agrees { Verdict::Holds } else { Verdict::DoesNotHold });
+        printed_values.push(format!("{} {}{}", quantity.label(), printed, unit(*quantity)));
+        findings.push(format!("{}: {found:.4}{}", quantity.label(), unit(*quantity)));
+    }
+    Some(Claim {
+        claim: format!("{title}: the central values are {}.", printed_values.join(" and ")),
+        findings: vec![format!("Nominal bodies: {}.", findings.join(", "))],
+        verdict: Verdict::of_all(&parts),
+    })
+}
+
+fn unit(quantity: Quantity) -> &'static str {
+    match quantity.unit() {
+        "deg" => "°",
+        _ => "",
+    }
+}
+
+fn same_deviations(summary: &Summary) -> Claim {
+    let mut findings = Vec::new();
+    let mut parts = Vec::new();
+    for comparison in &summary.comparisons {
+        let (Some(physical), Some(naive)) =
+            (summary.model(&comparison.physical), summary.model(&comparison.naive))
+        else {
+            continue;
+        };
+        let Some([payload, stage]) = naive.given_deviations_kg_m2 else { continue };
+        let bodies: [(&str, fn(Entry) -> Quantity, [f64; 6]); 2] =
+            [("payload", Quantity::Payload, payload), ("stage", Quantity::Stage, stage)];
+        let mut words = Vec::new();
+        for (body, of, given) in bodies {
+            let worst = physical
+                .found_deviations(of)
+                .into_iter()
+                .zip(given)
+                .filter_map(|(found, given)| Some(given / found.filter(|f| *f > 0.0)? - 1.0))
+                .fold(0.0_f64, |worst, x| if x.abs() > worst.abs() { x } else { worst });
+            parts.push(if worst.abs() <= IDENTICAL {
+                Verdict::Holds
+            } else {
+                Verdict::DoesNotHold
+            });
+            words.push(format!("{body} entries off by up to {:+.1} %", 100.0 * worst));
+        }
+        findings.push(format!(
+            "{}: deviations given to {} against those of {}: {}.",
+            comparison.title,
+            comparison.naive,
+            comparison.physical,
+            words.join(", ")
+        ));
+    }
+    Claim {
+        claim: format!(
+            "The naive model has the same deviations of the entries as the physical one (within \
+             {:.0} %).",
+            100.0 * IDENTICAL
+        ),
+        findings,
+        verdict: Verdict::of_all(&parts),
+    }
+}
+
+fn spreads_more(summary: &Summary, quantity: Quantity, claim: &str) -> Claim {
+    let mut findings = Vec::new();
+    let mut parts = Vec::new();
+    for comparison in &summary.comparisons {
+        let ratio = comparison.ratio(quantity);
+        let estimate = ratio.and_then(|r| r.deviation_ratio.zip(r.deviation_ratio_interval));
+        let (words, verdict) = match estimate {
+            Some((ratio, interval)) => {
+                let verdict = if interval.lower() > CONSIDERABLE {
+                    Verdict::Holds
+                } else if interval.lower() > 1.0 {
+                    Verdict::HoldsInPart
+                } else {
+                    Verdict::DoesNotHold
+                };
+                (format!("{ratio:.3} {interval:.3}"), verdict)
+            }
+            None => ("no variation to compare".to_owned(), Verdict::NotTested),
+        };
+        findings.push(format!("{}: ratio of deviations {words}.", names(comparison)));
+        parts.push(verdict);
+    }
+    Claim { claim: claim.to_owned(), findings, verdict: Verdict::of_all(&parts) }
+}
+
+fn names(c: &ComparisonSummary) -> String {
+    format!("{} ({} over {})", c.title, c.naive, c.physical)
+}
+
+fn reduces(summary: &Summary) -> Claim {
+    let mut findings = Vec::new();
+    let mut parts = Vec::new();
+    for comparison in &summary.comparisons {
+        let mut words = Vec::new();
+        for quantity in [Quantity::Nutation, Quantity::Cone] {
+            let ratio = comparison.ratio(quantity);
+            let difference = ratio.and_then(|r| r.mean_difference.zip(r.mean_difference_interval));
+            let Some((difference, interval)) = difference else {
+                parts.push(Verdict::NotTested);
+                continue;
+            };
+            parts.push(if interval.lower() > 0.0 { Verdict::Holds } else { Verdict::DoesNotHold });
+            words.push(format!("{} {difference:+.4}° {interval:+.4}", quantity.label()));
+        }
+        findings.push(format!(
+            "{}, difference of the mean angles: {}.",
+            names(comparison),
+            words.join(", ")
+        ));
+    }
+    Claim {
+        claim:
+            "For the same means and deviations of the entries, the physical model predicts less \
+                nutation and coning."
+                .into(),
+        findings,
+        verdict: Verdict::of_all(&parts),
+    }
+}
+
+fn shapes(summary: &Summary, tables: &[RunTable]) -> Claim {
+    let mut findings = Vec::new();
+    let mut parts = Vec::new();
+    for comparison in &summary.comparisons {
+        let of = |name: &str| tables.iter().find(|t| t.model() == name).map(Shape::of);
+        let (Some(physical), Some(naive)) = (of(&comparison.physical), of(&comparison.naive))
+        else {
+            continue;
+        };
+        parts.push(match (physical.one_sided(), physical.two_peaked.is_some()) {
+            _ if naive.one_sided() || naive.two_peaked.is_some() => Verdict::DoesNotHold,
+            (true, true) => Verdict::Holds,
+            (false, false) => Verdict::DoesNotHold,
+            _ => Verdict::HoldsInPart,
+        });
+        findings.push(format!(
+            "{}: {} {}; {} {}.",
+            comparison.title, comparison.physical, physical, comparison.naive, naive
+        ));
+    }
+    Claim {
+        claim: "Entries of the inertia matrix are one-sided or two-peaked, which independent \
+                Gaussians do not capture."
+            .into(),
+        findings,
+        verdict: Verdict::of_all(&parts),
+    }
+}
+
+/// The most telling features of the twelve distributions of entries.
+struct Shape {
+    skewed: (Quantity, f64),
+    two_peaked: Option<Quantity>,
+}
+
+impl Shape {
+    fn of(table: &RunTable) -> Self {
+        let bodies: [fn(Entry) -> Quantity; 2] = [Quantity::Payload, Quantity::Stage];
+        let mut skewed = (Quantity::Payload(Entry::I11), 0.0_f64);
+        let mut two_peaked: Option<(Quantity, f64)> = None;
+        for quantity in bodies.into_iter().flat_map(|body| Entry::ALL.map(body)) {
+            let values = table.values(quantity);
+            let Ok(moments) = gyradius_statistics::Moments::new(&values) else { continue };
+            let skewness = moments.skewness().unwrap_or(0.0);
+            if skewness.abs() > skewed.1.abs() {
+                skewed = (quantity, skewness);
+            }
+            let standard = |x: &f64| ((x - moments.mean()) / moments.standard_deviation()).abs();
+            let dip = dip(values.iter().map(standard));
+            if dip.is_some_and(|d| d < two_peaked.map_or(1.0, |(_, other)| other)) {
+                two_peaked = dip.map(|d| (quantity, d));
+            }
+        }
+        Self { skewed, two_peaked: two_peaked.map(|(q, _)| q) }
+    }
+
+    fn one_sided(&self) -> bool {
+        self.skewed.1.abs() > ONE_SIDED
+    }
+}
+
+impl std::fmt::Display for Shape {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let name = |q: Quantity| match q {
+            Quantity::Stage(_) => format!("stage {}", q.label()),
+            _ => format!("payload {}", q.label()),
+        };
+        write!(f, "has skewness up to {:.2} ({})", self.skewed.1, name(self.skewed.0))?;
+        match self.two_peaked {
+            Some(quantity) => write!(f, " and two peaks ({})", name(quantity)),
+            None => write!(f, " and no two peaks"),
+        }
+    }
+}
+
+/// The density around the mean over that around one deviation on either side, by counts within a
+/// quarter deviation; 1.65 for a Gaussian, below 1 with two peaks. Given as the upper end of its
+/// 99.9 % interval, twelve distributions being looked at; none with too few values.
+fn dip(standard: impl Iterator<Item = f64>) -> Option<f64> {
+    const Z: f64 = 3.29;
+    let (mut center, mut shoulders) = (0.0, 0.0);
+    for z in standard {
+        if z < 0.25 {
+            center += 1.0;
+        } else if (0.75..1.25).contains(&z) {
+            shoulders += 1.0;
+        }
+    }
+    if shoulders < 1.0 {
+        return None;
+    }
+    // The shoulders are twice as wide as the centre.
+    let ratio = 2.0 * f64::max(center, 0.5) / shoulders;
+    let error = (1.0 / f64::max(center, 0.5) + 1.0 / shoulders).sqrt();
+    Some(ratio * (Z * error).exp())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verdicts_add_up() {
+        use Verdict::*;
+        assert_eq!(Verdict::of_all(&[]), NotTested);
+        assert_eq!(Verdict::of_all(&[NotTested, Holds]), Holds);
+        assert_eq!(Verdict::of_all(&[DoesNotHold, Holds]), HoldsInPart);
+        assert_eq!(Verdict::of_all(&[HoldsInPart, HoldsInPart]), HoldsInPart);
+        assert_eq!(Verdict::of_all(&[DoesNotHold, DoesNotHold]), DoesNotHold);
+    }
+
+    #[test]
+    fn two_peaks_are_told_from_one() {
+        let grid = (0..4000).map(|i| (f64::from(i) + 0.5) / 2000.0 - 1.0);
+        // Uniform: standard deviation 1/√3, ratio 1 exactly; the interval is above 1.
+        let uniform = dip(grid.clone().map(|x| (x * 3_f64.sqrt()).abs()));
+        assert!(uniform.unwrap() > 1.0);
+        // Density ∝ |x|: deviation 1/√2.
+        let vee = grid.map(|x| x.abs().sqrt() * 2_f64.sqrt());
+        assert!(dip(vee).unwrap() < 1.0);
+        assert_eq!(dip(std::iter::empty()), None);
+    }
+}

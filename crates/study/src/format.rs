@@ -1,0 +1,53 @@
+//! Numbers for people.
+
+use gyradius_statistics::Interval;
+
+/// To a number of significant digits, plain where that is short, scientific where it is not.
+pub(crate) fn significant(x: f64, digits: usize) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return format!("{x}");
+    }
+    let magnitude = x.abs().log10().floor();
+    if !(-4.0..7.0).contains(&magnitude) {
+        return format!("{x:.*e}", digits - 1);
+    }
+    // Within the range above the difference is small and fits.
+    let decimals = (digits as f64 - 1.0 - magnitude).max(0.0) as usize;
+    format!("{x:.decimals$}")
+}
+
+/// The same, or a dash.
+pub(crate) fn optional(x: Option<f64>, digits: usize) -> String {
+    x.map_or_else(|| "–".to_owned(), |x| significant(x, digits))
+}
+
+/// `[lower, upper]`, or nothing.
+pub(crate) fn interval(interval: Option<Interval>, digits: usize) -> String {
+    interval.map_or_else(String::new, |i| {
+        format!("[{}, {}]", significant(i.lower(), digits), significant(i.upper(), digits))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::significant;
+
+    #[test]
+    fn digits_are_significant() {
+        let cases = [
+            (0.159_310_165, "0.1593"),
+            (5000.400_34, "5000"),
+            (-133.167_4, "-133.2"),
+            (1.0, "1.000"),
+            (99_999.6, "100000"),
+            (1.234_56e-9, "1.235e-9"),
+            (1.234_56e12, "1.235e12"),
+            (0.0, "0"),
+        ];
+        for (x, expected) in cases {
+            assert_eq!(significant(x, 4), expected);
+        }
+        assert_eq!(significant(f64::NAN, 4), "NaN");
+        assert_eq!(significant(f64::MIN_POSITIVE, 3), "2.23e-308");
+    }
+}

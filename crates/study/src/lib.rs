@@ -1,0 +1,38 @@
+//! Monte Carlo studies of spacecraft separation under inertia uncertainty, from a scenario file to
+//! a report.
+//!
+//! Data flows one way: [`Scenario`] → draws → separations → [`RunTable`] → [`Summary`] → figures and
+//! report, and [`Study::run`] takes it along. A row depends on (seed, model, run) alone, so results
+//! are the same bits on any number of threads, and every run can be replayed.
+//!
+//! ```no_run
+//! use gyradius_study::{Options, Scenario, Study};
+//!
+//! let scenario = Scenario::peck_2003()?.with_runs(500)?;
+//! let study = Study::run(&scenario, &Options::default(), &|_done| {})?;
+//! println!("{}{}", study.summary(), study.folder().display());
+//! # Ok::<(), gyradius_study::StudyError>(())
+//! ```
+
+mod claims;
+mod figures;
+mod folder;
+mod format;
+mod model;
+mod plates;
+mod report;
+mod row;
+mod runner;
+mod scenario;
+mod streams;
+mod study;
+mod summary;
+mod table;
+mod text;
+
+pub use row::{Axis, Entry, Quantity, Row};
+pub use runner::Progress;
+pub use scenario::{Scenario, ScenarioError};
+pub use study::{Options, Study, StudyError};
+pub use summary::Summary;
+pub use table::RunTable;

@@ -1,0 +1,124 @@
+//! The figures of a study, numbered as in the paper.
+
+use nalgebra::UnitQuaternion;
+
+use crate::{
+    figures::{Cloud, Panel, Series, attitude_spheres, histogram_grid},
+    row::{Entry, Quantity, Row},
+    scenario::Scenario,
+    summary::Summary,
+    table::RunTable,
+};
+
+/// Attitudes shown on a sphere: as many as in the paper; more would only hide each other.
+const ATTITUDES: usize = 2000;
+
+/// A figure with what it shows.
+#[derive(Clone, Debug)]
+pub(crate) struct Plate {
+    /// Name of its file, without the ending.
+    pub(crate) name: String,
+    pub(crate) caption: String,
+    pub(crate) svg: String,
+}
+
+pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Vec<Plate> {
+    let mut plates: Vec<Plate> = attitudes(scenario, tables).into_iter().collect();
+    for comparison in scenario.comparisons() {
+        let (physical, naive) = (&tables[comparison.physical], &tables[comparison.naive]);
+        let pair = format!("{}-vs-{}", physical.model(), naive.model());
+        let title = |what: &str| format!("{what}: {} and {}", physical.model(), naive.model());
+        let grid = |name: &str, what: &str, quantities: &[Option<Quantity>], columns: usize| {
+            let samples: Vec<Option<[Vec<f64>; 2]>> = quantities
+                .iter()
+                .map(|q| q.map(|q| [physical.values(q), naive.values(q)]))
+                .collect();
+            let panels: Vec<Option<Panel<'_>>> = quantities
+                .iter()
+                .zip(&samples)
+                .map(|(quantity, samples)| {
+                    let (quantity, [a, b]) = ((*quantity)?, samples.as_ref()?);
+                    Some(Panel {
+                        label: axis_label(quantity),
+                        series: vec![
+                            Series { name: physical.model(), values: a },
+                            Series { name: naive.model(), values: b },
+                        ],
+                        nominal: summary.nominal_value(quantity),
+                    })
+                })
+                .collect();
+            Plate {
+                name: format!("{name}-{pair}"),
+                caption: format!("{}. {}", comparison.title, title(what)),
+                svg: histogram_grid(&title(what), &panels, columns),
+            }
+        };
+        plates.push(grid(
+            "figure-4-7",
+            "Inertia ratio and wobble (Figures 4 and 7)",
+            &[Some(Quantity::InertiaRatio), Some(Quantity::Wobble)],
+            2,
+        ));
+        plates.push(grid(
+            "figure-5-8-payload",
+            "Inertia of the payload, in matrix order (Figures 5 and 8)",
+            &matrix_order(Quantity::Payload),
+            3,
+        ));
+        plates.push(grid(
+            "figure-5-8-stage",
+            "Inertia of the stage, in matrix order (Figures 5 and 8)",
+            &matrix_order(Quantity::Stage),
+            3,
+        ));
+        plates.push(grid(
+            "figure-6-9",
+            "Wobble, nutation and coning (Figures 6 and 9)",
+            &[Some(Quantity::Wobble), Some(Quantity::Nutation), Some(Quantity::Cone)],
+            3,
+        ));
+    }
+    plates
+}
+
+/// Figure 1 for every model that draws attitudes.
+fn attitudes(scenario: &Scenario, tables: &[RunTable]) -> Option<Plate> {
+    let drawn: Vec<(&RunTable, Vec<UnitQuaternion<f64>>)> = tables
+        .iter()
+        .map(|t| (t, t.rows().iter().filter_map(axes).take(ATTITUDES).collect::<Vec<_>>()))
+        .filter(|(_, attitudes)| !attitudes.is_empty())
+        .collect();
+    let mean = scenario.payload().axes().mean();
+    let clouds: Vec<Cloud<'_>> = drawn
+        .iter()
+        .map(|(table, attitudes)| Cloud { name: table.model(), attitudes, mean })
+        .collect();
+    let most = drawn.iter().map(|(_, a)| a.len()).max()?;
+    let title = "Principal axes of the payload (Figure 1)";
+    Some(Plate {
+        name: "figure-1-attitudes".to_owned(),
+        caption: format!(
+            "{title}. {most} random attitudes a model, as the tips of the unit axes on the sphere"
+        ),
+        svg: attitude_spheres(title, &clouds),
+    })
+}
+
+fn axes(row: &Row) -> Option<UnitQuaternion<f64>> {
+    row.payload_axes
+}
+
+fn axis_label(quantity: Quantity) -> String {
+    match quantity.unit() {
+        "1" => quantity.label().to_owned(),
+        unit => format!("{} ({unit})", quantity.label()),
+    }
+}
+
+/// The upper triangle, symmetric entries omitted.
+fn matrix_order(body: fn(Entry) -> Quantity) -> [Option<Quantity>; 9] {
+    use Entry::{I11, I12, I13, I22, I23, I33};
+    [Some(I11), Some(I12), Some(I13), None, Some(I22), Some(I23), None, None, Some(I33)]
+        .map(|entry| entry.map(body))
+}

@@ -1,0 +1,319 @@
+//! The report: one page of HTML that needs nothing but itself.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::{
+    claims::{CONSIDERABLE, Claim, IDENTICAL, ONE_SIDED, Verdict},
+    format::{interval, optional, significant},
+    plates::Plate,
+    row::{Entry, Quantity},
+    scenario::{Comparison, Scenario},
+    summary::{ComparisonSummary, ModelSummary, Summary},
+};
+
+const STYLE: &str = include_str!("report.css");
+
+pub(crate) fn html(scenario: &Scenario, summary: &Summary, plates: &[Plate]) -> String {
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "gyradius study: " (summary.scenario) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                main {
+                    (head(summary))
+                    (results(summary))
+                    (claims(summary))
+                    (ratios(summary))
+                    (deviations(scenario, summary))
+                    (far_lobe(summary))
+                    (figures(plates))
+                    (inputs(scenario, summary))
+                }
+            }
+        }
+    }
+    .into_string()
+}
+
+fn head(summary: &Summary) -> Markup {
+    let models: Vec<&str> = summary.models.iter().map(|m| m.name.as_str()).collect();
+    html! {
+        h1 { "Separation under inertia uncertainty" }
+        p.lead {
+            "Scenario " strong { (summary.scenario) } ": " (summary.runs_per_model)
+            " runs of each of the models " (models.join(", ")) ", seed " (summary.seed) ". "
+            "All intervals have a confidence of " (significant(100.0 * summary.confidence, 3)) " %."
+        }
+    }
+}
+
+fn results(summary: &Summary) -> Markup {
+    html! {
+        h2 { "What the payload does" }
+        div.wide { table {
+            thead {
+                tr {
+                    th rowspan="2" { "model" }
+                    th rowspan="2" { "unrealizable draws" }
+                    @for q in Quantity::BEHAVIOUR { th.group colspan="3" { (q.label()) (unit(q)) } }
+                }
+                tr {
+                    @for _ in Quantity::BEHAVIOUR { th { "mean" } th { "sd" } th { "95 %" } }
+                }
+            }
+            tbody {
+                @for model in &summary.models {
+                    tr {
+                        th scope="row" { (model.name) }
+                        td { (share(model)) }
+                        @for q in Quantity::BEHAVIOUR {
+                            @let s = model.quantity(q);
+                            td.group { (optional(s.and_then(|s| s.mean), 4)) }
+                            td title=(interval(s.and_then(|s| s.deviation_interval), 4)) {
+                                (optional(s.and_then(|s| s.deviation), 4))
+                            }
+                            td title=(interval(s.and_then(|s| s.p95_interval), 4)) {
+                                (optional(s.and_then(|s| s.p95), 4))
+                            }
+                        }
+                    }
+                }
+                tr.nominal {
+                    th scope="row" { "nominal bodies" }
+                    td { "–" }
+                    @for q in Quantity::BEHAVIOUR {
+                        td.group { (optional(summary.nominal_value(q), 4)) }
+                        td {} td {}
+                    }
+                }
+            }
+        } }
+        @for model in summary.models.iter().filter(|m| m.failed > 0) {
+            p.warning {
+                strong { (model.name) ": " (model.failed) " of " (summary.runs_per_model) " runs failed" }
+                " and are left out: "
+                @for (reason, count) in model.failures.iter().take(5) { (count) " × " (reason) "; " }
+                "see " code { "status" } " in the run table."
+            }
+        }
+    }
+}
+
+fn share(model: &ModelSummary) -> String {
+    let s = &model.unrealizable;
+    let bound = significant(100.0 * s.interval.upper(), 2);
+    if s.count == 0 {
+        format!("none (under {bound} %)")
+    } else {
+        let range = interval_percent(s.interval.lower(), s.interval.upper());
+        format!("{} % {range}", significant(100.0 * s.share, 3))
+    }
+}
+
+fn interval_percent(lower: f64, upper: f64) -> String {
+    format!("[{}, {}]", significant(100.0 * lower, 3), significant(100.0 * upper, 3))
+}
+
+fn unit(quantity: Quantity) -> String {
+    match quantity.unit() {
+        "1" => String::new(),
+        unit => format!(" ({unit})"),
+    }
+}
+
+fn claims(summary: &Summary) -> Markup {
+    html! {
+        h2 { "The paper's claims" }
+        p {
+            "Peck (2003) claims the following of physically realizable models and of independent "
+            "Gaussian entries. “Considerably more” is taken as a deviation larger by at least "
+            (significant(100.0 * (CONSIDERABLE - 1.0), 2)) " % with its whole interval, “the same” as within "
+            (significant(100.0 * IDENTICAL, 2)) " %, “one-sided” as a skewness beyond "
+            (significant(ONE_SIDED, 1)) ". A claim that stands in one comparison and not in another holds in part."
+        }
+        table.claims {
+            thead { tr { th { "claim" } th { "what this study finds" } th { "verdict" } } }
+            tbody { @for claim in &summary.claims { (claim_row(claim)) } }
+        }
+    }
+}
+
+fn claim_row(claim: &Claim) -> Markup {
+    let class = match claim.verdict {
+        Verdict::Holds => "holds",
+        Verdict::HoldsInPart => "in-part",
+        Verdict::DoesNotHold => "fails",
+        Verdict::NotTested => "untested",
+    };
+    html! {
+        tr {
+            td { (claim.claim) }
+            td { @for finding in &claim.findings { p { (finding) } } }
+            td { span class={ "verdict " (class) } { (claim.verdict.words()) } }
+        }
+    }
+}
+
+fn ratios(summary: &Summary) -> Markup {
+    html! {
+        @if !summary.comparisons.is_empty() {
+            h2 { "How much more the naive models vary" }
+            p {
+                "Deviation under the naive model over deviation under the physical one; the interval "
+                "is robust to the shape of the distributions."
+            }
+            div.wide { table {
+                thead {
+                    tr {
+                        th { "comparison" }
+                        @for q in Quantity::BEHAVIOUR { th { (q.label()) } }
+                    }
+                }
+                tbody {
+                    @for c in &summary.comparisons {
+                        tr {
+                            th scope="row" { (c.title) br; small { (c.naive) " over " (c.physical) } }
+                            @for q in Quantity::BEHAVIOUR { td { (ratio(c, q)) } }
+                        }
+                    }
+                }
+            } }
+        }
+    }
+}
+
+fn ratio(comparison: &ComparisonSummary, quantity: Quantity) -> Markup {
+    let ratio = comparison.ratio(quantity);
+    html! {
+        (optional(ratio.and_then(|r| r.deviation_ratio), 4)) br;
+        small { (interval(ratio.and_then(|r| r.deviation_ratio_interval), 4)) }
+    }
+}
+
+/// Table 2: the deviations that a naive model was given beside those of the physical one.
+fn deviations(scenario: &Scenario, summary: &Summary) -> Markup {
+    html! {
+        @for comparison in scenario.comparisons() {
+            @let names: Vec<&str> = scenario.model_names().collect();
+            @if let (Some(physical), Some(naive)) = (
+                summary.model(names[comparison.physical]),
+                summary.model(names[comparison.naive]),
+            ) {
+                @if let Some(given) = naive.given_deviations_kg_m2 {
+                    (deviation_table(comparison, physical, naive, given))
+                }
+            }
+        }
+    }
+}
+
+fn deviation_table(
+    comparison: &Comparison,
+    physical: &ModelSummary,
+    naive: &ModelSummary,
+    given: [[f64; 6]; 2],
+) -> Markup {
+    let bodies: [(&str, fn(Entry) -> Quantity); 2] =
+        [("payload", Quantity::Payload), ("stage", Quantity::Stage)];
+    html! {
+        h2 { "Deviations of the entries (Table 2): " (comparison.title.to_lowercase()) }
+        p {
+            "Standard deviations in kg·m²: those of the runs of " strong { (physical.name) }
+            ", and those that " strong { (naive.name) } " was given."
+        }
+        div.wide { table {
+            thead { tr {
+                th { "body" } th {}
+                @for entry in Entry::ALL { th { (Quantity::Payload(entry).label()) } }
+            } }
+            tbody {
+                @for ((body, of), given) in bodies.into_iter().zip(given) {
+                    tr.first {
+                        th rowspan="3" scope="rowgroup" { (body) }
+                        th scope="row" { (physical.name) }
+                        @for entry in Entry::ALL {
+                            @let q = physical.quantity(of(entry));
+                            td {
+                                (optional(q.and_then(|q| q.deviation), 4)) br;
+                                small { (interval(q.and_then(|q| q.deviation_interval), 4)) }
+                            }
+                        }
+                    }
+                    tr {
+                        th scope="row" { (naive.name) ", given" }
+                        @for value in given { td { (significant(value, 4)) } }
+                    }
+                    tr {
+                        th scope="row" { "given over found" }
+                        @for (entry, value) in Entry::ALL.into_iter().zip(given) {
+                            @let found = physical.quantity(of(entry)).and_then(|q| q.deviation);
+                            td { (optional(found.filter(|f| *f > 0.0).map(|f| value / f), 3)) }
+                        }
+                    }
+                }
+            }
+        } }
+    }
+}
+
+fn far_lobe(summary: &Summary) -> Markup {
+    let lobes: Vec<_> =
+        summary.models.iter().filter_map(|m| Some((&m.name, m.far_half?))).collect();
+    html! {
+        @if lobes.iter().any(|(_, far)| far.iter().any(|s| s.count > 0)) {
+            h2 { "The second lobe" }
+            p {
+                "A quaternion and its negative are one attitude, but the radially constrained Gaussian "
+                "does not know it: where its covariance is wide along the mean, a second lobe of draws "
+                "lies in the half sphere away from the mean. As attitudes these lie about the "
+                em { "inverse" } " of the mean attitude. Axes of “mean-half” leave them out."
+            }
+            ul {
+                @for (name, [payload, stage]) in &lobes {
+                    li {
+                        strong { (name) } ": "
+                        (significant(100.0 * payload.share, 3)) " % of the payload's draws "
+                        (interval_percent(payload.interval.lower(), payload.interval.upper())) ", "
+                        (significant(100.0 * stage.share, 3)) " % of the stage's "
+                        (interval_percent(stage.interval.lower(), stage.interval.upper())) "."
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn figures(plates: &[Plate]) -> Markup {
+    html! {
+        h2 { "Figures" }
+        @for plate in plates {
+            figure id=(plate.name) {
+                // Made by this program, every text in it escaped.
+                (PreEscaped(plate.svg.as_str()))
+                figcaption { (plate.caption) ". " code { "figures/" (plate.name) ".svg" } }
+            }
+        }
+    }
+}
+
+fn inputs(scenario: &Scenario, summary: &Summary) -> Markup {
+    html! {
+        h2 { "What went in" }
+        p {
+            "Run by gyradius " (summary.gyradius_version) " from the scenario below, every default "
+            "spelled out; its SHA-256 is " code.hash { (summary.fingerprint) } ". "
+            "The same scenario gives the same numbers on any number of threads: "
+            code { "gyradius study --scenario scenario.toml" } "."
+        }
+        p {
+            "Every run is a row of " code { "runs/<model>/runs.parquet" }
+            ", every number of this page is in " code { "summary.json" } "."
+        }
+        details { summary { "scenario.toml" } pre { (scenario.to_toml()) } }
+    }
+}

@@ -1,0 +1,144 @@
+use gyradius_statistics::StatisticsError;
+use parquet::errors::ParquetError;
+use std::path::{Path, PathBuf};
+
+use crate::{
+    Progress, RunTable, Scenario, ScenarioError, Summary, folder::Folder, plates, report, runner,
+};
+
+/// Most threads that may be asked for.
+const MAX_THREADS: usize = 1024;
+
+/// Why a study could not be done. Nothing has been overwritten.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// The scenario is refused.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The output folder cannot be used.
+    #[error("output folder {}: {problem}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A file cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A run table cannot be written.
+    #[error("cannot write the run table of {model}: {source}")]
+    RunTable {
+        /// The model.
+        model: String,
+        /// Why.
+        source: ParquetError,
+    },
+    /// The number of threads is out of range, or they cannot be started.
+    #[error("threads: {problem}")]
+    Threads {
+        /// What is wrong.
+        problem: String,
+    },
+    /// The runs cannot be summarised.
+    #[error("cannot summarise the runs: {0}")]
+    Statistics(#[from] StatisticsError),
+    /// The summary cannot be put into JSON.
+    #[error("cannot write the summary: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+/// How to carry out a study.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Where to; `target/study/<scenario name>` if not given.
+    pub out: Option<PathBuf>,
+    /// How many threads; as many as the machine has if not given.
+    pub threads: Option<usize>,
+    /// Replace another study in the folder.
+    pub force: bool,
+}
+
+/// A study carried out and written.
+#[derive(Debug)]
+pub struct Study {
+    folder: PathBuf,
+    tables: Vec<RunTable>,
+    summary: Summary,
+}
+
+impl Study {
+    /// Runs a scenario and writes its folder: the resolved scenario, run tables, summary, figures
+    /// and report.
+    ///
+    /// # Errors
+    /// The folder holds another study and `force` is not set, or something cannot be written. What
+    /// was there stays as it was.
+    pub fn run(
+        scenario: &Scenario,
+        options: &Options,
+        progress: Progress<'_>,
+    ) -> Result<Self, StudyError> {
+        let threads = threads(options.threads)?;
+        let default = || Path::new("target/study").join(scenario.name());
+        let place = options.out.clone().unwrap_or_else(default);
+        let folder = Folder::prepare(&place, scenario, options.force)?;
+
+        let models = runner::models(scenario)?;
+        let tables = runner::run(scenario, &models, &threads, progress);
+        let summary = Summary::new(scenario, &models, &tables)?;
+        let figures = plates::of_study(scenario, &summary, &tables);
+
+        folder.write("scenario.toml", &scenario.to_toml())?;
+        for table in &tables {
+            let file = folder.create(&format!("runs/{}/runs.parquet", table.model()))?;
+            table.write_parquet(file).map_err(|source| StudyError::RunTable {
+                model: table.model().to_owned(),
+                source,
+            })?;
+        }
+        folder.write("summary.json", &(serde_json::to_string_pretty(&summary)? + "\n"))?;
+        for figure in &figures {
+            folder.write(&format!("figures/{}.svg", figure.name), &figure.svg)?;
+        }
+        folder.write("report.html", &report::html(scenario, &summary, &figures))?;
+        Ok(Self { folder: folder.publish()?, tables, summary })
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The runs, model by model.
+    #[must_use]
+    pub fn tables(&self) -> &[RunTable] {
+        &self.tables
+    }
+
+    /// What they amount to.
+    #[must_use]
+    pub fn summary(&self) -> &Summary {
+        &self.summary
+    }
+}
+
+fn threads(number: Option<usize>) -> Result<rayon::ThreadPool, StudyError> {
+    if let Some(n) = number
+        && !(1..=MAX_THREADS).contains(&n)
+    {
+        let problem = format!("{n}: it must be between 1 and {MAX_THREADS}");
+        return Err(StudyError::Threads { problem });
+    }
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(number.unwrap_or(0))
+        .build()
+        .map_err(|e| StudyError::Threads { problem: e.to_string() })
+}

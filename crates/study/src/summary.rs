@@ -1,0 +1,304 @@
+use gyradius_statistics::{
+    Confidence, Deviation, Interval, Moments, Proportion, SortedSample, StatisticsError,
+};
+use serde::Serialize;
+
+use crate::{
+    claims::{self, Claim},
+    model::Model,
+    row::{Entry, Outcome, Quantity, Row},
+    scenario::Scenario,
+    table::RunTable,
+};
+
+/// Every number that the report shows.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    pub(crate) gyradius_version: &'static str,
+    pub(crate) scenario: String,
+    /// SHA-256 of the resolved scenario.
+    pub(crate) fingerprint: String,
+    pub(crate) seed: u64,
+    pub(crate) runs_per_model: u64,
+    /// Of every interval.
+    pub(crate) confidence: f64,
+    pub(crate) nominal: Vec<Nominal>,
+    pub(crate) models: Vec<ModelSummary>,
+    pub(crate) comparisons: Vec<ComparisonSummary>,
+    pub(crate) claims: Vec<Claim>,
+}
+
+/// A quantity of the run without any dispersion.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Nominal {
+    #[serde(serialize_with = "column")]
+    pub(crate) quantity: Quantity,
+    pub(crate) unit: &'static str,
+    pub(crate) value: f64,
+}
+
+/// What the runs of one model did.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct ModelSummary {
+    pub(crate) name: String,
+    pub(crate) failed: u64,
+    /// Reasons of failed runs, with how often.
+    pub(crate) failures: Vec<(String, u64)>,
+    pub(crate) unrealizable: Share,
+    /// Draws in the half sphere away from the mean attitude, for payload and stage, where the law
+    /// draws attitudes.
+    pub(crate) far_half: Option<[Share; 2]>,
+    /// Deviations that an entrywise law was given: payload and stage, each in the order of the run
+    /// table, kg·m².
+    pub(crate) given_deviations_kg_m2: Option<[[f64; 6]; 2]>,
+    pub(crate) quantities: Vec<QuantitySummary>,
+}
+
+/// A share of the runs.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Share {
+    pub(crate) count: u64,
+    pub(crate) of: u64,
+    pub(crate) share: f64,
+    pub(crate) interval: Interval,
+}
+
+/// The distribution of one quantity under one model. What a sample cannot tell is null.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct QuantitySummary {
+    #[serde(serialize_with = "column")]
+    pub(crate) quantity: Quantity,
+    pub(crate) unit: &'static str,
+    pub(crate) n: u64,
+    pub(crate) mean: Option<f64>,
+    pub(crate) mean_interval: Option<Interval>,
+    pub(crate) deviation: Option<f64>,
+    pub(crate) deviation_interval: Option<Interval>,
+    pub(crate) minimum: Option<f64>,
+    pub(crate) p05: Option<f64>,
+    pub(crate) median: Option<f64>,
+    pub(crate) p95: Option<f64>,
+    pub(crate) p95_interval: Option<Interval>,
+    pub(crate) maximum: Option<f64>,
+    pub(crate) skewness: Option<f64>,
+    pub(crate) kurtosis: Option<f64>,
+}
+
+/// A naive model beside a physical one.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct ComparisonSummary {
+    pub(crate) title: String,
+    pub(crate) physical: String,
+    pub(crate) naive: String,
+    pub(crate) ratios: Vec<Ratio>,
+}
+
+/// How much more a quantity varies, and how much larger it is, under the naive model.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Ratio {
+    #[serde(serialize_with = "column")]
+    pub(crate) quantity: Quantity,
+    /// Deviation under the naive model over deviation under the physical one.
+    pub(crate) deviation_ratio: Option<f64>,
+    pub(crate) deviation_ratio_interval: Option<Interval>,
+    /// Mean under the naive model less mean under the physical one, in the quantity's unit.
+    pub(crate) mean_difference: Option<f64>,
+    pub(crate) mean_difference_interval: Option<Interval>,
+}
+
+fn column<S: serde::Serializer>(quantity: &Quantity, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(quantity.column())
+}
+
+impl Summary {
+    pub(crate) fn new(
+        scenario: &Scenario,
+        models: &[Model],
+        tables: &[RunTable],
+    ) -> Result<Self, StatisticsError> {
+        let confidence = Confidence::default();
+        let nominal = nominal(scenario);
+        let models = models
+            .iter()
+            .zip(tables)
+            .map(|(model, table)| ModelSummary::new(scenario, model, table, confidence))
+            .collect::<Result<Vec<_>, _>>()?;
+        let comparisons = scenario
+            .comparisons()
+            .iter()
+            .map(|c| {
+                let (physical, naive) = (&tables[c.physical], &tables[c.naive]);
+                ComparisonSummary {
+                    title: c.title.clone(),
+                    physical: physical.model().to_owned(),
+                    naive: naive.model().to_owned(),
+                    ratios: Quantity::ALL
+                        .map(|q| Ratio::new(q, physical, naive, confidence))
+                        .to_vec(),
+                }
+            })
+            .collect();
+        let mut summary = Self {
+            gyradius_version: env!("CARGO_PKG_VERSION"),
+            scenario: scenario.name().to_owned(),
+            fingerprint: scenario.fingerprint(),
+            seed: scenario.seed(),
+            runs_per_model: scenario.runs(),
+            confidence: confidence.level(),
+            nominal,
+            models,
+            comparisons,
+            claims: Vec::new(),
+        };
+        summary.claims = claims::judge(scenario, &summary, tables);
+        Ok(summary)
+    }
+
+    pub(crate) fn model(&self, name: &str) -> Option<&ModelSummary> {
+        self.models.iter().find(|m| m.name == name)
+    }
+
+    pub(crate) fn nominal_value(&self, quantity: Quantity) -> Option<f64> {
+        self.nominal.iter().find(|n| n.quantity == quantity).map(|n| n.value)
+    }
+}
+
+/// The run of the nominal bodies.
+fn nominal(scenario: &Scenario) -> Vec<Nominal> {
+    let (payload, stage) = (scenario.payload().nominal(), scenario.stage().nominal());
+    let outcome = scenario.separation().run(scenario.settings());
+    let row = Row {
+        run: 0,
+        payload: payload.entries(),
+        stage: stage.entries(),
+        realizable: true,
+        payload_axes: None,
+        stage_axes: None,
+        outcome: outcome.map(|o| Outcome::new(&o, scenario.spin_axis())).map_err(|e| e.to_string()),
+    };
+    Quantity::ALL
+        .into_iter()
+        .filter_map(|quantity| {
+            let value = row.value(quantity)?;
+            Some(Nominal { quantity, unit: quantity.unit(), value })
+        })
+        .collect()
+}
+
+impl ModelSummary {
+    fn new(
+        scenario: &Scenario,
+        model: &Model,
+        table: &RunTable,
+        confidence: Confidence,
+    ) -> Result<Self, StatisticsError> {
+        let rows = table.rows();
+        let share = |count: usize| Share::new(count as u64, rows.len() as u64, confidence);
+        let mut failures: Vec<(String, u64)> = Vec::new();
+        for reason in rows.iter().filter_map(|r| r.outcome.as_ref().err()) {
+            match failures.iter_mut().find(|(known, _)| known == reason) {
+                Some((_, count)) => *count += 1,
+                None => failures.push((reason.clone(), 1)),
+            }
+        }
+        let draws_axes = rows.iter().any(|r| r.payload_axes.is_some());
+        let far = |body: fn(&Row) -> Option<nalgebra::UnitQuaternion<f64>>, axes: &_| {
+            let far = |q| !gyradius_attitude::RadiallyConstrainedGaussian::in_mean_half(axes, &q);
+            share(rows.iter().filter_map(body).filter(|q| far(*q)).count())
+        };
+        let far_half = if draws_axes {
+            Some([
+                far(|r| r.payload_axes, scenario.payload().axes())?,
+                far(|r| r.stage_axes, scenario.stage().axes())?,
+            ])
+        } else {
+            None
+        };
+        Ok(Self {
+            name: table.model().to_owned(),
+            failed: failures.iter().map(|f| f.1).sum(),
+            failures,
+            unrealizable: share(rows.iter().filter(|r| !r.realizable).count())?,
+            far_half,
+            given_deviations_kg_m2: model.given_deviations(),
+            quantities: Quantity::ALL
+                .map(|q| QuantitySummary::new(q, &table.values(q), confidence))
+                .to_vec(),
+        })
+    }
+
+    pub(crate) fn quantity(&self, quantity: Quantity) -> Option<&QuantitySummary> {
+        self.quantities.iter().find(|q| q.quantity == quantity)
+    }
+
+    /// Deviations of the entries that the runs show, payload or stage.
+    pub(crate) fn found_deviations(&self, body: fn(Entry) -> Quantity) -> [Option<f64>; 6] {
+        Entry::ALL.map(|e| self.quantity(body(e)).and_then(|q| q.deviation))
+    }
+}
+
+impl Share {
+    fn new(count: u64, of: u64, confidence: Confidence) -> Result<Self, StatisticsError> {
+        let proportion = Proportion::new(count, of)?;
+        let interval = proportion.interval(confidence);
+        Ok(Self { count, of, share: proportion.value(), interval })
+    }
+}
+
+impl QuantitySummary {
+    fn new(quantity: Quantity, values: &[f64], confidence: Confidence) -> Self {
+        let moments = Moments::new(values).ok();
+        let sorted = SortedSample::new(values).ok();
+        let robust = Deviation::new(values).ok();
+        let quantile = |p| sorted.as_ref().and_then(|s| s.quantile(p).ok());
+        Self {
+            quantity,
+            unit: quantity.unit(),
+            n: values.len() as u64,
+            mean: moments.map(|m| m.mean()),
+            mean_interval: moments.map(|m| m.mean_interval(confidence)),
+            deviation: moments.map(|m| m.standard_deviation()),
+            deviation_interval: robust.and_then(|d| d.interval(confidence).ok()),
+            minimum: sorted.as_ref().map(SortedSample::minimum),
+            p05: quantile(0.05),
+            median: quantile(0.5),
+            p95: quantile(0.95),
+            p95_interval: sorted
+                .as_ref()
+                .and_then(|s| s.quantile_interval(0.95, confidence).ok())
+                .filter(|i| i.lower().is_finite() && i.upper().is_finite()),
+            maximum: sorted.as_ref().map(SortedSample::maximum),
+            skewness: moments.and_then(|m| m.skewness()),
+            kurtosis: moments.and_then(|m| m.kurtosis()),
+        }
+    }
+}
+
+impl Ratio {
+    fn new(
+        quantity: Quantity,
+        physical: &RunTable,
+        naive: &RunTable,
+        confidence: Confidence,
+    ) -> Self {
+        let (physical, naive) = (physical.values(quantity), naive.values(quantity));
+        let deviations = Deviation::new(&naive).ok().zip(Deviation::new(&physical).ok());
+        let moments = Moments::new(&naive).ok().zip(Moments::new(&physical).ok());
+        Self {
+            quantity,
+            deviation_ratio: deviations.as_ref().map(|(n, p)| n.ratio(p)),
+            deviation_ratio_interval: deviations
+                .as_ref()
+                .and_then(|(n, p)| n.ratio_interval(p, confidence).ok()),
+            mean_difference: moments.map(|(n, p)| n.mean() - p.mean()),
+            mean_difference_interval: moments
+                .map(|(n, p)| n.mean_difference_interval(&p, confidence)),
+        }
+    }
+}
+
+impl ComparisonSummary {
+    pub(crate) fn ratio(&self, quantity: Quantity) -> Option<&Ratio> {
+        self.ratios.iter().find(|r| r.quantity == quantity)
+    }
+}

@@ -1,0 +1,52 @@
+use std::fmt::{self, Display, Formatter};
+
+use crate::{
+    format::{optional, significant},
+    row::Quantity,
+    summary::{QuantitySummary, Summary},
+};
+
+/// What is told of every quantity.
+type Told = (&'static str, fn(&QuantitySummary) -> Option<f64>);
+const TOLD: [Told; 3] = [("mean", |q| q.mean), ("sd", |q| q.deviation), ("95 %", |q| q.p95)];
+
+/// The short table that ends a study on the terminal.
+impl Display for Summary {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let names = self.models.iter().map(|m| m.name.chars().count());
+        let width = names.max().unwrap_or(0).max("model".len());
+        write!(f, "{:width$}  {:>12}  {:4}", "model", "unrealizable", "")?;
+        for quantity in Quantity::BEHAVIOUR {
+            write!(f, " {:>13}", quantity.label())?;
+        }
+        write!(f, "\n{:width$}  {:>12}  {:4}", "", "draws", "")?;
+        for quantity in Quantity::BEHAVIOUR {
+            write!(f, " {:>13}", quantity.unit())?;
+        }
+        writeln!(f)?;
+        for model in &self.models {
+            for (line, (told, value)) in TOLD.into_iter().enumerate() {
+                if line == 0 {
+                    let share = format!("{} %", significant(100.0 * model.unrealizable.share, 3));
+                    write!(f, "\n{:width$}  {share:>12}", model.name)?;
+                } else {
+                    write!(f, "{:width$}  {:12}", "", "")?;
+                }
+                write!(f, "  {told:4}")?;
+                for quantity in Quantity::BEHAVIOUR {
+                    let value = optional(model.quantity(quantity).and_then(value), 4);
+                    write!(f, " {value:>13}")?;
+                }
+                writeln!(f)?;
+            }
+        }
+        for model in self.models.iter().filter(|m| m.failed > 0) {
+            let (name, failed) = (&model.name, model.failed);
+            writeln!(f, "\n{name}: {failed} of {} runs failed:", self.runs_per_model)?;
+            for (reason, count) in model.failures.iter().take(3) {
+                writeln!(f, "  {count} × {reason}")?;
+            }
+        }
+        Ok(())
+    }
+}

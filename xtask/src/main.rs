@@ -1,0 +1,7 @@
+//! `cargo xtask study [flags]`: the program `gyradius`, built optimised and run in this process.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    gyradius_cli::run(std::env::args_os())
+}
