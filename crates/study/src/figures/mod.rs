@@ -1,20 +1,22 @@
-pub struct Series<'a> {
-    pub name: &'a str,
-    pub values: &'a [f64],
-}
-pub struct Panel<'a> {
-    pub label: String,
-    pub series: Vec<Series<'a>>,
-    pub nominal: Option<f64>,
-}
-pub fn histogram_grid(_title: &str, _panels: &[Option<Panel<'_>>], _columns: usize) -> String {
-    String::new()
-}
-pub struct Cloud<'a> {
-    pub name: &'a str,
-    pub attitudes: &'a [nalgebra::UnitQuaternion<f64>],
-    pub mean: nalgebra::UnitQuaternion<f64>,
-}
-pub fn attitude_spheres(_title: &str, _clouds: &[Cloud<'_>]) -> String {
-    String::new()
-}
+//! Figures as SVG, made to stand in a paper or inline in a page.
+//!
+//! Pure functions from data to text: the same input gives the same bytes, and any data gives a
+//! figure. The files name no font to be loaded and hold no `id`, style sheet or script, so that
+//! several can be inlined in one page. Their natural size is in `width` and `height`; they shrink
+//! with a narrower page.
+//!
+//! The SVG is written by hand: `plotters` rounds every coordinate to a whole pixel, writes one
+//! element per dot, and has neither title nor description for readers who cannot see the figure.
+
+mod axis;
+mod bins;
+mod histogram;
+mod legend;
+mod panel;
+mod sphere;
+mod style;
+mod svg;
+mod text;
+
+pub(crate) use histogram::{Panel, Series, histogram_grid};
+pub(crate) use sphere::{Cloud, attitude_spheres};

@@ -1,0 +1,199 @@
+//! From samples to counts on shared bins.
+
+use gyradius_statistics::{BinEdges, Histogram, SortedSample};
+
+use super::axis::Units;
+use super::histogram::Panel;
+
+/// The histograms of one panel, in units that read well.
+#[derive(Debug)]
+pub(super) struct Binned {
+    pub(super) units: Units,
+    /// Edges in these units, increasing.
+    pub(super) edges: Vec<f64>,
+    /// Counts per series and bin; none for a series without a finite value.
+    pub(super) counts: Vec<Vec<u64>>,
+    /// Finite values per series.
+    pub(super) finite: Vec<usize>,
+    /// Values per series below and above the edges.
+    pub(super) below: Vec<usize>,
+    pub(super) above: Vec<usize>,
+    /// The nominal value in these units, if it is near enough to be shown.
+    pub(super) nominal: Option<f64>,
+    /// The range of the axis: the edges and the nominal value, with a margin.
+    pub(super) range: (f64, f64),
+}
+
+impl Binned {
+    /// Counts on shared Freedman-Diaconis bins, `most` at most; `None` without a finite value.
+    pub(super) fn new(panel: &Panel<'_>, most: usize) -> Option<Self> {
+        let samples: Vec<Option<SortedSample>> = panel
+            .series
+            .iter()
+            .map(|series| {
+                let finite: Vec<f64> =
+                    series.values.iter().copied().filter(|x| x.is_finite()).collect();
+                SortedSample::new(&finite).ok()
+            })
+            .collect();
+        let fences = samples.iter().flatten().map(fence);
+        let (lower, upper) = fences.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+        let inside = |x: f64| lower <= x && x <= upper;
+        let within =
+            samples.iter().flatten().flat_map(SortedSample::values).filter(|&&x| inside(x));
+        let (least, largest) =
+            within.fold((upper, lower), |(a, b), &x| (f64::min(a, x), f64::max(b, x)));
+        let units = Units::for_range(least, largest);
+        let kept: Vec<Option<SortedSample>> = samples
+            .iter()
+            .map(|sample| {
+                let values = sample.as_ref()?.values().iter().filter(|&&x| inside(x));
+                SortedSample::new(&values.map(|&x| units.of(x)).collect::<Vec<_>>()).ok()
+            })
+            .collect();
+        let nominal = panel.nominal.map(|x| units.of(x)).filter(|x| x.is_finite());
+        let edges = edges(&kept.iter().flatten().collect::<Vec<_>>(), nominal, most)?;
+        let bounds = (edges.values()[0], edges.values()[edges.bins()]);
+        let beyond = |outside: fn(f64, f64, f64) -> bool| {
+            let count = |sample: &Option<SortedSample>| {
+                let values = sample.iter().flat_map(SortedSample::values);
+                values.filter(|&&x| outside(x, lower, upper)).count()
+            };
+            samples.iter().map(count).collect()
+        };
+        let span = bounds.1 - bounds.0;
+        let nominal = nominal.filter(|x| (bounds.0 - span..=bounds.1 + span).contains(x));
+        let ends = nominal.map_or(bounds, |x| (bounds.0.min(x), bounds.1.max(x)));
+        let margin = 0.03 * (ends.1 - ends.0);
+        Some(Self {
+            units,
+            counts: kept.iter().map(|sample| counts(sample.as_ref(), &edges)).collect(),
+            finite: samples.iter().map(|s| s.as_ref().map_or(0, SortedSample::n)).collect(),
+            below: beyond(|x, lower, _| x < lower),
+            above: beyond(|x, _, upper| x > upper),
+            nominal,
+            range: (ends.0 - margin, ends.1 + margin),
+            edges: edges.values().to_vec(),
+        })
+    }
+
+    /// The height of each bin of a series: counts, or density in the units of the axis.
+    pub(super) fn heights(&self, series: usize, density: bool) -> Vec<f64> {
+        let n = self.finite[series] as f64;
+        let widths = self.edges.windows(2).map(|pair| pair[1] - pair[0]);
+        let height = |(&count, width): (&u64, f64)| {
+            if density { count as f64 / n / width } else { count as f64 }
+        };
+        self.counts[series].iter().zip(widths).map(height).collect()
+    }
+}
+
+fn counts(sample: Option<&SortedSample>, edges: &BinEdges) -> Vec<u64> {
+    sample.map_or_else(Vec::new, |s| Histogram::new(s, edges).counts().to_vec())
+}
+
+/// The range worth showing: all of it, unless a few extreme values would squeeze the rest.
+///
+/// It ends at the last values within whiskers from an upper and a lower quantile, a quarter as long
+/// as these are apart, if that gains at least a third of the range. The quantiles are those of ½ %,
+/// or of 1 or 2 % if the middle half of the sample is otherwise too narrow to be seen.
+fn fence(sample: &SortedSample) -> (f64, f64) {
+    let quantile = |p: f64| sample.quantile(p).unwrap_or(f64::NAN);
+    let cut = |p: f64| {
+        let (a, b) = (quantile(p), quantile(1.0 - p));
+        let whisker = b / 4.0 - a / 4.0;
+        let values = sample.values().iter().copied();
+        let all = (sample.minimum(), sample.maximum());
+        let lower = values.clone().find(|&x| x >= a - whisker).unwrap_or(all.0);
+        let upper = values.rev().find(|&x| x <= b + whisker).unwrap_or(all.1);
+        let gains = upper / 2.0 - lower / 2.0 <= (all.1 / 2.0 - all.0 / 2.0) / 1.5;
+        if gains { (lower, upper) } else { all }
+    };
+    let middle = quantile(0.75) / 2.0 - quantile(0.25) / 2.0;
+    let visible = |&(a, b): &(f64, f64)| middle >= 0.03 * (b / 2.0 - a / 2.0);
+    [0.005, 0.01, 0.02].map(cut).into_iter().find(visible).unwrap_or_else(|| cut(0.005))
+}
+
+fn edges(samples: &[&SortedSample], nominal: Option<f64>, most: usize) -> Option<BinEdges> {
+    let lower = samples.iter().map(|s| s.minimum()).reduce(f64::min)?;
+    let upper = samples.iter().map(|s| s.maximum()).reduce(f64::max)?;
+    if lower < upper {
+        let edges = BinEdges::freedman_diaconis(samples).ok()?;
+        if edges.bins() <= most { Some(edges) } else { BinEdges::uniform(lower, upper, most).ok() }
+    } else {
+        // One value: a spike amid a range of the order of the value, or up to the nominal.
+        let size = if lower == 0.0 { 1.0 } else { lower.abs() };
+        let off = nominal.map_or(0.0, |x| (x - lower).abs());
+        let reach = if (1e-4 * size..=10.0 * size).contains(&off) { off } else { 0.1 * size };
+        BinEdges::uniform(lower - 1.25 * reach, lower + 1.25 * reach, 41).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::histogram::Series;
+    use super::*;
+
+    fn binned(samples: &[&[f64]], nominal: Option<f64>) -> Option<Binned> {
+        let series = samples.iter().map(|values| Series { name: "", values }).collect();
+        Binned::new(&Panel { label: String::new(), series, nominal }, 50)
+    }
+
+    /// Quantiles of the Cauchy law.
+    fn heavy() -> Vec<f64> {
+        (1..2000).map(|i| (std::f64::consts::PI * (f64::from(i) / 2000.0 - 0.5)).tan()).collect()
+    }
+
+    #[test]
+    fn every_value_is_counted_once() {
+        let (a, b) = (heavy(), [1e300, -3.0, f64::NAN, 0.0, f64::INFINITY]);
+        let binned = binned(&[&a, &b, &[]], None).unwrap();
+        assert_eq!(binned.finite, [1999, 3, 0]);
+        for i in 0..3 {
+            let inside = binned.counts[i].iter().sum::<u64>() as usize;
+            assert_eq!(inside + binned.below[i] + binned.above[i], binned.finite[i]);
+        }
+        assert_eq!(binned.edges.len(), 51);
+    }
+
+    #[test]
+    fn few_extremes_are_left_out_and_the_rest_is_not() {
+        let values = heavy();
+        let tails = binned(&[&values], None).unwrap();
+        assert_eq!(tails.below, tails.above);
+        assert!((1..40).contains(&tails.below[0]), "{:?}", tails.below);
+        // A second mode of 3 % is no outlier, however far.
+        let modes: Vec<f64> =
+            (0..2000).map(|i| f64::from(i % 7) + if i % 33 == 0 { 1e4 } else { 0.0 }).collect();
+        let modes = binned(&[&modes], None).unwrap();
+        assert_eq!((modes.below[0], modes.above[0]), (0, 0));
+    }
+
+    #[test]
+    fn density_is_of_all_finite_values() {
+        let values = heavy();
+        let binned = binned(&[&values], None).unwrap();
+        let width = binned.edges[1] - binned.edges[0];
+        let share = binned.heights(0, true).iter().sum::<f64>() * width;
+        let outside = (binned.below[0] + binned.above[0]) as f64 / 1999.0;
+        assert!((share + outside - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_constant_is_a_spike_with_room_around() {
+        for value in [0.0, -2.5, 1e300, f64::MAX, 5e-324] {
+            let binned = binned(&[&[value; 9]], Some(value)).unwrap();
+            assert_eq!(binned.counts[0].iter().filter(|&&n| n > 0).count(), 1, "{value}");
+            assert!(binned.counts[0][20] == 9 && binned.nominal.is_some(), "{value}");
+        }
+    }
+
+    #[test]
+    fn a_near_nominal_extends_the_axis_and_a_far_one_does_not() {
+        let near = binned(&[&[1.0, 2.0, 3.0]], Some(4.5)).unwrap();
+        assert!(near.nominal == Some(4.5) && near.range.1 > 4.5);
+        let far = binned(&[&[1.0, 2.0, 3.0]], Some(1e9)).unwrap();
+        assert!(far.nominal.is_none() && far.range.1 < 4.0);
+        assert!(binned(&[&[f64::NAN], &[]], Some(1.0)).is_none());
+    }
+}

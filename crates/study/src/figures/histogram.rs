@@ -1,0 +1,239 @@
+//! Histograms of quantities under several models, in a grid of panels.
+
+use gyradius_statistics::SortedSample;
+
+use super::legend::{Entry, legend};
+use super::panel::{Cell, Frame, GUTTER, nominal_pen, outline_pen};
+use super::style::{self, MARGIN};
+use super::svg::{Anchor, Look, Svg};
+use super::text::{count, significant};
+
+/// One sample of one quantity under one model.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Series<'a> {
+    /// Name of the model, as in the legend; a name has the same colour in all panels.
+    pub(crate) name: &'a str,
+    /// One value per run, in the unit that the label of the panel names; values that are not
+    /// finite are left out, and counted in a note.
+    pub(crate) values: &'a [f64],
+}
+
+/// Histograms of the same quantity under several models, on the same axes and bins.
+#[derive(Debug, Clone)]
+pub(crate) struct Panel<'a> {
+    /// What is on the horizontal axis, with its unit: `wobble (deg)`, `I₁₂ (kg·m²)`.
+    pub(crate) label: String,
+    /// The samples, one per model.
+    pub(crate) series: Vec<Series<'a>>,
+    /// A value to mark, in the unit of the label.
+    pub(crate) nominal: Option<f64>,
+}
+
+/// A grid of panels, row by row with so many columns; `None` leaves its place empty.
+///
+/// Bins are those of Freedman and Diaconis, shared by the series of a panel, and no more than are
+/// wide enough to be seen. The vertical axis counts runs if in every panel all series have as many
+/// values, and is a density otherwise. An axis leaves out extreme values that would squeeze the
+/// rest, and says how many. The colours of the models follow their first appearance.
+pub(crate) fn histogram_grid(title: &str, panels: &[Option<Panel<'_>>], columns: usize) -> String {
+    let columns = columns.clamp(1, panels.len().max(1));
+    let (width, height) = match columns {
+        1 => (500.0, 220.0),
+        2 => (350.0, 160.0),
+        _ => (232.0, 122.0),
+    };
+    let density = panels.iter().flatten().any(sizes_differ);
+    let mut names = Vec::new();
+    let cells: Vec<Option<Cell<'_>>> = panels
+        .iter()
+        .map(|panel| {
+            let panel = panel.as_ref()?;
+            Some(Cell::new(panel, models(panel, &mut names), density, (width, height)))
+        })
+        .collect();
+    let room = cells.iter().flatten().map(Cell::room).fold(22.0, f64::max);
+    let pitch = room + width + GUTTER;
+    // Half a tick label can stand out on the right of a plot.
+    let figure_width = 2.0 * MARGIN + pitch * columns as f64 - GUTTER + 12.0;
+
+    let mut svg = Svg::new();
+    let mut y = svg.heading(title, figure_width);
+    y = legend(&mut svg, entries(&names, &cells), y + 4.0, figure_width) + 8.0;
+    if cells.iter().flatten().next().is_none() {
+        let look = Look::new(12.0, style::MUTED).at(Anchor::Middle);
+        svg.text(figure_width / 2.0, y + 30.0, look, "no data");
+        y += 60.0;
+    }
+    for row in cells.chunks(columns).filter(|row| row.iter().any(Option::is_some)) {
+        let mut bottom = y;
+        for (column, cell) in row.iter().enumerate() {
+            let Some(cell) = cell else { continue };
+            let left = MARGIN + pitch * column as f64 + room;
+            let frame = Frame { left, top: y + 18.0, width, height };
+            bottom = bottom.max(cell.draw(&mut svg, &frame));
+        }
+        y = bottom + 16.0;
+    }
+    svg.finish((figure_width, y), title, &description(panels, density))
+}
+
+fn sizes_differ(panel: &Panel<'_>) -> bool {
+    let mut sizes = panel.series.iter().map(|s| s.values.len()).filter(|&n| n > 0);
+    let first = sizes.next();
+    sizes.any(|n| Some(n) != first)
+}
+
+/// Places of the names of the series among `names`, which grow as needed. Two series of the same
+/// name in one panel are two entries.
+fn models<'a>(panel: &Panel<'a>, names: &mut Vec<&'a str>) -> Vec<usize> {
+    let mut taken = Vec::new();
+    for series in &panel.series {
+        let known = (0..names.len()).find(|i| names[*i] == series.name && !taken.contains(i));
+        taken.push(known.unwrap_or_else(|| {
+            names.push(series.name);
+            names.len() - 1
+        }));
+    }
+    taken
+}
+
+fn entries(names: &[&str], cells: &[Option<Cell<'_>>]) -> Vec<Entry> {
+    let entry = |name: &str, width: f64, pen: &str, d: &str| {
+        let mut swatch = Svg::new();
+        swatch.path(pen, d);
+        Entry { name: name.to_owned(), width, swatch }
+    };
+    let names = names.iter().enumerate();
+    let mut entries: Vec<Entry> = names
+        .map(|(model, name)| entry(name, 20.0, &outline_pen(model), "M0 5v-10h20v10"))
+        .collect();
+    if cells.iter().flatten().any(Cell::marks_nominal) {
+        entries.push(entry("nominal", 4.0, &nominal_pen(), "M2 -7v14"));
+    }
+    entries
+}
+
+/// The figure in words.
+fn description(panels: &[Option<Panel<'_>>], density: bool) -> String {
+    let mut text = format!("Histograms, {}.", if density { "density" } else { "runs per bin" });
+    for panel in panels.iter().flatten() {
+        let of = |s: &Series<'_>| format!("{}, {}", s.name, summary(s.values));
+        let mut parts: Vec<String> = panel.series.iter().map(of).collect();
+        if let Some(nominal) = panel.nominal {
+            parts.push(format!("nominal {}", significant(nominal, 5)));
+        }
+        text.push_str(&format!(" {}: {}.", panel.label, parts.join("; ")));
+    }
+    text
+}
+
+fn summary(values: &[f64]) -> String {
+    let finite: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
+    match SortedSample::new(&finite) {
+        Ok(sample) => format!(
+            "{} values from {} to {}, median {}",
+            count(sample.n()),
+            significant(sample.minimum(), 5),
+            significant(sample.maximum(), 5),
+            significant(sample.median(), 5)
+        ),
+        Err(_) => "no data".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::svg::tests::read;
+    use super::*;
+
+    fn panel<'a>(values: &[&'a [f64]], nominal: Option<f64>) -> Option<Panel<'a>> {
+        let names = ["one", "two", "two"];
+        let series = values.iter().zip(names).map(|(values, name)| Series { name, values });
+        Some(Panel { label: "wobble (deg)".to_owned(), series: series.collect(), nominal })
+    }
+
+    fn bell(n: u32, spread: f64) -> Vec<f64> {
+        let uniform = |i: u32, k: u32| f64::from(i.wrapping_mul(k) % 65_521) / 65_521.0 - 0.5;
+        (1..=n).map(|i| spread * (uniform(i, 40_503) + uniform(i, 30_011))).collect()
+    }
+
+    #[test]
+    fn whatever_the_data_there_is_a_figure() {
+        let heap = [
+            vec![],
+            vec![0.0],
+            vec![3.5; 100],
+            vec![f64::NAN, f64::INFINITY, 1.0],
+            vec![f64::MIN, 0.0, f64::MAX],
+            vec![1e300, 2e300],
+            vec![5e-324, 0.0],
+            vec![1.0, 1.0f64.next_up()],
+            bell(500, 1e-7).iter().map(|x| x + 1234.5).collect(),
+            bell(500, 1.0),
+        ];
+        let nominals = [None, Some(0.0), Some(f64::NAN), Some(-1e300), Some(1234.5)];
+        for (i, a) in heap.iter().enumerate() {
+            for b in &heap {
+                for nominal in nominals {
+                    let values: [&[f64]; 3] = [a, b, &heap[i]];
+                    let svg = histogram_grid("", &[panel(&values, nominal), None], i);
+                    assert!(read(&svg).contains("wobble (deg)"));
+                    assert_eq!(svg, histogram_grid("", &[panel(&values, nominal), None], i));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn without_data_the_figure_says_so() {
+        for panels in [vec![], vec![None, None], vec![panel(&[], None)], vec![panel(&[&[]], None)]]
+        {
+            assert!(read(&histogram_grid("Title", &panels, 0)).contains("no data"));
+        }
+    }
+
+    #[test]
+    fn equal_sizes_are_counted_and_others_are_not() {
+        let (a, b) = (bell(100, 1.0), bell(200, 1.0));
+        let same = read(&histogram_grid("", &[panel(&[&a, &a], None)], 1));
+        assert!(same.contains("runs per bin") && !same.contains("density"));
+        let other = read(&histogram_grid("", &[panel(&[&a, &b], None)], 1));
+        assert!(other.contains("density") && !other.contains("runs per bin"));
+    }
+
+    #[test]
+    fn what_is_not_shown_is_told() {
+        let mut values = bell(2000, 1.0);
+        values.extend([1e6, f64::NAN, f64::NAN]);
+        let text = read(&histogram_grid("", &[panel(&[&values], Some(-7.5))], 1));
+        for note in ["runs right of the axis: 1", "runs not finite: 2", "off the axis: −7.5"] {
+            assert!(text.contains(note), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_legend_is_there_once_and_keeps_names_apart() {
+        let a = bell(100, 1.0);
+        let panels = [panel(&[&a, &a, &a], Some(0.0)), panel(&[&a, &a], Some(0.0))];
+        let svg = histogram_grid("", &panels, 2);
+        assert_eq!(read(&svg).matches("one").count(), 1);
+        assert_eq!(read(&svg).matches("two").count(), 2);
+        assert_eq!(read(&svg).matches("nominal").count(), 1);
+        assert_eq!(svg.matches(style::model(0)).count(), 2 * 3);
+    }
+
+    #[test]
+    fn the_description_says_it_in_words() {
+        let svg = histogram_grid("", &[panel(&[&[1.0, 2.0, 4.0]], Some(1.5))], 1);
+        let words = "wobble (deg): one, 3 values from 1 to 4, median 2; nominal 1.5.";
+        assert!(svg.contains(words));
+    }
+
+    #[test]
+    fn six_panels_are_small() {
+        let (a, b) = (bell(2000, 0.1), bell(2000, 2.0));
+        let panels: Vec<_> = (0..6).map(|_| panel(&[&a, &b], Some(0.0))).collect();
+        let size = histogram_grid("Title", &panels, 3).len();
+        assert!(size < 30_000, "{size}");
+    }
+}
