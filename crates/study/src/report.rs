@@ -47,7 +47,7 @@ fn head(summary: &Summary) -> Markup {
         p.lead {
             "Scenario " strong { (summary.scenario) } ": " (summary.runs_per_model)
             " runs of each of the models " (models.join(", ")) ", seed " (summary.seed) ". "
-            "All intervals have a confidence of " (significant(100.0 * summary.confidence, 3)) " %."
+            "All intervals have a confidence of " (100.0 * summary.confidence) " %."
         }
     }
 }
@@ -55,7 +55,7 @@ fn head(summary: &Summary) -> Markup {
 fn results(summary: &Summary) -> Markup {
     html! {
         h2 { "What the payload does" }
-        div.wide { table {
+        div.wide { table.results {
             thead {
                 tr {
                     th rowspan="2" { "model" }
@@ -132,8 +132,8 @@ fn claims(summary: &Summary) -> Markup {
         p {
             "Peck (2003) claims the following of physically realizable models and of independent "
             "Gaussian entries. “Considerably more” is taken as a deviation larger by at least "
-            (significant(100.0 * (CONSIDERABLE - 1.0), 2)) " % with its whole interval, “the same” as within "
-            (significant(100.0 * IDENTICAL, 2)) " %, “one-sided” as a skewness beyond "
+            (format!("{:.0}", 100.0 * (CONSIDERABLE - 1.0))) " % with its whole interval, “the same” as within "
+            (100.0 * IDENTICAL) " %, “one-sided” as a skewness beyond "
             (significant(ONE_SIDED, 1)) ". A claim that stands in one comparison and not in another holds in part."
         }
         table.claims {
