@@ -1,4 +1,5 @@
 //! The numbers that Peck (2003) prints, and those that an independent program finds for its laws.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_attitude::MeanHalf;
 use gyradius_dispersion::{EntryMoments, GaussianRoots, JacobianTwice, PrincipalDispersion};

@@ -1,5 +1,6 @@
 //! One separation of the paper's scenario, to the last release and its spin metrics.
 #![allow(missing_docs, reason = "criterion's macros make public items")]
+#![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use gyradius_inertia::InertiaMatrix;

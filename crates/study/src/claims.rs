@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::{
-    row::{Entry, Quantity},
+    row::{Body, Entry, Quantity},
     scenario::Scenario,
     summary::{ComparisonSummary, ModelSummary, Summary},
     table::RunTable,
@@ -167,12 +167,10 @@ fn same_deviations(summary: &Summary) -> Claim {
             continue;
         };
         let Some([payload, stage]) = naive.given_deviations_kg_m2 else { continue };
-        let bodies: [(&str, fn(Entry) -> Quantity, [f64; 6]); 2] =
-            [("payload", Quantity::Payload, payload), ("stage", Quantity::Stage, stage)];
         let mut words = Vec::new();
-        for (body, of, given) in bodies {
+        for (body, given) in Body::BOTH.into_iter().zip([payload, stage]) {
             let worst = physical
-                .found_deviations(of)
+                .found_deviations(body)
                 .into_iter()
                 .zip(given)
                 .filter_map(|(found, given)| Some(given / found.filter(|f| *f > 0.0)? - 1.0))
@@ -182,7 +180,7 @@ fn same_deviations(summary: &Summary) -> Claim {
             } else {
                 Verdict::DoesNotHold
             });
-            words.push(format!("{body} entries off by up to {:+.1} %", 100.0 * worst));
+            words.push(format!("{} entries off by up to {:+.1} %", body.name(), 100.0 * worst));
         }
         findings.push(format!(
             "{}: deviations given to {} against those of {}: {}.",
@@ -300,10 +298,9 @@ struct Shape {
 
 impl Shape {
     fn of(table: &RunTable) -> Self {
-        let bodies: [fn(Entry) -> Quantity; 2] = [Quantity::Payload, Quantity::Stage];
         let mut skewed = (Quantity::Payload(Entry::I11), 0.0_f64);
         let mut two_peaked: Option<(Quantity, f64)> = None;
-        for quantity in bodies.into_iter().flat_map(|body| Entry::ALL.map(body)) {
+        for quantity in Body::BOTH.into_iter().flat_map(|b| Entry::ALL.map(|e| b.entry(e))) {
             let values = table.values(quantity);
             let Ok(moments) = gyradius_statistics::Moments::new(&values) else { continue };
             let skewness = moments.skewness().unwrap_or(0.0);

@@ -4,7 +4,7 @@ use nalgebra::UnitQuaternion;
 
 use crate::{
     figures::{Cloud, Panel, Series, attitude_spheres, histogram_grid},
-    row::{Entry, Quantity, Row},
+    row::{Body, Entry, Quantity},
     scenario::Scenario,
     summary::Summary,
     table::RunTable,
@@ -63,13 +63,13 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
         plates.push(grid(
             "figure-5-8-payload",
             "Inertia of the payload, in matrix order (Figures 5 and 8)",
-            &matrix_order(Quantity::Payload),
+            &matrix_order(Body::Payload),
             3,
         ));
         plates.push(grid(
             "figure-5-8-stage",
             "Inertia of the stage, in matrix order (Figures 5 and 8)",
-            &matrix_order(Quantity::Stage),
+            &matrix_order(Body::Stage),
             3,
         ));
         plates.push(grid(
@@ -86,7 +86,16 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
 fn attitudes(scenario: &Scenario, tables: &[RunTable]) -> Option<Plate> {
     let drawn: Vec<(&RunTable, Vec<UnitQuaternion<f64>>)> = tables
         .iter()
-        .map(|t| (t, t.rows().iter().filter_map(axes).take(ATTITUDES).collect::<Vec<_>>()))
+        .map(|t| {
+            (
+                t,
+                t.rows()
+                    .iter()
+                    .filter_map(|r| Body::Payload.axes(r))
+                    .take(ATTITUDES)
+                    .collect::<Vec<_>>(),
+            )
+        })
         .filter(|(_, attitudes)| !attitudes.is_empty())
         .collect();
     let mean = scenario.payload().axes().mean();
@@ -105,10 +114,6 @@ fn attitudes(scenario: &Scenario, tables: &[RunTable]) -> Option<Plate> {
     })
 }
 
-fn axes(row: &Row) -> Option<UnitQuaternion<f64>> {
-    row.payload_axes
-}
-
 fn axis_label(quantity: Quantity) -> String {
     match quantity.unit() {
         "1" => quantity.label().to_owned(),
@@ -117,8 +122,8 @@ fn axis_label(quantity: Quantity) -> String {
 }
 
 /// The upper triangle, symmetric entries omitted.
-fn matrix_order(body: fn(Entry) -> Quantity) -> [Option<Quantity>; 9] {
+fn matrix_order(body: Body) -> [Option<Quantity>; 9] {
     use Entry::{I11, I12, I13, I22, I23, I33};
     [Some(I11), Some(I12), Some(I13), None, Some(I22), Some(I23), None, None, Some(I33)]
-        .map(|entry| entry.map(body))
+        .map(|entry| entry.map(|e| body.entry(e)))
 }

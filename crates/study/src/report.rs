@@ -6,7 +6,7 @@ use crate::{
     claims::{CONSIDERABLE, Claim, IDENTICAL, ONE_SIDED, Verdict},
     format::{interval, optional, significant},
     plates::Plate,
-    row::{Entry, Quantity},
+    row::{Body, Entry, Quantity},
     scenario::{Comparison, Scenario},
     summary::{ComparisonSummary, ModelSummary, Summary},
 };
@@ -218,8 +218,6 @@ fn deviation_table(
     naive: &ModelSummary,
     given: [[f64; 6]; 2],
 ) -> Markup {
-    let bodies: [(&str, fn(Entry) -> Quantity); 2] =
-        [("payload", Quantity::Payload), ("stage", Quantity::Stage)];
     html! {
         h2 { "Deviations of the entries (Table 2): " (comparison.title.to_lowercase()) }
         p {
@@ -232,12 +230,12 @@ fn deviation_table(
                 @for entry in Entry::ALL { th { (Quantity::Payload(entry).label()) } }
             } }
             tbody {
-                @for ((body, of), given) in bodies.into_iter().zip(given) {
+                @for (body, given) in Body::BOTH.into_iter().zip(given) {
                     tr.first {
-                        th rowspan="3" scope="rowgroup" { (body) }
+                        th rowspan="3" scope="rowgroup" { (body.name()) }
                         th scope="row" { (physical.name) }
                         @for entry in Entry::ALL {
-                            @let q = physical.quantity(of(entry));
+                            @let q = physical.quantity(body.entry(entry));
                             td {
                                 (optional(q.and_then(|q| q.deviation), 4)) br;
                                 small { (interval(q.and_then(|q| q.deviation_interval), 4)) }
@@ -251,7 +249,7 @@ fn deviation_table(
                     tr {
                         th scope="row" { "given over found" }
                         @for (entry, value) in Entry::ALL.into_iter().zip(given) {
-                            @let found = physical.quantity(of(entry)).and_then(|q| q.deviation);
+                            @let found = physical.quantity(body.entry(entry)).and_then(|q| q.deviation);
                             td { (optional(found.filter(|f| *f > 0.0).map(|f| value / f), 3)) }
                         }
                     }

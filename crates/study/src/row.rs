@@ -106,6 +106,40 @@ impl Entry {
     pub const ALL: [Self; 6] = [Self::I11, Self::I22, Self::I33, Self::I12, Self::I13, Self::I23];
 }
 
+/// One of the two bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Body {
+    Payload,
+    Stage,
+}
+
+impl Body {
+    pub(crate) const BOTH: [Self; 2] = [Self::Payload, Self::Stage];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Payload => "payload",
+            Self::Stage => "stage",
+        }
+    }
+
+    /// An entry of its inertia matrix.
+    pub(crate) fn entry(self, entry: Entry) -> Quantity {
+        match self {
+            Self::Payload => Quantity::Payload(entry),
+            Self::Stage => Quantity::Stage(entry),
+        }
+    }
+
+    /// The attitude of its principal axes, as drawn.
+    pub(crate) fn axes(self, row: &Row) -> Option<UnitQuaternion<f64>> {
+        match self {
+            Self::Payload => row.payload_axes,
+            Self::Stage => row.stage_axes,
+        }
+    }
+}
+
 /// A body axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the names are the axes")]

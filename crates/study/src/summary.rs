@@ -1,13 +1,14 @@
 use gyradius_statistics::{
     Confidence, Deviation, Interval, Moments, Proportion, SortedSample, StatisticsError,
 };
+use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
 use crate::{
     claims::{self, Claim},
     model::Model,
-    row::{Entry, Outcome, Quantity, Row},
-    scenario::Scenario,
+    row::{Body, Entry, Outcome, Quantity, Row},
+    scenario::{Scenario, UncertainBody},
     table::RunTable,
 };
 
@@ -202,15 +203,12 @@ impl ModelSummary {
             }
         }
         let draws_axes = rows.iter().any(|r| r.payload_axes.is_some());
-        let far = |body: fn(&Row) -> Option<nalgebra::UnitQuaternion<f64>>, axes: &_| {
-            let far = |q| !gyradius_attitude::RadiallyConstrainedGaussian::in_mean_half(axes, &q);
-            share(rows.iter().filter_map(body).filter(|q| far(*q)).count())
+        let far = |body: Body, law: &UncertainBody| {
+            let far = |q: &UnitQuaternion<f64>| !law.axes().in_mean_half(q);
+            share(rows.iter().filter_map(|r| body.axes(r)).filter(far).count())
         };
         let far_half = if draws_axes {
-            Some([
-                far(|r| r.payload_axes, scenario.payload().axes())?,
-                far(|r| r.stage_axes, scenario.stage().axes())?,
-            ])
+            Some([far(Body::Payload, scenario.payload())?, far(Body::Stage, scenario.stage())?])
         } else {
             None
         };
@@ -232,8 +230,8 @@ impl ModelSummary {
     }
 
     /// Deviations of the entries that the runs show, payload or stage.
-    pub(crate) fn found_deviations(&self, body: fn(Entry) -> Quantity) -> [Option<f64>; 6] {
-        Entry::ALL.map(|e| self.quantity(body(e)).and_then(|q| q.deviation))
+    pub(crate) fn found_deviations(&self, body: Body) -> [Option<f64>; 6] {
+        Entry::ALL.map(|e| self.quantity(body.entry(e)).and_then(|q| q.deviation))
     }
 }
 

@@ -1,4 +1,3 @@
-use nalgebra::UnitQuaternion;
 use parquet::{
     basic::Compression,
     data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type},
@@ -11,7 +10,7 @@ use parquet::{
 };
 use std::{io::Write, sync::Arc};
 
-use crate::row::{Quantity, Row};
+use crate::row::{Body, Quantity, Row};
 
 /// Rows of one row group: enough to compress well, little enough to read in part.
 const ROWS_PER_GROUP: usize = 131_072;
@@ -85,11 +84,9 @@ impl RunTable {
         }
         let realizable: Vec<bool> = rows.iter().map(|r| r.realizable).collect();
         write::<BoolType, _>(group, &realizable, None)?;
-        let axes: [fn(&Row) -> Option<UnitQuaternion<f64>>; 2] =
-            [|r| r.payload_axes, |r| r.stage_axes];
-        for axes in axes {
+        for body in Body::BOTH {
             for i in 0..4 {
-                write_optional(group, rows.iter().map(|r| axes(r).map(|q| q.coords[i])))?;
+                write_optional(group, rows.iter().map(|r| body.axes(r).map(|q| q.coords[i])))?;
             }
         }
         Ok(())
@@ -105,8 +102,8 @@ fn schema() -> String {
     ];
     fields.extend(Quantity::ALL.map(|q| format!("optional double {}", q.column())));
     fields.push("required boolean realizable".to_owned());
-    for body in ["payload", "stage"] {
-        fields.extend((1..=4).map(|i| format!("optional double {body}_q{i}")));
+    for body in Body::BOTH {
+        fields.extend((1..=4).map(|i| format!("optional double {}_q{i}", body.name())));
     }
     format!("message run {{ {}; }}", fields.join("; "))
 }

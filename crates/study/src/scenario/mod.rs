@@ -50,8 +50,9 @@ pub enum ScenarioError {
 }
 
 impl ScenarioError {
-    pub(crate) fn field(field: impl Into<String>, problem: impl ToString) -> Self {
-        Self::Field { field: field.into(), problem: problem.to_string() }
+    #[allow(clippy::needless_pass_by_value, reason = "errors are given away as they come")]
+    pub(crate) fn field(field: impl Into<String>, problem: impl std::fmt::Display) -> Self {
+        Self::Field { field: field.into(), problem: format!("{problem}") }
     }
 }
 
