@@ -150,13 +150,13 @@ impl FisherBingham {
         self.contour.ln_integral()
     }
 
-    /// E[x], a vector inside the unit ball.
+    /// The mean E x of the four coordinates, a vector inside the unit ball.
     #[must_use]
     pub fn mean_vector(&self) -> Vector4<f64> {
         self.mean
     }
 
-    /// E[x xᵀ], of trace one.
+    /// The second moment E xxᵀ, of trace one.
     #[must_use]
     pub fn second_moment(&self) -> Matrix4<f64> {
         self.second_moment

@@ -179,13 +179,13 @@ impl RadiallyConstrainedGaussian {
         self.ln_density(&angles.quaternion()) + libm::log(angles.jacobian())
     }
 
-    /// E[x], a vector inside the unit ball.
+    /// The mean E x of the four coordinates, a vector inside the unit ball.
     #[must_use]
     pub fn mean_vector(&self) -> Vector4<f64> {
         self.law.mean_vector()
     }
 
-    /// E[x xᵀ], of trace one.
+    /// The second moment E xxᵀ, of trace one.
     #[must_use]
     pub fn second_moment(&self) -> Matrix4<f64> {
         self.law.second_moment()

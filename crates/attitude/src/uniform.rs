@@ -90,7 +90,7 @@ mod tests {
     /// Under Haar measure every entry of the rotation matrix is uniform on [-1, 1].
     #[test]
     fn every_matrix_entry_is_uniform() {
-        let matrices: Vec<_> = draws().map(|q| q.to_rotation_matrix()).collect();
+        let matrices: Vec<_> = draws().map(UnitQuaternion::to_rotation_matrix).collect();
         for i in 0..3 {
             for j in 0..3 {
                 let entry = matrices.iter().map(|m| m[(i, j)]).collect();
