@@ -55,7 +55,7 @@ pub enum Method {
 /// # Algorithm
 /// Rejection, exact and independent, from the best of three proposals ([`Method`]); the share of
 /// accepted proposals is known: [`acceptance`](Self::acceptance). Normaliser and moments by a
-/// contour integral to about 1e-14.
+/// contour integral: ln C to about 1e-13, to 1e-10 where P spreads beyond 1e9.
 ///
 /// # Limits
 /// Entries up to 1e14.
@@ -78,8 +78,11 @@ pub struct FisherBingham {
 enum Sampler {
     Chart(Box<Chart>),
     Circle(Box<Circle>),
-    /// With the acceptance.
-    Uniform(f64),
+    /// With the acceptance, and the exponent that no point of the sphere exceeds.
+    Uniform {
+        acceptance: f64,
+        ln_bound: f64,
+    },
 }
 
 impl FisherBingham {
@@ -93,11 +96,14 @@ impl FisherBingham {
         {
             return Err(FisherBinghamError::Entry { value });
         }
-        check_symmetric(&precision).map_err(|[row, column]| FisherBinghamError::NotSymmetric {
-            row: row + 1,
-            column: column + 1,
-            upper: precision[(row, column)],
-            lower: precision[(column, row)],
+        let size = precision.amax();
+        let precision = symmetric_part(&precision, |_, _| size).map_err(|[row, column]| {
+            FisherBinghamError::NotSymmetric {
+                row: row + 1,
+                column: column + 1,
+                upper: precision[(row, column)],
+                lower: precision[(column, row)],
+            }
         })?;
         let (eigenvalues, axes) = jacobi::eigen(&precision);
         let b: [f64; 4] = (axes.transpose() * linear).into();
@@ -194,7 +200,7 @@ impl FisherBingham {
         match &self.sampler {
             Sampler::Chart(chart) => chart.acceptance(),
             Sampler::Circle(circle) => circle.acceptance(),
-            Sampler::Uniform(acceptance) => *acceptance,
+            Sampler::Uniform { acceptance, .. } => *acceptance,
         }
     }
 
@@ -204,7 +210,7 @@ impl FisherBingham {
         match &self.sampler {
             Sampler::Chart(_) => Method::Chart,
             Sampler::Circle(_) => Method::Circle,
-            Sampler::Uniform(_) => Method::Uniform,
+            Sampler::Uniform { .. } => Method::Uniform,
         }
     }
 }
@@ -215,12 +221,12 @@ impl Distribution<UnitQuaternion<f64>> for FisherBingham {
         let y = match &self.sampler {
             Sampler::Chart(chart) => chart.sample(rng),
             Sampler::Circle(circle) => circle.sample(rng),
-            Sampler::Uniform(_) => loop {
+            Sampler::Uniform { ln_bound, .. } => loop {
                 let q: UnitQuaternion<f64> = UniformAttitude.sample(rng);
                 let y: [f64; 4] = q.coords.into();
                 let square: f64 =
                     (0..4).map(|j| self.lambda[j] * (y[j] - self.center[j]).powi(2)).sum();
-                if rng.random::<f64>() < libm::exp(-0.5 * square) {
+                if rng.random::<f64>() < libm::exp(-0.5 * square - ln_bound) {
                     break y;
                 }
             },
@@ -233,9 +239,14 @@ impl Sampler {
     fn choose(lambda: [f64; 4], center: [f64; 4], squares: [f64; 4], ln_integral: f64) -> Self {
         /// Proposals this good are not worth improving on.
         const GOOD: f64 = 0.7;
-        let uniform = libm::exp(ln_integral + UniformAttitude::LN_DENSITY).min(1.0);
-        if uniform > GOOD {
-            return Self::Uniform(uniform);
+        // Σ λ(y − c)² ≥ min λ·(1 − |c|)² on the sphere.
+        let lowest = lambda.into_iter().fold(f64::INFINITY, f64::min);
+        let gap = (1.0 - Vector4::from(center).norm()).max(0.0);
+        let ln_bound = -0.5 * lowest * gap * gap;
+        let acceptance = libm::exp(ln_integral + UniformAttitude::LN_DENSITY - ln_bound).min(1.0);
+        let uniform = Self::Uniform { acceptance, ln_bound };
+        if acceptance > GOOD {
+            return uniform;
         }
         let chart = Chart::new(lambda, center, ln_integral);
         if let Some(chart) = chart.as_ref().filter(|c| c.acceptance() > GOOD) {
@@ -243,26 +254,30 @@ impl Sampler {
         }
         let circle = Circle::new(lambda, center, squares, ln_integral);
         match chart {
-            Some(c) if c.acceptance() > circle.acceptance().max(uniform) => {
+            Some(c) if c.acceptance() > circle.acceptance().max(acceptance) => {
                 Self::Chart(Box::new(c))
             }
-            _ if uniform > circle.acceptance() => Self::Uniform(uniform),
+            _ if acceptance > circle.acceptance() => uniform,
             _ => Self::Circle(Box::new(circle)),
         }
     }
 }
 
-/// Where a matrix is not symmetric to rounding beside its own diagonal.
-pub(crate) fn check_symmetric(m: &Matrix4<f64>) -> Result<(), [usize; 2]> {
+/// The symmetric part of a matrix that is symmetric to rounding, or where it is not. `size` is what
+/// an entry is measured against.
+pub(crate) fn symmetric_part(
+    m: &Matrix4<f64>,
+    size: impl Fn(usize, usize) -> f64,
+) -> Result<Matrix4<f64>, [usize; 2]> {
     for row in 0..4 {
         for column in row + 1..4 {
-            let (upper, lower) = (m[(row, column)], m[(column, row)]);
-            if (upper - lower).abs() > 64.0 * f64::EPSILON * (upper.abs() + lower.abs()) {
+            let difference = m[(row, column)] - m[(column, row)];
+            if difference.abs() > 64.0 * f64::EPSILON * size(row, column) {
                 return Err([row, column]);
             }
         }
     }
-    Ok(())
+    Ok((m + m.transpose()) * 0.5)
 }
 
 /// μ that makes P + μ·1 positive definite and |(P + μ·1)⁻¹b| ≤ 1, equal to 1 where it can be: then

@@ -59,12 +59,11 @@ impl HypersphericalAngles {
         let [x1, x2, x3, x4] = [q.i, q.j, q.k, q.w];
         // atan2 of norms, not acos: accurate at the poles as well.
         let planar = libm::hypot(x1, x2);
-        let azimuth = libm::atan2(x2, x1);
-        Self([
-            libm::atan2(libm::hypot(planar, x3), x4),
-            libm::atan2(planar, x3),
-            if azimuth < 0.0 { azimuth + TAU } else { azimuth },
-        ])
+        let azimuth = if planar == 0.0 { 0.0 } else { libm::atan2(x2, x1) };
+        // Adding 2π to a hair below zero rounds to 2π, which is 0.
+        let azimuth = if azimuth < 0.0 { (azimuth + TAU) % TAU } else { azimuth };
+        let polar = if planar == 0.0 && x3 == 0.0 { 0.0 } else { libm::atan2(planar, x3) };
+        Self([libm::atan2(libm::hypot(planar, x3), x4), polar, azimuth])
     }
 
     /// θ₁, θ₂, θ₃ in rad.
@@ -111,6 +110,10 @@ mod tests {
     #[test]
     fn poles_and_out_of_range() {
         assert_eq!(HypersphericalAngles::of(&UnitQuaternion::identity()).values(), [0.0; 3]);
+        let opposite = UnitQuaternion::new_unchecked(-*UnitQuaternion::identity());
+        assert_eq!(HypersphericalAngles::of(&opposite).values(), [PI, 0.0, 0.0]);
+        let hair = UnitQuaternion::new_unchecked(Quaternion::new(0.0, 1.0, -1e-300, 0.0));
+        assert_eq!(HypersphericalAngles::of(&hair).values()[2], 0.0);
         for bad in [[-0.1, 1.0, 1.0], [1.0, 3.2, 1.0], [1.0, 1.0, 6.3], [f64::NAN, 1.0, 1.0]] {
             assert!(HypersphericalAngles::new(bad).is_err());
         }

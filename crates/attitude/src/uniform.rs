@@ -37,12 +37,12 @@ impl Distribution<UnitQuaternion<f64>> for UniformAttitude {
             let square = x * x + y * y + z * z + w * w;
             // Four normals all this small have probability 1e-33; their norm would lose digits.
             if square > 1e-16 {
-                let norm = square.sqrt();
+                let scale = 1.0 / square.sqrt();
                 return UnitQuaternion::new_unchecked(Quaternion::new(
-                    w / norm,
-                    x / norm,
-                    y / norm,
-                    z / norm,
+                    w * scale,
+                    x * scale,
+                    y * scale,
+                    z * scale,
                 ));
             }
         }

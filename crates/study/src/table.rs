@@ -128,3 +128,88 @@ fn write<T: parquet::data_type::DataType, W: Write + Send>(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row::Outcome;
+    use parquet::{
+        file::reader::{FileReader, SerializedFileReader},
+        record::Field,
+    };
+
+    /// A good run with numbers that do not survive careless printing, and a failed one.
+    fn table() -> RunTable {
+        let outcome = Outcome {
+            release_time_s: 0.1 + 0.2,
+            relative_speed_m_per_s: f64::MIN_POSITIVE / 8.0,
+            payload_rate_rad_per_s: [1e300, -0.0, 1.0 / 3.0],
+            spin_rate_rad_per_s: 1e-17 + 1e-33,
+            wobble_deg: 2_f64.sqrt(),
+            nutation_deg: Some(3.0),
+            nutation_2_deg: None,
+            nutation_3_deg: Some(4.0),
+            cone_deg: Some(5.0),
+            inertia_ratio: 1.5,
+        };
+        let good = Row {
+            run: 0,
+            payload: [5e3, 4e3, 3e3, 20.0, 2.0, -50.0],
+            stage: [1.0 / 7.0; 6],
+            realizable: true,
+            payload_axes: Some(nalgebra::UnitQuaternion::identity()),
+            stage_axes: None,
+            outcome: Ok(outcome),
+        };
+        let failed = Row {
+            run: 1,
+            realizable: false,
+            outcome: Err("springs [1] had not let go".to_owned()),
+            ..good.clone()
+        };
+        RunTable::new("naive", vec![good, failed])
+    }
+
+    #[test]
+    fn parquet_reads_back_bit_for_bit() {
+        let table = table();
+        let mut file = Vec::new();
+        table.write_parquet(&mut file).unwrap();
+        let reader = SerializedFileReader::new(bytes::Bytes::from(file)).unwrap();
+        let columns = reader.metadata().file_metadata().schema_descr().columns();
+        let names: Vec<&str> = columns.iter().map(|c| c.name()).collect();
+        assert_eq!(&names[..5], ["model", "run", "status", "payload_i11", "payload_i22"]);
+        assert_eq!(names[27], "realizable");
+        assert_eq!(names.len(), 36);
+
+        let rows: Vec<_> = reader.get_row_iter(None).unwrap().map(Result::unwrap).collect();
+        assert_eq!(rows.len(), 2);
+        for (row, original) in rows.iter().zip(table.rows()) {
+            let field = |name: &str| {
+                row.get_column_iter().find(|(n, _)| *n == name).map(|(_, f)| f.clone()).unwrap()
+            };
+            assert_eq!(field("model"), Field::Str("naive".to_owned()));
+            assert_eq!(field("run"), Field::Long(original.run() as i64));
+            assert_eq!(field("status"), Field::Str(original.status().to_owned()));
+            assert_eq!(field("realizable"), Field::Bool(original.realizable()));
+            for quantity in Quantity::ALL {
+                match (field(quantity.column()), original.value(quantity)) {
+                    (Field::Double(found), Some(value)) => {
+                        assert_eq!(found.to_bits(), value.to_bits(), "{quantity:?}");
+                    }
+                    (found, value) => assert_eq!((found, value), (Field::Null, None)),
+                }
+            }
+            assert_eq!(field("payload_q4"), Field::Double(1.0));
+            assert_eq!(field("stage_q1"), Field::Null);
+        }
+    }
+
+    #[test]
+    fn half_a_table_is_refused() {
+        let mut file = Vec::new();
+        table().write_parquet(&mut file).unwrap();
+        file.truncate(file.len() / 2);
+        assert!(SerializedFileReader::new(bytes::Bytes::from(file)).is_err());
+    }
+}

@@ -1,0 +1,83 @@
+//! Studies in which things go wrong.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use gyradius_study::{Options, Quantity, Scenario, Study};
+use std::fs;
+
+fn run(text: &str) -> (Study, tempfile::TempDir) {
+    let scratch = tempfile::tempdir().unwrap();
+    let scenario = Scenario::from_toml(text).unwrap().with_runs(300).unwrap();
+    let options = Options { out: Some(scratch.path().join("study")), ..Options::default() };
+    (Study::run(&scenario, &options, &|_| {}).unwrap(), scratch)
+}
+
+fn paper() -> String {
+    Scenario::peck_2003().unwrap().to_toml()
+}
+
+/// A failed run is a row with its reason; it stops nothing and is counted.
+#[test]
+fn runs_that_fail_are_rows_with_a_reason() {
+    // Deviations as large as the moments: many draws cannot even turn.
+    let text = paper().replace("[42.8518, 54.3897, 133.1674]", "[5000.0, 54.3897, 133.1674]");
+    assert_ne!(text, paper());
+    let (study, _scratch) = run(&text);
+    let naive = study.tables().iter().find(|t| t.model() == "naive").unwrap();
+    let failed: Vec<_> = naive.rows().iter().filter(|r| r.status() != "ok").collect();
+    assert!((10..290).contains(&failed.len()), "{} failed", failed.len());
+    for row in &failed {
+        assert!(row.status().starts_with("payload: inertia with principal moments"));
+        assert!(!row.realizable());
+        assert_eq!(row.value(Quantity::Cone), None);
+        assert!(row.value(Quantity::SpinRate).is_none());
+    }
+    assert_eq!(naive.rows().len(), 300);
+    assert_eq!(naive.values(Quantity::Wobble).len(), 300 - failed.len());
+
+    let table = study.summary().to_string();
+    assert!(table.contains(&format!("naive: {} of 300 runs failed", failed.len())), "{table}");
+    let report = fs::read_to_string(study.folder().join("report.html")).unwrap();
+    assert!(report.contains(&format!("{} of 300 runs failed", failed.len())));
+    // And those of the other models did not.
+    assert!(study.tables()[0].rows().iter().all(|r| r.status() == "ok"));
+}
+
+/// Where no run succeeds there is nothing to summarise, and the study says so.
+#[test]
+fn a_study_in_which_everything_fails_still_ends() {
+    let (study, _scratch) = run(&paper().replace("horizon_s = 60.0", "horizon_s = 0.001"));
+    for table in study.tables() {
+        assert!(table.rows().iter().all(|r| r.status().contains("had not let go after 0.001 s")));
+    }
+    assert!(study.summary().to_string().contains("300 of 300 runs failed"));
+}
+
+/// One run, or bodies that do not vary, leave no deviation to speak of.
+#[test]
+fn a_single_run_and_fixed_bodies_have_no_deviation() {
+    let scratch = tempfile::tempdir().unwrap();
+    let scenario = Scenario::peck_2003().unwrap().with_runs(1).unwrap();
+    let options = Options { out: Some(scratch.path().join("study")), ..Options::default() };
+    let study = Study::run(&scenario, &options, &|_| {}).unwrap();
+    assert!(study.summary().to_string().contains('–'));
+
+    let fixed = "payload_deviation_kg_m2 = [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]";
+    let text: String = paper()
+        .lines()
+        .map(|line| if line.starts_with("payload_deviation") { fixed } else { line })
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let (study, _scratch) = run(&text);
+    let naive = study.tables().iter().find(|t| t.model() == "naive").unwrap();
+    let wobble = naive.values(Quantity::Wobble);
+    assert!(wobble.iter().all(|w| *w == wobble[0]));
+}
+
+/// Texts of the user are text in the report.
+#[test]
+fn what_users_write_is_escaped() {
+    let text = paper().replace("title = \"As published\"", "title = \"<script>alert(1)</script>\"");
+    let (study, _scratch) = run(&text);
+    let report = fs::read_to_string(study.folder().join("report.html")).unwrap();
+    assert!(!report.contains("<script>") && report.contains("&lt;script&gt;"));
+}
