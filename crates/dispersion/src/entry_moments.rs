@@ -7,13 +7,14 @@ type C64 = Complex<f64>;
 
 /// The entries in the order I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.
 const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
-/// An entry is Σ_k K_k M_k with eighteen quadratic forms M of the axes…
+/// An entry is Σ_k K_k M_k with eighteen quadratic forms M of the axes.
 const FORMS: usize = 18;
-/// …and second moments need their products as well.
-const POLYNOMIALS: usize = FORMS + FORMS * (FORMS + 1) / 2;
+/// Entries of a symmetric 6×6 matrix, each as two sums.
+const POLYNOMIALS: usize = 2 * 21;
 
 /// Mean and covariance of the six entries I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ of a random inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EntryMoments {
     mean: [f64; 6],
     covariance: SMatrix<f64, 6, 6>,
@@ -27,41 +28,34 @@ impl EntryMoments {
     /// expectations to machine precision; those of K are in closed form.
     #[must_use]
     pub fn of(law: &PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>) -> Self {
-        let expectations = law.axes().expect(|x| {
-            let forms = forms(x);
-            let mut all = [C64::new(0.0, 0.0); POLYNOMIALS];
-            all[..FORMS].copy_from_slice(&forms);
-            let mut n = FORMS;
-            for i in 0..FORMS {
-                for j in 0..=i {
-                    all[n] = forms[i] * forms[j];
-                    n += 1;
-                }
-            }
-            all
-        });
-        let first = |k: usize, e: usize| expectations[6 * k + e];
-        let second = |k: usize, e: usize, l: usize, f: usize| {
-            let (i, j) = (6 * k + e, 6 * l + f);
-            let (i, j) = (i.max(j), i.min(j));
-            expectations[FORMS + i * (i + 1) / 2 + j]
-        };
-
         let means = law.roots().second_moment_means();
         let variances = law.roots().second_moment_variances();
-        let mean: [f64; 6] = std::array::from_fn(|e| (0..3).map(|k| means[k] * first(k, e)).sum());
-        // Cov = Σ_kl E[K_k]E[K_l] Cov(M_k, M_l) + Σ_k Var K_k E[M_k M_k].
-        let covariance = SMatrix::from_fn(|e, f| {
-            let mut sum = 0.0;
-            for k in 0..3 {
-                sum += variances[k] * second(k, e, k, f);
-                for l in 0..3 {
-                    let spread = second(k, e, l, f) - first(k, e) * first(l, f);
-                    sum += means[k] * means[l] * spread;
-                }
+        // Σ_k E[K_k] M_k for each entry.
+        let entries = |forms: &[C64; FORMS]| -> [C64; 6] {
+            std::array::from_fn(|e| (0..3).map(|k| forms[6 * k + e] * means[k]).sum())
+        };
+        let mean: [f64; 6] = law.axes().expect(|x| entries(&forms(x)));
+        // Cov = E[ΔG ΔG] + Σ_k Var K_k E[M_k M_k], ΔG the entries above less their means. Taken
+        // before the expectation and homogeneous in x, which is not of unit length where it is
+        // evaluated: so narrow laws lose no digits.
+        let sums: [f64; POLYNOMIALS] = law.axes().expect(|x| {
+            let forms = forms(x);
+            let entries = entries(&forms);
+            let fourth = norm_squared(x) * norm_squared(x);
+            let centered: [C64; 6] = std::array::from_fn(|e| entries[e] - fourth * mean[e]);
+            let mut sums = [C64::new(0.0, 0.0); POLYNOMIALS];
+            for (n, (e, f)) in lower_triangle().enumerate() {
+                sums[2 * n] = centered[e] * centered[f];
+                sums[2 * n + 1] =
+                    (0..3).map(|k| forms[6 * k + e] * forms[6 * k + f] * variances[k]).sum();
             }
-            sum
+            sums
         });
+        let mut covariance = SMatrix::zeros();
+        for (n, (e, f)) in lower_triangle().enumerate() {
+            covariance[(e, f)] = sums[2 * n] + sums[2 * n + 1];
+            covariance[(f, e)] = covariance[(e, f)];
+        }
         Self { mean, covariance }
     }
 
@@ -86,10 +80,19 @@ impl EntryMoments {
     }
 }
 
-/// δ_ab − r_ka r_kb for each k and entry ab, R(q) in its form that is homogeneous in q.
+fn lower_triangle() -> impl Iterator<Item = (usize, usize)> {
+    (0..6).flat_map(|e| (0..=e).map(move |f| (e, f)))
+}
+
+fn norm_squared(q: &[C64; 4]) -> C64 {
+    q.iter().map(|x| x * x).sum()
+}
+
+/// δ_ab − r_ka r_kb for each k and entry ab, R(q) and δ in forms that are homogeneous in q.
 fn forms(q: &[C64; 4]) -> [C64; FORMS] {
     let [x, y, z, w] = *q;
     let two = 2.0;
+    let fourth = norm_squared(q) * norm_squared(q);
     let r = [
         [x * x - y * y - z * z + w * w, (x * y - z * w) * two, (x * z + y * w) * two],
         [(x * y + z * w) * two, -x * x + y * y - z * z + w * w, (y * z - x * w) * two],
@@ -97,8 +100,8 @@ fn forms(q: &[C64; 4]) -> [C64; FORMS] {
     ];
     std::array::from_fn(|i| {
         let (k, (a, b)) = (i / 6, ENTRIES[i % 6]);
-        let delta = if a == b { 1.0 } else { 0.0 };
-        -r[k][a] * r[k][b] + delta
+        let delta = if a == b { fourth } else { C64::new(0.0, 0.0) };
+        delta - r[k][a] * r[k][b]
     })
 }
 
@@ -174,6 +177,25 @@ mod tests {
                 let z = (mean - moments.covariance()[(e, f)]) / (variance / n).sqrt();
                 assert!(z.abs() < 4.0, "covariance {e}{f}: z = {z}");
             }
+        }
+    }
+
+    /// Narrow laws: to first order a small turn δ of the axes moves I by [δ×]I − I[δ×], so that
+    /// the products vary by the differences of the moments and the moments hardly at all.
+    #[test]
+    fn narrow_laws_keep_their_digits() {
+        for variance in [1e-4_f64, 1e-6, 1e-8, 1e-10] {
+            let law = law([5.0, 4.0, 3.0], [0.0; 3], [0.0; 3], [variance, variance, variance, 1.0]);
+            let deviations = EntryMoments::of(&law).deviations();
+            // Body rotations are twice the quaternion's vector part.
+            let turn = 2.0 * variance.sqrt();
+            for (found, expected) in deviations[3..].iter().zip([1.0, 2.0, 1.0]) {
+                let error = found / (turn * expected) - 1.0;
+                assert!(error.abs() < 20.0 * variance + 1e-6, "{variance:e}: {error:e}");
+            }
+            // I11 loses δ₃² + 2 δ₂², of deviation √(2 + 8) times the variance of a turn.
+            let error = deviations[0] / (10.0_f64.sqrt() * turn * turn) - 1.0;
+            assert!(error.abs() < 20.0 * variance + 1e-6, "{variance:e}: {error:e}");
         }
     }
 

@@ -2,12 +2,15 @@ use gyradius_inertia::{InertiaMatrix, MAX_ENTRY};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+/// Largest deviation, so that draws within forty of them stay in range.
+const MAX_DEVIATION: f64 = MAX_ENTRY / 1e3;
+
 /// Why deviations are refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EntrywiseError {
     /// A deviation is negative, NaN or too large.
-    #[error("deviation of {entry} = {value} kg·m²: it must be finite and not negative")]
+    #[error("deviation of {entry} = {value:?} kg·m²: it must lie in [0, {MAX_DEVIATION:.1e}]")]
     Deviation {
         /// Which entry: I11, I22, I33, I12, I13 or I23.
         entry: &'static str,
@@ -25,6 +28,11 @@ pub enum EntrywiseError {
 /// None: draws are whatever comes out, which is why they are [`InertiaMatrix`] and not
 /// [`Inertia`](gyradius_inertia::Inertia). Ask [`InertiaMatrix::is_realizable`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Parameters", into = "Parameters")
+)]
 pub struct EntrywiseGaussian {
     mean: [f64; 6],
     deviations: [f64; 6],
@@ -42,11 +50,17 @@ impl EntrywiseGaussian {
     ) -> Result<Self, EntrywiseError> {
         const NAMES: [&str; 6] = ["I11", "I22", "I33", "I12", "I13", "I23"];
         for (entry, value) in NAMES.into_iter().zip(deviations) {
-            if !(0.0..MAX_ENTRY / 1e3).contains(&value) {
+            if !(0.0..=MAX_DEVIATION).contains(&value) {
                 return Err(EntrywiseError::Deviation { entry, value });
             }
         }
         Ok(Self { mean: mean.into().entries(), deviations })
+    }
+
+    /// Means of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃, kg·m².
+    #[must_use]
+    pub fn mean(&self) -> [f64; 6] {
+        self.mean
     }
 
     /// Deviations of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃, kg·m².
@@ -72,6 +86,33 @@ impl Distribution<InertiaMatrix> for EntrywiseGaussian {
     }
 }
 
+/// The serialized form.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parameters {
+    mean_kg_m2: [f64; 6],
+    deviation_kg_m2: [f64; 6],
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Parameters> for EntrywiseGaussian {
+    type Error = Box<dyn std::error::Error>;
+
+    fn try_from(p: Parameters) -> Result<Self, Self::Error> {
+        let [i11, i22, i33, i12, i13, i23] = p.mean_kg_m2;
+        let mean = InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23])?;
+        Ok(Self::new(mean, p.deviation_kg_m2)?)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<EntrywiseGaussian> for Parameters {
+    fn from(law: EntrywiseGaussian) -> Self {
+        Self { mean_kg_m2: law.mean, deviation_kg_m2: law.deviations }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,6 +128,17 @@ mod tests {
             let error = EntrywiseGaussian::new(mean(), [1.0, 1.0, 1.0, 1.0, bad, 1.0]).unwrap_err();
             assert!(error.to_string().contains("I13"), "{error}");
         }
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn serde_goes_through_the_constructor() {
+        let law = EntrywiseGaussian::new(mean(), [0.5; 6]).unwrap();
+        let json = serde_json::to_string(&law).unwrap();
+        assert_eq!(serde_json::from_str::<EntrywiseGaussian>(&json).unwrap(), law);
+        let bad = json.replacen("0.5,0.5", "-0.5,0.5", 1);
+        assert_ne!(bad, json);
+        assert!(serde_json::from_str::<EntrywiseGaussian>(&bad).is_err());
     }
 
     #[test]

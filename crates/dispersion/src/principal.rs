@@ -53,9 +53,14 @@ where
 {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> PrincipalDraw {
-        let roots = self.roots.sample(rng);
-        let axes = self.axes.sample(rng);
-        PrincipalDraw { inertia: Inertia::from_second_moments(roots.squared(), &axes), roots, axes }
+        loop {
+            let roots = self.roots.sample(rng);
+            let axes = self.axes.sample(rng);
+            // Refused only if the law of the axes yields something that is no attitude.
+            if let Ok(inertia) = Inertia::from_second_moments(roots.squared(), &axes) {
+                return PrincipalDraw { inertia, roots, axes };
+            }
+        }
     }
 }
 

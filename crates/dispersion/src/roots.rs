@@ -5,14 +5,17 @@ use rand_distr::{Distribution, StandardNormal};
 /// Draws farther out than this many deviations have probability 1e-349.
 const FAR: f64 = 40.0;
 
+/// Draws stay below this, so that fourth powers, which variances of K are made of, do not overflow.
+const MAX_ROOT: f64 = 1e75;
+
 /// Why variances are refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GaussianRootsError {
-    /// A variance is negative, NaN or infinite, or so large that squares would overflow.
+    /// A variance is negative or NaN, or roots so large that their fourth powers would overflow.
     #[error(
-        "variance of k_{axis} = {value} kg·m²: it must be finite and not negative, and squares of \
-         draws must not overflow"
+        "variance of k_{axis} = {value:?} kg·m²: it must not be negative, and no root may come out \
+         beyond {MAX_ROOT:e} √kg·m"
     )]
     Variance {
         /// Axis, from 1.
@@ -28,8 +31,14 @@ pub enum GaussianRootsError {
 /// k_k ~ N(k̄_k, σ_k²), K_k = k_k². Then K_k/σ_k² is noncentral χ² with one degree of freedom, so
 /// E K = k̄² + σ² and Var K = 4k̄²σ² + 2σ⁴. A root may come out negative; its square does not care.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Parameters", into = "Parameters")
+)]
 pub struct GaussianRoots {
     mean: RootSecondMoments,
+    variances: [f64; 3],
     deviations: [f64; 3],
 }
 
@@ -37,21 +46,27 @@ impl GaussianRoots {
     /// Mean roots k̄ in √kg·m and the variances of the roots in kg·m²; zero keeps a root fixed.
     ///
     /// # Errors
-    /// A variance is negative, not finite, or so large that squares of draws could overflow.
+    /// A variance is negative or NaN, or roots could come out beyond 1e75 √kg·m.
     pub fn new(mean: RootSecondMoments, variances: [f64; 3]) -> Result<Self, GaussianRootsError> {
         for (i, (k, value)) in mean.values().into_iter().zip(variances).enumerate() {
             let reach = k.abs() + FAR * value.sqrt();
-            if !(value >= 0.0 && RootSecondMoments::new([reach; 3]).is_ok()) {
+            if !(value >= 0.0 && reach <= MAX_ROOT) {
                 return Err(GaussianRootsError::Variance { axis: i + 1, value });
             }
         }
-        Ok(Self { mean, deviations: variances.map(f64::sqrt) })
+        Ok(Self { mean, variances, deviations: variances.map(f64::sqrt) })
     }
 
     /// k̄, √kg·m.
     #[must_use]
     pub fn mean(&self) -> RootSecondMoments {
         self.mean
+    }
+
+    /// Variances of the roots, kg·m².
+    #[must_use]
+    pub fn variances(&self) -> [f64; 3] {
+        self.variances
     }
 
     /// Deviations of the roots, √kg·m.
@@ -64,7 +79,7 @@ impl GaussianRoots {
     #[must_use]
     pub fn second_moment_means(&self) -> [f64; 3] {
         let k = self.mean.values();
-        std::array::from_fn(|i| k[i] * k[i] + self.deviations[i] * self.deviations[i])
+        std::array::from_fn(|i| k[i] * k[i] + self.variances[i])
     }
 
     /// Var K_k = 4k̄²σ² + 2σ⁴, (kg·m²)².
@@ -72,7 +87,7 @@ impl GaussianRoots {
     pub fn second_moment_variances(&self) -> [f64; 3] {
         let k = self.mean.values();
         std::array::from_fn(|i| {
-            let variance = self.deviations[i] * self.deviations[i];
+            let variance = self.variances[i];
             2.0 * variance * (2.0 * k[i] * k[i] + variance)
         })
     }
@@ -95,6 +110,31 @@ impl Distribution<RootSecondMoments> for GaussianRoots {
     }
 }
 
+/// The serialized form.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parameters {
+    mean_sqrt_kg_m: RootSecondMoments,
+    variance_kg_m2: [f64; 3],
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Parameters> for GaussianRoots {
+    type Error = GaussianRootsError;
+
+    fn try_from(p: Parameters) -> Result<Self, Self::Error> {
+        Self::new(p.mean_sqrt_kg_m, p.variance_kg_m2)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<GaussianRoots> for Parameters {
+    fn from(law: GaussianRoots) -> Self {
+        Self { mean_sqrt_kg_m: law.mean, variance_kg_m2: law.variances }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -106,11 +146,20 @@ mod tests {
 
     #[test]
     fn bad_variances_are_named() {
-        for bad in [-1.0, f64::NAN, f64::INFINITY, 1e306] {
+        for bad in [-1.0, f64::NAN, f64::INFINITY, 1e198] {
             let error = GaussianRoots::new(roots([1.0; 3]), [0.1, bad, 0.1]).unwrap_err();
             assert!(error.to_string().contains("k_2"), "{error}");
         }
         assert!(GaussianRoots::new(roots([0.0; 3]), [0.0; 3]).is_ok());
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn serde_goes_through_the_constructor() {
+        let law = GaussianRoots::new(roots([1.0, 2.0, 3.0]), [0.1, 0.2, 0.3]).unwrap();
+        let json = serde_json::to_string(&law).unwrap();
+        assert_eq!(serde_json::from_str::<GaussianRoots>(&json).unwrap(), law);
+        assert!(serde_json::from_str::<GaussianRoots>(&json.replace("0.2", "-0.2")).is_err());
     }
 
     #[test]

@@ -1,6 +1,16 @@
 use nalgebra::{Matrix3, UnitQuaternion};
 
-use crate::{InertiaMatrix, InertiaMatrixError, PrincipalAxes, SecondMoments, SecondMomentsError};
+use crate::{
+    InertiaMatrix, InertiaMatrixError, PrincipalAxes, SecondMoments, SecondMomentsError,
+    matrix::rotation_matrix,
+};
+
+/// How far principal moments may break the triangle inequality: by the rounding of decimal numbers.
+const UNROUNDED: f64 = 8.0 * f64::EPSILON;
+
+fn percent(x: f64) -> String {
+    if x < 0.001 { format!("{x:.1e}") } else { format!("{x:.3}") }
+}
 
 /// Why a matrix is not the inertia of any body.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -11,14 +21,14 @@ pub enum RealizabilityError {
     Matrix(#[from] InertiaMatrixError),
     /// A second mass moment is negative: the triangle inequality fails for that axis.
     #[error(
-        "no body has this inertia: its principal moments are {}, {} and {} kg·m², and the sum of \
-         any two must be at least the third (short by {:.3} % of the trace)",
-        .moments[0], .moments[1], .moments[2], .shortfall_percent
+        "no body has this inertia: its principal moments are {:?}, {:?} and {:?} kg·m², and the sum \
+         of any two must be at least the third (short by {} % of their sum)",
+        .moments[0], .moments[1], .moments[2], percent(*.shortfall_percent)
     )]
     NotRealizable {
         /// Principal moments, kg·m².
         moments: [f64; 3],
-        /// How far the smallest K_k lies below zero, in percent of tr(I).
+        /// How far the smallest K_k lies below zero, in percent of Σ|I_k|.
         shortfall_percent: f64,
     },
     /// Second moments out of range.
@@ -55,25 +65,33 @@ impl Inertia {
     /// components to principal components.
     ///
     /// # Errors
-    /// The moments are not finite or break the triangle inequality.
+    /// The moments are not finite or break the triangle inequality, or the attitude is not a unit
+    /// quaternion.
     pub fn from_principal_moments(
         moments: [f64; 3],
         attitude: &UnitQuaternion<f64>,
     ) -> Result<Self, RealizabilityError> {
-        // Judged before the rotation, where nothing has been rounded yet.
-        let principal = Self::try_from(InertiaMatrix::from_entries(moments, [0.0; 3])?)?;
-        Ok(Self(principal.0.rotated(&attitude.inverse())))
+        let principal = InertiaMatrix::from_entries(moments, [0.0; 3])?;
+        // Judged before the turn rounds anything, and closely, so that the turned matrix passes too.
+        if !principal.is_realizable_within(UNROUNDED) {
+            return Err(RealizabilityError::of(&principal));
+        }
+        Ok(Self(principal.rotated(&attitude.inverse())?))
     }
 
     /// Builds the inertia of second mass moments K (kg·m²) about principal axes at `attitude`,
     /// which takes body components to principal components: I_B = tr(K)·1 − R(q)ᵀ K R(q).
+    /// Whatever the K_k ≥ 0, the result is realizable (Peck 2003, Eq. 7).
     ///
-    /// Nothing can go wrong: whatever the K_k ≥ 0, the result is realizable (Peck 2003, Eq. 7).
-    #[must_use]
-    pub fn from_second_moments(moments: SecondMoments, attitude: &UnitQuaternion<f64>) -> Self {
+    /// # Errors
+    /// The attitude is not a unit quaternion.
+    #[inline]
+    pub fn from_second_moments(
+        moments: SecondMoments,
+        attitude: &UnitQuaternion<f64>,
+    ) -> Result<Self, RealizabilityError> {
         let k = moments.values();
-        let r = attitude.to_rotation_matrix();
-        let r = r.matrix();
+        let r = rotation_matrix(attitude)?;
         let sigma = |a: usize, b: usize| {
             k[0] * (r[(0, a)] * r[(0, b)])
                 + k[1] * (r[(1, a)] * r[(1, b)])
@@ -81,7 +99,7 @@ impl Inertia {
         };
         let (s11, s22, s33) = (sigma(0, 0), sigma(1, 1), sigma(2, 2));
         let (i12, i13, i23) = (-sigma(0, 1), -sigma(0, 2), -sigma(1, 2));
-        Self(InertiaMatrix::symmetrized(&Matrix3::new(
+        Ok(Self(InertiaMatrix::symmetrized(&Matrix3::new(
             s22 + s33,
             i12,
             i13,
@@ -91,7 +109,7 @@ impl Inertia {
             i13,
             i23,
             s11 + s22,
-        )))
+        ))))
     }
 
     /// The full matrix.
@@ -113,9 +131,17 @@ impl Inertia {
     }
 
     /// The same body in axes turned by `rotation`: R I Rᵀ, where R takes old components to new.
-    #[must_use]
-    pub fn rotated(&self, rotation: &UnitQuaternion<f64>) -> Self {
-        Self(self.0.rotated(rotation))
+    ///
+    /// # Errors
+    /// The rotation is not a unit quaternion.
+    pub fn rotated(&self, rotation: &UnitQuaternion<f64>) -> Result<Self, RealizabilityError> {
+        let turned = self.0.rotated(rotation)?;
+        if turned.is_realizable() {
+            return Ok(Self(turned));
+        }
+        // A plate turned thousands of times in a row: rounding has added up, and is taken back.
+        let axes = turned.principal_axes();
+        Self::from_second_moments(SecondMoments::clamped(axes.second_moments()), &axes.attitude())
     }
 
     /// Principal moments and axes; see [`PrincipalAxes`] for their order and signs.
@@ -143,17 +169,21 @@ impl TryFrom<InertiaMatrix> for Inertia {
     type Error = RealizabilityError;
 
     fn try_from(matrix: InertiaMatrix) -> Result<Self, Self::Error> {
-        if matrix.is_realizable() {
-            return Ok(Self(matrix));
-        }
+        if matrix.is_realizable() { Ok(Self(matrix)) } else { Err(RealizabilityError::of(&matrix)) }
+    }
+}
+
+impl RealizabilityError {
+    /// Of a matrix that is not realizable.
+    fn of(matrix: &InertiaMatrix) -> Self {
         let axes = matrix.principal_axes();
         let smallest = axes.second_moments().into_iter().fold(f64::INFINITY, f64::min);
         let size = matrix.matrix().amax();
-        let trace: f64 = axes.moments().iter().map(|i| (i / size).abs()).sum();
-        Err(RealizabilityError::NotRealizable {
+        let sum: f64 = axes.moments().iter().map(|i| (i / size).abs()).sum();
+        Self::NotRealizable {
             moments: axes.moments(),
-            shortfall_percent: -100.0 * (smallest / size) / trace,
-        })
+            shortfall_percent: -100.0 * (smallest / size) / sum,
+        }
     }
 }
 
@@ -207,7 +237,8 @@ mod tests {
     #[test]
     fn boundary_bodies_are_realizable_and_some_cannot_be_inverted() {
         let identity = UnitQuaternion::identity();
-        let of = |k| Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &identity);
+        let of =
+            |k| Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &identity).unwrap();
         assert!(of([1.0, 1.0, 0.0]).is_invertible(), "plate");
         assert!(!of([1.0, 0.0, 0.0]).is_invertible(), "rod");
         assert!(!of([0.0, 0.0, 0.0]).is_invertible(), "point");
@@ -225,6 +256,46 @@ mod tests {
         assert!((i11 - 4.0).abs() < 1e-14 && (i22 - 5.0).abs() < 1e-14 && i33 == 3.0);
     }
 
+    #[test]
+    fn attitudes_that_are_none_are_refused() {
+        use nalgebra::Quaternion;
+        let k = SecondMoments::new([1.0, 2.0, 3.0]).unwrap();
+        let ball = Inertia::from_principal_moments([1.0; 3], &UnitQuaternion::identity()).unwrap();
+        let zero = UnitQuaternion::from_quaternion(Quaternion::new(0.0, 0.0, 0.0, 0.0));
+        let long = UnitQuaternion::new_unchecked(Quaternion::new(2.0, 0.0, 0.0, 0.0));
+        for bad in [zero, long] {
+            assert!(Inertia::from_second_moments(k, &bad).is_err());
+            assert!(Inertia::from_principal_moments([1.0; 3], &bad).is_err());
+            assert!(ball.rotated(&bad).is_err());
+        }
+    }
+
+    /// Accepted at the edge of the tolerance, turned, written and read back: still accepted.
+    #[test]
+    fn what_is_accepted_stays_accepted() {
+        let q = UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(
+            0.7388565738399132,
+            0.5061742990449417,
+            -0.11805553697799408,
+            0.4288839382265837,
+        ));
+        for ulps in 0..64 {
+            let third =
+                (0.22682901826571544 + 0.5718627191729764) * (1.0 + f64::from(ulps) * f64::EPSILON);
+            let moments = [0.22682901826571544, 0.5718627191729764, third];
+            if let Ok(inertia) = Inertia::from_principal_moments(moments, &q) {
+                assert!(Inertia::new(*inertia.matrix()).is_ok(), "{ulps}");
+            } else {
+                assert!(ulps > 4);
+            }
+        }
+        let mut plate = Inertia::from_principal_moments([1.0, 2.0, 3.0], &q).unwrap();
+        for _ in 0..20_000 {
+            plate = plate.rotated(&q).unwrap();
+        }
+        assert!(plate.as_inertia_matrix().is_realizable());
+    }
+
     proptest! {
         #[test]
         fn any_root_second_moments_make_a_body(
@@ -232,7 +303,7 @@ mod tests {
             q in any_attitude(),
         ) {
             let moments = RootSecondMoments::new(k).unwrap().squared();
-            let inertia = Inertia::from_second_moments(moments, &q);
+            let inertia = Inertia::from_second_moments(moments, &q).unwrap();
             prop_assert!(inertia.as_inertia_matrix().is_realizable());
             // The K_k come back, in some order.
             let mut expected = moments.values();
@@ -251,7 +322,7 @@ mod tests {
             q in any_attitude(),
         ) {
             let moments = SecondMoments::new(k).unwrap();
-            let a = Inertia::from_second_moments(moments, &q);
+            let a = Inertia::from_second_moments(moments, &q).unwrap();
             let b = Inertia::from_principal_moments(moments.principal_moments(), &q).unwrap();
             prop_assert!((a.matrix() - b.matrix()).amax() <= 1e-14 * a.matrix().amax());
         }
@@ -262,11 +333,11 @@ mod tests {
             q in any_attitude(),
             turn in any_attitude(),
         ) {
-            let inertia = Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &q);
-            let there = inertia.rotated(&turn);
+            let inertia = Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &q).unwrap();
+            let there = inertia.rotated(&turn).unwrap();
             let size = inertia.matrix().amax();
             prop_assert!((there.matrix().trace() - inertia.matrix().trace()).abs() < 1e-13 * size);
-            let back = there.rotated(&turn.inverse());
+            let back = there.rotated(&turn.inverse()).unwrap();
             prop_assert!((back.matrix() - inertia.matrix()).amax() < 1e-13 * size);
         }
     }

@@ -35,7 +35,9 @@ mod second_moments;
 pub use inertia::{Inertia, RealizabilityError};
 pub use matrix::{InertiaMatrix, InertiaMatrixError};
 pub use principal::PrincipalAxes;
-pub use second_moments::{RadiiOfGyration, RootSecondMoments, SecondMoments, SecondMomentsError};
+pub use second_moments::{
+    MAX_SECOND_MOMENT, RadiiOfGyration, RootSecondMoments, SecondMoments, SecondMomentsError,
+};
 
 /// Relative tolerance of every comparison in this crate: 64 units in the last place of 1.
 ///

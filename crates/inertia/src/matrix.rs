@@ -20,7 +20,7 @@ pub enum InertiaMatrixError {
     },
     /// Entries across the diagonal differ by more than rounding.
     #[error(
-        "I{row}{column} = {upper} kg·m² but I{column}{row} = {lower} kg·m²: an inertia matrix is \
+        "I{row}{column} = {upper:?} kg·m² but I{column}{row} = {lower:?} kg·m²: an inertia matrix is \
          symmetric"
     )]
     NotSymmetric {
@@ -33,6 +33,25 @@ pub enum InertiaMatrixError {
         /// The entry below the diagonal, kg·m².
         lower: f64,
     },
+    /// An attitude is not a unit quaternion.
+    #[error("attitude quaternion of norm {norm}: it must have norm 1")]
+    Attitude {
+        /// The norm.
+        norm: f64,
+    },
+}
+
+/// The matrix of a unit quaternion, which safe code can make of zero or NaN.
+pub(crate) fn rotation_matrix(
+    rotation: &UnitQuaternion<f64>,
+) -> Result<Matrix3<f64>, InertiaMatrixError> {
+    let norm = rotation.norm();
+    // Rounding after a long chain of products is forgiven.
+    if (norm - 1.0).abs() < 1e-9 {
+        Ok(*UnitQuaternion::new_normalize(rotation.into_inner()).to_rotation_matrix().matrix())
+    } else {
+        Err(InertiaMatrixError::Attitude { norm })
+    }
 }
 
 /// A finite, symmetric 3×3 matrix in the place of an inertia matrix, in kg·m².
@@ -129,10 +148,12 @@ impl InertiaMatrix {
     }
 
     /// The same dyadic in axes turned by `rotation`: R I Rᵀ, where R takes old components to new.
-    #[must_use]
-    pub fn rotated(&self, rotation: &UnitQuaternion<f64>) -> Self {
-        let r = rotation.to_rotation_matrix();
-        Self::symmetrized(&(r.matrix() * self.0 * r.matrix().transpose()))
+    ///
+    /// # Errors
+    /// The rotation is not a unit quaternion, or the turned entries are too large.
+    pub fn rotated(&self, rotation: &UnitQuaternion<f64>) -> Result<Self, InertiaMatrixError> {
+        let r = rotation_matrix(rotation)?;
+        Self::new(r * self.0 * r.transpose())
     }
 
     /// Principal moments and axes; see [`PrincipalAxes`] for their order and signs.
@@ -146,13 +167,17 @@ impl InertiaMatrix {
     /// matrix) are realizable.
     #[must_use]
     pub fn is_realizable(&self) -> bool {
+        self.is_realizable_within(RELATIVE_TOLERANCE)
+    }
+
+    pub(crate) fn is_realizable_within(&self, tolerance: f64) -> bool {
         let size = self.0.amax();
         if size == 0.0 {
             return true;
         }
         // Dividing, not multiplying by 1/size, which overflows for subnormal sizes.
         let sigma = Self(self.0.map(|x| x / size)).second_moment_matrix();
-        is_positive_semidefinite(sigma + Matrix3::from_diagonal_element(RELATIVE_TOLERANCE))
+        is_positive_semidefinite(sigma + Matrix3::from_diagonal_element(tolerance))
     }
 
     /// The inverse, if the matrix is positive definite (so that kinetic energy is positive) and
@@ -280,9 +305,9 @@ mod tests {
         ) {
             let scale = 10f64.powi(exponent);
             let plate = diagonal([a * scale, b * scale, (a + b) * scale]);
-            prop_assert!(plate.rotated(&q).is_realizable());
+            prop_assert!(plate.rotated(&q).unwrap().is_realizable());
             let rod = diagonal([0.0, a * scale, a * scale]);
-            prop_assert!(rod.rotated(&q).is_realizable());
+            prop_assert!(rod.rotated(&q).unwrap().is_realizable());
         }
 
         #[test]
@@ -292,7 +317,7 @@ mod tests {
             b in 0.1..10.0f64,
         ) {
             let wrong = diagonal([a, b, (a + b) * (1.0 + 1e-9)]);
-            prop_assert!(!wrong.rotated(&q).is_realizable());
+            prop_assert!(!wrong.rotated(&q).unwrap().is_realizable());
         }
 
         #[test]

@@ -1,11 +1,17 @@
 use crate::MAX_ENTRY;
 
+/// Largest second moment, so that moments of inertia, which are sums of two, stay within
+/// [`MAX_ENTRY`].
+pub const MAX_SECOND_MOMENT: f64 = 0.25 * MAX_ENTRY;
+
 /// Why three numbers are not second moments, their roots, or radii of gyration.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SecondMomentsError {
     /// A second moment is negative, NaN or too large.
-    #[error("second moment K_{axis} = {value:e} kg·m²: it must lie in [0, {MAX_ENTRY:.1e}]")]
+    #[error(
+        "second moment K_{axis} = {value:e} kg·m²: it must lie in [0, {MAX_SECOND_MOMENT:.1e}]"
+    )]
     SecondMoment {
         /// Axis, from 1.
         axis: usize,
@@ -14,7 +20,7 @@ pub enum SecondMomentsError {
     },
     /// A root is NaN or its square too large.
     #[error(
-        "root second moment k_{axis} = {value:e} √kg·m: its square must not exceed {MAX_ENTRY:.1e}"
+        "root second moment k_{axis} = {value:e} √kg·m: its square must not exceed {MAX_SECOND_MOMENT:.1e}"
     )]
     Root {
         /// Axis, from 1.
@@ -54,9 +60,9 @@ impl SecondMoments {
     /// Takes K₁, K₂, K₃.
     ///
     /// # Errors
-    /// A value is negative, NaN or larger than [`MAX_ENTRY`].
+    /// A value is negative, NaN or larger than [`MAX_SECOND_MOMENT`].
     pub fn new(values: [f64; 3]) -> Result<Self, SecondMomentsError> {
-        match values.iter().position(|k| !(0.0..=MAX_ENTRY).contains(k)) {
+        match values.iter().position(|k| !(0.0..=MAX_SECOND_MOMENT).contains(k)) {
             Some(i) => Err(SecondMomentsError::SecondMoment { axis: i + 1, value: values[i] }),
             None => Ok(Self(values)),
         }
@@ -115,9 +121,9 @@ impl RootSecondMoments {
     /// Takes k₁, k₂, k₃, of either sign.
     ///
     /// # Errors
-    /// A value is NaN or its square is larger than [`MAX_ENTRY`].
+    /// A value is NaN or its square is larger than [`MAX_SECOND_MOMENT`].
     pub fn new(values: [f64; 3]) -> Result<Self, SecondMomentsError> {
-        match values.iter().position(|k| !(k * k <= MAX_ENTRY)) {
+        match values.iter().position(|k| !(k * k <= MAX_SECOND_MOMENT)) {
             Some(i) => Err(SecondMomentsError::Root { axis: i + 1, value: values[i] }),
             None => Ok(Self(values)),
         }

@@ -6,14 +6,14 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 #[non_exhaustive]
 pub enum BodyError {
     /// The mass is not positive and finite.
-    #[error("mass = {value} kg: it must be positive and finite")]
+    #[error("mass = {value:?} kg: it must be positive and finite")]
     Mass {
         /// The mass, kg.
         value: f64,
     },
     /// The inertia matrix is singular or has a negative moment.
     #[error(
-        "inertia with principal moments {}, {} and {} kg·m²: all three must be positive for the \
+        "inertia with principal moments {:?}, {:?} and {:?} kg·m²: all three must be positive for the \
          body to turn",
         .moments[0], .moments[1], .moments[2]
     )]
@@ -21,7 +21,13 @@ pub enum BodyError {
         /// Principal moments, kg·m².
         moments: [f64; 3],
     },
-    /// Position, velocity, attitude or angular velocity holds something that is not a number.
+    /// The attitude is not a unit quaternion.
+    #[error("attitude quaternion of norm {norm}: it must have norm 1")]
+    Attitude {
+        /// The norm.
+        norm: f64,
+    },
+    /// Position, velocity or angular velocity holds something that is not a number.
     #[error("{field} = {value}: it must be finite")]
     NotFinite {
         /// Which vector.
@@ -124,11 +130,11 @@ impl Default for BodyState {
 }
 
 impl BodyState {
-    pub(crate) fn check(&self) -> Result<(), BodyError> {
-        let fields: [(&'static str, &[f64]); 4] = [
+    /// The same state, its attitude of unit norm to rounding.
+    pub(crate) fn checked(mut self) -> Result<Self, BodyError> {
+        let fields: [(&'static str, &[f64]); 3] = [
             ("position", self.position.as_slice()),
             ("velocity", self.velocity.as_slice()),
-            ("attitude", self.attitude.coords.as_slice()),
             ("angular velocity", self.angular_velocity.as_slice()),
         ];
         for (field, values) in fields {
@@ -136,7 +142,12 @@ impl BodyState {
                 return Err(BodyError::NotFinite { field, value });
             }
         }
-        Ok(())
+        let norm = self.attitude.norm();
+        if !((norm - 1.0).abs() < 1e-6) {
+            return Err(BodyError::Attitude { norm });
+        }
+        self.attitude = UnitQuaternion::new_normalize(self.attitude.into_inner());
+        Ok(self)
     }
 }
 
@@ -210,6 +221,12 @@ mod tests {
         let triangle = InertiaMatrix::from_entries([1.0, 1.0, 3.0], [0.0; 3]).unwrap();
         assert!(Body::new(1.0, triangle).is_ok());
         let state = BodyState { velocity: Vector3::new(0.0, f64::NAN, 0.0), ..Default::default() };
-        assert!(matches!(state.check(), Err(BodyError::NotFinite { field: "velocity", .. })));
+        assert!(matches!(state.checked(), Err(BodyError::NotFinite { field: "velocity", .. })));
+        for w in [0.0, 0.5, f64::NAN] {
+            let attitude =
+                UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, 0.0, 0.0, 0.0));
+            let state = BodyState { attitude, ..Default::default() };
+            assert!(matches!(state.checked(), Err(BodyError::Attitude { .. })), "{w}");
+        }
     }
 }

@@ -274,9 +274,25 @@ pub(crate) fn bodies(separation: &Separation, y: &State, time: f64) -> (MovingBo
     (payload.body().moving(state(PAYLOAD, fl)), stage.body().moving(state(STAGE, -fp)))
 }
 
-/// The size of each entry of the state that the springs can bring about: what errors are measured
-/// against.
-pub(crate) fn scales(separation: &Separation) -> State {
+/// The error that a step may make in each entry of the state: `tolerance` of what the springs can
+/// bring about, but no less than the rounding of the coordinates.
+pub(crate) fn tolerances(separation: &Separation, tolerance: f64) -> State {
+    let mut allowed = scales(separation).map(|s| s * tolerance);
+    let reach: f64 = separation.free_lengths().iter().copied().fold(0.0, f64::max)
+        + (separation.payload().state().position - separation.stage().state().position).norm();
+    for x in &mut allowed[POSITION..VELOCITY] {
+        *x = x.max(f64::EPSILON * reach);
+    }
+    for at in [PAYLOAD, STAGE] {
+        for x in &mut allowed[at..at + 4] {
+            *x = x.max(f64::EPSILON);
+        }
+    }
+    allowed
+}
+
+/// The size of each entry of the state that the springs can bring about.
+fn scales(separation: &Separation) -> State {
     let springs = separation.springs();
     let length = springs.iter().map(Spring::stroke_m).fold(0.0, f64::max);
     let reduced = 1.0

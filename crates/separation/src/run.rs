@@ -1,7 +1,7 @@
 use crate::{
     Outcome, Separation,
     dop853::{Step, next_factor, step},
-    dynamics::{Dynamics, Gap, N, State, bodies, initial_state, normalize, scales, time_scale},
+    dynamics::{Dynamics, Gap, N, State, bodies, initial_state, normalize, time_scale, tolerances},
 };
 
 /// Steps after which a separation is given up: a hundred thousand times what one takes.
@@ -31,6 +31,11 @@ pub enum SettingsError {
 
 /// How to integrate.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Fields", into = "Fields")
+)]
 pub struct Settings {
     relative_tolerance: f64,
     horizon: f64,
@@ -72,6 +77,31 @@ impl Default for Settings {
     }
 }
 
+/// The serialized form.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fields {
+    relative_tolerance: f64,
+    horizon_s: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Fields> for Settings {
+    type Error = SettingsError;
+
+    fn try_from(f: Fields) -> Result<Self, SettingsError> {
+        Self::new(f.relative_tolerance, f.horizon_s)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Settings> for Fields {
+    fn from(settings: Settings) -> Self {
+        Self { relative_tolerance: settings.relative_tolerance, horizon_s: settings.horizon }
+    }
+}
+
 /// Why a separation could not be followed to its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -95,7 +125,7 @@ pub enum RunError {
 pub(crate) fn run(separation: &Separation, settings: &Settings) -> Result<Outcome, RunError> {
     let mut integration = Integration {
         dynamics: Dynamics::new(separation),
-        scale: scales(separation).map(|s| s * settings.relative_tolerance),
+        scale: tolerances(separation, settings.relative_tolerance),
         evaluations: 0,
         steps: 0,
     };

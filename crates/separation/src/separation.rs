@@ -7,6 +7,10 @@ use crate::{Body, BodyError, BodyState, MovingBody, Outcome, RunError, Settings,
 /// Pads nearer than this share of their stroke count as touching.
 const TOUCHING: f64 = 1e-6;
 
+/// Strokes shorter than this share of the distances that they are differences of have lost half of
+/// the digits of a double.
+const SHORTEST: f64 = 1e-7;
+
 /// Why bodies and springs do not make a separation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -37,6 +41,19 @@ pub enum SeparationError {
         /// Its stroke, m.
         stroke: f64,
     },
+    /// A stroke is so short beside the body that rounding of positions would drown it.
+    #[error(
+        "spring {spring}: its stroke of {stroke:e} m must be more than {SHORTEST:e} of its distance \
+         from the mass centres ({reach:?} m) for double precision to follow it"
+    )]
+    ShortStroke {
+        /// Which spring, from 1.
+        spring: usize,
+        /// Its stroke, m.
+        stroke: f64,
+        /// Distance of its points from each other and from their mass centres, m.
+        reach: f64,
+    },
 }
 
 /// A payload, a stage and the springs between them, at the moment the clamp opens.
@@ -61,9 +78,13 @@ impl Separation {
         stage: MovingBody,
         springs: &[Spring],
     ) -> Result<Self, SeparationError> {
-        for (body, moving) in [("payload", &payload), ("stage", &stage)] {
-            moving.state().check().map_err(|source| SeparationError::Body { body, source })?;
-        }
+        let checked = |body, moving: MovingBody| {
+            let state = moving.state().checked();
+            state
+                .map(|s| moving.body().moving(s))
+                .map_err(|source| SeparationError::Body { body, source })
+        };
+        let (payload, stage) = (checked("payload", payload)?, checked("stage", stage)?);
         if springs.is_empty() {
             return Err(SeparationError::NoSprings);
         }
@@ -73,6 +94,10 @@ impl Separation {
             let stroke = spring.stroke_m();
             if !(distance > TOUCHING * stroke) {
                 return Err(SeparationError::TouchingPads { spring: i + 1, distance, stroke });
+            }
+            let reach = distance + spring.payload_point_m().norm() + spring.stage_point_m().norm();
+            if !(stroke > SHORTEST * reach) {
+                return Err(SeparationError::ShortStroke { spring: i + 1, stroke, reach });
             }
             free_lengths.push(distance + stroke);
         }
@@ -167,6 +192,8 @@ mod tests {
             let error = with(&[spring(0.2), spring(gap)]).unwrap_err();
             assert!(matches!(error, SeparationError::TouchingPads { spring: 2, .. }), "{error}");
         }
+        let short = Spring::new(1.0, 1e-8, Vector3::z() * -0.9, Vector3::z() * 0.9).unwrap();
+        assert!(matches!(with(&[short]), Err(SeparationError::ShortStroke { spring: 1, .. })));
         let ok = with(&[spring(1e-5)]).unwrap();
         assert!((ok.free_lengths()[0] - 0.10001).abs() < 1e-15);
     }

@@ -5,13 +5,13 @@ use nalgebra::Vector3;
 #[non_exhaustive]
 pub enum SpringError {
     /// The stiffness is not positive and finite.
-    #[error("stiffness = {value} N/m: it must be positive and finite")]
+    #[error("stiffness = {value:?} N/m: it must be positive and finite")]
     Stiffness {
         /// The stiffness, N/m.
         value: f64,
     },
     /// The stroke is not positive and finite.
-    #[error("stroke = {value} m: it must be positive and finite")]
+    #[error("stroke = {value:?} m: it must be positive and finite")]
     Stroke {
         /// The stroke, m.
         value: f64,
@@ -29,6 +29,11 @@ pub enum SpringError {
 /// A massless linear spring between a point of the payload and a point of the stage, compressed at
 /// the start by its stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Fields", into = "Fields")
+)]
 pub struct Spring {
     stiffness: f64,
     stroke: f64,
@@ -99,6 +104,39 @@ impl Spring {
     }
 }
 
+/// The serialized form.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fields {
+    stiffness_n_per_m: f64,
+    stroke_m: f64,
+    payload_point_m: [f64; 3],
+    stage_point_m: [f64; 3],
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Fields> for Spring {
+    type Error = SpringError;
+
+    fn try_from(f: Fields) -> Result<Self, SpringError> {
+        let (payload, stage) = (f.payload_point_m.into(), f.stage_point_m.into());
+        Self::new(f.stiffness_n_per_m, f.stroke_m, payload, stage)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Spring> for Fields {
+    fn from(spring: Spring) -> Self {
+        Self {
+            stiffness_n_per_m: spring.stiffness,
+            stroke_m: spring.stroke,
+            payload_point_m: spring.payload_point.into(),
+            stage_point_m: spring.stage_point.into(),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,5 +152,14 @@ mod tests {
         let error = Spring::new(1.0, 1.0, o, nan).unwrap_err();
         assert!(matches!(error, SpringError::Point { body: "stage", .. }));
         assert_eq!(Spring::new(2.0, 3.0, o, o).unwrap().stored_energy(), 9.0);
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn serde_goes_through_the_constructor() {
+        let spring = Spring::new(2.0, 3.0, Vector3::x(), Vector3::y()).unwrap();
+        let json = serde_json::to_string(&spring).unwrap();
+        assert_eq!(serde_json::from_str::<Spring>(&json).unwrap(), spring);
+        assert!(serde_json::from_str::<Spring>(&json.replace("2.0", "-2.0")).is_err());
     }
 }
