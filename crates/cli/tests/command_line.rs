@@ -108,7 +108,7 @@ fn bad_scenarios_name_field_value_and_what_is_allowed() {
         (
             "mass_kg = 10000.0",
             "mass_kg = -3.0",
-            "payload.mass_kg: mass = -3 kg: it must be positive",
+            "payload.mass_kg: mass = -3.0 kg: it must be positive",
         ),
         ("mass_kg = 10000.0", "mass_kg = inf", "payload.mass_kg: mass = inf kg"),
         ("mass_kg = 10000.0", "mass = 10000.0", "unknown field `mass`"),
@@ -118,7 +118,7 @@ fn bad_scenarios_name_field_value_and_what_is_allowed() {
         ("0.00002", "-0.00002", "payload.dispersion.axes_covariance: covariance with eigenvalue"),
         ("0.00002", "0.0", "must be positive definite"),
         ("runs = 5", "runs = 0", "runs: 0: it must be between 1"),
-        ("stroke_m = 0.1", "stroke_m = 0.0", "springs[1]: stroke = 0 m"),
+        ("stroke_m = 0.1", "stroke_m = 0.0", "springs[1]: stroke = 0.0 m"),
     ];
     for (from, to, expected) in cases {
         let file = shell.scenario(from, to);
