@@ -11,6 +11,7 @@
 //! Gaussian puts its mass. The weight has a pole at h = 0: the belt h < h₀ is left out, and the
 //! chart refuses to serve a law of which the belt holds more than 2⁻⁶⁴.
 
+use nalgebra::{Matrix4, Vector4};
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::{LN_2, PI, TAU};
@@ -24,10 +25,11 @@ const CREST: (f64, f64) = (2.264_885_841_899_889_5, 0.237_160_049_676_758_4);
 
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
-    dropped: usize,
-    kept: [usize; 3],
     location: [f64; 3],
     scale: [f64; 3],
+    /// What the three kept coordinates and the dropped one are of x: eigenvectors, in that order,
+    /// so that a draw needs no indices.
+    columns: [Vector4<f64>; 4],
     weight: Weight,
     ln_peak: f64,
     /// h₀², and bins a unit of h² above it.
@@ -46,8 +48,14 @@ struct Bin {
 }
 
 impl Chart {
-    /// The best chart for exp(−½ Σ λ_j(y_j − c_j)²), whose integral over S³ is exp(ln_integral).
-    pub(crate) fn new(lambda: [f64; 4], center: [f64; 4], ln_integral: f64) -> Option<Self> {
+    /// The best chart for exp(−½ Σ λ_j(y_j − c_j)²), whose integral over S³ is exp(ln_integral),
+    /// with x = V y.
+    pub(crate) fn new(
+        axes: &Matrix4<f64>,
+        lambda: [f64; 4],
+        center: [f64; 4],
+        ln_integral: f64,
+    ) -> Option<Self> {
         // The coordinate to drop is the one whose mean is far from zero for its spread.
         let mut order = [0, 1, 2, 3];
         let reach = |k: usize| center[k].abs() / lambda[k].sqrt();
@@ -58,7 +66,7 @@ impl Chart {
                 break;
             }
             let problem = Problem::new(lambda, center, ln_integral, k);
-            if let Some(chart) = problem.best_proposal().map(|p| problem.chart(&p))
+            if let Some(chart) = problem.best_proposal().map(|p| problem.chart(axes, &p))
                 && best.as_ref().is_none_or(|b| b.acceptance < chart.acceptance)
             {
                 best = Some(chart);
@@ -73,7 +81,7 @@ impl Chart {
     }
 
     #[inline]
-    pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> [f64; 4] {
+    pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Vector4<f64> {
         loop {
             let u: [f64; 3] = std::array::from_fn(|j| {
                 let z: f64 = StandardNormal.sample(rng);
@@ -102,12 +110,8 @@ impl Chart {
                     continue;
                 }
             };
-            let mut y = [0.0; 4];
-            y[self.dropped] = height;
-            for (&j, x) in self.kept.iter().zip(u) {
-                y[j] = x;
-            }
-            return y;
+            let [a, b, c, d] = &self.columns;
+            return a * u[0] + b * u[1] + c * u[2] + d * height;
         }
     }
 }
@@ -285,7 +289,7 @@ impl Problem {
         self.proposal(libm::exp(golden_section(score, best - STEP, best + STEP)))
     }
 
-    fn chart(&self, proposal: &Proposal) -> Chart {
+    fn chart(&self, axes: &Matrix4<f64>, proposal: &Proposal) -> Chart {
         // A hair above the peak, so that rounding in ψ cannot exceed it.
         let ln_peak = proposal.ln_peak + 1e-13;
         let floor = proposal.h0 * proposal.h0;
@@ -307,8 +311,8 @@ impl Problem {
             }
         });
         Chart {
-            dropped: self.dropped,
-            kept: self.kept,
+            columns: [self.kept[0], self.kept[1], self.kept[2], self.dropped]
+                .map(|j| axes.column(j).into()),
             location: std::array::from_fn(|j| self.linear[j] / proposal.precision[j]),
             scale: proposal.precision.map(|p| 1.0 / p.sqrt()),
             weight: proposal.weight,

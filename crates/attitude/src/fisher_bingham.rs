@@ -124,7 +124,7 @@ impl FisherBingham {
         let contour = Box::new(Contour::new(lambda, center));
         let (first, second) = contour.moments();
         let sampler =
-            Sampler::choose(lambda, center, second.diagonal().into(), contour.ln_integral());
+            Sampler::choose(&axes, lambda, center, second.diagonal().into(), contour.ln_integral());
         Self {
             axes,
             lambda,
@@ -218,25 +218,32 @@ impl FisherBingham {
 impl Distribution<UnitQuaternion<f64>> for FisherBingham {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> UnitQuaternion<f64> {
-        let y = match &self.sampler {
+        let x = match &self.sampler {
             Sampler::Chart(chart) => chart.sample(rng),
-            Sampler::Circle(circle) => circle.sample(rng),
+            Sampler::Circle(circle) => self.axes * Vector4::from(circle.sample(rng)),
             Sampler::Uniform { ln_bound, .. } => loop {
+                // A uniform attitude is uniform in the eigenbasis as well.
                 let q: UnitQuaternion<f64> = UniformAttitude.sample(rng);
-                let y: [f64; 4] = q.coords.into();
+                let y = q.coords;
                 let square: f64 =
                     (0..4).map(|j| self.lambda[j] * (y[j] - self.center[j]).powi(2)).sum();
                 if rng.random::<f64>() < libm::exp(-0.5 * square - ln_bound) {
-                    break y;
+                    break self.axes * y;
                 }
             },
         };
-        UnitQuaternion::new_unchecked(Quaternion::from(self.axes * Vector4::from(y)))
+        UnitQuaternion::new_unchecked(Quaternion::from(x))
     }
 }
 
 impl Sampler {
-    fn choose(lambda: [f64; 4], center: [f64; 4], squares: [f64; 4], ln_integral: f64) -> Self {
+    fn choose(
+        axes: &Matrix4<f64>,
+        lambda: [f64; 4],
+        center: [f64; 4],
+        squares: [f64; 4],
+        ln_integral: f64,
+    ) -> Self {
         /// Proposals this good are not worth improving on.
         const GOOD: f64 = 0.7;
         // Σ λ(y − c)² ≥ min λ·(1 − |c|)² on the sphere.
@@ -248,7 +255,7 @@ impl Sampler {
         if acceptance > GOOD {
             return uniform;
         }
-        let chart = Chart::new(lambda, center, ln_integral);
+        let chart = Chart::new(axes, lambda, center, ln_integral);
         if let Some(chart) = chart.as_ref().filter(|c| c.acceptance() > GOOD) {
             return Self::Chart(Box::new(chart.clone()));
         }
