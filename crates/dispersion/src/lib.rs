@@ -45,7 +45,7 @@ mod roots;
 
 pub use entry_moments::EntryMoments;
 pub use entrywise::{EntrywiseError, EntrywiseGaussian};
-pub use jacobian_twice::JacobianTwice;
+pub use jacobian_twice::{JacobianTwice, JacobianTwiceError};
 pub use principal::{PrincipalDispersion, PrincipalDraw};
 pub use roots::{GaussianRoots, GaussianRootsError};
 
