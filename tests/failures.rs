@@ -38,6 +38,8 @@ fn runs_that_fail_are_rows_with_a_reason() {
     assert!(table.contains(&format!("naive: {} of 300 runs failed", failed.len())), "{table}");
     let report = fs::read_to_string(study.folder().join("report.html")).unwrap();
     assert!(report.contains(&format!("{} of 300 runs failed", failed.len())));
+    let kind = format!("{} × payload: inertia not positive definite", failed.len());
+    assert!(report.contains(&kind) && table.contains(&kind), "counted by kind");
     // And those of the other models did not.
     assert!(study.tables()[0].rows().iter().all(|r| r.status() == "ok"));
 }

@@ -191,3 +191,66 @@ fn unwritable_places_are_refused_before_any_work() {
     assert!(message.contains("output folder file/below: it cannot be written"), "{message}");
     assert_eq!(fs::read_to_string(shell.path().join("file")).unwrap(), "not a folder");
 }
+
+/// A user's own files in a study's folder survive the same study being run again.
+#[test]
+fn files_of_the_user_are_left_alone() {
+    let shell = Shell::new();
+    let study = ["study", "--runs", "5", "--out", "here"];
+    assert!(shell.run(&study).status.success());
+    let notes = ["here/runs/notes.txt", "here/figures/mine.svg", "here/readme.txt"];
+    for note in notes {
+        fs::write(shell.path().join(note), "mine").unwrap();
+    }
+    assert!(shell.run(&study).status.success());
+    assert!(shell.run(&["study", "--runs", "6", "--out", "here", "--force"]).status.success());
+    for note in notes {
+        assert_eq!(fs::read_to_string(shell.path().join(note)).unwrap(), "mine", "{note}");
+    }
+}
+
+/// Something in the way is found before anything is replaced.
+#[test]
+fn a_file_where_a_folder_should_be_costs_nothing() {
+    let shell = Shell::new();
+    let study = ["study", "--runs", "5", "--out", "here"];
+    assert!(shell.run(&study).status.success());
+    let figures = shell.path().join("here/figures");
+    fs::remove_dir_all(&figures).unwrap();
+    fs::write(&figures, "not a folder").unwrap();
+    let message = shell.refused(&study);
+    assert!(message.contains("figures in it is a file"), "{message}");
+    for name in ["scenario.toml", "summary.json", "report.html", "runs/naive/runs.parquet"] {
+        assert!(shell.path().join("here").join(name).is_file(), "{name} is gone");
+    }
+}
+
+/// Two studies into one folder: one of them, whole; and what a killed one left is cleared away.
+#[test]
+fn studies_do_not_mix() {
+    let shell = Shell::new();
+    let folder = shell.path().join("here");
+    fs::create_dir_all(folder.join(".draft-1/new/runs/ghost")).unwrap();
+    fs::write(folder.join(".draft-1/new/runs/ghost/runs.parquet"), "ghost").unwrap();
+    let children: Vec<_> = ["1", "2", "3"]
+        .map(|seed| {
+            Command::new(env!("CARGO_BIN_EXE_gyradius"))
+                .current_dir(shell.path())
+                .args(["study", "--runs", "300", "--out", "here", "--seed", seed])
+                .stdout(std::process::Stdio::null())
+                .stderr(std::process::Stdio::null())
+                .spawn()
+                .unwrap()
+        })
+        .into_iter()
+        .collect();
+    let codes: Vec<_> =
+        children.into_iter().map(|mut child| child.wait().unwrap().code()).collect();
+    assert_eq!(codes.iter().filter(|c| **c == Some(0)).count(), 1, "{codes:?}");
+    assert_eq!(codes.iter().filter(|c| **c == Some(2)).count(), 2, "{codes:?}");
+    assert!(!folder.join("runs/ghost").exists());
+    let hidden = fs::read_dir(&folder)
+        .unwrap()
+        .filter(|e| e.as_ref().unwrap().file_name().to_string_lossy().starts_with('.'));
+    assert_eq!(hidden.count(), 0);
+}

@@ -1,5 +1,6 @@
 //! The paper's claims, judged by what the runs show.
 
+use gyradius_statistics::Interval;
 use serde::Serialize;
 
 use crate::{
@@ -12,8 +13,14 @@ use crate::{
 /// "Considerably more" is taken to mean a deviation larger by at least this factor, with the whole
 /// of its interval.
 pub(crate) const CONSIDERABLE: f64 = 1.10;
+/// "Less" is taken to mean a mean smaller by at least this share.
+pub(crate) const LESS: f64 = 0.05;
 /// Deviations count as identical within this share.
 pub(crate) const IDENTICAL: f64 = 0.05;
+/// A claim that something happens is refuted if it happens in less than this share of runs.
+const RARE: f64 = 0.01;
+/// Runs below which shapes of distributions are not judged.
+const ENOUGH_FOR_SHAPES: usize = 500;
 /// A skewness beyond this is one-sided; a Gaussian has none.
 pub(crate) const ONE_SIDED: f64 = 1.0;
 
@@ -38,18 +45,30 @@ impl Verdict {
             Self::Holds => "holds",
             Self::HoldsInPart => "holds in part",
             Self::DoesNotHold => "does not hold",
-            Self::NotTested => "not tested",
+            Self::NotTested => "cannot tell",
         }
     }
 
-    /// All hold: holds. None: does not. Otherwise in part.
+    /// All hold: holds. None of those that can be told: does not. Otherwise in part.
     fn of_all(parts: &[Self]) -> Self {
-        let known: Vec<Self> = parts.iter().copied().filter(|p| *p != Self::NotTested).collect();
-        match known.as_slice() {
-            [] => Self::NotTested,
-            all if all.iter().all(|p| *p == Self::Holds) => Self::Holds,
-            all if all.iter().all(|p| *p == Self::DoesNotHold) => Self::DoesNotHold,
-            _ => Self::HoldsInPart,
+        let any = |verdict| parts.contains(&verdict);
+        if any(Self::Holds) || any(Self::HoldsInPart) {
+            if parts.iter().all(|p| *p == Self::Holds) { Self::Holds } else { Self::HoldsInPart }
+        } else if any(Self::DoesNotHold) {
+            Self::DoesNotHold
+        } else {
+            Self::NotTested
+        }
+    }
+
+    /// Whether a number known to an interval is above a line.
+    fn above(interval: Interval, line: f64) -> Self {
+        if interval.lower() > line {
+            Self::Holds
+        } else if interval.upper() < line {
+            Self::DoesNotHold
+        } else {
+            Self::NotTested
         }
     }
 }
@@ -69,7 +88,7 @@ pub(crate) fn judge(scenario: &Scenario, summary: &Summary, tables: &[RunTable])
     if summary.comparisons.is_empty() {
         return claims;
     }
-    claims.push(same_deviations(summary));
+    claims.push(same_deviations(scenario, summary));
     for (quantity, claim) in [
         (Quantity::InertiaRatio, "The naive model spreads the inertia ratio considerably more."),
         (Quantity::Wobble, "The naive model spreads the wobble angle considerably more."),
@@ -105,7 +124,11 @@ fn naive_unphysical(summary: &Summary) -> Claim {
         summary.models.iter().filter(|m| m.given_deviations_kg_m2.is_some()).collect();
     let parts: Vec<Verdict> = naive
         .iter()
-        .map(|m| if m.unrealizable.count > 0 { Verdict::Holds } else { Verdict::DoesNotHold })
+        .map(|m| match &m.unrealizable {
+            share if share.count > 0 => Verdict::Holds,
+            share if share.interval.upper() < RARE => Verdict::DoesNotHold,
+            _ => Verdict::NotTested,
+        })
         .collect();
     Claim {
         claim: "Independent Gaussian entries yield matrices that no body can have.".into(),
@@ -117,10 +140,11 @@ fn naive_unphysical(summary: &Summary) -> Claim {
 fn unrealizable(model: &ModelSummary) -> String {
     let share = &model.unrealizable;
     format!(
-        "{}: {} of {} runs drew an unrealizable payload or stage (share at most {:.2} %).",
+        "{}: {} of {} runs drew an unrealizable payload or stage, a share in [{:.2}, {:.2}] %.",
         model.name,
         share.count,
         share.of,
+        100.0 * share.interval.lower(),
         100.0 * share.interval.upper()
     )
 }
@@ -157,7 +181,7 @@ fn unit(quantity: Quantity) -> &'static str {
     }
 }
 
-fn same_deviations(summary: &Summary) -> Claim {
+fn same_deviations(scenario: &Scenario, summary: &Summary) -> Claim {
     let mut findings = Vec::new();
     let mut parts = Vec::new();
     for comparison in &summary.comparisons {
@@ -166,24 +190,55 @@ fn same_deviations(summary: &Summary) -> Claim {
         else {
             continue;
         };
-        let Some([payload, stage]) = naive.given_deviations_kg_m2 else { continue };
+        let Some(given) = naive.given_deviations_kg_m2 else { continue };
+        if scenario.is_matched(&comparison.naive, &comparison.physical) {
+            parts.push(Verdict::Holds);
+            findings.push(format!(
+                "{}: the deviations given to {} are those of {}, computed by quadrature.",
+                comparison.title, comparison.naive, comparison.physical
+            ));
+            continue;
+        }
         let mut words = Vec::new();
-        for (body, given) in Body::BOTH.into_iter().zip([payload, stage]) {
-            let worst = physical
-                .found_deviations(body)
-                .into_iter()
-                .zip(given)
-                .filter_map(|(found, given)| Some(given / found.filter(|f| *f > 0.0)? - 1.0))
-                .fold(0.0_f64, |worst, x| if x.abs() > worst.abs() { x } else { worst });
-            parts.push(if worst.abs() <= IDENTICAL {
+        for (body, given) in Body::BOTH.into_iter().zip(given) {
+            let entries = Entry::ALL.into_iter().zip(given);
+            let ratios: Vec<(f64, Interval)> = entries
+                .filter_map(|(entry, given)| {
+                    let found = physical.quantity(body.entry(entry))?;
+                    let interval = found.deviation_interval.filter(|i| i.lower() > 0.0)?;
+                    let (low, high) = (given / interval.upper(), given / interval.lower());
+                    let interval = Interval::new(low, high, interval.confidence()).ok()?;
+                    Some((given / found.deviation?, interval))
+                })
+                .collect();
+            let Some(worst) = ratios
+                .iter()
+                .map(|r| r.0)
+                .max_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs()))
+            else {
+                parts.push(Verdict::NotTested);
+                continue;
+            };
+            let off = |i: &Interval| i.lower() > 1.0 + IDENTICAL || i.upper() < 1.0 - IDENTICAL;
+            let same = |i: &Interval| i.lower() > 1.0 - IDENTICAL && i.upper() < 1.0 + IDENTICAL;
+            parts.push(if ratios.iter().any(|(_, i)| off(i)) {
+                Verdict::DoesNotHold
+            } else if ratios.iter().all(|(_, i)| same(i)) {
                 Verdict::Holds
             } else {
-                Verdict::DoesNotHold
+                Verdict::NotTested
             });
-            words.push(format!("{} entries off by up to {:+.1} %", body.name(), 100.0 * worst));
+            words.push(format!(
+                "{} entries off by up to {:+.1} %",
+                body.name(),
+                100.0 * (worst - 1.0)
+            ));
+        }
+        if words.is_empty() {
+            words.push("nothing to compare".to_owned());
         }
         findings.push(format!(
-            "{}: deviations given to {} against those of {}: {}.",
+            "{}: deviations given to {} against those of the runs of {}: {}.",
             comparison.title,
             comparison.naive,
             comparison.physical,
@@ -191,11 +246,7 @@ fn same_deviations(summary: &Summary) -> Claim {
         ));
     }
     Claim {
-        claim: format!(
-            "The naive model has the same deviations of the entries as the physical one (within \
-             {:.0} %).",
-            100.0 * IDENTICAL
-        ),
+        claim: "The naive model has the same deviations of the entries as the physical one.".into(),
         findings,
         verdict: Verdict::of_all(&parts),
     }
@@ -207,21 +258,17 @@ fn spreads_more(summary: &Summary, quantity: Quantity, claim: &str) -> Claim {
     for comparison in &summary.comparisons {
         let ratio = comparison.ratio(quantity);
         let estimate = ratio.and_then(|r| r.deviation_ratio.zip(r.deviation_ratio_interval));
-        let (words, verdict) = match estimate {
+        let words = match estimate {
             Some((ratio, interval)) => {
-                let verdict = if interval.lower() > CONSIDERABLE {
-                    Verdict::Holds
-                } else if interval.lower() > 1.0 {
-                    Verdict::HoldsInPart
-                } else {
-                    Verdict::DoesNotHold
-                };
-                (format!("{ratio:.3} {interval:.3}"), verdict)
+                parts.push(Verdict::above(interval, CONSIDERABLE));
+                format!("{ratio:.3} {interval:.3}")
             }
-            None => ("no variation to compare".to_owned(), Verdict::NotTested),
+            None => {
+                parts.push(Verdict::NotTested);
+                "cannot be told from these runs".to_owned()
+            }
         };
         findings.push(format!("{}: ratio of deviations {words}.", names(comparison)));
-        parts.push(verdict);
     }
     Claim { claim: claim.to_owned(), findings, verdict: Verdict::of_all(&parts) }
 }
@@ -238,12 +285,14 @@ fn reduces(summary: &Summary) -> Claim {
         for quantity in [Quantity::Nutation, Quantity::Cone] {
             let ratio = comparison.ratio(quantity);
             let difference = ratio.and_then(|r| r.mean_difference.zip(r.mean_difference_interval));
-            let Some((difference, interval)) = difference else {
+            let naive = summary.model(&comparison.naive).and_then(|m| m.quantity(quantity)?.mean);
+            let (Some((difference, interval)), Some(naive)) = (difference, naive) else {
                 parts.push(Verdict::NotTested);
+                words.push(format!("{} cannot be told from these runs", quantity.label()));
                 continue;
             };
-            parts.push(if interval.lower() > 0.0 { Verdict::Holds } else { Verdict::DoesNotHold });
-            words.push(format!("{} {difference:+.4}° {interval:+.4}", quantity.label()));
+            parts.push(Verdict::above(interval, LESS * naive));
+            words.push(format!("{} {difference:+.3}° {interval:+.3}", quantity.label()));
         }
         findings.push(format!(
             "{}, difference of the mean angles: {}.",
@@ -270,7 +319,9 @@ fn shapes(summary: &Summary, tables: &[RunTable]) -> Claim {
         else {
             continue;
         };
+        let few = summary.runs_per_model < ENOUGH_FOR_SHAPES as u64;
         parts.push(match (physical.one_sided(), physical.two_peaked.is_some()) {
+            _ if few => Verdict::NotTested,
             _ if naive.one_sided() || naive.two_peaked.is_some() => Verdict::DoesNotHold,
             (true, true) => Verdict::Holds,
             (false, false) => Verdict::DoesNotHold,
@@ -365,10 +416,16 @@ mod tests {
     fn verdicts_add_up() {
         use Verdict::*;
         assert_eq!(Verdict::of_all(&[]), NotTested);
-        assert_eq!(Verdict::of_all(&[NotTested, Holds]), Holds);
+        assert_eq!(Verdict::of_all(&[NotTested, Holds]), HoldsInPart);
+        assert_eq!(Verdict::of_all(&[NotTested, DoesNotHold]), DoesNotHold);
         assert_eq!(Verdict::of_all(&[DoesNotHold, Holds]), HoldsInPart);
         assert_eq!(Verdict::of_all(&[HoldsInPart, HoldsInPart]), HoldsInPart);
+        assert_eq!(Verdict::of_all(&[Holds, Holds]), Holds);
         assert_eq!(Verdict::of_all(&[DoesNotHold, DoesNotHold]), DoesNotHold);
+        let interval = Interval::new(0.9, 1.2, gyradius_statistics::Confidence::default()).unwrap();
+        assert_eq!(Verdict::above(interval, 0.8), Holds);
+        assert_eq!(Verdict::above(interval, 1.3), DoesNotHold);
+        assert_eq!(Verdict::above(interval, 1.0), NotTested);
     }
 
     #[test]

@@ -4,11 +4,12 @@ use gyradius_dispersion::{
     PrincipalDraw,
 };
 use gyradius_inertia::InertiaMatrix;
+use gyradius_separation::{RunError, SeparationError};
 use nalgebra::UnitQuaternion;
 use rand_distr::Distribution;
 
 use crate::{
-    row::{Outcome, Row},
+    row::{Failure, Outcome, Row},
     scenario::{Axes, Law, ModelSpec, Scenario, ScenarioError, UncertainBody},
     streams::Streams,
 };
@@ -77,12 +78,7 @@ impl Model {
     pub(crate) fn run(&self, scenario: &Scenario, run: u64) -> Row {
         let payload = self.payload.draw(run);
         let stage = self.stage.draw(run);
-        let outcome = scenario
-            .separation()
-            .with_inertias(payload.inertia, stage.inertia)
-            .map_err(|e| e.to_string())
-            .and_then(|s| s.run(scenario.settings()).map_err(|e| e.to_string()))
-            .map(|o| Outcome::new(&o, scenario.spin_axis()));
+        let outcome = separate(scenario, payload.inertia, stage.inertia);
         Row {
             run,
             payload: payload.inertia.entries(),
@@ -93,6 +89,30 @@ impl Model {
             outcome,
         }
     }
+}
+
+/// Separates the scenario's bodies with the given inertias.
+pub(crate) fn separate(
+    scenario: &Scenario,
+    payload: InertiaMatrix,
+    stage: InertiaMatrix,
+) -> Result<Outcome, Failure> {
+    let bodies = scenario.separation().with_inertias(payload, stage);
+    let bodies = bodies.map_err(|error| Failure {
+        kind: match &error {
+            SeparationError::Body { body, .. } => format!("{body}: inertia not positive definite"),
+            _ => "separation refused".to_owned(),
+        },
+        reason: error.to_string(),
+    })?;
+    let separated = bodies.run(scenario.settings()).map_err(|error| Failure {
+        kind: match &error {
+            RunError::NotReleased { .. } => "springs not released within the horizon".to_owned(),
+            _ => "integration failed".to_owned(),
+        },
+        reason: error.to_string(),
+    })?;
+    Ok(Outcome::new(&separated, scenario.spin_axis()))
 }
 
 impl BodyModel {

@@ -23,7 +23,12 @@ pub(crate) struct Plate {
 }
 
 pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Vec<Plate> {
-    let mut plates: Vec<Plate> = attitudes(scenario, tables).into_iter().collect();
+    // Other vehicles have no figures of the paper to be compared with.
+    let numbered = |what: &str, number: &str| match scenario.source() {
+        Some(_) => format!("{what} ({number})"),
+        None => what.to_owned(),
+    };
+    let mut plates: Vec<Plate> = attitudes(scenario, tables, &numbered).into_iter().collect();
     for comparison in scenario.comparisons() {
         let (physical, naive) = (&tables[comparison.physical], &tables[comparison.naive]);
         let pair = format!("{}-vs-{}", physical.model(), naive.model());
@@ -56,25 +61,25 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
         };
         plates.push(grid(
             "figure-4-7",
-            "Inertia ratio and wobble (Figures 4 and 7)",
+            &numbered("Inertia ratio and wobble", "Figures 4 and 7"),
             &[Some(Quantity::InertiaRatio), Some(Quantity::Wobble)],
             2,
         ));
         plates.push(grid(
             "figure-5-8-payload",
-            "Inertia of the payload, in matrix order (Figures 5 and 8)",
+            &numbered("Inertia of the payload, in matrix order", "Figures 5 and 8"),
             &matrix_order(Body::Payload),
             3,
         ));
         plates.push(grid(
             "figure-5-8-stage",
-            "Inertia of the stage, in matrix order (Figures 5 and 8)",
+            &numbered("Inertia of the stage, in matrix order", "Figures 5 and 8"),
             &matrix_order(Body::Stage),
             3,
         ));
         plates.push(grid(
             "figure-6-9",
-            "Wobble, nutation and coning (Figures 6 and 9)",
+            &numbered("Wobble, nutation and coning", "Figures 6 and 9"),
             &[Some(Quantity::Wobble), Some(Quantity::Nutation), Some(Quantity::Cone)],
             3,
         ));
@@ -83,7 +88,11 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
 }
 
 /// Figure 1 for every model that draws attitudes.
-fn attitudes(scenario: &Scenario, tables: &[RunTable]) -> Option<Plate> {
+fn attitudes(
+    scenario: &Scenario,
+    tables: &[RunTable],
+    numbered: &impl Fn(&str, &str) -> String,
+) -> Option<Plate> {
     let drawn: Vec<(&RunTable, Vec<UnitQuaternion<f64>>)> = tables
         .iter()
         .map(|t| {
@@ -104,13 +113,13 @@ fn attitudes(scenario: &Scenario, tables: &[RunTable]) -> Option<Plate> {
         .map(|(table, attitudes)| Cloud { name: table.model(), attitudes, mean })
         .collect();
     let most = drawn.iter().map(|(_, a)| a.len()).max()?;
-    let title = "Principal axes of the payload (Figure 1)";
+    let title = numbered("Principal axes of the payload", "Figure 1");
     Some(Plate {
         name: "figure-1-attitudes".to_owned(),
         caption: format!(
             "{title}. {most} random attitudes a model, as the tips of the unit axes on the sphere"
         ),
-        svg: attitude_spheres(title, &clouds),
+        svg: attitude_spheres(&title, &clouds),
     })
 }
 

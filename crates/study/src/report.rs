@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::{
-    claims::{CONSIDERABLE, Claim, IDENTICAL, ONE_SIDED, Verdict},
+    claims::{CONSIDERABLE, Claim, IDENTICAL, LESS, ONE_SIDED, Verdict},
     format::{interval, optional, significant},
     plates::Plate,
     row::{Body, Entry, Quantity},
@@ -47,7 +47,7 @@ fn head(summary: &Summary) -> Markup {
         p.lead {
             "Scenario " strong { (summary.scenario) } ": " (summary.runs_per_model)
             " runs of each of the models " (models.join(", ")) ", seed " (summary.seed) ". "
-            "All intervals have a confidence of " (100.0 * summary.confidence) " %."
+            "Intervals have a confidence of " (100.0 * summary.confidence) " %; p95 is the 95th percentile."
         }
     }
 }
@@ -63,7 +63,7 @@ fn results(summary: &Summary) -> Markup {
                     @for q in Quantity::BEHAVIOUR { th.group colspan="3" { (q.label()) (unit(q)) } }
                 }
                 tr {
-                    @for _ in Quantity::BEHAVIOUR { th { "mean" } th { "sd" } th { "95 %" } }
+                    @for _ in Quantity::BEHAVIOUR { th { "mean" } th { "sd" } th { "p95" } }
                 }
             }
             tbody {
@@ -132,14 +132,17 @@ fn claims(summary: &Summary) -> Markup {
         p {
             "Peck (2003) claims the following of physically realizable models and of independent "
             "Gaussian entries. “Considerably more” is taken as a deviation larger by at least "
-            (format!("{:.0}", 100.0 * (CONSIDERABLE - 1.0))) " % with its whole interval, “the same” as within "
-            (100.0 * IDENTICAL) " %, “one-sided” as a skewness beyond "
-            (significant(ONE_SIDED, 1)) ". A claim that stands in one comparison and not in another holds in part."
+            (format!("{:.0}", 100.0 * (CONSIDERABLE - 1.0))) " %, “less” as a mean lower by at least "
+            (100.0 * LESS) " %, “the same” as within " (100.0 * IDENTICAL)
+            " %, “one-sided” as a skewness beyond " (significant(ONE_SIDED, 1))
+            ". A claim holds in a comparison if the whole interval is on its side of that line, and "
+            "does not if the whole interval is on the other; else these runs cannot tell. What holds "
+            "in one comparison and not, or not surely, in another holds in part."
         }
-        table.claims {
+        div.wide { table.claims {
             thead { tr { th { "claim" } th { "what this study finds" } th { "verdict" } } }
             tbody { @for claim in &summary.claims { (claim_row(claim)) } }
-        }
+        } }
     }
 }
 
@@ -162,7 +165,7 @@ fn claim_row(claim: &Claim) -> Markup {
 fn ratios(summary: &Summary) -> Markup {
     html! {
         @if !summary.comparisons.is_empty() {
-            h2 { "How much more the naive models vary" }
+            h2 { "Variation under the naive models" }
             p {
                 "Deviation under the naive model over deviation under the physical one; the interval "
                 "is robust to the shape of the distributions."
@@ -205,7 +208,8 @@ fn deviations(scenario: &Scenario, summary: &Summary) -> Markup {
                 summary.model(names[comparison.naive]),
             ) {
                 @if let Some(given) = naive.given_deviations_kg_m2 {
-                    (deviation_table(comparison, physical, naive, given))
+                    @let table = scenario.source().map_or("", |_| " (Table 2)");
+                    (deviation_table(table, comparison, physical, naive, given))
                 }
             }
         }
@@ -213,13 +217,14 @@ fn deviations(scenario: &Scenario, summary: &Summary) -> Markup {
 }
 
 fn deviation_table(
+    table: &str,
     comparison: &Comparison,
     physical: &ModelSummary,
     naive: &ModelSummary,
     given: [[f64; 6]; 2],
 ) -> Markup {
     html! {
-        h2 { "Deviations of the entries (Table 2): " (comparison.title.to_lowercase()) }
+        h2 { "Deviations of the entries" (table) ": " (comparison.title) }
         p {
             "Standard deviations in kg·m²: those of the runs of " strong { (physical.name) }
             ", and those that " strong { (naive.name) } " was given."

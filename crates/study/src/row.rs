@@ -12,7 +12,15 @@ pub struct Row {
     pub(crate) payload_axes: Option<UnitQuaternion<f64>>,
     pub(crate) stage_axes: Option<UnitQuaternion<f64>>,
     /// What came of it, or why nothing did.
-    pub(crate) outcome: Result<Outcome, String>,
+    pub(crate) outcome: Result<Outcome, Failure>,
+}
+
+/// Why a run failed.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Failure {
+    /// Without numbers, so that failures of a kind can be counted.
+    pub(crate) kind: String,
+    pub(crate) reason: String,
 }
 
 /// What a run is about; angles in degrees.
@@ -59,7 +67,7 @@ impl Row {
     /// `ok`, or why the run failed.
     #[must_use]
     pub fn status(&self) -> &str {
-        self.outcome.as_ref().err().map_or("ok", String::as_str)
+        self.outcome.as_ref().err().map_or("ok", |failure| failure.reason.as_str())
     }
 
     /// Whether both drawn inertias are realizable.

@@ -88,9 +88,9 @@ impl Study {
         let threads = threads(options.threads)?;
         let default = || Path::new("target/study").join(scenario.name());
         let place = options.out.clone().unwrap_or_else(default);
+        let models = runner::models(scenario)?;
         let folder = Folder::prepare(&place, scenario, options.force)?;
 
-        let models = runner::models(scenario)?;
         let tables = runner::run(scenario, &models, &threads, progress);
         let summary = Summary::new(scenario, &models, &tables)?;
         let figures = plates::of_study(scenario, &summary, &tables);

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use crate::{
     claims::{self, Claim},
-    model::Model,
-    row::{Body, Entry, Outcome, Quantity, Row},
+    model::{Model, separate},
+    row::{Body, Quantity, Row},
     scenario::{Scenario, UncertainBody},
     table::RunTable,
 };
@@ -43,7 +43,7 @@ pub(crate) struct Nominal {
 pub(crate) struct ModelSummary {
     pub(crate) name: String,
     pub(crate) failed: u64,
-    /// Reasons of failed runs, with how often.
+    /// Kinds of failure, with how often.
     pub(crate) failures: Vec<(String, u64)>,
     pub(crate) unrealizable: Share,
     /// Draws in the half sphere away from the mean attitude, for payload and stage, where the law
@@ -167,7 +167,6 @@ impl Summary {
 /// The run of the nominal bodies.
 fn nominal(scenario: &Scenario) -> Vec<Nominal> {
     let (payload, stage) = (scenario.payload().nominal(), scenario.stage().nominal());
-    let outcome = scenario.separation().run(scenario.settings());
     let row = Row {
         run: 0,
         payload: payload.entries(),
@@ -175,7 +174,7 @@ fn nominal(scenario: &Scenario) -> Vec<Nominal> {
         realizable: true,
         payload_axes: None,
         stage_axes: None,
-        outcome: outcome.map(|o| Outcome::new(&o, scenario.spin_axis())).map_err(|e| e.to_string()),
+        outcome: separate(scenario, *payload.as_inertia_matrix(), *stage.as_inertia_matrix()),
     };
     Quantity::ALL
         .into_iter()
@@ -196,10 +195,10 @@ impl ModelSummary {
         let rows = table.rows();
         let share = |count: usize| Share::new(count as u64, rows.len() as u64, confidence);
         let mut failures: Vec<(String, u64)> = Vec::new();
-        for reason in rows.iter().filter_map(|r| r.outcome.as_ref().err()) {
-            match failures.iter_mut().find(|(known, _)| known == reason) {
+        for failure in rows.iter().filter_map(|r| r.outcome.as_ref().err()) {
+            match failures.iter_mut().find(|(kind, _)| *kind == failure.kind) {
                 Some((_, count)) => *count += 1,
-                None => failures.push((reason.clone(), 1)),
+                None => failures.push((failure.kind.clone(), 1)),
             }
         }
         let draws_axes = rows.iter().any(|r| r.payload_axes.is_some());
@@ -227,11 +226,6 @@ impl ModelSummary {
 
     pub(crate) fn quantity(&self, quantity: Quantity) -> Option<&QuantitySummary> {
         self.quantities.iter().find(|q| q.quantity == quantity)
-    }
-
-    /// Deviations of the entries that the runs show, payload or stage.
-    pub(crate) fn found_deviations(&self, body: Body) -> [Option<f64>; 6] {
-        Entry::ALL.map(|e| self.quantity(body.entry(e)).and_then(|q| q.deviation))
     }
 }
 

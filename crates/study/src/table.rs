@@ -132,7 +132,7 @@ fn write<T: parquet::data_type::DataType, W: Write + Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row::Outcome;
+    use crate::row::{Failure, Outcome};
     use parquet::{
         file::reader::{FileReader, SerializedFileReader},
         record::Field,
@@ -164,7 +164,10 @@ mod tests {
         let failed = Row {
             run: 1,
             realizable: false,
-            outcome: Err("springs [1] had not let go".to_owned()),
+            outcome: Err(Failure {
+                kind: "late".to_owned(),
+                reason: "springs [1] late".to_owned(),
+            }),
             ..good.clone()
         };
         RunTable::new("naive", vec![good, failed])

@@ -8,7 +8,7 @@ use crate::{
 
 /// What is told of every quantity.
 type Told = (&'static str, fn(&QuantitySummary) -> Option<f64>);
-const TOLD: [Told; 3] = [("mean", |q| q.mean), ("sd", |q| q.deviation), ("95 %", |q| q.p95)];
+const TOLD: [Told; 3] = [("mean", |q| q.mean), ("sd", |q| q.deviation), ("p95", |q| q.p95)];
 
 /// The short table that ends a study on the terminal.
 impl Display for Summary {

@@ -132,12 +132,23 @@ impl Scenario {
         check_runs(file.runs)?;
         check_seed(file.seed)?;
         let axis = Vector3::from(file.spin_axis);
-        let spin_axis = Unit::try_new(axis, 0.0)
+        // Scaled first: the norm of 1e300 overflows.
+        let spin_axis = Unit::try_new(axis / axis.amax(), 0.0)
             .filter(|u| u.iter().all(|x| x.is_finite()))
             .ok_or_else(|| {
                 let problem = format!("{:?}: it must be finite and not zero", file.spin_axis);
                 ScenarioError::field("spin_axis", problem)
             })?;
+        if let Some(source) = &file.source {
+            let values =
+                [("inertia_ratio", source.inertia_ratio), ("wobble_deg", source.wobble_deg)];
+            for (field, value) in values {
+                if let Some(x) = value.filter(|x| !(*x >= 0.0 && *x < 1e3)) {
+                    let problem = format!("{x:?}: it must lie in [0, 1000)");
+                    return Err(ScenarioError::field(format!("source.{field}"), problem));
+                }
+            }
+        }
         let payload = UncertainBody::new("payload", &file.payload)?;
         let stage = UncertainBody::new("stage", &file.stage)?;
         let springs = file
@@ -221,6 +232,12 @@ impl Scenario {
         &self.models
     }
 
+    /// Whether a model was given exactly the deviations of another.
+    pub(crate) fn is_matched(&self, model: &str, to: &str) -> bool {
+        let matched = |m: &ModelSpec| m.law == Law::EntrywiseMatched(to.to_owned());
+        self.models.iter().any(|m| m.name == model && matched(m))
+    }
+
     pub(crate) fn comparisons(&self) -> &[Comparison] {
         &self.comparisons
     }
@@ -251,7 +268,9 @@ fn check_seed(seed: u64) -> Result<(), ScenarioError> {
 /// Names become names of folders.
 fn check_name(field: &str, name: &str) -> Result<(), ScenarioError> {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    if !name.is_empty() && name.len() <= 64 && name.chars().all(allowed) {
+    // What Windows takes for devices.
+    let device = ["con", "prn", "aux", "nul"].contains(&name.to_ascii_lowercase().as_str());
+    if !name.is_empty() && name.len() <= 64 && name.chars().all(allowed) && !device {
         return Ok(());
     }
     let problem = format!(
@@ -277,6 +296,14 @@ mod tests {
         assert_eq!(names, ["proposed", "published", "naive", "naive-matched"]);
         assert!((s.separation().stored_energy() - 1300.0).abs() < 1e-9);
         assert!((s.separation().free_lengths()[0] - 0.3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_spin_axis_of_any_length_is_a_direction() {
+        for length in ["1e300", "1e-300", "7.0"] {
+            let text = PECK_2003.replace("spin_axis = [1.0,", &format!("spin_axis = [{length},"));
+            assert_eq!(Scenario::from_toml(&text).unwrap().spin_axis(), &Vector3::x_axis());
+        }
     }
 
     #[test]
@@ -329,6 +356,15 @@ mod tests {
                 "physical = \"none\"",
                 "comparisons[1].physical: \"none\"",
             ),
+            (
+                "physical = \"published\"",
+                "physical = \"naive\"",
+                "comparisons[1].physical: \"naive\"",
+            ),
+            ("naive = \"naive\"", "naive = \"proposed\"", "comparisons[1].naive: \"proposed\""),
+            ("name = \"published\"", "name = \"Proposed\"", "models: two are named \"Proposed\""),
+            ("wobble_deg = 1.144", "wobble_deg = nan", "source.wobble_deg: NaN"),
+            ("spin_axis = [1.0,", "spin_axis = [nan,", "spin_axis: [NaN, 0.0, 0.0]"),
         ];
         for (from, to, expected) in cases {
             let message = error(from, to);

@@ -37,8 +37,10 @@ pub(crate) fn check_models(files: &[ModelFile]) -> Result<Vec<ModelSpec>, Scenar
     }
     for (i, file) in files.iter().enumerate() {
         check_name(&format!("models[{}].name", i + 1), &file.name)?;
-        if files[..i].iter().any(|other| other.name == file.name) {
-            let problem = format!("two are named {:?}: names must differ", file.name);
+        // Some file systems do not tell upper from lower case.
+        if files[..i].iter().any(|other| other.name.eq_ignore_ascii_case(&file.name)) {
+            let problem =
+                format!("two are named {:?}: names must differ in more than case", file.name);
             return Err(ScenarioError::field("models", problem));
         }
     }
@@ -119,9 +121,14 @@ pub(crate) fn check_comparisons(
     models: &[ModelSpec],
 ) -> Result<Vec<Comparison>, ScenarioError> {
     let find = |i: usize, role: &str, name: &str| {
-        models.iter().position(|m| m.name == name).ok_or_else(|| {
-            let names: Vec<&str> = models.iter().map(|m| m.name.as_str()).collect();
-            let problem = format!("{name:?}: it must be one of the models {}", names.join(", "));
+        let law = if role == "physical" { "principal" } else { "entrywise" };
+        let fits = |m: &&ModelSpec| matches!(m.law, Law::Principal(_)) == (role == "physical");
+        let names: Vec<&str> = models.iter().filter(fits).map(|m| m.name.as_str()).collect();
+        models.iter().position(|m| m.name == name && fits(&m)).ok_or_else(|| {
+            let problem = format!(
+                "{name:?}: it must be one of the models with law {law:?}: {}",
+                names.join(", ")
+            );
             ScenarioError::field(format!("comparisons[{}].{role}", i + 1), problem)
         })
     };
