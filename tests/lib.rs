@@ -62,3 +62,8 @@ pub fn paper_separation() -> Separation {
     )
     .expect(valid)
 }
+
+// The example of the repository's README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

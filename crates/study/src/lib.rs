@@ -36,3 +36,7 @@ pub use scenario::{Scenario, ScenarioError};
 pub use study::{Options, Study, StudyError};
 pub use summary::Summary;
 pub use table::RunTable;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
