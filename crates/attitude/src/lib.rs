@@ -1,6 +1,7 @@
 //! Probability laws on attitudes, as unit quaternions on the sphere S³.
 //!
-//! * [`UniformAttitude`]: every attitude equally likely (Haar measure).
+//! * [`UniformAttitude`]: every attitude equally likely (Haar measure); [`MarsagliaUniform`],
+//!   [`ShoemakeUniform`] and [`BoxUniform`] draw it in other ways, [`super_fibonacci`] is an even grid.
 //! * [`RadiallyConstrainedGaussian`] (RCG): a Gaussian in ℝ⁴ conditioned on unit length (Nicewarner
 //!   & Sanderson 1994; Peck 2003, Eq. 20-26), the Fisher-Bingham law on S³ with a mean attitude.
 //! * [`MeanHalf`]: the same, kept to the half sphere around its mean.
@@ -47,7 +48,9 @@ pub use fisher_bingham::{FisherBingham, FisherBinghamError, Method};
 pub use hyperspherical::{HypersphericalAngles, HypersphericalError};
 pub use mean_half::MeanHalf;
 pub use rcg::{RadiallyConstrainedGaussian, RcgError};
-pub use uniform::UniformAttitude;
+pub use uniform::{
+    BoxUniform, MarsagliaUniform, ShoemakeUniform, UniformAttitude, super_fibonacci,
+};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

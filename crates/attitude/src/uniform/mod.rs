@@ -1,6 +1,14 @@
+//! The uniform law, four ways to draw from it, and a grid.
+
+mod alternatives;
+mod spiral;
+
 use nalgebra::{Quaternion, UnitQuaternion};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
+
+pub use alternatives::{BoxUniform, MarsagliaUniform, ShoemakeUniform};
+pub use spiral::super_fibonacci;
 
 /// The uniform law: every attitude equally likely.
 ///
@@ -60,9 +68,18 @@ mod tests {
 
     const N: usize = 100_000;
 
-    fn draws() -> impl Iterator<Item = UnitQuaternion<f64>> {
+    fn draws<D: Distribution<UnitQuaternion<f64>>>(law: D) -> Vec<UnitQuaternion<f64>> {
         let mut rng = ChaCha8Rng::seed_from_u64(1);
-        (0..N).map(move |_| UniformAttitude.sample(&mut rng))
+        (0..N).map(|_| law.sample(&mut rng)).collect()
+    }
+
+    fn every_way() -> [(&'static str, Vec<UnitQuaternion<f64>>); 4] {
+        [
+            ("normals", draws(UniformAttitude)),
+            ("Marsaglia", draws(MarsagliaUniform)),
+            ("Shoemake", draws(ShoemakeUniform)),
+            ("box", draws(BoxUniform)),
+        ]
     }
 
     /// Largest distance between the empirical distribution of values and a distribution function,
@@ -86,20 +103,27 @@ mod tests {
     /// Under Haar measure the rotation angle has the distribution (θ − sin θ)/π.
     #[test]
     fn rotation_angle_is_haar() {
-        let angles: Vec<_> = draws().map(|q| q.angle()).collect();
-        let d = kolmogorov(angles, |t| (t - t.sin()) / std::f64::consts::PI);
-        assert!(d < 1.95, "{d}");
+        for (name, attitudes) in every_way() {
+            let angles = attitudes.iter().map(UnitQuaternion::angle).collect();
+            let d = kolmogorov(angles, |t| (t - t.sin()) / std::f64::consts::PI);
+            assert!(d < 1.95, "{name}: {d}");
+            let off = |q: &UnitQuaternion<f64>| (q.norm() - 1.0).abs() > 4.0 * f64::EPSILON;
+            assert!(!attitudes.iter().any(off), "{name}");
+        }
     }
 
     /// Under Haar measure every entry of the rotation matrix is uniform on [-1, 1].
     #[test]
     fn every_matrix_entry_is_uniform() {
-        let matrices: Vec<_> = draws().map(UnitQuaternion::to_rotation_matrix).collect();
-        for i in 0..3 {
-            for j in 0..3 {
-                let entry = matrices.iter().map(|m| m[(i, j)]).collect();
-                let d = kolmogorov(entry, |x| 0.5 * (x + 1.0));
-                assert!(d < 2.2, "entry {i}{j}: {d}");
+        for (name, attitudes) in every_way() {
+            let matrices: Vec<_> =
+                attitudes.into_iter().map(UnitQuaternion::to_rotation_matrix).collect();
+            for i in 0..3 {
+                for j in 0..3 {
+                    let entry = matrices.iter().map(|m| m[(i, j)]).collect();
+                    let d = kolmogorov(entry, |x| 0.5 * (x + 1.0));
+                    assert!(d < 2.2, "{name}, entry {i}{j}: {d}");
+                }
             }
         }
     }
