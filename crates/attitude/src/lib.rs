@@ -43,6 +43,7 @@ mod jacobi;
 mod mean_half;
 mod rcg;
 mod uniform;
+mod ways_in;
 
 pub use fisher_bingham::{FisherBingham, FisherBinghamError, Method};
 pub use hyperspherical::{HypersphericalAngles, HypersphericalError};

@@ -51,6 +51,16 @@ pub enum RcgError {
         /// The smallest eigenvalue, or the largest if that is what is out of range.
         eigenvalue: f64,
     },
+    /// Angles of the mean have no direction (Eq. 22).
+    #[error(
+        "sin θ₁ = {:e} and sin θ₂ = {:e} of the mean: both must be above zero for the angles to \
+         have directions; give the covariance of small turns instead",
+        .sines[0], .sines[1]
+    )]
+    Pole {
+        /// sin θ₁ and sin θ₂.
+        sines: [f64; 2],
+    },
 }
 
 /// The radially constrained Gaussian (RCG) on unit quaternions.
@@ -175,6 +185,14 @@ impl RadiallyConstrainedGaussian {
     pub fn ln_attitude_density(&self, q: &UnitQuaternion<f64>) -> f64 {
         let (a, b) = (self.ln_density(q), self.ln_density(&opposite(q)));
         a.max(b) + libm::log1p(libm::exp(-(a - b).abs()))
+    }
+
+    /// The logarithm of the density of the attitude with respect to Haar measure on SO(3),
+    /// normalised to one: 0 everywhere for the uniform law.
+    #[must_use]
+    pub fn ln_haar_density(&self, q: &UnitQuaternion<f64>) -> f64 {
+        const LN_PI_SQUARED: f64 = 2.289_459_771_698_800_3;
+        self.ln_attitude_density(q) + LN_PI_SQUARED
     }
 
     /// The logarithm of the density of Φ with respect to dθ₁ dθ₂ dθ₃ (Peck 2003, Eq. 26): that on
@@ -540,6 +558,18 @@ mod tests {
         assert_eq!(law.ln_attitude_density(&q), law.ln_attitude_density(&opposite(&q)));
         // At the mean the exponent is zero.
         assert!((law.ln_density(&law.mean()) + law.ln_normaliser()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_haar_density_of_a_flat_law_is_one_and_integrates_to_one() {
+        let flat = law([0.1, 0.2, 0.3, 0.9], [1e12; 4]);
+        let q = UnitQuaternion::from_euler_angles(0.5, 0.1, -0.2);
+        assert!(flat.ln_haar_density(&q).abs() < 1e-11);
+        // The mean over an even grid of attitudes is the integral.
+        let law = law([0.2, -0.1, 0.3, 0.9], [0.3, 0.4, 0.5, 0.8]);
+        let n = 20_000;
+        let sum: f64 = crate::super_fibonacci(n).map(|q| law.ln_haar_density(&q).exp()).sum();
+        assert!((sum / f64::from(n) - 1.0).abs() < 1e-3, "{}", sum / f64::from(n));
     }
 
     #[test]
