@@ -131,7 +131,9 @@ fn naive_unphysical(summary: &Summary) -> Claim {
         })
         .collect();
     Claim {
-        claim: "Independent Gaussian entries yield matrices that no body can have.".into(),
+        claim:
+            "Independent Gaussian entries of these deviations yield matrices that no body can have."
+                .into(),
         findings: naive.iter().map(|m| unrealizable(m)).collect(),
         verdict: Verdict::of_all(&parts),
     }
