@@ -9,7 +9,7 @@ use nalgebra::UnitQuaternion;
 use rand_distr::Distribution;
 
 use crate::{
-    row::{Failure, Outcome, Row},
+    row::{Body, Failure, Outcome, Row},
     scenario::{Axes, Law, ModelSpec, Scenario, ScenarioError, UncertainBody},
     streams::Streams,
 };
@@ -44,18 +44,18 @@ struct Draw {
 
 impl Model {
     pub(crate) fn new(spec: &ModelSpec, scenario: &Scenario) -> Result<Self, ScenarioError> {
-        let body = |name: &str, body: &UncertainBody, own: usize| {
-            let purpose = format!("{name} inertia");
+        let body = |which: Body, body: &UncertainBody| {
+            let purpose = format!("{} inertia", which.name());
             Ok(BodyModel {
-                law: BodyLaw::new(spec, body, own)
+                law: BodyLaw::new(spec, which, body)
                     .map_err(|e| ScenarioError::field(format!("models.{}", spec.name), e))?,
                 streams: Streams::new(scenario.seed(), &spec.name, &purpose),
             })
         };
         Ok(Self {
             name: spec.name.clone(),
-            payload: body("payload", scenario.payload(), 0)?,
-            stage: body("stage", scenario.stage(), 1)?,
+            payload: body(Body::Payload, scenario.payload())?,
+            stage: body(Body::Stage, scenario.stage())?,
         })
     }
 
@@ -130,11 +130,10 @@ impl BodyModel {
 }
 
 impl BodyLaw {
-    /// `own` picks the body's deviations: 0 payload, 1 stage.
     fn new(
         spec: &ModelSpec,
+        which: Body,
         body: &UncertainBody,
-        own: usize,
     ) -> Result<Self, Box<dyn std::error::Error>> {
         let whole = || PrincipalDispersion::new(*body.roots(), body.axes().clone());
         let entrywise =
@@ -149,7 +148,10 @@ impl BodyLaw {
                 let axes = JacobianTwice::new(body.axes().clone())?;
                 Self::JacobianTwice(Box::new(PrincipalDispersion::new(*body.roots(), axes)))
             }
-            Law::Entrywise { payload, stage } => entrywise([*payload, *stage][own])?,
+            Law::Entrywise { payload, stage } => entrywise(match which {
+                Body::Payload => *payload,
+                Body::Stage => *stage,
+            })?,
             Law::EntrywiseMatched(_) => entrywise(EntryMoments::of(&whole()).deviations())?,
         })
     }
