@@ -24,30 +24,64 @@ fn law((mean, variances): Parameters) -> RadiallyConstrainedGaussian {
     RadiallyConstrainedGaussian::new(mean, Matrix4::from_diagonal(&variances.into())).unwrap()
 }
 
+/// As many attitudes as fit into a first-level cache.
+const BATCH: usize = 1024;
+
+fn batch_of_attitudes() -> Vec<UnitQuaternion<f64>> {
+    vec![UnitQuaternion::identity(); BATCH]
+}
+
 fn uniform(c: &mut Criterion) {
     fn draw<R: Rng + SeedableRng>(b: &mut criterion::Bencher<'_>) {
         let mut rng = R::seed_from_u64(1);
         b.iter(|| UniformAttitude.sample(&mut rng));
     }
+    fn batch<R: Rng + SeedableRng>(b: &mut criterion::Bencher<'_>) {
+        let (mut rng, mut out) = (R::seed_from_u64(1), batch_of_attitudes());
+        b.iter(|| UniformAttitude.sample_into(&mut rng, black_box(&mut out)));
+    }
     let mut group = c.benchmark_group("uniform");
     group.throughput(Throughput::Elements(1));
     group.bench_function("chacha8", draw::<ChaCha8Rng>);
     group.bench_function("xoshiro256++", draw::<Xoshiro256PlusPlus>);
+    group.throughput(Throughput::Elements(BATCH as u64));
+    group.bench_function("batch/chacha8", batch::<ChaCha8Rng>);
+    group.bench_function("batch/xoshiro256++", batch::<Xoshiro256PlusPlus>);
     group.finish();
 }
 
 fn rcg(c: &mut Criterion) {
+    fn draw<R: Rng + SeedableRng>(
+        b: &mut criterion::Bencher<'_>,
+        law: &RadiallyConstrainedGaussian,
+    ) {
+        let mut rng = R::seed_from_u64(1);
+        b.iter(|| black_box(law).sample(&mut rng));
+    }
+    fn batch<R: Rng + SeedableRng>(
+        b: &mut criterion::Bencher<'_>,
+        law: &RadiallyConstrainedGaussian,
+    ) {
+        let (mut rng, mut out) = (R::seed_from_u64(1), batch_of_attitudes());
+        b.iter(|| law.sample_into(&mut rng, black_box(&mut out)));
+    }
     let mut group = c.benchmark_group("rcg");
-    group.throughput(Throughput::Elements(1));
     for (name, parameters, method) in [
         ("peck-2003", PAPER, Method::Chart),
-        ("isotropic", ISOTROPIC, Method::Uniform),
-        ("four-scales", FOUR_SCALES, Method::Circle),
+        ("isotropic", ISOTROPIC, Method::Cells),
+        ("four-scales", FOUR_SCALES, Method::Cells),
     ] {
         let law = law(parameters);
         assert_eq!(law.method(), method, "{name}");
-        let mut rng = ChaCha8Rng::seed_from_u64(1);
-        group.bench_function(name, |b| b.iter(|| black_box(&law).sample(&mut rng)));
+        group.throughput(Throughput::Elements(1));
+        let id = |kind: &str| format!("{name}/{kind}");
+        group.bench_with_input(id("chacha8"), &law, draw::<ChaCha8Rng>);
+        group.bench_with_input(id("xoshiro256++"), &law, draw::<Xoshiro256PlusPlus>);
+        if method == Method::Chart {
+            group.throughput(Throughput::Elements(BATCH as u64));
+            group.bench_with_input(id("batch/chacha8"), &law, batch::<ChaCha8Rng>);
+            group.bench_with_input(id("batch/xoshiro256++"), &law, batch::<Xoshiro256PlusPlus>);
+        }
     }
     group.finish();
 }
@@ -58,6 +92,9 @@ fn normaliser(c: &mut Criterion) {
     group.throughput(Throughput::Elements(1));
     for (name, parameters) in [("peck-2003", PAPER), ("four-scales", FOUR_SCALES)] {
         group.bench_function(name, |b| b.iter(|| law(black_box(parameters)).ln_normaliser()));
+        group.bench_function(format!("{name}/with-sampler"), |b| {
+            b.iter(|| law(black_box(parameters)).acceptance());
+        });
     }
     group.finish();
 }

@@ -11,14 +11,21 @@
 //! Gaussian puts its mass. The weight has a pole at h = 0: the belt h < h₀ is left out, and the
 //! chart refuses to serve a law of which the belt holds more than 2⁻⁶⁴.
 
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector4};
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
-use std::f64::consts::{LN_2, PI, TAU};
+use std::f64::consts::{LN_2, PI};
+
+use crate::vector;
+
+/// Proposals made at a time in a batch: few enough for the first-level cache.
+const CHUNK: usize = 128;
 
 const BINS: usize = 64;
 /// ln 2⁻⁶⁴: what a generator of 64 bits cannot resolve.
 const LN_BELT: f64 = -64.0 * LN_2;
+
+const LN_TAU: f64 = 1.837_877_066_409_345_5;
 
 /// tanh(x)/x − 1/x² rises to this maximum and falls from there; found by Newton in 50 digits.
 const CREST: (f64, f64) = (2.264_885_841_899_889_5, 0.237_160_049_676_758_4);
@@ -36,6 +43,10 @@ pub(crate) struct Chart {
     floor: f64,
     bins_per_unit: f64,
     bins: [Bin; BINS],
+    /// Above this h² − h₀², uniform numbers below that many of 4096 mean the upper sheet: worth a look
+    /// where that is nearly all of them.
+    sure_above: f64,
+    sure: u32,
     acceptance: f64,
 }
 
@@ -49,30 +60,31 @@ struct Bin {
 
 impl Chart {
     /// The best chart for exp(−½ Σ λ_j(y_j − c_j)²), whose integral over S³ is exp(ln_integral),
-    /// with x = V y.
+    /// with x = V y. Under exp(−½ Σ (λ_j + shift)(y_j − c_j)²) in ℝ⁴, |y|² = 1 holds on average.
     pub(crate) fn new(
         axes: &Matrix4<f64>,
         lambda: [f64; 4],
         center: [f64; 4],
         ln_integral: f64,
+        shift: f64,
     ) -> Option<Self> {
         // The coordinate to drop is the one whose mean is far from zero for its spread.
         let mut order = [0, 1, 2, 3];
         let reach = |k: usize| center[k].abs() / lambda[k].sqrt();
         order.sort_by(|&a, &b| reach(b).total_cmp(&reach(a)));
-        let mut best: Option<Self> = None;
+        let mut best: Option<(Problem, Proposal)> = None;
         for k in order {
-            if best.as_ref().is_some_and(|chart| chart.acceptance > 0.5) {
+            if best.as_ref().is_some_and(|(_, b)| b.ln_acceptance > -LN_2) {
                 break;
             }
             let problem = Problem::new(lambda, center, ln_integral, k);
-            if let Some(chart) = problem.best_proposal().map(|p| problem.chart(axes, &p))
-                && best.as_ref().is_none_or(|b| b.acceptance < chart.acceptance)
+            if let Some(proposal) = problem.best_proposal(shift)
+                && best.as_ref().is_none_or(|(_, b)| b.ln_acceptance < proposal.ln_acceptance)
             {
-                best = Some(chart);
+                best = Some((problem, proposal));
             }
         }
-        best
+        best.map(|(problem, proposal)| problem.chart(axes, &proposal))
     }
 
     /// The share of proposals that are accepted.
@@ -102,19 +114,149 @@ impl Chart {
                 h
             } else if uniform >= bin.plus_high && uniform < bin.total_low {
                 -h
+            } else if let Some(height) = self.decide(uniform, h) {
+                height
             } else {
-                let plus = libm::exp(self.weight.ln_sheet(1.0, h) - self.ln_peak);
-                let minus = libm::exp(self.weight.ln_sheet(-1.0, h) - self.ln_peak);
-                if uniform < plus {
-                    h
-                } else if uniform < plus + minus {
-                    -h
-                } else {
-                    continue;
-                }
+                continue;
             };
             let [a, b, c, d] = &self.columns;
             return a * u0 + b * u1 + c * u2 + d * height;
+        }
+    }
+}
+
+impl Chart {
+    /// Fills a slice with draws, by the machine's vector units.
+    pub(crate) fn sample_into<R: Rng + ?Sized>(
+        &self,
+        rng: &mut R,
+        out: &mut [UnitQuaternion<f64>],
+    ) {
+        let mut batch = Batch {
+            bits: [0; 3 * CHUNK],
+            u: [0.0; 3 * CHUNK],
+            v: [0.0; CHUNK],
+            h: [0.0; CHUNK],
+            place: [0; CHUNK],
+        };
+        let mut rest = out;
+        while !rest.is_empty() {
+            rng.fill(&mut batch.bits[..]);
+            vector::run(Propose { chart: self, batch: &mut batch });
+            let kept = self.keep(rng, &mut batch).min(rest.len());
+            let (next, later) = rest.split_at_mut(kept);
+            vector::run(Place { chart: self, batch: &batch, out: next });
+            rest = later;
+        }
+    }
+
+    /// Moves the accepted proposals of a batch to its front; returns how many.
+    fn keep<R: Rng + ?Sized>(&self, rng: &mut R, batch: &mut Batch) -> usize {
+        const UNIT: f64 = 1.0 / 4096.0;
+        let Batch { bits, u, v, h, place } = batch;
+        let mut kept = 0;
+        for i in 0..CHUNK {
+            // Twelve bits, which the length of a normal leaves, are all of a uniform number that nearly
+            // every decision needs.
+            let few = (bits[i] & 0xfff) as u32;
+            if v[i] > self.sure_above && few < self.sure {
+                // Where nothing was refused yet, it is in place.
+                if kept != i {
+                    h[kept] = h[i];
+                }
+            } else {
+                if !(v[i] > 0.0) {
+                    continue;
+                }
+                let bin = &self.bins[place[i] as usize % BINS];
+                let (low, high) = (f64::from(few) * UNIT, f64::from(few + 1) * UNIT);
+                let plus = high <= bin.plus_low;
+                // Without a branch between the sheets, which nobody can predict.
+                h[kept] = if plus | ((low >= bin.plus_high) & (high <= bin.total_low)) {
+                    if plus { h[i] } else { -h[i] }
+                } else if let Some(height) = self.decide(low + UNIT * rng.random::<f64>(), h[i]) {
+                    height
+                } else {
+                    continue;
+                };
+            }
+            if kept != i {
+                u[kept] = u[i];
+                u[CHUNK + kept] = u[CHUNK + i];
+                u[2 * CHUNK + kept] = u[2 * CHUNK + i];
+            }
+            kept += 1;
+        }
+        kept
+    }
+
+    /// The height of an accepted proposal, y_k with its sign, where the bounds leave it open.
+    fn decide(&self, uniform: f64, h: f64) -> Option<f64> {
+        let plus = libm::exp(self.weight.ln_sheet(1.0, h) - self.ln_peak);
+        let minus = libm::exp(self.weight.ln_sheet(-1.0, h) - self.ln_peak);
+        if uniform < plus {
+            Some(h)
+        } else if uniform < plus + minus {
+            Some(-h)
+        } else {
+            None
+        }
+    }
+}
+
+/// One batch of proposals: random bits, u one coordinate after the other, |y_k|² − h₀², and |y_k|.
+struct Batch {
+    bits: [u64; 3 * CHUNK],
+    u: [f64; 3 * CHUNK],
+    v: [f64; CHUNK],
+    h: [f64; CHUNK],
+    /// The bins.
+    place: [u64; CHUNK],
+}
+
+/// Makes a batch from random bits.
+struct Propose<'a> {
+    chart: &'a Chart,
+    batch: &'a mut Batch,
+}
+
+impl vector::Kernel for Propose<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Batch { bits, u, v, h, place } = self.batch;
+        vector::normals(bits, u);
+        let (first, rest) = u.split_at_mut(CHUNK);
+        let (second, third) = rest.split_at_mut(CHUNK);
+        const LAST: f64 = (BINS - 1) as f64;
+        let Chart { location, scale, floor, bins_per_unit, .. } = *self.chart;
+        for i in 0..CHUNK {
+            first[i] = location[0] + scale[0] * first[i];
+            second[i] = location[1] + scale[1] * second[i];
+            third[i] = location[2] + scale[2] * third[i];
+            let rest = 1.0 - (first[i] * first[i] + second[i] * second[i] + third[i] * third[i]);
+            v[i] = rest - floor;
+            h[i] = rest.max(0.0).sqrt();
+            // The nearest of the middles: at an edge either bin will do.
+            place[i] = vector::rounded((v[i] * bins_per_unit - 0.5).clamp(0.0, LAST));
+        }
+    }
+}
+
+/// Turns what a batch has kept into attitudes.
+struct Place<'a> {
+    chart: &'a Chart,
+    batch: &'a Batch,
+    out: &'a mut [UnitQuaternion<f64>],
+}
+
+impl vector::Kernel for Place<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let [a, b, c, d] = &self.chart.columns;
+        let Batch { u, h, .. } = self.batch;
+        for (i, q) in self.out.iter_mut().enumerate() {
+            let x = a * u[i] + b * u[CHUNK + i] + c * u[2 * CHUNK + i] + d * h[i];
+            *q = UnitQuaternion::new_unchecked(Quaternion::from(x));
         }
     }
 }
@@ -169,32 +311,34 @@ impl Weight {
         Some(x / slope)
     }
 
-    /// ln max ψ over [h₀, 1].
-    fn ln_peak(&self, h0: f64) -> f64 {
-        let ends = self.ln_total(h0).max(self.ln_total(1.0));
-        match self.crest() {
-            Some(h) if h > h0 && h < 1.0 => ends.max(self.ln_total(h)),
-            _ => ends,
-        }
-    }
-
-    /// Smallest and largest ln ψ± over [low, high]: at the ends or where bend·h² ∓ b h + 1 = 0.
-    fn sheet_range(&self, sign: f64, low: f64, high: f64) -> (f64, f64) {
-        let (a, b) = (self.ln_sheet(sign, low), self.ln_sheet(sign, high));
-        let mut range = (a.min(b), a.max(b));
-        let slope = sign * self.slope;
-        let discriminant = slope * slope - 4.0 * self.bend;
-        if discriminant > 0.0 {
-            // The stable pair of roots: q/bend and 1/q.
-            let q = 0.5 * (slope + discriminant.sqrt().copysign(slope));
-            for h in [q / self.bend, 1.0 / q] {
-                if h > low && h < high {
-                    let value = self.ln_sheet(sign, h);
-                    range = (range.0.min(value), range.1.max(value));
-                }
+    /// Where ψ is largest over [h₀, 1], and its logarithm there.
+    fn peak(&self, h0: f64) -> (f64, f64) {
+        let mut best = (1.0, self.ln_total(1.0));
+        let crest = self.crest().filter(|h| *h > h0 && *h < 1.0);
+        for h in std::iter::once(h0).chain(crest) {
+            let value = self.ln_total(h);
+            if value > best.1 {
+                best = (h, value);
             }
         }
-        range
+        best
+    }
+
+    /// The heights at which ψ± of one sheet is stationary: bend·h² ∓ b h + 1 = 0.
+    fn stationary(&self, sign: f64) -> [f64; 2] {
+        let slope = sign * self.slope;
+        let discriminant = slope * slope - 4.0 * self.bend;
+        if !(discriminant > 0.0) {
+            return [f64::NAN; 2];
+        }
+        // The stable pair of roots: q/bend and 1/q.
+        let q = 0.5 * (slope + discriminant.sqrt().copysign(slope));
+        [q / self.bend, 1.0 / q]
+    }
+
+    /// How much ln ψ may be off by the rounding of h and of its own terms.
+    fn rounding(&self, h0: f64) -> f64 {
+        1e-13 + 1e-14 * (self.slope.abs() + self.bend.abs() + 1.0 / h0)
     }
 }
 
@@ -204,6 +348,8 @@ struct Problem {
     kept: [usize; 3],
     lambda: [f64; 3],
     linear: [f64; 3],
+    /// min λ_j of those kept.
+    floor: f64,
     dropped_lambda: f64,
     slope: f64,
     /// −½ Σ λc² − ln C.
@@ -215,6 +361,8 @@ struct Proposal {
     precision: [f64; 3],
     weight: Weight,
     h0: f64,
+    /// Where ψ peaks.
+    crest: f64,
     ln_peak: f64,
     ln_acceptance: f64,
 }
@@ -227,6 +375,7 @@ impl Problem {
             dropped,
             kept,
             lambda: kept.map(|j| lambda[j]),
+            floor: kept.iter().map(|&j| lambda[j]).fold(f64::INFINITY, f64::min),
             linear: kept.map(|j| lambda[j] * center[j]),
             dropped_lambda: lambda[dropped],
             slope: lambda[dropped] * center[dropped],
@@ -234,62 +383,116 @@ impl Problem {
         }
     }
 
-    /// The proposal for the smallest kept precision p = min λ_j − μ.
-    fn proposal(&self, smallest: f64) -> Option<Proposal> {
-        let floor = self.lambda.into_iter().fold(f64::INFINITY, f64::min);
-        let mu = floor - smallest;
-        let precision = self.lambda.map(|l| (l - floor) + smallest);
+    /// The kept precisions, for the smallest of them, and what the chart makes of the law with them:
+    /// the weight, and ln of the constant in front of Gaussian × ψ relative to C.
+    fn split(&self, smallest: f64) -> ([f64; 3], Weight, f64) {
+        let mu = self.floor - smallest;
+        let precision = self.lambda.map(|l| (l - self.floor) + smallest);
         let weight = Weight { slope: self.slope, bend: self.dropped_lambda - mu };
-        // ln of the constant in front of Gaussian × ψ, relative to C.
         let gain: f64 = self.linear.iter().zip(precision).map(|(b, p)| 0.5 * b * b / p).sum();
-        let front = self.constant + gain - 0.5 * mu;
-        let h0 = self.belt_edge(&precision, &weight, front)?;
-        let ln_peak = weight.ln_peak(h0);
-        let volume: f64 = precision.iter().map(|p| 0.5 * libm::log(TAU / p)).sum();
-        Some(Proposal {
-            precision,
-            weight,
-            h0,
-            ln_peak,
-            ln_acceptance: -(front + ln_peak + volume),
-        })
+        (precision, weight, self.constant + gain - 0.5 * mu)
+    }
+
+    fn proposal(&self, smallest: f64, h0: f64) -> Proposal {
+        let (precision, weight, front) = self.split(smallest);
+        let (crest, ln_peak) = weight.peak(h0);
+        let volume = 1.5 * LN_TAU - 0.5 * libm::log(precision[0] * precision[1] * precision[2]);
+        let ln_acceptance = -(front + ln_peak + volume);
+        Proposal { precision, weight, h0, crest, ln_peak, ln_acceptance }
     }
 
     /// The largest h₀ whose belt may be left out.
-    fn belt_edge(&self, precision: &[f64; 3], weight: &Weight, front: f64) -> Option<f64> {
+    fn belt_edge(&self, smallest: f64) -> Option<f64> {
+        let (precision, weight, front) = self.split(smallest);
         let center: [f64; 3] = std::array::from_fn(|j| self.linear[j] / precision[j]);
         let negligible = |h0: f64| {
             let sup = LN_2 + self.slope.abs() * h0 + (-0.5 * weight.bend * h0 * h0).max(0.0);
-            let distance = distance_to_sphere(precision, &center, 1.0 - h0 * h0);
+            let distance = distance_to_sphere(&precision, &center, 1.0 - h0 * h0);
             libm::log(4.0 * PI * h0) + sup + front - 0.5 * distance < LN_BELT
         };
         let (mut low, mut high) = (1e-3, 0.999);
         if !negligible(low) {
             return None;
         }
-        for _ in 0..10 {
+        for _ in 0..8 {
             let middle = 0.5 * (low + high);
             if negligible(middle) { low = middle } else { high = middle }
         }
         Some(low)
     }
 
-    /// Maximises the acceptance over μ: a scan, then golden sections.
-    fn best_proposal(&self) -> Option<Proposal> {
-        const STEP: f64 = 0.5;
-        let widest = self.lambda.into_iter().fold(self.dropped_lambda, f64::max);
-        let (start, end) = (libm::log(0.25), libm::log(4.0 * widest + 100.0));
-        let score =
-            |t: f64| self.proposal(libm::exp(t)).map_or(f64::NEG_INFINITY, |p| p.ln_acceptance);
-        let steps = ((end - start) / STEP) as usize;
-        let (best, value) = (0..=steps)
-            .map(|i| start + STEP * i as f64)
-            .map(|t| (t, score(t)))
-            .max_by(|a, b| a.1.total_cmp(&b.1))?;
-        if value == f64::NEG_INFINITY {
-            return None;
+    /// Maximises the acceptance over μ. For a given h₀ its logarithm is concave in μ, and stationary
+    /// where |u|² + h² = 1 on average, with the mean of |u|² over proposals and h at the peak of ψ.
+    fn best_proposal(&self, shift: f64) -> Option<Proposal> {
+        let mut smallest = (self.floor + shift).max(1e-3 * self.floor).max(0.05);
+        let mut best: Option<Proposal> = None;
+        // The belt moves a little with μ: a second look with the edge of the best so far.
+        for _ in 0..2 {
+            let h0 = self.belt_edge(smallest)?;
+            let proposal = self.optimum(smallest, h0);
+            smallest = proposal.precision.into_iter().fold(f64::INFINITY, f64::min);
+            // Only an edge that holds for the precisions it is used with counts.
+            let h0 = self.belt_edge(smallest)?.min(h0);
+            let proposal = self.proposal(smallest, h0);
+            if best.as_ref().is_none_or(|b| b.ln_acceptance < proposal.ln_acceptance) {
+                best = Some(proposal);
+            }
+            if best.as_ref().is_some_and(|b| b.ln_acceptance > -0.05) {
+                break;
+            }
         }
-        self.proposal(libm::exp(golden_section(score, best - STEP, best + STEP)))
+        best
+    }
+
+    /// A concave function of the smallest precision, which may have a kink where the peak of ψ jumps:
+    /// bracketed, then searched where the tangents of the two ends meet.
+    fn optimum(&self, start: f64, h0: f64) -> Proposal {
+        /// What is left to gain in ln acceptance.
+        const ENOUGH: f64 = 1e-4;
+        // Twice the slope: positive where proposals lie too far out.
+        let at = |p: f64| {
+            let proposal = self.proposal(p, h0);
+            let square = |j: usize| {
+                let location = self.linear[j] / proposal.precision[j];
+                location * location + 1.0 / proposal.precision[j]
+            };
+            let excess = square(0) + square(1) + square(2) + proposal.crest * proposal.crest - 1.0;
+            (p, excess, proposal)
+        };
+        let first = at(start);
+        let (mut low, mut high);
+        let mut step = 1.0;
+        if first.1 > 0.0 {
+            low = first;
+            loop {
+                high = at(low.0 + step);
+                if high.1 <= 0.0 || step > 1e16 {
+                    break;
+                }
+                (low, step) = (high, 4.0 * step);
+            }
+        } else {
+            high = first;
+            loop {
+                low = at((high.0 - step).max(0.5 * high.0));
+                if low.1 > 0.0 || low.0 < 1e-3 {
+                    break;
+                }
+                (high, step) = (low, 4.0 * step);
+            }
+        }
+        for _ in 0..30 {
+            let width = high.0 - low.0;
+            let (a, b) = (low.2.ln_acceptance, high.2.ln_acceptance);
+            let meet = (b - a - 0.5 * high.1 * width) / (0.5 * (low.1 - high.1));
+            let roof = a + 0.5 * low.1 * meet;
+            if !(roof - a.max(b) > ENOUGH && meet > 0.0 && meet < width) {
+                break;
+            }
+            let middle = at(low.0 + meet);
+            if middle.1 > 0.0 { low = middle } else { high = middle }
+        }
+        if low.2.ln_acceptance > high.2.ln_acceptance { low.2 } else { high.2 }
     }
 
     fn chart(&self, axes: &Matrix4<f64>, proposal: &Proposal) -> Chart {
@@ -297,23 +500,36 @@ impl Problem {
         let ln_peak = proposal.ln_peak + 1e-13;
         let floor = proposal.h0 * proposal.h0;
         let width = (1.0 - floor) / BINS as f64;
-        let bins = std::array::from_fn(|i| {
-            // Widened by more than the rounding of the bin index.
-            let low = (floor + width * (i as f64 - 1e-9)).sqrt();
-            let high = (floor + width * (i as f64 + 1.0 + 1e-9)).sqrt();
-            let (plus, minus) = (
-                proposal.weight.sheet_range(1.0, low, high),
-                proposal.weight.sheet_range(-1.0, low, high),
-            );
-            let scaled = |x: f64, slack: f64| libm::exp(x - ln_peak + slack);
-            let plus_low = scaled(plus.0, -1e-12);
+        let weight = &proposal.weight;
+        let value = |sign: f64, h: f64| libm::exp(weight.ln_sheet(sign, h) - ln_peak);
+        let edges: [[f64; 3]; BINS + 1] = std::array::from_fn(|i| {
+            let h = (floor + width * i as f64).sqrt();
+            [h, value(1.0, h), value(-1.0, h)]
+        });
+        let slack = weight.rounding(proposal.h0);
+        let turns = [1.0, -1.0].map(|sign| weight.stationary(sign).map(|h| (h, value(sign, h))));
+        let bins: [Bin; BINS] = std::array::from_fn(|i| {
+            let (low, high) = (edges[i], edges[i + 1]);
+            let range = |sheet: usize| {
+                let ends = (low[sheet].min(high[sheet]), low[sheet].max(high[sheet]));
+                let inside = turns[sheet - 1].iter().filter(|(h, _)| *h >= low[0] && *h <= high[0]);
+                inside.fold(ends, |r, (_, v)| (r.0.min(*v), r.1.max(*v)))
+            };
+            let (plus, minus) = (range(1), range(2));
+            let plus_low = plus.0 * (1.0 - slack);
             Bin {
                 plus_low,
-                plus_high: scaled(plus.1, 1e-12),
-                total_low: plus_low + scaled(minus.0, -1e-12),
+                plus_high: plus.1 * (1.0 + slack),
+                total_low: plus_low + minus.0 * (1.0 - slack),
             }
         });
+        const WORTH: f64 = 0.8;
+        let first = bins.iter().rposition(|b| b.plus_low < WORTH).map_or(0, |i| i + 1);
+        let least = bins[first..].iter().map(|b| b.plus_low).fold(1.0, f64::min);
         Chart {
+            // A bin further, to be clear of rounding at the edge.
+            sure_above: if first + 1 < BINS { width * (first as f64 + 1.0) } else { f64::INFINITY },
+            sure: (least * 4096.0) as u32,
             columns: [self.kept[0], self.kept[1], self.kept[2], self.dropped]
                 .map(|j| axes.column(j).into()),
             location: std::array::from_fn(|j| self.linear[j] / proposal.precision[j]),
@@ -355,26 +571,6 @@ fn distance_to_sphere(p: &[f64; 3], a: &[f64; 3], square_radius: f64) -> f64 {
     terms(low).0.max(0.0)
 }
 
-/// The maximiser of a function with one maximum in [low, high].
-pub(crate) fn golden_section(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    const RATIO: f64 = 0.618_033_988_749_894_9;
-    let (mut a, mut b) = (high - RATIO * (high - low), low + RATIO * (high - low));
-    let (mut fa, mut fb) = (f(a), f(b));
-    // The interval shrinks by 1e-10.
-    for _ in 0..48 {
-        if fa > fb {
-            (high, b, fb) = (b, a, fa);
-            a = high - RATIO * (high - low);
-            fa = f(a);
-        } else {
-            (low, a, fa) = (a, b, fb);
-            b = low + RATIO * (high - low);
-            fb = f(b);
-        }
-    }
-    if fa > fb { a } else { b }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -398,11 +594,16 @@ mod tests {
         ) {
             let weight = Weight { slope, bend };
             let h = h0 + (1.0 - h0) * h;
-            prop_assert!(weight.ln_total(h) <= weight.ln_peak(h0) + 1e-9);
+            prop_assert!(weight.ln_total(h) <= weight.peak(h0).1 + 1e-9);
             for sign in [1.0, -1.0] {
-                let (low, high) = weight.sheet_range(sign, h0, 1.0);
+                let ends = [h0, 1.0].into_iter().chain(weight.stationary(sign));
+                let values: Vec<f64> = ends
+                    .filter(|h| *h >= h0 && *h <= 1.0)
+                    .map(|h| weight.ln_sheet(sign, h))
+                    .collect();
                 let value = weight.ln_sheet(sign, h);
-                prop_assert!(value >= low - 1e-9 && value <= high + 1e-9);
+                prop_assert!(values.iter().any(|v| *v <= value + 1e-9));
+                prop_assert!(values.iter().any(|v| *v >= value - 1e-9));
             }
         }
 

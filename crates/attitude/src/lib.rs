@@ -34,8 +34,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod cells;
 mod chart;
-mod circle;
 mod contour;
 mod fisher_bingham;
 mod hyperspherical;
@@ -43,6 +43,7 @@ mod jacobi;
 mod mean_half;
 mod rcg;
 mod uniform;
+mod vector;
 mod ways_in;
 
 pub use fisher_bingham::{FisherBingham, FisherBinghamError, Method};

@@ -145,7 +145,7 @@ impl RadiallyConstrainedGaussian {
         let lambda = eigenvalues.map(|s| 1.0 / s);
         let center = axes.tr_mul(&mean.coords);
         let precision = axes * Matrix4::from_diagonal(&lambda.into()) * axes.transpose();
-        let law = FisherBingham::centered(axes, lambda, center.into(), 0.0);
+        let law = FisherBingham::centered(axes, lambda, center.into(), 0.0, 0.0);
         Ok(Self { mean, covariance, precision, law })
     }
 
@@ -232,6 +232,11 @@ impl RadiallyConstrainedGaussian {
     #[must_use]
     pub fn acceptance(&self) -> f64 {
         self.law.acceptance()
+    }
+
+    /// Fills a slice with independent draws: see [`FisherBingham::sample_into`].
+    pub fn sample_into<R: Rng + ?Sized>(&self, rng: &mut R, out: &mut [UnitQuaternion<f64>]) {
+        self.law.sample_into(rng, out);
     }
 
     /// How the law is sampled.
@@ -460,9 +465,9 @@ mod tests {
     fn acceptance_is_useful() {
         for case in reference() {
             let law = law(case.mean, case.variances);
-            assert!(law.acceptance() > 0.4, "{}: {}", case.name, law.acceptance());
+            assert!(law.acceptance() > 0.6, "{}: {}", case.name, law.acceptance());
         }
-        assert!(paper().acceptance() > 0.9995, "{}", paper().acceptance());
+        assert!(paper().acceptance() > 0.9999, "{}", paper().acceptance());
         assert_eq!(paper().method(), Method::Chart);
     }
 
@@ -633,24 +638,79 @@ mod tests {
         assert!(serde_json::from_str::<RadiallyConstrainedGaussian>(&bad).is_err());
     }
 
-    /// The first draws of the paper's example from a fixed seed: they change only on purpose.
+    /// The first draws from a fixed seed, by every method: they change only on purpose.
     #[test]
     fn value_stability() {
-        let law = paper();
-        let mut rng = ChaCha8Rng::seed_from_u64(2003);
-        let draws: [[f64; 4]; 3] = std::array::from_fn(|_| law.sample(&mut rng).coords.into());
+        let chart = paper();
+        let cells = law([1.0, 2.0, 3.0, 4.0], [0.1, 0.2, 0.3, 0.4]);
+        let uniform = law([0.1, 0.2, 0.3, 0.9], [30.0, 40.0, 50.0, 60.0]);
+        let methods = [&chart, &cells, &uniform].map(RadiallyConstrainedGaussian::method);
+        assert_eq!(methods, [Method::Chart, Method::Cells, Method::Uniform]);
+        let rng = || ChaCha8Rng::seed_from_u64(2003);
+        let first = |law: &RadiallyConstrainedGaussian| -> [[f64; 4]; 2] {
+            let mut rng = rng();
+            std::array::from_fn(|_| law.sample(&mut rng).coords.into())
+        };
+        let mut batch = [UnitQuaternion::identity(); 2];
+        chart.sample_into(&mut rng(), &mut batch);
+        let batch = batch.map(|q| q.coords.into());
+        let draws = [first(&chart), first(&cells), first(&uniform), batch];
         assert_eq!(draws, STABLE, "{draws:?}");
     }
 
-    const STABLE: [[f64; 4]; 3] = [
-        [0.02193133527153861, 0.01468945853695853, 0.01757696380815038, 0.9994970168461661],
-        [0.018031798318248055, 0.0026331112665549865, -0.03405680469429733, 0.9992537490690152],
-        [0.031236492581134926, -0.01173439095962631, 0.01910542160584136, 0.9992605108105185],
+    const STABLE: [[[f64; 4]; 2]; 4] = [
+        [
+            [0.021931335513137543, 0.028758680952151113, -0.022801111764040222, 0.9990856139965315],
+            [0.01803179853973027, -0.023412739435957442, -0.013338272616791994, 0.9994742559751735],
+        ],
+        [
+            [0.4781400671436293, 0.33720595561793343, 0.8074743528955786, 0.07522891135427],
+            [0.05106772118743973, 0.37527717545126393, 0.9206337127346604, -0.09482982871669668],
+        ],
+        [
+            [-0.36825331736519773, 0.3210772847171893, 0.624186793829993, 0.6096636104413626],
+            [0.03501630558720559, -0.39485538788929203, -0.7197994827305837, 0.5698699725890143],
+        ],
+        [
+            [
+                0.021196543776986033,
+                -0.04324901390506127,
+                -0.025808891677750443,
+                -0.9985059491252499,
+            ],
+            [0.01556455563597926, 0.03901980617150276, 0.023827323845572717, 0.9988330480979046],
+        ],
     ];
+
+    /// A batch is independent of its length, and of the same law.
+    #[test]
+    fn batches_are_draws_of_the_law() {
+        const N: usize = 400_000;
+        let law = paper();
+        let mut batch = vec![UnitQuaternion::identity(); N];
+        law.sample_into(&mut ChaCha8Rng::seed_from_u64(5), &mut batch);
+        let mut short = vec![UnitQuaternion::identity(); 1001];
+        law.sample_into(&mut ChaCha8Rng::seed_from_u64(5), &mut short);
+        assert_eq!(short[..], batch[..1001]);
+        let second = law.second_moment();
+        for i in 0..4 {
+            for j in 0..=i {
+                let values = || batch.iter().map(|q| q.coords[i] * q.coords[j]);
+                let mean = values().sum::<f64>() / N as f64;
+                let square = values().map(|v| (v - mean) * (v - mean)).sum::<f64>() / N as f64;
+                let z = (mean - second[(i, j)]) / (square / N as f64).sqrt();
+                assert!(z.abs() < 4.0, "E x{i} x{j}: z = {z}");
+            }
+        }
+        let far = batch.iter().filter(|q| !law.in_mean_half(q)).count() as f64;
+        let z = (far / N as f64 - FAR_SHARE) / (FAR_SHARE * (1.0 - FAR_SHARE) / N as f64).sqrt();
+        assert!(z.abs() < 4.0, "far half: z = {z}");
+        assert!(batch.iter().all(|q| (q.norm() - 1.0).abs() <= 4.0 * f64::EPSILON));
+    }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(128))]
-        /// Any covariance is served; a few hard ones are slow.
+        /// Any covariance is served, and well.
         #[test]
         fn any_covariance_is_served(
             x in prop::array::uniform16(-1.0..1.0f64),
@@ -670,7 +730,7 @@ mod tests {
                 Ok(law) => law,
                 Err(error) => return Err(TestCaseError::fail(error.to_string())),
             };
-            prop_assert!(law.acceptance() > 1e-3, "{} {:?}", law.acceptance(), law.method());
+            prop_assert!(law.acceptance() > 0.6, "{} {:?}", law.acceptance(), law.method());
             prop_assert!(law.ln_normaliser().is_finite() && law.ln_normaliser() < 3.0);
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             for _ in 0..10 {

@@ -4,8 +4,13 @@ mod alternatives;
 mod spiral;
 
 use nalgebra::{Quaternion, UnitQuaternion};
-use rand::Rng;
+use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
+
+use crate::vector;
+
+/// Attitudes made at a time in a batch: few enough for the first-level cache.
+const CHUNK: usize = 64;
 
 pub use alternatives::{BoxUniform, MarsagliaUniform, ShoemakeUniform};
 pub use spiral::super_fibonacci;
@@ -35,6 +40,60 @@ pub struct UniformAttitude;
 impl UniformAttitude {
     /// The logarithm of the density with respect to surface measure on S³: −ln 2π².
     pub const LN_DENSITY: f64 = -2.982_606_952_258_745_7;
+
+    /// Fills a slice with independent draws, by the machine's vector units.
+    ///
+    /// Shoemake's two angles and squared radius, 52 bits each. The values are others than those of
+    /// [`sample`](Distribution::sample), the same on every machine, and the first of a longer slice
+    /// are those of a shorter one.
+    ///
+    /// ```
+    /// use gyradius_attitude::UniformAttitude;
+    /// use nalgebra::UnitQuaternion;
+    /// use rand_chacha::rand_core::SeedableRng;
+    ///
+    /// let mut attitudes = vec![UnitQuaternion::identity(); 1000];
+    /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
+    /// UniformAttitude.sample_into(&mut rng, &mut attitudes);
+    /// assert!(attitudes.iter().all(|q| (q.norm() - 1.0).abs() < 1e-15));
+    /// ```
+    pub fn sample_into<R: Rng + ?Sized>(&self, rng: &mut R, out: &mut [UnitQuaternion<f64>]) {
+        let mut bits = [[0; CHUNK / 2]; 5];
+        let mut x = [[0.0; CHUNK]; 4];
+        for chunk in out.chunks_mut(CHUNK) {
+            rng.fill(bits.as_flattened_mut());
+            vector::run(Shoemake { bits: &bits, x: &mut x, out: chunk });
+        }
+    }
+}
+
+/// Shoemake's construction from random bits.
+struct Shoemake<'a> {
+    bits: &'a [[u64; CHUNK / 2]; 5],
+    x: &'a mut [[f64; CHUNK]; 4],
+    out: &'a mut [UnitQuaternion<f64>],
+}
+
+impl vector::Kernel for Shoemake<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let [a, b, c, d, e] = self.bits;
+        let [x, y, z, w] = self.x;
+        for i in 0..CHUNK / 2 {
+            let j = i + CHUNK / 2;
+            // An angle takes 54 bits of its word: what two draws leave is one more number.
+            let spare = |word: u64, place: u32| ((word >> 2) & 0x3ff) << place;
+            let rest = spare(a[i], 12) | spare(b[i], 22) | spare(c[i], 32) | spare(d[i], 42);
+            let (first, second) = (vector::unit(e[i]), vector::unit((rest | (e[i] & 0xfff)) << 12));
+            (x[i], y[i]) = vector::on_circle(a[i], (1.0 - first).sqrt());
+            (z[i], w[i]) = vector::on_circle(b[i], first.sqrt());
+            (x[j], y[j]) = vector::on_circle(c[i], (1.0 - second).sqrt());
+            (z[j], w[j]) = vector::on_circle(d[i], second.sqrt());
+        }
+        for (i, q) in self.out.iter_mut().enumerate() {
+            *q = UnitQuaternion::new_unchecked(Quaternion::new(w[i], x[i], y[i], z[i]));
+        }
+    }
 }
 
 impl Distribution<UnitQuaternion<f64>> for UniformAttitude {
@@ -73,8 +132,15 @@ mod tests {
         (0..N).map(|_| law.sample(&mut rng)).collect()
     }
 
-    fn every_way() -> [(&'static str, Vec<UnitQuaternion<f64>>); 4] {
+    fn batch(n: usize) -> Vec<UnitQuaternion<f64>> {
+        let mut attitudes = vec![UnitQuaternion::identity(); n];
+        UniformAttitude.sample_into(&mut ChaCha8Rng::seed_from_u64(1), &mut attitudes);
+        attitudes
+    }
+
+    fn every_way() -> [(&'static str, Vec<UnitQuaternion<f64>>); 5] {
         [
+            ("batch", batch(N)),
             ("normals", draws(UniformAttitude)),
             ("Marsaglia", draws(MarsagliaUniform)),
             ("Shoemake", draws(ShoemakeUniform)),
@@ -98,6 +164,43 @@ mod tests {
     fn density_integrates_to_one() {
         let pi = std::f64::consts::PI;
         assert!((UniformAttitude::LN_DENSITY + (2.0 * pi * pi).ln()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_longer_batch_begins_like_a_shorter_one() {
+        assert_eq!(batch(1000)[..333], batch(333)[..]);
+    }
+
+    /// The first draws of every way from a fixed seed: they change only on purpose.
+    #[test]
+    fn value_stability() {
+        let first = every_way().map(|(_, attitudes)| <[f64; 4]>::from(attitudes[0].coords));
+        assert_eq!(first, STABLE, "{first:?}");
+    }
+
+    const STABLE: [[f64; 4]; 5] = [
+        [-0.13069512907203665, 0.8465561587087712, 0.4213502456278339, -0.2978681317268725],
+        [-0.1268781974298096, -0.7622067223506189, 0.1799216582088404, -0.6087454577472179],
+        [-0.19502867267030388, -0.8392325821404361, 0.16512809839964274, -0.4799845841579432],
+        [0.37402303412422183, 0.6764769813376234, -0.3617220857027578, -0.5211936265724042],
+        [-0.46834844580904955, 0.45600869387540394, -0.08425104442739313, -0.7520688571741215],
+    ];
+
+    /// Both halves of a batch chunk, the second of which is made of bits that the first leaves.
+    #[test]
+    fn draws_that_share_words_are_independent() {
+        let attitudes = batch(64 * 2000);
+        let pairs = attitudes.chunks(64).flat_map(|c| (0..32).map(|i| (c[i], c[i + 32])));
+        let product: f64 = pairs.map(|(a, b)| a.coords.dot(&b.coords)).sum();
+        // A product of two independent attitudes has mean 0 and variance ¼.
+        let z = product / (0.25 * 64_000_f64).sqrt();
+        assert!(z.abs() < 4.0, "{z}");
+        let squares = attitudes.chunks(64).flat_map(|c| (0..32).map(|i| (c[i], c[i + 32])));
+        let split = |q: &UnitQuaternion<f64>| q.i * q.i + q.j * q.j - 0.5;
+        let sum: f64 = squares.map(|(a, b)| split(&a) * split(&b)).sum();
+        // Uniform on [−½, ½] each.
+        let z = sum / (64_000_f64 / 144.0).sqrt();
+        assert!(z.abs() < 4.0, "{z}");
     }
 
     /// Under Haar measure the rotation angle has the distribution (θ − sin θ)/π.
@@ -131,7 +234,6 @@ mod tests {
     /// Negative control: uniform Euler angles are not uniform attitudes, and the entries show it.
     #[test]
     fn uniform_euler_angles_are_caught() {
-        use rand::RngExt;
         let mut rng = ChaCha8Rng::seed_from_u64(1);
         let mut angle = || rng.random_range(-std::f64::consts::PI..std::f64::consts::PI);
         let entry = (0..N)

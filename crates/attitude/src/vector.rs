@@ -1,0 +1,143 @@
+//! Loops over arrays that the compiler turns into vector instructions.
+//!
+//! [`run`] compiles its kernel once for the baseline and once for the vector units that the machine
+//! may have, and picks at run time. The loops use sums, products, quotients, square roots and bits
+//! only, each correctly rounded and never fused, so that every machine gets the same values.
+
+use std::f64::consts::{FRAC_PI_2, LN_2};
+
+/// A loop that is compiled for every set of vector instructions. What it calls must be inlined.
+pub(crate) trait Kernel {
+    fn run(self);
+}
+
+/// Runs a kernel with the widest vector instructions there are.
+pub(crate) fn run<K: Kernel>(kernel: K) {
+    // A closure could not be marked to be inlined, and would be compiled for the baseline alone.
+    struct Inlined<K>(K);
+    impl<K: Kernel> pulp::WithSimd for Inlined<K> {
+        type Output = ();
+        #[inline(always)]
+        fn with_simd<S: pulp::Simd>(self, _: S) {
+            self.0.run();
+        }
+    }
+    pulp::Arch::new().dispatch(Inlined(kernel));
+}
+
+/// [1, 2) from the upper 52 bits.
+#[inline(always)]
+fn one_to_two(bits: u64) -> f64 {
+    f64::from_bits((1023 << 52) | (bits >> 12))
+}
+
+/// [0, 1) from the upper 52 bits.
+#[inline(always)]
+pub(crate) fn unit(bits: u64) -> f64 {
+    one_to_two(bits) - 1.0
+}
+
+/// A point of the circle of a radius, uniform on it: an eighth of a turn either way from the upper
+/// 52 bits, the quarter from the two lowest.
+#[inline(always)]
+pub(crate) fn on_circle(bits: u64, radius: f64) -> (f64, f64) {
+    // Quarters of a turn, |t| ≤ ½: sine and cosine by the minimax polynomials of fdlibm (Sun
+    // Microsystems 1993), scaled by powers of π/2, summed in an order that leaves short chains.
+    let t = one_to_two(bits) - 1.5;
+    let z = t * t;
+    let zz = z * z;
+    let s01 = FRAC_PI_2 - z * 0.645_964_097_506_245;
+    let s23 = 0.079_692_626_246_063_34 - z * 0.004_681_754_132_625_933_4;
+    let s456 = 0.000_160_441_152_667_380_95
+        + (z * -3.598_649_570_240_692e-6 + zz * 5.634_704_113_884_751e-8);
+    let sin = t * (s01 + zz * (s23 + zz * s456));
+    let c01 = 1.0 - z * 1.233_700_550_136_169_7;
+    let c23 = 0.253_669_507_901_047_64 - z * 0.020_863_480_763_330_76;
+    let c45 = 0.000_919_260_274_390_553_3 - z * 2.520_203_791_691_774e-5;
+    let c67 = 4.710_641_505_803_502e-7 - z * 6.324_746_678_866_07e-9;
+    let cos = c01 + zz * ((c23 + zz * c45) + (zz * zz) * c67);
+    let radius = f64::from_bits(radius.to_bits() ^ ((bits & 2) << 62));
+    let (y, x) = (radius * sin, radius * cos);
+    if bits & 1 == 0 { (x, y) } else { (y, x) }
+}
+
+/// −2 ln of a number uniform on (0, 1].
+#[inline(always)]
+fn minus_two_ln(bits: u64) -> f64 {
+    // 2⁵² and the bias of the exponent.
+    const SHIFT: f64 = 4_503_599_627_370_496.0 + 1023.0;
+    const SQRT_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
+    let u = (2.0 - one_to_two(bits)).to_bits();
+    // u = 2^k m with m in [√½, √2).
+    let biased = (u + ((1023 << 52) - SQRT_HALF)) >> 52;
+    let k = f64::from_bits((1075 << 52) | biased) - SHIFT;
+    let m = f64::from_bits(u + (1023 << 52) - (biased << 52));
+    let f = m - 1.0;
+    let s = f / (2.0 + f);
+    let z = s * s;
+    // ln((1 + s)/(1 − s)) = 2s + s·R, R the minimax polynomial of fdlibm.
+    let zz = z * z;
+    let odd = zz
+        * (3.999_999_999_940_942e-1
+            + zz * (2.222_219_843_214_978_4e-1 + zz * 1.531_383_769_920_937_3e-1));
+    let l01 = 6.666_666_666_666_735e-1 + zz * 2.857_142_874_366_239e-1;
+    let l23 = 1.818_357_216_161_805e-1 + zz * 1.479_819_860_511_658_6e-1;
+    let r = z * (l01 + zz * zz * l23) + odd;
+    let half = 0.5 * f * f;
+    -2.0 * (k * LN_2 + (f - (half - s * (half + r))))
+}
+
+/// Standard normals, one for each number of random bits (Box & Muller 1958,
+/// doi:10.1214/aoms/1177706645): the first halves of all pairs, then the second.
+#[inline(always)]
+pub(crate) fn normals(bits: &[u64], out: &mut [f64]) {
+    let pairs = bits.len() / 2;
+    let (lengths, angles) = bits.split_at(pairs);
+    let (first, second) = out.split_at_mut(pairs);
+    // Two short loops: several passes of each are under way at a time.
+    for (x, bits) in first.iter_mut().zip(lengths) {
+        *x = minus_two_ln(*bits);
+    }
+    for ((x, y), bits) in first.iter_mut().zip(second).zip(angles) {
+        (*x, *y) = on_circle(*bits, x.sqrt());
+    }
+}
+
+/// The nearest integer to a number from 0 to 2³¹, in the lowest bits.
+#[inline(always)]
+pub(crate) fn rounded(x: f64) -> u64 {
+    (x + 4_503_599_627_370_496.0).to_bits()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn points_are_at_their_radius_and_angle(bits: u64, radius in 0.1..9.0f64) {
+            let (x, y) = on_circle(bits, radius);
+            let angle = (unit(bits) - 0.5) * FRAC_PI_2;
+            let (s, c) = if bits & 1 == 0 { angle.sin_cos() } else { (angle.cos(), angle.sin()) };
+            let sign = if bits & 2 == 0 { radius } else { -radius };
+            let error = (y - sign * s).abs().max((x - sign * c).abs());
+            prop_assert!(error < 4e-16 * radius, "{}", error / radius);
+        }
+
+        #[test]
+        fn logarithms_are_right(bits: u64, zeros in 0..52_u32) {
+            for bits in [bits, bits | (u64::MAX << (64 - zeros.max(1)))] {
+                let u = 2.0 - one_to_two(bits);
+                let exact = -2.0 * u.ln();
+                prop_assert!((minus_two_ln(bits) - exact).abs() <= 4e-16 * exact, "{u}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_ends_are_finite() {
+        assert_eq!(minus_two_ln(0), 0.0);
+        assert!((minus_two_ln(u64::MAX) - 104.0 * LN_2).abs() < 1e-13);
+    }
+}
