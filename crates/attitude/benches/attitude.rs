@@ -99,5 +99,20 @@ fn normaliser(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, uniform, rcg, normaliser);
+/// The same by quadrature over the angles, from a mild law to one with a single narrow coordinate.
+fn quadrature(c: &mut Criterion) {
+    let mut group = c.benchmark_group("quadrature");
+    for (name, parameters) in [
+        ("isotropic", ISOTROPIC),
+        ("peck-2003", PAPER),
+        ("four-scales", FOUR_SCALES),
+        ("one-narrow", ([0.2, 0.4, 0.5, 0.7], [1e-8, 1.0, 1.0, 1.0])),
+    ] {
+        let law = law(parameters);
+        group.bench_function(name, |b| b.iter(|| black_box(&law).by_quadrature().ln_normaliser()));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, uniform, rcg, normaliser, quadrature);
 criterion_main!(benches);

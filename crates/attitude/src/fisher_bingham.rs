@@ -159,6 +159,11 @@ impl FisherBingham {
         self.contour.ln_integral()
     }
 
+    /// V, λ, c and the logarithm that exp(−½ Σ λ(y − c)²), x = V y, is to be offset by.
+    pub(crate) fn eigenform(&self) -> (&Matrix4<f64>, [f64; 4], [f64; 4], f64) {
+        (&self.axes, self.lambda, self.center, self.ln_offset)
+    }
+
     /// The mean E x of the four coordinates, a vector inside the unit ball.
     #[must_use]
     pub fn mean_vector(&self) -> Vector4<f64> {

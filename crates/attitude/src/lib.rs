@@ -8,7 +8,8 @@
 //! * [`FisherBingham`]: the general member of that family, density ∝ exp(−½ xᵀPx + bᵀx).
 //!
 //! Draws are exact and independent (no Markov chain), for any covariance; the normaliser and the
-//! moments are computed to machine precision by a contour integral.
+//! moments are computed to machine precision by a contour integral, and for checking by
+//! quadrature over the angles ([`AngularQuadrature`]).
 //!
 //! # Conventions
 //! Quaternions are Hamilton's, written scalar last, x = (x₁, x₂, x₃, x₄), which is the order of
@@ -41,6 +42,7 @@ mod fisher_bingham;
 mod hyperspherical;
 mod jacobi;
 mod mean_half;
+mod quadrature;
 mod rcg;
 mod uniform;
 mod vector;
@@ -49,6 +51,7 @@ mod ways_in;
 pub use fisher_bingham::{FisherBingham, FisherBinghamError, Method};
 pub use hyperspherical::{HypersphericalAngles, HypersphericalError};
 pub use mean_half::MeanHalf;
+pub use quadrature::AngularQuadrature;
 pub use rcg::{RadiallyConstrainedGaussian, RcgError};
 pub use uniform::{
     BoxUniform, MarsagliaUniform, ShoemakeUniform, UniformAttitude, super_fibonacci,

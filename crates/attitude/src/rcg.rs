@@ -222,6 +222,10 @@ impl RadiallyConstrainedGaussian {
         self.law.expect(polynomials)
     }
 
+    pub(crate) fn law(&self) -> &FisherBingham {
+        &self.law
+    }
+
     /// Whether q lies in the half sphere around the mean, x·m ≥ 0.
     #[must_use]
     pub fn in_mean_half(&self, q: &UnitQuaternion<f64>) -> bool {
