@@ -1,16 +1,16 @@
-use nalgebra::Matrix4;
+use nalgebra::SMatrix;
 
-/// Eigenvalues and eigenvectors (columns, det = +1) of a symmetric 4×4 matrix by cyclic Jacobi
+/// Eigenvalues and eigenvectors (columns, det = +1) of a symmetric matrix by cyclic Jacobi
 /// rotations, stopped only when every off-diagonal entry is negligible beside *its own* two
 /// diagonal entries. For a positive definite matrix that keeps the small eigenvalues relatively
 /// accurate, however large the others are (Demmel & Veselić 1992, doi:10.1137/0613074).
-pub(crate) fn eigen(matrix: &Matrix4<f64>) -> ([f64; 4], Matrix4<f64>) {
+pub(crate) fn eigen<const N: usize>(matrix: &SMatrix<f64, N, N>) -> ([f64; N], SMatrix<f64, N, N>) {
     const SWEEPS: usize = 30;
     let mut a = *matrix;
-    let mut v = Matrix4::identity();
+    let mut v = SMatrix::identity();
     for _ in 0..SWEEPS {
         let mut rotated = false;
-        for (p, q) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
+        for (p, q) in (0..N).flat_map(|p| (p + 1..N).map(move |q| (p, q))) {
             let apq = a[(p, q)];
             let scale = a[(p, p)].abs().sqrt() * a[(q, q)].abs().sqrt();
             if apq.abs() <= 1e-3 * f64::EPSILON * scale || apq == 0.0 {
@@ -25,14 +25,14 @@ pub(crate) fn eigen(matrix: &Matrix4<f64>) -> ([f64; 4], Matrix4<f64>) {
             a[(q, q)] += t * apq;
             a[(p, q)] = 0.0;
             a[(q, p)] = 0.0;
-            for r in (0..4).filter(|&r| r != p && r != q) {
+            for r in (0..N).filter(|&r| r != p && r != q) {
                 let (arp, arq) = (a[(r, p)], a[(r, q)]);
                 a[(r, p)] = c * arp - s * arq;
                 a[(r, q)] = s * arp + c * arq;
                 a[(p, r)] = a[(r, p)];
                 a[(q, r)] = a[(r, q)];
             }
-            for r in 0..4 {
+            for r in 0..N {
                 let (vrp, vrq) = (v[(r, p)], v[(r, q)]);
                 v[(r, p)] = c * vrp - s * vrq;
                 v[(r, q)] = s * vrp + c * vrq;
@@ -48,7 +48,7 @@ pub(crate) fn eigen(matrix: &Matrix4<f64>) -> ([f64; 4], Matrix4<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Vector4;
+    use nalgebra::{Matrix4, Vector4};
     use proptest::prelude::*;
 
     proptest! {

@@ -38,6 +38,7 @@
 mod cells;
 mod chart;
 mod contour;
+mod far_half;
 mod fisher_bingham;
 mod hyperspherical;
 mod jacobi;
