@@ -82,22 +82,27 @@ impl<const N: usize> Contour<N> {
         })
     }
 
-    /// E[y] and E[y yᵀ].
+    /// The mean E[y] and the covariance E[(y − E y)(y − E y)ᵀ].
     pub(crate) fn moments(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
-        let mut first = SVector::zeros();
-        let mut second = SMatrix::<f64, N, N>::zeros();
+        let mut mean = SVector::<f64, N>::zeros();
+        for (w, g, _) in self.nodes() {
+            for i in 0..N {
+                mean[i] += product_im(g[i], w);
+            }
+        }
+        // About the mean, so that small variances keep their digits.
+        let mut covariance = SMatrix::<f64, N, N>::zeros();
         for (w, g, variance) in self.nodes() {
             for i in 0..N {
-                let weighted = g[i] * w;
-                first[i] += weighted.im;
-                second[(i, i)] += product_im(variance[i], w);
+                covariance[(i, i)] += product_im(variance[i], w);
+                let weighted = (g[i] - mean[i]) * w;
                 for j in 0..=i {
-                    second[(i, j)] += product_im(weighted, g[j]);
+                    covariance[(i, j)] += product_im(weighted, g[j] - mean[j]);
                 }
             }
         }
-        second.fill_upper_triangle_with_lower_triangle();
-        (first, second)
+        covariance.fill_upper_triangle_with_lower_triangle();
+        (mean, covariance)
     }
 }
 
@@ -405,9 +410,9 @@ mod tests {
     fn flat_is_the_area_of_the_sphere() {
         let law = Contour::new([1e-12; 4], [0.0; 4], 1.0);
         assert!((law.ln_integral() - (2.0 * PI * PI).ln()).abs() < 1e-11);
-        let (first, second) = law.moments();
-        assert!(first.amax() < 1e-12);
-        assert!((second - Matrix4::identity() * 0.25).amax() < 1e-12);
+        let (mean, covariance) = law.moments();
+        assert!(mean.amax() < 1e-12);
+        assert!((covariance - Matrix4::identity() * 0.25).amax() < 1e-12);
     }
 
     #[test]
@@ -430,9 +435,10 @@ mod tests {
             let c = Vector4::from(c);
             prop_assume!(c.norm() > 0.1);
             let law = Contour::new(exponents.map(|e| 10f64.powf(e)), c.normalize().into(), 0.0);
-            let (first, second) = law.moments();
-            prop_assert!((second.trace() - 1.0).abs() < 1e-13, "{}", second.trace());
-            prop_assert!(first.norm() <= 1.0 + 1e-13);
+            let (mean, covariance) = law.moments();
+            let trace = covariance.trace() + mean.norm_squared();
+            prop_assert!((trace - 1.0).abs() < 1e-13, "{trace}");
+            prop_assert!(mean.norm() <= 1.0 + 1e-13);
             let [square, eighth] = law.expect(|y| {
                 let s: C64 = y.iter().map(|x| x * x).sum();
                 [s, s * s * s * s]

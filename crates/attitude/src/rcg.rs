@@ -1,4 +1,4 @@
-use nalgebra::{Complex, Matrix4, UnitQuaternion, Vector4};
+use nalgebra::{Complex, Matrix3, Matrix4, UnitQuaternion, Vector4};
 use rand::Rng;
 use rand_distr::Distribution;
 
@@ -104,51 +104,46 @@ impl RadiallyConstrainedGaussian {
     /// The law with mean attitude m and covariance Σ, rows and columns in the order of
     /// x = (x₁, x₂, x₃, x₄), scalar last.
     ///
+    /// A variance on the diagonal may be infinite where the rest of its row is zero; it is taken as
+    /// 1e14, which is the same law to rounding. With an infinite variance along m it is Bingham's.
+    ///
     /// # Errors
     /// The mean is not a unit quaternion, or Σ is not finite, symmetric and positive definite.
     pub fn new(mean: UnitQuaternion<f64>, covariance: Matrix4<f64>) -> Result<Self, RcgError> {
-        let norm = mean.norm();
-        if !((norm - 1.0).abs() < 1e-9) {
-            return Err(RcgError::Mean { norm });
-        }
-        for row in 0..4 {
-            for column in 0..4 {
-                let value = covariance[(row, column)];
-                if !value.is_finite() {
-                    return Err(RcgError::Entry { row: row + 1, column: column + 1, value });
-                }
-            }
-        }
-        if let Some(&eigenvalue) = covariance.diagonal().iter().find(|s| !EIGENVALUES.contains(*s))
-        {
-            return Err(RcgError::Eigenvalue { eigenvalue });
-        }
-        // An entry is as large as its two variances allow, so rounding is measured against them.
-        let deviations = covariance.diagonal().map(f64::sqrt);
-        let covariance = symmetric_part(&covariance, |i, j| deviations[i] * deviations[j])
-            .map_err(|[row, column]| RcgError::NotSymmetric {
-                row: row + 1,
-                column: column + 1,
-                upper: covariance[(row, column)],
-                lower: covariance[(column, row)],
-            })?;
+        let mean = checked_mean(mean)?;
+        let covariance = checked_covariance(covariance)?;
         let (eigenvalues, axes) = jacobi::eigen(&covariance);
-        let smallest = eigenvalues.into_iter().fold(f64::INFINITY, f64::min);
-        let largest = eigenvalues.into_iter().fold(0.0, f64::max);
-        if !EIGENVALUES.contains(&smallest) || !is_definite(&covariance) {
-            return Err(RcgError::Eigenvalue { eigenvalue: smallest });
-        }
-        if !EIGENVALUES.contains(&largest) {
-            return Err(RcgError::Eigenvalue { eigenvalue: largest });
-        }
-        // A mean that is unit to rounding is kept to the bit, so that a law read back is the same law.
-        let exact = (mean.norm_squared() - 1.0).abs() <= 4.0 * f64::EPSILON;
-        let mean = if exact { mean } else { UnitQuaternion::new_normalize(mean.into_inner()) };
+        check_eigenvalues(eigenvalues, &covariance)?;
+        Ok(Self::from_eigenform(mean, covariance, eigenvalues, axes))
+    }
+
+    /// With the covariance T Σ̄ Tᵀ for an orthogonal T. Σ̄ is decomposed as it is given: turned, its
+    /// small eigenvalues could be lost in the rounding of the large ones.
+    pub(crate) fn turned(
+        mean: UnitQuaternion<f64>,
+        local: Matrix4<f64>,
+        turn: &Matrix4<f64>,
+    ) -> Result<Self, RcgError> {
+        let mean = checked_mean(mean)?;
+        let local = checked_covariance(local)?;
+        let (eigenvalues, axes) = jacobi::eigen(&local);
+        check_eigenvalues(eigenvalues, &local)?;
+        let covariance = turn * local * turn.transpose();
+        let covariance = (covariance + covariance.transpose()) * 0.5;
+        Ok(Self::from_eigenform(mean, covariance, eigenvalues, turn * axes))
+    }
+
+    fn from_eigenform(
+        mean: UnitQuaternion<f64>,
+        covariance: Matrix4<f64>,
+        eigenvalues: [f64; 4],
+        axes: Matrix4<f64>,
+    ) -> Self {
         let lambda = eigenvalues.map(|s| 1.0 / s);
         let center = axes.tr_mul(&mean.coords);
         let precision = axes * Matrix4::from_diagonal(&lambda.into()) * axes.transpose();
         let law = FisherBingham::centered(axes, lambda, center.into(), 0.0, 0.0);
-        Ok(Self { mean, covariance, precision, law })
+        Self { mean, covariance, precision, law }
     }
 
     /// The mean attitude m, about which the Gaussian in ℝ⁴ is centred.
@@ -216,6 +211,19 @@ impl RadiallyConstrainedGaussian {
         self.law.second_moment()
     }
 
+    /// The mean attitude, q and −q counting alike: see [`FisherBingham::mean_attitude`]. It is not
+    /// [`mean`](Self::mean), but near it where the law is concentrated.
+    #[must_use]
+    pub fn mean_attitude(&self) -> UnitQuaternion<f64> {
+        self.law.mean_attitude()
+    }
+
+    /// The covariance of the attitude in body axes, rad²: see [`FisherBingham::rotation_covariance`].
+    #[must_use]
+    pub fn rotation_covariance(&self) -> Matrix3<f64> {
+        self.law.rotation_covariance()
+    }
+
     /// Expectations of polynomials in x: see [`FisherBingham::expect`].
     pub fn expect<const N: usize>(
         &self,
@@ -278,6 +286,60 @@ impl Distribution<UnitQuaternion<f64>> for RadiallyConstrainedGaussian {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> UnitQuaternion<f64> {
         self.law.sample(rng)
     }
+}
+
+fn checked_mean(mean: UnitQuaternion<f64>) -> Result<UnitQuaternion<f64>, RcgError> {
+    let norm = mean.norm();
+    if !((norm - 1.0).abs() < 1e-9) {
+        return Err(RcgError::Mean { norm });
+    }
+    // A mean that is unit to rounding is kept to the bit, so that a law read back is the same law.
+    let exact = (mean.norm_squared() - 1.0).abs() <= 4.0 * f64::EPSILON;
+    Ok(if exact { mean } else { UnitQuaternion::new_normalize(mean.into_inner()) })
+}
+
+/// Finite, symmetric, with variances in range.
+fn checked_covariance(mut covariance: Matrix4<f64>) -> Result<Matrix4<f64>, RcgError> {
+    for j in 0..4 {
+        let alone =
+            (0..4).all(|i| i == j || (covariance[(i, j)] == 0.0 && covariance[(j, i)] == 0.0));
+        if covariance[(j, j)] == f64::INFINITY && alone {
+            covariance[(j, j)] = *EIGENVALUES.end();
+        }
+    }
+    for row in 0..4 {
+        for column in 0..4 {
+            let value = covariance[(row, column)];
+            if !value.is_finite() {
+                return Err(RcgError::Entry { row: row + 1, column: column + 1, value });
+            }
+        }
+    }
+    if let Some(&eigenvalue) = covariance.diagonal().iter().find(|s| !EIGENVALUES.contains(*s)) {
+        return Err(RcgError::Eigenvalue { eigenvalue });
+    }
+    // An entry is as large as its two variances allow, so rounding is measured against them.
+    let deviations = covariance.diagonal().map(f64::sqrt);
+    symmetric_part(&covariance, |i, j| deviations[i] * deviations[j]).map_err(|[row, column]| {
+        RcgError::NotSymmetric {
+            row: row + 1,
+            column: column + 1,
+            upper: covariance[(row, column)],
+            lower: covariance[(column, row)],
+        }
+    })
+}
+
+fn check_eigenvalues(eigenvalues: [f64; 4], covariance: &Matrix4<f64>) -> Result<(), RcgError> {
+    let smallest = eigenvalues.into_iter().fold(f64::INFINITY, f64::min);
+    let largest = eigenvalues.into_iter().fold(0.0, f64::max);
+    if !EIGENVALUES.contains(&smallest) || !is_definite(covariance) {
+        return Err(RcgError::Eigenvalue { eigenvalue: smallest });
+    }
+    if !EIGENVALUES.contains(&largest) {
+        return Err(RcgError::Eigenvalue { eigenvalue: largest });
+    }
+    Ok(())
 }
 
 fn opposite(q: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {

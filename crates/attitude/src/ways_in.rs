@@ -2,7 +2,10 @@
 
 use nalgebra::{Matrix3, Matrix4, UnitQuaternion};
 
-use crate::{HypersphericalAngles, RadiallyConstrainedGaussian, RcgError};
+use crate::{
+    HypersphericalAngles, RadiallyConstrainedGaussian, RcgError,
+    fisher_bingham::left_multiplication,
+};
 
 /// Sines below this leave a hyperspherical direction to rounding.
 const UNDEFINED: f64 = 1e-8;
@@ -14,7 +17,9 @@ impl RadiallyConstrainedGaussian {
     /// first order x = m ⊗ (δ/2, 1), so that Σ = L(m) diag(P/4, s) L(m)ᵀ with L(m) the matrix of
     /// quaternion multiplication from the left. For small P, δ then has the covariance P whatever
     /// the radial variance s, of which the sphere removes all but the second lobe: with s below
-    /// about 0.1 there is none. This way in is defined for every mean, the identity included.
+    /// about 0.1 there is none, and with an infinite s (Bingham's law) the second lobe weighs as much
+    /// as the first and consists of the same attitudes. This way in is defined for every mean, the
+    /// identity included.
     ///
     /// # Errors
     /// The mean is not a unit quaternion, or P or s is not finite, symmetric and positive definite.
@@ -42,10 +47,35 @@ impl RadiallyConstrainedGaussian {
         let mut local = Matrix4::zeros();
         local.fixed_view_mut::<3, 3>(0, 0).copy_from(&(rotation_covariance_rad2 * 0.25));
         local[(3, 3)] = radial_variance;
-        // Looked at where the user's entries still stand; turned, none of them would be known again.
-        Self::new(UnitQuaternion::identity(), local)?;
-        let left = left_multiplication(&mean);
-        Self::new(mean, left * local * left.transpose())
+        Self::turned(mean, local, &left_multiplication(&mean))
+    }
+
+    /// The same from a covariance in deg².
+    ///
+    /// # Errors
+    /// As for [`from_rotation_covariance`](Self::from_rotation_covariance), with the values in rad².
+    ///
+    /// ```
+    /// use gyradius_attitude::RadiallyConstrainedGaussian;
+    /// use nalgebra::{Matrix3, UnitQuaternion};
+    ///
+    /// // Axes known to one degree, and no second lobe to speak of.
+    /// let law = RadiallyConstrainedGaussian::from_rotation_covariance_deg2(
+    ///     UnitQuaternion::identity(),
+    ///     Matrix3::identity(),
+    ///     0.01,
+    /// )?;
+    /// let deviation = law.rotation_covariance()[(0, 0)].sqrt();
+    /// assert!((deviation.to_degrees() - 1.0).abs() < 1e-3);
+    /// # Ok::<(), gyradius_attitude::RcgError>(())
+    /// ```
+    pub fn from_rotation_covariance_deg2(
+        mean: UnitQuaternion<f64>,
+        rotation_covariance_deg2: Matrix3<f64>,
+        radial_variance: f64,
+    ) -> Result<Self, RcgError> {
+        let square = (std::f64::consts::PI / 180.0).powi(2);
+        Self::from_rotation_covariance(mean, rotation_covariance_deg2 * square, radial_variance)
     }
 
     /// From the covariance Σ̄ of the hyperspherical angles and the radius, in the order
@@ -60,14 +90,8 @@ impl RadiallyConstrainedGaussian {
         covariance: Matrix4<f64>,
     ) -> Result<Self, RcgError> {
         let turn = hyperspherical_axes(&mean)?;
-        Self::new(mean, turn * covariance * turn.transpose())
+        Self::turned(mean, covariance, &turn)
     }
-}
-
-/// L(m) with m ⊗ x = L(m) x, scalar last.
-fn left_multiplication(m: &UnitQuaternion<f64>) -> Matrix4<f64> {
-    let (x, y, z, w) = (m.i, m.j, m.k, m.w);
-    Matrix4::new(w, -z, y, x, z, w, -x, y, -y, x, w, z, -x, -y, -z, w)
 }
 
 /// R_J: unit vectors of ∂x/∂θ₁, ∂x/∂θ₂, ∂x/∂θ₃ and of x itself, as columns.
