@@ -1,33 +1,94 @@
 use nalgebra::UnitQuaternion;
 use rand::Rng;
 use rand_distr::Distribution;
+use std::sync::OnceLock;
 
-use crate::RadiallyConstrainedGaussian;
+use crate::{RadiallyConstrainedGaussian, rcg::LN_PI_SQUARED};
 
 /// A radially constrained Gaussian kept to the half sphere around its mean, x·m ≥ 0.
 ///
 /// # Definition
-/// The density of [`RadiallyConstrainedGaussian`] where x·m ≥ 0, zero elsewhere. Every attitude
-/// but a null set has exactly one quaternion in that half, so this is the law to use when the
-/// second lobe, which as attitudes lies about the *inverse* of the mean, is not wanted.
+/// The density of [`RadiallyConstrainedGaussian`] over its share of that half where x·m ≥ 0, zero
+/// elsewhere. Every attitude but a null set has exactly one quaternion in that half, so this is the
+/// law to use when the second lobe, which as attitudes lies about the *inverse* of the mean, is not
+/// wanted.
 ///
 /// # Algorithm
 /// Draws of the whole law, those of the far half refused.
+///
+/// ```
+/// use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian};
+/// use nalgebra::{Matrix4, UnitQuaternion};
+///
+/// let wide = Matrix4::from_diagonal_element(1.0);
+/// let half = MeanHalf::new(RadiallyConstrainedGaussian::new(UnitQuaternion::identity(), wide)?);
+/// assert!((half.share() - 0.700_619_948_837).abs() < 1e-12);
+/// # Ok::<(), gyradius_attitude::RcgError>(())
+/// ```
 #[derive(Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
-pub struct MeanHalf(RadiallyConstrainedGaussian);
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "RadiallyConstrainedGaussian", into = "RadiallyConstrainedGaussian")
+)]
+pub struct MeanHalf {
+    whole: RadiallyConstrainedGaussian,
+    /// Takes a thousand times as long as the rest: computed when it is asked for.
+    far_share: OnceLock<f64>,
+}
 
 impl MeanHalf {
     /// Keeps `law` to the half sphere around its mean.
     #[must_use]
     pub fn new(law: RadiallyConstrainedGaussian) -> Self {
-        Self(law)
+        Self { whole: law, far_share: OnceLock::new() }
     }
 
     /// The law on the whole sphere.
     #[must_use]
     pub fn whole(&self) -> &RadiallyConstrainedGaussian {
-        &self.0
+        &self.whole
+    }
+
+    /// The share of the whole law that is kept: one less
+    /// [`far_half_share`](RadiallyConstrainedGaussian::far_half_share).
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        1.0 - self.far_share()
+    }
+
+    fn far_share(&self) -> f64 {
+        *self.far_share.get_or_init(|| self.whole.far_half_share())
+    }
+
+    /// The logarithm of the density at q with respect to surface measure on S³, −∞ in the far half.
+    #[must_use]
+    pub fn ln_density(&self, q: &UnitQuaternion<f64>) -> f64 {
+        if self.whole.in_mean_half(q) {
+            self.whole.ln_density(q) - libm::log1p(-self.far_share())
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+
+    /// The logarithm of the density of the attitude, whichever of q and −q it is given as, with
+    /// respect to Haar measure on SO(3), normalised to one.
+    #[must_use]
+    pub fn ln_haar_density(&self, q: &UnitQuaternion<f64>) -> f64 {
+        let opposite = UnitQuaternion::new_unchecked(-q.into_inner());
+        self.ln_density(q).max(self.ln_density(&opposite)) + LN_PI_SQUARED
+    }
+}
+
+impl From<RadiallyConstrainedGaussian> for MeanHalf {
+    fn from(law: RadiallyConstrainedGaussian) -> Self {
+        Self::new(law)
+    }
+}
+
+impl From<MeanHalf> for RadiallyConstrainedGaussian {
+    fn from(half: MeanHalf) -> Self {
+        half.whole
     }
 }
 
@@ -35,9 +96,9 @@ impl Distribution<UnitQuaternion<f64>> for MeanHalf {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> UnitQuaternion<f64> {
         loop {
-            let q = self.0.sample(rng);
+            let q = self.whole.sample(rng);
             // The mean is the mode, so its half is never empty and this ends.
-            if self.0.in_mean_half(&q) {
+            if self.whole.in_mean_half(&q) {
                 return q;
             }
         }
@@ -60,5 +121,18 @@ mod tests {
         let far = (0..1000).filter(|_| !whole.in_mean_half(&whole.sample(&mut rng))).count();
         assert!(far > 200, "the whole law has a far half to lose: {far}");
         assert!((0..1000).all(|_| whole.in_mean_half(&half.sample(&mut rng))));
+    }
+
+    #[test]
+    fn the_density_is_one_over_an_even_grid() {
+        let covariance = Matrix4::from_diagonal(&Vector4::new(0.3, 0.4, 0.5, 0.8));
+        let mean = UnitQuaternion::from_euler_angles(0.5, 0.2, -0.3);
+        let half = MeanHalf::new(RadiallyConstrainedGaussian::new(mean, covariance).unwrap());
+        let n = 20_000;
+        let sum: f64 = crate::super_fibonacci(n).map(|q| half.ln_haar_density(&q).exp()).sum();
+        assert!((sum / f64::from(n) - 1.0).abs() < 1e-3, "{}", sum / f64::from(n));
+        let far = UnitQuaternion::new_unchecked(-mean.into_inner());
+        assert_eq!(half.ln_density(&far), f64::NEG_INFINITY);
+        assert_eq!(half.ln_haar_density(&far), half.ln_haar_density(&mean));
     }
 }

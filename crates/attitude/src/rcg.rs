@@ -9,6 +9,9 @@ use crate::{
 /// Range of the eigenvalues of Σ: beyond it the law is uniform, or a point, to rounding.
 const EIGENVALUES: std::ops::RangeInclusive<f64> = 1e-14..=1e14;
 
+/// ln π², the measure of the attitudes on half of S³.
+pub(crate) const LN_PI_SQUARED: f64 = 2.289_459_771_698_800_3;
+
 /// Why a mean and a covariance are not the parameters of a [`RadiallyConstrainedGaussian`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -188,7 +191,6 @@ impl RadiallyConstrainedGaussian {
     /// normalised to one: 0 everywhere for the uniform law.
     #[must_use]
     pub fn ln_haar_density(&self, q: &UnitQuaternion<f64>) -> f64 {
-        const LN_PI_SQUARED: f64 = 2.289_459_771_698_800_3;
         self.ln_attitude_density(q) + LN_PI_SQUARED
     }
 
