@@ -18,6 +18,9 @@ const PAPER: Parameters = ([0.0249, 0.0005, -0.0100, 0.9996], [2e-5, 6e-4, 6e-4,
 const ISOTROPIC: Parameters = ([0.0, 0.0, 0.0, 1.0], [1.0; 4]);
 /// Four scales, none of them along the mean: neither a chart nor uniform proposals serve it.
 const FOUR_SCALES: Parameters = ([0.5, -0.5, 0.5, -0.5], [1e-6, 1e-4, 1e-2, 1.0]);
+const DIFFUSE: Parameters = ([1.0, 2.0, 3.0, 4.0], [0.1, 0.2, 0.3, 0.4]);
+/// One milliradian about every axis.
+const NARROW: Parameters = ([0.0, 0.0, 0.0, 1.0], [2.5e-7, 2.5e-7, 2.5e-7, 1e-2]);
 
 fn law((mean, variances): Parameters) -> RadiallyConstrainedGaussian {
     let mean = UnitQuaternion::from_quaternion(Quaternion::from(Vector4::from(mean)));
@@ -114,5 +117,21 @@ fn quadrature(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, uniform, rcg, normaliser, quadrature);
+/// Maximum likelihood from 1,000 attitudes.
+fn fit(c: &mut Criterion) {
+    let mut group = c.benchmark_group("fit");
+    group.throughput(Throughput::Elements(1000));
+    group.sample_size(20);
+    for (name, parameters) in [("peck-2003", PAPER), ("diffuse", DIFFUSE), ("narrow", NARROW)] {
+        let law = law(parameters);
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let attitudes: Vec<_> = (0..1000).map(|_| law.sample(&mut rng)).collect();
+        group.bench_function(name, |b| {
+            b.iter(|| RadiallyConstrainedGaussian::fit(black_box(&attitudes)).unwrap());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, uniform, rcg, normaliser, quadrature, fit);
 criterion_main!(benches);

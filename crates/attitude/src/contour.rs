@@ -16,7 +16,7 @@
 use nalgebra::{Complex, SMatrix, SVector};
 use std::f64::consts::PI;
 
-type C64 = Complex<f64>;
+pub(crate) type C64 = Complex<f64>;
 
 const NODES: usize = 64;
 /// Opening angle of the hyperbola: wider is faster and, from 0.9 on, unsafe.

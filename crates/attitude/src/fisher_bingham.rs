@@ -376,7 +376,7 @@ pub(crate) fn symmetric_part(
 
 /// μ that makes P + μ·1 positive definite and |(P + μ·1)⁻¹b| ≤ 1, equal to 1 where it can be: then
 /// the normaliser's exponent has no large terms to cancel.
-fn centering_shift(eigenvalues: [f64; 4], b: [f64; 4]) -> f64 {
+pub(crate) fn centering_shift(eigenvalues: [f64; 4], b: [f64; 4]) -> f64 {
     let floor = eigenvalues.into_iter().fold(f64::INFINITY, f64::min);
     // In d = μ + min P > 0.
     let square =

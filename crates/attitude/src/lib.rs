@@ -40,6 +40,7 @@ mod chart;
 mod contour;
 mod far_half;
 mod fisher_bingham;
+mod fit;
 mod hyperspherical;
 mod jacobi;
 mod mean_half;
@@ -50,6 +51,7 @@ mod vector;
 mod ways_in;
 
 pub use fisher_bingham::{FisherBingham, FisherBinghamError, Method};
+pub use fit::{Convergence, Family, Fit, FitError, RadialVariance};
 pub use hyperspherical::{HypersphericalAngles, HypersphericalError};
 pub use mean_half::MeanHalf;
 pub use quadrature::AngularQuadrature;

@@ -149,6 +149,27 @@ impl RadiallyConstrainedGaussian {
         Self { mean, covariance, precision, law }
     }
 
+    /// From the principal axes (columns) and variances of Σ, where its entries cannot hold both the
+    /// small variances and the large. Variances are clamped to the range of the law; 1e14 stands
+    /// for infinity.
+    ///
+    /// # Errors
+    /// The mean is not a unit quaternion, or a variance is NaN or not positive.
+    pub(crate) fn from_principal(
+        mean: UnitQuaternion<f64>,
+        axes: Matrix4<f64>,
+        variances: [f64; 4],
+    ) -> Result<Self, RcgError> {
+        let mean = checked_mean(mean)?;
+        if let Some(&eigenvalue) = variances.iter().find(|s| !(**s > 0.0)) {
+            return Err(RcgError::Eigenvalue { eigenvalue });
+        }
+        let variances = variances.map(|s| s.clamp(*EIGENVALUES.start(), *EIGENVALUES.end()));
+        let covariance = axes * Matrix4::from_diagonal(&variances.into()) * axes.transpose();
+        let covariance = (covariance + covariance.transpose()) * 0.5;
+        Ok(Self::from_eigenform(mean, covariance, variances, axes))
+    }
+
     /// The mean attitude m, about which the Gaussian in ℝ⁴ is centred.
     #[must_use]
     pub fn mean(&self) -> UnitQuaternion<f64> {

@@ -1,0 +1,445 @@
+mod climb;
+mod likelihood;
+mod point;
+mod search;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
+use std::fmt;
+
+use crate::{RadiallyConstrainedGaussian, fisher_bingham::left_multiplication, jacobi};
+use climb::Climb;
+use likelihood::{PARAMETERS, Sample, Square};
+use point::{PRECISION, Point, SLOPE, TRIANGLE};
+use search::Search;
+
+/// Fewer attitudes than parameters of the law are not fitted.
+const NEEDED: usize = PARAMETERS;
+/// Likelihood ratios that 1 % of samples of Bingham's law exceed: aligned against Bingham (χ² with
+/// one degree of freedom), general against aligned, general against Bingham. The last two are not
+/// χ²: b and −b are the same, so that the likelihood has no slope at b = 0. They were simulated:
+/// between 17 and 20 for 50 to 3,000 attitudes, concentrated or not, 300 to 1,000 samples each.
+const ALIGNED_TO_BINGHAM: f64 = 6.634_896_601_021_214;
+const GENERAL_TO_ALIGNED: f64 = 17.5;
+const GENERAL_TO_BINGHAM: f64 = 18.5;
+/// The law's own limit on a variance.
+const SMALLEST_VARIANCE: f64 = 1e-14;
+
+/// Why attitudes have no [`Fit`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// Too few attitudes.
+    #[error("{count} attitudes: a fit needs at least {needed}")]
+    TooFew {
+        /// How many were given.
+        count: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// An attitude is not a unit quaternion.
+    #[error("attitude {index} is a quaternion of norm {norm}: it must have norm 1")]
+    Norm {
+        /// Its place, from 0.
+        index: usize,
+        /// Its norm.
+        norm: f64,
+    },
+    /// The attitudes do not fill all directions: the likelihood grows without bound.
+    #[error(
+        "attitudes that lie within {spread:e} of a sphere of lower dimension (all the same, or all \
+         turns about one axis, for example): the likelihood has no maximum"
+    )]
+    Degenerate {
+        /// Root mean square distance of the quaternions from that sphere.
+        spread: f64,
+    },
+    /// The radial variance that was asked for is out of range.
+    #[error("radial variance {value:e}: it must be between 1e-14 and 1e14")]
+    RadialVariance {
+        /// The value.
+        value: f64,
+    },
+}
+
+/// Which laws a fit chooses among. Each contains those before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum Family {
+    /// The smallest of [`Bingham`](Self::Bingham), [`Aligned`](Self::Aligned) and
+    /// [`General`](Self::General) that the likelihood ratio does not reject against a larger one
+    /// at 1 %.
+    #[default]
+    Chosen,
+    /// Bingham's law, 9 parameters: q and −q are equally likely and the radial variance is infinite.
+    Bingham,
+    /// The mean is a principal axis of the covariance and the radial variance is given,
+    /// 9 parameters.
+    AlignedWith {
+        /// The radial variance.
+        radial_variance: f64,
+    },
+    /// The mean is a principal axis of the covariance, 10 parameters.
+    Aligned,
+    /// Every radially constrained Gaussian, 13 parameters.
+    General,
+}
+
+/// What the attitudes say of the radial variance s = mᵀΣm, the variance of the Gaussian in ℝ⁴ along
+/// its mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RadialVariance {
+    /// It has an estimate, and a finite interval of values that the attitudes allow.
+    Determined {
+        /// The most likely value.
+        value: f64,
+        /// Lower end of the 95 % interval.
+        low: f64,
+        /// Upper end of the 95 % interval.
+        high: f64,
+    },
+    /// Every value from `low` on fits the attitudes, infinity included.
+    Undetermined {
+        /// Lower end of the 95 % interval.
+        low: f64,
+    },
+    /// It was given.
+    Given(f64),
+}
+
+impl fmt::Display for RadialVariance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Determined { value, low, high } => write!(
+                f,
+                "the radial variance is {value:.3e}; the attitudes allow {low:.1e} to {high:.1e} \
+                 (95 %)"
+            ),
+            Self::Undetermined { low } => write!(
+                f,
+                "the attitudes do not determine the radial variance: every value from {low:.1e} \
+                 up, infinity included, fits them (95 %)"
+            ),
+            Self::Given(value) => write!(f, "the radial variance was given as {value:e}"),
+        }
+    }
+}
+
+/// How the search for the maximum has ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Convergence {
+    /// Whether a maximum was reached.
+    pub converged: bool,
+    /// Newton steps from the start that led to the maximum.
+    pub iterations: usize,
+    /// What the last step promised to add to the ln-likelihood (half the squared Newton decrement).
+    pub last_gain: f64,
+}
+
+/// A law fitted to attitudes: see [`RadiallyConstrainedGaussian::fit`].
+#[derive(Clone, Debug)]
+pub struct Fit {
+    law: RadiallyConstrainedGaussian,
+    family: Family,
+    radial: RadialVariance,
+    ln_likelihood: f64,
+    bingham_ln_likelihood: f64,
+    turn_covariance: Matrix3<f64>,
+    errors: Option<Errors>,
+    convergence: Convergence,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Errors {
+    mean: Matrix3<f64>,
+    turns: Matrix3<f64>,
+}
+
+impl RadiallyConstrainedGaussian {
+    /// The maximum likelihood law of attitudes, q and −q being the same attitude: the family is
+    /// [chosen](Family::Chosen), as few data determine all of Σ.
+    ///
+    /// # Definition
+    /// The likelihood of an attitude is f(q) + f(−q). m and −m have the same; the scalar part of
+    /// the fitted mean is not negative (if it is zero, the third coordinate is not, and so on).
+    ///
+    /// # Radial variance
+    /// Attitudes in one narrow cluster say next to nothing of the radial variance:
+    /// [`Fit::radial`] says which values they allow. Where it is undetermined the
+    /// law is Bingham's as a rule, which has no parameter for it; its radial variance is then 1e14,
+    /// which stands for infinity. Its draws lie about m and −m, half of them each; as attitudes
+    /// they are the same. To have them on one side use [`MeanHalf`](crate::MeanHalf), or give a
+    /// radial variance with [`Family::AlignedWith`].
+    ///
+    /// # Algorithm
+    /// Newton's method with exact derivatives and damping, each step uphill, in coordinates scaled
+    /// by the sample; Hessian from the fourth moments of the law (Isserlis at each node of the
+    /// contour integral). The likelihood can have several maxima: Bingham's law, split along each
+    /// principal axis, and laws with less radial variance are the starts, and the highest maximum
+    /// is taken. The mean of Bingham's law is the principal axis of the second moment of the
+    /// sample (Markley et al. 2007, doi:10.2514/1.28949).
+    ///
+    /// # Limits
+    /// At least 13 attitudes, with root mean square distances of their quaternions from every
+    /// great sphere above 1e-7 (turns of 2e-7 rad), and from every small one above 1e-5 of their
+    /// extent. Order and signs matter to rounding only. Standard errors and intervals are those of
+    /// many attitudes: a few hundred where there are lobes to see or nothing radial to estimate,
+    /// a few thousand for a diffuse general law. Some 15 to 30 ms for 1,000 attitudes.
+    ///
+    /// # Errors
+    /// Too few attitudes, one that is not a unit quaternion, or a likelihood without maximum.
+    ///
+    /// ```
+    /// use gyradius_attitude::{RadialVariance, RadiallyConstrainedGaussian};
+    /// use nalgebra::{Matrix3, UnitQuaternion};
+    /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    /// use rand_distr::Distribution;
+    ///
+    /// // 200 attitudes, one degree about each axis.
+    /// let truth = RadiallyConstrainedGaussian::from_rotation_covariance(
+    ///     UnitQuaternion::from_euler_angles(0.3, -0.2, 1.0),
+    ///     Matrix3::from_diagonal_element(1_f64.to_radians().powi(2)),
+    ///     0.01,
+    /// )?;
+    /// let mut rng = ChaCha8Rng::seed_from_u64(1);
+    /// let attitudes: Vec<_> = (0..200).map(|_| truth.sample(&mut rng)).collect();
+    ///
+    /// let fit = RadiallyConstrainedGaussian::fit(&attitudes)?;
+    /// assert!(fit.law().mean().angle_to(&truth.mean()) < 0.3_f64.to_radians());
+    /// let deviation = fit.turn_covariance()[(0, 0)].sqrt().to_degrees();
+    /// assert!((0.85..1.15).contains(&deviation));
+    /// // One degree is too little to know the radial variance.
+    /// assert!(matches!(fit.radial(), RadialVariance::Undetermined { .. }), "{}", fit.radial());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn fit(attitudes: &[UnitQuaternion<f64>]) -> Result<Fit, FitError> {
+        Self::fit_family(attitudes, Family::Chosen)
+    }
+
+    /// The maximum likelihood law of a family: see [`fit`](Self::fit).
+    ///
+    /// # Errors
+    /// As [`fit`](Self::fit), or the radial variance given is out of range.
+    pub fn fit_family(attitudes: &[UnitQuaternion<f64>], family: Family) -> Result<Fit, FitError> {
+        let count = attitudes.len();
+        if count < NEEDED {
+            return Err(FitError::TooFew { count, needed: NEEDED });
+        }
+        for (index, q) in attitudes.iter().enumerate() {
+            let norm = q.norm();
+            if !((norm - 1.0).abs() < 1e-9) {
+                return Err(FitError::Norm { index, norm });
+            }
+        }
+        let sample = Sample::new(attitudes);
+        let spread = sample.scale[0];
+        if !(spread * spread > SMALLEST_VARIANCE) {
+            return Err(FitError::Degenerate { spread });
+        }
+        let search = Search::new(&sample);
+        let n = sample.len();
+        let bingham = search.bingham();
+        let bingham_ln_likelihood = n * bingham.height;
+        let report =
+            |best, family, radial| Fit::new(&sample, best, family, radial, bingham_ln_likelihood);
+        match family {
+            Family::AlignedWith { radial_variance: value } => {
+                if !(SMALLEST_VARIANCE..=1.0 / SMALLEST_VARIANCE).contains(&value) {
+                    return Err(FitError::RadialVariance { value });
+                }
+                let best = search.aligned_at(&bingham.place, 1.0 / value);
+                report(&best, family, RadialVariance::Given(value))
+            }
+            Family::Bingham => {
+                let aligned = search.aligned(&bingham);
+                let low = search.lowest(&aligned, search::ALIGNED);
+                report(&bingham, family, RadialVariance::Undetermined { low })
+            }
+            Family::Aligned => {
+                let aligned = search.aligned(&bingham);
+                let radial = search.interval(&aligned, search::ALIGNED);
+                report(&aligned, family, radial)
+            }
+            Family::General => {
+                let aligned = search.aligned(&bingham);
+                let general = search.general(&bingham, &aligned)?;
+                let radial = search.interval(&general, search::GENERAL);
+                report(&general, family, radial)
+            }
+            Family::Chosen => {
+                let aligned = search.aligned(&bingham);
+                let general = search.general(&bingham, &aligned)?;
+                let ratio = |larger: &Climb<Point>, smaller: &Climb<Point>| {
+                    2.0 * n * (larger.height - smaller.height)
+                };
+                if ratio(&general, &bingham) <= GENERAL_TO_BINGHAM
+                    && ratio(&aligned, &bingham) <= ALIGNED_TO_BINGHAM
+                {
+                    let low = search.lowest(&aligned, search::ALIGNED);
+                    report(&bingham, Family::Bingham, RadialVariance::Undetermined { low })
+                } else if ratio(&general, &aligned) <= GENERAL_TO_ALIGNED {
+                    let radial = search.interval(&aligned, search::ALIGNED);
+                    report(&aligned, Family::Aligned, radial)
+                } else {
+                    let radial = search.interval(&general, search::GENERAL);
+                    report(&general, Family::General, radial)
+                }
+            }
+        }
+    }
+}
+
+impl Fit {
+    fn new(
+        sample: &Sample,
+        best: &Climb<Point>,
+        family: Family,
+        radial: RadialVariance,
+        bingham_ln_likelihood: f64,
+    ) -> Result<Self, FitError> {
+        let Climb { place, height, converged, iterations, gain } = *best;
+        let mut frame = sample.frame * place.frame;
+        let (lambda, axes) = jacobi::eigen(&place.form_about_mean());
+        let variances = lambda.map(|l| if l > 0.0 { 1.0 / l } else { f64::INFINITY });
+        let axes = frame * axes;
+        let mean = frame.column(3).normalize();
+        // The last coordinate that is not zero is positive.
+        if (0..4).rev().map(|i| mean[i]).find(|x| *x != 0.0).is_some_and(|x| x < 0.0) {
+            frame = -frame;
+        }
+        let mean = UnitQuaternion::new_normalize(Quaternion::from(frame.column(3).into_owned()));
+        let law = RadiallyConstrainedGaussian::from_principal(mean, axes, variances)
+            .map_err(|_| FitError::Degenerate { spread: sample.scale[0] })?;
+
+        // Half turns of the body are m ⊗ (h, 0): from tangents of the fit to those.
+        let body =
+            (left_multiplication(&mean).tr_mul(&frame)).fixed_view::<3, 3>(0, 0).into_owned();
+        let across = place
+            .precision
+            .cholesky()
+            .ok_or(FitError::Degenerate { spread: sample.scale[0] })?
+            .inverse();
+        let turn_covariance = body * across * body.transpose() * 4.0;
+        let errors = search::covariance(sample, &place, family)
+            .map(|covariance| Errors::new(&covariance, &body, &across, &turn_covariance));
+        Ok(Self {
+            law,
+            family,
+            radial,
+            ln_likelihood: sample.len() * height,
+            bingham_ln_likelihood,
+            turn_covariance,
+            errors,
+            convergence: Convergence { converged, iterations, last_gain: gain },
+        })
+    }
+
+    /// The fitted law.
+    #[must_use]
+    pub fn law(&self) -> &RadiallyConstrainedGaussian {
+        &self.law
+    }
+
+    /// The family of the law: the one asked for, or the one chosen.
+    #[must_use]
+    pub fn family(&self) -> Family {
+        self.family
+    }
+
+    /// What the attitudes say of the radial variance.
+    #[must_use]
+    pub fn radial(&self) -> RadialVariance {
+        self.radial
+    }
+
+    /// ln-likelihood of the attitudes with respect to Haar measure of total one: that of the
+    /// uniform law is 0.
+    #[must_use]
+    pub fn ln_likelihood(&self) -> f64 {
+        self.ln_likelihood
+    }
+
+    /// How probable it is that uniform attitudes seem as far from uniform as these do: the
+    /// likelihood ratio of Bingham's law and the uniform, which is χ² with 9 degrees of freedom for
+    /// many attitudes (Wilks 1938).
+    #[must_use]
+    pub fn uniform_p_value(&self) -> f64 {
+        let half = self.bingham_ln_likelihood.max(0.0);
+        // Q(9/2, x), by the recurrence of DLMF 8.8.6 from Q(1/2, x) = erfc √x.
+        let mut sum = libm::erfc(half.sqrt());
+        let mut term = libm::exp(-half) / (std::f64::consts::PI * half).sqrt();
+        for k in 0..4 {
+            term *= half / (f64::from(k) + 0.5);
+            if half > 0.0 {
+                sum += term;
+            }
+        }
+        sum.min(1.0)
+    }
+
+    /// Covariance of small turns of the body about the mean, in rad², in body axes: four times the
+    /// inverse of the tangent block of Σ⁻¹. It is the P of
+    /// [`from_rotation_covariance`](RadiallyConstrainedGaussian::from_rotation_covariance).
+    #[must_use]
+    pub fn turn_covariance(&self) -> Matrix3<f64> {
+        self.turn_covariance
+    }
+
+    /// Standard errors of the entries of [`turn_covariance`](Self::turn_covariance), in rad²; none
+    /// where the likelihood is too flat to have them.
+    #[must_use]
+    pub fn turn_covariance_errors(&self) -> Option<Matrix3<f64>> {
+        self.errors.map(|e| e.turns)
+    }
+
+    /// Covariance of the error of the mean attitude, as a rotation vector in body axes, in rad²;
+    /// none where the likelihood is too flat to have it. From the observed information, as all
+    /// errors here.
+    #[must_use]
+    pub fn mean_covariance(&self) -> Option<Matrix3<f64>> {
+        self.errors.map(|e| e.mean)
+    }
+
+    /// How the search has ended.
+    #[must_use]
+    pub fn convergence(&self) -> Convergence {
+        self.convergence
+    }
+}
+
+impl Errors {
+    /// From the covariance of the estimates about the mean; `body` takes tangents to half turns.
+    fn new(
+        covariance: &Square,
+        body: &Matrix3<f64>,
+        across: &Matrix3<f64>,
+        turns: &Matrix3<f64>,
+    ) -> Self {
+        let mean = body * covariance.fixed_view::<3, 3>(0, 0) * body.transpose() * 4.0;
+        let mut slopes = [Matrix3::zeros(); SLOPE];
+        for (slope, tangent) in slopes.iter_mut().zip(body.column_iter()) {
+            // Body axes turn with the mean, and by half of it against parallel transport.
+            let half_turn = tangent.cross_matrix();
+            *slope = turns * half_turn - half_turn * turns;
+        }
+        for (k, &(i, j)) in TRIANGLE.iter().enumerate() {
+            let mut entry = Matrix3::zeros();
+            entry[(i, j)] = 1.0;
+            entry[(j, i)] = 1.0;
+            let step = body * across;
+            slopes[PRECISION + k] = -step * entry * step.transpose() * 4.0;
+        }
+        let turns = Matrix3::from_fn(|i, j| {
+            let mut variance = 0.0;
+            for (k, a) in slopes.iter().enumerate() {
+                for (l, b) in slopes.iter().enumerate() {
+                    variance += a[(i, j)] * covariance[(k, l)] * b[(i, j)];
+                }
+            }
+            variance.max(0.0).sqrt()
+        });
+        Self { mean, turns }
+    }
+}

@@ -1,0 +1,276 @@
+//! The maxima of the likelihood within the families, and the interval of the radial variance.
+
+use nalgebra::{Matrix3, Matrix4, Vector3};
+
+use super::{
+    Family, FitError, RadialVariance,
+    climb::{Climb, Hill, climb, restrict},
+    likelihood::{Form, PAIRS, PARAMETERS, Sample, Square, Vector},
+    point::{Natural, Point, SLOPE, TAU},
+};
+use crate::jacobi;
+
+/// The 95 % quantile of χ² with one degree of freedom.
+const QUANTILE: f64 = 3.841_458_820_694_124;
+/// Range of τ = 1/s.
+const TAU_RANGE: std::ops::RangeInclusive<f64> = 1e-14..=1e14;
+
+/// Where Bingham's law is split to start a search, in standard deviations.
+const SPLIT: f64 = 1.5;
+/// The attitudes lie on a small sphere if they are no farther from it than this share of how far
+/// they spread. Rounding stops a search that has no end at 1e-7 or so.
+const THINNEST: f64 = 1e-5;
+/// A pivot of the scaled information below this is rounding.
+const FLAT: f64 = 1e-10;
+
+const ALL: [bool; PARAMETERS] = [true; PARAMETERS];
+
+/// Coordinates of [`Point`] that each family has for a given radial variance.
+pub(super) const ALIGNED: [bool; PARAMETERS] = free(false);
+pub(super) const GENERAL: [bool; PARAMETERS] = free(true);
+
+const fn free(slope: bool) -> [bool; PARAMETERS] {
+    let mut all = [true; PARAMETERS];
+    let mut k = SLOPE;
+    while k < TAU {
+        all[k] = slope;
+        k += 1;
+    }
+    all[TAU] = false;
+    all
+}
+
+pub(super) struct Search<'a> {
+    sample: &'a Sample,
+    n: f64,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(sample: &'a Sample) -> Self {
+        Self { sample, n: sample.len() }
+    }
+
+    /// Bingham's law, whose axes are those of the sample's second moment.
+    pub(super) fn bingham(&self) -> Climb<Point> {
+        let mut diagonal = [false; PARAMETERS];
+        let mut start = Vector::zeros();
+        for (k, &(i, j)) in PAIRS.iter().enumerate() {
+            if i == j {
+                diagonal[4 + k] = true;
+                start[4 + k] = 1.0 - (self.sample.scale[i] / self.sample.scale[3]).powi(2);
+            }
+        }
+        let top = climb(&Natural(self.sample), start, diagonal, self.n);
+        let form = self.sample.form(&top.place);
+        // Uniform to rounding is as flat as a law can be.
+        let diagonal = form.p.diagonal().fixed_rows::<3>(0).map(|p| p.max(*TAU_RANGE.start()));
+        let precision = Matrix3::from_diagonal(&diagonal);
+        let place =
+            Point { frame: Matrix4::identity(), precision, slope: Vector3::zeros(), tau: 0.0 };
+        moved(&top, place)
+    }
+
+    /// The most likely law with this τ whose mean is a principal axis.
+    pub(super) fn aligned_at(&self, start: &Point, tau: f64) -> Climb<Point> {
+        climb(self.sample, Point { tau, ..*start }, ALIGNED, self.n)
+    }
+
+    /// The τ at which the radial variance begins to be felt.
+    fn first_tau(&self) -> f64 {
+        let square = self.sample.scale[2].powi(2);
+        if square > 0.01 { 0.03 } else { 0.01 / square }
+    }
+
+    /// The most likely law whose mean is a principal axis; Bingham's where no other is better.
+    /// Flat-topped samples drive Λ to the edge of the family, beyond which the mean is no mode:
+    /// what has not converged for that reason does not count.
+    pub(super) fn aligned(&self, bingham: &Climb<Point>) -> Climb<Point> {
+        let mut best = bingham.clone();
+        let mut place = bingham.place;
+        let mut tau = self.first_tau();
+        while tau <= *TAU_RANGE.end() {
+            let here = self.aligned_at(&place, tau);
+            place = here.place;
+            let drop = 2.0 * self.n * (best.height - here.height);
+            if here.converged && here.height > best.height {
+                best = here;
+            } else if !(drop < 2.0 * QUANTILE) {
+                break;
+            }
+            tau *= 4.0;
+        }
+        if best.place.tau == 0.0 {
+            return best;
+        }
+        let top = if self.sample.scale[2] > 0.1 {
+            let mut free = ALIGNED;
+            free[TAU] = true;
+            climb(self.sample, best.place, free, self.n)
+        } else {
+            self.refined(best)
+        };
+        let better = self.n * (top.height - bingham.height) > 1e-6;
+        if top.converged && better && top.place.tau > *TAU_RANGE.start() {
+            top
+        } else {
+            bingham.clone()
+        }
+    }
+
+    /// The best τ within a factor of four, by golden section: derivatives by τ are differences of
+    /// nearly equal moments, and rounding where the sample is narrow.
+    fn refined(&self, mut best: Climb<Point>) -> Climb<Point> {
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let middle = libm::log(best.place.tau);
+        let mut low = middle - 1.4;
+        let mut high = (middle + 1.4).min(libm::log(*TAU_RANGE.end()));
+        for _ in 0..16 {
+            let width = GOLDEN * (high - low);
+            let [left, right] = [high - width, low + width]
+                .map(|ln_tau| self.aligned_at(&best.place, libm::exp(ln_tau)));
+            let better = if left.height > right.height {
+                high = low + width;
+                left
+            } else {
+                low = high - width;
+                right
+            };
+            if better.converged && better.height > best.height {
+                best = better;
+            }
+        }
+        best
+    }
+
+    /// Where to look for the most likely law of all.
+    pub(super) fn starts(&self, bingham: &Climb<Point>, aligned: &Climb<Point>) -> [Form; 6] {
+        // To second order exp(−½ (v·x)²) cosh(v·x) is flat: a split that the law hardly feels.
+        let split = |axis: usize| {
+            let mut form = bingham.place.form();
+            let push = SPLIT / self.sample.scale[axis];
+            form.b[axis] = push;
+            form.p[(axis, axis)] += push * push;
+            form
+        };
+        let narrow = Point { tau: 1.0 / self.sample.scale[2].powi(2), ..bingham.place };
+        [aligned.place.form(), narrow.form(), split(0), split(1), split(2), split(3)]
+    }
+
+    /// The most likely law of all.
+    pub(super) fn general(
+        &self,
+        bingham: &Climb<Point>,
+        aligned: &Climb<Point>,
+    ) -> Result<Climb<Point>, FitError> {
+        let top = self
+            .starts(bingham, aligned)
+            .iter()
+            .map(|form| climb(&Natural(self.sample), self.sample.parameters(form), ALL, self.n))
+            .filter(|top| top.height.is_finite())
+            .reduce(|best, top| if top.height > best.height { top } else { best });
+        let Some(top) = top else {
+            return Ok(aligned.clone());
+        };
+        let form = self.sample.form(&top.place);
+        let (spread, share) = self.sample.thickness(&form);
+        if !(share > THINNEST) {
+            return Err(FitError::Degenerate { spread });
+        }
+        let place = Point::of(&form);
+        let steepest = jacobi::eigen(&place.form_about_mean()).0.into_iter().fold(0.0, f64::max);
+        if !(steepest <= *TAU_RANGE.end()) {
+            return Err(FitError::Degenerate { spread: 1.0 / steepest.sqrt() });
+        }
+        Ok(moved(&top, place))
+    }
+
+    /// The least radial variance that the attitudes allow next to any larger one.
+    pub(super) fn lowest(&self, best: &Climb<Point>, free: [bool; PARAMETERS]) -> f64 {
+        let from = best.place.tau.max(self.first_tau());
+        1.0 / self.edge(best, free, from, 1.0)
+    }
+
+    /// The values of s for which twice the ln-likelihood, maximised over all else, is within the
+    /// quantile of its maximum.
+    pub(super) fn interval(&self, best: &Climb<Point>, free: [bool; PARAMETERS]) -> RadialVariance {
+        let tau = best.place.tau;
+        if !(tau > 0.0) {
+            return RadialVariance::Undetermined { low: self.lowest(best, free) };
+        }
+        let low = 1.0 / self.edge(best, free, tau, 1.0);
+        let at_infinity = climb(self.sample, Point { tau: 0.0, ..best.place }, free, self.n);
+        if 2.0 * self.n * (best.height - at_infinity.height) < QUANTILE {
+            return RadialVariance::Undetermined { low };
+        }
+        let high = 1.0 / self.edge(best, free, tau, -1.0);
+        RadialVariance::Determined { value: 1.0 / tau, low, high }
+    }
+
+    /// The τ above or below `from` at which the deviance reaches the quantile.
+    fn edge(
+        &self,
+        best: &Climb<Point>,
+        free: [bool; PARAMETERS],
+        from: f64,
+        direction: f64,
+    ) -> f64 {
+        let target = QUANTILE.sqrt();
+        let (ln_low, ln_high) = (libm::log(*TAU_RANGE.start()), libm::log(*TAU_RANGE.end()));
+        let mut place = best.place;
+        // The root of the deviance is nearly linear in τ, and so easily solved for.
+        let mut excess = |ln_tau: f64| {
+            let start = Point { tau: libm::exp(ln_tau), ..place };
+            let top = climb(self.sample, start, free, self.n);
+            place = top.place;
+            (2.0 * self.n * (best.height - top.height)).max(0.0).sqrt() - target
+        };
+        let mut inside = (libm::log(from), -target);
+        let mut step = 0.5;
+        let mut outside = loop {
+            let ln_tau = (inside.0 + direction * step).clamp(ln_low, ln_high);
+            let value = excess(ln_tau);
+            if !(value < 0.0) {
+                break (ln_tau, if value.is_finite() { value } else { 1.0 });
+            }
+            if ln_tau == ln_low || ln_tau == ln_high {
+                return libm::exp(ln_tau);
+            }
+            inside = (ln_tau, value);
+            step *= 1.6;
+        };
+        for _ in 0..40 {
+            let share = (inside.1 / (inside.1 - outside.1)).clamp(0.05, 0.95);
+            let ln_tau = inside.0 + share * (outside.0 - inside.0);
+            let value = excess(ln_tau);
+            if value.abs() < 1e-3 || (outside.0 - inside.0).abs() < 1e-6 {
+                return libm::exp(ln_tau);
+            }
+            if value < 0.0 { inside = (ln_tau, value) } else { outside = (ln_tau, value) }
+        }
+        libm::exp(inside.0)
+    }
+}
+
+/// Covariance of the estimates in the coordinates of the point, zero for those that are held: the
+/// inverse of the observed information.
+pub(super) fn covariance(sample: &Sample, place: &Point, family: Family) -> Option<Square> {
+    let mut free = if family == Family::General { ALL } else { ALIGNED };
+    free[TAU] |= family == Family::Aligned && place.tau > 0.0;
+    let survey = restrict(sample.survey(place), free);
+    let scale = survey.information.diagonal().map(|d| 1.0 / d.abs().sqrt());
+    let information = Square::from_fn(|i, j| -survey.hessian[(i, j)] * scale[i] * scale[j]);
+    let factor = information.cholesky()?;
+    if !factor.l_dirty().diagonal().iter().all(|pivot| pivot * pivot > FLAT) {
+        return None;
+    }
+    let inverse = factor.inverse();
+    Some(Square::from_fn(|i, j| {
+        if free[i] && free[j] { inverse[(i, j)] * scale[i] * scale[j] / sample.len() } else { 0.0 }
+    }))
+}
+
+/// The same climb in the coordinates of a point.
+fn moved(climb: &Climb<Vector>, place: Point) -> Climb<Point> {
+    let Climb { height, converged, iterations, gain, .. } = *climb;
+    Climb { place, height, converged, iterations, gain }
+}
