@@ -141,7 +141,8 @@ class Benches:
             other = any(law in name for law in OTHER_LAWS)
             law = "other laws" if other else "mild law" if "mild" in name else "paper"
             work = group if group == "uniform" else f"{group}, {law}"
-            remark = "with moments and the sampler's set-up" if group == "normaliser" else ""
+            ready = "with moments" + (" and the sampler's set-up" if "sampler" in name else "")
+            remark = ready if group == "normaliser" else ""
             table.add(work, f"`{name}`", seconds, remark, True, not other)
 
 
