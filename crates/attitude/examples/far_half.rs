@@ -18,10 +18,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("E[x]                {:.6?}", law.mean_vector().as_slice());
 
     let mut rng = ChaCha8Rng::seed_from_u64(2003);
-    let far = (0..DRAWS).filter(|_| !law.in_mean_half(&law.sample(&mut rng))).count();
+    let mut attitudes = vec![UnitQuaternion::identity(); DRAWS];
+    law.sample_into(&mut rng, &mut attitudes);
+    let far = attitudes.iter().filter(|q| !law.in_mean_half(q)).count();
     let share = far as f64 / DRAWS as f64;
     let error = (share * (1.0 - share) / DRAWS as f64).sqrt();
-    println!("share of far half   {:.3} % ± {:.3} %", 100.0 * share, 100.0 * error);
+    println!("share of far half   {:.9}", law.far_half_share());
+    println!("  of {DRAWS} draws  {share:.6} ± {error:.6}");
 
     // As attitudes, draws of the far half lie about the inverse of the mean.
     let turn = |q: UnitQuaternion<f64>| mean.angle_to(&q).to_degrees();

@@ -54,9 +54,10 @@ pub enum Method {
 /// With b = 0 it is Bingham's law, with P = 0 von Mises-Fisher's.
 ///
 /// # Algorithm
-/// Rejection, exact and independent, from the best of three proposals ([`Method`]); the share of
-/// accepted proposals is known: [`acceptance`](Self::acceptance). Normaliser and moments by a
-/// contour integral: ln C to about 1e-13, to 1e-10 where P spreads beyond 1e9.
+/// Rejection, exact and independent, from one of three proposals ([`Method`]), at least 60 % of which
+/// are accepted: [`acceptance`](Self::acceptance) says how many. The proposals are set up when the law
+/// is first drawn from: in microseconds, for [`Method::Cells`] in some milliseconds. Normaliser and
+/// moments by a contour integral, to about 1e-13 of the largest of |b|, the entries of P and one.
 ///
 /// # Limits
 /// Entries up to 1e14.
