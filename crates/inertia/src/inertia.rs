@@ -175,7 +175,7 @@ impl TryFrom<InertiaMatrix> for Inertia {
 
 impl RealizabilityError {
     /// Of a matrix that is not realizable.
-    fn of(matrix: &InertiaMatrix) -> Self {
+    pub(crate) fn of(matrix: &InertiaMatrix) -> Self {
         let axes = matrix.principal_axes();
         let smallest = axes.second_moments().into_iter().fold(f64::INFINITY, f64::min);
         let size = matrix.matrix().amax();

@@ -26,15 +26,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod eigen;
 mod inertia;
-mod jacobi;
 mod matrix;
 mod principal;
+mod repair;
+mod report;
 mod second_moments;
 
 pub use inertia::{Inertia, RealizabilityError};
 pub use matrix::{InertiaMatrix, InertiaMatrixError};
 pub use principal::PrincipalAxes;
+pub use repair::{Repair, RepairMethod};
+pub use report::{Axes, Fault, RealizabilityReport};
 pub use second_moments::{
     MAX_SECOND_MOMENT, RadiiOfGyration, RootSecondMoments, SecondMoments, SecondMomentsError,
 };
@@ -43,7 +47,7 @@ pub use second_moments::{
 ///
 /// Rotating a matrix into another frame costs a few units in the last place of its largest entry;
 /// sixty-four leave room for a short chain of such operations, and none for a modelling error.
-/// Always applied to quantities divided by the size of the matrix, so that neither units nor
+/// Always a share of the trace or the largest entry of the matrix, so that neither units nor
 /// scale matter.
 pub const RELATIVE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
 

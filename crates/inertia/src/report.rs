@@ -1,0 +1,463 @@
+use nalgebra::Matrix3;
+use std::fmt;
+
+use crate::{InertiaMatrix, MAX_ENTRY, RELATIVE_TOLERANCE};
+
+/// Which axes moments of inertia belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub enum Axes {
+    /// The axes the matrix is given in.
+    Given,
+    /// The principal axes.
+    Principal,
+}
+
+/// One reason why a matrix is not the inertia of any body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub enum Fault {
+    /// An entry is NaN, infinite or too large.
+    NotFinite {
+        /// Row, from 1.
+        row: usize,
+        /// Column, from 1.
+        column: usize,
+        /// The entry, kg·m².
+        value: f64,
+    },
+    /// Entries across the diagonal differ.
+    NotSymmetric {
+        /// Row of the upper entry, from 1.
+        row: usize,
+        /// Column of the upper entry, from 1.
+        column: usize,
+        /// The entry above the diagonal, kg·m².
+        upper: f64,
+        /// The entry below the diagonal, kg·m².
+        lower: f64,
+        /// Their difference, in percent of the largest entry.
+        percent: f64,
+    },
+    /// A moment of inertia is negative.
+    NegativeMoment {
+        /// About which axes.
+        axes: Axes,
+        /// Which axis, from 1.
+        axis: usize,
+        /// The moment, kg·m².
+        moment: f64,
+    },
+    /// A moment of inertia is larger than the sum of the other two.
+    Triangle {
+        /// About which axes.
+        axes: Axes,
+        /// Which axis has the largest moment, from 1.
+        axis: usize,
+        /// The moments, kg·m².
+        moments: [f64; 3],
+        /// How far the largest exceeds the sum of the others, in percent of that sum.
+        percent: f64,
+    },
+    /// A product of inertia is larger in magnitude than half the moment about the third axis:
+    /// |I_ij| ≤ ½ I_kk.
+    Product {
+        /// Row, from 1.
+        row: usize,
+        /// Column, from 1.
+        column: usize,
+        /// The product, kg·m².
+        product: f64,
+        /// The moment about the third axis, kg·m².
+        moment: f64,
+    },
+}
+
+/// What is to be said of a matrix in the place of an inertia matrix: whether some body has it, by
+/// what margin, and if none, why.
+///
+/// # Rule
+/// Realizable means finite, symmetric and min K_k ≥ −[`RELATIVE_TOLERANCE`]·tr I, with the second
+/// mass moments K_k the eigenvalues of Σ = ½ tr(I)·1 − I. Rods, plates and points (K_k = 0) are
+/// realizable; [`is_strict`](Self::is_strict) leaves them out. K_k and the trace are the same in every
+/// frame, and the rule the same in all units.
+///
+/// ```
+/// use gyradius_inertia::RealizabilityReport;
+/// use nalgebra::Matrix3;
+///
+/// let report = RealizabilityReport::of(&Matrix3::new(
+///     100.0, 5.0, 10.0,
+///     5.0, 200.0, 20.0,
+///     10.0, 20.0, 300.0,
+/// ));
+/// assert!(!report.is_realizable());
+/// assert_eq!(
+///     report.to_string(),
+///     "not realizable: principal moment 304.42 kg·m² exceeds the sum of the others, \
+///      99.339 + 196.24 kg·m², by 2.99 %"
+/// );
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct RealizabilityReport {
+    second_moments: Option<[f64; 3]>,
+    principal_moments: Option<[f64; 3]>,
+    margin: Option<f64>,
+    faults: Vec<Fault>,
+}
+
+impl RealizabilityReport {
+    /// Looks at a matrix, in kg·m², products as tensor entries. Any numbers will do.
+    #[must_use]
+    pub fn of(matrix: &Matrix3<f64>) -> Self {
+        Self::within(matrix, RELATIVE_TOLERANCE)
+    }
+
+    /// The same with another tolerance, as a share of tr I: numbers with six digits put plates and rods
+    /// up to 1e-6 beyond the boundary, and a matrix may be as far from symmetric. NaN or a negative
+    /// tolerance allow nothing.
+    #[must_use]
+    pub fn within(matrix: &Matrix3<f64>, tolerance: f64) -> Self {
+        let tolerance = tolerance.max(RELATIVE_TOLERANCE);
+        let size = matrix.amax();
+        let mut faults = Vec::new();
+        for row in 0..3 {
+            for column in 0..3 {
+                let value = matrix[(row, column)];
+                if !(value.abs() <= MAX_ENTRY) {
+                    faults.push(Fault::NotFinite { row: row + 1, column: column + 1, value });
+                }
+            }
+        }
+        if !faults.is_empty() {
+            return Self { second_moments: None, principal_moments: None, margin: None, faults };
+        }
+        for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+            let (upper, lower) = (matrix[(row, column)], matrix[(column, row)]);
+            if (upper - lower).abs() > tolerance * size {
+                faults.push(Fault::NotSymmetric {
+                    row: row + 1,
+                    column: column + 1,
+                    upper,
+                    lower,
+                    percent: 100.0 * ((upper - lower) / size).abs(),
+                });
+            }
+        }
+        let symmetric = InertiaMatrix::symmetrized(matrix);
+        let axes = symmetric.principal_axes();
+        let (k, moments) = (axes.second_moments(), axes.moments());
+        let trace = moments[0] + moments[1] + moments[2];
+        let least = k.into_iter().fold(f64::INFINITY, f64::min);
+        let margin = if size == 0.0 { 0.0 } else { least / trace.abs() };
+        if !symmetric.is_realizable_within(tolerance) {
+            let given: [f64; 3] = symmetric.matrix().diagonal().into();
+            let slack = tolerance * size;
+            let before = faults.len();
+            moment_faults(Axes::Given, given, slack, &mut faults);
+            product_faults(&symmetric, slack, &mut faults);
+            // Where the given axes show nothing, the principal ones do.
+            if faults.len() == before {
+                moment_faults(Axes::Principal, moments, 0.0, &mut faults);
+            }
+        }
+        Self {
+            second_moments: Some(k),
+            principal_moments: Some(moments),
+            margin: Some(margin),
+            faults,
+        }
+    }
+
+    /// Whether some distribution of non-negative mass has this inertia.
+    #[must_use]
+    pub fn is_realizable(&self) -> bool {
+        self.faults.is_empty()
+    }
+
+    /// Whether a body of positive volume has it: no rod, plate or point.
+    #[must_use]
+    pub fn is_strict(&self) -> bool {
+        self.is_realizable() && self.margin.is_some_and(|m| m > RELATIVE_TOLERANCE)
+    }
+
+    /// The second mass moments K_k about the principal axes, with their signs, kg·m²; none where an
+    /// entry is not finite.
+    #[must_use]
+    pub fn second_moments(&self) -> Option<[f64; 3]> {
+        self.second_moments
+    }
+
+    /// The principal moments, kg·m², in the order of [`PrincipalAxes`](crate::PrincipalAxes).
+    #[must_use]
+    pub fn principal_moments(&self) -> Option<[f64; 3]> {
+        self.principal_moments
+    }
+
+    /// min K_k / tr I: ⅙ for a ball, 0 for a plate, negative beyond.
+    #[must_use]
+    pub fn margin(&self) -> Option<f64> {
+        self.margin
+    }
+
+    /// How far the largest principal moment exceeds the sum of the other two, in percent of that sum;
+    /// infinite where that sum is not positive, none where an entry is not finite.
+    #[must_use]
+    pub fn excess_percent(&self) -> Option<f64> {
+        self.principal_moments.map(|m| excess_percent(m).1)
+    }
+
+    /// What is wrong; nothing if the matrix is realizable.
+    #[must_use]
+    pub fn faults(&self) -> &[Fault] {
+        &self.faults
+    }
+}
+
+/// The axis of the largest moment, and how far it exceeds the sum of the others in percent of it.
+fn excess_percent(m: [f64; 3]) -> (usize, f64) {
+    let axis = (0..3).fold(0, |best, j| if m[j] > m[best] { j } else { best });
+    // Halved, so that no sum overflows.
+    let rest = 0.5 * m[(axis + 1) % 3] + 0.5 * m[(axis + 2) % 3];
+    let percent = 100.0 * ((0.5 * m[axis] - rest) / rest);
+    (axis, if rest > 0.0 { percent.max(0.0) } else { f64::INFINITY })
+}
+
+fn moment_faults(axes: Axes, moments: [f64; 3], slack: f64, faults: &mut Vec<Fault>) {
+    let before = faults.len();
+    for (j, &moment) in moments.iter().enumerate() {
+        if moment < -slack {
+            faults.push(Fault::NegativeMoment { axes, axis: j + 1, moment });
+        }
+    }
+    let (axis, percent) = excess_percent(moments);
+    let rest = 0.5 * moments[(axis + 1) % 3] + 0.5 * moments[(axis + 2) % 3];
+    // A negative moment breaks the inequality as well: once is enough.
+    if faults.len() == before && 0.5 * moments[axis] - rest > slack {
+        faults.push(Fault::Triangle { axes, axis: axis + 1, moments, percent });
+    }
+}
+
+fn product_faults(matrix: &InertiaMatrix, slack: f64, faults: &mut Vec<Fault>) {
+    let m = matrix.matrix();
+    for (row, column, third) in [(0, 1, 2), (0, 2, 1), (1, 2, 0)] {
+        let (product, moment) = (m[(row, column)], m[(third, third)]);
+        if product.abs() > (0.5 * moment).max(0.0) + slack {
+            faults.push(Fault::Product { row: row + 1, column: column + 1, product, moment });
+        }
+    }
+}
+
+/// Five digits for the eye, fewer where they are zeros.
+fn short(x: f64) -> String {
+    let exponent = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
+    if !(-3..6).contains(&exponent) {
+        return format!("{x:.4e}");
+    }
+    let text = format!("{x:.*}", (4 - exponent).clamp(0, 8) as usize);
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+fn percent(x: f64) -> String {
+    if !(1e-2..1e4).contains(&x) { format!("{x:.1e}") } else { format!("{x:.2}") }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = |axes: Axes, axis: usize| match axes {
+            Axes::Given => format!("I{axis}{axis} = "),
+            Axes::Principal => "principal moment ".to_owned(),
+        };
+        match *self {
+            Self::NotFinite { row, column, value } => {
+                write!(f, "entry I{row}{column} = {value:e} is not a finite number in range")
+            }
+            Self::NotSymmetric { row, column, upper, lower, percent: p } => write!(
+                f,
+                "I{row}{column} = {} but I{column}{row} = {} kg·m², {} % of the largest entry apart",
+                short(upper),
+                short(lower),
+                percent(p)
+            ),
+            Self::NegativeMoment { axes, axis, moment } => {
+                write!(f, "{}{} kg·m² is negative", name(axes, axis), short(moment))
+            }
+            Self::Triangle { axes, axis, moments, percent: p } => {
+                let j = axis - 1;
+                let others = match j {
+                    0 => [1, 2],
+                    1 => [0, 2],
+                    _ => [0, 1],
+                };
+                write!(
+                    f,
+                    "{}{} kg·m² exceeds the sum of the others, {} + {} kg·m², by {} %",
+                    name(axes, axis),
+                    short(moments[j]),
+                    short(moments[others[0]]),
+                    short(moments[others[1]]),
+                    percent(p)
+                )
+            }
+            Self::Product { row, column, product, moment } => {
+                let third = 6 - row - column;
+                write!(
+                    f,
+                    "product I{row}{column} = {} kg·m² is larger than half of I{third}{third} = {} kg·m²",
+                    short(product),
+                    short(moment)
+                )
+            }
+        }
+    }
+}
+
+impl fmt::Display for RealizabilityReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some((first, rest)) = self.faults.split_first() {
+            write!(f, "not realizable: {first}")?;
+            for fault in rest {
+                write!(f, "; {fault}")?;
+            }
+            return Ok(());
+        }
+        let (Some(k), Some(margin)) = (self.second_moments, self.margin) else { return Ok(()) };
+        let trace: f64 = k.iter().map(|k| 2.0 * k).sum();
+        let zeros = k.iter().filter(|k| **k <= RELATIVE_TOLERANCE * trace).count();
+        match zeros {
+            0 => write!(
+                f,
+                "realizable: second moments {}, {}, {} kg·m², margin {} % of the trace",
+                short(k[0]),
+                short(k[1]),
+                short(k[2]),
+                percent(100.0 * margin)
+            ),
+            1 => write!(f, "realizable, on the boundary: a plate"),
+            2 => write!(f, "realizable, on the boundary: a rod"),
+            _ => write!(f, "realizable, on the boundary: a point"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn diagonal(moments: [f64; 3]) -> Matrix3<f64> {
+        Matrix3::from_diagonal(&moments.into())
+    }
+
+    fn faults(matrix: Matrix3<f64>) -> Vec<Fault> {
+        RealizabilityReport::of(&matrix).faults().to_vec()
+    }
+
+    /// What has been found in the wild, one fault each.
+    #[test]
+    fn every_condition_is_named() {
+        let one = Matrix3::<f64>::identity();
+        let with = |i, j, value| {
+            let mut m = one;
+            m[(i, j)] = value;
+            m
+        };
+        for bad in [f64::NAN, f64::INFINITY, 1e308] {
+            let found = faults(with(0, 2, bad));
+            assert!(matches!(found[..], [Fault::NotFinite { row: 1, column: 3, .. }]), "{found:?}");
+        }
+        let found = faults(with(1, 2, 0.01));
+        assert!(
+            matches!(found[..], [Fault::NotSymmetric { row: 2, column: 3, percent, .. }] if (percent - 1.0).abs() < 1e-12)
+        );
+        let found = faults(diagonal([1.0, -1e-9, 1.0]));
+        assert!(
+            matches!(found[..], [Fault::NegativeMoment { axis: 2, axes: Axes::Given, .. }]),
+            "{found:?}"
+        );
+        for short in [1e-3, 1e-12] {
+            let found = faults(diagonal([1.0, 2.0, 3.0 * (1.0 + short)]));
+            let [Fault::Triangle { axis: 3, axes: Axes::Given, percent, .. }] = found[..] else {
+                panic!("{found:?}");
+            };
+            assert!((percent / (100.0 * short) - 1.0).abs() < 1e-2, "{percent}");
+        }
+        // Moments that could be, products that could be, together not.
+        let leaning = Matrix3::new(100.0, 5.0, 10.0, 5.0, 200.0, 20.0, 10.0, 20.0, 300.0);
+        let found = faults(leaning);
+        assert!(matches!(found[..], [Fault::Triangle { axes: Axes::Principal, .. }]), "{found:?}");
+        let large = Matrix3::new(10.0, 0.0, 0.0, 0.0, 10.0, 6.0, 0.0, 6.0, 10.0);
+        let found = faults(large);
+        assert!(matches!(found[..], [Fault::Product { row: 2, column: 3, .. }]), "{found:?}");
+        let text = RealizabilityReport::of(&large).to_string();
+        assert_eq!(
+            text,
+            "not realizable: product I23 = 6 kg·m² is larger than half of I11 = 10 kg·m²"
+        );
+    }
+
+    #[test]
+    fn boundary_bodies_are_realizable_and_not_strict() {
+        for (moments, name) in
+            [([0.0; 3], "point"), ([0.0, 1.0, 1.0], "rod"), ([1.0, 2.0, 3.0], "plate")]
+        {
+            let report = RealizabilityReport::of(&diagonal(moments));
+            assert!(report.is_realizable() && !report.is_strict(), "{name}");
+            assert!(report.to_string().ends_with(name), "{report}");
+            assert_eq!(report.margin(), Some(0.0));
+        }
+        let ball = RealizabilityReport::of(&diagonal([1.0; 3]));
+        assert!(ball.is_strict());
+        assert!((ball.margin().unwrap() - 1.0 / 6.0).abs() < 1e-15);
+        assert_eq!(ball.second_moments(), Some([0.5; 3]));
+        assert_eq!(
+            ball.to_string(),
+            "realizable: second moments 0.5, 0.5, 0.5 kg·m², margin 16.67 % of the trace"
+        );
+    }
+
+    #[test]
+    fn a_tolerance_forgives_what_six_digits_lose() {
+        let printed = diagonal([0.123_457, 0.234_568, 0.358_026]);
+        assert!(!RealizabilityReport::of(&printed).is_realizable());
+        assert!(RealizabilityReport::within(&printed, 1e-5).is_realizable());
+        for nothing in [f64::NAN, -1.0] {
+            assert!(!RealizabilityReport::within(&printed, nothing).is_realizable());
+            assert!(
+                RealizabilityReport::within(&diagonal([1.0, 2.0, 3.0]), nothing).is_realizable()
+            );
+        }
+    }
+
+    proptest! {
+        /// The report and the yes/no question agree, at every scale, and there is always a reason.
+        #[test]
+        fn reports_agree_with_the_question(
+            moments in prop::array::uniform3(-1.0..5.0f64),
+            products in prop::array::uniform3(-2.0..2.0f64),
+            exponent in -300..300i32,
+        ) {
+            let scale = 10f64.powi(exponent);
+            let m = InertiaMatrix::from_entries(moments.map(|x| x * scale), products.map(|x| x * scale));
+            let m = m.unwrap();
+            let report = RealizabilityReport::of(m.matrix());
+            prop_assert_eq!(report.is_realizable(), m.is_realizable());
+            let k = report.second_moments().unwrap();
+            let least = k.into_iter().fold(f64::INFINITY, f64::min);
+            prop_assert!(report.is_realizable() || least < 0.0);
+            prop_assert!(!report.to_string().is_empty());
+        }
+
+        #[test]
+        fn no_numbers_panic(entries in prop::array::uniform9(prop::num::f64::ANY), tolerance in prop::num::f64::ANY) {
+            let report = RealizabilityReport::within(&Matrix3::from_row_slice(&entries), tolerance);
+            let _ = (report.to_string(), report.excess_percent(), report.is_strict());
+        }
+    }
+}
