@@ -5,6 +5,7 @@
 //!   built, whatever the variances.
 //! * [`EntrywiseGaussian`]: six independent Gaussians, the common practice; draws are
 //!   [`InertiaMatrix`]es, some of which no body has.
+//! * [`AnyBody`]: every shape, size and attitude, for property tests and domain randomisation.
 //!
 //! All are [`Distribution`](rand_distr::Distribution)s. For the first with Gaussian roots and a
 //! radially constrained Gaussian of the axes, [`EntryMoments`] are the mean and covariance of the
@@ -37,12 +38,14 @@
 //! [`Inertia`]: gyradius_inertia::Inertia
 //! [`InertiaMatrix`]: gyradius_inertia::InertiaMatrix
 
+mod any_body;
 mod entry_moments;
 mod entrywise;
 mod jacobian_twice;
 mod principal;
 mod roots;
 
+pub use any_body::{AnyBody, AnyBodyError};
 pub use entry_moments::EntryMoments;
 pub use entrywise::{EntrywiseError, EntrywiseGaussian};
 pub use jacobian_twice::{JacobianTwice, JacobianTwiceError};
