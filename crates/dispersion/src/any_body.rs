@@ -81,9 +81,9 @@ impl Distribution<Inertia> for AnyBody {
             let (u, v): (f64, f64) = (rng.random(), rng.random());
             let shares = [u.min(v), (u - v).abs(), 1.0 - u.max(v)];
             // The exponential may round past the limit.
-            let span = libm::log(self.high / self.low);
-            let trace =
-                (self.low * libm::exp(rng.random::<f64>() * span)).clamp(self.low, self.high);
+            let (from, to) = (libm::log(self.low), libm::log(self.high));
+            let trace = libm::exp(from + rng.random::<f64>() * (to - from));
+            let trace = trace.clamp(self.low, self.high);
             let axes = UniformAttitude.sample(rng);
             // tr I = 2 ΣK. Never refused: both are in range.
             if let Ok(moments) = SecondMoments::new(shares.map(|s| 0.5 * trace * s))
@@ -142,12 +142,16 @@ mod tests {
     fn every_draw_is_a_body_at_every_scale() {
         let law = AnyBody::new(1e-300, 1e300).unwrap();
         let mut rng = ChaCha8Rng::seed_from_u64(6);
+        let mut small = 0;
         for _ in 0..10_000 {
             let body = law.sample(&mut rng);
+            small += usize::from(body.matrix().trace() < 1e-150);
             assert!(body.as_inertia_matrix().is_realizable());
             let trace = body.matrix().trace();
             assert!((1e-300 * 0.999..=1e300 * 1.001).contains(&trace), "{trace:e}");
         }
+        // A quarter of the logarithm's range.
+        assert!((2300..2700).contains(&small), "{small}");
     }
 
     #[test]
