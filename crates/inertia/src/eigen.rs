@@ -15,10 +15,11 @@ pub(crate) fn eigen(matrix: &Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
         return ([0.0; 3], Matrix3::identity());
     }
     // A power of two, so that nothing is rounded; the matrix then is of size 1 to 2.
-    let lift = if size < 1e-290 { 2_f64.powi(600) } else { 1.0 };
+    let (lift, unlift) =
+        if size < 1e-290 { (2_f64.powi(600), 2_f64.powi(-600)) } else { (1.0, 1.0) };
     let exponent = (size * lift).to_bits() >> 52;
-    let down = f64::from_bits((2046 - exponent) << 52);
-    let a = matrix * lift * down;
+    let (up, down) = (f64::from_bits(exponent << 52), f64::from_bits((2046 - exponent) << 52));
+    let a = if size < 1e-290 { matrix * lift * down } else { matrix * down };
     let off = a[(0, 1)].abs().max(a[(0, 2)].abs()).max(a[(1, 2)].abs());
     let (d, v) = if off <= NEGLIGIBLE {
         (a, Matrix3::identity())
@@ -26,7 +27,7 @@ pub(crate) fn eigen(matrix: &Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
         guess(&a).unwrap_or((a, Matrix3::identity()))
     };
     let (values, v) = jacobi(d, v);
-    (values.map(|x| x / down / lift), v)
+    (values.map(|x| x * up * unlift), v)
 }
 
 /// Off the diagonal of a matrix of size one to two, this moves no eigenvalue by a rounding.
