@@ -6,6 +6,10 @@
 //! mass moments K_k = ∫ x_k² dm, the eigenvalues of Σ = ½ tr(I)·1 − I, all non-negative
 //! (Peck 2003, Eq. 7-9)?
 //!
+//! [`MassProperties`] add the mass and the mass centre, and with them addition, removal and motion of
+//! bodies; [`Shape`] and [`TriangleMesh`] are where they come from, [`PseudoInertia`] and
+//! [`LogCholesky`] other coordinates of them.
+//!
 //! # Conventions
 //! * Inertia is about the mass centre, in body axes, in kg·m².
 //! * Products of inertia are tensor entries, I₁₂ = −∫ x₁x₂ dm (Peck 2003, Eq. 4). Some CAD and
@@ -26,22 +30,37 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod assembly;
 mod eigen;
+mod equivalents;
 mod inertia;
+mod log_cholesky;
+mod mass_properties;
 mod matrix;
+mod mesh;
+mod polyhedron;
 mod principal;
+mod pseudo_inertia;
 mod repair;
 mod report;
+mod second_moment_matrix;
 mod second_moments;
+mod shapes;
 
+pub use equivalents::EquivalentSolid;
 pub use inertia::{Inertia, RealizabilityError};
+pub use log_cholesky::{LogCholesky, LogCholeskyError};
+pub use mass_properties::{MAX_LENGTH, MassProperties, MassPropertiesError};
 pub use matrix::{InertiaMatrix, InertiaMatrixError};
+pub use mesh::{MeshError, TriangleMesh};
 pub use principal::PrincipalAxes;
+pub use pseudo_inertia::{PseudoInertia, PseudoInertiaError};
 pub use repair::{Repair, RepairMethod};
 pub use report::{Axes, Fault, RealizabilityReport};
 pub use second_moments::{
     MAX_SECOND_MOMENT, RadiiOfGyration, RootSecondMoments, SecondMoments, SecondMomentsError,
 };
+pub use shapes::{Measure, Shape, ShapeError};
 
 /// Relative tolerance of every comparison in this crate: 64 units in the last place of 1.
 ///

@@ -1,0 +1,180 @@
+use nalgebra::{Matrix3, Vector3};
+
+use crate::second_moment_matrix::{inertia_of, remainder};
+use crate::{MassProperties, MassPropertiesError};
+
+/// Volume, centre and second moments inside a closed surface of triangles, which may be inside out.
+pub(crate) struct Polyhedron {
+    /// Volume, m³; negative if inside out.
+    pub(crate) volume: f64,
+    /// Whether the volume is zero to rounding; then the rest means nothing.
+    pub(crate) is_flat: bool,
+    center: Vector3<f64>,
+    /// Σ_c/m, m².
+    sigma: Matrix3<f64>,
+}
+
+impl Polyhedron {
+    /// Of triangles whose indices are in range, at vertices within
+    /// [`MAX_LENGTH`](crate::MAX_LENGTH).
+    pub(crate) fn of(vertices: &[[f64; 3]], triangles: &[[usize; 3]]) -> Self {
+        let corners = |t: &[usize; 3]| t.map(|i| Vector3::from(vertices[i]));
+        let mut low = Vector3::repeat(f64::INFINITY);
+        let mut high = -low;
+        for corner in triangles.iter().flat_map(corners) {
+            (low, high) = (low.inf(&corner), high.sup(&corner));
+        }
+        // A power of two below the size, so that scaling rounds nothing and no power of a
+        // coordinate over- or underflows; zero for subnormal sizes.
+        let unit = f64::from_bits((high - low).max().to_bits() & 0x7FF0_0000_0000_0000);
+        if unit == 0.0 {
+            let (center, sigma) = (low, Matrix3::zeros());
+            return Self { volume: 0.0, is_flat: true, center, sigma };
+        }
+        // Differences first: near the body they are exact, however far it is.
+        let middle = low + (high - low) * 0.5;
+        let about = |offset: Vector3<f64>| {
+            Sums::of(triangles.iter().map(|t| corners(t).map(|x| (x - middle) / unit - offset)))
+        };
+        let rough = about(Vector3::zeros());
+        // A dozen roundings of each term; what a flat surface leaves is of that kind.
+        let is_flat = rough.volume.abs() <= 16.0 * f64::EPSILON * rough.size;
+        // Again from the mass centre, where nothing cancels.
+        let offset = if is_flat { Vector3::zeros() } else { rough.center() };
+        let fine = about(offset);
+        let rest = fine.center();
+        let sigma = (fine.second / (20.0 * fine.volume) - rest * rest.transpose()) * unit * unit;
+        Self {
+            volume: fine.volume / 6.0 * unit * unit * unit,
+            is_flat,
+            center: middle + (offset + rest) * unit,
+            sigma,
+        }
+    }
+
+    /// The body of 1 kg, evenly filled.
+    pub(crate) fn of_unit_mass(&self) -> Result<MassProperties, MassPropertiesError> {
+        let matrix = inertia_of(&self.sigma);
+        MassProperties::new(1.0, self.center, remainder(matrix, matrix.amax())?)
+    }
+}
+
+/// Sums over tetrahedra between each triangle and the origin.
+struct Sums {
+    /// Six times the volume.
+    volume: f64,
+    /// 24 times the first moment.
+    first: Vector3<f64>,
+    /// 120 times the second.
+    second: Matrix3<f64>,
+    /// How large the terms of the volume could be, for their rounding.
+    size: f64,
+}
+
+impl Sums {
+    fn of(triangles: impl Iterator<Item = [Vector3<f64>; 3]>) -> Self {
+        let mut sums =
+            Self { volume: 0.0, first: Vector3::zeros(), second: Matrix3::zeros(), size: 0.0 };
+        for [a, b, c] in triangles {
+            let (e, f) = (b - a, c - a);
+            let volume = a.dot(&e.cross(&f));
+            let corners = a + b + c;
+            sums.volume += volume;
+            sums.first += corners * volume;
+            // ∫ x xᵀ dV = V/20 (s sᵀ + a aᵀ + b bᵀ + c cᵀ) with s = a + b + c.
+            for i in 0..3 {
+                for j in i..3 {
+                    let squares = corners[i] * corners[j] + a[i] * a[j] + b[i] * b[j] + c[i] * c[j];
+                    sums.second[(i, j)] += squares * volume;
+                }
+            }
+            sums.size += a.norm() * e.norm() * f.norm();
+        }
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            sums.second[(j, i)] = sums.second[(i, j)];
+        }
+        sums
+    }
+
+    fn center(&self) -> Vector3<f64> {
+        self.first / (4.0 * self.volume)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::UnitQuaternion;
+    use proptest::prelude::*;
+
+    /// ∫ x xᵀ over the tetrahedron of the unit vectors: 1/60 on the diagonal, 1/120 beside it
+    /// (∫ x^p y^q z^r = p! q! r! / (p + q + r + 3)!).
+    #[test]
+    fn the_unit_tetrahedron() {
+        let corners = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let sums = Sums::of([corners].into_iter());
+        assert_eq!(sums.volume, 1.0);
+        assert_eq!(sums.first / 24.0, Vector3::repeat(1.0 / 24.0));
+        assert_eq!(sums.second, Matrix3::from_fn(|i, j| if i == j { 2.0 } else { 1.0 }));
+    }
+
+    const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+    /// A needle whose centre is a quarter along it, not in the middle.
+    #[test]
+    fn a_needle() {
+        let vertices = [[0.0; 3], [1e3, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let needle = Polyhedron::of(&vertices, &FACES);
+        assert!((needle.volume * 6e-3 - 1.0).abs() < 1e-15, "{}", needle.volume);
+        assert_eq!(needle.center, Vector3::new(250.0, 0.25, 0.25));
+        // Σ_c/m of a tetrahedron is 1/20 of its corners' about their mean.
+        assert!((needle.sigma[(0, 0)] / 37500.0 - 1.0).abs() < 1e-15);
+        assert!((needle.sigma[(1, 1)] * 80.0 / 3.0 - 1.0).abs() < 1e-14, "{}", needle.sigma);
+    }
+
+    /// A body of 1 m and a speck of it 1000 km away: the middle is far from both, and moments
+    /// about it would leave four digits.
+    #[test]
+    fn the_second_pass_starts_from_the_mass_centre() {
+        let tetrahedron = |at: f64, size: f64| {
+            let x = at + size;
+            vec![[at; 3], [x, at, at], [at, x, at], [at, at, x]]
+        };
+        let (far, small) = (2f64.powi(20), 2f64.powi(-20));
+        let of = |vertices: &[[f64; 3]], faces: &[[usize; 3]]| {
+            let polyhedron = Polyhedron::of(vertices, faces);
+            polyhedron.of_unit_mass().unwrap().with_mass(polyhedron.volume).unwrap()
+        };
+        let (body, speck) = (tetrahedron(0.0, 1.0), tetrahedron(far, small));
+        let all = [body.clone(), speck.clone()].concat();
+        let faces = [FACES, FACES.map(|face| face.map(|i| i + 4))].concat();
+        let parts = [of(&body, &FACES), of(&speck, &FACES)];
+        let expected = MassProperties::combined(parts).unwrap();
+        let found = of(&all, &faces);
+        assert!((found.mass_center_m() - expected.mass_center_m()).amax() < 1e-10);
+        let error = (found.inertia().matrix() - expected.inertia().matrix()).amax();
+        assert!(error < 1e-9 * expected.inertia().matrix().amax(), "{error:e}");
+    }
+
+    proptest! {
+        /// Points of a plane, up to their rounding.
+        #[test]
+        fn flat_is_flat_in_any_attitude(
+            points in prop::array::uniform4(prop::array::uniform2(-1.0..1.0f64)),
+            v in prop::array::uniform3(-3.0..3.0f64),
+            exponent in -60..60i32,
+        ) {
+            let q = UnitQuaternion::from_scaled_axis(Vector3::from(v));
+            let scale = 10f64.powi(exponent);
+            let flat = points.map(|[x, y]| (q * Vector3::new(scale * x, scale * y, 0.0)).into());
+            prop_assert!(Polyhedron::of(&flat, &FACES).is_flat);
+            // The control: a hundred-thousandth of thickness is not flat.
+            let mut thick = points.map(|[x, y]| [x, y, 0.0]);
+            thick[3][2] = 1e-5;
+            let [a, b, c] = [0, 1, 2].map(|i| Vector3::from(thick[i]));
+            prop_assume!((b - a).cross(&(c - a)).norm() > 1e-3);
+            let thick = thick.map(|x| (q * Vector3::from(x) * scale).into());
+            prop_assert!(!Polyhedron::of(&thick, &FACES).is_flat);
+        }
+    }
+}
