@@ -1,6 +1,7 @@
 //! The command line of gyradius: flags, progress and messages. The science is in the crates below.
 
 mod args;
+mod check;
 mod progress;
 
 use args::{Cli, Command, StudyArgs};
@@ -13,7 +14,7 @@ const REFUSED: u8 = 2;
 
 /// Runs the program with the given arguments, the first of which is its name.
 ///
-/// Returns 0, or 2 after a message on standard error.
+/// Returns 0, or 2 after a message on standard error; `check` also returns 1, for findings.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
@@ -25,6 +26,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     let result = match &cli.command {
+        Command::Check(arguments) => return check::check(arguments),
         Command::Study(arguments) => study(arguments),
     };
     match result {
@@ -50,7 +52,7 @@ fn study(arguments: &StudyArgs) -> Result<(), StudyError> {
     let options =
         Options { out: arguments.out.clone(), threads: arguments.threads, force: arguments.force };
     let total = scenario.runs() * scenario.model_names().count() as u64;
-    let study = progress::show(total, |report| Study::run(&scenario, &options, report))?;
+    let study = progress::show(total, "runs", |report| Study::run(&scenario, &options, report))?;
 
     println!("{}: {} runs a model, seed {}\n", scenario.name(), scenario.runs(), scenario.seed());
     println!("{}", study.summary());

@@ -1,0 +1,196 @@
+use gyradius_formats::{Fault, Judgement, Note};
+use std::io::{self, Write};
+
+use super::{Finding, Report, Status, harmless, place};
+use crate::args::CheckArgs;
+
+/// Widest name, and widest reason, that are not shortened or moved.
+const NAME: usize = 24;
+
+/// A number as an engineer writes it: four digits, and no more zeros than it needs.
+fn short(x: f64) -> String {
+    let size = x.abs();
+    if size != 0.0 && !(1e-4..1e6).contains(&size) {
+        let text = format!("{x:.3e}");
+        let Some((digits, exponent)) = text.split_once('e') else { return text };
+        let digits = digits.trim_end_matches('0').trim_end_matches('.');
+        return format!("{digits}e{exponent}");
+    }
+    let decimals = if size == 0.0 { 0 } else { (3.0 - size.log10().floor()).max(0.0) as usize };
+    let text = format!("{x:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// Two numbers with as many digits as it takes to tell them apart.
+fn apart(x: f64, y: f64) -> (String, String) {
+    let (a, b) = (short(x), short(y));
+    if a == b { (format!("{x:.7e}"), format!("{y:.7e}")) } else { (a, b) }
+}
+
+fn shortfall(finding: &Finding) -> String {
+    let Some(judgement) = &finding.judgement else { return "unread".to_owned() };
+    match (finding.status(), judgement.shortfall_percent()) {
+        (Status::Possible, _) => "ok".to_owned(),
+        (Status::NoMass, _) => "no mass".to_owned(),
+        (_, Some(percent)) if percent >= 1e5 => format!("{percent:.0e} %"),
+        (_, Some(percent)) if percent >= 0.1 => format!("{percent:.1} %"),
+        (_, Some(percent)) => format!("{percent:.0e} %"),
+        (_, None) if judgement.principal_moments()[0] < 0.0 => "negative".to_owned(),
+        (_, None) => "infinite".to_owned(),
+    }
+}
+
+/// The reason in a few words.
+fn reason(finding: &Finding) -> String {
+    let judgement = match (&finding.judgement, finding.body.inertia()) {
+        (Some(judgement), _) => judgement,
+        (None, Err(error)) => return harmless(&error.to_string()),
+        (None, Ok(_)) => return String::new(),
+    };
+    let [a, b, c] = judgement.principal_moments();
+    if judgement.faults().is_empty() {
+        return match judgement.notes().first() {
+            Some(Note::Massless) => "0, 0, 0: no mass, a frame".to_owned(),
+            Some(Note::PointMass) => "0, 0, 0: a point mass".to_owned(),
+            _ => format!("{}, {}, {}", short(a), short(b), short(c)),
+        };
+    }
+    let mut words: Vec<String> = Vec::new();
+    for fault in judgement.faults() {
+        words.push(match fault {
+            // Says it all, and better than the triangle that it breaks.
+            Fault::NegativeMoment(_) => {
+                format!("{}, {}, {}", short(a), short(b), short(c))
+            }
+            Fault::Triangle { .. } if a < 0.0 && !words.is_empty() => {
+                continue;
+            }
+            Fault::Triangle { largest, sum } => {
+                let (largest, _) = apart(*largest, *sum);
+                let sign = if a < 0.0 { '-' } else { '+' };
+                format!("{largest} > {} {sign} {}", short(b), short(a.abs()))
+            }
+            other => other.to_string(),
+        });
+    }
+    words.join("; ")
+}
+
+fn fit(name: &str) -> String {
+    let name = harmless(name);
+    if name.is_empty() {
+        return "(no name)".to_owned();
+    }
+    if name.chars().count() <= NAME {
+        return name;
+    }
+    name.chars().take(NAME - 1).chain(['…']).collect()
+}
+
+/// One line a body, the worst first, and a summary.
+pub(super) fn write(
+    out: &mut impl Write,
+    report: &Report,
+    arguments: &CheckArgs,
+) -> io::Result<()> {
+    if !report.findings.is_empty() {
+        let lines: Vec<[String; 4]> = report
+            .findings
+            .iter()
+            .map(|finding| {
+                [
+                    shortfall(finding),
+                    fit(finding.body.name()),
+                    reason(finding),
+                    harmless(&place(&finding.path, finding.body.line())),
+                ]
+            })
+            .collect();
+        let width = |column: usize, least: usize, most: usize| {
+            let widths = lines.iter().map(|line| line[column].chars().count());
+            widths.filter(|w| *w <= most).max().unwrap_or(0).max(least)
+        };
+        let (name, words) = (width(1, 4, NAME), width(2, 17, 42));
+        writeln!(
+            out,
+            "{:>9}  {:name$}  {:words$}  file",
+            "shortfall", "body", "principal moments"
+        )?;
+        for ([percent, body, reason, file], finding) in lines.iter().zip(&report.findings) {
+            writeln!(out, "{percent:>9}  {body:name$}  {reason:words$}  {file}")?;
+            if finding.status() != Status::Possible {
+                let notes = finding.judgement.as_ref().map_or(&[][..], Judgement::notes);
+                for note in notes {
+                    writeln!(out, "{:>9}  {note}", "")?;
+                }
+            }
+        }
+        writeln!(out)?;
+    }
+    summary(out, report, arguments)
+}
+
+fn count(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
+fn summary(out: &mut impl Write, report: &Report, arguments: &CheckArgs) -> io::Result<()> {
+    for repair in &report.repairs {
+        let verb = if repair.written { "wrote" } else { "unchanged:" };
+        let copy = harmless(&repair.copy.display().to_string());
+        writeln!(
+            out,
+            "{verb} {copy} ({})",
+            count(repair.bodies, "body repaired", "bodies repaired")
+        )?;
+    }
+    let mut words = vec![format!(
+        "{}, {}: {} impossible",
+        count(report.files, "file", "files"),
+        count(report.bodies, "body", "bodies"),
+        report.impossible
+    )];
+    if report.no_mass > 0 {
+        words.push(format!("{} with no mass or a negative one", report.no_mass));
+    }
+    if report.unread > 0 {
+        words.push(format!("{} unread", report.unread));
+    }
+    if !report.file_errors.is_empty() {
+        words.push(count(report.file_errors.len(), "file unreadable", "files unreadable"));
+    }
+    writeln!(out, "{} (tolerance {:e})", words.join(", "), arguments.tolerance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        for (x, text) in [
+            (0.0, "0"),
+            (1.0, "1"),
+            (0.012345, "0.01235"),
+            (1234.56, "1235"),
+            (300.0, "300"),
+            (1e-7, "1e-7"),
+            (1.25e9, "1.25e9"),
+            (-0.5, "-0.5"),
+            (123456.0, "123456"),
+        ] {
+            assert_eq!(short(x), text);
+        }
+    }
+
+    #[test]
+    fn control_characters_do_not_reach_the_terminal() {
+        assert_eq!(harmless("a\u{1b}[2Jb"), "a\u{fffd}[2Jb");
+        assert_eq!(fit(&"x".repeat(100)).chars().count(), NAME);
+        assert_eq!(fit(""), "(no name)");
+    }
+}

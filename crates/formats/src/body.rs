@@ -1,0 +1,237 @@
+use nalgebra::Matrix3;
+
+use crate::BodyError;
+
+/// Names of the six entries, in the order of [`ENTRIES`].
+pub(crate) const NAMES: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+
+/// Row and column of the six entries.
+pub(crate) const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+/// What the products of inertia in a file are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Products {
+    /// Entries of the inertia matrix: I₁₂ = −∫ x₁x₂ dm.
+    #[default]
+    TensorEntries,
+    /// Positive integrals, as some CAD programs print them: ∫ x₁x₂ dm.
+    Integrals,
+}
+
+impl Products {
+    pub(crate) fn sign(self) -> f64 {
+        match self {
+            Self::TensorEntries => 1.0,
+            Self::Integrals => -1.0,
+        }
+    }
+
+    /// How files spell it.
+    pub(crate) fn parse(word: &str) -> Option<Self> {
+        match word {
+            "tensor" => Some(Self::TensorEntries),
+            "integrals" => Some(Self::Integrals),
+            _ => None,
+        }
+    }
+}
+
+/// Where a number stands in the text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) start: usize,
+    pub(crate) end: usize,
+}
+
+/// A finite number and where it stands, unless it stands nowhere, like a default.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Number {
+    pub(crate) value: f64,
+    pub(crate) place: Option<Place>,
+}
+
+impl Number {
+    pub(crate) fn default_of(value: f64) -> Self {
+        Self { value, place: None }
+    }
+
+    /// Reads a number with blanks around it; `start` is where `raw` stands in the text.
+    pub(crate) fn parse(
+        field: &'static str,
+        raw: &str,
+        start: Option<usize>,
+    ) -> Result<Self, BodyError> {
+        let trimmed = raw.trim_start();
+        let skipped = raw.len() - trimmed.len();
+        let digits = trimmed.trim_end();
+        match digits.parse::<f64>() {
+            Ok(value) if value.is_finite() => {
+                let place = start.map(|start| {
+                    let start = start + skipped;
+                    Place { start, end: start + digits.len() }
+                });
+                Ok(Self { value, place })
+            }
+            Ok(_) => Err(BodyError::NotFinite { field, value: shortened(digits) }),
+            Err(_) if digits.contains("${") || digits.contains("$(") => {
+                Err(BodyError::Expression { field, value: shortened(digits) })
+            }
+            Err(_) => Err(BodyError::NotANumber { field, value: shortened(digits) }),
+        }
+    }
+
+    /// Reads exactly `allowed` numbers with blanks between them.
+    pub(crate) fn parse_list(
+        field: &'static str,
+        raw: &str,
+        start: Option<usize>,
+        allowed: usize,
+    ) -> Result<Vec<Self>, BodyError> {
+        let found = raw.split_ascii_whitespace().count();
+        if found != allowed {
+            if raw.contains("${") {
+                return Err(BodyError::Expression { field, value: shortened(raw) });
+            }
+            return Err(BodyError::Count { field, found, allowed });
+        }
+        let origin = raw.as_ptr() as usize;
+        raw.split_ascii_whitespace()
+            .map(|word| {
+                Self::parse(field, word, start.map(|at| at + (word.as_ptr() as usize - origin)))
+            })
+            .collect()
+    }
+}
+
+/// At most 40 characters of what a file holds, for a message.
+pub(crate) fn shortened(text: &str) -> String {
+    let mut short: String = text.chars().take(40).collect();
+    if short.len() < text.len() {
+        short.push('…');
+    }
+    short
+}
+
+/// What a file says of one body.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Reading {
+    pub(crate) mass_kg: Option<f64>,
+    pub(crate) matrix: Matrix3<f64>,
+    /// Where the entries stand, row by row.
+    pub(crate) places: [[Option<Place>; 3]; 3],
+    pub(crate) products: Products,
+}
+
+impl Reading {
+    /// Of six entries in the order of [`ENTRIES`], as the file has them.
+    pub(crate) fn of_six(mass: Option<Number>, six: &[Number; 6], products: Products) -> Self {
+        let mut nine = [[Number::default(); 3]; 3];
+        for (number, (i, j)) in six.iter().zip(ENTRIES) {
+            nine[i][j] = *number;
+            nine[j][i] = *number;
+        }
+        Self::of_nine(mass, &nine, products)
+    }
+
+    /// Of a full matrix, row by row, as the file has it.
+    pub(crate) fn of_nine(
+        mass: Option<Number>,
+        nine: &[[Number; 3]; 3],
+        products: Products,
+    ) -> Self {
+        let matrix = Matrix3::from_fn(|i, j| {
+            let value = nine[i][j].value;
+            if i == j { value } else { products.sign() * value }
+        });
+        Self {
+            mass_kg: mass.map(|m| m.value),
+            matrix,
+            places: nine.map(|row| row.map(|number| number.place)),
+            products,
+        }
+    }
+}
+
+/// One body of a file: its name, where it stands, and its inertia, if that could be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    name: String,
+    line: usize,
+    reading: Result<Reading, BodyError>,
+}
+
+impl Body {
+    pub(crate) fn new(name: String, line: usize, reading: Result<Reading, BodyError>) -> Self {
+        Self { name, line, reading }
+    }
+
+    /// Name of the link, body or row; empty if the file gives none.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Line of the inertia in the file, from 1.
+    #[must_use]
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
+    /// Mass, if the file gives one, in the unit of the file, which is kg unless a CSV says
+    /// otherwise.
+    #[must_use]
+    pub fn mass_kg(&self) -> Option<f64> {
+        self.reading.as_ref().ok()?.mass_kg
+    }
+
+    /// The inertia about the mass centre, with products as tensor entries whatever the file's
+    /// convention, in the unit of the file, which is kg·m² unless a CSV says otherwise.
+    ///
+    /// # Errors
+    /// It could not be read.
+    pub fn inertia(&self) -> Result<&Matrix3<f64>, BodyError> {
+        self.reading.as_ref().map(|reading| &reading.matrix).map_err(Clone::clone)
+    }
+
+    pub(crate) fn reading(&self) -> Option<&Reading> {
+        self.reading.as_ref().ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_know_their_place() {
+        let number = Number::parse("ixx", " \t1.5e-3\n", Some(10)).unwrap();
+        assert_eq!(number.value, 1.5e-3);
+        assert_eq!(number.place, Some(Place { start: 12, end: 18 }));
+        let list = Number::parse_list("diaginertia", " 1  2 3", Some(100), 3).unwrap();
+        assert_eq!(list[1].place, Some(Place { start: 104, end: 105 }));
+    }
+
+    #[test]
+    fn what_is_no_number_is_named() {
+        let error = |raw| Number::parse("ixx", raw, None).unwrap_err().to_string();
+        assert_eq!(error("1,5"), "ixx = \"1,5\" is not a number");
+        assert_eq!(error(""), "ixx = \"\" is not a number");
+        assert!(error("${m * r}").contains("xacro"));
+        for raw in ["nan", "-inf", "1e999"] {
+            assert!(error(raw).contains("must be finite"), "{raw}");
+        }
+        assert!(error(&"é".repeat(1000)).len() < 150);
+        let error = Number::parse_list("diaginertia", "1 2", None, 3).unwrap_err();
+        assert_eq!(error.to_string(), "diaginertia has 2 values: there must be 3");
+    }
+
+    #[test]
+    fn integrals_become_tensor_entries() {
+        let six = [1.0, 2.0, 3.0, 0.1, 0.2, 0.3].map(Number::default_of);
+        let tensor = Reading::of_six(None, &six, Products::TensorEntries).matrix;
+        let flipped = Reading::of_six(None, &six, Products::Integrals).matrix;
+        assert_eq!((tensor[(0, 1)], tensor[(2, 0)], tensor[(1, 2)]), (0.1, 0.2, 0.3));
+        assert_eq!((flipped[(1, 0)], flipped[(0, 2)], flipped[(2, 1)]), (-0.1, -0.2, -0.3));
+        assert_eq!(flipped.diagonal(), tensor.diagonal());
+    }
+}

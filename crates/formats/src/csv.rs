@@ -1,0 +1,302 @@
+//! Tables: one body a row, under a header that names the six entries.
+//!
+//! Read by hand, because a copy that changes single numbers needs the place of each field.
+
+use crate::{
+    Body, BodyError, FileProblem, MAX_BODIES, Products,
+    body::{NAMES, Number, Reading},
+    text::{Refusal, Text},
+};
+
+/// Columns that are looked for: the six entries, the mass, the name.
+const MASS: usize = 6;
+const NAME: usize = 7;
+const FIELDS: [&str; 7] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz", "mass"];
+
+/// Where a field stands, its quotes not counted.
+#[derive(Clone, Copy, Debug)]
+struct Field {
+    start: usize,
+    end: usize,
+}
+
+#[derive(Debug)]
+struct Rows<'a> {
+    text: &'a str,
+    at: usize,
+    separator: u8,
+}
+
+impl Rows<'_> {
+    /// The fields of the next row that is neither blank nor a comment, or the offset of a quote
+    /// that is never closed.
+    fn next(&mut self) -> Option<Result<Vec<Field>, usize>> {
+        loop {
+            let rest = &self.text[self.at..];
+            let line = rest.split('\n').next()?;
+            if rest.is_empty() {
+                return None;
+            }
+            if line.trim().is_empty() || line.starts_with('#') {
+                self.at = (self.at + line.len() + 1).min(self.text.len());
+                continue;
+            }
+            return Some(self.row());
+        }
+    }
+
+    fn row(&mut self) -> Result<Vec<Field>, usize> {
+        let bytes = self.text.as_bytes();
+        let mut fields = Vec::new();
+        loop {
+            while bytes.get(self.at) == Some(&b' ') {
+                self.at += 1;
+            }
+            let (start, end);
+            if bytes.get(self.at) == Some(&b'"') {
+                start = self.at + 1;
+                let mut i = start;
+                loop {
+                    match (bytes.get(i), bytes.get(i + 1)) {
+                        (Some(b'"'), Some(b'"')) => i += 2,
+                        (Some(b'"'), _) => break,
+                        (Some(_), _) => i += 1,
+                        (None, _) => return Err(self.at),
+                    }
+                }
+                end = i;
+                self.at = i + 1;
+                while !self.at_end_of_field() {
+                    self.at += 1;
+                }
+            } else {
+                start = self.at;
+                while !self.at_end_of_field() {
+                    self.at += 1;
+                }
+                end = self.at;
+            }
+            fields.push(Field { start, end });
+            match bytes.get(self.at) {
+                Some(b) if *b == self.separator => self.at += 1,
+                Some(_) => {
+                    self.at += 1;
+                    return Ok(fields);
+                }
+                None => return Ok(fields),
+            }
+        }
+    }
+
+    fn at_end_of_field(&self) -> bool {
+        self.text.as_bytes().get(self.at).is_none_or(|b| *b == b'\n' || *b == self.separator)
+    }
+}
+
+/// A heading without its unit, and the unit.
+fn heading(text: &str) -> (String, String) {
+    let text = text.trim().to_lowercase();
+    let (name, unit) = match text.find(['[', '(']) {
+        Some(i) => (&text[..i], text[i..].trim_matches(['[', ']', '(', ')', ' '])),
+        None => text
+            .strip_suffix("_kg_m2")
+            .map(|name| (name, "kg m2"))
+            .or(text.strip_suffix("_kg").map(|name| (name, "kg")))
+            .unwrap_or((&text, "")),
+    };
+    let unit = unit.replace('²', "2").replace([' ', '*', '·', '^', '.', '-', '_'], "");
+    (name.replace(['_', ' '], ""), unit)
+}
+
+/// The column of a heading.
+pub(crate) fn entry_of(name: &str) -> Option<usize> {
+    let plain = match name {
+        "i11" => "ixx",
+        "i22" => "iyy",
+        "i33" => "izz",
+        "i12" => "ixy",
+        "i13" => "ixz",
+        "i23" => "iyz",
+        other => other,
+    };
+    NAMES.iter().position(|known| *known == plain)
+}
+
+fn column_of(name: &str) -> Option<usize> {
+    match name {
+        "mass" | "m" => Some(MASS),
+        "name" | "body" | "link" | "part" | "component" => Some(NAME),
+        _ => entry_of(name),
+    }
+}
+
+fn unknown(message: &str) -> Refusal {
+    FileProblem::Unknown { message: message.to_owned() }.into()
+}
+
+/// The column of each of the fields, and the name.
+fn columns(text: &Text, header: &[Field]) -> Result<[Option<usize>; 8], Refusal> {
+    let mut columns = [None; 8];
+    let mut unit: Option<(String, String)> = None;
+    for (index, field) in header.iter().enumerate() {
+        let written = text.as_str().get(field.start..field.end).unwrap_or_default();
+        let (name, its_unit) = heading(written);
+        let Some(column) = column_of(&name) else { continue };
+        if columns[column].replace(index).is_some() && column != NAME {
+            return Err(text.malformed(field.start, format!("two columns for {name}")));
+        }
+        if column < MASS && !its_unit.is_empty() {
+            match &unit {
+                Some((first, known)) if *known != its_unit => {
+                    return Err(text.malformed(
+                        field.start,
+                        format!("{first} is in {known} but {name} in {its_unit}: one unit for all"),
+                    ));
+                }
+                Some(_) => {}
+                None => unit = Some((name, its_unit)),
+            }
+        }
+    }
+    if columns[..3].iter().any(Option::is_none) {
+        return Err(unknown("a table must have the columns ixx, iyy and izz"));
+    }
+    let products = columns[3..6].iter().flatten().count();
+    if products != 0 && products != 3 {
+        let at = header.first().map_or(0, |field| field.start);
+        return Err(text.malformed(at, "columns ixy, ixz, iyz: there must be all three or none"));
+    }
+    Ok(columns)
+}
+
+pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal> {
+    let source = text.as_str();
+    let mut products = default;
+    let mut header_line = "";
+    for line in source.lines() {
+        if let Some(comment) = line.strip_prefix('#') {
+            let words: Vec<&str> = comment.split(['=', ' ', '"', '\'']).collect();
+            if let Some(stated) = comment
+                .trim_start()
+                .starts_with("products")
+                .then(|| words.iter().find_map(|word| Products::parse(word.trim())))
+                .flatten()
+            {
+                products = stated;
+            }
+        } else if !line.trim().is_empty() {
+            header_line = line;
+            break;
+        }
+    }
+    let count = |separator: char| header_line.matches(separator).count();
+    let separator =
+        [',', ';', '\t'].into_iter().max_by_key(|s| (count(*s), *s == ',')).unwrap_or(',');
+    let mut rows = Rows { text: source, at: 0, separator: separator as u8 };
+    let unclosed = |at| text.malformed(at, "a quotation mark is not closed");
+    let header = rows.next().ok_or(unknown("a table must have a header"))?.map_err(unclosed)?;
+    let columns = columns(text, &header)?;
+
+    let mut bodies = Vec::new();
+    while let Some(row) = rows.next() {
+        let row = row.map_err(unclosed)?;
+        let line = text.line(row.first().map_or(0, |field| field.start));
+        if bodies.len() == MAX_BODIES {
+            return Err(Refusal { line: Some(line), problem: FileProblem::TooManyBodies });
+        }
+        let cell = |column: usize| {
+            let field = row.get(columns[column]?)?;
+            Some((source.get(field.start..field.end)?, field.start))
+        };
+        let name =
+            cell(NAME).map_or_else(String::new, |(name, _)| name.trim().replace("\"\"", "\""));
+        let reading = if row.len() == header.len() {
+            reading(cell, products)
+        } else {
+            let (found, allowed) = (row.len(), header.len());
+            Err(BodyError::Count { field: "the row", found, allowed })
+        };
+        bodies.push(Body::new(name, line, reading));
+    }
+    Ok(bodies)
+}
+
+fn reading<'a>(
+    cell: impl Fn(usize) -> Option<(&'a str, usize)>,
+    products: Products,
+) -> Result<Reading, BodyError> {
+    let number = |column: usize| {
+        let (raw, start) = cell(column)?;
+        Some(Number::parse(FIELDS[column], raw, Some(start)))
+    };
+    // A table may know the mass of some bodies only.
+    let mass = match cell(MASS) {
+        Some((raw, _)) if raw.trim().is_empty() => None,
+        _ => number(MASS).transpose()?,
+    };
+    let mut six = [Number::default(); 6];
+    for (column, entry) in six.iter_mut().enumerate() {
+        if let Some(found) = number(column) {
+            *entry = found?;
+        }
+    }
+    Ok(Reading::of_six(mass, &six, products))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::ENTRIES;
+
+    fn try_read(csv: &str) -> Result<Vec<Body>, Refusal> {
+        read(&Text::new(csv.as_bytes(), true).unwrap(), Products::TensorEntries)
+    }
+
+    fn six(body: &Body) -> [f64; 6] {
+        ENTRIES.map(|entry| body.inertia().unwrap()[entry])
+    }
+
+    #[test]
+    fn columns_may_stand_in_any_order_case_and_spelling() {
+        let expected = [10.0, 11.0, 12.0, 0.1, 0.2, 0.3];
+        for csv in [
+            "name,mass,ixx,iyy,izz,ixy,ixz,iyz\narm,2,10,11,12,.1,.2,.3\n",
+            "IZZ;Iyz;I_xx;Body;Mass [kg];Iyy;Ixy;Ixz\r\n12;.3;10;arm;2;11;.1;.2\r\n",
+            "# a comment\n\ni11\ti22\ti33\ti12\ti13\ti23\tpart\tm\n10\t11\t12\t.1\t.2\t.3\tarm\t2",
+            "\"name\",mass_kg,ixx_kg_m2,iyy_kg_m2,izz_kg_m2,ixy_kg_m2,ixz_kg_m2,iyz_kg_m2\n\
+             \"arm\", \"2\",10,11,12,\".1\",.2,.3",
+            "Part,Mass (kg),Ixx [kg m^2],Iyy [kg*m2],Izz [kg·m²],Ixy [kg m2],Ixz,Iyz,note\n\
+             arm,2,10,11,12,.1,.2,.3,\"a, b\nc\"",
+        ] {
+            let bodies = try_read(csv).unwrap();
+            assert_eq!(bodies.len(), 1, "{csv}");
+            assert_eq!(six(&bodies[0]), expected, "{csv}");
+            assert_eq!((bodies[0].name(), bodies[0].mass_kg()), ("arm", Some(2.0)), "{csv}");
+        }
+    }
+
+    #[test]
+    fn moments_alone_are_a_diagonal_and_a_comment_may_state_the_sign() {
+        let bodies = try_read("ixx,iyy,izz\n1,2,3\n\n4,5,6").unwrap();
+        assert_eq!(six(&bodies[1]), [4.0, 5.0, 6.0, 0.0, 0.0, 0.0]);
+        assert_eq!((bodies[1].line(), bodies[1].name(), bodies[1].mass_kg()), (4, "", None));
+        let csv = "# products = integrals\nixx,iyy,izz,ixy,ixz,iyz\n1,2,3,.1,.2,.3";
+        assert_eq!(six(&try_read(csv).unwrap()[0])[3..], [-0.1, -0.2, -0.3]);
+    }
+
+    #[test]
+    fn bad_tables_are_refused_and_bad_rows_named() {
+        let message = |csv| try_read(csv).unwrap_err().problem.to_string();
+        assert!(message("time,x\n1,2").contains("columns ixx"));
+        assert!(message("ixx,iyy,izz,ixy\n1,2,3,4").contains("all three or none"));
+        assert!(message("ixx,iyy,izz,Ixx\n1,2,3,4").contains("two columns for ixx"));
+        let mixed = message("ixx [kg m2],iyy [g mm2],izz\n1,2,3");
+        assert!(mixed.contains("ixx is in kgm2 but iyy in gmm2"), "{mixed}");
+        assert!(message("ixx,iyy,izz\n1,2,\"3").contains("not closed"));
+        let bodies = try_read("name,ixx,iyy,izz\na,1,2\nb,1,x,3\nc,1,1,1").unwrap();
+        let error = |i: usize| bodies[i].inertia().unwrap_err().to_string();
+        assert_eq!(error(0), "the row has 3 values: there must be 4");
+        assert_eq!(error(1), "iyy = \"x\" is not a number");
+        assert!(bodies[2].inertia().is_ok());
+    }
+}

@@ -1,0 +1,392 @@
+//! TOML and JSON: bodies in a list or as named tables.
+//!
+//! Both become the same few kinds of values, as deep as the schema goes and no deeper.
+
+use serde::de::{Deserializer, MapAccess, Visitor};
+use serde_json::value::RawValue;
+use std::{borrow::Cow, fmt};
+use toml::de::{DeTable, DeValue};
+
+use crate::{
+    Body, BodyError, FileProblem, MAX_BODIES, MAX_DEPTH, Products,
+    body::{Number, Reading, shortened},
+    csv,
+    text::{Refusal, Text},
+};
+
+/// A document is a table of a list of tables of a list of lists of numbers.
+const DEPTH: usize = 6;
+const INERTIA: &str = "inertia_kg_m2";
+
+#[derive(Debug)]
+struct Item<'a> {
+    start: usize,
+    value: Value<'a>,
+}
+
+#[derive(Debug)]
+enum Value<'a> {
+    /// As it is written, and its end.
+    Number(Cow<'a, str>, usize),
+    Text(String),
+    List(Vec<Item<'a>>),
+    Table(Vec<(String, Item<'a>)>),
+    Other,
+}
+
+impl<'a> Item<'a> {
+    fn get(&self, key: &str) -> Option<&Self> {
+        self.entries().iter().find(|(name, _)| name == key).map(|(_, item)| item)
+    }
+
+    fn entries(&self) -> &[(String, Self)] {
+        match &self.value {
+            Value::Table(entries) => entries,
+            _ => &[],
+        }
+    }
+
+    fn items(&self) -> &[Self] {
+        match &self.value {
+            Value::List(items) => items,
+            _ => &[],
+        }
+    }
+
+    fn number(&self, field: &'static str) -> Result<Number, BodyError> {
+        match &self.value {
+            Value::Number(raw, end) => {
+                let number = Number::parse(field, raw, Some(self.start))?;
+                let place = number.place.map(|place| crate::body::Place { end: *end, ..place });
+                Ok(Number { place, ..number })
+            }
+            Value::Text(text) => Err(BodyError::NotANumber { field, value: shortened(text) }),
+            _ => Err(BodyError::Shape { field, allowed: "a number" }),
+        }
+    }
+}
+
+/// Reads a TOML file.
+pub(crate) fn toml(text: &Text, products: Products) -> Result<Vec<Body>, Refusal> {
+    let source = text.as_str();
+    let table = DeTable::parse(source).map_err(|error| {
+        let at = error.span().map_or(0, |span| span.start);
+        text.malformed(at, error.message())
+    })?;
+    let span = table.span();
+    let value = DeValue::Table(table.into_inner());
+    bodies(text, &from_toml(&value, &span, DEPTH), products)
+}
+
+fn from_toml<'a>(value: &DeValue<'a>, span: &std::ops::Range<usize>, depth: usize) -> Item<'a> {
+    let value = match value {
+        DeValue::Float(float) => Value::Number(float.as_str().to_owned().into(), span.end),
+        DeValue::Integer(integer) => {
+            // Hexadecimal integers are numbers too, if hardly inertias.
+            let digits = integer.as_str();
+            let decimal = match integer.radix() {
+                10 => digits.to_owned(),
+                radix => i128::from_str_radix(digits, radix).unwrap_or_default().to_string(),
+            };
+            Value::Number(decimal.into(), span.end)
+        }
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Array(items) if depth > 0 => Value::List(
+            items.iter().map(|i| from_toml(i.get_ref(), &i.span(), depth - 1)).collect(),
+        ),
+        DeValue::Table(entries) if depth > 0 => {
+            let mut entries: Vec<_> = entries
+                .iter()
+                .map(|(key, item)| {
+                    let mut entry = from_toml(item.get_ref(), &item.span(), depth - 1);
+                    if matches!(entry.value, Value::Table(_)) {
+                        entry.start = entry.start.min(key.span().start);
+                    }
+                    (key.get_ref().to_string(), entry)
+                })
+                .collect();
+            // In the order of the file, not of the alphabet.
+            entries.sort_by_key(|(_, item)| item.start);
+            Value::Table(entries)
+        }
+        _ => Value::Other,
+    };
+    Item { start: span.start, value }
+}
+
+/// Reads a JSON file.
+pub(crate) fn json(text: &Text, products: Products) -> Result<Vec<Body>, Refusal> {
+    let source = text.as_str();
+    if let Some(at) = too_deep(source.as_bytes()) {
+        return Err(text.refuse(at, FileProblem::TooDeep));
+    }
+    let root: &RawValue = serde_json::from_str(source).map_err(|error| {
+        let problem = FileProblem::Malformed { message: without_place(&error) };
+        Refusal { line: Some(error.line().max(1)), problem }
+    })?;
+    let item = from_json(text, root, DEPTH)?;
+    bodies(text, &item, products)
+}
+
+/// The message without its line and column, which may be those of a part.
+fn without_place(error: &serde_json::Error) -> String {
+    let message = error.to_string();
+    message.rsplit_once(" at line ").map_or(message.clone(), |(m, _)| m.to_owned())
+}
+
+/// Where lists and tables are nested too deeply.
+fn too_deep(bytes: &[u8]) -> Option<usize> {
+    let (mut depth, mut quoted, mut escaped) = (0_usize, false, false);
+    for (i, byte) in bytes.iter().enumerate() {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' if quoted => escaped = true,
+            b'"' => quoted = !quoted,
+            b'[' | b'{' if !quoted => {
+                depth += 1;
+                if depth > MAX_DEPTH {
+                    return Some(i);
+                }
+            }
+            b']' | b'}' if !quoted => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+    }
+    None
+}
+
+/// The entries of an object in their order.
+struct Entries<'a>(Vec<(String, &'a RawValue)>);
+
+impl<'de> serde::Deserialize<'de> for Entries<'de> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Collect;
+        impl<'de> Visitor<'de> for Collect {
+            type Value = Entries<'de>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    entries.push(entry);
+                }
+                Ok(Entries(entries))
+            }
+        }
+        deserializer.deserialize_map(Collect)
+    }
+}
+
+fn from_json<'a>(text: &'a Text, raw: &'a RawValue, depth: usize) -> Result<Item<'a>, Refusal> {
+    let source = raw.get();
+    let start = text.offset_of(source).unwrap_or_default();
+    let refuse = |error: serde_json::Error| text.malformed(start, without_place(&error));
+    let value = match source.as_bytes().first() {
+        Some(b'{') if depth > 0 => {
+            let Entries(raw) = serde_json::from_str(source).map_err(refuse)?;
+            let mut seen = std::collections::HashSet::new();
+            let mut entries = Vec::with_capacity(raw.len());
+            for (key, item) in raw {
+                if !seen.insert(key.clone()) {
+                    let at = text.offset_of(item.get()).unwrap_or(start);
+                    let message = format!("the key \"{}\" is there twice", shortened(&key));
+                    return Err(text.malformed(at, message));
+                }
+                entries.push((key, from_json(text, item, depth - 1)?));
+            }
+            Value::Table(entries)
+        }
+        Some(b'[') if depth > 0 => {
+            let raw: Vec<&RawValue> = serde_json::from_str(source).map_err(refuse)?;
+            // Before it takes up memory: no list of ours is longer.
+            if raw.len() > MAX_BODIES {
+                return Err(text.refuse(start, FileProblem::TooManyBodies));
+            }
+            let items: Result<_, _> =
+                raw.into_iter().map(|item| from_json(text, item, depth - 1)).collect();
+            Value::List(items?)
+        }
+        Some(b'"') => Value::Text(serde_json::from_str(source).map_err(refuse)?),
+        Some(b'-' | b'0'..=b'9') => Value::Number(source.into(), start + source.len()),
+        _ => Value::Other,
+    };
+    Ok(Item { start, value })
+}
+
+/// The bodies of a document: its list `bodies` or `body`, itself if it is a list, and every table
+/// in it that has an inertia.
+fn bodies(text: &Text, root: &Item<'_>, default: Products) -> Result<Vec<Body>, Refusal> {
+    let products = match root.get("products") {
+        None => default,
+        Some(item) => match &item.value {
+            Value::Text(word) => Products::parse(word),
+            _ => None,
+        }
+        .ok_or_else(|| {
+            text.malformed(item.start, "products: there must be \"tensor\" or \"integrals\"")
+        })?,
+    };
+    let mut found: Vec<(&str, &Item<'_>)> = Vec::new();
+    let lists = [Some(root), root.get("bodies"), root.get("body")];
+    let mut stated = false;
+    for list in lists.into_iter().flatten() {
+        for item in list.items() {
+            stated |= item.get(INERTIA).is_some();
+            found.push(("", item));
+        }
+        for (name, item) in list.entries() {
+            if item.get(INERTIA).is_some() {
+                stated = true;
+                found.push((name, item));
+            }
+        }
+    }
+    if !stated {
+        let message = format!("no table in it has a key {INERTIA}");
+        return Err(FileProblem::Unknown { message }.into());
+    }
+    if found.len() > MAX_BODIES {
+        return Err(FileProblem::TooManyBodies.into());
+    }
+    found.sort_by_key(|(_, item)| item.start);
+    Ok(found.into_iter().map(|(key, item)| body(text, key, item, products)).collect())
+}
+
+fn body(text: &Text, key: &str, item: &Item<'_>, products: Products) -> Body {
+    let name = match item.get("name").map(|item| &item.value) {
+        Some(Value::Text(name)) => name.clone(),
+        _ => key.to_owned(),
+    };
+    let inertia = item.get(INERTIA);
+    let line = text.line(inertia.unwrap_or(item).start);
+    let reading = match inertia {
+        Some(inertia) => reading(item, inertia, products),
+        None => Err(BodyError::Missing { field: INERTIA }),
+    };
+    Body::new(name, line, reading)
+}
+
+fn reading(item: &Item<'_>, inertia: &Item<'_>, products: Products) -> Result<Reading, BodyError> {
+    const SHAPE: BodyError = BodyError::Shape {
+        field: INERTIA,
+        allowed: "three rows of three numbers, or ixx, iyy, izz, ixy, ixz and iyz",
+    };
+    let mass = item.get("mass_kg").map(|mass| mass.number("mass_kg")).transpose()?;
+    if let Value::Table(entries) = &inertia.value {
+        let mut six = [None; 6];
+        for (key, entry) in entries {
+            let index = csv::entry_of(&key.to_lowercase()).ok_or(SHAPE)?;
+            if six[index].replace(entry.number(INERTIA)?).is_some() {
+                return Err(SHAPE);
+            }
+        }
+        let mut all = [Number::default(); 6];
+        for (number, entry) in all.iter_mut().zip(six) {
+            *number = entry.ok_or(SHAPE)?;
+        }
+        return Ok(Reading::of_six(mass, &all, products));
+    }
+    let rows = inertia.items();
+    if rows.len() != 3 || rows.iter().any(|row| row.items().len() != 3) {
+        return Err(SHAPE);
+    }
+    let mut nine = [[Number::default(); 3]; 3];
+    for (numbers, row) in nine.iter_mut().zip(rows) {
+        for (number, entry) in numbers.iter_mut().zip(row.items()) {
+            *number = entry.number(INERTIA)?;
+        }
+    }
+    Ok(Reading::of_nine(mass, &nine, products))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::ENTRIES;
+
+    fn read(text: &str) -> Result<Vec<Body>, Refusal> {
+        let text = Text::new(text.as_bytes(), false).unwrap();
+        if ["{", "[{", "[[["].iter().any(|start| text.as_str().starts_with(start)) {
+            json(&text, Products::TensorEntries)
+        } else {
+            toml(&text, Products::TensorEntries)
+        }
+    }
+
+    fn six(body: &Body) -> [f64; 6] {
+        ENTRIES.map(|entry| body.inertia().unwrap()[entry])
+    }
+
+    const SIX: [f64; 6] = [10.0, 11.0, 12.0, 0.1, 0.2, 0.3];
+
+    #[test]
+    fn lists_and_named_tables_are_read() {
+        let rows = "[[10, 0.1, 0.2], [0.1, 11, 0.3], [0.2, 0.3, 12]]";
+        for text in [
+            format!("[[bodies]]\nname = \"arm\"\nmass_kg = 2\ninertia_kg_m2 = {rows}"),
+            format!("[[body]]\nname = 'arm'\nmass_kg = 2.0\ninertia_kg_m2 = {rows}"),
+            format!("title = 1\n[arm]\nmass_kg = 2.0\ninertia_kg_m2 = {rows}\n[other]\nx = 1"),
+            "[arm]\nmass_kg = 2\n[arm.inertia_kg_m2]\nIxx = 10\niyy = 1_1.0\ni33 = 12\nixy = 0.1\n\
+             ixz = 0.2\niyz = 0.3"
+                .to_owned(),
+            format!(
+                "{{\"bodies\": [{{\"name\": \"arm\", \"mass_kg\": 2, \"inertia_kg_m2\": {rows}}}]}}"
+            ),
+            format!("[{{\"name\": \"arm\", \"mass_kg\": 2, \"inertia_kg_m2\": {rows}}}]"),
+            format!("{{\"x\": null, \"arm\": {{\"mass_kg\": 2, \"inertia_kg_m2\": {rows}}}}}"),
+        ] {
+            let bodies = read(&text).unwrap();
+            assert_eq!(bodies.len(), 1, "{text}");
+            assert_eq!(six(&bodies[0]), SIX, "{text}");
+            assert_eq!((bodies[0].name(), bodies[0].mass_kg()), ("arm", Some(2.0)), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_file_may_state_the_sign() {
+        let rows = "[[10, 0.1, 0.2], [0.1, 11, 0.3], [0.2, 0.3, 12]]";
+        for text in [
+            format!("products = \"integrals\"\n[arm]\ninertia_kg_m2 = {rows}"),
+            format!("{{\"products\": \"integrals\", \"arm\": {{\"inertia_kg_m2\": {rows}}}}}"),
+        ] {
+            assert_eq!(six(&read(&text).unwrap()[0])[3..], [-0.1, -0.2, -0.3]);
+        }
+        let bad = format!("products = \"positive\"\n[arm]\ninertia_kg_m2 = {rows}");
+        assert!(read(&bad).unwrap_err().problem.to_string().contains("\"tensor\" or"));
+    }
+
+    #[test]
+    fn bodies_stand_in_the_order_of_the_file_with_their_lines() {
+        let row = "inertia_kg_m2 = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
+        let bodies = read(&format!("[zebra]\n{row}\n\n[ant]\n{row}\n")).unwrap();
+        let found: Vec<_> = bodies.iter().map(|body| (body.name(), body.line())).collect();
+        assert_eq!(found, [("zebra", 2), ("ant", 5)]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        let error = |inertia: &str| {
+            let text = format!("{{\"bodies\": [{{\"inertia_kg_m2\": {inertia}}}]}}");
+            read(&text).unwrap()[0].inertia().unwrap_err().to_string()
+        };
+        assert!(error("[[1, 0], [0, 1]]").contains("three rows"));
+        assert!(error("{\"ixx\": 1}").contains("ixx, iyy"));
+        assert!(error("[[1, 0, 0], [0, \"1\", 0], [0, 0, 1]]").contains("\"1\" is not a number"));
+        assert!(error("[[1, 0, 0], [0, 1e999, 0], [0, 0, 1]]").contains("must be finite"));
+        assert!(error("[[1, 0, 0], [0, null, 0], [0, 0, 1]]").contains("a number"));
+        assert!(error("null").contains("three rows"));
+        let refusal = |text: &str| {
+            let refusal = read(text).unwrap_err();
+            (refusal.line, refusal.problem.to_string())
+        };
+        assert!(refusal("{\"a\": 1}").1.contains("inertia_kg_m2"));
+        assert_eq!(refusal("{\"a\": 1,\n}").0, Some(2));
+        assert_eq!(refusal("a = 1\nb = = 2").0, Some(2));
+        assert!(refusal("{\"a\": 1, \"a\": 2}").1.contains("twice"));
+        assert!(refusal(&format!("{}{}", "[".repeat(300), "]".repeat(300))).1.contains("deeper"));
+        assert!(refusal(&format!("a = {}", "[".repeat(100_000))).1.contains("malformed"));
+    }
+}

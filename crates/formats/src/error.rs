@@ -1,0 +1,178 @@
+use std::{
+    fmt, io,
+    path::{Path, PathBuf},
+};
+
+use crate::{MAX_ATTRIBUTES, MAX_BODIES, MAX_DEPTH, text::Refusal};
+
+/// Why a file, as a whole, could not be read.
+#[derive(Debug)]
+pub struct FileError {
+    path: PathBuf,
+    line: Option<usize>,
+    problem: FileProblem,
+    foreign: bool,
+}
+
+impl FileError {
+    pub(crate) fn new(path: &Path, refusal: Refusal, foreign: bool) -> Self {
+        let Refusal { line, problem } = refusal;
+        let foreign = foreign || matches!(problem, FileProblem::Unknown { .. });
+        Self { path: path.to_owned(), line, problem, foreign }
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Line, from 1, if the problem has one.
+    #[must_use]
+    pub fn line(&self) -> Option<usize> {
+        self.line
+    }
+
+    /// What is wrong.
+    #[must_use]
+    pub fn problem(&self) -> &FileProblem {
+        &self.problem
+    }
+
+    /// Whether the file does not look like one that holds inertias at all: a configuration, a
+    /// table of something else. To be passed over where nobody asked for this file by name.
+    #[must_use]
+    pub fn is_foreign(&self) -> bool {
+        self.foreign
+    }
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        write!(f, ": {}", self.problem)
+    }
+}
+
+impl std::error::Error for FileError {}
+
+/// What is wrong with a file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FileProblem {
+    /// The system does not hand it out.
+    #[error("it cannot be read: {0}")]
+    Io(#[from] io::Error),
+    /// A folder, a pipe, a device.
+    #[error("it is not a regular file")]
+    NotAFile,
+    /// Too many bytes.
+    #[error("it is larger than {} MiB, the most that is read", .limit >> 20)]
+    TooLarge {
+        /// The most that is read, in bytes.
+        limit: usize,
+    },
+    /// Elements, lists or tables nested too deeply.
+    #[error("it is nested deeper than {MAX_DEPTH} levels, the most that is read")]
+    TooDeep,
+    /// Too many bodies.
+    #[error("it holds more than {MAX_BODIES} bodies, the most that is read")]
+    TooManyBodies,
+    /// Too many attributes.
+    #[error("an element has more than {MAX_ATTRIBUTES} attributes, the most that is read")]
+    TooManyAttributes,
+    /// Nothing in it.
+    #[error("it is empty")]
+    Empty,
+    /// Sixteen bits a character.
+    #[error("it is encoded in UTF-16: save it as UTF-8")]
+    Utf16,
+    /// Zero bytes in it.
+    #[error("it is binary, not text")]
+    Binary,
+    /// Bytes that are not UTF-8.
+    #[error(
+        "it is not UTF-8, and declares no other encoding that is read (ISO-8859, Windows-125x)"
+    )]
+    NotUtf8,
+    /// Its grammar is broken.
+    #[error("malformed: {message}")]
+    Malformed {
+        /// What the grammar wants.
+        message: String,
+    },
+    /// Well-formed, perhaps, but no format of ours.
+    #[error("not a format that is read here: {message}")]
+    Unknown {
+        /// What was found, and what is read.
+        message: String,
+    },
+}
+
+/// Why the inertia of one body could not be read; its neighbours can.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BodyError {
+    /// A field is not there.
+    #[error("{field} is missing")]
+    Missing {
+        /// The field.
+        field: &'static str,
+    },
+    /// A field holds no number.
+    #[error("{field} = \"{value}\" is not a number")]
+    NotANumber {
+        /// The field.
+        field: &'static str,
+        /// What it holds, shortened.
+        value: String,
+    },
+    /// A field holds a xacro expression.
+    #[error(
+        "{field} = \"{value}\" is not a number but an expression: expand the file first, with \
+         `xacro file.xacro > file.urdf`"
+    )]
+    Expression {
+        /// The field.
+        field: &'static str,
+        /// What it holds, shortened.
+        value: String,
+    },
+    /// NaN, infinite, or too large for double precision.
+    #[error("{field} = \"{value}\": it must be finite")]
+    NotFinite {
+        /// The field.
+        field: &'static str,
+        /// What it holds, shortened.
+        value: String,
+    },
+    /// Not as many numbers as there should be.
+    #[error("{field} has {found} values: there must be {allowed}")]
+    Count {
+        /// The field.
+        field: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there must be.
+        allowed: usize,
+    },
+    /// Something else than the schema asks for.
+    #[error("{field}: there must be {allowed}")]
+    Shape {
+        /// The field.
+        field: &'static str,
+        /// What there must be.
+        allowed: &'static str,
+    },
+    /// Two fields that exclude each other.
+    #[error("both {first} and {second} are given: there must be one of them")]
+    Both {
+        /// One field.
+        first: &'static str,
+        /// The other.
+        second: &'static str,
+    },
+}

@@ -1,0 +1,67 @@
+//! Inertias in URDF, MJCF, SDF, CSV, TOML and JSON files: read, judged, repaired.
+//!
+//! [`InertiaFile::read`] gives every body of a file with its line and its inertia as a matrix about
+//! the mass centre, products as tensor entries (I₁₂ = −∫ x₁x₂ dm) whatever the file's convention.
+//! [`judge`] says whether any body can have it, and by how much not. [`InertiaFile::repaired`]
+//! gives a copy of the file in which only the offending numbers differ.
+//!
+//! ```
+//! use gyradius_formats::{InertiaFile, Products, judge};
+//! use std::path::Path;
+//!
+//! let urdf = r#"<robot name="cart"><link name="wheel"><inertial>
+//!   <mass value="1"/> <!-- from CAD -->
+//!   <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.3"/>
+//! </inertial></link></robot>"#;
+//! let file = InertiaFile::parse(Path::new("cart.urdf"), urdf.into(), Products::TensorEntries)?;
+//!
+//! let wheel = &file.bodies()[0];
+//! let judgement = judge(wheel.inertia()?, wheel.mass_kg(), gyradius_formats::TOLERANCE);
+//! assert!((judgement.shortfall_percent().unwrap() - 50.0).abs() < 1e-9);
+//!
+//! let copy = String::from_utf8(file.repaired(&[0])?)?;
+//! assert!(copy.contains("<!-- from CAD -->") && copy.contains("iyz=\"0\""));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod body;
+mod csv;
+mod data;
+mod error;
+mod file;
+mod judge;
+mod repair;
+mod robots;
+mod text;
+mod walk;
+mod xml;
+
+pub use body::{Body, Products};
+pub use error::{BodyError, FileError, FileProblem};
+pub use file::{Format, InertiaFile};
+pub use judge::{Fault, Judgement, Note, judge, nearest};
+pub use repair::{RepairError, copy_path, is_copy, write_copy};
+pub use walk::{Found, find};
+
+/// Tolerance that suits files: they carry about six digits, and a plate or a rod written with six
+/// digits lies on the boundary to within that.
+pub const TOLERANCE: f64 = 1e-6;
+
+/// Bytes of the largest file that is read.
+pub const MAX_BYTES: usize = 64 << 20;
+
+/// Bytes of the largest TOML file that is read: its parser takes up to eighty times as much memory.
+pub const MAX_TOML_BYTES: usize = 8 << 20;
+
+/// Levels of the deepest nesting that is read.
+pub const MAX_DEPTH: usize = 256;
+
+/// Most bodies of one file that are read.
+pub const MAX_BODIES: usize = 1_000_000;
+
+/// Most attributes of one XML element that are read.
+pub const MAX_ATTRIBUTES: usize = 256;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,217 @@
+use gyradius_inertia::InertiaMatrix;
+use nalgebra::Matrix3;
+use std::{
+    ffi::OsString,
+    fs::{self, OpenOptions},
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+use crate::{Body, InertiaFile, body::Place, judge::nearest};
+
+/// How far inside the boundary a repaired inertia lies, as a part of its trace: enough that
+/// programs which compare exactly, or read fewer digits, accept it too.
+const INSET: f64 = 1e-9;
+
+/// Digits of a repaired number, which move it by less than [`INSET`].
+const DIGITS: usize = 11;
+
+/// Why a file could not be repaired.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RepairError {
+    /// A number that must change is not in the file.
+    #[error(
+        "line {line}: \"{name}\": an entry that must change is not written in the file, or not as a \
+         plain number"
+    )]
+    NoPlace {
+        /// The body.
+        name: String,
+        /// Its line.
+        line: usize,
+    },
+    /// The inertia is beyond computing with.
+    #[error("line {line}: \"{name}\": its inertia is too large or too small to be computed with")]
+    OutOfRange {
+        /// The body.
+        name: String,
+        /// Its line.
+        line: usize,
+    },
+    /// A copy is there already, and is another one.
+    #[error("{} exists: --force replaces it", .0.display())]
+    Exists(PathBuf),
+    /// The copy has the name of a file that is being checked.
+    #[error("{} is itself being checked, and originals are never written over", .0.display())]
+    Original(PathBuf),
+    /// The copy reads back as something else than was meant.
+    #[error("the copy does not read back: nothing was written")]
+    ReadsBackWrong,
+    /// The system does not take it.
+    #[error("{} cannot be written: {error}", .path.display())]
+    Io {
+        /// The copy.
+        path: PathBuf,
+        /// What the system says.
+        error: io::Error,
+    },
+}
+
+/// The nearest realizable inertia, a little inside the boundary and in few digits.
+fn repaired(matrix: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    let near = nearest(matrix)?;
+    let inset = near + Matrix3::from_diagonal_element(2.0 * INSET * near.trace());
+    let rounded = inset.map(|x| format!("{x:.*e}", DIGITS - 1).parse().unwrap_or(x));
+    [rounded, inset, near].into_iter().find(is_realizable)
+}
+
+fn is_realizable(matrix: &Matrix3<f64>) -> bool {
+    InertiaMatrix::new(*matrix).is_ok_and(|matrix| matrix.is_realizable())
+}
+
+impl InertiaFile {
+    /// The bytes of a copy in which the bodies of these indices have the nearest realizable
+    /// inertia, and everything else is as it was.
+    ///
+    /// # Errors
+    /// A number that must change is not in the file, or the copy does not read back.
+    pub fn repaired(&self, indices: &[usize]) -> Result<Vec<u8>, RepairError> {
+        let mut edits: Vec<(Place, String)> = Vec::new();
+        for body in indices.iter().filter_map(|i| self.bodies().get(*i)) {
+            edits.extend(edits_of(body)?);
+        }
+        edits.sort_by_key(|(place, _)| place.start);
+        let mut copy = Vec::with_capacity(self.bytes.len() + 8 * edits.len());
+        let mut done = 0;
+        for (place, text) in edits {
+            let (start, end) = (self.base + place.start, self.base + place.end);
+            copy.extend_from_slice(self.bytes.get(done..start).ok_or(RepairError::ReadsBackWrong)?);
+            copy.extend_from_slice(text.as_bytes());
+            done = end;
+        }
+        copy.extend_from_slice(self.bytes.get(done..).ok_or(RepairError::ReadsBackWrong)?);
+        self.reads_back(&copy, indices)?;
+        Ok(copy)
+    }
+
+    /// Whether a copy holds the same bodies, those of these indices realizable.
+    fn reads_back(&self, copy: &[u8], indices: &[usize]) -> Result<(), RepairError> {
+        let again = self.reread(copy.to_vec()).map_err(|_| RepairError::ReadsBackWrong)?;
+        let same = again.bodies().len() == self.bodies().len()
+            && self.bodies().iter().zip(again.bodies()).enumerate().all(|(i, (before, after))| {
+                if indices.contains(&i) {
+                    after.inertia().is_ok_and(is_realizable) && before.name() == after.name()
+                } else {
+                    before == after || before.inertia() == after.inertia()
+                }
+            });
+        if same { Ok(()) } else { Err(RepairError::ReadsBackWrong) }
+    }
+}
+
+/// The numbers of a body that must change, and what they become.
+fn edits_of(body: &Body) -> Result<Vec<(Place, String)>, RepairError> {
+    let (name, line) = (body.name().to_owned(), body.line());
+    let Some(reading) = body.reading() else { return Ok(Vec::new()) };
+    let old = &reading.matrix;
+    let Some(new) = repaired(old) else {
+        return Err(RepairError::OutOfRange { name, line });
+    };
+    // Entries that are right to rounding stay as they are written, if the whole then is right.
+    let rounding = 0.1 * INSET * new.amax();
+    let kept = new.zip_map(old, |new, old| if (new - old).abs() <= rounding { old } else { new });
+    let target = if is_realizable(&kept) { kept } else { new };
+    let mut edits: Vec<(Place, String)> = Vec::new();
+    for i in 0..3 {
+        for j in 0..3 {
+            let value = target[(i, j)];
+            if value == old[(i, j)] {
+                continue;
+            }
+            let Some(place) = reading.places[i][j] else {
+                return Err(RepairError::NoPlace { name, line });
+            };
+            let written = if i == j { value } else { reading.products.sign() * value };
+            // Both halves of a matrix of which the file holds one.
+            if edits.iter().all(|(other, _)| other.start != place.start) {
+                edits.push((place, format!("{written:?}")));
+            }
+        }
+    }
+    Ok(edits)
+}
+
+/// Where the repaired copy of a file goes: `robot.urdf` becomes `robot.repaired.urdf`.
+#[must_use]
+pub fn copy_path(path: &Path) -> PathBuf {
+    let mut name = path.file_stem().map(OsString::from).unwrap_or_default();
+    name.push(".repaired");
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
+}
+
+/// Whether a file has the name of a repaired copy.
+#[must_use]
+pub fn is_copy(path: &Path) -> bool {
+    path.file_stem()
+        .is_some_and(|stem| Path::new(stem).extension().is_some_and(|e| e == "repaired"))
+}
+
+/// Writes a repaired copy, whole or not at all. What is there is replaced with `force` only, and
+/// never a file of `originals`; a link is neither followed nor replaced. Returns whether anything
+/// had to be written.
+///
+/// # Errors
+/// Something else is there, or the system refuses.
+pub fn write_copy(
+    copy: &Path,
+    bytes: &[u8],
+    originals: &[PathBuf],
+    force: bool,
+) -> Result<bool, RepairError> {
+    let fail = |error| RepairError::Io { path: copy.to_owned(), error };
+    let here = fs::symlink_metadata(copy);
+    if here.is_ok() {
+        if let Ok(canonical) = fs::canonicalize(copy)
+            && originals.contains(&canonical)
+        {
+            return Err(RepairError::Original(copy.to_owned()));
+        }
+        let regular = here.is_ok_and(|metadata| metadata.is_file());
+        if regular && fs::read(copy).is_ok_and(|there| there == bytes) {
+            return Ok(false);
+        }
+        if !force || !regular {
+            return Err(RepairError::Exists(copy.to_owned()));
+        }
+    }
+    let mut draft = copy.as_os_str().to_owned();
+    draft.push(format!(".{}.draft", std::process::id()));
+    let draft = PathBuf::from(draft);
+    let written = OpenOptions::new()
+        .write(true)
+        .create_new(true)
+        .open(&draft)
+        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+        .and_then(|()| {
+            if force {
+                fs::rename(&draft, copy)
+            } else {
+                // Fails if something has appeared meanwhile, which renaming would replace; but not
+                // every file system has links.
+                match fs::hard_link(&draft, copy) {
+                    Ok(()) => fs::remove_file(&draft),
+                    Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(error),
+                    Err(_) => fs::rename(&draft, copy),
+                }
+            }
+        });
+    if written.is_err() {
+        let _ = fs::remove_file(&draft);
+    }
+    written.map(|()| true).map_err(fail)
+}

@@ -1,0 +1,133 @@
+use std::cell::OnceCell;
+
+use crate::FileProblem;
+
+const BOM: &[u8] = b"\xef\xbb\xbf";
+
+/// A place in a text that refuses the whole file, and why.
+#[derive(Debug)]
+pub(crate) struct Refusal {
+    /// Line, from 1.
+    pub(crate) line: Option<usize>,
+    pub(crate) problem: FileProblem,
+}
+
+impl From<FileProblem> for Refusal {
+    fn from(problem: FileProblem) -> Self {
+        Self { line: None, problem }
+    }
+}
+
+/// The bytes of a file as a text whose offsets are those of the bytes, but for the byte order mark.
+#[derive(Debug)]
+pub(crate) struct Text {
+    text: String,
+    base: usize,
+    newlines: OnceCell<Vec<usize>>,
+}
+
+impl Text {
+    /// Takes UTF-8, and where `latin` allows it any encoding that extends ASCII byte by byte: what
+    /// is not ASCII becomes a question mark, and stays what it is in a copy.
+    pub(crate) fn new(bytes: &[u8], latin: bool) -> Result<Self, Refusal> {
+        let base = if bytes.starts_with(BOM) { BOM.len() } else { 0 };
+        let body = &bytes[base..];
+        if body.trim_ascii().is_empty() {
+            return Err(FileProblem::Empty.into());
+        }
+        if body.starts_with(b"\xff\xfe") || body.starts_with(b"\xfe\xff") {
+            return Err(FileProblem::Utf16.into());
+        }
+        if let Some(at) = body.iter().position(|b| *b == 0) {
+            // UTF-16 without a mark has a zero in every other byte.
+            let utf16 = at < 2 && body.len() > 3 && (body[at ^ 2] == 0 || body[2 + at] == 0);
+            return Err(if utf16 { FileProblem::Utf16 } else { FileProblem::Binary }.into());
+        }
+        let text = match std::str::from_utf8(body) {
+            Ok(text) => text.to_owned(),
+            Err(_) if latin || declares_latin(body) => {
+                body.iter().map(|b| if b.is_ascii() { char::from(*b) } else { '?' }).collect()
+            }
+            Err(error) => {
+                let before = &body[..error.valid_up_to()];
+                let line = 1 + before.iter().filter(|b| **b == b'\n').count();
+                return Err(Refusal { line: Some(line), problem: FileProblem::NotUtf8 });
+            }
+        };
+        Ok(Self { text, base, newlines: OnceCell::new() })
+    }
+
+    pub(crate) fn as_str(&self) -> &str {
+        &self.text
+    }
+
+    /// Length of the byte order mark, which the text lacks.
+    pub(crate) fn base(&self) -> usize {
+        self.base
+    }
+
+    /// Line of an offset, from 1.
+    pub(crate) fn line(&self, offset: usize) -> usize {
+        let newlines =
+            self.newlines.get_or_init(|| self.text.match_indices('\n').map(|(i, _)| i).collect());
+        1 + newlines.partition_point(|i| *i < offset)
+    }
+
+    /// Offset of a part of this text.
+    pub(crate) fn offset_of(&self, part: &str) -> Option<usize> {
+        let start = (part.as_ptr() as usize).checked_sub(self.text.as_ptr() as usize)?;
+        (start.checked_add(part.len())? <= self.text.len()).then_some(start)
+    }
+
+    pub(crate) fn refuse(&self, offset: usize, problem: FileProblem) -> Refusal {
+        Refusal { line: Some(self.line(offset)), problem }
+    }
+
+    pub(crate) fn malformed(&self, offset: usize, message: impl std::fmt::Display) -> Refusal {
+        self.refuse(offset, FileProblem::Malformed { message: message.to_string() })
+    }
+}
+
+/// Whether an XML declaration names an encoding that extends ASCII byte by byte.
+fn declares_latin(body: &[u8]) -> bool {
+    let head = String::from_utf8_lossy(&body[..body.len().min(200)]).to_ascii_lowercase();
+    let Some((declaration, _)) = head.strip_prefix("<?xml").and_then(|rest| rest.split_once("?>"))
+    else {
+        return false;
+    };
+    ["iso-8859-", "windows-125", "us-ascii", "latin1", "latin-1"]
+        .iter()
+        .any(|name| declaration.contains(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn offsets_and_lines() {
+        let text = Text::new(b"\xef\xbb\xbfa\r\nb\nc", false).unwrap();
+        assert_eq!((text.as_str(), text.base()), ("a\r\nb\nc", 3));
+        assert_eq!([0, 2, 3, 5].map(|i| text.line(i)), [1, 1, 2, 3]);
+        assert_eq!(text.offset_of(&text.as_str()[3..4]), Some(3));
+        assert_eq!(text.offset_of("elsewhere"), None);
+    }
+
+    #[test]
+    fn encodings_are_told_apart() {
+        let problem = |bytes: &[u8]| Text::new(bytes, false).unwrap_err().problem;
+        assert!(matches!(problem(b""), FileProblem::Empty));
+        assert!(matches!(problem(b"\xef\xbb\xbf \n"), FileProblem::Empty));
+        assert!(matches!(problem(b"\xff\xfe<\0r\0"), FileProblem::Utf16));
+        assert!(matches!(problem(b"<\0r\0o\0"), FileProblem::Utf16));
+        assert!(matches!(problem(b"\0<\0r\0o"), FileProblem::Utf16));
+        assert!(matches!(problem(b"\x7fELF\x02\x01\0"), FileProblem::Binary));
+        assert!(matches!(problem(b"a\0"), FileProblem::Binary));
+        let refusal = Text::new(b"a\nb\xe9\n", false).unwrap_err();
+        assert!(matches!(refusal.problem, FileProblem::NotUtf8));
+        assert_eq!(refusal.line, Some(2));
+        assert_eq!(Text::new(b"m\xb2", true).unwrap().as_str(), "m?");
+        let declared = b"<?xml version='1.0' encoding='ISO-8859-1'?><r n='\xe9'/>";
+        assert!(Text::new(declared, false).unwrap().as_str().ends_with("n='?'/>"));
+    }
+}
