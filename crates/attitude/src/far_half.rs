@@ -82,7 +82,8 @@ impl Slices {
     fn ln_density(&self, eta: f64) -> f64 {
         let (r, l) = libm::sincos(eta);
         if r < 1e-12 {
-            return -1e6;
+            // Not some large negative number: narrow laws have −1e12 elsewhere.
+            return f64::NEG_INFINITY;
         }
         let off = 1.0 - l;
         let lambda = self.eigenvalues.map(|a| a * r * r);
@@ -140,6 +141,20 @@ fn across(c: &Vector4<f64>) -> Matrix4x3<f64> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    /// Narrow laws, whose far half is e^−1e12 of them: the pole at −m is no peak.
+    #[test]
+    fn narrow_laws_have_no_far_half() {
+        for exponent in 1..=14 {
+            let lambda = 10f64.powi(exponent);
+            for center in [[0.0, 0.0, 0.0, 1.0], [0.5; 4], [0.6, 0.0, -0.8, 0.0]] {
+                let whole = Contour::new([lambda; 4], center, 0.0).ln_integral();
+                let share = (ln_integral([lambda; 4], center) - whole).exp();
+                // Half of the area is at least √2 away.
+                assert!(share <= (-0.9 * lambda).exp(), "{lambda:e} {center:?}: {share:e}");
+            }
+        }
+    }
 
     proptest! {
         #[test]

@@ -273,6 +273,46 @@ fn bingham_is_the_limit() {
     assert!(Law::new(mean, off_axis).is_err(), "an infinite variance has to stand alone");
 }
 
+/// The share of the far half is that of draws, also where the rest of the far half is e^−1e8 of its peak:
+/// there the pole at −m once passed for the peak.
+#[test]
+fn shares_of_the_far_half_are_those_of_draws() {
+    let narrow = [
+        (
+            [-0.931_526_7, -0.065_808_4, -0.034_195_1, 0.356_030_8],
+            [2.005e-8, 0.787_737, 1.567e-5, 6.791_837],
+        ),
+        (
+            [0.436_424_7, -0.153_347_4, 0.882_235_9, -0.087_623_3],
+            [1.78e-5, 1.335e-8, 5.18e-8, 9.8e7],
+        ),
+        ([0.511_577, 0.414_380_8, -0.172_748_3, 0.732_622_4], [1.07e-11, 1.67e-9, 9.5e-5, 9.4e-8]),
+        ([-0.338_108_6, 0.773_703_3, -0.052_905_6, 0.533_166_8], [2.8e-7, 6.8e-14, 2.45e-4, 0.67]),
+    ];
+    let mut rng = rng(13);
+    let random = (0..60).map(|i| {
+        let q: UnitQuaternion<f64> = UniformAttitude.sample(&mut rng);
+        let level = f64::from(i % 3) * 2.0 - 4.0;
+        let variances = std::array::from_fn(|_| 10f64.powf(level + rng.random_range(-3.0..3.0)));
+        (q.coords.into(), variances)
+    });
+    let random: Vec<_> = random.collect();
+    let mut far_halves = 0;
+    for (mean, variances) in narrow.into_iter().chain(random) {
+        const DRAWS: usize = 20_000;
+        let law = law(mean, variances);
+        let share = law.far_half_share();
+        assert!((0.0..=0.5 + 1e-9).contains(&share), "{mean:?} {variances:?}: {share}");
+        let far = (0..DRAWS).filter(|_| !law.in_mean_half(&law.sample(&mut rng))).count() as f64;
+        let n = DRAWS as f64;
+        let error = (share * (1.0 - share) / n).sqrt().max(0.3 / n);
+        let z = (far / n - share) / error;
+        assert!(z.abs() < 4.5, "{mean:?} {variances:?}: {share}, of draws {}", far / n);
+        far_halves += usize::from(share > 1e-3);
+    }
+    assert!(far_halves > 10, "{far_halves} with something in the far half");
+}
+
 /// The covariance of the attitude is that of draws, and to second order that of rotation vectors.
 #[test]
 fn rotation_covariances_are_those_of_draws() {
