@@ -318,7 +318,7 @@ impl Path {
     fn end<const N: usize>(&self, k: &Exponent<N>) -> f64 {
         let root = |xi: f64| k.depth(self.point(xi).0).max(0.0).sqrt() - DEPTH.sqrt();
         let (mut low, mut at_low) = (0.0, -DEPTH.sqrt());
-        let mut high = (self.scale * DEPTH.sqrt()).min(8.0);
+        let mut high = (self.scale * DEPTH.sqrt()).clamp(f64::MIN_POSITIVE, 8.0);
         let mut at_high = root(high);
         while at_high < 0.0 && high < 64.0 {
             (low, at_low) = (high, at_high);

@@ -9,10 +9,14 @@
 use nalgebra::{Matrix3, Matrix4x3, Vector3, Vector4};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::{contour::Contour, jacobi, quadrature::kronrod};
+use crate::{contour::Contour, fisher_bingham::centering_shift, jacobi, quadrature::kronrod};
 
 const TOLERANCE: f64 = 1e-12;
 const MAX_ARCS: usize = 200;
+/// What is smaller than the peak by e^−60 adds nothing.
+const NOTHING: f64 = 60.0;
+/// ln 4π.
+const LN_SPHERE: f64 = 2.531_024_246_969_290_8;
 
 /// ln ∫ exp(−½ Σ λ(y − c)²) dS over the half y·c < 0 of S³, |c| = 1.
 pub(crate) fn ln_integral(lambda: [f64; 4], center: [f64; 4]) -> f64 {
@@ -25,12 +29,20 @@ pub(crate) fn ln_integral(lambda: [f64; 4], center: [f64; 4]) -> f64 {
         ends.extend([peak - step, peak + step].iter().filter(|e| **e > FRAC_PI_2 && **e < PI));
         step *= 3.0;
     }
+    // Towards −m the slices shrink, and the density changes where they reach a deviation.
+    for eigenvalue in slices.eigenvalues {
+        let mut step = 1.0 / eigenvalue.sqrt();
+        while step < FRAC_PI_2 {
+            ends.push(PI - step);
+            step *= 4.0;
+        }
+    }
     ends.sort_by(f64::total_cmp);
     ends.dedup();
     let integrate = |low: f64, high: f64| {
         let (mut fine, mut coarse) = (0.0, 0.0);
         for (eta, f, c) in kronrod(low, high) {
-            let value = libm::exp(slices.ln_density(eta) - ln_peak);
+            let value = libm::exp(slices.ln_density(eta, ln_peak - NOTHING) - ln_peak);
             fine += f * value;
             coarse += c * value;
         }
@@ -78,8 +90,8 @@ impl Slices {
         Self { kappa, eigenvalues, drift }
     }
 
-    /// ln of the density of η, not normalised.
-    fn ln_density(&self, eta: f64) -> f64 {
+    /// ln of the density of η, not normalised; −∞ where it is surely below `least`.
+    fn ln_density(&self, eta: f64, least: f64) -> f64 {
         let (r, l) = libm::sincos(eta);
         if r < 1e-12 {
             // Not some large negative number: narrow laws have −1e12 elsewhere.
@@ -88,9 +100,27 @@ impl Slices {
         let off = 1.0 - l;
         let lambda = self.eigenvalues.map(|a| a * r * r);
         let center: [f64; 3] = (self.drift * (-off / r)).into();
-        let slack = 1.0 - center.iter().map(|c| c * c).sum::<f64>();
-        let slice = Contour::<3>::new(lambda, center, slack).ln_integral();
-        slice + 2.0 * libm::log(r) - 0.5 * self.kappa * off * off
+        let square = center.iter().map(|c| c * c).sum::<f64>();
+        // No point of the slice is nearer to s* than this.
+        let gap = (square.sqrt() - 1.0).max(0.0);
+        let stiffness = lambda.into_iter().fold(f64::INFINITY, f64::min);
+        let radial = -0.5 * self.kappa * off * off;
+        if radial - 0.5 * stiffness * gap * gap + LN_SPHERE < least {
+            return f64::NEG_INFINITY;
+        }
+        let slice = if square < 4.0 {
+            Contour::<3>::new(lambda, center, 1.0 - square).ln_integral()
+        } else {
+            // The same linear term with a center on the slice, which is what the contour is made for.
+            let b: [f64; 3] = std::array::from_fn(|j| lambda[j] * center[j]);
+            let shift = centering_shift(lambda, b);
+            let stiffer = lambda.map(|l| l + shift);
+            let on: [f64; 3] = std::array::from_fn(|j| b[j] / stiffer[j]);
+            let slack = 1.0 - on.iter().map(|c| c * c).sum::<f64>();
+            let product: f64 = (0..3).map(|j| center[j] * on[j]).sum();
+            Contour::<3>::new(stiffer, on, slack).ln_integral() + 0.5 * shift * (1.0 - product)
+        };
+        slice + 2.0 * libm::log(r) + radial
     }
 
     /// Where the density of η is largest in the far half, its logarithm there, and how far it is to
@@ -99,18 +129,24 @@ impl Slices {
         const POINTS: i32 = 64;
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let at = |i: i32| FRAC_PI_2 * (1.0 + f64::from(i) / f64::from(POINTS));
-        let coarse = (0..=POINTS).map(|i| (i, self.ln_density(at(i))));
+        let coarse = (0..=POINTS).map(|i| (i, self.ln_density(at(i), f64::MIN)));
         let (best, _) = coarse.fold((0, f64::MIN), |b, v| if v.1 > b.1 { v } else { b });
         let (mut low, mut high) = (at((best - 1).max(0)), at((best + 1).min(POINTS)));
         while high - low > 1e-7 {
             let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-            if self.ln_density(a) > self.ln_density(b) { high = b } else { low = a }
+            if self.ln_density(a, f64::MIN) > self.ln_density(b, f64::MIN) {
+                high = b
+            } else {
+                low = a
+            }
         }
-        let candidates = [low, 0.5 * (low + high), at(best)].map(|x| (x, self.ln_density(x)));
+        let candidates =
+            [low, 0.5 * (low + high), at(best)].map(|x| (x, self.ln_density(x, f64::MIN)));
         let (peak, top) =
             candidates.into_iter().fold((low, f64::MIN), |b, v| if v.1 > b.1 { v } else { b });
         let mut width = 1e-7;
-        let fallen = |x: f64| x <= FRAC_PI_2 || x >= PI || self.ln_density(x) < top - 0.5;
+        let fallen =
+            |x: f64| x <= FRAC_PI_2 || x >= PI || !(self.ln_density(x, top - 1.0) >= top - 0.5);
         while width < 1.0 && !(fallen(peak - width) && fallen(peak + width)) {
             width *= 2.0;
         }
@@ -153,6 +189,22 @@ mod tests {
                 // Half of the area is at least √2 away.
                 assert!(share <= (-0.9 * lambda).exp(), "{lambda:e} {center:?}: {share:e}");
             }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        /// Bingham's law has one half of itself on either side, however bimodal.
+        #[test]
+        fn half_of_binghams_law_is_far(e in prop::array::uniform3(-6.0..8.0f64), k in 0..4_usize) {
+            let mut lambda = [1e-14; 4];
+            for j in 0..3 {
+                lambda[(k + 1 + j) % 4] = 10f64.powf(e[j]);
+            }
+            let mut center = [0.0; 4];
+            center[k] = 1.0;
+            let share = (ln_integral(lambda, center) - Contour::new(lambda, center, 0.0).ln_integral()).exp();
+            prop_assert!((share - 0.5).abs() < 1e-11, "{lambda:?}: {share}");
         }
     }
 

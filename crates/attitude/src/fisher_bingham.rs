@@ -12,14 +12,30 @@ const MAX_SPREAD: f64 = 1e14;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FisherBinghamError {
-    /// An entry of P or b is NaN, infinite or too large.
-    #[error("entry {value:e}: every entry must be finite and at most {MAX_SPREAD:e} in magnitude")]
-    Entry {
+    /// An entry of P is NaN, infinite or too large.
+    #[error(
+        "P{row}{column} = {value:?}: it must be finite and at most {MAX_SPREAD:e} in magnitude"
+    )]
+    Precision {
+        /// Row, from 1.
+        row: usize,
+        /// Column, from 1.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// An entry of b is NaN, infinite or too large.
+    #[error("b{row} = {value:?}: it must be finite and at most {MAX_SPREAD:e} in magnitude")]
+    Linear {
+        /// Row, from 1.
+        row: usize,
         /// The entry.
         value: f64,
     },
     /// P is not symmetric.
-    #[error("P{row}{column} = {upper} but P{column}{row} = {lower}: the matrix must be symmetric")]
+    #[error(
+        "P{row}{column} = {upper:?} but P{column}{row} = {lower:?}: the matrix must be symmetric"
+    )]
     NotSymmetric {
         /// Row of the upper entry, from 1.
         row: usize,
@@ -54,7 +70,7 @@ pub enum Method {
 /// With b = 0 it is Bingham's law, with P = 0 von Mises-Fisher's.
 ///
 /// # Algorithm
-/// Rejection, exact and independent, from one of three proposals ([`Method`]), at least 60 % of which
+/// Rejection, exact and independent, from one of three proposals ([`Method`]), more than half of which
 /// are accepted: [`acceptance`](Self::acceptance) says how many. The proposals are set up when the law
 /// is first drawn from: in microseconds, for [`Method::Cells`] in some milliseconds. Normaliser and
 /// moments by a contour integral, to about 1e-13 of the largest of |b|, the entries of P and one.
@@ -96,10 +112,18 @@ impl FisherBingham {
     /// # Errors
     /// An entry is not finite or larger than 1e14, or P is not symmetric to rounding.
     pub fn new(precision: Matrix4<f64>, linear: Vector4<f64>) -> Result<Self, FisherBinghamError> {
-        if let Some(&value) =
-            precision.iter().chain(linear.iter()).find(|x| !(x.abs() <= MAX_SPREAD))
-        {
-            return Err(FisherBinghamError::Entry { value });
+        for row in 0..4 {
+            for column in 0..4 {
+                let value = precision[(row, column)];
+                if !(value.abs() <= MAX_SPREAD) {
+                    let (row, column) = (row + 1, column + 1);
+                    return Err(FisherBinghamError::Precision { row, column, value });
+                }
+            }
+            let value = linear[row];
+            if !(value.abs() <= MAX_SPREAD) {
+                return Err(FisherBinghamError::Linear { row: row + 1, value });
+            }
         }
         let size = precision.amax();
         let precision = symmetric_part(&precision, |_, _| size).map_err(|[row, column]| {
@@ -377,11 +401,11 @@ pub(crate) fn symmetric_part(
 
 /// μ that makes P + μ·1 positive definite and |(P + μ·1)⁻¹b| ≤ 1, equal to 1 where it can be: then
 /// the normaliser's exponent has no large terms to cancel.
-pub(crate) fn centering_shift(eigenvalues: [f64; 4], b: [f64; 4]) -> f64 {
+pub(crate) fn centering_shift<const N: usize>(eigenvalues: [f64; N], b: [f64; N]) -> f64 {
     let floor = eigenvalues.into_iter().fold(f64::INFINITY, f64::min);
     // In d = μ + min P > 0.
     let square =
-        |d: f64| -> f64 { (0..4).map(|j| (b[j] / ((eigenvalues[j] - floor) + d)).powi(2)).sum() };
+        |d: f64| -> f64 { (0..N).map(|j| (b[j] / ((eigenvalues[j] - floor) + d)).powi(2)).sum() };
     let (mut low, mut high) = (1.0, 2.0);
     if square(low) <= 1.0 {
         return low - floor;

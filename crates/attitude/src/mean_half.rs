@@ -80,6 +80,24 @@ impl MeanHalf {
     }
 }
 
+impl MeanHalf {
+    /// Fills a slice with independent draws: see
+    /// [`FisherBingham::sample_into`](crate::FisherBingham::sample_into).
+    pub fn sample_into<R: Rng + ?Sized>(&self, rng: &mut R, out: &mut [UnitQuaternion<f64>]) {
+        let mut kept = 0;
+        while kept < out.len() {
+            self.whole.sample_into(rng, &mut out[kept..]);
+            let drawn = kept..out.len();
+            for i in drawn {
+                if self.whole.in_mean_half(&out[i]) {
+                    out.swap(kept, i);
+                    kept += 1;
+                }
+            }
+        }
+    }
+}
+
 impl From<RadiallyConstrainedGaussian> for MeanHalf {
     fn from(law: RadiallyConstrainedGaussian) -> Self {
         Self::new(law)
@@ -121,6 +139,31 @@ mod tests {
         let far = (0..1000).filter(|_| !whole.in_mean_half(&whole.sample(&mut rng))).count();
         assert!(far > 200, "the whole law has a far half to lose: {far}");
         assert!((0..1000).all(|_| whole.in_mean_half(&half.sample(&mut rng))));
+    }
+
+    /// Batches and single draws have the same first moments.
+    #[test]
+    fn batches_are_of_the_same_law() {
+        const N: usize = 100_000;
+        let covariance = Matrix4::from_diagonal(&Vector4::new(2e-5, 6e-4, 6e-4, 0.6));
+        let mean = UnitQuaternion::from_euler_angles(0.05, 0.0, -0.02);
+        let half = MeanHalf::new(RadiallyConstrainedGaussian::new(mean, covariance).unwrap());
+        let mut rng = ChaCha8Rng::seed_from_u64(2);
+        let mut batch = vec![UnitQuaternion::identity(); N];
+        half.sample_into(&mut rng, &mut batch);
+        assert!(batch.iter().all(|q| half.whole().in_mean_half(q)));
+        let single: Vec<_> = (0..N).map(|_| half.sample(&mut rng)).collect();
+        for k in 0..4 {
+            let moments = |draws: &[UnitQuaternion<f64>]| {
+                let mean = draws.iter().map(|q| q.coords[k]).sum::<f64>() / N as f64;
+                let square = draws.iter().map(|q| (q.coords[k] - mean).powi(2)).sum::<f64>();
+                (mean, square / N as f64)
+            };
+            let ((a, v), (b, w)) = (moments(&batch), moments(&single));
+            let z = (a - b) / ((v + w) / N as f64).sqrt();
+            assert!(z.abs() < 4.0, "coordinate {k}: z = {z}");
+            assert!((v / w - 1.0).abs() < 0.05, "coordinate {k}: {v} {w}");
+        }
     }
 
     #[test]

@@ -17,13 +17,13 @@ pub(crate) const LN_PI_SQUARED: f64 = 2.289_459_771_698_800_3;
 #[non_exhaustive]
 pub enum RcgError {
     /// The mean is not a unit quaternion.
-    #[error("mean quaternion of norm {norm}: it must have norm 1")]
+    #[error("mean quaternion of norm {norm:?}: it must have norm 1")]
     Mean {
         /// The norm.
         norm: f64,
     },
     /// An entry of the covariance is NaN or infinite.
-    #[error("covariance entry ({row}, {column}) = {value}: it must be finite")]
+    #[error("covariance entry ({row}, {column}) = {value:?}: it must be finite")]
     Entry {
         /// Row, from 1.
         row: usize,
@@ -34,7 +34,7 @@ pub enum RcgError {
     },
     /// The covariance is not symmetric.
     #[error(
-        "covariance entries ({row}, {column}) = {upper} and ({column}, {row}) = {lower}: the \
+        "covariance entries ({row}, {column}) = {upper:?} and ({column}, {row}) = {lower:?}: the \
          matrix must be symmetric"
     )]
     NotSymmetric {
@@ -53,8 +53,29 @@ pub enum RcgError {
          between 1e-14 and 1e14"
     )]
     Eigenvalue {
-        /// The smallest eigenvalue, or the largest if that is what is out of range.
+        /// The smallest eigenvalue, or whatever variance or eigenvalue is out of range.
         eigenvalue: f64,
+    },
+    /// The covariance of small turns is not positive definite, or out of range.
+    #[error(
+        "covariance of turns with eigenvalue {eigenvalue:e} rad²: it must be positive definite, with \
+         eigenvalues between 4e-14 and 4e14 rad²"
+    )]
+    Turns {
+        /// The smallest eigenvalue, or whatever variance or eigenvalue is out of range, in rad².
+        eigenvalue: f64,
+    },
+    /// The radial variance is out of range.
+    #[error("radial variance {value:?}: it must be between 1e-14 and 1e14, or infinite")]
+    RadialVariance {
+        /// The value.
+        value: f64,
+    },
+    /// Principal axes are not orthonormal.
+    #[error("principal axes that are off orthonormal by {deviation:e}: at most 1e-12 is allowed")]
+    Axes {
+        /// The largest entry of VᵀV − 1.
+        deviation: f64,
     },
     /// Angles of the mean have no direction (Eq. 22).
     #[error(
@@ -100,7 +121,18 @@ pub struct RadiallyConstrainedGaussian {
     mean: UnitQuaternion<f64>,
     covariance: Matrix4<f64>,
     precision: Matrix4<f64>,
+    /// Axes and variances, if the law was made of them.
+    #[cfg(feature = "serde")]
+    principal: Option<Box<Principal>>,
     law: FisherBingham,
+}
+
+/// Principal axes (columns) and variances of Σ.
+#[cfg(feature = "serde")]
+#[derive(Clone, Copy, Debug)]
+struct Principal {
+    axes: Matrix4<f64>,
+    variances: [f64; 4],
 }
 
 impl RadiallyConstrainedGaussian {
@@ -127,13 +159,10 @@ impl RadiallyConstrainedGaussian {
         local: Matrix4<f64>,
         turn: &Matrix4<f64>,
     ) -> Result<Self, RcgError> {
-        let mean = checked_mean(mean)?;
         let local = checked_covariance(local)?;
-        let (eigenvalues, axes) = jacobi::eigen(&local);
-        check_eigenvalues(eigenvalues, &local)?;
-        let covariance = turn * local * turn.transpose();
-        let covariance = (covariance + covariance.transpose()) * 0.5;
-        Ok(Self::from_eigenform(mean, covariance, eigenvalues, turn * axes))
+        let (variances, axes) = jacobi::eigen(&local);
+        check_eigenvalues(variances, &local)?;
+        Self::from_principal(mean, turn * axes, variances)
     }
 
     fn from_eigenform(
@@ -146,7 +175,14 @@ impl RadiallyConstrainedGaussian {
         let center = axes.tr_mul(&mean.coords);
         let precision = axes * Matrix4::from_diagonal(&lambda.into()) * axes.transpose();
         let law = FisherBingham::centered(axes, lambda, center.into(), 0.0, 0.0);
-        Self { mean, covariance, precision, law }
+        Self {
+            mean,
+            covariance,
+            precision,
+            #[cfg(feature = "serde")]
+            principal: None,
+            law,
+        }
     }
 
     /// From the principal axes (columns) and variances of Σ, where its entries cannot hold both the
@@ -154,20 +190,29 @@ impl RadiallyConstrainedGaussian {
     /// for infinity.
     ///
     /// # Errors
-    /// The mean is not a unit quaternion, or a variance is NaN or not positive.
+    /// The mean is not a unit quaternion, the axes are not orthonormal, or a variance is NaN or not
+    /// positive.
     pub(crate) fn from_principal(
         mean: UnitQuaternion<f64>,
         axes: Matrix4<f64>,
         variances: [f64; 4],
     ) -> Result<Self, RcgError> {
         let mean = checked_mean(mean)?;
+        let deviation = (axes.tr_mul(&axes) - Matrix4::identity()).abs();
+        if let Some(&deviation) = deviation.iter().find(|d| !(**d < 1e-12)) {
+            return Err(RcgError::Axes { deviation });
+        }
         if let Some(&eigenvalue) = variances.iter().find(|s| !(**s > 0.0)) {
             return Err(RcgError::Eigenvalue { eigenvalue });
         }
         let variances = variances.map(|s| s.clamp(*EIGENVALUES.start(), *EIGENVALUES.end()));
         let covariance = axes * Matrix4::from_diagonal(&variances.into()) * axes.transpose();
         let covariance = (covariance + covariance.transpose()) * 0.5;
-        Ok(Self::from_eigenform(mean, covariance, variances, axes))
+        Ok(Self {
+            #[cfg(feature = "serde")]
+            principal: Some(Box::new(Principal { axes, variances })),
+            ..Self::from_eigenform(mean, covariance, variances, axes)
+        })
     }
 
     /// The mean attitude m, about which the Gaussian in ℝ⁴ is centred.
@@ -176,7 +221,9 @@ impl RadiallyConstrainedGaussian {
         self.mean
     }
 
-    /// The covariance Σ of the Gaussian in ℝ⁴.
+    /// The covariance Σ of the Gaussian in ℝ⁴. Of a law that was not made by [`new`](Self::new) it is
+    /// rounded: next to a variance of 1e14, those of a narrow law are lost off the coordinate axes, and
+    /// Σ may be indefinite. The law itself keeps its principal axes and variances.
     #[must_use]
     pub fn covariance(&self) -> Matrix4<f64> {
         self.covariance
@@ -277,7 +324,8 @@ impl RadiallyConstrainedGaussian {
     #[must_use]
     pub fn far_half_share(&self) -> f64 {
         let (_, lambda, center, _) = self.law.eigenform();
-        libm::exp(far_half::ln_integral(lambda, center) - self.ln_normaliser()).min(1.0)
+        let share = libm::exp(far_half::ln_integral(lambda, center) - self.ln_normaliser());
+        if share > 1.0 { 1.0 } else { share }
     }
 
     /// Whether q lies in the half sphere around the mean, x·m ≥ 0.
@@ -311,7 +359,7 @@ impl Distribution<UnitQuaternion<f64>> for RadiallyConstrainedGaussian {
     }
 }
 
-fn checked_mean(mean: UnitQuaternion<f64>) -> Result<UnitQuaternion<f64>, RcgError> {
+pub(crate) fn checked_mean(mean: UnitQuaternion<f64>) -> Result<UnitQuaternion<f64>, RcgError> {
     let norm = mean.norm();
     if !((norm - 1.0).abs() < 1e-9) {
         return Err(RcgError::Mean { norm });
@@ -322,7 +370,7 @@ fn checked_mean(mean: UnitQuaternion<f64>) -> Result<UnitQuaternion<f64>, RcgErr
 }
 
 /// Finite, symmetric, with variances in range.
-fn checked_covariance(mut covariance: Matrix4<f64>) -> Result<Matrix4<f64>, RcgError> {
+pub(crate) fn checked_covariance(mut covariance: Matrix4<f64>) -> Result<Matrix4<f64>, RcgError> {
     for j in 0..4 {
         let alone =
             (0..4).all(|i| i == j || (covariance[(i, j)] == 0.0 && covariance[(j, i)] == 0.0));
@@ -376,31 +424,49 @@ fn is_definite(covariance: &Matrix4<f64>) -> bool {
     (correlation - Matrix4::identity() * (16.0 * f64::EPSILON)).cholesky().is_some()
 }
 
-/// The serialized form: mean scalar last, covariance by rows.
+/// The serialized form: mean scalar last, and either Σ by rows or its principal axes, each a row, and
+/// variances, whichever the law was made of: what is read back is the same law to the bit.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Parameters {
     mean: [f64; 4],
-    covariance: [[f64; 4]; 4],
+    #[serde(default)]
+    covariance: Option<[[f64; 4]; 4]>,
+    #[serde(default)]
+    principal_axes: Option<[[f64; 4]; 4]>,
+    #[serde(default)]
+    principal_variances: Option<[f64; 4]>,
 }
 
 #[cfg(feature = "serde")]
 impl TryFrom<Parameters> for RadiallyConstrainedGaussian {
-    type Error = RcgError;
+    type Error = String;
 
-    fn try_from(p: Parameters) -> Result<Self, RcgError> {
+    fn try_from(p: Parameters) -> Result<Self, String> {
         let mean = UnitQuaternion::new_unchecked(Vector4::from(p.mean).into());
-        Self::new(mean, Matrix4::from_fn(|i, j| p.covariance[i][j]))
+        match (p.covariance, p.principal_axes, p.principal_variances) {
+            (Some(rows), None, None) => Self::new(mean, Matrix4::from_fn(|i, j| rows[i][j])),
+            (None, Some(axes), Some(variances)) => {
+                Self::from_principal(mean, Matrix4::from(axes), variances)
+            }
+            _ => {
+                return Err("either covariance, or principal_axes and principal_variances".into());
+            }
+        }
+        .map_err(|error| error.to_string())
     }
 }
 
 #[cfg(feature = "serde")]
 impl From<RadiallyConstrainedGaussian> for Parameters {
     fn from(law: RadiallyConstrainedGaussian) -> Self {
+        let covariance = law.covariance.transpose().into();
         Self {
             mean: law.mean.coords.into(),
-            covariance: std::array::from_fn(|i| std::array::from_fn(|j| law.covariance[(i, j)])),
+            covariance: law.principal.is_none().then_some(covariance),
+            principal_axes: law.principal.as_ref().map(|p| p.axes.into()),
+            principal_variances: law.principal.as_ref().map(|p| p.variances),
         }
     }
 }
@@ -762,8 +828,40 @@ mod tests {
         let back: RadiallyConstrainedGaussian = serde_json::from_str(&json).unwrap();
         assert_eq!(back.covariance(), law.covariance());
         assert_eq!(back.mean(), law.mean());
-        let bad = json.replace("0.6]", "-0.6]");
-        assert!(serde_json::from_str::<RadiallyConstrainedGaussian>(&bad).is_err());
+        let read = |json: &str| serde_json::from_str::<RadiallyConstrainedGaussian>(json);
+        assert!(read(&json.replace("0.6]", "-0.6]")).is_err());
+        assert!(
+            read(
+                &json.replace("\"principal_variances\":null", "\"principal_variances\":[1,1,1,1]")
+            )
+            .is_err()
+        );
+        assert!(read(r#"{"mean":[0,0,0,1]}"#).is_err());
+    }
+
+    /// Σ cannot hold these: 20 decades of variances, off the coordinate axes.
+    #[cfg(feature = "serde")]
+    #[test]
+    fn laws_of_narrow_turns_are_read_back_to_the_bit() {
+        let mut rng = ChaCha8Rng::seed_from_u64(12);
+        for variance in [1e-12, 1e-6, 1.0] {
+            for radial in [1e-3, 1.0, f64::INFINITY] {
+                let mean: UnitQuaternion<f64> = crate::UniformAttitude.sample(&mut rng);
+                let turns = Matrix3::new(2.0, 0.3, 0.1, 0.3, 1.0, -0.2, 0.1, -0.2, 3.0) * variance;
+                let law =
+                    RadiallyConstrainedGaussian::from_rotation_covariance(mean, turns, radial)
+                        .unwrap();
+                let json = serde_json::to_string(&law).unwrap();
+                let back: RadiallyConstrainedGaussian = serde_json::from_str(&json).unwrap();
+                assert_eq!(serde_json::to_string(&back).unwrap(), json);
+                assert_eq!(back.covariance(), law.covariance());
+                assert_eq!(back.ln_normaliser(), law.ln_normaliser());
+                let mut two = [9, 9].map(ChaCha8Rng::seed_from_u64);
+                assert_eq!(back.sample(&mut two[0]), law.sample(&mut two[1]));
+                let bent = json.replace("\"principal_axes\":[[", "\"principal_axes\":[[1");
+                assert!(serde_json::from_str::<RadiallyConstrainedGaussian>(&bent).is_err());
+            }
+        }
     }
 
     /// The first draws from a fixed seed, by every method: they change only on purpose.

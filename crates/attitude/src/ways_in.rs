@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Matrix4, UnitQuaternion};
 use crate::{
     HypersphericalAngles, RadiallyConstrainedGaussian, RcgError,
     fisher_bingham::left_multiplication,
+    rcg::{checked_covariance, checked_mean},
 };
 
 /// Sines below this leave a hyperspherical direction to rounding.
@@ -22,7 +23,8 @@ impl RadiallyConstrainedGaussian {
     /// identity included.
     ///
     /// # Errors
-    /// The mean is not a unit quaternion, or P or s is not finite, symmetric and positive definite.
+    /// The mean is not a unit quaternion, P is not finite, symmetric and positive definite with
+    /// eigenvalues between 4e-14 and 4e14 rad², or s is not between 1e-14 and 1e14 or infinite.
     ///
     /// ```
     /// use gyradius_attitude::RadiallyConstrainedGaussian;
@@ -44,16 +46,45 @@ impl RadiallyConstrainedGaussian {
         rotation_covariance_rad2: Matrix3<f64>,
         radial_variance: f64,
     ) -> Result<Self, RcgError> {
-        let mut local = Matrix4::zeros();
-        local.fixed_view_mut::<3, 3>(0, 0).copy_from(&(rotation_covariance_rad2 * 0.25));
+        Self::from_turns(mean, rotation_covariance_rad2, 1.0, radial_variance)
+    }
+
+    /// From a covariance whose unit is `unit` rad².
+    fn from_turns(
+        mean: UnitQuaternion<f64>,
+        turns: Matrix3<f64>,
+        unit: f64,
+        radial_variance: f64,
+    ) -> Result<Self, RcgError> {
+        let mean = checked_mean(mean)?;
+        let finite = 1e-14..=1e14;
+        if !(finite.contains(&radial_variance) || radial_variance == f64::INFINITY) {
+            return Err(RcgError::RadialVariance { value: radial_variance });
+        }
+        let mut local = Matrix4::identity();
+        local.fixed_view_mut::<3, 3>(0, 0).copy_from(&turns);
+        // As it was given, so that an error names the entries that the caller knows.
+        let mut local = match checked_covariance(local) {
+            Err(error @ (RcgError::Entry { .. } | RcgError::NotSymmetric { .. })) => {
+                return Err(error);
+            }
+            Err(_) => local,
+            Ok(symmetric) => symmetric,
+        };
+        local *= 0.25 * unit;
         local[(3, 3)] = radial_variance;
-        Self::turned(mean, local, &left_multiplication(&mean))
+        let law = Self::turned(mean, local, &left_multiplication(&mean));
+        law.map_err(|error| match error {
+            RcgError::Eigenvalue { eigenvalue } => RcgError::Turns { eigenvalue: 4.0 * eigenvalue },
+            other => other,
+        })
     }
 
     /// The same from a covariance in deg².
     ///
     /// # Errors
-    /// As for [`from_rotation_covariance`](Self::from_rotation_covariance), with the values in rad².
+    /// As for [`from_rotation_covariance`](Self::from_rotation_covariance); eigenvalues are named
+    /// in rad².
     ///
     /// ```
     /// use gyradius_attitude::RadiallyConstrainedGaussian;
@@ -75,7 +106,7 @@ impl RadiallyConstrainedGaussian {
         radial_variance: f64,
     ) -> Result<Self, RcgError> {
         let square = (std::f64::consts::PI / 180.0).powi(2);
-        Self::from_rotation_covariance(mean, rotation_covariance_deg2 * square, radial_variance)
+        Self::from_turns(mean, rotation_covariance_deg2, square, radial_variance)
     }
 
     /// From the covariance Σ̄ of the hyperspherical angles and the radius, in the order
@@ -89,6 +120,7 @@ impl RadiallyConstrainedGaussian {
         mean: UnitQuaternion<f64>,
         covariance: Matrix4<f64>,
     ) -> Result<Self, RcgError> {
+        let mean = checked_mean(mean)?;
         let turn = hyperspherical_axes(&mean)?;
         Self::turned(mean, covariance, &turn)
     }
@@ -183,6 +215,39 @@ mod tests {
         for (p, s) in [(p, -1.0), (p, f64::NAN), (-p, 0.1), (p * f64::INFINITY, 0.1)] {
             assert!(RadiallyConstrainedGaussian::from_rotation_covariance(mean, p, s).is_err());
         }
+    }
+
+    #[test]
+    fn errors_name_what_was_given() {
+        let mean = UnitQuaternion::from_euler_angles(0.7, -0.4, 1.9);
+        let deg2 = |p, s| {
+            let law = RadiallyConstrainedGaussian::from_rotation_covariance_deg2(mean, p, s);
+            law.unwrap_err().to_string()
+        };
+        let good = Matrix3::from_fn(|i, j| 1e4 * P[i][j]);
+        let mut askew = good;
+        askew[(0, 1)] = 2.0;
+        let text = deg2(askew, 0.1);
+        assert!(text.contains("(1, 2) = 2.0 and (2, 1) = 1.0"), "{text}");
+        let mut nan = good;
+        nan[(2, 2)] = f64::NAN;
+        let text = deg2(nan, 0.1);
+        assert!(text.contains("(3, 3) = NaN"), "{text}");
+        let text = deg2(good, -1e300);
+        assert!(text.starts_with("radial variance -1e300"), "{text}");
+        let error = RadiallyConstrainedGaussian::from_rotation_covariance(mean, -good, 0.1);
+        assert!(matches!(error, Err(RcgError::Turns { eigenvalue: -4.0 })), "{error:?}");
+        let error = RadiallyConstrainedGaussian::from_rotation_covariance(
+            mean,
+            Matrix3::new(1.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+            0.1,
+        );
+        let Err(RcgError::Turns { eigenvalue }) = error else { panic!("{error:?}") };
+        assert!((eigenvalue + 1.0).abs() < 1e-12, "{eigenvalue}");
+        let long = UnitQuaternion::new_unchecked(mean.into_inner() * 2.0);
+        let error =
+            RadiallyConstrainedGaussian::from_hyperspherical_covariance(long, Matrix4::identity());
+        assert!(matches!(error, Err(RcgError::Mean { .. })), "{error:?}");
     }
 
     proptest! {

@@ -136,6 +136,48 @@ impl Sample {
         eta
     }
 
+    /// Means of the scaled sample with signs that hold one half of it together: the local maxima
+    /// of |Σ ±u| over the signs, the greatest first.
+    pub(crate) fn halves(&self) -> Vec<Vector4<f64>> {
+        let mut means: Vec<Vector4<f64>> = Vec::new();
+        for direction in root_lines() {
+            let mut mean = self.signed_mean(&direction);
+            for _ in 0..100 {
+                let next = self.signed_mean(&mean);
+                if next == mean {
+                    break;
+                }
+                mean = next;
+            }
+            if !means.iter().any(|m| (m - mean).norm().min((m + mean).norm()) < 1e-6) {
+                means.push(mean);
+            }
+        }
+        means.sort_by(|a, b| b.norm_squared().total_cmp(&a.norm_squared()));
+        means
+    }
+
+    fn signed_mean(&self, direction: &Vector4<f64>) -> Vector4<f64> {
+        let mut sum = Vector4::zeros();
+        for u in &self.points {
+            sum += u * 1.0_f64.copysign(direction.dot(u));
+        }
+        sum / self.len()
+    }
+
+    /// The Gaussian with this mean and the sample's second moment, in scaled coordinates.
+    pub(crate) fn gaussian(&self, mean: &Vector4<f64>) -> Form {
+        // Steeper forms are rounding where they are flat.
+        let slack = (1.0 - mean.norm_squared()).max(1e-8);
+        let b = mean / slack;
+        let p = Matrix4::identity() + b * mean.transpose();
+        let scale = Vector4::from(self.scale);
+        Form {
+            p: Matrix4::from_fn(|i, j| p[(i, j)] / (scale[i] * scale[j])),
+            b: b.component_div(&scale),
+        }
+    }
+
     /// Root mean square distance of the sample from the law's thinnest hyperplane, signs as the law
     /// has them, and the same over the sample's extent in that direction.
     pub(crate) fn thickness(&self, form: &Form) -> (f64, f64) {
@@ -252,6 +294,24 @@ impl Sample {
         square.fill_upper_triangle_with_lower_triangle();
         (mean, square - mean * mean.transpose())
     }
+}
+
+/// The 24 lines through opposite roots of F₄: no direction of ℝ⁴ is farther than 32° from one.
+pub(crate) fn root_lines() -> Vec<Vector4<f64>> {
+    let mut lines = Vec::with_capacity(24);
+    for i in 0..4 {
+        lines.push(Vector4::ith(i, 1.0));
+        for j in 0..i {
+            for sign in [1.0, -1.0] {
+                lines.push(Vector4::ith(i, 1.0) + Vector4::ith(j, sign));
+            }
+        }
+    }
+    for signs in 0..8_u8 {
+        let sign = |bit: u8| if signs >> bit & 1 == 0 { 0.5 } else { -0.5 };
+        lines.push(Vector4::new(0.5, sign(0), sign(1), sign(2)));
+    }
+    lines
 }
 
 fn half_if(diagonal: bool) -> f64 {

@@ -15,8 +15,6 @@ const QUANTILE: f64 = 3.841_458_820_694_124;
 /// Range of τ = 1/s.
 const TAU_RANGE: std::ops::RangeInclusive<f64> = 1e-14..=1e14;
 
-/// Where Bingham's law is split to start a search, in standard deviations.
-const SPLIT: f64 = 1.5;
 /// The attitudes lie on a small sphere if they are no farther from it than this share of how far
 /// they spread. Rounding stops a search that has no end at 1e-7 or so.
 const THINNEST: f64 = 1e-5;
@@ -143,17 +141,11 @@ impl<'a> Search<'a> {
     }
 
     /// Where to look for the most likely law of all.
-    pub(super) fn starts(&self, bingham: &Climb<Point>, aligned: &Climb<Point>) -> [Form; 6] {
-        // To second order exp(−½ (v·x)²) cosh(v·x) is flat: a split that the law hardly feels.
-        let split = |axis: usize| {
-            let mut form = bingham.place.form();
-            let push = SPLIT / self.sample.scale[axis];
-            form.b[axis] = push;
-            form.p[(axis, axis)] += push * push;
-            form
-        };
+    pub(super) fn starts(&self, bingham: &Climb<Point>, aligned: &Climb<Point>) -> Vec<Form> {
         let narrow = Point { tau: 1.0 / self.sample.scale[2].powi(2), ..bingham.place };
-        [aligned.place.form(), narrow.form(), split(0), split(1), split(2), split(3)]
+        let mut starts = vec![aligned.place.form(), narrow.form()];
+        starts.extend(self.sample.halves().iter().map(|mean| self.sample.gaussian(mean)));
+        starts
     }
 
     /// The most likely law of all.
@@ -168,7 +160,8 @@ impl<'a> Search<'a> {
             .map(|form| climb(&Natural(self.sample), self.sample.parameters(form), ALL, self.n))
             .filter(|top| top.height.is_finite())
             .reduce(|best, top| if top.height > best.height { top } else { best });
-        let Some(top) = top else {
+        // Uniform attitudes have no better law than the uniform one, which is of every family.
+        let Some(top) = top.filter(|top| self.n * (top.height - aligned.height) > 1e-9) else {
             return Ok(aligned.clone());
         };
         let form = self.sample.form(&top.place);
@@ -179,7 +172,7 @@ impl<'a> Search<'a> {
         let place = Point::of(&form);
         let steepest = jacobi::eigen(&place.form_about_mean()).0.into_iter().fold(0.0, f64::max);
         if !(steepest <= *TAU_RANGE.end()) {
-            return Err(FitError::Degenerate { spread: 1.0 / steepest.sqrt() });
+            return Err(FitError::Steep { variance: 1.0 / steepest });
         }
         Ok(moved(&top, place))
     }

@@ -1,11 +1,12 @@
 use super::{
     climb::Hill,
-    likelihood::{Evaluation, Sample, Vector},
+    likelihood::{Evaluation, Sample, Vector, root_lines},
     point::{Natural, Point, TRIANGLE},
     *,
 };
 use nalgebra::{Matrix4, Vector3, Vector4};
 use proptest::prelude::*;
+use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::Distribution;
 
@@ -207,6 +208,27 @@ fn the_highest_maximum_is_found() {
     assert!(
         (general.law().covariance().row(0) - Vector4::from(first_row).transpose()).amax() < 1e-6
     );
+}
+
+/// Small spheres and lobes that lie askew to the second moment, where a search from its axes stops
+/// up to a thousand below.
+#[test]
+fn no_fit_is_below_the_true_law() {
+    for (low, high, seed) in [(-6.0, 0.0, 500), (-2.0, 1.0, 1000), (-8.0, 8.0, 2000)] {
+        for n in [60, 400] {
+            for seed in seed..seed + 12 {
+                let mut rng = ChaCha8Rng::seed_from_u64(seed);
+                let variances = std::array::from_fn(|_| 10f64.powf(rng.random_range(low..high)));
+                let mean: UnitQuaternion<f64> = crate::UniformAttitude.sample(&mut rng);
+                let truth = law(mean.coords.into(), variances);
+                let data = draw(&truth, n, seed);
+                let fit = RadiallyConstrainedGaussian::fit_family(&data, Family::General).unwrap();
+                let ahead = fit.ln_likelihood() - ln_likelihood(&truth, &data);
+                assert!(ahead > 0.0, "{truth:?} of {n}: {ahead}");
+                assert!(fit.convergence().converged, "{truth:?} of {n}");
+            }
+        }
+    }
 }
 
 fn nearly(a: &Fit, b: &Fit, what: &str) {
@@ -440,6 +462,31 @@ fn spreads_from_a_ten_millionth_to_uniform_are_served() {
     assert!(fit.uniform_p_value() < 1e-50);
 }
 
+/// The general law has no maximum there, as coordinates hold few digits across the sphere.
+#[test]
+fn a_few_attitudes_in_a_narrow_cluster_are_served() {
+    for (spread, n, seeds) in [(6e-7, 13, 40), (3.5e-7, 1000, 4)] {
+        for seed in 0..seeds {
+            let data = draw(&turned(spread), n, seed);
+            let fit = RadiallyConstrainedGaussian::fit(&data).unwrap();
+            let sigma = fit.turn_covariance()[(0, 0)].sqrt() / spread;
+            assert!((0.3..2.0).contains(&sigma), "{spread} {n} {seed}: {sigma}");
+        }
+    }
+}
+
+#[test]
+fn the_uniform_law_is_fitted_to_a_group() {
+    let points: Vec<_> = (0..24)
+        .map(|i| UnitQuaternion::from_quaternion(Quaternion::from(root_lines()[i])))
+        .collect();
+    for family in [Family::Chosen, Family::Bingham, Family::Aligned, Family::General] {
+        let fit = RadiallyConstrainedGaussian::fit_family(&points, family).unwrap();
+        assert!(fit.ln_likelihood().abs() < 1e-9 && fit.uniform_p_value() > 0.99, "{family:?}");
+        assert!(fit.mean_covariance().is_none());
+    }
+}
+
 #[test]
 fn p_values_of_uniform_attitudes_are_uniform() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
@@ -468,7 +515,13 @@ fn a_given_radial_variance_is_kept() {
         assert!((ln_likelihood(fit.law(), &data) / fit.ln_likelihood() - 1.0).abs() < 1e-9);
         assert!((fit.turn_covariance()[(1, 1)] / 2e-4 - 1.0).abs() < 0.3);
     }
-    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+    let fit = |family| RadiallyConstrainedGaussian::fit_family(&data, family).unwrap();
+    let infinite = fit(Family::AlignedWith { radial_variance: f64::INFINITY });
+    assert_eq!(infinite.radial(), RadialVariance::Given(f64::INFINITY));
+    let bingham = fit(Family::Bingham);
+    assert_eq!(infinite.turn_covariance(), bingham.turn_covariance());
+    assert_eq!(infinite.mean_covariance(), bingham.mean_covariance());
+    for value in [0.0, -1.0, f64::NAN] {
         let family = Family::AlignedWith { radial_variance: value };
         let error = RadiallyConstrainedGaussian::fit_family(&data, family);
         assert!(matches!(error, Err(FitError::RadialVariance { .. })), "{value}");
