@@ -12,9 +12,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         match body.inertia() {
             Ok(inertia) => {
                 let judgement = judge(inertia, body.mass_kg(), TOLERANCE);
-                let k = judgement.second_moments().map(|k| format!("{k:.3e}"));
-                println!("K = {} kg·m²", k.join(", "));
-                for fault in judgement.faults() {
+                println!("{}", judgement.report());
+                if let Some(fault) = judgement.mass_fault() {
                     println!("    {fault}");
                 }
             }

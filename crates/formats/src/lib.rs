@@ -17,7 +17,7 @@
 //!
 //! let wheel = &file.bodies()[0];
 //! let judgement = judge(wheel.inertia()?, wheel.mass_kg(), gyradius_formats::TOLERANCE);
-//! assert!((judgement.shortfall_percent().unwrap() - 50.0).abs() < 1e-9);
+//! assert!((judgement.report().excess_percent().unwrap() - 50.0).abs() < 1e-9);
 //!
 //! let copy = String::from_utf8(file.repaired(&[0])?)?;
 //! assert!(copy.contains("<!-- from CAD -->") && copy.contains("iyz=\"0\""));
@@ -36,10 +36,13 @@ mod text;
 mod walk;
 mod xml;
 
+/// What a [`Judgement`] says of an inertia.
+pub use gyradius_inertia::{Fault, RealizabilityReport};
+
 pub use body::{Body, Products};
 pub use error::{BodyError, FileError, FileProblem};
 pub use file::{Format, InertiaFile};
-pub use judge::{Fault, Judgement, Note, judge, nearest};
+pub use judge::{Judgement, MassFault, Note, judge};
 pub use repair::{RepairError, copy_path, is_copy, write_copy};
 pub use walk::{Found, find};
 

@@ -1,4 +1,4 @@
-use gyradius_inertia::InertiaMatrix;
+use gyradius_inertia::{InertiaMatrix, Repair, RepairMethod};
 use nalgebra::Matrix3;
 use std::{
     ffi::OsString,
@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{Body, InertiaFile, body::Place, judge::nearest};
+use crate::{Body, InertiaFile, body::Place};
 
 /// How far inside the boundary a repaired inertia lies, as a part of its trace: enough that
 /// programs which compare exactly, or read fewer digits, accept it too.
@@ -60,7 +60,9 @@ pub enum RepairError {
 
 /// The nearest realizable inertia, a little inside the boundary and in few digits.
 fn repaired(matrix: &Matrix3<f64>) -> Option<Matrix3<f64>> {
-    let near = nearest(matrix)?;
+    let symmetric = matrix.zip_map(&matrix.transpose(), |a, b| 0.5 * a + 0.5 * b);
+    let symmetric = InertiaMatrix::new(symmetric).ok()?;
+    let near = *Repair::new(&symmetric, RepairMethod::Nearest).ok()?.inertia().matrix();
     let inset = near + Matrix3::from_diagonal_element(2.0 * INSET * near.trace());
     let rounded = inset.map(|x| format!("{x:.*e}", DIGITS - 1).parse().unwrap_or(x));
     [rounded, inset, near].into_iter().find(is_realizable)

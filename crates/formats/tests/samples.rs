@@ -23,7 +23,8 @@ fn impossible(file: &InertiaFile) -> Vec<usize> {
     (0..file.bodies().len())
         .filter(|i| {
             let body = &file.bodies()[*i];
-            body.inertia().is_ok_and(|m| judge(m, body.mass_kg(), TOLERANCE).is_impossible())
+            body.inertia()
+                .is_ok_and(|m| !judge(m, body.mass_kg(), TOLERANCE).report().is_realizable())
         })
         .collect()
 }
@@ -48,7 +49,7 @@ fn every_format_says_the_same() {
         assert_eq!(chassis, &nalgebra::Matrix3::from_fn(|i, j| rows[i][j]), "{name}");
         assert_eq!(impossible(&file), [2], "{name}");
         let wheel = judge(file.bodies()[2].inertia().unwrap(), None, TOLERANCE);
-        assert!((wheel.shortfall_percent().unwrap() - 50.0).abs() < 1e-9, "{name}");
+        assert!((wheel.report().excess_percent().unwrap() - 50.0).abs() < 1e-9, "{name}");
         let line = file.bodies()[2].line();
         let text = String::from_utf8_lossy(bytes);
         let line = text.lines().nth(line - 1).unwrap();

@@ -218,10 +218,14 @@ mod tests {
             for method in METHODS {
                 prop_assert!(nearest.distance() <= Repair::new(&m, method).unwrap().distance() + 1e-13);
             }
+            // The obtuse-angle criterion of a projection onto a convex cone (Moreau).
+            let moved = m.matrix() - nearest.inertia().matrix();
+            prop_assert!(moved.dot(nearest.inertia().matrix()).abs() < 1e-12);
             // On the way from the nearest to any other body, all are bodies, and none is nearer.
             let other = Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &q).unwrap();
             let between = nearest.inertia().matrix() * (1.0 - share) + other.matrix() * share;
             prop_assert!(nearest.distance() <= (between - m.matrix()).norm() + 1e-13);
+            prop_assert!(moved.dot(other.matrix()) < 1e-12);
         }
     }
 }

@@ -196,17 +196,18 @@ impl RealizabilityReport {
         self.principal_moments
     }
 
-    /// min K_k / tr I: ⅙ for a ball, 0 for a plate, negative beyond.
+    /// min K_k / |tr I|: ⅙ for a ball, 0 for a plate, a rod and a point, negative beyond, −∞ where the
+    /// trace is zero and the matrix not.
     #[must_use]
     pub fn margin(&self) -> Option<f64> {
         self.margin
     }
 
-    /// How far the largest principal moment exceeds the sum of the other two, in percent of that sum;
-    /// infinite where that sum is not positive, none where an entry is not finite.
+    /// How far the largest principal moment exceeds the sum of the other two, in percent of that sum: 0
+    /// if it does not, infinite if that sum is not positive, none where an entry is not finite.
     #[must_use]
     pub fn excess_percent(&self) -> Option<f64> {
-        self.principal_moments.map(|m| excess_percent(m).1)
+        self.principal_moments.map(excess_percent)
     }
 
     /// What is wrong; nothing if the matrix is realizable.
@@ -216,13 +217,21 @@ impl RealizabilityReport {
     }
 }
 
-/// The axis of the largest moment, and how far it exceeds the sum of the others in percent of it.
-fn excess_percent(m: [f64; 3]) -> (usize, f64) {
+/// The axis of the largest moment, and the sum of the others.
+fn largest(m: [f64; 3]) -> (usize, f64) {
     let axis = (0..3).fold(0, |best, j| if m[j] > m[best] { j } else { best });
-    // Halved, so that no sum overflows.
-    let rest = 0.5 * m[(axis + 1) % 3] + 0.5 * m[(axis + 2) % 3];
-    let percent = 100.0 * ((0.5 * m[axis] - rest) / rest);
-    (axis, if rest > 0.0 { percent.max(0.0) } else { f64::INFINITY })
+    (axis, m[(axis + 1) % 3] + m[(axis + 2) % 3])
+}
+
+fn excess_percent(m: [f64; 3]) -> f64 {
+    let (axis, rest) = largest(m);
+    if m[axis] <= rest {
+        0.0
+    } else if rest > 0.0 {
+        100.0 * ((m[axis] - rest) / rest)
+    } else {
+        f64::INFINITY
+    }
 }
 
 fn moment_faults(axes: Axes, moments: [f64; 3], slack: f64, faults: &mut Vec<Fault>) {
@@ -232,10 +241,10 @@ fn moment_faults(axes: Axes, moments: [f64; 3], slack: f64, faults: &mut Vec<Fau
             faults.push(Fault::NegativeMoment { axes, axis: j + 1, moment });
         }
     }
-    let (axis, percent) = excess_percent(moments);
-    let rest = 0.5 * moments[(axis + 1) % 3] + 0.5 * moments[(axis + 2) % 3];
+    let (axis, rest) = largest(moments);
     // A negative moment breaks the inequality as well: once is enough.
-    if faults.len() == before && 0.5 * moments[axis] - rest > slack {
+    if faults.len() == before && moments[axis] - rest > 2.0 * slack {
+        let percent = excess_percent(moments);
         faults.push(Fault::Triangle { axes, axis: axis + 1, moments, percent });
     }
 }
@@ -411,6 +420,7 @@ mod tests {
             assert!(report.is_realizable() && !report.is_strict(), "{name}");
             assert!(report.to_string().ends_with(name), "{report}");
             assert_eq!(report.margin(), Some(0.0));
+            assert_eq!(report.excess_percent(), Some(0.0), "{name}");
         }
         let ball = RealizabilityReport::of(&diagonal([1.0; 3]));
         assert!(ball.is_strict());
@@ -432,6 +442,19 @@ mod tests {
             assert!(
                 RealizabilityReport::within(&diagonal([1.0, 2.0, 3.0]), nothing).is_realizable()
             );
+        }
+    }
+
+    #[test]
+    fn the_excess_is_that_of_the_principal_moments_at_any_size() {
+        for scale in [5e-324, 1e-300, 1.0, 1e305] {
+            let excess = |m: [f64; 3]| {
+                RealizabilityReport::of(&diagonal(m.map(|x| x * scale))).excess_percent().unwrap()
+            };
+            assert!((excess([1.0, 1.0, 4.0]) - 100.0).abs() < 1e-12, "{scale:e}");
+            assert_eq!(excess([1.0, 1.0, 2.0]), 0.0);
+            assert_eq!(excess([0.0, 0.0, 1.0]), f64::INFINITY);
+            assert_eq!(excess([-1.0, -1.0, -1.0]), f64::INFINITY);
         }
     }
 

@@ -1,4 +1,4 @@
-use gyradius_formats::Judgement;
+use gyradius_formats::{Judgement, RealizabilityReport};
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -40,11 +40,10 @@ struct BodyJson<'a> {
     inertia_kg_m2: Option<[[f64; 3]; 3]>,
     principal_moments_kg_m2: Option<[f64; 3]>,
     second_moments_kg_m2: Option<[f64; 3]>,
-    /// Null where the trace is not positive, too.
     margin: Option<f64>,
     shortfall_percent: Option<f64>,
     reasons: Vec<String>,
-    notes: Vec<String>,
+    note: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -64,7 +63,7 @@ struct RepairJson {
 
 fn body(finding: &Finding) -> BodyJson<'_> {
     let judgement = finding.judgement.as_ref();
-    let three = |values: [f64; 3]| values.iter().all(|x| x.is_finite()).then_some(values);
+    let report = finding.report();
     let inertia = finding.body.inertia();
     BodyJson {
         file: finding.path.display().to_string(),
@@ -82,20 +81,18 @@ fn body(finding: &Finding) -> BodyJson<'_> {
             .as_ref()
             .ok()
             .map(|m| std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))),
-        principal_moments_kg_m2: judgement.and_then(|j| three(j.principal_moments())),
-        second_moments_kg_m2: judgement.and_then(|j| three(j.second_moments())),
-        margin: judgement.map(Judgement::margin).filter(|m| m.is_finite()),
-        shortfall_percent: judgement
-            .and_then(Judgement::shortfall_percent)
+        principal_moments_kg_m2: report.and_then(RealizabilityReport::principal_moments),
+        second_moments_kg_m2: report.and_then(RealizabilityReport::second_moments),
+        margin: report.and_then(RealizabilityReport::margin).filter(|m| m.is_finite()),
+        shortfall_percent: report
+            .and_then(RealizabilityReport::excess_percent)
             .filter(|p| p.is_finite()),
         reasons: match (judgement, &inertia) {
-            (Some(judgement), _) => judgement.faults().iter().map(ToString::to_string).collect(),
+            (Some(judgement), _) => judgement.reasons().collect(),
             (None, Err(error)) => vec![error.to_string()],
             (None, Ok(_)) => Vec::new(),
         },
-        notes: judgement
-            .map(|judgement| judgement.notes().iter().map(ToString::to_string).collect())
-            .unwrap_or_default(),
+        note: judgement.and_then(Judgement::note).map(|note| note.to_string()),
     }
 }
 

@@ -4,8 +4,8 @@ mod json;
 mod table;
 
 use gyradius_formats::{
-    Body, FileError, Found, InertiaFile, Judgement, Products, RepairError, copy_path, find, judge,
-    write_copy,
+    Body, FileError, Found, InertiaFile, Judgement, Products, RealizabilityReport, RepairError,
+    copy_path, find, judge, write_copy,
 };
 use std::{
     cmp::Ordering,
@@ -47,16 +47,23 @@ impl Finding {
     fn status(&self) -> Status {
         match &self.judgement {
             None => Status::Unread,
-            Some(judgement) if judgement.is_impossible() => Status::Impossible,
-            Some(judgement) if !judgement.faults().is_empty() => Status::NoMass,
+            Some(judgement) if !judgement.report().is_realizable() => Status::Impossible,
+            Some(judgement) if judgement.mass_fault().is_some() => Status::NoMass,
             Some(_) => Status::Possible,
         }
     }
 
+    fn report(&self) -> Option<&RealizabilityReport> {
+        self.judgement.as_ref().map(Judgement::report)
+    }
+
     /// The worst first; otherwise in the order of the files.
     fn order(&self, other: &Self) -> Ordering {
-        let margin = |finding: &Self| finding.judgement.as_ref().map_or(0.0, Judgement::margin);
-        self.status().cmp(&other.status()).then(margin(self).total_cmp(&margin(other)))
+        // Matrices that cannot be computed with are beyond any percentage.
+        let excess = |finding: &Self| {
+            finding.report().map_or(0.0, |report| report.excess_percent().unwrap_or(f64::INFINITY))
+        };
+        self.status().cmp(&other.status()).then(excess(other).total_cmp(&excess(self)))
     }
 }
 

@@ -1,4 +1,4 @@
-use gyradius_formats::{Fault, Judgement, Note};
+use gyradius_formats::{Fault, Judgement, Note, RealizabilityReport};
 use std::io::{self, Write};
 
 use super::{Finding, Report, Status, harmless, place};
@@ -25,58 +25,67 @@ fn short(x: f64) -> String {
     }
 }
 
-/// Two numbers with as many digits as it takes to tell them apart.
-fn apart(x: f64, y: f64) -> (String, String) {
-    let (a, b) = (short(x), short(y));
-    if a == b { (format!("{x:.7e}"), format!("{y:.7e}")) } else { (a, b) }
-}
-
 fn shortfall(finding: &Finding) -> String {
-    let Some(judgement) = &finding.judgement else { return "unread".to_owned() };
-    match (finding.status(), judgement.shortfall_percent()) {
+    let Some(report) = finding.report() else { return "unread".to_owned() };
+    match (finding.status(), report.excess_percent()) {
         (Status::Possible, _) => "ok".to_owned(),
         (Status::NoMass, _) => "no mass".to_owned(),
-        (_, Some(percent)) if percent >= 1e5 => format!("{percent:.0e} %"),
-        (_, Some(percent)) if percent >= 0.1 => format!("{percent:.1} %"),
-        (_, Some(percent)) => format!("{percent:.0e} %"),
-        (_, None) if judgement.principal_moments()[0] < 0.0 => "negative".to_owned(),
-        (_, None) => "infinite".to_owned(),
+        (_, None) => "too large".to_owned(),
+        (_, Some(0.0)) => "asymmetric".to_owned(),
+        (_, Some(percent)) if percent.is_finite() => {
+            if (0.1..1e5).contains(&percent) {
+                format!("{percent:.1} %")
+            } else {
+                format!("{percent:.0e} %")
+            }
+        }
+        _ if ascending(report).is_some_and(|[a, ..]| a < 0.0) => "negative".to_owned(),
+        _ => "infinite".to_owned(),
     }
 }
 
-/// The reason in a few words.
+fn ascending(report: &RealizabilityReport) -> Option<[f64; 3]> {
+    let mut moments = report.principal_moments()?;
+    moments.sort_by(f64::total_cmp);
+    Some(moments)
+}
+
+/// The principal moments, as the inequality that they break.
+fn moments(report: &RealizabilityReport) -> Option<String> {
+    let [a, b, c] = ascending(report)?;
+    let (a_text, b_text, mut c_text) = (short(a), short(b), short(c));
+    if !(report.excess_percent()? > 0.0) || a < 0.0 || report.is_realizable() {
+        // A negative one says it all, and better than the inequality does.
+        return Some(format!("{a_text}, {b_text}, {c_text}"));
+    }
+    if c_text == short(a + b) {
+        c_text = format!("{c:.7e}");
+    }
+    Some(format!("{c_text} > {b_text} + {a_text}"))
+}
+
+/// The principal moments and what else there is to say, in a few words.
 fn reason(finding: &Finding) -> String {
     let judgement = match (&finding.judgement, finding.body.inertia()) {
         (Some(judgement), _) => judgement,
         (None, Err(error)) => return harmless(&error.to_string()),
         (None, Ok(_)) => return String::new(),
     };
-    let [a, b, c] = judgement.principal_moments();
-    if judgement.faults().is_empty() {
-        return match judgement.notes().first() {
-            Some(Note::Massless) => "0, 0, 0: no mass, a frame".to_owned(),
-            Some(Note::PointMass) => "0, 0, 0: a point mass".to_owned(),
-            _ => format!("{}, {}, {}", short(a), short(b), short(c)),
-        };
+    match judgement.note() {
+        Some(Note::Massless) => return "0, 0, 0: no mass, a frame".to_owned(),
+        Some(Note::PointMass) => return "0, 0, 0: a point mass".to_owned(),
+        _ => {}
     }
-    let mut words: Vec<String> = Vec::new();
-    for fault in judgement.faults() {
-        words.push(match fault {
-            // Says it all, and better than the triangle that it breaks.
-            Fault::NegativeMoment(_) => {
-                format!("{}, {}, {}", short(a), short(b), short(c))
-            }
-            Fault::Triangle { .. } if a < 0.0 && !words.is_empty() => {
-                continue;
-            }
-            Fault::Triangle { largest, sum } => {
-                let (largest, _) = apart(*largest, *sum);
-                let sign = if a < 0.0 { '-' } else { '+' };
-                format!("{largest} > {} {sign} {}", short(b), short(a.abs()))
-            }
-            other => other.to_string(),
-        });
+    let report = judgement.report();
+    let mut words = Vec::new();
+    if judgement.mass_fault().is_none() || !report.is_realizable() {
+        words.extend(moments(report));
     }
+    // The other faults are in the moments.
+    let besides =
+        |fault: &&Fault| matches!(fault, Fault::NotFinite { .. } | Fault::NotSymmetric { .. });
+    words.extend(report.faults().iter().filter(besides).map(ToString::to_string));
+    words.extend(judgement.mass_fault().map(|fault| fault.to_string()));
     words.join("; ")
 }
 
@@ -117,16 +126,15 @@ pub(super) fn write(
         let (name, words) = (width(1, 4, NAME), width(2, 17, 42));
         writeln!(
             out,
-            "{:>9}  {:name$}  {:words$}  file",
+            "{:>10}  {:name$}  {:words$}  file",
             "shortfall", "body", "principal moments"
         )?;
         for ([percent, body, reason, file], finding) in lines.iter().zip(&report.findings) {
-            writeln!(out, "{percent:>9}  {body:name$}  {reason:words$}  {file}")?;
-            if finding.status() != Status::Possible {
-                let notes = finding.judgement.as_ref().map_or(&[][..], Judgement::notes);
-                for note in notes {
-                    writeln!(out, "{:>9}  {note}", "")?;
-                }
+            writeln!(out, "{percent:>10}  {body:name$}  {reason:words$}  {file}")?;
+            if finding.status() == Status::Impossible
+                && let Some(note) = finding.judgement.as_ref().and_then(Judgement::note)
+            {
+                writeln!(out, "{:>10}  {note}", "")?;
             }
         }
         writeln!(out)?;

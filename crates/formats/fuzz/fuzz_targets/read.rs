@@ -13,7 +13,7 @@ fn impossible(file: &InertiaFile) -> Vec<usize> {
     let bodies = file.bodies().iter().enumerate();
     bodies
         .filter(|(_, body)| {
-            body.inertia().is_ok_and(|m| judge(m, body.mass_kg(), TOLERANCE).is_impossible())
+            body.inertia().is_ok_and(|m| !judge(m, body.mass_kg(), TOLERANCE).report().is_realizable())
         })
         .map(|(i, _)| i)
         .collect()
