@@ -20,20 +20,28 @@ pub(crate) fn eigen(matrix: &Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
     let exponent = (size * lift).to_bits() >> 52;
     let (up, down) = (f64::from_bits(exponent << 52), f64::from_bits((2046 - exponent) << 52));
     let a = if size < 1e-290 { matrix * lift * down } else { matrix * down };
-    let off = a[(0, 1)].abs().max(a[(0, 2)].abs()).max(a[(1, 2)].abs());
-    let (d, v) = if off <= NEGLIGIBLE {
-        (a, Matrix3::identity())
-    } else {
-        guess(&a).unwrap_or((a, Matrix3::identity()))
-    };
-    let (values, v) = jacobi(d, v);
-    (values.map(|x| x * up * unlift), v)
+    let (mut d, mut v) = (a, Matrix3::identity());
+    if !is_diagonal(&d) {
+        if let Some(found) = guess(&a) {
+            (d, v) = found;
+        }
+        if !is_diagonal(&d) {
+            (d, v) = jacobi(d, v);
+        }
+    }
+    ([d[(0, 0)], d[(1, 1)], d[(2, 2)]].map(|x| x * up * unlift), v)
 }
 
 /// Off the diagonal of a matrix of size one to two, this moves no eigenvalue by a rounding.
 const NEGLIGIBLE: f64 = 4.0 * f64::EPSILON;
 
+#[inline]
+fn is_diagonal(a: &Matrix3<f64>) -> bool {
+    a[(0, 1)].abs().max(a[(0, 2)].abs()).max(a[(1, 2)].abs()) <= NEGLIGIBLE
+}
+
 /// Eigenvectors to rounding, and the matrix in their axes; none for a multiple of the identity.
+#[inline]
 fn guess(a: &Matrix3<f64>) -> Option<(Matrix3<f64>, Matrix3<f64>)> {
     let mean = (a[(0, 0)] + a[(1, 1)] + a[(2, 2)]) * (1.0 / 3.0);
     let (b11, b22, b33) = (a[(0, 0)] - mean, a[(1, 1)] - mean, a[(2, 2)] - mean);
@@ -49,31 +57,35 @@ fn guess(a: &Matrix3<f64>) -> Option<(Matrix3<f64>, Matrix3<f64>)> {
         b11 * (b22 * b33 - s23) - b12 * (b12 * b33 - b13 * b23) + b13 * (b12 * b23 - b13 * b22);
     // Eigenvalues of the deviator are 2 scale cos φ with cos 3φ = r: the isolated one has the sign of
     // r, and x = its magnitude over the scale solves x³ − 3x = 2|r|, √3 ≤ x ≤ 2.
-    let r = determinant / (square * scale);
+    let r = determinant / square / scale;
     let half = (0.5 * r.abs()).min(1.0);
-    // A polynomial to 8e-5, and Newton's method twice.
-    let mut x = 1.732_124 + half * (0.330_808 + half * (-0.081_762 + half * 0.018_887));
-    for _ in 0..2 {
-        let xx = x * x;
-        x = (2.0 / 3.0) * (xx * x + half) / (xx - 1.0);
-    }
+    // A polynomial to 8e-6, and Halley's method once.
+    let x = (1.732_058_68 + half * 0.332_890_75)
+        + (half * half) * ((-0.092_173_82 + half * 0.035_545_72) - (half * half) * 0.008_329_21);
+    let (f, g) = (x * (x * x - 3.0) - 2.0 * half, x * x - 1.0);
+    let x = x - f * g / (3.0 * g * g - x * f);
     let isolated = (x * scale).copysign(r);
     let (m11, m22, m33) = (b11 - isolated, b22 - isolated, b33 - isolated);
     let rows =
         [Vector3::new(m11, b12, b13), Vector3::new(b12, m22, b23), Vector3::new(b13, b23, m33)];
     // Any two rows that are not parallel have the eigenvector as their cross product.
-    let (mut v, mut longest) = (Vector3::zeros(), 0.0);
+    let (mut v, mut square) = (Vector3::zeros(), 0.0);
     for (i, j) in [(0, 1), (0, 2), (1, 2)] {
         let cross = rows[i].cross(&rows[j]);
-        let length = cross.norm_squared();
-        if length > longest {
-            (v, longest) = (cross, length);
+        if cross.norm_squared() > square {
+            (v, square) = (cross, cross.norm_squared());
         }
     }
-    v *= 1.0 / longest.sqrt();
+    if square == 0.0 {
+        return None;
+    }
+    // Here and below, roots and quotients are arranged not to wait for each other: they take most of
+    // the time.
+    let length = square.sqrt();
     // Two directions across it without a square root (Duff et al. 2017, JCGT 6(1)).
     let sign = 1.0_f64.copysign(v.z);
-    let m = -1.0 / (sign + v.z);
+    let m = -length / (length.copysign(v.z) + v.z);
+    v *= 1.0 / length;
     let xy = v.x * v.y * m;
     let u = Vector3::new(1.0 + sign * v.x * v.x * m, sign * xy, -sign * v.x);
     let w = Vector3::new(xy, sign + v.y * v.y * m, -v.y);
@@ -83,28 +95,27 @@ fn guess(a: &Matrix3<f64>) -> Option<(Matrix3<f64>, Matrix3<f64>)> {
     let axes = Matrix3::from_columns(&[u * c - w * s, u * s + w * c, v]);
     let (e1, e2) = (axes.column(0).dot(&av), axes.column(1).dot(&av));
     let d = Matrix3::new(p - shift, 0.0, e1, 0.0, q + shift, e2, e1, e2, v.dot(&av));
-    (longest > 0.0).then_some((d, axes))
+    Some((d, axes))
 }
 
 /// Sine and cosine of the rotation that takes off the entry pq between the diagonal entries p and q,
 /// and by how much these move apart.
 fn rotation(p: f64, q: f64, pq: f64) -> (f64, f64, f64) {
-    if pq == 0.0 {
+    if pq.abs() < 1e-100 {
+        // Nothing beside a matrix of size one, and its square could vanish.
         return (0.0, 1.0, 0.0);
     }
-    let (x, y) = (q - p, 2.0 * pq);
-    if x.abs() > 1e8 * y.abs() {
-        // The cosine is one to rounding.
-        let t = pq / x;
-        return (t, 1.0, t * pq);
-    }
-    let t = 1.0_f64.copysign(x) * y / (x.abs() + (x * x + y * y).sqrt());
-    let c = 1.0 / (t * t + 1.0).sqrt();
-    (t * c, c, t * pq)
+    let (x, y) = ((q - p).abs(), (2.0 * pq).copysign(pq * (q - p)));
+    let adjacent = x + (x * x + y * y).sqrt();
+    let square = adjacent * adjacent + y * y;
+    let scale = square.sqrt() * (1.0 / square);
+    (y * scale, adjacent * scale, y / adjacent * pq)
 }
 
-/// Cyclic Jacobi rotations of a symmetric matrix of size one that is a in the axes v.
-fn jacobi(mut a: Matrix3<f64>, mut v: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
+/// Cyclic Jacobi rotations of a symmetric matrix of size one that is a in the axes v, to a diagonal
+/// one.
+#[cold]
+fn jacobi(mut a: Matrix3<f64>, mut v: Matrix3<f64>) -> (Matrix3<f64>, Matrix3<f64>) {
     // Convergence is quadratic: four sweeps are the rule, and sixteen never happen.
     const SWEEPS: usize = 16;
     for _ in 0..SWEEPS {
@@ -136,7 +147,7 @@ fn jacobi(mut a: Matrix3<f64>, mut v: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) 
             break;
         }
     }
-    ([a[(0, 0)], a[(1, 1)], a[(2, 2)]], v)
+    (a, v)
 }
 
 #[cfg(test)]

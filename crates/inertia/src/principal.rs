@@ -205,12 +205,13 @@ fn nearest_about(values: [f64; 3], v: &Matrix3<f64>, odd: usize) -> ([f64; 3], M
 }
 
 /// The attitude q with A = R(q)ᵀ, its scalar part positive. Near the body axes the trace is large.
-#[inline]
+#[inline(always)]
 fn quaternion(a: &Matrix3<f64>) -> UnitQuaternion<f64> {
     let square = 1.0 + a.trace();
     if square > 0.1 {
-        let w = 0.5 * square.sqrt();
-        let scale = 0.25 / w;
+        let root = square.sqrt();
+        // 1/(2 root), by a division that does not wait for the root.
+        let (w, scale) = (0.5 * root, root * (0.5 / square));
         let vector = [a[(1, 2)] - a[(2, 1)], a[(2, 0)] - a[(0, 2)], a[(0, 1)] - a[(1, 0)]];
         let [x, y, z] = vector.map(|v| v * scale);
         // One Newton step to unit norm: the axes are a rotation to rounding.
@@ -218,6 +219,12 @@ fn quaternion(a: &Matrix3<f64>) -> UnitQuaternion<f64> {
         let [w, x, y, z] = [w, x, y, z].map(|v| v + v * off);
         return UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
     }
+    far_quaternion(a)
+}
+
+/// The same wherever the axes point.
+#[cold]
+fn far_quaternion(a: &Matrix3<f64>) -> UnitQuaternion<f64> {
     let q = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(a.transpose()));
     if q.w < 0.0 { UnitQuaternion::new_unchecked(-q.into_inner()) } else { q }
 }
