@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 /// roots and the four operations only, so that every machine has the same bits. A diagonal matrix
 /// returns unchanged with the identity.
 pub(crate) fn eigen(matrix: &Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
-    let size = matrix.amax();
+    let size = size(matrix);
     if size == 0.0 {
         return ([0.0; 3], Matrix3::identity());
     }
@@ -30,6 +30,18 @@ pub(crate) fn eigen(matrix: &Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
         }
     }
     ([d[(0, 0)], d[(1, 1)], d[(2, 2)]].map(|x| x * up * unlift), v)
+}
+
+/// The largest magnitude of the entries of a finite symmetric matrix.
+#[inline]
+pub(crate) fn size(m: &Matrix3<f64>) -> f64 {
+    // In pairs, and by a comparison that need not care for NaN: `amax` waits for each of nine.
+    let larger = |x: f64, y: f64| if x > y { x } else { y };
+    let entry = |i, j| m[(i, j)].abs();
+    larger(
+        larger(larger(entry(0, 0), entry(1, 1)), larger(entry(0, 1), entry(0, 2))),
+        larger(entry(2, 2), entry(1, 2)),
+    )
 }
 
 /// Off the diagonal of a matrix of size one to two, this moves no eigenvalue by a rounding.
@@ -161,6 +173,19 @@ mod tests {
         let (values, vectors) = eigen(&Matrix3::from_diagonal(&Vector3::new(3.0, 5.0, 4.0)));
         assert_eq!(values, [3.0, 5.0, 4.0]);
         assert_eq!(vectors, Matrix3::identity());
+    }
+
+    /// Equal moments across an isolated one, coupled by an entry whose square vanishes: gave NaN.
+    #[test]
+    fn an_entry_too_small_to_square_is_nothing() {
+        for tiny in [5e-324, 1e-200, 1e-170, 1e-110, 1e-20] {
+            let m = Matrix3::new(0.5, tiny, 0.0, tiny, 1.0, 0.5, 0.0, 0.5, 1.0);
+            let mut found = eigen(&m).0;
+            found.sort_by(f64::total_cmp);
+            for (a, b) in found.iter().zip([0.5, 0.5, 1.5]) {
+                assert!((a - b).abs() < 1e-15, "{tiny:e}: {found:?}");
+            }
+        }
     }
 
     /// Matrices in random frames, with moments apart and next to equal, against 60 digits (mpmath

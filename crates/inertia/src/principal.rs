@@ -1,6 +1,7 @@
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-use crate::{InertiaMatrix, RELATIVE_TOLERANCE, eigen::eigen};
+use crate::eigen::{eigen, size};
+use crate::{InertiaMatrix, RELATIVE_TOLERANCE};
 
 /// Two candidate orders or signs of the axes count as equally near the body axes below this
 /// difference of tr A, far above rounding and far below anything an engineer could mean.
@@ -25,7 +26,7 @@ pub struct PrincipalAxes {
 impl PrincipalAxes {
     pub(crate) fn of(inertia: &InertiaMatrix) -> Self {
         let (values, vectors) = eigen(inertia.matrix());
-        let gap = RELATIVE_TOLERANCE * inertia.matrix().amax();
+        let gap = RELATIVE_TOLERANCE * size(inertia.matrix());
         let equal = |i: usize, j: usize| (values[i] - values[j]).abs() <= gap;
         let (moments, axes) = match (equal(0, 1), equal(1, 2), equal(2, 0)) {
             (false, false, false) => {
