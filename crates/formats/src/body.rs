@@ -116,7 +116,10 @@ pub(crate) fn shortened(text: &str) -> String {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Reading {
     pub(crate) mass_kg: Option<f64>,
+    /// kg·m², products as tensor entries.
     pub(crate) matrix: Matrix3<f64>,
+    /// kg·m² of one unit of the file.
+    pub(crate) unit: f64,
     /// Where the entries stand, row by row.
     pub(crate) places: [[Option<Place>; 3]; 3],
     pub(crate) products: Products,
@@ -146,8 +149,19 @@ impl Reading {
         Self {
             mass_kg: mass.map(|m| m.value),
             matrix,
+            unit: 1.0,
             places: nine.map(|row| row.map(|number| number.place)),
             products,
+        }
+    }
+
+    /// The same numbers in other units than kg and kg·m².
+    pub(crate) fn in_units(self, mass: f64, inertia: f64) -> Self {
+        Self {
+            mass_kg: self.mass_kg.map(|m| m * mass),
+            matrix: self.matrix * inertia,
+            unit: inertia,
+            ..self
         }
     }
 }
@@ -177,15 +191,14 @@ impl Body {
         self.line
     }
 
-    /// Mass, if the file gives one, in the unit of the file, which is kg unless a CSV says
-    /// otherwise.
+    /// Mass, if the file gives one, in kg.
     #[must_use]
     pub fn mass_kg(&self) -> Option<f64> {
         self.reading.as_ref().ok()?.mass_kg
     }
 
-    /// The inertia about the mass centre, with products as tensor entries whatever the file's
-    /// convention, in the unit of the file, which is kg·m² unless a CSV says otherwise.
+    /// The inertia about the mass centre, in kg·m², with products as tensor entries, whatever the file's
+    /// units and convention.
     ///
     /// # Errors
     /// It could not be read.

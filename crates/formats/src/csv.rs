@@ -93,6 +93,41 @@ impl Rows<'_> {
     }
 }
 
+/// Units of mass, and what they are in kg.
+const MASSES: [(&str, f64); 7] = [
+    ("kg", 1.0),
+    ("g", 1e-3),
+    ("mg", 1e-6),
+    ("t", 1e3),
+    ("lb", 0.453_592_37),
+    ("lbm", 0.453_592_37),
+    ("slug", 14.593_902_937_206_36),
+];
+
+/// Units of length, squared, and what their squares are in m².
+const AREAS: [(&str, f64); 5] =
+    [("m2", 1.0), ("cm2", 1e-4), ("mm2", 1e-6), ("in2", 6.4516e-4), ("ft2", 0.092_903_04)];
+
+/// What a unit of mass is in kg; kg where none is stated.
+fn mass_unit(unit: &str) -> Option<f64> {
+    if unit.is_empty() {
+        return Some(1.0);
+    }
+    MASSES.iter().find(|(name, _)| *name == unit).map(|(_, kg)| *kg)
+}
+
+/// What a unit of inertia is in kg·m²; kg·m² where none is stated.
+fn inertia_unit(unit: &str) -> Option<f64> {
+    if unit.is_empty() {
+        return Some(1.0);
+    }
+    MASSES.iter().find_map(|(mass, kg)| {
+        let rest = unit.strip_prefix(mass)?;
+        let (_, m2) = AREAS.iter().find(|(area, _)| *area == rest)?;
+        Some(kg * m2)
+    })
+}
+
 /// A heading without its unit, and the unit.
 fn heading(text: &str) -> (String, String) {
     let text = text.trim().to_lowercase();
@@ -104,7 +139,8 @@ fn heading(text: &str) -> (String, String) {
             .or(text.strip_suffix("_kg").map(|name| (name, "kg")))
             .unwrap_or((&text, "")),
     };
-    let unit = unit.replace('²', "2").replace([' ', '*', '·', '^', '.', '-', '_'], "");
+    // The question mark is a square in an encoding other than UTF-8.
+    let unit = unit.replace(['²', '?'], "2").replace([' ', '*', '·', '^', '.', '-', '_'], "");
     (name.replace(['_', ' '], ""), unit)
 }
 
@@ -134,10 +170,19 @@ fn unknown(message: &str) -> Refusal {
     FileProblem::Unknown { message: message.to_owned() }.into()
 }
 
-/// The column of each of the fields, and the name.
-fn columns(text: &Text, header: &[Field]) -> Result<[Option<usize>; 8], Refusal> {
+/// What a header says of the rows below it.
+#[derive(Debug)]
+struct Header {
+    /// The column of each of the fields, and of the name.
+    columns: [Option<usize>; 8],
+    mass_kg: f64,
+    inertia_kg_m2: f64,
+}
+
+fn header(text: &Text, header: &[Field]) -> Result<Header, Refusal> {
     let mut columns = [None; 8];
     let mut unit: Option<(String, String)> = None;
+    let (mut mass_kg, mut inertia_kg_m2) = (1.0, 1.0);
     for (index, field) in header.iter().enumerate() {
         let written = text.as_str().get(field.start..field.end).unwrap_or_default();
         let (name, its_unit) = heading(written);
@@ -145,7 +190,21 @@ fn columns(text: &Text, header: &[Field]) -> Result<[Option<usize>; 8], Refusal>
         if columns[column].replace(index).is_some() && column != NAME {
             return Err(text.malformed(field.start, format!("two columns for {name}")));
         }
+        if column == MASS {
+            mass_kg = mass_unit(&its_unit).ok_or_else(|| {
+                let known = MASSES.map(|(name, _)| name).join(", ");
+                text.malformed(field.start, format!("mass is in {its_unit}: it must be in {known}"))
+            })?;
+        }
         if column < MASS && !its_unit.is_empty() {
+            inertia_kg_m2 = inertia_unit(&its_unit).ok_or_else(|| {
+                let masses = MASSES.map(|(name, _)| name).join(", ");
+                let areas = AREAS.map(|(name, _)| name).join(", ");
+                text.malformed(
+                    field.start,
+                    format!("{name} is in {its_unit}: it must be in {masses} times {areas}"),
+                )
+            })?;
             match &unit {
                 Some((first, known)) if *known != its_unit => {
                     return Err(text.malformed(
@@ -166,7 +225,7 @@ fn columns(text: &Text, header: &[Field]) -> Result<[Option<usize>; 8], Refusal>
         let at = header.first().map_or(0, |field| field.start);
         return Err(text.malformed(at, "columns ixy, ixz, iyz: there must be all three or none"));
     }
-    Ok(columns)
+    Ok(Header { columns, mass_kg, inertia_kg_m2 })
 }
 
 pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal> {
@@ -194,8 +253,8 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal>
         [',', ';', '\t'].into_iter().max_by_key(|s| (count(*s), *s == ',')).unwrap_or(',');
     let mut rows = Rows { text: source, at: 0, separator: separator as u8 };
     let unclosed = |at| text.malformed(at, "a quotation mark is not closed");
-    let header = rows.next().ok_or(unknown("a table must have a header"))?.map_err(unclosed)?;
-    let columns = columns(text, &header)?;
+    let titles = rows.next().ok_or(unknown("a table must have a header"))?.map_err(unclosed)?;
+    let header = header(text, &titles)?;
 
     let mut bodies = Vec::new();
     while let Some(row) = rows.next() {
@@ -205,15 +264,16 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal>
             return Err(Refusal { line: Some(line), problem: FileProblem::TooManyBodies });
         }
         let cell = |column: usize| {
-            let field = row.get(columns[column]?)?;
+            let field = row.get(header.columns[column]?)?;
             Some((source.get(field.start..field.end)?, field.start))
         };
         let name =
             cell(NAME).map_or_else(String::new, |(name, _)| name.trim().replace("\"\"", "\""));
-        let reading = if row.len() == header.len() {
+        let reading = if row.len() == titles.len() {
             reading(cell, products)
+                .map(|reading| reading.in_units(header.mass_kg, header.inertia_kg_m2))
         } else {
-            let (found, allowed) = (row.len(), header.len());
+            let (found, allowed) = (row.len(), titles.len());
             Err(BodyError::Count { field: "the row", found, allowed })
         };
         bodies.push(Body::new(name, line, reading));
@@ -284,6 +344,25 @@ mod tests {
         assert_eq!(six(&try_read(csv).unwrap()[0])[3..], [-0.1, -0.2, -0.3]);
     }
 
+    /// They were called kg·m² whatever the header said.
+    #[test]
+    fn other_units_become_kilograms_and_metres() {
+        for (heading, mass, inertia) in [
+            ("mass [g],Ixx [g*mm^2],iyy,izz", 1e-3, 1e-9),
+            ("mass (lb),Ixx (lb in²),Iyy (lb·in2),Izz (lbm in^2)", 0.45359237, 2.926396534292e-4),
+            ("mass,Ixx (slug ft2),iyy,izz", 1.0, 1.3558179483314),
+            ("m [t],ixx [t cm2],iyy,izz", 1e3, 0.1),
+        ] {
+            let heading = heading.replace("lbm in", "lb in");
+            let bodies = try_read(&format!("{heading}\n2,3,4,5")).unwrap();
+            let found = six(&bodies[0])[0] / (3.0 * inertia) - 1.0;
+            assert!(found.abs() < 1e-12, "{heading}: {found:e}");
+            assert_eq!(bodies[0].mass_kg(), Some(2.0 * mass), "{heading}");
+        }
+        let latin = Text::new(b"ixx [kg m\xb2],iyy,izz\n1,2,3", true).unwrap();
+        assert!(read(&latin, Products::TensorEntries).is_ok());
+    }
+
     #[test]
     fn bad_tables_are_refused_and_bad_rows_named() {
         let message = |csv| try_read(csv).unwrap_err().problem.to_string();
@@ -292,6 +371,9 @@ mod tests {
         assert!(message("ixx,iyy,izz,Ixx\n1,2,3,4").contains("two columns for ixx"));
         let mixed = message("ixx [kg m2],iyy [g mm2],izz\n1,2,3");
         assert!(mixed.contains("ixx is in kgm2 but iyy in gmm2"), "{mixed}");
+        let odd = message("ixx [kg m2/s],iyy,izz\n1,2,3");
+        assert!(odd.contains("ixx is in kgm2/s: it must be in kg, g"), "{odd}");
+        assert!(message("mass [N],ixx,iyy,izz\n1,1,2,3").contains("mass is in n: it must be in"));
         assert!(message("ixx,iyy,izz\n1,2,\"3").contains("not closed"));
         let bodies = try_read("name,ixx,iyy,izz\na,1,2\nb,1,x,3\nc,1,1,1").unwrap();
         let error = |i: usize| bodies[i].inertia().unwrap_err().to_string();

@@ -216,8 +216,8 @@ fn from_json<'a>(text: &'a Text, raw: &'a RawValue, depth: usize) -> Result<Item
     Ok(Item { start, value })
 }
 
-/// The bodies of a document: its list `bodies` or `body`, itself if it is a list, and every table
-/// in it that has an inertia.
+/// The bodies of a document: itself if it has an inertia, its list `bodies` or `body`, itself if it is
+/// a list, and every table in it that has an inertia.
 fn bodies(text: &Text, root: &Item<'_>, default: Products) -> Result<Vec<Body>, Refusal> {
     let products = match root.get("products") {
         None => default,
@@ -231,7 +231,10 @@ fn bodies(text: &Text, root: &Item<'_>, default: Products) -> Result<Vec<Body>, 
     };
     let mut found: Vec<(&str, &Item<'_>)> = Vec::new();
     let lists = [Some(root), root.get("bodies"), root.get("body")];
-    let mut stated = false;
+    let mut stated = root.get(INERTIA).is_some();
+    if stated {
+        found.push(("", root));
+    }
     for list in lists.into_iter().flatten() {
         for item in list.items() {
             stated |= item.get(INERTIA).is_some();
@@ -336,6 +339,8 @@ mod tests {
                 "{{\"bodies\": [{{\"name\": \"arm\", \"mass_kg\": 2, \"inertia_kg_m2\": {rows}}}]}}"
             ),
             format!("[{{\"name\": \"arm\", \"mass_kg\": 2, \"inertia_kg_m2\": {rows}}}]"),
+            format!("{{\"name\": \"arm\", \"mass_kg\": 2, \"inertia_kg_m2\": {rows}}}"),
+            format!("name = 'arm'\nmass_kg = 2\ninertia_kg_m2 = {rows}"),
             format!("{{\"x\": null, \"arm\": {{\"mass_kg\": 2, \"inertia_kg_m2\": {rows}}}}}"),
         ] {
             let bodies = read(&text).unwrap();

@@ -116,7 +116,8 @@ impl InertiaFile {
 fn edits_of(body: &Body) -> Result<Vec<(Place, String)>, RepairError> {
     let (name, line) = (body.name().to_owned(), body.line());
     let Some(reading) = body.reading() else { return Ok(Vec::new()) };
-    let old = &reading.matrix;
+    // In the units of the file, so that what is written has few digits.
+    let old = &reading.matrix.map(|x| x / reading.unit);
     let Some(new) = repaired(old) else {
         return Err(RepairError::OutOfRange { name, line });
     };

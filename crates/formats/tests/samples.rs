@@ -109,6 +109,17 @@ fn a_repaired_wheel_is_the_nearest_one() {
     }
 }
 
+/// A table in g·mm² is judged in kg·m² and repaired in g·mm².
+#[test]
+fn a_copy_keeps_the_units_of_the_file() {
+    let csv = "name,mass [g],ixx [g mm2],iyy [g mm2],izz [g mm2]\nwheel,2,1000,1000,3000\n";
+    let file = parse("a.csv", csv.as_bytes(), Products::TensorEntries);
+    assert_eq!(file.bodies()[0].mass_kg(), Some(2e-3));
+    assert!((file.bodies()[0].inertia().unwrap()[(2, 2)] - 3e-6).abs() < 1e-20);
+    let copy = String::from_utf8(file.repaired(&[0]).unwrap()).unwrap();
+    assert!(copy.ends_with("wheel,2,1333.333344,1333.333344,2666.6666773\n"), "{copy}");
+}
+
 #[test]
 fn other_encodings_are_kept() {
     let urdf =

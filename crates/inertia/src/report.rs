@@ -285,7 +285,11 @@ impl fmt::Display for Fault {
         };
         match *self {
             Self::NotFinite { row, column, value } => {
-                write!(f, "entry I{row}{column} = {value:e} is not a finite number in range")
+                write!(
+                    f,
+                    "entry I{row}{column} = {value:e} kg·m²: it must be finite and at most \
+                     {MAX_ENTRY:.1e}"
+                )
             }
             Self::NotSymmetric { row, column, upper, lower, percent: p } => write!(
                 f,
@@ -306,13 +310,14 @@ impl fmt::Display for Fault {
                 };
                 write!(
                     f,
-                    "{}{} kg·m² exceeds the sum of the others, {} + {} kg·m², by {} %",
+                    "{}{} kg·m² exceeds the sum of the others, {} + {} kg·m²",
                     name(axes, axis),
                     short(moments[j]),
                     short(moments[others[0]]),
-                    short(moments[others[1]]),
-                    percent(p)
-                )
+                    short(moments[others[1]])
+                )?;
+                // Of nothing there is no percentage.
+                if p.is_finite() { write!(f, ", by {} %", percent(p)) } else { Ok(()) }
             }
             Self::Product { row, column, product, moment } => {
                 let third = 6 - row - column;
@@ -443,6 +448,18 @@ mod tests {
                 RealizabilityReport::within(&diagonal([1.0, 2.0, 3.0]), nothing).is_realizable()
             );
         }
+    }
+
+    #[test]
+    fn sentences_have_no_percentage_of_nothing_and_name_the_limit() {
+        assert_eq!(
+            RealizabilityReport::of(&diagonal([0.0, 0.0, 1.0])).to_string(),
+            "not realizable: I33 = 1 kg·m² exceeds the sum of the others, 0 + 0 kg·m²"
+        );
+        assert_eq!(
+            RealizabilityReport::of(&diagonal([1.0, 1e308, 1.0])).to_string(),
+            "not realizable: entry I22 = 1e308 kg·m²: it must be finite and at most 2.8e306"
+        );
     }
 
     #[test]
