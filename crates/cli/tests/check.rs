@@ -187,6 +187,38 @@ fn a_repaired_copy_differs_in_its_numbers_only() {
     assert!(!shell.path("g.repaired.urdf").exists());
 }
 
+/// An entity in one body kept its neighbours from being repaired.
+#[test]
+fn a_body_that_cannot_be_repaired_does_not_hold_up_the_others() {
+    let shell = Shell::new();
+    let entity = link("entity", "1", ["1", "1", "&#51;"], NONE);
+    shell.write("r.urdf", robot(&[bad(), entity.clone()]));
+    let (code, out, messages) = shell.check(&["r.urdf", "--repair"]);
+    assert_eq!(code, 2);
+    assert!(messages.contains("not repaired: line 8: \"entity\""), "{messages}");
+    assert!(out.contains("wrote r.repaired.urdf (1 body repaired)"), "{out}");
+    assert!(shell.read("r.repaired.urdf").contains(&entity), "as it was");
+    assert!(shell.check(&["r.repaired.urdf"]).1.contains("1 impossible"));
+}
+
+/// They were said to be infinitely short.
+#[test]
+fn lopsided_and_huge_matrices_are_called_so() {
+    let shell = Shell::new();
+    let json = r#"[{"name": "skew", "inertia_kg_m2": [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]},
+        {"name": "huge", "inertia_kg_m2": [[1e308, 0, 0], [0, 1e308, 0], [0, 0, 1e308]]},
+        {"name": "ones", "inertia_kg_m2": [[1e-6, 1e-6, 1e-6], [1e-6, 1e-6, 1e-6], [1e-6, 1e-6, 1e-6]]},
+        {"name": "line", "inertia_kg_m2": [[0, 0, 0], [0, 0, 0], [0, 0, 3]]}]"#;
+    shell.write("a.json", json);
+    let (code, out, _) = shell.check(&["a.json"]);
+    assert_eq!(code, 1);
+    let lines: Vec<&str> = out.lines().skip(1).collect();
+    assert!(lines[0].contains("too large  huge  entry I11 = 1e308 kg·m²: it must be"), "{out}");
+    assert!(lines[1].contains("infinite  ones  3e-6 > 0 + 0"), "rounding is zero: {out}");
+    assert!(lines[2].contains("infinite  line  3 > 0 + 0"), "{out}");
+    assert!(lines[3].contains("asymmetric  skew") && lines[2].contains("10.00 %"), "{out}");
+}
+
 #[test]
 fn a_checked_file_is_never_written_over() {
     let shell = Shell::new();

@@ -37,7 +37,7 @@ mod walk;
 mod xml;
 
 /// What a [`Judgement`] says of an inertia.
-pub use gyradius_inertia::{Fault, RealizabilityReport};
+pub use gyradius_inertia::{Fault, RELATIVE_TOLERANCE, RealizabilityReport};
 
 pub use body::{Body, Products};
 pub use error::{BodyError, FileError, FileProblem};

@@ -73,6 +73,14 @@ fn is_realizable(matrix: &Matrix3<f64>) -> bool {
 }
 
 impl InertiaFile {
+    /// Whether the inertia of the body of this index can be replaced in a copy.
+    ///
+    /// # Errors
+    /// A number that must change is not in the file, or out of range.
+    pub fn repairable(&self, index: usize) -> Result<(), RepairError> {
+        self.bodies().get(index).map_or(Ok(()), |body| edits_of(body).map(drop))
+    }
+
     /// The bytes of a copy in which the bodies of these indices have the nearest realizable
     /// inertia, and everything else is as it was.
     ///

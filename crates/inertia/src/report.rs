@@ -204,7 +204,8 @@ impl RealizabilityReport {
     }
 
     /// How far the largest principal moment exceeds the sum of the other two, in percent of that sum: 0
-    /// if it does not, infinite if that sum is not positive, none where an entry is not finite.
+    /// if it does not, infinite if that sum is negative or rounding beside the largest, none where an
+    /// entry is not finite.
     #[must_use]
     pub fn excess_percent(&self) -> Option<f64> {
         self.principal_moments.map(excess_percent)
@@ -227,7 +228,7 @@ fn excess_percent(m: [f64; 3]) -> f64 {
     let (axis, rest) = largest(m);
     if m[axis] <= rest {
         0.0
-    } else if rest > 0.0 {
+    } else if rest > RELATIVE_TOLERANCE * m[axis] {
         100.0 * ((m[axis] - rest) / rest)
     } else {
         f64::INFINITY
@@ -473,6 +474,9 @@ mod tests {
             assert_eq!(excess([0.0, 0.0, 1.0]), f64::INFINITY);
             assert_eq!(excess([-1.0, -1.0, -1.0]), f64::INFINITY);
         }
+        // Moments 0, 0 and 3, of which an eigen solver leaves 1e-38 instead of the zeros.
+        let ones = RealizabilityReport::of(&Matrix3::repeat(1e-6));
+        assert_eq!(ones.excess_percent(), Some(f64::INFINITY));
     }
 
     proptest! {

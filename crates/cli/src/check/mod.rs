@@ -119,11 +119,33 @@ impl Report {
                 self.findings.push(finding);
             }
         }
-        if arguments.repair && !impossible.is_empty() {
-            match repair(file, &impossible, originals, arguments.force) {
-                Ok(repair) => self.repairs.push(repair),
-                Err(error) => self.repair_errors.push((file.path().to_owned(), error)),
+        if arguments.repair {
+            self.repair(file, &impossible, originals, arguments.force);
+        }
+    }
+
+    /// Repairs what can be; the rest is as it was, and an error each.
+    fn repair(&mut self, file: &InertiaFile, bodies: &[usize], originals: &[PathBuf], force: bool) {
+        let original = file.path().to_owned();
+        let mut repairable = Vec::new();
+        for &index in bodies {
+            match file.repairable(index) {
+                Ok(()) => repairable.push(index),
+                Err(error) => self.repair_errors.push((original.clone(), error)),
             }
+        }
+        if repairable.is_empty() {
+            return;
+        }
+        let copy = copy_path(&original);
+        let written = file
+            .repaired(&repairable)
+            .and_then(|bytes| write_copy(&copy, &bytes, originals, force));
+        match written {
+            Ok(written) => {
+                self.repairs.push(Repair { original, copy, bodies: repairable.len(), written });
+            }
+            Err(error) => self.repair_errors.push((original, error)),
         }
     }
 
@@ -136,18 +158,6 @@ impl Report {
             0
         }
     }
-}
-
-fn repair(
-    file: &InertiaFile,
-    bodies: &[usize],
-    originals: &[PathBuf],
-    force: bool,
-) -> Result<Repair, RepairError> {
-    let copy = copy_path(file.path());
-    let bytes = file.repaired(bodies)?;
-    let written = write_copy(&copy, &bytes, originals, force)?;
-    Ok(Repair { original: file.path().to_owned(), copy, bodies: bodies.len(), written })
 }
 
 /// Runs the verb.

@@ -1,4 +1,4 @@
-use gyradius_formats::{Fault, Judgement, Note, RealizabilityReport};
+use gyradius_formats::{Fault, Judgement, Note, RELATIVE_TOLERANCE, RealizabilityReport};
 use std::io::{self, Write};
 
 use super::{Finding, Report, Status, harmless, place};
@@ -44,10 +44,13 @@ fn shortfall(finding: &Finding) -> String {
     }
 }
 
+/// The principal moments for the eye: the smallest first, and what is rounding beside the largest
+/// is zero.
 fn ascending(report: &RealizabilityReport) -> Option<[f64; 3]> {
     let mut moments = report.principal_moments()?;
+    let size = moments.iter().fold(0.0, |size: f64, m| size.max(m.abs()));
     moments.sort_by(f64::total_cmp);
-    Some(moments)
+    Some(moments.map(|m| if m.abs() <= RELATIVE_TOLERANCE * size { 0.0 } else { m }))
 }
 
 /// The principal moments, as the inequality that they break.
@@ -81,10 +84,10 @@ fn reason(finding: &Finding) -> String {
     if judgement.mass_fault().is_none() || !report.is_realizable() {
         words.extend(moments(report));
     }
-    // The other faults are in the moments.
+    // The other faults are in the moments; one is enough for a line.
     let besides =
         |fault: &&Fault| matches!(fault, Fault::NotFinite { .. } | Fault::NotSymmetric { .. });
-    words.extend(report.faults().iter().filter(besides).map(ToString::to_string));
+    words.extend(report.faults().iter().find(besides).map(ToString::to_string));
     words.extend(judgement.mass_fault().map(|fault| fault.to_string()));
     words.join("; ")
 }
