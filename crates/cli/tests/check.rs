@@ -216,7 +216,7 @@ fn lopsided_and_huge_matrices_are_called_so() {
     assert!(lines[0].contains("too large  huge  entry I11 = 1e308 kg·m²: it must be"), "{out}");
     assert!(lines[1].contains("infinite  ones  3e-6 > 0 + 0"), "rounding is zero: {out}");
     assert!(lines[2].contains("infinite  line  3 > 0 + 0"), "{out}");
-    assert!(lines[3].contains("asymmetric  skew") && lines[2].contains("10.00 %"), "{out}");
+    assert!(lines[3].contains("asymmetric  skew") && lines[3].contains("10.00 %"), "{out}");
 }
 
 #[test]
