@@ -42,16 +42,33 @@ pub enum InertiaMatrixError {
 }
 
 /// The matrix of a unit quaternion, which safe code can make of zero or NaN.
+#[inline]
 pub(crate) fn rotation_matrix(
     rotation: &UnitQuaternion<f64>,
 ) -> Result<Matrix3<f64>, InertiaMatrixError> {
-    let norm = rotation.norm();
+    let (w, x, y, z) = (rotation.w, rotation.i, rotation.j, rotation.k);
+    let square = w * w + x * x + y * y + z * z;
     // Rounding after a long chain of products is forgiven.
-    if (norm - 1.0).abs() < 1e-9 {
-        Ok(*UnitQuaternion::new_normalize(rotation.into_inner()).to_rotation_matrix().matrix())
-    } else {
-        Err(InertiaMatrixError::Attitude { norm })
+    if !((square - 1.0).abs() < 2e-9) {
+        return Err(InertiaMatrixError::Attitude { norm: rotation.norm() });
     }
+    // Divided by the square: a rotation, whatever the rounding of the norm, and without a root.
+    let scale = 2.0 / square;
+    let (sx, sy, sz) = (scale * x, scale * y, scale * z);
+    let (xx, yy, zz) = (sx * x, sy * y, sz * z);
+    let (xy, xz, yz) = (sx * y, sx * z, sy * z);
+    let (wx, wy, wz) = (sx * w, sy * w, sz * w);
+    Ok(Matrix3::new(
+        1.0 - (yy + zz),
+        xy - wz,
+        xz + wy,
+        xy + wz,
+        1.0 - (xx + zz),
+        yz - wx,
+        xz - wy,
+        yz + wx,
+        1.0 - (xx + yy),
+    ))
 }
 
 /// A finite, symmetric 3×3 matrix in the place of an inertia matrix, in kg·m².
@@ -327,6 +344,19 @@ pub(crate) mod tests {
     }
 
     proptest! {
+        /// A rotation to rounding, and nalgebra's, also where the norm is off by what is forgiven.
+        #[test]
+        fn attitudes_become_rotations(q in any_attitude(), off in -9e-10..9e-10f64) {
+            let rotation = rotation_matrix(&UnitQuaternion::new_unchecked(*q * (1.0 + off))).unwrap();
+            prop_assert!((rotation * rotation.transpose() - Matrix3::identity()).amax() < 1e-15);
+            prop_assert!((rotation - q.to_rotation_matrix().matrix()).amax() < 1e-15);
+            let long = UnitQuaternion::new_unchecked(*q * 1.01);
+            let Err(InertiaMatrixError::Attitude { norm }) = rotation_matrix(&long) else {
+                return Err(TestCaseError::fail("a norm of 1.01"));
+            };
+            prop_assert!((norm - 1.01).abs() < 1e-12);
+        }
+
         #[test]
         fn boundary_bodies_survive_any_frame(
             q in any_attitude(),
