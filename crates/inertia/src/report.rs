@@ -324,8 +324,8 @@ impl fmt::Display for Fault {
                 let third = 6 - row - column;
                 write!(
                     f,
-                    "product I{row}{column} = {} kg·m² is larger than half of I{third}{third} = {} kg·m²",
-                    short(product),
+                    "product |I{row}{column}| = {} kg·m² is larger than half of I{third}{third} = {} kg·m²",
+                    short(product.abs()),
                     short(moment)
                 )
             }
@@ -407,13 +407,13 @@ mod tests {
         let leaning = Matrix3::new(100.0, 5.0, 10.0, 5.0, 200.0, 20.0, 10.0, 20.0, 300.0);
         let found = faults(leaning);
         assert!(matches!(found[..], [Fault::Triangle { axes: Axes::Principal, .. }]), "{found:?}");
-        let large = Matrix3::new(10.0, 0.0, 0.0, 0.0, 10.0, 6.0, 0.0, 6.0, 10.0);
+        let large = Matrix3::new(10.0, 0.0, 0.0, 0.0, 10.0, -6.0, 0.0, -6.0, 10.0);
         let found = faults(large);
         assert!(matches!(found[..], [Fault::Product { row: 2, column: 3, .. }]), "{found:?}");
         let text = RealizabilityReport::of(&large).to_string();
         assert_eq!(
             text,
-            "not realizable: product I23 = 6 kg·m² is larger than half of I11 = 10 kg·m²"
+            "not realizable: product |I23| = 6 kg·m² is larger than half of I11 = 10 kg·m²"
         );
     }
 
