@@ -37,19 +37,25 @@
 //! ```
 
 mod body;
-mod dop853;
-mod dynamics;
+mod expansion;
+mod integrator;
+mod lanes;
 mod metrics;
 mod outcome;
+mod polynomial;
 mod run;
 mod separation;
+mod settings;
 mod spring;
+mod state;
+mod vector;
 
 pub use body::{Body, BodyError, BodyState, MovingBody};
 pub use metrics::SpinMetrics;
 pub use outcome::Outcome;
-pub use run::{RunError, Settings, SettingsError};
+pub use run::RunError;
 pub use separation::{Separation, SeparationError};
+pub use settings::{Settings, SettingsError};
 pub use spring::{Spring, SpringError};
 
 #[cfg(doctest)]

@@ -1,28 +1,33 @@
 use nalgebra::{Unit, Vector3};
 
-use crate::{MovingBody, SpinMetrics};
+use crate::{MovingBody, SpinMetrics, integrator::Fates};
 
 /// The two bodies at the release of the last spring, from where they move freely.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    pub(crate) release_times: Vec<f64>,
+    pub(crate) springs: Fates,
     pub(crate) payload: MovingBody,
     pub(crate) stage: MovingBody,
     pub(crate) steps: u32,
-    pub(crate) evaluations: u32,
 }
 
 impl Outcome {
     /// When each spring let go, s, in the order of the springs.
-    #[must_use]
-    pub fn release_times(&self) -> &[f64] {
-        &self.release_times
+    pub fn release_times(&self) -> impl ExactSizeIterator<Item = f64> {
+        // All have, or there would be no outcome.
+        self.springs.iter().map(|fate| fate.released.unwrap_or(f64::NAN))
     }
 
     /// When the last spring let go, s.
     #[must_use]
     pub fn release_time(&self) -> f64 {
-        self.release_times.iter().copied().fold(0.0, f64::max)
+        self.release_times().fold(0.0, f64::max)
+    }
+
+    /// The springs that were pressed below their free length again after they had let go, and while
+    /// others still pushed: number from 1, and when that began, s. They stay lost.
+    pub fn recompressed(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.springs.iter().enumerate().filter_map(|(i, fate)| Some((i + 1, fate.recompressed?)))
     }
 
     /// The payload after the last release.
@@ -56,15 +61,9 @@ impl Outcome {
         SpinMetrics::new(self.payload.body().inertia(), angular_velocity, spin_axis)
     }
 
-    /// Integration steps taken, those repeated to land on a release among them.
+    /// Integration steps taken, each an expansion of the motion to order 12.
     #[must_use]
     pub fn steps(&self) -> u32 {
         self.steps
-    }
-
-    /// Evaluations of the equations of motion.
-    #[must_use]
-    pub fn evaluations(&self) -> u32 {
-        self.evaluations
     }
 }

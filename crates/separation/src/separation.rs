@@ -156,12 +156,17 @@ impl Separation {
         self.springs.iter().map(Spring::stored_energy).sum()
     }
 
-    /// Integrates to the release of the last spring.
+    /// Integrates to the release of the last spring. Does not allocate for up to eight springs.
     ///
     /// # Errors
     /// A spring is not released within the horizon, or the integration cannot go on.
     pub fn run(&self, settings: &Settings) -> Result<Outcome, RunError> {
         run::run(self, settings)
+    }
+
+    /// 1/m of the payload plus 1/m of the stage, 1/kg.
+    pub(crate) fn inverse_reduced_mass(&self) -> f64 {
+        1.0 / self.payload.body().mass_kg() + 1.0 / self.stage.body().mass_kg()
     }
 }
 

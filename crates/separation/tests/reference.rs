@@ -56,7 +56,7 @@ fn fields(outcome: &Outcome) -> Vec<(&'static str, Vec<f64>)> {
     let degrees = |angle: Option<f64>| angle.map_or(vec![], |a| vec![a.to_degrees()]);
     let (p, s) = (outcome.payload().state(), outcome.stage().state());
     vec![
-        ("release_time_of_spring_s", outcome.release_times().to_vec()),
+        ("release_time_of_spring_s", outcome.release_times().collect()),
         ("relative_speed_m_per_s", vec![outcome.relative_speed()]),
         ("payload_w_rad_per_s", p.angular_velocity.as_slice().to_vec()),
         ("stage_w_rad_per_s", s.angular_velocity.as_slice().to_vec()),
@@ -118,7 +118,7 @@ fn outcomes_match_the_reference() {
         }
         let times = outcome.release_times();
         for (found, expected) in
-            times.iter().zip(array_of(&case["outcome"]["release_time_of_spring_s"]))
+            times.zip(array_of(&case["outcome"]["release_time_of_spring_s"]))
         {
             assert!((found - expected).abs() < 1e-12, "{}: {found} {expected}", case["name"]);
         }
@@ -234,7 +234,7 @@ fn closing_bodies_bounce_and_slow_ones_are_reported() {
 
     let hasty = Settings::new(1e-12, 1e-3).unwrap();
     let error = separation.run(&hasty).unwrap_err();
-    assert_eq!(error.to_string(), "springs [1] had not let go after 0.001 s");
+    assert!(error.to_string().starts_with("springs [1] had not let go after 0.001 s"), "{error}");
 }
 
 /// Many random bodies: every separation ends, and conserves what it must. (Landings once failed to
@@ -262,6 +262,6 @@ fn random_bodies_all_separate() {
         let energy = outcome.payload().kinetic_energy() + outcome.stage().kinetic_energy();
         assert!((energy / 1300.0 - 1.0).abs() < 1e-12, "run {run}: {energy} J");
         assert!(outcome.steps() < 60, "run {run}: {} steps", outcome.steps());
-        assert!(outcome.release_times().iter().all(|t| *t > 0.1 && *t < 0.3), "run {run}");
+        assert!(outcome.release_times().all(|t| t > 0.1 && t < 0.3), "run {run}");
     }
 }

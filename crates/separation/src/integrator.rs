@@ -1,0 +1,317 @@
+use smallvec::SmallVec;
+use std::borrow::Borrow;
+
+use crate::{
+    Outcome, RunError, Separation, Settings,
+    expansion::{
+        Expansion, INLINE_SPRINGS, ORDER, Rotor, STATE, SpringSeries, TERMS,
+    },
+    lanes::{Lanes, M3},
+    polynomial::first_zero,
+    state::{self, State},
+    vector,
+};
+
+/// Steps after which a separation is given up: a hundred thousand times what one takes.
+pub(crate) const MAX_STEPS: u32 = 1_000_000;
+/// Steps below this share of the time that the springs act are not taken.
+const UNDERFLOW: f64 = 1e-13;
+/// A spring that is shorter than its free length by more than this share of its stroke pushes no
+/// more but is reported.
+const RECOMPRESSED: f64 = 1e-9;
+
+/// What becomes of one spring: when it lets go, and when it is first shorter than its free length
+/// after that.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Fate {
+    pub(crate) released: Option<f64>,
+    pub(crate) recompressed: Option<f64>,
+}
+
+/// What becomes of the springs, in their order.
+pub(crate) type Fates = SmallVec<[Fate; INLINE_SPRINGS]>;
+
+/// A run under way in one lane.
+#[derive(Clone, Debug)]
+pub(crate) struct Track<S> {
+    pub(crate) separation: S,
+    pub(crate) time: f64,
+    pub(crate) steps: u32,
+    pub(crate) springs: Fates,
+    /// The time that the springs act, about.
+    time_scale: f64,
+}
+
+/// Several runs, one in each lane.
+#[derive(Debug)]
+pub(crate) struct Integrator<const L: usize> {
+    expansion: Expansion<L>,
+    inverse_scale: [Lanes<L>; STATE],
+    settings: Settings,
+    /// The share of the radius of convergence that a step may take.
+    stretch: f64,
+}
+
+/// The expansion of all lanes, compiled for the vector units there are.
+struct Expand<'a, const L: usize>(&'a mut Expansion<L>);
+
+impl<const L: usize> vector::Kernel for Expand<'_, L> {
+    #[inline(always)]
+    fn run(self) {
+        self.0.expand();
+    }
+}
+
+impl<S: Borrow<Separation>> Track<S> {
+    pub(crate) fn pushing(&self) -> impl Iterator<Item = usize> {
+        let springs = self.springs.iter().enumerate();
+        springs.filter(|(_, fate)| fate.released.is_none()).map(|(i, _)| i)
+    }
+
+    pub(crate) fn all_released(&self) -> bool {
+        self.pushing().next().is_none()
+    }
+
+    /// That the springs have let go by the horizon.
+    pub(crate) fn check(&self, state: &State, settings: &Settings) -> Result<(), RunError> {
+        match self.pushing().next() {
+            Some(spring) if self.time >= settings.horizon_s() => {
+                let gap = state::gap(self.separation.borrow(), state, spring);
+                Err(RunError::NotReleased {
+                    springs: self.pushing().map(|i| i + 1).collect(),
+                    horizon: settings.horizon_s(),
+                    compression: -gap.value,
+                    rate: gap.rate,
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    pub(crate) fn outcome(self, state: &State) -> Outcome {
+        let (payload, stage) = state::bodies(self.separation.borrow(), state, self.time);
+        Outcome { springs: self.springs, payload, stage, steps: self.steps }
+    }
+}
+
+impl<const L: usize> Integrator<L> {
+    pub(crate) fn new(settings: Settings) -> Self {
+        let stretch = libm::pow(settings.relative_tolerance(), 1.0 / TERMS as f64);
+        let inverse_scale = [Lanes::ZERO; STATE];
+        Self { expansion: Expansion::new(), inverse_scale, settings, stretch }
+    }
+
+    /// Puts a run at its start into a lane.
+    pub(crate) fn load<S: Borrow<Separation>>(&mut self, lane: usize, separation: S) -> Track<S> {
+        let run: &Separation = separation.borrow();
+        let expansion = &mut self.expansion;
+        while expansion.springs.len() < run.springs().len() {
+            expansion.springs.push(SpringSeries::new());
+        }
+        let set = |to: &mut [Lanes<L>], from: &[f64]| {
+            for (to, from) in to.iter_mut().zip(from) {
+                to.0[lane] = *from;
+            }
+        };
+        for (i, series) in expansion.springs.iter_mut().enumerate() {
+            // A run with fewer springs than its neighbours has some that do not push.
+            series.stiffness.0[lane] = 0.0;
+            if let Some(spring) = run.springs().get(i) {
+                series.stiffness.0[lane] = spring.stiffness_n_per_m();
+                series.free_length.0[lane] = run.free_lengths()[i];
+                set(&mut series.payload_point, spring.payload_point_m().as_slice());
+                set(&mut series.stage_point, spring.stage_point_m().as_slice());
+            }
+        }
+        let matrix = |to: &mut M3<L>, from: &nalgebra::Matrix3<f64>| {
+            for (row, from) in to.iter_mut().zip(from.row_iter()) {
+                for (to, from) in row.iter_mut().zip(from.iter()) {
+                    to.0[lane] = *from;
+                }
+            }
+        };
+        let rotor = |to: &mut Rotor<L>, body: &crate::Body| {
+            matrix(&mut to.inertia, body.inertia().matrix());
+            matrix(&mut to.inverse, body.inverse_inertia());
+        };
+        rotor(&mut expansion.payload, run.payload().body());
+        rotor(&mut expansion.stage, run.stage().body());
+        expansion.inverse_mass.0[lane] = run.inverse_reduced_mass();
+        let scales = state::scales(run);
+        set(&mut self.inverse_scale, &scales.map(|s| 1.0 / s));
+        self.set_state(lane, &state::initial(run));
+        let springs = SmallVec::from_elem(Fate::default(), run.springs().len());
+        Track { time: 0.0, steps: 0, springs, time_scale: state::time_scale(&scales), separation }
+    }
+
+    /// Empties a lane.
+    pub(crate) fn clear(&mut self, lane: usize) {
+        for spring in &mut self.expansion.springs {
+            spring.stiffness.0[lane] = 0.0;
+        }
+        self.set_state(lane, &[0.0; STATE]);
+    }
+
+    /// Expands the motion in all lanes.
+    pub(crate) fn expand(&mut self) {
+        vector::run(Expand(&mut self.expansion));
+    }
+
+    /// The series about the state that a lane is in.
+    pub(crate) fn series(&self, lane: usize) -> [State; TERMS] {
+        self.expansion.state.map(|row| row.map(|x| x.0[lane]))
+    }
+
+    pub(crate) fn state(&self, lane: usize) -> State {
+        self.expansion.state[0].map(|x| x.0[lane])
+    }
+
+    fn set_state(&mut self, lane: usize, state: &State) {
+        for (to, from) in self.expansion.state[0].iter_mut().zip(state) {
+            to.0[lane] = *from;
+        }
+    }
+
+    /// Takes the run in a lane as far as its expansion is good, to the next release, or to a time,
+    /// whichever comes first. Returns the length of the step.
+    pub(crate) fn advance<S: Borrow<Separation>>(
+        &mut self,
+        lane: usize,
+        track: &mut Track<S>,
+        until: f64,
+    ) -> Result<f64, RunError> {
+        let reach = self.reach(lane);
+        // NaN goes to the error as well.
+        if !(reach > UNDERFLOW * track.time_scale) {
+            return Err(self.failure(lane, track, reach));
+        }
+        track.steps += 1;
+        if track.steps > MAX_STEPS {
+            return Err(RunError::TooManySteps {
+                steps: MAX_STEPS,
+                time: track.time,
+                relative_tolerance: self.settings.relative_tolerance(),
+            });
+        }
+        let h = reach.min(until - track.time);
+        let mut first: Option<(f64, usize)> = None;
+        for i in track.pushing() {
+            if let Some(x) = first_zero(&self.gap(lane, i, h, 1.0, 0.0))
+                && first.is_none_or(|(earliest, _)| x * h < earliest)
+            {
+                first = Some((x * h, i));
+            }
+        }
+        let run = track.separation.borrow();
+        let (mut taken, mut next) = (h, None);
+        if let Some((time, spring)) = first {
+            (taken, next) = (time, Some(self.at(lane, time)));
+            if time > 0.0 {
+                // The series of the gap ends an order before that of the state.
+                let gap = state::gap(run, next.as_ref().unwrap_or(&[0.0; STATE]), spring);
+                let correction = -gap.value / gap.rate;
+                if correction.abs() <= 1e-3 * h {
+                    taken = (time + correction).clamp(0.0, h);
+                    next = Some(self.at(lane, taken));
+                }
+            }
+        }
+        let mut next = next.unwrap_or_else(|| self.at(lane, taken));
+        state::normalize(&mut next);
+        if !next.iter().all(|x| x.is_finite()) {
+            return Err(self.failure(lane, track, reach));
+        }
+        self.note_recompression(lane, track, taken);
+        track.time += taken;
+        if let Some((_, spring)) = first {
+            let run = track.separation.borrow();
+            for (i, fate) in track.springs.iter_mut().enumerate() {
+                // Springs that are as long to rounding let go together.
+                let free = || state::gap(run, &next, i).value >= -state::rounding(run, &next, i);
+                if fate.released.is_none() && (i == spring || free()) {
+                    fate.released = Some(track.time);
+                    self.expansion.springs[i].stiffness.0[lane] = 0.0;
+                }
+            }
+        }
+        self.set_state(lane, &next);
+        Ok(taken)
+    }
+
+    /// How far the series of a lane is good for. The first term left out, extrapolated
+    /// geometrically from the last two, is the tolerance (Jorba & Zou 2005, §3.2).
+    fn reach(&self, lane: usize) -> f64 {
+        let [last, previous] = self.expansion.last_sizes(&self.inverse_scale).map(|x| x.0[lane]);
+        let radius = |size: f64, order: usize| libm::pow(size, -1.0 / order as f64);
+        let (a, b) = (radius(last, ORDER), radius(previous, ORDER - 1));
+        // NaN stays.
+        self.stretch * if a < b { a } else { b }
+    }
+
+    /// The square of a spring's length less that of its free length, times a sign, less an offset,
+    /// as a polynomial on [0, 1] for [0, h].
+    fn gap(&self, lane: usize, spring: usize, h: f64, sign: f64, offset: f64) -> [f64; ORDER] {
+        let series = &self.expansion.springs[spring];
+        let free = series.free_length.0[lane];
+        let mut power = sign;
+        let mut gap = std::array::from_fn(|k| {
+            let term = series.square[k].0[lane] * power;
+            power *= h;
+            term
+        });
+        gap[0] -= sign * free * free + offset;
+        gap
+    }
+
+    fn at(&self, lane: usize, time: f64) -> State {
+        let series = &self.expansion.state;
+        let mut sum = series[ORDER].map(|x| x.0[lane]);
+        for row in series[..ORDER].iter().rev() {
+            for (s, x) in sum.iter_mut().zip(row) {
+                *s = *s * time + x.0[lane];
+            }
+        }
+        sum
+    }
+
+    /// Notes released springs that a step makes shorter than their free length.
+    fn note_recompression<S: Borrow<Separation>>(
+        &self,
+        lane: usize,
+        track: &mut Track<S>,
+        taken: f64,
+    ) {
+        if !(taken > 0.0) {
+            return;
+        }
+        let run = track.separation.borrow();
+        for (i, fate) in track.springs.iter_mut().enumerate() {
+            if fate.released.is_some() && fate.recompressed.is_none() {
+                let slack =
+                    2.0 * run.free_lengths()[i] * RECOMPRESSED * run.springs()[i].stroke_m();
+                let gap = self.gap(lane, i, taken, -1.0, slack);
+                fate.recompressed = first_zero(&gap).map(|x| track.time + x * taken);
+            }
+        }
+    }
+
+    fn failure<S: Borrow<Separation>>(
+        &self,
+        lane: usize,
+        track: &Track<S>,
+        step: f64,
+    ) -> RunError {
+        let time = track.time;
+        let finite = self.series(lane).iter().flatten().all(|x| x.is_finite());
+        if finite && step.is_finite() {
+            let run: &Separation = track.separation.borrow();
+            let state = self.state(lane);
+            // The nearest to a singularity is the shortest.
+            let length = |i: &usize| state::gap(run, &state, *i).value + run.free_lengths()[*i];
+            let spring = track.pushing().min_by(|a, b| length(a).total_cmp(&length(b)));
+            RunError::StepUnderflow { time, step, spring: spring.map(|i| i + 1) }
+        } else {
+            RunError::NotFinite { time }
+        }
+    }
+}

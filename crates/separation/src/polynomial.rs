@@ -1,0 +1,131 @@
+//! The first zero of a polynomial on [0, 1], none passed over.
+
+/// Intervals shorter than this are not looked into: what rises above zero and falls again there does
+/// so by rounding.
+const SHORTEST: f64 = 1e-6;
+
+/// Where a polynomial that is negative at 0 first reaches zero on [0, 1], from below. Coefficients
+/// from the constant up. A zero that is touched and not crossed counts if rounding says so.
+pub(crate) fn first_zero<const N: usize>(p: &[f64; N]) -> Option<f64> {
+    if p[0] >= 0.0 {
+        return Some(0.0);
+    }
+    // Most are negative throughout.
+    if rises(p) {
+        let end: f64 = p.iter().sum();
+        return (end >= 0.0).then(|| bracketed(p, 0.0, 1.0));
+    }
+    search(p, 0.0, 1.0)
+}
+
+/// Whether p' > 0 on (0, 1] for sure: its first coefficients are not negative, and their sum exceeds
+/// those of either sign that follow and are (x^m falls with m).
+fn rises<const N: usize>(p: &[f64; N]) -> bool {
+    let (mut first, mut negative, mut leading) = (0.0, 0.0, true);
+    for (k, x) in p.iter().enumerate().skip(1) {
+        let slope = k as f64 * x;
+        leading &= slope >= 0.0;
+        if leading {
+            first += slope;
+        } else {
+            negative -= slope.min(0.0);
+        }
+    }
+    first > negative
+}
+
+/// Value and slope.
+fn value<const N: usize>(p: &[f64; N], x: f64) -> (f64, f64) {
+    let (mut value, mut slope) = (0.0, 0.0);
+    for c in p.iter().rev() {
+        slope = slope * x + value;
+        value = value * x + c;
+    }
+    (value, slope)
+}
+
+/// The first zero between two points, negative at the first.
+fn search<const N: usize>(p: &[f64; N], from: f64, to: f64) -> Option<f64> {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    // Bound of the second derivative on the interval.
+    let (mut bound, mut power) = (0.0, 1.0);
+    for (k, c) in p.iter().enumerate().skip(2) {
+        bound += (k * (k - 1)) as f64 * c.abs() * power;
+        power *= to;
+    }
+    let (v, slope) = value(p, middle);
+    // NaN has no zero.
+    if !(v + half * (slope.abs() + 0.5 * half * bound) >= 0.0) {
+        return None;
+    }
+    if slope > half * bound || half < SHORTEST {
+        return (value(p, to).0 >= 0.0).then(|| bracketed(p, from, to));
+    }
+    let left = search(p, from, middle);
+    if left.is_some() || v >= 0.0 { left.or(Some(middle)) } else { search(p, middle, to) }
+}
+
+/// The zero between a point where the polynomial is negative and one where it is not: Newton's
+/// iteration, bisection where it leaves the bracket.
+fn bracketed<const N: usize>(p: &[f64; N], mut low: f64, mut high: f64) -> f64 {
+    let mut x = 0.5 * (low + high);
+    for _ in 0..100 {
+        let (v, slope) = value(p, x);
+        if v < 0.0 {
+            low = x;
+        } else {
+            high = x;
+        }
+        let newton = x - v / slope;
+        let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
+        if (next - x).abs() <= f64::EPSILON * high || !(low < next && next < high) {
+            break;
+        }
+        x = next;
+    }
+    high.min(x.max(low))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn known_zeros() {
+        assert_eq!(first_zero(&[-1.0, 0.5, 0.25]), None);
+        let x = first_zero(&[-0.25, 0.0, 1.0]).unwrap();
+        assert!((x - 0.5).abs() < 1e-15);
+        // Up and down again within the interval: −(x − 0.3)(x − 0.6).
+        let x = first_zero(&[-0.18, 0.9, -1.0]).unwrap();
+        assert!((x - 0.3).abs() < 1e-15);
+        // Just short of zero at its peak, and just beyond.
+        assert_eq!(first_zero(&[-0.25 - 1e-12, 1.0, -1.0]), None);
+        assert!((first_zero(&[-0.25 + 1e-12, 1.0, -1.0]).unwrap() - 0.5).abs() < 2e-6);
+        assert_eq!(first_zero(&[0.0, 1.0]), Some(0.0));
+        assert_eq!(first_zero(&[f64::NAN, 1.0, 1.0]), None);
+        assert_eq!(first_zero(&[-1.0, f64::NAN, 1.0]), None);
+    }
+
+    proptest! {
+        /// Products of factors: the smallest zero in (0, 1] is found, however close the next.
+        #[test]
+        fn the_first_of_many(zeros in prop::collection::vec(0.001..2.0f64, 5)) {
+            let mut p = [0.0; 6];
+            p[0] = -1.0;
+            for (n, z) in zeros.iter().enumerate() {
+                for k in (0..=n + 1).rev() {
+                    p[k] -= if k > 0 { p[k - 1] / z } else { 0.0 };
+                }
+            }
+            let first = zeros.iter().copied().fold(f64::INFINITY, f64::min);
+            // Near-double zeros are ill-conditioned.
+            let next = zeros.iter().copied().filter(|z| *z > first).fold(f64::INFINITY, f64::min);
+            prop_assume!(next - first > 1e-4 && (first - 1.0).abs() > 1e-6);
+            match first_zero(&p) {
+                Some(x) => prop_assert!((x - first).abs() < 1e-8, "{x} {first}"),
+                None => prop_assert!(first > 1.0, "{first}"),
+            }
+        }
+    }
+}
