@@ -9,7 +9,7 @@
 
 use smallvec::SmallVec;
 
-use crate::lanes::{Lanes, M3, V3, add, cross, dot, scale, sub, times, transposed};
+use crate::lanes::{Lanes, M3, Packing, V3, WIDTH, add, cross, dot, scale, sub, times, transposed};
 
 /// Degree of the series of a state.
 pub(crate) const ORDER: usize = 12;
@@ -48,22 +48,23 @@ pub(crate) struct Rotor<const L: usize> {
     pub(crate) inverse: M3<L>,
 }
 
-/// A spring and its series.
+/// As many springs as there are lanes, and their series.
 #[derive(Clone, Debug)]
-pub(crate) struct SpringSeries<const L: usize> {
-    /// Zero where it no longer pushes.
-    pub(crate) stiffness: Lanes<L>,
-    pub(crate) free_length: Lanes<L>,
-    pub(crate) payload_point: V3<L>,
-    pub(crate) stage_point: V3<L>,
+#[repr(align(64))]
+pub(crate) struct SpringSeries {
+    /// Zero where a spring no longer pushes.
+    pub(crate) stiffness: Lanes<WIDTH>,
+    pub(crate) free_length: Lanes<WIDTH>,
+    pub(crate) payload_point: V3<WIDTH>,
+    pub(crate) stage_point: V3<WIDTH>,
     /// From stage point to payload point, s.
-    line: [V3<L>; TERMS],
+    line: [V3<WIDTH>; TERMS],
     /// s².
-    pub(crate) square: [Lanes<L>; TERMS],
+    pub(crate) square: [Lanes<WIDTH>; TERMS],
     /// 1/|s|.
-    inverse: [Lanes<L>; TERMS],
+    inverse: [Lanes<WIDTH>; TERMS],
     /// Force over length, k(L₀/|s| − 1).
-    push: [Lanes<L>; TERMS],
+    push: [Lanes<WIDTH>; TERMS],
 }
 
 /// Coefficients of what the equations of motion are made of.
@@ -77,6 +78,9 @@ struct Parts<const L: usize> {
     /// Angular momenta about the mass centres, body axes.
     payload_momentum: V3<L>,
     stage_momentum: V3<L>,
+    /// ω_L − ω_P and ω_L + ω_P, each component in the axes of its body.
+    rate_difference: V3<L>,
+    rate_sum: V3<L>,
 }
 
 /// The series of a state and all that goes into it.
@@ -85,7 +89,7 @@ struct Parts<const L: usize> {
 pub(crate) struct Expansion<const L: usize> {
     pub(crate) state: [[Lanes<L>; STATE]; TERMS],
     parts: [Parts<L>; TERMS],
-    pub(crate) springs: SmallVec<[SpringSeries<L>; INLINE_SPRINGS]>,
+    pub(crate) springs: SmallVec<[SpringSeries; INLINE_SPRINGS / WIDTH]>,
     pub(crate) payload: Rotor<L>,
     pub(crate) stage: Rotor<L>,
     /// 1/m of the payload plus 1/m of the stage.
@@ -107,6 +111,17 @@ fn product<A, B, const N: usize, const L: usize>(
     sum
 }
 
+/// The coefficient of order k of the square of a vector.
+#[inline(always)]
+fn square<const L: usize>(a: &[V3<L>; TERMS], k: usize) -> Lanes<L> {
+    let mut sum = Lanes::ZERO;
+    for j in 0..k.div_ceil(2) {
+        sum += dot(&a[j], &a[k - j]);
+    }
+    sum += sum;
+    if k % 2 == 0 { sum + dot(&a[k / 2], &a[k / 2]) } else { sum }
+}
+
 /// A few neighbouring entries of a state.
 #[inline(always)]
 pub(crate) fn part<T: Copy, const N: usize>(state: &[T; STATE], at: usize) -> [T; N] {
@@ -121,7 +136,7 @@ fn turned<const L: usize>(q: &[Lanes<L>; 4], w: &V3<L>, sum: &V3<L>) -> [Lanes<L
     [x, y, z, -dot(&v, w)]
 }
 
-impl<const L: usize> SpringSeries<L> {
+impl SpringSeries {
     pub(crate) fn new() -> Self {
         let (zero, vector) = (Lanes::ZERO, [Lanes::ZERO; 3]);
         Self {
@@ -136,15 +151,15 @@ impl<const L: usize> SpringSeries<L> {
         }
     }
 
-    /// The coefficients of order k of the force on the payload, zero once the spring is lost.
+    /// The coefficients of order k of the forces on the payload, zero once a spring is lost.
     #[inline(always)]
-    fn expand(&mut self, k: usize, offset: &V3<L>, rotation: &M3<L>) -> V3<L> {
+    fn expand(&mut self, k: usize, offset: &V3<WIDTH>, rotation: &M3<WIDTH>) -> V3<WIDTH> {
         let mut line = sub(*offset, times(rotation, &self.stage_point));
         if k == 0 {
             line = add(line, self.payload_point);
         }
         self.line[k] = line;
-        let [square] = product(&self.line, &self.line, k, |a, b| [dot(a, b)]);
+        let square = square(&self.line, k);
         self.square[k] = square;
         if self.stiffness.0.iter().all(|s| *s == 0.0) {
             return [Lanes::ZERO; 3];
@@ -172,7 +187,10 @@ impl<const L: usize> SpringSeries<L> {
     }
 }
 
-impl<const L: usize> Expansion<L> {
+impl<const L: usize> Expansion<L>
+where
+    Lanes<L>: Packing,
+{
     pub(crate) fn new() -> Self {
         let vector = [Lanes::ZERO; 3];
         let rotor = Rotor { inertia: [vector; 3], inverse: [vector; 3] };
@@ -182,6 +200,8 @@ impl<const L: usize> Expansion<L> {
             reaction: vector,
             payload_momentum: vector,
             stage_momentum: vector,
+            rate_difference: vector,
+            rate_sum: vector,
         };
         Self {
             state: [[Lanes::ZERO; STATE]; TERMS],
@@ -209,16 +229,20 @@ impl<const L: usize> Expansion<L> {
         let rotation = rotation(y, k);
         let offset = part(&y[k], OFFSET);
         let (mut force, mut torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
-        for spring in &mut self.springs {
-            let push = spring.expand(k, &offset, &rotation);
-            force = add(force, push);
-            torque = add(torque, cross(&spring.payload_point, &push));
+        let (arm, turn) = (offset.map(Packing::spread), rotation.map(|row| row.map(Packing::spread)));
+        for springs in &mut self.springs {
+            let push = springs.expand(k, &arm, &turn);
+            let moment = cross(&springs.payload_point, &push);
+            force = std::array::from_fn(|i| force[i].collect(push[i]));
+            torque = std::array::from_fn(|i| torque[i].collect(moment[i]));
         }
         let (payload_rate, stage_rate) = (part(&y[k], PAYLOAD_RATE), part(&y[k], STAGE_RATE));
         parts[k].rotation = rotation;
         parts[k].force = force;
         parts[k].payload_momentum = times(&self.payload.inertia, &payload_rate);
         parts[k].stage_momentum = times(&self.stage.inertia, &stage_rate);
+        parts[k].rate_difference = sub(stage_rate, payload_rate);
+        parts[k].rate_sum = add(stage_rate, payload_rate);
         let moment = product(y, parts, k, |y, p| cross(&part(y, OFFSET), &p.force));
         parts[k].reaction = add(moment, torque).map(|x| -x);
 
@@ -245,9 +269,8 @@ impl<const L: usize> Expansion<L> {
             let w = part(w, PAYLOAD_RATE);
             turned(&part(q, ATTITUDE), &w, &w)
         });
-        let relative = product(y, y, k, |q, w| {
-            let (p, l) = (part(w, PAYLOAD_RATE), part(w, STAGE_RATE));
-            turned(&part(q, RELATIVE), &sub(l, p), &add(l, p))
+        let relative = product(y, parts, k, |q, p| {
+            turned(&part(q, RELATIVE), &p.rate_difference, &p.rate_sum)
         });
 
         let step = INVERSE[k + 1];

@@ -6,7 +6,7 @@ use crate::{
     expansion::{
         Expansion, INLINE_SPRINGS, ORDER, Rotor, STATE, SpringSeries, TERMS,
     },
-    lanes::{Lanes, M3},
+    lanes::{Lanes, M3, Packing},
     polynomial::first_zero,
     state::{self, State},
     vector,
@@ -55,7 +55,10 @@ pub(crate) struct Integrator<const L: usize> {
 /// The expansion of all lanes, compiled for the vector units there are.
 struct Expand<'a, const L: usize>(&'a mut Expansion<L>);
 
-impl<const L: usize> vector::Kernel for Expand<'_, L> {
+impl<const L: usize> vector::Kernel for Expand<'_, L>
+where
+    Lanes<L>: Packing,
+{
     #[inline(always)]
     fn run(self) {
         self.0.expand();
@@ -94,7 +97,19 @@ impl<S: Borrow<Separation>> Track<S> {
     }
 }
 
-impl<const L: usize> Integrator<L> {
+/// Where a spring of the run in a lane is: which of the series, and which of their lanes.
+fn slot<const L: usize>(lane: usize, spring: usize) -> (usize, usize)
+where
+    Lanes<L>: Packing,
+{
+    let side_by_side = <Lanes<L> as Packing>::SPRINGS;
+    (spring / side_by_side, lane + spring % side_by_side)
+}
+
+impl<const L: usize> Integrator<L>
+where
+    Lanes<L>: Packing,
+{
     pub(crate) fn new(settings: Settings) -> Self {
         let stretch = libm::pow(settings.relative_tolerance(), 1.0 / TERMS as f64);
         let inverse_scale = [Lanes::ZERO; STATE];
@@ -105,7 +120,8 @@ impl<const L: usize> Integrator<L> {
     pub(crate) fn load<S: Borrow<Separation>>(&mut self, lane: usize, separation: S) -> Track<S> {
         let run: &Separation = separation.borrow();
         let expansion = &mut self.expansion;
-        while expansion.springs.len() < run.springs().len() {
+        let blocks = run.springs().len().div_ceil(<Lanes<L> as Packing>::SPRINGS);
+        while expansion.springs.len() < blocks {
             expansion.springs.push(SpringSeries::new());
         }
         let set = |to: &mut [Lanes<L>], from: &[f64]| {
@@ -113,14 +129,18 @@ impl<const L: usize> Integrator<L> {
                 to.0[lane] = *from;
             }
         };
-        for (i, series) in expansion.springs.iter_mut().enumerate() {
-            // A run with fewer springs than its neighbours has some that do not push.
+        // A run with fewer springs than there is room for has some that do not push.
+        for i in 0..expansion.springs.len() * <Lanes<L> as Packing>::SPRINGS {
+            let (block, lane) = slot::<L>(lane, i);
+            let series = &mut expansion.springs[block];
             series.stiffness.0[lane] = 0.0;
             if let Some(spring) = run.springs().get(i) {
                 series.stiffness.0[lane] = spring.stiffness_n_per_m();
                 series.free_length.0[lane] = run.free_lengths()[i];
-                set(&mut series.payload_point, spring.payload_point_m().as_slice());
-                set(&mut series.stage_point, spring.stage_point_m().as_slice());
+                for axis in 0..3 {
+                    series.payload_point[axis].0[lane] = spring.payload_point_m()[axis];
+                    series.stage_point[axis].0[lane] = spring.stage_point_m()[axis];
+                }
             }
         }
         let matrix = |to: &mut M3<L>, from: &nalgebra::Matrix3<f64>| {
@@ -144,14 +164,6 @@ impl<const L: usize> Integrator<L> {
         Track { time: 0.0, steps: 0, springs, time_scale: state::time_scale(&scales), separation }
     }
 
-    /// Empties a lane.
-    pub(crate) fn clear(&mut self, lane: usize) {
-        for spring in &mut self.expansion.springs {
-            spring.stiffness.0[lane] = 0.0;
-        }
-        self.set_state(lane, &[0.0; STATE]);
-    }
-
     /// Expands the motion in all lanes.
     pub(crate) fn expand(&mut self) {
         vector::run(Expand(&mut self.expansion));
@@ -170,6 +182,16 @@ impl<const L: usize> Integrator<L> {
         for (to, from) in self.expansion.state[0].iter_mut().zip(state) {
             to.0[lane] = *from;
         }
+    }
+
+    /// Takes the run in a lane on, to the last release or the horizon at most.
+    pub(crate) fn step<S: Borrow<Separation>>(
+        &mut self,
+        lane: usize,
+        track: &mut Track<S>,
+    ) -> Result<(), RunError> {
+        self.advance(lane, track, self.settings.horizon_s())?;
+        track.check(&self.state(lane), &self.settings)
     }
 
     /// Takes the run in a lane as far as its expansion is good, to the next release, or to a time,
@@ -230,7 +252,8 @@ impl<const L: usize> Integrator<L> {
                 let free = || state::gap(run, &next, i).value >= -state::rounding(run, &next, i);
                 if fate.released.is_none() && (i == spring || free()) {
                     fate.released = Some(track.time);
-                    self.expansion.springs[i].stiffness.0[lane] = 0.0;
+                    let (block, lane) = slot::<L>(lane, i);
+                    self.expansion.springs[block].stiffness.0[lane] = 0.0;
                 }
             }
         }
@@ -251,7 +274,8 @@ impl<const L: usize> Integrator<L> {
     /// The square of a spring's length less that of its free length, times a sign, less an offset,
     /// as a polynomial on [0, 1] for [0, h].
     fn gap(&self, lane: usize, spring: usize, h: f64, sign: f64, offset: f64) -> [f64; ORDER] {
-        let series = &self.expansion.springs[spring];
+        let (block, lane) = slot::<L>(lane, spring);
+        let series = &self.expansion.springs[block];
         let free = series.free_length.0[lane];
         let mut power = sign;
         let mut gap = std::array::from_fn(|k| {

@@ -76,6 +76,44 @@ impl<const L: usize> SubAssign for Lanes<L> {
     }
 }
 
+/// Lanes that springs are computed in: runs of a batch, or springs of a run alone.
+pub(crate) const WIDTH: usize = 4;
+
+/// How runs and their springs share lanes. Springs are added in their order either way, so that a
+/// run comes to the same bits alone and in a batch.
+pub(crate) trait Packing: Sized {
+    /// Springs of one run that go into the lanes side by side.
+    const SPRINGS: usize;
+    /// What all springs in the lanes share.
+    fn spread(self) -> Lanes<WIDTH>;
+    /// Adds what the springs in the lanes contribute.
+    fn collect(self, springs: Lanes<WIDTH>) -> Self;
+}
+
+impl Packing for Lanes<1> {
+    const SPRINGS: usize = WIDTH;
+    #[inline(always)]
+    fn spread(self) -> Lanes<WIDTH> {
+        Lanes::splat(self.0[0])
+    }
+    #[inline(always)]
+    fn collect(self, springs: Lanes<WIDTH>) -> Self {
+        Self([springs.0.iter().fold(self.0[0], |sum, x| sum + x)])
+    }
+}
+
+impl Packing for Lanes<WIDTH> {
+    const SPRINGS: usize = 1;
+    #[inline(always)]
+    fn spread(self) -> Lanes<WIDTH> {
+        self
+    }
+    #[inline(always)]
+    fn collect(self, springs: Lanes<WIDTH>) -> Self {
+        self + springs
+    }
+}
+
 /// A vector, and a matrix by rows.
 pub(crate) type V3<const L: usize> = [Lanes<L>; 3];
 pub(crate) type M3<const L: usize> = [V3<L>; 3];

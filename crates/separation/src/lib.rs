@@ -36,6 +36,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod batch;
 mod body;
 mod expansion;
 mod integrator;
@@ -50,6 +51,7 @@ mod spring;
 mod state;
 mod vector;
 
+pub use batch::Batch;
 pub use body::{Body, BodyError, BodyState, MovingBody};
 pub use metrics::SpinMetrics;
 pub use outcome::Outcome;

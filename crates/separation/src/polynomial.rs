@@ -4,6 +4,9 @@
 /// so by rounding.
 const SHORTEST: f64 = 1e-6;
 
+/// A correction as small as this leaves an error of its square.
+const CONVERGED: f64 = 1e-9;
+
 /// Where a polynomial that is negative at 0 first reaches zero on [0, 1], from below. Coefficients
 /// from the constant up. A zero that is touched and not crossed counts if rounding says so.
 pub(crate) fn first_zero<const N: usize>(p: &[f64; N]) -> Option<f64> {
@@ -77,13 +80,14 @@ fn bracketed<const N: usize>(p: &[f64; N], mut low: f64, mut high: f64) -> f64 {
             high = x;
         }
         let newton = x - v / slope;
-        let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
-        if (next - x).abs() <= f64::EPSILON * high || !(low < next && next < high) {
+        let next = if low <= newton && newton <= high { newton } else { 0.5 * (low + high) };
+        let done = (next - x).abs() <= CONVERGED;
+        x = next;
+        if done {
             break;
         }
-        x = next;
     }
-    high.min(x.max(low))
+    x
 }
 
 #[cfg(test)]

@@ -60,8 +60,7 @@ pub(crate) fn run(separation: &Separation, settings: &Settings) -> Result<Outcom
     let mut track = integrator.load(0, separation);
     while !track.all_released() {
         integrator.expand();
-        integrator.advance(0, &mut track, settings.horizon_s())?;
-        track.check(&integrator.state(0), settings)?;
+        integrator.step(0, &mut track)?;
     }
     let state = integrator.state(0);
     Ok(track.outcome(&state))

@@ -1,0 +1,118 @@
+use std::borrow::Borrow;
+
+use crate::{
+    Outcome, RunError, Separation, Settings,
+    integrator::{Integrator, Track},
+    lanes::WIDTH,
+};
+
+/// Many separations, several at a time in vector lanes.
+///
+/// Each lane has its own time and step; a lane whose run is over takes the next of the queue. An
+/// outcome holds the same bits as that of [`Separation::run`], whatever runs beside it. Does not
+/// allocate for up to eight springs but when it is made.
+#[derive(Debug)]
+pub struct Batch {
+    settings: Settings,
+    integrator: Box<Integrator<WIDTH>>,
+}
+
+impl Batch {
+    /// For runs with the given settings.
+    #[must_use]
+    pub fn new(settings: Settings) -> Self {
+        Self { settings, integrator: Box::new(Integrator::new(settings)) }
+    }
+
+    /// Runs the separations to their last releases. Each result is given with its place in the
+    /// queue, in the order in which they end.
+    ///
+    /// # Errors
+    /// Those of [`Separation::run`], run by run: a run that fails does not touch the others.
+    pub fn run<S: Borrow<Separation>>(
+        &mut self,
+        queue: impl IntoIterator<Item = S>,
+        mut result: impl FnMut(usize, Result<Outcome, RunError>),
+    ) {
+        let mut queue = queue.into_iter().enumerate();
+        let mut lanes: [Option<(usize, Track<S>)>; WIDTH] = [const { None }; WIDTH];
+        loop {
+            for (lane, slot) in lanes.iter_mut().enumerate() {
+                if slot.is_none() {
+                    *slot = queue.next().map(|(i, run)| (i, self.integrator.load(lane, run)));
+                }
+            }
+            if lanes.iter().all(Option::is_none) {
+                return;
+            }
+            self.integrator.expand();
+            for (lane, slot) in lanes.iter_mut().enumerate() {
+                let Some((_, track)) = slot else { continue };
+                let stepped = self.integrator.step(lane, track);
+                let over = stepped.is_err() || track.all_released();
+                if over && let Some((i, track)) = slot.take() {
+                    let state = self.integrator.state(lane);
+                    result(i, stepped.map(|()| track.outcome(&state)));
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Body, Spring};
+    use gyradius_inertia::InertiaMatrix;
+    use nalgebra::Vector3;
+
+    /// Bodies and springs of many sizes, some of which fail.
+    fn separations() -> Vec<Separation> {
+        (0..23)
+            .map(|i| {
+                let x = f64::from(i);
+                let inertia = |a: f64| {
+                    let moments = [a, a * (1.0 + 0.01 * x), a * 1.3];
+                    InertiaMatrix::from_entries(moments, [0.01 * a, 0.02 * a, -0.03 * a]).unwrap()
+                };
+                let springs: Vec<_> = (0..=i % 7)
+                    .map(|j| {
+                        let (s, c) = libm::sincos(f64::from(j) * 2.1 + x);
+                        let stiffness = if i == 9 { 1e-3 } else { 1e3 * (1.0 + f64::from(j)) };
+                        let at = |z| Vector3::new(s, c, z);
+                        Spring::new(stiffness, 0.1 + 0.01 * x, at(-0.8), at(0.8)).unwrap()
+                    })
+                    .collect();
+                Separation::new(
+                    Body::new(100.0 + x, inertia(40.0)).unwrap().at(Vector3::z()),
+                    Body::new(50.0 + 3.0 * x, inertia(25.0)).unwrap().at(-Vector3::z()),
+                    &springs,
+                )
+                .unwrap()
+            })
+            .collect()
+    }
+
+    /// Debug output of floats tells all their bits, and the sign of zero.
+    #[test]
+    fn outcomes_are_those_of_runs_alone_to_the_bit() {
+        let settings = Settings::new(1e-13, 10.0).unwrap();
+        let all = separations();
+        let alone: Vec<_> = all.iter().map(|s| format!("{:?}", s.run(&settings))).collect();
+        assert_eq!(alone.iter().filter(|s| s.starts_with("Err")).count(), 1);
+        let mut batch = Batch::new(settings);
+        for skip in 0..5 {
+            let mut count = 0;
+            // Other companions, and lanes that have been used.
+            batch.run(&all[skip..], |i, result| {
+                count += 1;
+                assert_eq!(format!("{result:?}"), alone[skip + i], "run {}", skip + i);
+            });
+            assert_eq!(count, all.len() - skip);
+            batch.run(all.iter().rev(), |i, result| {
+                assert_eq!(format!("{result:?}"), alone[all.len() - 1 - i]);
+            });
+        }
+        batch.run(&all[..0], |_, _| panic!("nothing to run"));
+    }
+}
