@@ -12,7 +12,7 @@ use smallvec::SmallVec;
 use crate::lanes::{Lanes, M3, Packing, V3, WIDTH, add, cross, dot, scale, sub, times, transposed};
 
 /// Degree of the series of a state.
-pub(crate) const ORDER: usize = 12;
+pub(crate) const ORDER: usize = 14;
 /// Coefficients of a series.
 pub(crate) const TERMS: usize = ORDER + 1;
 
@@ -92,6 +92,10 @@ pub(crate) struct Expansion<const L: usize> {
     pub(crate) springs: SmallVec<[SpringSeries; INLINE_SPRINGS / WIDTH]>,
     pub(crate) payload: Rotor<L>,
     pub(crate) stage: Rotor<L>,
+    /// 1 over what each entry of the state is measured by.
+    pub(crate) inverse_scale: [Lanes<L>; STATE],
+    /// The radius of convergence, s.
+    pub(crate) radius: Lanes<L>,
     /// 1/m of the payload plus 1/m of the stage.
     pub(crate) inverse_mass: Lanes<L>,
 }
@@ -209,6 +213,8 @@ where
             springs: SmallVec::new(),
             payload: rotor,
             stage: rotor,
+            inverse_scale: [Lanes::ZERO; STATE],
+            radius: Lanes::ZERO,
             inverse_mass: Lanes::ZERO,
         }
     }
@@ -220,6 +226,7 @@ where
         for k in 0..ORDER {
             self.expand_once(k);
         }
+        self.radius = self.radius();
     }
 
     /// From the coefficients up to k of the state to those of order k + 1.
@@ -283,31 +290,39 @@ where
         put(next, STAGE_RATE, &stage_turn, step);
     }
 
-    /// The largest entry of the coefficients of the last two orders, over what its entry is measured
-    /// by.
+    /// The radius of convergence as the last two coefficients tell it, each entry measured by its
+    /// scale: of both, for series of even or odd functions have every other one.
     #[inline(always)]
-    pub(crate) fn last_sizes(&self, inverse_scale: &[Lanes<L>; STATE]) -> [Lanes<L>; 2] {
-        [ORDER, ORDER - 1].map(|order| {
+    fn radius(&self) -> Lanes<L> {
+        let [last, previous] = [ORDER, ORDER - 1].map(|order| {
             let mut largest = Lanes::ZERO;
-            for (x, s) in self.state[order].iter().zip(inverse_scale) {
+            for (x, s) in self.state[order].iter().zip(&self.inverse_scale) {
                 // NaN stays, which `f64::max` would pass over.
                 largest = largest.zip(*x * *s, |m, x| if x.abs() <= m { m } else { x.abs() });
             }
-            largest
-        })
+            largest.map(|x| inverse_root(x, order as u32))
+        });
+        last.zip(previous, |a, b| if a < b { a } else { b })
     }
+}
 
-    /// The state after a time.
-    #[inline(always)]
-    pub(crate) fn at(&self, time: Lanes<L>) -> [Lanes<L>; STATE] {
-        let mut sum = self.state[ORDER];
-        for row in self.state[..ORDER].iter().rev() {
-            for (s, x) in sum.iter_mut().zip(row) {
-                *s = *s * time + *x;
-            }
+/// About x^(−1/n), to 1 %: a step need not be exact.
+#[inline(always)]
+fn inverse_root(x: f64, n: u32) -> f64 {
+    // The exponent divided by −n, then Newton's iteration for y⁻ⁿ = x.
+    const ONE: u64 = 1023 << 52;
+    const LEAST: f64 = 1e-290;
+    let x = if x < LEAST { LEAST } else { x };
+    let n64 = u64::from(n);
+    let mut y = f64::from_bits((ONE + ONE / n64).saturating_sub(x.to_bits() / n64));
+    for _ in 0..3 {
+        let mut power = y;
+        for _ in 1..n {
+            power *= y;
         }
-        sum
+        y += y * (1.0 - x * power) / f64::from(n);
     }
+    y
 }
 
 #[inline(always)]
@@ -342,4 +357,26 @@ fn rotation<const L: usize>(y: &[[Lanes<L>; STATE]; TERMS], k: usize) -> M3<L> {
         [double(xy + wz), one - double(xx + zz), double(yz - wx)],
         [double(xz - wy), double(yz + wx), one - double(xx + yy)],
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn roots_are_about_right(e in -290.0..290.0f64, n in 8..20_u32) {
+            let x = libm::pow(10.0, e);
+            let exact = libm::pow(x, -1.0 / f64::from(n));
+            prop_assert!((inverse_root(x, n) / exact - 1.0).abs() < 0.01);
+        }
+    }
+
+    #[test]
+    fn roots_of_nothing_and_of_no_number() {
+        assert!(inverse_root(0.0, 13) > 1e20);
+        assert!(inverse_root(f64::NAN, 13).is_nan());
+        assert!(!(inverse_root(f64::INFINITY, 13) > 0.0));
+    }
 }

@@ -46,9 +46,9 @@ pub(crate) struct Track<S> {
 #[derive(Debug)]
 pub(crate) struct Integrator<const L: usize> {
     expansion: Expansion<L>,
-    inverse_scale: [Lanes<L>; STATE],
     settings: Settings,
-    /// The share of the radius of convergence that a step may take.
+    /// The share of the radius of convergence that a step may take: the first term left out,
+    /// extrapolated geometrically from the last two, is then the tolerance (Jorba & Zou 2005, §3.2).
     stretch: f64,
 }
 
@@ -112,8 +112,7 @@ where
 {
     pub(crate) fn new(settings: Settings) -> Self {
         let stretch = libm::pow(settings.relative_tolerance(), 1.0 / TERMS as f64);
-        let inverse_scale = [Lanes::ZERO; STATE];
-        Self { expansion: Expansion::new(), inverse_scale, settings, stretch }
+        Self { expansion: Expansion::new(), settings, stretch }
     }
 
     /// Puts a run at its start into a lane.
@@ -158,7 +157,7 @@ where
         rotor(&mut expansion.stage, run.stage().body());
         expansion.inverse_mass.0[lane] = run.inverse_reduced_mass();
         let scales = state::scales(run);
-        set(&mut self.inverse_scale, &scales.map(|s| 1.0 / s));
+        set(&mut expansion.inverse_scale, &scales.map(|s| 1.0 / s));
         self.set_state(lane, &state::initial(run));
         let springs = SmallVec::from_elem(Fate::default(), run.springs().len());
         Track { time: 0.0, steps: 0, springs, time_scale: state::time_scale(&scales), separation }
@@ -261,14 +260,9 @@ where
         Ok(taken)
     }
 
-    /// How far the series of a lane is good for. The first term left out, extrapolated
-    /// geometrically from the last two, is the tolerance (Jorba & Zou 2005, §3.2).
+    /// How far the series of a lane is good for.
     fn reach(&self, lane: usize) -> f64 {
-        let [last, previous] = self.expansion.last_sizes(&self.inverse_scale).map(|x| x.0[lane]);
-        let radius = |size: f64, order: usize| libm::pow(size, -1.0 / order as f64);
-        let (a, b) = (radius(last, ORDER), radius(previous, ORDER - 1));
-        // NaN stays.
-        self.stretch * if a < b { a } else { b }
+        self.stretch * self.expansion.radius.0[lane]
     }
 
     /// The square of a spring's length less that of its free length, times a sign, less an offset,

@@ -61,7 +61,7 @@ impl Outcome {
         SpinMetrics::new(self.payload.body().inertia(), angular_velocity, spin_axis)
     }
 
-    /// Integration steps taken, each an expansion of the motion to order 12.
+    /// Integration steps taken, each an expansion of the motion to order 14.
     #[must_use]
     pub fn steps(&self) -> u32 {
         self.steps
