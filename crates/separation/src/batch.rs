@@ -13,7 +13,6 @@ use crate::{
 /// allocate for up to eight springs but when it is made.
 #[derive(Debug)]
 pub struct Batch {
-    settings: Settings,
     integrator: Box<Integrator<WIDTH>>,
 }
 
@@ -21,7 +20,7 @@ impl Batch {
     /// For runs with the given settings.
     #[must_use]
     pub fn new(settings: Settings) -> Self {
-        Self { settings, integrator: Box::new(Integrator::new(settings)) }
+        Self { integrator: Box::new(Integrator::new(settings)) }
     }
 
     /// Runs the separations to their last releases. Each result is given with its place in the

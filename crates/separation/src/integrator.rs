@@ -4,16 +4,17 @@ use std::borrow::Borrow;
 use crate::{
     Outcome, RunError, Separation, Settings,
     expansion::{
-        Expansion, INLINE_SPRINGS, ORDER, Rotor, STATE, SpringSeries, TERMS,
+        Expansion, INLINE_SPRINGS, ORDER, Rotor, SpringSeries, TERMS,
     },
     lanes::{Lanes, M3, Packing},
     polynomial::first_zero,
+    separation::TOUCHING,
     state::{self, State},
     vector,
 };
 
-/// Steps after which a separation is given up: a hundred thousand times what one takes.
-pub(crate) const MAX_STEPS: u32 = 1_000_000;
+/// Steps after which a separation is given up: ten thousand times what one takes.
+const MAX_STEPS: u32 = 100_000;
 /// Steps below this share of the time that the springs act are not taken.
 const UNDERFLOW: f64 = 1e-13;
 /// A spring that is shorter than its free length by more than this share of its stroke pushes no
@@ -217,27 +218,30 @@ where
         let h = reach.min(until - track.time);
         let mut first: Option<(f64, usize)> = None;
         for i in track.pushing() {
-            if let Some(x) = first_zero(&self.gap(lane, i, h, 1.0, 0.0))
+            let gap = self.gap(lane, i, h, 1.0, 0.0);
+            if let Some(x) = first_zero(&gap)
                 && first.is_none_or(|(earliest, _)| x * h < earliest)
             {
                 first = Some((x * h, i));
             }
         }
         let run = track.separation.borrow();
-        let (mut taken, mut next) = (h, None);
-        if let Some((time, spring)) = first {
-            (taken, next) = (time, Some(self.at(lane, time)));
-            if time > 0.0 {
-                // The series of the gap ends an order before that of the state.
-                let gap = state::gap(run, next.as_ref().unwrap_or(&[0.0; STATE]), spring);
-                let correction = -gap.value / gap.rate;
-                if correction.abs() <= 1e-3 * h {
-                    taken = (time + correction).clamp(0.0, h);
-                    next = Some(self.at(lane, taken));
-                }
+        let mut taken = first.map_or(h, |(time, _)| time);
+        let mut next = self.at(lane, taken);
+        if let Some((time, spring)) = first
+            && time > 0.0
+        {
+            // The series of the gap ends an order before that of the state.
+            let gap = state::gap(run, &next, spring);
+            let correction = -gap.value / gap.rate;
+            if correction.abs() <= 1e-3 * h {
+                taken = (time + correction).clamp(0.0, h);
+                next = self.at(lane, taken);
             }
         }
-        let mut next = next.unwrap_or_else(|| self.at(lane, taken));
+        for i in track.pushing() {
+            self.check_apart(lane, track, i, taken)?;
+        }
         state::normalize(&mut next);
         if !next.iter().all(|x| x.is_finite()) {
             return Err(self.failure(lane, track, reach));
@@ -292,6 +296,35 @@ where
         sum
     }
 
+    /// That the points of a spring do not come together within a step. Where they fly straight at each
+    /// other the equations of motion do not notice.
+    fn check_apart<S: Borrow<Separation>>(
+        &self,
+        lane: usize,
+        track: &Track<S>,
+        spring: usize,
+        taken: f64,
+    ) -> Result<(), RunError> {
+        let run = track.separation.borrow();
+        let touching = (TOUCHING * run.springs()[spring].stroke_m()).powi(2);
+        let free = run.free_lengths()[spring];
+        let mut nearness = self.gap(lane, spring, taken, -1.0, 0.0);
+        nearness[0] += touching - free * free;
+        // The terms that bring them nearer do not suffice, most often.
+        let sum = nearness.iter().fold(0.0, |sum, x| sum + if sum == 0.0 { *x } else { x.max(0.0) });
+        if sum < 0.0 {
+            return Ok(());
+        }
+        match first_zero(&nearness) {
+            Some(x) => Err(RunError::PadsMeet {
+                spring: spring + 1,
+                time: track.time + x * taken,
+                speed: -state::gap(run, &self.at(lane, 0.999 * x * taken), spring).rate,
+            }),
+            None => Ok(()),
+        }
+    }
+
     /// Notes released springs that a step makes shorter than their free length.
     fn note_recompression<S: Borrow<Separation>>(
         &self,
@@ -322,12 +355,7 @@ where
         let time = track.time;
         let finite = self.series(lane).iter().flatten().all(|x| x.is_finite());
         if finite && step.is_finite() {
-            let run: &Separation = track.separation.borrow();
-            let state = self.state(lane);
-            // The nearest to a singularity is the shortest.
-            let length = |i: &usize| state::gap(run, &state, *i).value + run.free_lengths()[*i];
-            let spring = track.pushing().min_by(|a, b| length(a).total_cmp(&length(b)));
-            RunError::StepUnderflow { time, step, spring: spring.map(|i| i + 1) }
+            RunError::StepUnderflow { time, step }
         } else {
             RunError::NotFinite { time }
         }

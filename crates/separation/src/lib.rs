@@ -47,8 +47,10 @@ mod polynomial;
 mod run;
 mod separation;
 mod settings;
+mod snapshot;
 mod spring;
 mod state;
+mod trajectory;
 mod vector;
 
 pub use batch::Batch;
@@ -58,7 +60,9 @@ pub use outcome::Outcome;
 pub use run::RunError;
 pub use separation::{Separation, SeparationError};
 pub use settings::{Settings, SettingsError};
+pub use snapshot::{Snapshot, SpringState};
 pub use spring::{Spring, SpringError};
+pub use trajectory::{Step, Trajectory};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

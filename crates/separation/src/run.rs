@@ -19,20 +19,26 @@ pub enum RunError {
         /// How fast it grows, m/s.
         rate: f64,
     },
-    /// Steps have become too small: the motion comes to a singularity.
+    /// The two points of a spring have come together, and its force has lost its direction.
     #[error(
-        "step of {step:e} s at {time} s is too small to go on{}",
-        .spring.map_or(String::new(), |i| format!(
-            ": spring {i} is nearly of zero length and its force has no direction"
-        ))
+        "spring {spring}: its points meet at {time} s, closing at {speed} m/s: the line between them is \
+         the direction of the force"
     )]
+    PadsMeet {
+        /// The spring, from 1.
+        spring: usize,
+        /// When, s.
+        time: f64,
+        /// How fast they came together, m/s.
+        speed: f64,
+    },
+    /// Steps have become too small to go on.
+    #[error("the step at {time} s would be {step:e} s, too small to go on")]
     StepUnderflow {
         /// When, s.
         time: f64,
         /// The step, s.
         step: f64,
-        /// The shortest of the springs that push, from 1.
-        spring: Option<usize>,
     },
     /// So many steps that the motion must be far faster than the springs are.
     #[error(
@@ -46,6 +52,12 @@ pub enum RunError {
         time: f64,
         /// The tolerance asked for.
         relative_tolerance: f64,
+    },
+    /// The coast asked for is none.
+    #[error("coast = {value} s: it must be zero or positive, and finite")]
+    Coast {
+        /// The coast, s.
+        value: f64,
     },
     /// A number has overflowed.
     #[error("the motion at {time} s is beyond the range of numbers")]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::{Body, BodyError, BodyState, MovingBody, Outcome, RunError, Settings, Spring, run};
 
 /// Pads nearer than this share of their stroke count as touching.
-const TOUCHING: f64 = 1e-6;
+pub(crate) const TOUCHING: f64 = 1e-6;
 
 /// Strokes shorter than this share of the distances that they are differences of have lost half of
 /// the digits of a double.

@@ -84,13 +84,19 @@ pub(crate) fn bodies(
     (payload.body().moving(payload_state), stage.body().moving(stage_state))
 }
 
+/// From the stage point of a spring to its payload point, payload axes, m.
+pub(crate) fn line(state: &State, spring: &Spring) -> Vector3<f64> {
+    vector(state, OFFSET) + spring.payload_point_m()
+        - quaternion(state, RELATIVE) * spring.stage_point_m()
+}
+
 /// The gap of a spring.
 pub(crate) fn gap(separation: &Separation, state: &State, spring: usize) -> Gap {
     let (points, free) = (&separation.springs()[spring], separation.free_lengths()[spring]);
     let relative = quaternion(state, RELATIVE);
     let (payload_rate, stage_rate) = (vector(state, PAYLOAD_RATE), vector(state, STAGE_RATE));
     let (p, l) = (points.payload_point_m(), points.stage_point_m());
-    let line = vector(state, OFFSET) + p - relative * l;
+    let line = line(state, points);
     let velocity =
         vector(state, VELOCITY) + payload_rate.cross(&p) - relative * stage_rate.cross(&l);
     let length = line.norm();

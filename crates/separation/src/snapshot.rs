@@ -1,0 +1,131 @@
+use nalgebra::Vector3;
+use smallvec::SmallVec;
+
+use crate::{MovingBody, Separation, expansion::INLINE_SPRINGS, state};
+
+/// A spring at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringState {
+    pub(crate) pushing: bool,
+    pub(crate) length: f64,
+    pub(crate) compression: f64,
+    pub(crate) force: Vector3<f64>,
+    pub(crate) energy: f64,
+}
+
+impl SpringState {
+    /// Whether it has not yet let go.
+    #[must_use]
+    pub fn is_pushing(&self) -> bool {
+        self.pushing
+    }
+
+    /// Distance of its two points, m.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.length
+    }
+
+    /// Free length less length, m, whether it pushes or not.
+    #[must_use]
+    pub fn compression_m(&self) -> f64 {
+        self.compression
+    }
+
+    /// Force on the payload, inertial axes, N; that on the stage is its opposite. Zero once the
+    /// spring has let go.
+    #[must_use]
+    pub fn force_n(&self) -> Vector3<f64> {
+        self.force
+    }
+
+    /// Energy stored, J. Zero once the spring has let go.
+    #[must_use]
+    pub fn energy_j(&self) -> f64 {
+        self.energy
+    }
+}
+
+/// Bodies and springs at a moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapshot {
+    time: f64,
+    payload: MovingBody,
+    stage: MovingBody,
+    springs: SmallVec<[SpringState; INLINE_SPRINGS]>,
+}
+
+impl Snapshot {
+    pub(crate) fn new(
+        separation: &Separation,
+        state: &state::State,
+        time: f64,
+        pushing: &[bool],
+    ) -> Self {
+        let (payload, stage) = state::bodies(separation, state, time);
+        let springs = separation.springs().iter().zip(separation.free_lengths()).zip(pushing);
+        let springs = springs.map(|((spring, free), &pushing)| {
+            // Not of the two positions, which may be large.
+            let line = state::line(state, spring);
+            let length = line.norm();
+            let compression = free - length;
+            let stiffness = if pushing { spring.stiffness_n_per_m() } else { 0.0 };
+            SpringState {
+                pushing,
+                length,
+                compression,
+                force: if pushing {
+                    payload.state().attitude * (line * (stiffness * compression / length))
+                } else {
+                    Vector3::zeros()
+                },
+                energy: 0.5 * stiffness * compression * compression,
+            }
+        });
+        let springs = springs.collect();
+        Self { time, payload, stage, springs }
+    }
+
+    /// Since the clamp opened, s.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.time
+    }
+
+    /// The payload.
+    #[must_use]
+    pub fn payload(&self) -> &MovingBody {
+        &self.payload
+    }
+
+    /// The stage.
+    #[must_use]
+    pub fn stage(&self) -> &MovingBody {
+        &self.stage
+    }
+
+    /// The springs, in their order.
+    #[must_use]
+    pub fn springs(&self) -> &[SpringState] {
+        &self.springs
+    }
+
+    /// Energy of both bodies and of the springs that push, J: conserved.
+    #[must_use]
+    pub fn energy_j(&self) -> f64 {
+        let stored: f64 = self.springs.iter().map(SpringState::energy_j).sum();
+        self.payload.kinetic_energy() + self.stage.kinetic_energy() + stored
+    }
+
+    /// Linear momentum of both bodies, inertial axes, kg·m/s: conserved.
+    #[must_use]
+    pub fn momentum(&self) -> Vector3<f64> {
+        self.payload.momentum() + self.stage.momentum()
+    }
+
+    /// Angular momentum of both bodies about the inertial origin, inertial axes, kg·m²/s: conserved.
+    #[must_use]
+    pub fn angular_momentum(&self) -> Vector3<f64> {
+        self.payload.angular_momentum() + self.stage.angular_momentum()
+    }
+}

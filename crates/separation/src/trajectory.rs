@@ -1,0 +1,145 @@
+use smallvec::SmallVec;
+
+use crate::{
+    Outcome, RunError, Separation, Settings, Snapshot,
+    expansion::{INLINE_SPRINGS, ORDER, TERMS},
+    integrator::Integrator,
+    state::{self, State},
+};
+
+/// A step of the integration: the motion between two times as a power series, which is the
+/// integration itself and as accurate as it anywhere in between.
+///
+/// A step ends where its series ceases to be good or where a spring lets go.
+#[derive(Clone, Debug)]
+pub struct Step {
+    separation: Separation,
+    start: f64,
+    duration: f64,
+    series: [State; TERMS],
+    pushing: SmallVec<[bool; INLINE_SPRINGS]>,
+    released: SmallVec<[usize; INLINE_SPRINGS]>,
+}
+
+impl Step {
+    /// When it starts, s.
+    #[must_use]
+    pub fn start_s(&self) -> f64 {
+        self.start
+    }
+
+    /// When it ends, s.
+    #[must_use]
+    pub fn end_s(&self) -> f64 {
+        self.start + self.duration
+    }
+
+    /// The springs that let go at its end, from 1.
+    #[must_use]
+    pub fn released(&self) -> &[usize] {
+        &self.released
+    }
+
+    /// Bodies and springs at a time within the step, s; times outside count as its ends. At the end,
+    /// springs that let go there still push, with a force of zero to rounding.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> Snapshot {
+        let time = if time_s > self.start { (time_s - self.start).min(self.duration) } else { 0.0 };
+        let mut state = self.series[ORDER];
+        for row in self.series[..ORDER].iter().rev() {
+            for (s, x) in state.iter_mut().zip(row) {
+                *s = *s * time + x;
+            }
+        }
+        state::normalize(&mut state);
+        Snapshot::new(&self.separation, &state, self.start + time, &self.pushing)
+    }
+}
+
+/// A whole separation: every step to the last release and on, if wished, through a coast.
+#[derive(Clone, Debug)]
+pub struct Trajectory {
+    steps: Vec<Step>,
+    outcome: Outcome,
+}
+
+impl Trajectory {
+    /// The steps, in the order of time, each from the end of the one before.
+    #[must_use]
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
+    }
+
+    /// The bodies at the last release: what [`Separation::run`] gives, to the bit.
+    #[must_use]
+    pub fn outcome(&self) -> &Outcome {
+        &self.outcome
+    }
+
+    /// Where the coast ends, s.
+    #[must_use]
+    pub fn end_s(&self) -> f64 {
+        self.steps.last().map_or(0.0, Step::end_s)
+    }
+
+    /// Bodies and springs at a time from the opening of the clamp, s; none before it and after the
+    /// end. At a release, the moment after it.
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> Option<Snapshot> {
+        let step = self.steps.partition_point(|step| step.start <= time_s).checked_sub(1)?;
+        let step = &self.steps[step];
+        (time_s <= step.end_s()).then(|| step.at(time_s))
+    }
+}
+
+impl Separation {
+    /// Integrates to the release of the last spring and on for `coast_s`, and shows every step as it
+    /// is taken, a failed run's up to the failure. The outcome is that of [`Separation::run`].
+    ///
+    /// # Errors
+    /// A spring is not released within the horizon, the integration cannot go on, or the coast is
+    /// negative or not finite.
+    pub fn follow(
+        &self,
+        settings: &Settings,
+        coast_s: f64,
+        mut observer: impl FnMut(&Step),
+    ) -> Result<Outcome, RunError> {
+        if !(coast_s >= 0.0 && coast_s.is_finite()) {
+            return Err(RunError::Coast { value: coast_s });
+        }
+        let mut integrator = Integrator::<1>::new(*settings);
+        let mut track = integrator.load(0, self);
+        let mut outcome: Option<Outcome> = None;
+        let mut end = settings.horizon_s();
+        while outcome.is_none() || track.time < end {
+            integrator.expand();
+            let (start, series) = (track.time, integrator.series(0));
+            let pushing: SmallVec<_> = track.springs.iter().map(|s| s.released.is_none()).collect();
+            let duration = integrator.advance(0, &mut track, end)?;
+            let released = track.springs.iter().zip(&pushing).enumerate();
+            let released = released.filter(|(_, (fate, was))| **was && fate.released.is_some());
+            let released = released.map(|(i, _)| i + 1).collect();
+            let separation = self.clone();
+            observer(&Step { separation, start, duration, series, pushing, released });
+            let state = integrator.state(0);
+            track.check(&state, settings)?;
+            if outcome.is_none() && track.all_released() {
+                outcome = Some(track.clone().outcome(&state));
+                end = track.time + coast_s;
+            }
+        }
+        outcome.ok_or(RunError::NotFinite { time: track.time })
+    }
+
+    /// The whole separation, with a coast of `coast_s` after the last release. Three kilobytes a
+    /// step.
+    ///
+    /// # Errors
+    /// Those of [`Separation::follow`].
+    pub fn trajectory(&self, settings: &Settings, coast_s: f64) -> Result<Trajectory, RunError> {
+        let mut steps = Vec::new();
+        let outcome = self.follow(settings, coast_s, |step| steps.push(step.clone()))?;
+        Ok(Trajectory { steps, outcome })
+    }
+}
