@@ -319,6 +319,7 @@ fn what_cannot_be_followed_is_said_to_be_so() {
 
     let whirling = |rate: f64| {
         let payload = moving(Vector3::z(), Vector3::zeros(), rate);
+        let spring = Spring::new(10.0, 0.1, Vector3::zeros(), Vector3::zeros()).unwrap();
         let separation = Separation::new(payload, ball.at(-Vector3::z()), &[spring]);
         separation.unwrap().run(&Settings::default()).unwrap_err()
     };
