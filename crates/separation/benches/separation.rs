@@ -1,10 +1,13 @@
-//! One separation of the paper's scenario, to the last release and its spin metrics.
+//! Separations of the paper's scenario, to the last release and its spin metrics, alone and in a batch,
+//! beside the same through the crate `differential-equations`.
 #![allow(missing_docs, reason = "criterion's macros make public items")]
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
-use criterion::{Criterion, criterion_group, criterion_main};
+mod peer;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{Body, Separation, Settings, Spring};
+use gyradius_separation::{Batch, Body, Separation, Settings, Spring};
 use nalgebra::Vector3;
 use std::hint::black_box;
 
@@ -31,11 +34,38 @@ fn nominal() -> Separation {
 fn separation(c: &mut Criterion) {
     let separation = nominal();
     let settings = Settings::default();
+    let axis = Vector3::x_axis();
+    let outcome = separation.run(&settings).unwrap();
+    let rate = outcome.payload().state().angular_velocity;
+    for tolerance in [1e-9, 1e-13] {
+        let (theirs, time) = peer::separate(&separation, tolerance);
+        println!(
+            "differential-equations at {tolerance:e}: off by {:.1e} rad/s and {:.1e} s",
+            (theirs - rate).norm(),
+            (time - outcome.release_time()).abs()
+        );
+        assert!((theirs - rate).norm() < 1e-5);
+    }
+
     let mut group = c.benchmark_group("separation");
+    group.throughput(Throughput::Elements(1));
     group.bench_function("peck-2003", |b| {
+        b.iter(|| black_box(&separation).run(&settings).unwrap().spin_metrics(&axis));
+    });
+    for tolerance in [1e-9, 1e-13] {
+        group.bench_function(format!("differential-equations/{tolerance:e}"), |b| {
+            b.iter(|| peer::separate(black_box(&separation), tolerance));
+        });
+    }
+    // As many runs as a thread of a study takes at a time.
+    const RUNS: usize = 256;
+    group.throughput(Throughput::Elements(RUNS as u64));
+    let mut batch = Batch::new(settings);
+    group.bench_function(format!("peck-2003/batch of {RUNS}"), |b| {
         b.iter(|| {
-            let outcome = black_box(&separation).run(&settings).unwrap();
-            outcome.spin_metrics(&Vector3::x_axis())
+            batch.run(std::iter::repeat_n(black_box(&separation), RUNS), |_, outcome| {
+                black_box(outcome.unwrap().spin_metrics(&axis));
+            });
         });
     });
     group.finish();

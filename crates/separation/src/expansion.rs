@@ -236,7 +236,8 @@ where
         let rotation = rotation(y, k);
         let offset = part(&y[k], OFFSET);
         let (mut force, mut torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
-        let (arm, turn) = (offset.map(Packing::spread), rotation.map(|row| row.map(Packing::spread)));
+        let (arm, turn) =
+            (offset.map(Packing::spread), rotation.map(|row| row.map(Packing::spread)));
         for springs in &mut self.springs {
             let push = springs.expand(k, &arm, &turn);
             let moment = cross(&springs.payload_point, &push);

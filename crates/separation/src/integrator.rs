@@ -3,9 +3,7 @@ use std::borrow::Borrow;
 
 use crate::{
     Outcome, RunError, Separation, Settings,
-    expansion::{
-        Expansion, INLINE_SPRINGS, ORDER, Rotor, STATE, SpringSeries, TERMS,
-    },
+    expansion::{Expansion, INLINE_SPRINGS, ORDER, Rotor, STATE, SpringSeries, TERMS},
     lanes::{Lanes, M3, Packing},
     polynomial::first_zero,
     separation::TOUCHING,
@@ -310,7 +308,8 @@ where
         let mut nearness = self.gap(lane, spring, taken, -1.0, 0.0);
         nearness[0] += touching - free * free;
         // The terms that bring them nearer do not suffice, most often.
-        let sum = nearness.iter().fold(0.0, |sum, x| sum + if sum == 0.0 { *x } else { x.max(0.0) });
+        let sum =
+            nearness.iter().fold(0.0, |sum, x| sum + if sum == 0.0 { *x } else { x.max(0.0) });
         if sum < 0.0 {
             return Ok(());
         }
@@ -345,12 +344,7 @@ where
         }
     }
 
-    fn failure<S: Borrow<Separation>>(
-        &self,
-        lane: usize,
-        track: &Track<S>,
-        step: f64,
-    ) -> RunError {
+    fn failure<S: Borrow<Separation>>(&self, lane: usize, track: &Track<S>, step: f64) -> RunError {
         let time = track.time;
         let finite = self.series(lane).iter().flatten().all(|x| x.is_finite());
         if finite && step.is_finite() {
@@ -437,7 +431,12 @@ mod tests {
         (sxy / sxx, sxy / (sxx * syy).sqrt())
     }
 
-    fn errors(separation: &Separation, steps: &[u32], until: f64, located: bool) -> Vec<(f64, f64)> {
+    fn errors(
+        separation: &Separation,
+        steps: &[u32],
+        until: f64,
+        located: bool,
+    ) -> Vec<(f64, f64)> {
         let exact = fixed_steps(separation, until / 100.0, until, true);
         let error = |n: &u32| {
             let h = until / f64::from(*n);
@@ -491,6 +490,9 @@ mod tests {
         assert!((0.5..2.5).contains(&slope), "{slope} {late:?}");
         let found = errors(&separation, &[10, 11, 12, 13, 14, 15, 16, 18, 20], 1.2, true);
         let (slope, correlation) = fit(&found);
-        assert!(slope > ORDER as f64 - 1.0 && correlation > 0.99, "{slope} {correlation} {found:?}");
+        assert!(
+            slope > ORDER as f64 - 1.0 && correlation > 0.99,
+            "{slope} {correlation} {found:?}"
+        );
     }
 }

@@ -65,8 +65,7 @@ pub(crate) fn bodies(
     let velocity = payload.state().velocity * fp + stage.state().velocity * fl;
     let position = payload.state().position * fp + stage.state().position * fl + velocity * time;
     let attitude = quaternion(state, ATTITUDE);
-    let (offset, relative) =
-        (attitude * vector(state, OFFSET), attitude * vector(state, VELOCITY));
+    let (offset, relative) = (attitude * vector(state, OFFSET), attitude * vector(state, VELOCITY));
     let payload_state = BodyState {
         position: position + offset * fl,
         velocity: velocity + relative * fl,

@@ -47,12 +47,9 @@ fn errors_fall_with_the_tolerance() {
 /// The number of times that the equations of motion are expanded. A change is one of the speed.
 #[test]
 fn steps_are_pinned() {
-    for (separation, tolerance, steps) in [
-        (paper(), 1e-13, 9),
-        (paper(), 1e-14, 10),
-        (paper(), 1e-6, 5),
-        (skewed(), 1e-13, 6),
-    ] {
+    for (separation, tolerance, steps) in
+        [(paper(), 1e-13, 9), (paper(), 1e-14, 10), (paper(), 1e-6, 5), (skewed(), 1e-13, 6)]
+    {
         assert_eq!(with_tolerance(&separation, tolerance).steps(), steps, "{tolerance:e}");
         let settings = Settings::new(tolerance, 60.0).unwrap();
         let mut shown = 0;
@@ -69,7 +66,8 @@ fn runs_and_batches_do_not_allocate() {
     batch.run([&separation], |_, result| assert!(result.is_ok()));
     let counted = allocation_counter::measure(|| {
         assert!(separation.run(&settings).is_ok());
-        let inertias = (*separation.payload().body().inertia(), *separation.stage().body().inertia());
+        let inertias =
+            (*separation.payload().body().inertia(), *separation.stage().body().inertia());
         let again = separation.with_inertias(inertias.0, inertias.1).unwrap();
         batch.run(std::iter::repeat_n(&again, 10), |_, result| assert!(result.is_ok()));
     });

@@ -57,8 +57,7 @@ fn short_strokes_are_blows() {
     let (body1, body2) = (Body::new(m1, i1).unwrap(), Body::new(m2, i2).unwrap());
     let turn = |body: &Body, r: &Vector3<f64>| body.inverse_inertia() * r.cross(&line);
     let (w1, w2) = (turn(&body1, &p), turn(&body2, &l));
-    let inverse =
-        1.0 / m1 + 1.0 / m2 + line.dot(&w1.cross(&p)) + line.dot(&w2.cross(&l));
+    let inverse = 1.0 / m1 + 1.0 / m2 + line.dot(&w1.cross(&p)) + line.dot(&w2.cross(&l));
     let errors: Vec<_> = (0..10)
         .map(|i| {
             let stroke = 0.02 * 0.5_f64.powi(i);

@@ -117,9 +117,7 @@ fn outcomes_match_the_reference() {
             }
         }
         let times = outcome.release_times();
-        for (found, expected) in
-            times.zip(array_of(&case["outcome"]["release_time_of_spring_s"]))
-        {
+        for (found, expected) in times.zip(array_of(&case["outcome"]["release_time_of_spring_s"])) {
             assert!((found - expected).abs() < 1e-12, "{}: {found} {expected}", case["name"]);
         }
     }

@@ -183,7 +183,8 @@ fn axisymmetric_bodies_cone() {
             let time = 0.5 * f64::from(i);
             let spin = (1.0 - axial / transverse) * w.z * time;
             let about_axis = UnitQuaternion::new(Vector3::z() * spin);
-            let expected = UnitQuaternion::new(momentum * (time / transverse)) * attitude * about_axis;
+            let expected =
+                UnitQuaternion::new(momentum * (time / transverse)) * attitude * about_axis;
             let state = *trajectory.at(time).unwrap().payload().state();
             assert!(state.attitude.angle_to(&expected) < 1e-11, "{time}");
             let rates = about_axis.inverse() * w;

@@ -44,12 +44,18 @@ pub(crate) fn skewed() -> Separation {
         angular_velocity: w.into(),
     };
     Separation::new(
-        Body::new(120.0, payload)
-            .unwrap()
-            .moving(state(0.7, [0.02, -0.05, 0.4], [0.1, 0.02, 0.03], [0.03, -0.2, 0.3])),
-        Body::new(80.0, stage)
-            .unwrap()
-            .moving(state(-0.6, [-0.03, 0.01, 0.1], [0.1, 0.03, 0.0], [-0.1, 0.02, 0.25])),
+        Body::new(120.0, payload).unwrap().moving(state(
+            0.7,
+            [0.02, -0.05, 0.4],
+            [0.1, 0.02, 0.03],
+            [0.03, -0.2, 0.3],
+        )),
+        Body::new(80.0, stage).unwrap().moving(state(
+            -0.6,
+            [-0.03, 0.01, 0.1],
+            [0.1, 0.03, 0.0],
+            [-0.1, 0.02, 0.25],
+        )),
         &[
             spring(3e3, 0.12, [0.5, 0.1, -0.5], [0.4, 0.2, 0.4]),
             spring(2e3, 0.10, [-0.3, 0.4, -0.5], [-0.2, 0.4, 0.45]),
