@@ -2,8 +2,8 @@
 //!
 //! A payload sits on a stage; compressed springs act between fixed points of the two bodies, each
 //! along the line between its points, until it reaches its free length and is lost for good. This
-//! crate integrates the motion to the last release at full precision ([`Separation::run`]) and
-//! says what became of the payload's spin ([`SpinMetrics`]: wobble, nutation, coning, inertia
+//! crate integrates the motion to the last release at full precision ([`Separation::run`], many at a
+//! time in a [`Batch`], with all that lies between as a [`Trajectory`]) and says what became of the payload's spin ([`SpinMetrics`]: wobble, nutation, coning, inertia
 //! ratio; Peck 2003, Eq. 28-37). It knows no probability.
 //!
 //! # Conventions

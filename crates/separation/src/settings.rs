@@ -58,7 +58,7 @@ impl Settings {
 }
 
 impl Default for Settings {
-    /// Tolerance 1e-13, with which halving it moves no outcome by 1e-9 of itself; horizon 60 s.
+    /// Tolerance 1e-13, with which outcomes are within 1e-11 of those at the tightest; horizon 60 s.
     fn default() -> Self {
         Self { relative_tolerance: 1e-13, horizon: 60.0 }
     }
