@@ -39,18 +39,29 @@
 //! [`InertiaMatrix`]: gyradius_inertia::InertiaMatrix
 
 mod any_body;
+mod axes;
 mod entry_moments;
 mod entrywise;
-mod jacobian_twice;
 mod principal;
+mod root_moments;
 mod roots;
+mod semidefinite;
 
 pub use any_body::{AnyBody, AnyBodyError};
-pub use entry_moments::EntryMoments;
+pub use axes::{AttitudeMoments, AxesLaw, FixedAttitude, JacobianTwice, JacobianTwiceError};
+pub use entry_moments::{EntryMoments, EntryMomentsError};
 pub use entrywise::{EntrywiseError, EntrywiseGaussian};
-pub use jacobian_twice::{JacobianTwice, JacobianTwiceError};
 pub use principal::{PrincipalDispersion, PrincipalDraw};
-pub use roots::{GaussianRoots, GaussianRootsError};
+pub use root_moments::{
+    RootMoments, SecondMomentStatistics, SecondMomentStatisticsError, WithMoments,
+};
+pub use roots::{
+    CorrelatedRoots, CorrelatedRootsError, EmpiricalRoots, EmpiricalRootsError, GaussianRoots,
+    GaussianRootsError, IndependentRoots, IndependentRootsError, LognormalRoots,
+    LognormalRootsError, RootLaw, TruncatedRoots, TruncatedRootsError, UniformRoots,
+    UniformRootsError,
+};
+pub use semidefinite::CovarianceError;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

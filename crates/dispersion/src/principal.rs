@@ -13,6 +13,11 @@ use rand_distr::Distribution;
 /// # Realizability
 /// By construction, for any laws: squares are not negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct PrincipalDispersion<K, A> {
     roots: K,
     axes: A,

@@ -37,6 +37,11 @@ pub enum JacobianTwiceError {
 /// # Limits
 /// Laws of which not one proposal in fifty thousand is accepted are refused.
 #[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "RadiallyConstrainedGaussian", into = "RadiallyConstrainedGaussian")
+)]
 pub struct JacobianTwice {
     law: RadiallyConstrainedGaussian,
     envelope: FisherBingham,
@@ -108,6 +113,20 @@ impl JacobianTwice {
     #[must_use]
     pub fn once(&self) -> &RadiallyConstrainedGaussian {
         &self.law
+    }
+}
+
+impl TryFrom<RadiallyConstrainedGaussian> for JacobianTwice {
+    type Error = JacobianTwiceError;
+
+    fn try_from(law: RadiallyConstrainedGaussian) -> Result<Self, Self::Error> {
+        Self::new(law)
+    }
+}
+
+impl From<JacobianTwice> for RadiallyConstrainedGaussian {
+    fn from(twice: JacobianTwice) -> Self {
+        twice.law
     }
 }
 

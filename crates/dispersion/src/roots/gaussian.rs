@@ -2,11 +2,8 @@ use gyradius_inertia::RootSecondMoments;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// Draws farther out than this many deviations have probability 1e-349.
-const FAR: f64 = 40.0;
-
-/// Draws stay below this, so that fourth powers, which variances of K are made of, do not overflow.
-const MAX_ROOT: f64 = 1e75;
+use super::{FAR, MAX_ROOT};
+use crate::{RootMoments, SecondMomentStatistics};
 
 /// Why variances are refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -93,6 +90,15 @@ impl GaussianRoots {
     }
 }
 
+impl RootMoments for GaussianRoots {
+    fn second_moment_statistics(&self) -> SecondMomentStatistics {
+        SecondMomentStatistics::independent(
+            self.second_moment_means(),
+            self.second_moment_variances(),
+        )
+    }
+}
+
 impl Distribution<RootSecondMoments> for GaussianRoots {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> RootSecondMoments {
@@ -138,7 +144,6 @@ impl From<GaussianRoots> for Parameters {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
     fn roots(k: [f64; 3]) -> RootSecondMoments {
         RootSecondMoments::new(k).unwrap()
@@ -162,23 +167,10 @@ mod tests {
         assert!(serde_json::from_str::<GaussianRoots>(&json.replace("0.2", "-0.2")).is_err());
     }
 
+    /// K/σ² is noncentral χ².
     #[test]
-    fn squares_have_the_moments_of_noncentral_chi_squared() {
-        const N: usize = 400_000;
+    fn squares_have_their_moments() {
         let law = GaussianRoots::new(roots([30.0, 1.0, 0.0]), [0.1, 4.0, 2.0]).unwrap();
-        let mut rng = ChaCha8Rng::seed_from_u64(5);
-        let draws: Vec<[f64; 3]> =
-            (0..N).map(|_| law.sample(&mut rng).squared().values()).collect();
-        for i in 0..3 {
-            let expected = (law.second_moment_means()[i], law.second_moment_variances()[i]);
-            let n = N as f64;
-            let mean = draws.iter().map(|k| k[i]).sum::<f64>() / n;
-            let z = (mean - expected.0) / (expected.1 / n).sqrt();
-            assert!(z.abs() < 4.0, "mean of K_{}: z = {z}", i + 1);
-            let moment = |p| draws.iter().map(|k| (k[i] - mean).powi(p)).sum::<f64>() / n;
-            let (variance, fourth) = (moment(2), moment(4));
-            let z = (variance - expected.1) / ((fourth - variance * variance) / n).sqrt();
-            assert!(z.abs() < 4.0, "variance of K_{}: z = {z}", i + 1);
-        }
+        crate::root_moments::tests::check_moments(&law, 5);
     }
 }

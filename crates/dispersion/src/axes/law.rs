@@ -1,0 +1,84 @@
+use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
+use nalgebra::UnitQuaternion;
+use rand::Rng;
+use rand_distr::Distribution;
+
+use crate::{AttitudeMoments, EntryMoments, FixedAttitude, JacobianTwice, SecondMomentStatistics};
+
+/// Any of the laws of principal axes with known moments, chosen at run time.
+///
+/// Draws are those of the law inside, bit for bit.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(tag = "law", rename_all = "kebab-case")
+)]
+#[non_exhaustive]
+pub enum AxesLaw {
+    /// A radially constrained Gaussian on the whole sphere, both lobes.
+    WholeSphere(RadiallyConstrainedGaussian),
+    /// The same kept to the half sphere around its mean.
+    MeanHalf(MeanHalf),
+    /// The law behind Table 2 of Peck (2003).
+    JacobianTwice(Box<JacobianTwice>),
+    /// Every attitude equally likely.
+    Uniform(UniformAttitude),
+    /// One attitude.
+    Fixed(FixedAttitude),
+}
+
+macro_rules! each {
+    ($self:expr, $law:ident => $body:expr) => {
+        match $self {
+            AxesLaw::WholeSphere($law) => $body,
+            AxesLaw::MeanHalf($law) => $body,
+            AxesLaw::JacobianTwice($law) => $body,
+            AxesLaw::Uniform($law) => $body,
+            AxesLaw::Fixed($law) => $body,
+        }
+    };
+}
+
+impl AttitudeMoments for AxesLaw {
+    fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
+        each!(self, law => law.entry_moments(k))
+    }
+}
+
+impl Distribution<UnitQuaternion<f64>> for AxesLaw {
+    #[inline]
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> UnitQuaternion<f64> {
+        each!(self, law => law.sample(rng))
+    }
+}
+
+impl From<RadiallyConstrainedGaussian> for AxesLaw {
+    fn from(law: RadiallyConstrainedGaussian) -> Self {
+        Self::WholeSphere(law)
+    }
+}
+
+impl From<MeanHalf> for AxesLaw {
+    fn from(law: MeanHalf) -> Self {
+        Self::MeanHalf(law)
+    }
+}
+
+impl From<JacobianTwice> for AxesLaw {
+    fn from(law: JacobianTwice) -> Self {
+        Self::JacobianTwice(Box::new(law))
+    }
+}
+
+impl From<UniformAttitude> for AxesLaw {
+    fn from(law: UniformAttitude) -> Self {
+        Self::Uniform(law)
+    }
+}
+
+impl From<FixedAttitude> for AxesLaw {
+    fn from(law: FixedAttitude) -> Self {
+        Self::Fixed(law)
+    }
+}

@@ -1,0 +1,130 @@
+use gyradius_attitude::{
+    AngularQuadrature, FisherBingham, MeanHalf, RadiallyConstrainedGaussian, UniformAttitude,
+};
+use nalgebra::{Complex, SMatrix, UnitQuaternion};
+
+use super::half_sphere::HalfSphere;
+use crate::entry_moments::{ENTRIES, Expectation, Polynomials};
+use crate::{EntryMoments, FixedAttitude, JacobianTwice, SecondMomentStatistics};
+
+/// A law of attitudes under which the mean and covariance of the entries of an inertia matrix can be
+/// computed, whatever the law of the second moments.
+///
+/// For a law of one's own, [`EntryMoments::by_quadrature`] takes nodes and weights.
+pub trait AttitudeMoments {
+    /// Mean and covariance of the entries of R(q)ᵀ I_P R(q), I_P = tr(K)·1 − diag(K), q from this law and
+    /// K of the given mean and covariance, independent of q.
+    fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments;
+}
+
+impl<T: AttitudeMoments + ?Sized> AttitudeMoments for &T {
+    fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
+        (**self).entry_moments(k)
+    }
+}
+
+impl Polynomials for RadiallyConstrainedGaussian {
+    fn expect<const N: usize>(
+        &self,
+        polynomials: impl Fn(&[Complex<f64>; 4]) -> [Complex<f64>; N],
+    ) -> [f64; N] {
+        self.expect(polynomials)
+    }
+}
+
+impl Polynomials for FisherBingham {
+    fn expect<const N: usize>(
+        &self,
+        polynomials: impl Fn(&[Complex<f64>; 4]) -> [Complex<f64>; N],
+    ) -> [f64; N] {
+        self.expect(polynomials)
+    }
+}
+
+/// By the contour integral of the law, to machine precision.
+impl AttitudeMoments for RadiallyConstrainedGaussian {
+    fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
+        EntryMoments::by_polynomials(self, k)
+    }
+}
+
+/// By the contour integral of the law, to machine precision.
+impl AttitudeMoments for FisherBingham {
+    fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
+        EntryMoments::by_polynomials(self, k)
+    }
+}
+
+/// In closed form: the trace t and the deviatoric part D of an isotropic random matrix are uncorrelated,
+/// Cov I = Var(t)/9 · 1⊗1 + E‖D‖²/5 · (½(δ_ik δ_jl + δ_il δ_jk) − ⅓ δ_ij δ_kl).
+impl AttitudeMoments for UniformAttitude {
+    fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
+        let (mean, covariance) = (k.principal_mean(), k.principal_covariance());
+        let trace: f64 = mean.iter().sum();
+        let third = trace / 3.0;
+        let of_trace = covariance.sum();
+        // E‖D‖² = E Σ I_k² − E t²/3, the means taken about their third so that nothing cancels.
+        let of_deviator = mean.iter().map(|m| (m - third) * (m - third)).sum::<f64>()
+            + (covariance.trace() - of_trace / 3.0).max(0.0);
+        let delta = |i, j| if i == j { 1.0 } else { 0.0 };
+        let covariance = SMatrix::from_fn(|e, f| {
+            let ((i, j), (k, l)) = (ENTRIES[e], ENTRIES[f]);
+            let traces = delta(i, j) * delta(k, l);
+            let symmetric = 0.5 * (delta(i, k) * delta(j, l) + delta(i, l) * delta(j, k));
+            of_trace / 9.0 * traces + of_deviator / 5.0 * (symmetric - traces / 3.0)
+        });
+        EntryMoments::unchecked([third, third, third, 0.0, 0.0, 0.0], covariance)
+    }
+}
+
+/// One node.
+impl AttitudeMoments for FixedAttitude {
+    fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
+        EntryMoments::by_quadrature(k, [(1.0, self.attitude())])
+    }
+}
+
+/// By adaptive cubature over the half sphere, to about 1e-7 of the largest covariance; where the far
+/// half holds less than 1e-14 of the law, that of the whole to machine precision. A thin ridge of the
+/// law that winds to the edge of the half can escape the cubature, which shows in the share of the
+/// half: then by quadrature over the angles of the whole sphere, to about 1e-3.
+impl AttitudeMoments for MeanHalf {
+    fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
+        let far = self.whole().far_half_share();
+        if far < 1e-14 {
+            return self.whole().entry_moments(k);
+        }
+        let half = HalfSphere::new(self.whole(), |_| 1.0);
+        if (half.share_of(self.whole()) - (1.0 - far)).abs() < 1e-6 {
+            return EntryMoments::by_quadrature(k, half.nodes());
+        }
+        EntryMoments::by_expectation(k, &Kept(self.whole(), self.whole().by_quadrature()))
+    }
+}
+
+/// The quadrature over the whole sphere, kept to the half.
+struct Kept<'a>(&'a RadiallyConstrainedGaussian, AngularQuadrature);
+
+impl Expectation for Kept<'_> {
+    fn expect<const N: usize>(
+        &self,
+        mut functions: impl FnMut(&UnitQuaternion<f64>) -> [f64; N],
+    ) -> [f64; N] {
+        let Self(law, quadrature) = self;
+        let inside = |q: &UnitQuaternion<f64>| if law.in_mean_half(q) { 1.0 } else { 0.0 };
+        let [share] = quadrature.expect(|q| [inside(q)]);
+        quadrature.expect(|q| functions(q).map(|x| x * inside(q))).map(|x| x / share)
+    }
+}
+
+/// By adaptive cubature over the half sphere, to about 1e-5 of the largest covariance: the weight has
+/// edges.
+impl AttitudeMoments for JacobianTwice {
+    fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
+        let weight = |x: &[f64; 4]| {
+            let planar = x[0] * x[0] + x[1] * x[1];
+            ((planar + x[2] * x[2]) * planar).sqrt()
+        };
+        EntryMoments::by_quadrature(k, HalfSphere::new(self.once(), weight).nodes())
+    }
+}

@@ -1,0 +1,104 @@
+use gyradius_inertia::RootSecondMoments;
+use rand::Rng;
+use rand_distr::Distribution;
+
+use crate::{
+    CorrelatedRoots, EmpiricalRoots, GaussianRoots, LognormalRoots, RootMoments,
+    SecondMomentStatistics, TruncatedRoots, UniformRoots,
+};
+
+/// Any of the laws of roots that this crate has, chosen at run time.
+///
+/// Draws are those of the law inside, bit for bit.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(tag = "law", rename_all = "kebab-case")
+)]
+#[non_exhaustive]
+pub enum RootLaw {
+    /// Independent Gaussians.
+    Gaussian(GaussianRoots),
+    /// Jointly Gaussian.
+    CorrelatedGaussian(CorrelatedRoots),
+    /// Uniform on intervals.
+    Uniform(UniformRoots),
+    /// Lognormal.
+    Lognormal(LognormalRoots),
+    /// Gaussians kept to intervals.
+    TruncatedGaussian(TruncatedRoots),
+    /// Observed triples.
+    Empirical(EmpiricalRoots),
+}
+
+macro_rules! each {
+    ($self:expr, $law:ident => $body:expr) => {
+        match $self {
+            RootLaw::Gaussian($law) => $body,
+            RootLaw::CorrelatedGaussian($law) => $body,
+            RootLaw::Uniform($law) => $body,
+            RootLaw::Lognormal($law) => $body,
+            RootLaw::TruncatedGaussian($law) => $body,
+            RootLaw::Empirical($law) => $body,
+        }
+    };
+}
+
+impl RootMoments for RootLaw {
+    fn second_moment_statistics(&self) -> SecondMomentStatistics {
+        each!(self, law => law.second_moment_statistics())
+    }
+}
+
+impl Distribution<RootSecondMoments> for RootLaw {
+    #[inline]
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> RootSecondMoments {
+        each!(self, law => law.sample(rng))
+    }
+}
+
+macro_rules! from {
+    ($($variant:ident($law:ty)),*) => {$(
+        impl From<$law> for RootLaw {
+            fn from(law: $law) -> Self {
+                Self::$variant(law)
+            }
+        }
+    )*};
+}
+from!(
+    Gaussian(GaussianRoots),
+    CorrelatedGaussian(CorrelatedRoots),
+    Uniform(UniformRoots),
+    Lognormal(LognormalRoots),
+    TruncatedGaussian(TruncatedRoots),
+    Empirical(EmpiricalRoots)
+);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+    #[test]
+    fn draws_are_those_of_the_law_inside() {
+        let mean = RootSecondMoments::new([1.0, 2.0, 3.0]).unwrap();
+        let inside = GaussianRoots::new(mean, [0.1; 3]).unwrap();
+        let law = RootLaw::from(inside);
+        let mut rngs = [1, 1].map(ChaCha8Rng::seed_from_u64);
+        for _ in 0..100 {
+            assert_eq!(law.sample(&mut rngs[0]), inside.sample(&mut rngs[1]));
+        }
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn serde_keeps_the_law_and_its_name() {
+        let mean = RootSecondMoments::new([1.0, 2.0, 3.0]).unwrap();
+        let law = RootLaw::from(LognormalRoots::new(mean, [0.1; 3]).unwrap());
+        let json = serde_json::to_string(&law).unwrap();
+        assert!(json.contains(r#""law":"lognormal""#), "{json}");
+        assert_eq!(serde_json::from_str::<RootLaw>(&json).unwrap(), law);
+    }
+}

@@ -1,0 +1,25 @@
+//! Laws of the roots k_k = √K_k of the second mass moments.
+
+mod correlated;
+mod empirical;
+mod gaussian;
+mod independent;
+mod law;
+mod lognormal;
+mod truncated;
+mod uniform;
+
+pub use correlated::{CorrelatedRoots, CorrelatedRootsError};
+pub use empirical::{EmpiricalRoots, EmpiricalRootsError};
+pub use gaussian::{GaussianRoots, GaussianRootsError};
+pub use independent::{IndependentRoots, IndependentRootsError};
+pub use law::RootLaw;
+pub use lognormal::{LognormalRoots, LognormalRootsError};
+pub use truncated::{TruncatedRoots, TruncatedRootsError};
+pub use uniform::{UniformRoots, UniformRootsError};
+
+/// Draws farther out than this many deviations have probability 1e-349.
+const FAR: f64 = 40.0;
+
+/// Draws stay below this, so that fourth powers, which variances of K are made of, do not overflow.
+const MAX_ROOT: f64 = 1e75;
