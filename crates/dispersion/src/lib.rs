@@ -40,18 +40,34 @@
 
 mod any_body;
 mod axes;
+mod basilisk;
+mod correlated_entries;
 mod entry_moments;
 mod entrywise;
+mod known_moments;
+mod log_cholesky;
+mod matched;
+mod model;
 mod principal;
+mod realizable_only;
 mod root_moments;
 mod roots;
+mod second_moment_matrix;
 mod semidefinite;
+mod wishart;
 
 pub use any_body::{AnyBody, AnyBodyError};
 pub use axes::{AttitudeMoments, AxesLaw, FixedAttitude, JacobianTwice, JacobianTwiceError};
+pub use basilisk::{BasiliskDispersion, BasiliskError};
+pub use correlated_entries::CorrelatedEntries;
 pub use entry_moments::{EntryMoments, EntryMomentsError};
 pub use entrywise::{EntrywiseError, EntrywiseGaussian};
+pub use known_moments::KnownMoments;
+pub use log_cholesky::{LogCholeskyGaussian, LogCholeskyGaussianError};
+pub use matched::{MatchError, Matched};
+pub use model::{DispersionModel, ModelDraw, ModelKind, UnknownModel};
 pub use principal::{PrincipalDispersion, PrincipalDraw};
+pub use realizable_only::{RealizableOnly, RealizableOnlyError};
 pub use root_moments::{
     RootMoments, SecondMomentStatistics, SecondMomentStatisticsError, WithMoments,
 };
@@ -62,6 +78,7 @@ pub use roots::{
     UniformRootsError,
 };
 pub use semidefinite::CovarianceError;
+pub use wishart::{Wishart, WishartError};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

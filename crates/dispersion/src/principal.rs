@@ -40,6 +40,11 @@ impl<K, A> PrincipalDispersion<K, A> {
         Self { roots, axes }
     }
 
+    /// The law of the roots and the law of the axes.
+    pub fn into_parts(self) -> (K, A) {
+        (self.roots, self.axes)
+    }
+
     /// The law of the roots.
     pub fn roots(&self) -> &K {
         &self.roots

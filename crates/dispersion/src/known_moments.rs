@@ -1,0 +1,22 @@
+use crate::{AttitudeMoments, EntryMoments, EntrywiseGaussian, PrincipalDispersion, RootMoments};
+use nalgebra::SMatrix;
+
+/// A law of inertia of which the mean and covariance of the six entries are known: in closed form or
+/// by quadrature, never by sampling.
+pub trait KnownMoments {
+    /// Mean and covariance of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.
+    fn entry_moments(&self) -> EntryMoments;
+}
+
+impl<K: RootMoments, A: AttitudeMoments> KnownMoments for PrincipalDispersion<K, A> {
+    fn entry_moments(&self) -> EntryMoments {
+        EntryMoments::of(self)
+    }
+}
+
+impl KnownMoments for EntrywiseGaussian {
+    fn entry_moments(&self) -> EntryMoments {
+        let variances = self.deviations().map(|d| d * d);
+        EntryMoments::unchecked(self.mean(), SMatrix::<f64, 6, 6>::from_diagonal(&variances.into()))
+    }
+}

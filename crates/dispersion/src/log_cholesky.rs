@@ -1,0 +1,471 @@
+use gyradius_inertia::{Inertia, LogCholesky, MassProperties};
+use nalgebra::{Matrix3, SMatrix, SVector};
+use rand::Rng;
+use rand_distr::Distribution;
+
+use crate::second_moment_matrix::{body, inertia_covariance, inertia_map};
+use crate::semidefinite::{Covariance, CovarianceError};
+use crate::{EntryMoments, KnownMoments};
+
+/// Draws farther out than this many deviations have probability 1e-349.
+const FAR: f64 = 40.0;
+/// Exponents of draws, and roots of second moments.
+const MAX_EXPONENT: f64 = 170.0;
+const MAX_ROOT: f64 = 1e75;
+/// Names of the coordinates, in order.
+const NAMES: [&str; 6] = ["d1", "d2", "d3", "s12", "s23", "s13"];
+
+/// Why coordinates and a covariance are refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LogCholeskyGaussianError {
+    /// The matrix is no covariance.
+    #[error(transparent)]
+    Covariance(#[from] CovarianceError),
+    /// Draws would leave the range.
+    #[error(
+        "coordinate {name} of mean {mean:?} and deviation {deviation:?}: within forty deviations \
+         |d| must be at most {MAX_EXPONENT} and |s| at most {MAX_ROOT:e} √kg·m"
+    )]
+    Coordinate {
+        /// Its name.
+        name: &'static str,
+        /// Its mean.
+        mean: f64,
+        /// Its deviation.
+        deviation: f64,
+    },
+    /// The mean body is a rod, a plate or a point.
+    #[error(
+        "second moments {:?}, {:?} and {:?} kg·m²: all must be positive, because a rod, a plate or a \
+         point has no log-Cholesky coordinates", .second_moments[0], .second_moments[1],
+        .second_moments[2]
+    )]
+    Singular {
+        /// K_k about the principal axes, kg·m².
+        second_moments: [f64; 3],
+    },
+    /// No law of this family was found with the moments that were asked for.
+    #[error(
+        "no Gaussian in log-Cholesky coordinates found with these moments of the entries: the spread \
+         is too wide for them"
+    )]
+    NoMatch,
+}
+
+/// A Gaussian in log-Cholesky coordinates of the second moments.
+///
+/// # Definition
+/// Σ = ½ tr(I)·1 − I = V Vᵀ about the mass centre, with
+///
+/// ```text
+/// V = | exp(d₁)  s₁₂      s₁₃     |
+///     | 0        exp(d₂)  s₂₃     |   √kg·m,
+///     | 0        0        exp(d₃) |
+/// ```
+///
+/// and (d₁, d₂, d₃, s₁₂, s₂₃, s₁₃) ~ N(x̄, C). These are the coordinates of Rucker & Wensing (2022,
+/// doi:10.1109/LRA.2022.3144517) for the second moments alone. Their other four, mass and mass centre,
+/// leave the inertia about the mass centre as it is: V is theirs times the root of the mass, which
+/// adds α to each d and multiplies each s. So the six are taken for Σ itself and no mass is asked for;
+/// a Gaussian in all ten has products e^α s that are not Gaussian, another law.
+///
+/// Mean and covariance of the entries are closed: entries are sums of products of e^d and s, and under
+/// a Gaussian E[e^{aᵀx} p(x)] = e^{aᵀx̄ + ½aᵀCa} E[p(x + Ca)].
+///
+/// # Realizability
+/// By construction: V Vᵀ is positive definite.
+///
+/// # Limits
+/// Not invariant under rotation: axis 3 is factored first, and a Gaussian in one frame is none in
+/// another. The mean of the coordinates is not the mean body: E e^{2d} > e^{2E d}.
+/// [`matched`](Self::matched) solves for given moments of the entries. Rods, plates and points lie at
+/// infinity. Covariances of the entries are differences of products: deviations below 1e-7 of the
+/// moments are rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Parameters", into = "Parameters")
+)]
+pub struct LogCholeskyGaussian {
+    mean: SVector<f64, 6>,
+    covariance: Covariance<6>,
+}
+
+impl LogCholeskyGaussian {
+    /// Mean and covariance of (d₁, d₂, d₃, s₁₂, s₂₃, s₁₃): exp(d) and s in √kg·m.
+    ///
+    /// # Errors
+    /// The covariance is not finite, symmetric and positive semidefinite, or draws could leave the
+    /// range.
+    pub fn new(
+        mean: [f64; 6],
+        covariance: SMatrix<f64, 6, 6>,
+    ) -> Result<Self, LogCholeskyGaussianError> {
+        let covariance = Covariance::new(covariance, MAX_ROOT * MAX_ROOT)?;
+        for (i, name) in NAMES.into_iter().enumerate() {
+            let deviation = covariance.matrix()[(i, i)].sqrt();
+            let reach = mean[i].abs() + FAR * deviation;
+            if !(reach <= if i < 3 { MAX_EXPONENT } else { MAX_ROOT }) {
+                let mean = mean[i];
+                return Err(LogCholeskyGaussianError::Coordinate { name, mean, deviation });
+            }
+        }
+        Ok(Self { mean: mean.into(), covariance })
+    }
+
+    /// About the coordinates of a body, which are then the medians of those of the draws.
+    ///
+    /// # Errors
+    /// The body is a rod, a plate or a point, or as [`new`](Self::new).
+    pub fn about(
+        body: &Inertia,
+        covariance: SMatrix<f64, 6, 6>,
+    ) -> Result<Self, LogCholeskyGaussianError> {
+        Self::new(coordinates(body)?, covariance)
+    }
+
+    /// The law with this mean and covariance of the six entries *to first order*: about the body of
+    /// that mean, with the covariance that the linearised map takes to the one given.
+    ///
+    /// # Errors
+    /// The mean is no body or one on the boundary, or as [`new`](Self::new).
+    pub fn linearised(moments: &EntryMoments) -> Result<Self, LogCholeskyGaussianError> {
+        let start = Start::new(moments)?;
+        Self::new(start.mean.into(), start.covariance)
+    }
+
+    /// The law with this mean and covariance of the six entries, to 1e-9 of the largest of each.
+    ///
+    /// # Algorithm
+    /// Newton's steps with the derivative of the linearised map, from
+    /// [`linearised`](Self::linearised).
+    ///
+    /// # Errors
+    /// The mean is no body or one on the boundary, or no such law is found: wide spreads have none.
+    pub fn matched(moments: &EntryMoments) -> Result<Self, LogCholeskyGaussianError> {
+        const STEPS: usize = 200;
+        let Start { mut mean, mut covariance, inverse } = Start::new(moments)?;
+        let target = SVector::<f64, 6>::from(moments.mean());
+        let tolerances = (1e-9 * target.amax(), 1e-9 * moments.covariance().amax());
+        for _ in 0..STEPS {
+            let law = Self::new(mean.into(), (covariance + covariance.transpose()) * 0.5)
+                .map_err(|_| LogCholeskyGaussianError::NoMatch)?;
+            let found = law.entry_moments();
+            let gap = target - SVector::<f64, 6>::from(found.mean());
+            let gaps = moments.covariance() - found.covariance();
+            if gap.amax() <= tolerances.0 && gaps.amax() <= tolerances.1 {
+                return Ok(law);
+            }
+            mean += inverse * gap;
+            covariance += inverse * gaps * inverse.transpose();
+        }
+        Err(LogCholeskyGaussianError::NoMatch)
+    }
+
+    /// Means of d₁, d₂, d₃, s₁₂, s₂₃, s₁₃.
+    #[must_use]
+    pub fn mean(&self) -> [f64; 6] {
+        self.mean.into()
+    }
+
+    /// Their covariance.
+    #[must_use]
+    pub fn covariance(&self) -> &SMatrix<f64, 6, 6> {
+        self.covariance.matrix()
+    }
+
+    /// E of a monomial e^{aᵀd} Π s.
+    fn expect(&self, monomial: &Monomial) -> f64 {
+        let c = self.covariance.matrix();
+        let a = &monomial.exponents;
+        let tilt: SVector<f64, 6> = c.fixed_columns::<3>(0) * SVector::<f64, 3>::from(*a);
+        let shifted = self.mean + tilt;
+        let exponent: f64 = (0..3).map(|i| a[i] * (self.mean[i] + 0.5 * tilt[i])).sum();
+        libm::exp(exponent) * gaussian_product(&monomial.factors[..monomial.length], &shifted, c)
+    }
+}
+
+/// Where the search for a law of given moments starts.
+struct Start {
+    mean: SVector<f64, 6>,
+    covariance: SMatrix<f64, 6, 6>,
+    /// The derivative of the coordinates by the entries of I.
+    inverse: SMatrix<f64, 6, 6>,
+}
+
+impl Start {
+    fn new(moments: &EntryMoments) -> Result<Self, LogCholeskyGaussianError> {
+        let none = LogCholeskyGaussianError::NoMatch;
+        let [i11, i22, i33, i12, i13, i23] = moments.mean();
+        let body = gyradius_inertia::InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23])
+            .map_err(|_| none)?;
+        let mean = coordinates(&Inertia::try_from(body).map_err(|_| none)?)?;
+        let [d1, d2, d3, s12, s23, s13] = mean;
+        let [v1, v2, v3] = [d1, d2, d3].map(libm::exp);
+        // Rows Σ₁₁, Σ₂₂, Σ₃₃, Σ₁₂, Σ₁₃, Σ₂₃; columns d₁, d₂, d₃, s₁₂, s₂₃, s₁₃.
+        #[rustfmt::skip]
+        let derivative = SMatrix::<f64, 6, 6>::from_row_slice(&[
+            2.0 * v1 * v1, 0.0, 0.0, 2.0 * s12, 0.0, 2.0 * s13,
+            0.0, 2.0 * v2 * v2, 0.0, 0.0, 2.0 * s23, 0.0,
+            0.0, 0.0, 2.0 * v3 * v3, 0.0, 0.0, 0.0,
+            0.0, s12 * v2, 0.0, v2, s13, s23,
+            0.0, 0.0, s13 * v3, 0.0, 0.0, v3,
+            0.0, 0.0, s23 * v3, 0.0, v3, 0.0,
+        ]);
+        let inverse = (inertia_map() * derivative).try_inverse().ok_or(none)?;
+        let covariance = inverse * moments.covariance() * inverse.transpose();
+        let covariance = (covariance + covariance.transpose()) * 0.5;
+        Ok(Self { mean: mean.into(), covariance, inverse })
+    }
+}
+
+/// d₁, d₂, d₃, s₁₂, s₂₃, s₁₃ of a body.
+fn coordinates(body: &Inertia) -> Result<[f64; 6], LogCholeskyGaussianError> {
+    let singular =
+        LogCholeskyGaussianError::Singular { second_moments: body.second_moments().values() };
+    // Of one kilogram at the origin, α and t are zero and lengths are in √kg·m.
+    let unit = MassProperties::new(1.0, nalgebra::Vector3::zeros(), *body).map_err(|_| singular)?;
+    let [_, d1, d2, d3, s12, s23, s13, ..] = LogCholesky::of(&unit).map_err(|_| singular)?.values();
+    Ok([d1, d2, d3, s12, s23, s13])
+}
+
+/// e^{aᵀd} times up to four of the six coordinates.
+#[derive(Clone, Copy)]
+struct Monomial {
+    exponents: [f64; 3],
+    factors: [usize; 4],
+    length: usize,
+}
+
+impl Monomial {
+    fn new(exponents: [f64; 3], s: &[usize]) -> Self {
+        let mut factors = [0; 4];
+        factors[..s.len()].copy_from_slice(s);
+        Self { exponents, factors, length: s.len() }
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        let mut product = *self;
+        for (a, b) in product.exponents.iter_mut().zip(other.exponents) {
+            *a += b;
+        }
+        for &factor in &other.factors[..other.length] {
+            product.factors[product.length] = factor;
+            product.length += 1;
+        }
+        product
+    }
+}
+
+/// Σ₁₁, Σ₂₂, Σ₃₃, Σ₁₂, Σ₁₃, Σ₂₃ as sums of monomials.
+fn entries() -> [Vec<Monomial>; 6] {
+    const S12: usize = 3;
+    const S23: usize = 4;
+    const S13: usize = 5;
+    let of = Monomial::new;
+    let none = [0.0; 3];
+    [
+        vec![of([2.0, 0.0, 0.0], &[]), of(none, &[S12, S12]), of(none, &[S13, S13])],
+        vec![of([0.0, 2.0, 0.0], &[]), of(none, &[S23, S23])],
+        vec![of([0.0, 0.0, 2.0], &[])],
+        vec![of([0.0, 1.0, 0.0], &[S12]), of(none, &[S13, S23])],
+        vec![of([0.0, 0.0, 1.0], &[S13])],
+        vec![of([0.0, 0.0, 1.0], &[S23])],
+    ]
+}
+
+/// E Π x_i over the listed coordinates, x ~ N(mean, c) (Isserlis 1918, doi:10.1093/biomet/12.1-2.134).
+fn gaussian_product(factors: &[usize], mean: &SVector<f64, 6>, c: &SMatrix<f64, 6, 6>) -> f64 {
+    let Some((&first, rest)) = factors.split_first() else {
+        return 1.0;
+    };
+    let mut sum = mean[first] * gaussian_product(rest, mean, c);
+    for (i, &other) in rest.iter().enumerate() {
+        let left: Vec<usize> =
+            rest.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, f)| *f).collect();
+        sum += c[(first, other)] * gaussian_product(&left, mean, c);
+    }
+    sum
+}
+
+impl KnownMoments for LogCholeskyGaussian {
+    fn entry_moments(&self) -> EntryMoments {
+        let entries = entries();
+        let mean: [f64; 6] =
+            std::array::from_fn(|e| entries[e].iter().map(|monomial| self.expect(monomial)).sum());
+        let mut covariance = SMatrix::<f64, 6, 6>::zeros();
+        for e in 0..6 {
+            for f in 0..=e {
+                // Term by term, so that what is constant cancels to the bit.
+                let mut sum = 0.0;
+                for a in &entries[e] {
+                    for b in &entries[f] {
+                        sum += self.expect(&a.times(b)) - self.expect(a) * self.expect(b);
+                    }
+                }
+                covariance[(e, f)] = sum;
+                covariance[(f, e)] = sum;
+            }
+        }
+        let mean = inertia_map() * SVector::<f64, 6>::from(mean);
+        EntryMoments::unchecked(mean.into(), inertia_covariance(&covariance))
+    }
+}
+
+impl Distribution<Inertia> for LogCholeskyGaussian {
+    #[inline]
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Inertia {
+        loop {
+            let x = self.mean + self.covariance.sample(rng);
+            let [v1, v2, v3] = [x[0], x[1], x[2]].map(libm::exp);
+            let v = Matrix3::new(v1, x[3], x[5], 0.0, v2, x[4], 0.0, 0.0, v3);
+            // Never refused within 40 deviations.
+            if let Some(body) = body(&v) {
+                return body;
+            }
+        }
+    }
+}
+
+/// The serialized form.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parameters {
+    mean: [f64; 6],
+    covariance: [[f64; 6]; 6],
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Parameters> for LogCholeskyGaussian {
+    type Error = LogCholeskyGaussianError;
+
+    fn try_from(p: Parameters) -> Result<Self, Self::Error> {
+        Self::new(p.mean, SMatrix::from_fn(|i, j| p.covariance[i][j]))
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<LogCholeskyGaussian> for Parameters {
+    fn from(law: LogCholeskyGaussian) -> Self {
+        let c = law.covariance.matrix();
+        Self {
+            mean: law.mean.into(),
+            covariance: std::array::from_fn(|i| std::array::from_fn(|j| c[(i, j)])),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::entry_moments::tests::check_entries;
+    use gyradius_inertia::{InertiaMatrix, SecondMoments};
+    use proptest::prelude::*;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+    fn payload() -> Inertia {
+        let mean = InertiaMatrix::from_entries([5.0, 4.0, 3.0], [0.3, 0.2, -0.5]).unwrap();
+        Inertia::try_from(mean).unwrap()
+    }
+
+    /// A covariance without structure, of deviations about `size`.
+    fn full(size: f64) -> SMatrix<f64, 6, 6> {
+        let f = SMatrix::<f64, 6, 6>::from_fn(|i, j| size * ((3 * i + 5 * j) as f64).sin() / 2.0);
+        f * f.transpose()
+    }
+
+    #[test]
+    fn draws_have_the_moments() {
+        for (i, size) in [0.0, 1e-3, 0.1, 0.4].into_iter().enumerate() {
+            let law = LogCholeskyGaussian::about(&payload(), full(size)).unwrap();
+            let seed = 120 + i as u64;
+            check_entries::<Inertia>(&format!("{size}"), &law.entry_moments(), &law, seed);
+        }
+    }
+
+    /// The coordinates of the draws are the Gaussian that was asked for.
+    #[test]
+    fn coordinates_of_draws_are_gaussian() {
+        const N: usize = 50_000;
+        let covariance = full(0.3);
+        let law = LogCholeskyGaussian::about(&payload(), covariance).unwrap();
+        let mut rng = ChaCha8Rng::seed_from_u64(125);
+        let mut sum = SMatrix::<f64, 6, 6>::zeros();
+        for _ in 0..N {
+            let x = SVector::<f64, 6>::from(coordinates(&law.sample(&mut rng)).unwrap()) - law.mean;
+            sum += x * x.transpose();
+        }
+        for i in 0..6 {
+            for j in 0..6 {
+                let variance = covariance[(i, i)] * covariance[(j, j)] + covariance[(i, j)].powi(2);
+                let gap = sum[(i, j)] / N as f64 - covariance[(i, j)];
+                assert!((gap / (variance / N as f64).sqrt()).abs() < 4.0, "{i}{j}");
+            }
+        }
+    }
+
+    #[test]
+    fn moments_of_entries_are_matched() {
+        // Moments that a law of another family has.
+        for delta in [0.01, 0.1, 0.3] {
+            let moments = crate::Wishart::new(payload(), delta).unwrap().entry_moments();
+            let found = LogCholeskyGaussian::matched(&moments).unwrap().entry_moments();
+            let gap = (found.covariance() - moments.covariance()).amax();
+            assert!(gap <= 1e-9 * moments.covariance().amax(), "{delta}: {gap}");
+            for e in 0..6 {
+                assert!((found.mean()[e] - moments.mean()[e]).abs() <= 5e-9);
+            }
+            // To first order it is near, and not there.
+            let near = LogCholeskyGaussian::linearised(&moments).unwrap().entry_moments();
+            let gap = (near.covariance() - moments.covariance()).amax();
+            let size = moments.covariance().amax();
+            assert!(gap > 1e-6 * size && gap < 10.0 * delta * size, "{delta}: {}", gap / size);
+        }
+        let far = EntryMoments::new(payload().entries(), full(20.0)).unwrap();
+        assert_eq!(LogCholeskyGaussian::matched(&far), Err(LogCholeskyGaussianError::NoMatch));
+    }
+
+    proptest! {
+        #[test]
+        fn no_draw_is_unrealizable(
+            mean in prop::array::uniform6(-3.0..3.0f64),
+            size in 0.0..2.0f64,
+            seed in 0..u64::MAX,
+        ) {
+            let law = LogCholeskyGaussian::new(mean, full(size)).unwrap();
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            for _ in 0..100 {
+                prop_assert!(law.sample(&mut rng).as_inertia_matrix().is_realizable());
+            }
+        }
+    }
+
+    #[test]
+    fn bad_parameters_are_named() {
+        let error = LogCholeskyGaussian::new([0.0; 6], -full(1.0)).unwrap_err();
+        assert!(matches!(error, LogCholeskyGaussianError::Covariance(_)), "{error}");
+        let error = LogCholeskyGaussian::new([0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0], full(1.0));
+        assert!(error.unwrap_err().to_string().contains("d2"));
+        let error = LogCholeskyGaussian::new([0.0, 0.0, 0.0, 0.0, 0.0, 1e80], full(1.0));
+        assert!(error.unwrap_err().to_string().contains("s13"));
+        let wide = SMatrix::<f64, 6, 6>::identity() * 25.0;
+        assert!(LogCholeskyGaussian::new([0.0; 6], wide).unwrap_err().to_string().contains("d1"));
+        let plate = SecondMoments::new([1.0, 2.0, 0.0]).unwrap();
+        let plate =
+            Inertia::from_second_moments(plate, &nalgebra::UnitQuaternion::identity()).unwrap();
+        let error = LogCholeskyGaussian::about(&plate, full(0.1)).unwrap_err();
+        assert!(error.to_string().contains("a plate"), "{error}");
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn serde_goes_through_the_constructor() {
+        let law = LogCholeskyGaussian::new([0.5; 6], SMatrix::identity()).unwrap();
+        let json = serde_json::to_string(&law).unwrap();
+        assert_eq!(serde_json::from_str::<LogCholeskyGaussian>(&json).unwrap(), law);
+        assert!(serde_json::from_str::<LogCholeskyGaussian>(&json.replace("[[1", "[[-1")).is_err());
+    }
+}

@@ -1,0 +1,282 @@
+use gyradius_inertia::{Inertia, InertiaMatrix};
+use nalgebra::UnitQuaternion;
+use rand::Rng;
+use rand_distr::Distribution;
+use std::fmt;
+use std::str::FromStr;
+
+use crate::{
+    AxesLaw, BasiliskDispersion, CorrelatedEntries, EntryMoments, EntrywiseGaussian, KnownMoments,
+    LogCholeskyGaussian, PrincipalDispersion, PrincipalDraw, RealizableOnly, RootLaw, Wishart,
+};
+
+/// The models of inertia uncertainty, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+#[non_exhaustive]
+pub enum ModelKind {
+    /// Second moments and axes (Peck 2003).
+    Principal,
+    /// Six independent Gaussian entries.
+    Entrywise,
+    /// Six jointly Gaussian entries.
+    CorrelatedEntries,
+    /// Independent entries given that they are a body's.
+    RealizableEntrywise,
+    /// Jointly Gaussian entries given that they are a body's.
+    RealizableCorrelatedEntries,
+    /// Gaussian in log-Cholesky coordinates.
+    LogCholesky,
+    /// Maximum entropy (Wishart) second moments.
+    Wishart,
+    /// The diagonal moved, then turned, as Basilisk does.
+    Basilisk,
+}
+
+impl ModelKind {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Principal,
+        Self::Entrywise,
+        Self::CorrelatedEntries,
+        Self::RealizableEntrywise,
+        Self::RealizableCorrelatedEntries,
+        Self::LogCholesky,
+        Self::Wishart,
+        Self::Basilisk,
+    ];
+
+    /// Its name, in kebab case: what scenario files and the command line take.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Principal => "principal",
+            Self::Entrywise => "entrywise",
+            Self::CorrelatedEntries => "correlated-entries",
+            Self::RealizableEntrywise => "realizable-entrywise",
+            Self::RealizableCorrelatedEntries => "realizable-correlated-entries",
+            Self::LogCholesky => "log-cholesky",
+            Self::Wishart => "wishart",
+            Self::Basilisk => "basilisk",
+        }
+    }
+
+    /// What it is, in a line.
+    #[must_use]
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Principal => "squared roots of second moments about random principal axes",
+            Self::Entrywise => "six independent Gaussian entries",
+            Self::CorrelatedEntries => "six jointly Gaussian entries",
+            Self::RealizableEntrywise => {
+                "six independent Gaussian entries, impossible draws rejected"
+            }
+            Self::RealizableCorrelatedEntries => {
+                "six jointly Gaussian entries, impossible draws rejected"
+            }
+            Self::LogCholesky => "Gaussian log-Cholesky coordinates of the second moments",
+            Self::Wishart => "maximum-entropy (Wishart) second moments",
+            Self::Basilisk => "Gaussian diagonal, then three Gaussian Euler angles",
+        }
+    }
+
+    /// Whether no draw can be unrealizable, whatever the parameters.
+    #[must_use]
+    pub fn is_realizable_by_construction(self) -> bool {
+        match self {
+            Self::Principal
+            | Self::RealizableEntrywise
+            | Self::RealizableCorrelatedEntries
+            | Self::LogCholesky
+            | Self::Wishart => true,
+            Self::Entrywise | Self::CorrelatedEntries | Self::Basilisk => false,
+        }
+    }
+}
+
+impl fmt::Display for ModelKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// No model has this name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{name:?}: it must be one of {}", ModelKind::ALL.map(ModelKind::name).join(", "))]
+pub struct UnknownModel {
+    /// The name.
+    pub name: String,
+}
+
+impl FromStr for ModelKind {
+    type Err = UnknownModel;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        Self::ALL
+            .into_iter()
+            .find(|kind| kind.name() == name)
+            .ok_or_else(|| UnknownModel { name: name.to_owned() })
+    }
+}
+
+/// Any of the models of inertia uncertainty, chosen at run time.
+///
+/// Draws are those of the law inside, bit for bit. Built by its constructor and `into()`, or by name
+/// and matched to given moments: [`matched`](Self::matched).
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(tag = "model", rename_all = "kebab-case")
+)]
+#[non_exhaustive]
+pub enum DispersionModel {
+    /// Second moments and axes (Peck 2003).
+    Principal(Box<PrincipalDispersion<RootLaw, AxesLaw>>),
+    /// Six independent Gaussian entries.
+    Entrywise(EntrywiseGaussian),
+    /// Six jointly Gaussian entries.
+    CorrelatedEntries(Box<CorrelatedEntries>),
+    /// Independent entries given that they are a body's.
+    RealizableEntrywise(RealizableOnly<EntrywiseGaussian>),
+    /// Jointly Gaussian entries given that they are a body's.
+    RealizableCorrelatedEntries(Box<RealizableOnly<CorrelatedEntries>>),
+    /// Gaussian in log-Cholesky coordinates.
+    LogCholesky(Box<LogCholeskyGaussian>),
+    /// Maximum entropy (Wishart) second moments.
+    Wishart(Box<Wishart>),
+    /// The diagonal moved, then turned, as Basilisk does.
+    Basilisk(BasiliskDispersion),
+}
+
+/// A draw, and the attitude of the principal axes where the model draws one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelDraw {
+    /// The inertia in body axes.
+    pub inertia: InertiaMatrix,
+    /// The attitude that takes body components to principal components, as drawn.
+    pub axes: Option<UnitQuaternion<f64>>,
+}
+
+impl DispersionModel {
+    /// Which one.
+    #[must_use]
+    pub fn kind(&self) -> ModelKind {
+        match self {
+            Self::Principal(_) => ModelKind::Principal,
+            Self::Entrywise(_) => ModelKind::Entrywise,
+            Self::CorrelatedEntries(_) => ModelKind::CorrelatedEntries,
+            Self::RealizableEntrywise(_) => ModelKind::RealizableEntrywise,
+            Self::RealizableCorrelatedEntries(_) => ModelKind::RealizableCorrelatedEntries,
+            Self::LogCholesky(_) => ModelKind::LogCholesky,
+            Self::Wishart(_) => ModelKind::Wishart,
+            Self::Basilisk(_) => ModelKind::Basilisk,
+        }
+    }
+
+    /// Mean and covariance of the entries, where they are known: not for a law conditioned by rejection.
+    #[must_use]
+    pub fn entry_moments(&self) -> Option<EntryMoments> {
+        Some(match self {
+            Self::Principal(law) => law.entry_moments(),
+            Self::Entrywise(law) => law.entry_moments(),
+            Self::CorrelatedEntries(law) => law.entry_moments(),
+            Self::RealizableEntrywise(_) | Self::RealizableCorrelatedEntries(_) => return None,
+            Self::LogCholesky(law) => law.entry_moments(),
+            Self::Wishart(law) => law.entry_moments(),
+            Self::Basilisk(law) => law.entry_moments(),
+        })
+    }
+
+    /// The estimated share of draws that rejection keeps, where the model is one by rejection.
+    #[must_use]
+    pub fn acceptance(&self) -> Option<f64> {
+        match self {
+            Self::RealizableEntrywise(law) => Some(law.acceptance()),
+            Self::RealizableCorrelatedEntries(law) => Some(law.acceptance()),
+            _ => None,
+        }
+    }
+}
+
+impl Distribution<ModelDraw> for DispersionModel {
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> ModelDraw {
+        let of = |inertia: Inertia| ModelDraw { inertia: inertia.into(), axes: None };
+        let matrix = |inertia: InertiaMatrix| ModelDraw { inertia, axes: None };
+        match self {
+            Self::Principal(law) => {
+                let draw: PrincipalDraw = law.sample(rng);
+                ModelDraw { inertia: draw.inertia.into(), axes: Some(draw.axes) }
+            }
+            Self::Entrywise(law) => matrix(law.sample(rng)),
+            Self::CorrelatedEntries(law) => matrix(law.sample(rng)),
+            Self::RealizableEntrywise(law) => of(law.sample(rng)),
+            Self::RealizableCorrelatedEntries(law) => of(law.sample(rng)),
+            Self::LogCholesky(law) => of(law.sample(rng)),
+            Self::Wishart(law) => of(law.sample(rng)),
+            Self::Basilisk(law) => matrix(law.sample(rng)),
+        }
+    }
+}
+
+impl Distribution<InertiaMatrix> for DispersionModel {
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> InertiaMatrix {
+        let draw: ModelDraw = self.sample(rng);
+        draw.inertia
+    }
+}
+
+impl<K: Into<RootLaw>, A: Into<AxesLaw>> From<PrincipalDispersion<K, A>> for DispersionModel {
+    fn from(law: PrincipalDispersion<K, A>) -> Self {
+        let (roots, axes) = law.into_parts();
+        Self::Principal(Box::new(PrincipalDispersion::new(roots.into(), axes.into())))
+    }
+}
+
+macro_rules! from {
+    ($($variant:ident($law:ty)),*) => {$(
+        impl From<$law> for DispersionModel {
+            fn from(law: $law) -> Self {
+                Self::$variant(law.into())
+            }
+        }
+    )*};
+}
+from!(
+    Entrywise(EntrywiseGaussian),
+    CorrelatedEntries(CorrelatedEntries),
+    RealizableEntrywise(RealizableOnly<EntrywiseGaussian>),
+    RealizableCorrelatedEntries(RealizableOnly<CorrelatedEntries>),
+    LogCholesky(LogCholeskyGaussian),
+    Wishart(Wishart),
+    Basilisk(BasiliskDispersion)
+);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_read_back() {
+        for kind in ModelKind::ALL {
+            assert_eq!(kind.name().parse::<ModelKind>(), Ok(kind));
+            assert_eq!(kind.to_string(), kind.name());
+            assert!(!kind.description().is_empty());
+        }
+        let error = "naive".parse::<ModelKind>().unwrap_err().to_string();
+        assert!(error.contains("\"naive\"") && error.contains("log-cholesky"), "{error}");
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn serialized_names_are_the_names() {
+        for kind in ModelKind::ALL {
+            let json = serde_json::to_string(&kind).unwrap();
+            assert_eq!(json, format!("{:?}", kind.name()));
+        }
+    }
+}
