@@ -1,5 +1,6 @@
 //! The paper's claims, judged by what the runs show.
 
+use gyradius_dispersion::ModelKind;
 use gyradius_statistics::Interval;
 use serde::Serialize;
 
@@ -104,7 +105,7 @@ pub(crate) fn judge(scenario: &Scenario, summary: &Summary, tables: &[RunTable])
 
 fn always_realizable(summary: &Summary) -> Claim {
     let physical: Vec<&ModelSummary> =
-        summary.models.iter().filter(|m| m.given_deviations_kg_m2.is_none()).collect();
+        summary.models.iter().filter(|m| m.law == ModelKind::Principal).collect();
     let findings = physical.iter().map(|m| unrealizable(m)).collect();
     let parts: Vec<Verdict> = physical
         .iter()

@@ -1,16 +1,13 @@
-use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian};
 use gyradius_dispersion::{
-    EntryMoments, EntrywiseGaussian, GaussianRoots, JacobianTwice, PrincipalDispersion,
-    PrincipalDraw,
+    DispersionModel, EntrywiseGaussian, KnownMoments, ModelDraw, ModelKind, RealizableOnly,
 };
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::{RunError, SeparationError};
-use nalgebra::UnitQuaternion;
 use rand_distr::Distribution;
 
 use crate::{
     row::{Body, Failure, Outcome, Row},
-    scenario::{Axes, Law, ModelSpec, Scenario, ScenarioError, UncertainBody},
+    scenario::{Law, ModelSpec, Scenario, ScenarioError, UncertainBody},
     streams::Streams,
 };
 
@@ -24,22 +21,8 @@ pub(crate) struct Model {
 
 #[derive(Debug)]
 struct BodyModel {
-    law: BodyLaw,
+    law: DispersionModel,
     streams: Streams,
-}
-
-#[derive(Debug)]
-enum BodyLaw {
-    WholeSphere(PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>),
-    MeanHalf(PrincipalDispersion<GaussianRoots, MeanHalf>),
-    JacobianTwice(Box<PrincipalDispersion<GaussianRoots, JacobianTwice>>),
-    Entrywise(EntrywiseGaussian),
-}
-
-/// A drawn inertia, and the attitude of its principal axes where the law draws one.
-struct Draw {
-    inertia: InertiaMatrix,
-    axes: Option<UnitQuaternion<f64>>,
 }
 
 impl Model {
@@ -47,7 +30,7 @@ impl Model {
         let body = |which: Body, body: &UncertainBody| {
             let purpose = format!("{} inertia", which.name());
             Ok(BodyModel {
-                law: BodyLaw::new(spec, which, body)
+                law: law(spec, which, body, scenario)
                     .map_err(|e| ScenarioError::field(format!("models.{}", spec.name), e))?,
                 streams: Streams::new(scenario.seed(), &spec.name, &purpose),
             })
@@ -63,11 +46,21 @@ impl Model {
         &self.name
     }
 
+    /// Which model it is.
+    pub(crate) fn kind(&self) -> ModelKind {
+        self.payload.law.kind()
+    }
+
+    /// The estimated shares of draws for payload and stage that rejection keeps, where it rejects.
+    pub(crate) fn acceptance(&self) -> Option<[f64; 2]> {
+        Some([self.payload.law.acceptance()?, self.stage.law.acceptance()?])
+    }
+
     /// The deviations of the six entries of payload and stage that the law was given, if it is
     /// entrywise.
     pub(crate) fn given_deviations(&self) -> Option<[[f64; 6]; 2]> {
         match (&self.payload.law, &self.stage.law) {
-            (BodyLaw::Entrywise(payload), BodyLaw::Entrywise(stage)) => {
+            (DispersionModel::Entrywise(payload), DispersionModel::Entrywise(stage)) => {
                 Some([payload.deviations(), stage.deviations()])
             }
             _ => None,
@@ -116,43 +109,37 @@ pub(crate) fn separate(
 }
 
 impl BodyModel {
-    fn draw(&self, run: u64) -> Draw {
-        let rng = &mut self.streams.run(run);
-        let principal =
-            |draw: PrincipalDraw| Draw { inertia: draw.inertia.into(), axes: Some(draw.axes) };
-        match &self.law {
-            BodyLaw::WholeSphere(law) => principal(law.sample(rng)),
-            BodyLaw::MeanHalf(law) => principal(law.sample(rng)),
-            BodyLaw::JacobianTwice(law) => principal(law.sample(rng)),
-            BodyLaw::Entrywise(law) => Draw { inertia: law.sample(rng), axes: None },
-        }
+    fn draw(&self, run: u64) -> ModelDraw {
+        self.law.sample(&mut self.streams.run(run))
     }
 }
 
-impl BodyLaw {
-    fn new(
-        spec: &ModelSpec,
-        which: Body,
-        body: &UncertainBody,
-    ) -> Result<Self, Box<dyn std::error::Error>> {
-        let whole = || PrincipalDispersion::new(*body.roots(), body.axes().clone());
-        let entrywise =
-            |deviations| EntrywiseGaussian::new(*body.nominal(), deviations).map(Self::Entrywise);
-        Ok(match &spec.law {
-            Law::Principal(Axes::WholeSphere) => Self::WholeSphere(whole()),
-            Law::Principal(Axes::MeanHalf) => Self::MeanHalf(PrincipalDispersion::new(
-                *body.roots(),
-                MeanHalf::new(body.axes().clone()),
-            )),
-            Law::Principal(Axes::JacobianTwice) => {
-                let axes = JacobianTwice::new(body.axes().clone())?;
-                Self::JacobianTwice(Box::new(PrincipalDispersion::new(*body.roots(), axes)))
-            }
-            Law::Entrywise { payload, stage } => entrywise(match which {
-                Body::Payload => *payload,
-                Body::Stage => *stage,
-            })?,
-            Law::EntrywiseMatched(_) => entrywise(EntryMoments::of(&whole()).deviations())?,
-        })
+/// The law of one body.
+fn law(
+    spec: &ModelSpec,
+    which: Body,
+    body: &UncertainBody,
+    scenario: &Scenario,
+) -> Result<DispersionModel, Box<dyn std::error::Error>> {
+    match &spec.law {
+        Law::Principal(axes) => Ok(body.principal(*axes)?.into()),
+        Law::Given { kind, payload, stage } => match which {
+            Body::Payload => payload.model(*kind, body.nominal()),
+            Body::Stage => stage.model(*kind, body.nominal()),
+        },
+        Law::Matched { kind, to } => {
+            let other = scenario.models().iter().find(|m| m.name == *to).map(|m| &m.law);
+            let Some(Law::Principal(axes)) = other else {
+                return Err(format!("matched_to {to:?}: no such model").into());
+            };
+            let moments = body.principal(*axes)?.entry_moments();
+            // The naive model knows the nominal body and how far its entries scatter, no more.
+            let naive = || EntrywiseGaussian::new(*body.nominal(), moments.deviations());
+            Ok(match kind {
+                ModelKind::Entrywise => naive()?.into(),
+                ModelKind::RealizableEntrywise => RealizableOnly::new(naive()?)?.into(),
+                kind => DispersionModel::matched(*kind, &moments)?.into_model(),
+            })
+        }
     }
 }

@@ -107,7 +107,7 @@ fn attitudes(
         })
         .filter(|(_, attitudes)| !attitudes.is_empty())
         .collect();
-    let mean = scenario.payload().axes().mean();
+    let mean = scenario.payload().mean_axes();
     let clouds: Vec<Cloud<'_>> = drawn
         .iter()
         .map(|(table, attitudes)| Cloud { name: table.model(), attitudes, mean })

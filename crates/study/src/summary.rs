@@ -1,3 +1,5 @@
+use gyradius_attitude::RadiallyConstrainedGaussian;
+use gyradius_dispersion::ModelKind;
 use gyradius_statistics::{
     Confidence, Deviation, Interval, Moments, Proportion, SortedSample, StatisticsError,
 };
@@ -8,7 +10,7 @@ use crate::{
     claims::{self, Claim},
     model::{Model, separate},
     row::{Body, Quantity, Row},
-    scenario::{Scenario, UncertainBody},
+    scenario::Scenario,
     table::RunTable,
 };
 
@@ -42,6 +44,10 @@ pub(crate) struct Nominal {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct ModelSummary {
     pub(crate) name: String,
+    pub(crate) law: ModelKind,
+    pub(crate) realizable_by_construction: bool,
+    /// Estimated shares of draws for payload and stage that a law by rejection keeps.
+    pub(crate) acceptance: Option<[f64; 2]>,
     pub(crate) failed: u64,
     /// Kinds of failure, with how often.
     pub(crate) failures: Vec<(String, u64)>,
@@ -202,17 +208,22 @@ impl ModelSummary {
             }
         }
         let draws_axes = rows.iter().any(|r| r.payload_axes.is_some());
-        let far = |body: Body, law: &UncertainBody| {
-            let far = |q: &UnitQuaternion<f64>| !law.axes().in_mean_half(q);
+        let far = |body: Body, law: &RadiallyConstrainedGaussian| {
+            let far = |q: &UnitQuaternion<f64>| !law.in_mean_half(q);
             share(rows.iter().filter_map(|r| body.axes(r)).filter(far).count())
         };
-        let far_half = if draws_axes {
-            Some([far(Body::Payload, scenario.payload())?, far(Body::Stage, scenario.stage())?])
-        } else {
-            None
+        let laws = (scenario.payload().gaussian_axes(), scenario.stage().gaussian_axes());
+        let far_half = match laws {
+            (Some(payload), Some(stage)) if draws_axes => {
+                Some([far(Body::Payload, payload)?, far(Body::Stage, stage)?])
+            }
+            _ => None,
         };
         Ok(Self {
             name: table.model().to_owned(),
+            law: model.kind(),
+            realizable_by_construction: model.kind().is_realizable_by_construction(),
+            acceptance: model.acceptance(),
             failed: failures.iter().map(|f| f.1).sum(),
             failures,
             unrealizable: share(rows.iter().filter(|r| !r.realizable).count())?,

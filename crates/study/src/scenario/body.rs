@@ -1,18 +1,32 @@
-use gyradius_attitude::RadiallyConstrainedGaussian;
-use gyradius_dispersion::GaussianRoots;
-use gyradius_inertia::Inertia;
+use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
+use gyradius_dispersion::{
+    AxesLaw, CorrelatedRoots, EmpiricalRoots, FixedAttitude, GaussianRoots, JacobianTwice,
+    JacobianTwiceError, LognormalRoots, PrincipalDispersion, RootLaw, TruncatedRoots, UniformRoots,
+};
+use gyradius_inertia::{Inertia, RootSecondMoments};
 use gyradius_separation::{Body, BodyState, MovingBody};
-use nalgebra::{Matrix4, Quaternion, UnitQuaternion};
+use nalgebra::{Matrix3, Matrix4, Quaternion, UnitQuaternion};
 
-use super::{ScenarioError, file::BodyFile};
+use super::{
+    Axes, ScenarioError,
+    file::{AxesLawFile, BodyFile, DispersionFile, RootsFile},
+};
 
 /// A body in its state at the start, and how uncertain its inertia is.
 #[derive(Clone, Debug)]
 pub(crate) struct UncertainBody {
     nominal: Inertia,
     moving: MovingBody,
-    roots: GaussianRoots,
-    axes: RadiallyConstrainedGaussian,
+    roots: RootLaw,
+    axes: BodyAxes,
+}
+
+/// How the principal axes of a body scatter.
+#[derive(Clone, Debug)]
+enum BodyAxes {
+    Gaussian(Box<RadiallyConstrainedGaussian>),
+    Uniform,
+    Fixed,
 }
 
 impl UncertainBody {
@@ -53,16 +67,10 @@ impl UncertainBody {
             angular_velocity: file.angular_velocity_rad_per_s.into(),
         };
 
-        let variances = file.dispersion.root_second_moment_variance_kg_m2;
-        let roots =
-            GaussianRoots::new(nominal.second_moments().roots(), variances).map_err(|e| {
-                ScenarioError::field(at("dispersion.root_second_moment_variance_kg_m2"), e)
-            })?;
-        let covariance = file.dispersion.axes_covariance;
-        let covariance = Matrix4::from_fn(|i, j| covariance[i][j]);
+        let place = at("dispersion");
+        let roots = roots(&place, &file.dispersion, nominal.second_moments().roots())?;
         let mean = nominal.principal_axes().attitude();
-        let axes = RadiallyConstrainedGaussian::new(mean, covariance)
-            .map_err(|e| ScenarioError::field(at("dispersion.axes_covariance"), e))?;
+        let axes = axes(&place, &file.dispersion, mean)?;
         Ok(Self { nominal, moving: body.moving(state), roots, axes })
     }
 
@@ -74,11 +82,133 @@ impl UncertainBody {
         &self.moving
     }
 
-    pub(crate) fn roots(&self) -> &GaussianRoots {
-        &self.roots
+    /// The Gaussian that the axes are from, if they are from one.
+    pub(crate) fn gaussian_axes(&self) -> Option<&RadiallyConstrainedGaussian> {
+        match &self.axes {
+            BodyAxes::Gaussian(law) => Some(law),
+            BodyAxes::Uniform | BodyAxes::Fixed => None,
+        }
     }
 
-    pub(crate) fn axes(&self) -> &RadiallyConstrainedGaussian {
-        &self.axes
+    /// The attitude that the axes scatter about.
+    pub(crate) fn mean_axes(&self) -> UnitQuaternion<f64> {
+        match &self.axes {
+            BodyAxes::Gaussian(law) => law.mean(),
+            BodyAxes::Uniform | BodyAxes::Fixed => self.nominal.principal_axes().attitude(),
+        }
+    }
+
+    /// The principal dispersion of the body, the axes read as a model wants them.
+    pub(crate) fn principal(
+        &self,
+        axes: Axes,
+    ) -> Result<PrincipalDispersion<RootLaw, AxesLaw>, JacobianTwiceError> {
+        let law: AxesLaw = match (&self.axes, axes) {
+            (BodyAxes::Uniform, _) => UniformAttitude.into(),
+            (BodyAxes::Fixed, _) => FixedAttitude::new(self.mean_axes()).into(),
+            (BodyAxes::Gaussian(law), Axes::WholeSphere) => (**law).clone().into(),
+            (BodyAxes::Gaussian(law), Axes::MeanHalf) => MeanHalf::new((**law).clone()).into(),
+            (BodyAxes::Gaussian(law), Axes::JacobianTwice) => {
+                JacobianTwice::new((**law).clone())?.into()
+            }
+        };
+        Ok(PrincipalDispersion::new(self.roots.clone(), law))
+    }
+}
+
+const VARIANCE: &str = "root_second_moment_variance_kg_m2";
+const COVARIANCE: &str = "root_second_moment_covariance_kg_m2";
+const BOUNDS: &str = "root_second_moment_bounds_sqrt_kg_m";
+const SAMPLES: &str = "root_second_moment_samples_sqrt_kg_m";
+
+/// A field that a law needs.
+fn needed<T>(place: &str, field: &str, law: &str, value: Option<T>) -> Result<T, ScenarioError> {
+    value.ok_or_else(|| {
+        ScenarioError::field(format!("{place}.{field}"), format!("missing: {law} needs it"))
+    })
+}
+
+fn roots(
+    place: &str,
+    file: &DispersionFile,
+    mean: RootSecondMoments,
+) -> Result<RootLaw, ScenarioError> {
+    let (law, takes): (&str, &[&str]) = match file.roots {
+        RootsFile::Gaussian => ("roots = \"gaussian\"", &[VARIANCE]),
+        RootsFile::CorrelatedGaussian => ("roots = \"correlated-gaussian\"", &[COVARIANCE]),
+        RootsFile::Uniform => ("roots = \"uniform\"", &[VARIANCE]),
+        RootsFile::Lognormal => ("roots = \"lognormal\"", &[VARIANCE]),
+        RootsFile::TruncatedGaussian => ("roots = \"truncated-gaussian\"", &[VARIANCE, BOUNDS]),
+        RootsFile::Empirical => ("roots = \"empirical\"", &[SAMPLES]),
+    };
+    for (field, given) in [
+        (VARIANCE, file.root_second_moment_variance_kg_m2.is_some()),
+        (COVARIANCE, file.root_second_moment_covariance_kg_m2.is_some()),
+        (BOUNDS, file.root_second_moment_bounds_sqrt_kg_m.is_some()),
+        (SAMPLES, file.root_second_moment_samples_sqrt_kg_m.is_some()),
+    ] {
+        if given && !takes.contains(&field) {
+            let problem = format!("{law} does not take it, but {}", takes.join(" and "));
+            return Err(ScenarioError::field(format!("{place}.{field}"), problem));
+        }
+    }
+    let variances = || needed(place, VARIANCE, law, file.root_second_moment_variance_kg_m2);
+    let refused = |field: &str, e: &dyn std::fmt::Display| {
+        ScenarioError::field(format!("{place}.{field}"), e)
+    };
+    Ok(match file.roots {
+        RootsFile::Gaussian => {
+            GaussianRoots::new(mean, variances()?).map_err(|e| refused(VARIANCE, &e))?.into()
+        }
+        RootsFile::CorrelatedGaussian => {
+            let c = needed(place, COVARIANCE, law, file.root_second_moment_covariance_kg_m2)?;
+            CorrelatedRoots::new(mean, Matrix3::from_fn(|i, j| c[i][j]))
+                .map_err(|e| refused(COVARIANCE, &e))?
+                .into()
+        }
+        RootsFile::Uniform => UniformRoots::from_variances(mean, variances()?)
+            .map_err(|e| refused(VARIANCE, &e))?
+            .into(),
+        RootsFile::Lognormal => {
+            LognormalRoots::new(mean, variances()?).map_err(|e| refused(VARIANCE, &e))?.into()
+        }
+        RootsFile::TruncatedGaussian => {
+            let bounds = needed(place, BOUNDS, law, file.root_second_moment_bounds_sqrt_kg_m)?;
+            TruncatedRoots::new(mean, variances()?, bounds)
+                .map_err(|e| {
+                    use gyradius_dispersion::TruncatedRootsError::Variance;
+                    refused(if matches!(e, Variance { .. }) { VARIANCE } else { BOUNDS }, &e)
+                })?
+                .into()
+        }
+        RootsFile::Empirical => {
+            let samples = file.root_second_moment_samples_sqrt_kg_m.as_ref();
+            let samples = needed(place, SAMPLES, law, samples)?;
+            EmpiricalRoots::from_values(samples).map_err(|e| refused(SAMPLES, &e))?.into()
+        }
+    })
+}
+
+fn axes(
+    place: &str,
+    file: &DispersionFile,
+    mean: UnitQuaternion<f64>,
+) -> Result<BodyAxes, ScenarioError> {
+    let field = format!("{place}.axes_covariance");
+    match (file.axes, file.axes_covariance) {
+        (AxesLawFile::RadiallyConstrainedGaussian, covariance) => {
+            let law = "axes = \"radially-constrained-gaussian\"";
+            let covariance = needed(place, "axes_covariance", law, covariance)?;
+            let covariance = Matrix4::from_fn(|i, j| covariance[i][j]);
+            let law = RadiallyConstrainedGaussian::new(mean, covariance)
+                .map_err(|e| ScenarioError::field(field, e))?;
+            Ok(BodyAxes::Gaussian(Box::new(law)))
+        }
+        (AxesLawFile::Uniform, None) => Ok(BodyAxes::Uniform),
+        (AxesLawFile::Fixed, None) => Ok(BodyAxes::Fixed),
+        (AxesLawFile::Uniform | AxesLawFile::Fixed, Some(_)) => {
+            let problem = "axes = \"uniform\" and \"fixed\" do not take it";
+            Err(ScenarioError::field(field, problem))
+        }
     }
 }

@@ -1,3 +1,4 @@
+use gyradius_dispersion::{BasiliskDispersion, ModelKind};
 use serde::{Deserialize, Serialize};
 
 /// A scenario as it stands in a TOML file, defaults filled in. Units are in the names.
@@ -39,11 +40,46 @@ pub(crate) struct BodyFile {
     pub(crate) dispersion: DispersionFile,
 }
 
+/// A law of the roots and one of the axes; which fields go with which law is checked later, so that
+/// the message can say it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DispersionFile {
-    pub(crate) root_second_moment_variance_kg_m2: [f64; 3],
-    pub(crate) axes_covariance: [[f64; 4]; 4],
+    #[serde(default)]
+    pub(crate) roots: RootsFile,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) root_second_moment_variance_kg_m2: Option<[f64; 3]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) root_second_moment_covariance_kg_m2: Option<[[f64; 3]; 3]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) root_second_moment_bounds_sqrt_kg_m: Option<[[f64; 2]; 3]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) root_second_moment_samples_sqrt_kg_m: Option<Vec<[f64; 3]>>,
+    #[serde(default)]
+    pub(crate) axes: AxesLawFile,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) axes_covariance: Option<[[f64; 4]; 4]>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum RootsFile {
+    #[default]
+    Gaussian,
+    CorrelatedGaussian,
+    Uniform,
+    Lognormal,
+    TruncatedGaussian,
+    Empirical,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum AxesLawFile {
+    #[default]
+    RadiallyConstrainedGaussian,
+    Uniform,
+    Fixed,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,26 +98,105 @@ pub(crate) struct IntegrationFile {
     pub(crate) horizon_s: f64,
 }
 
+/// A model: its law, and for each body what the law needs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ModelFile {
     pub(crate) name: String,
-    pub(crate) law: LawFile,
+    pub(crate) law: ModelKind,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) axes: Option<AxesFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) payload_deviation_kg_m2: Option<[[f64; 3]; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) payload_covariance_kg2_m4: Option<[[f64; 6]; 6]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) payload_log_cholesky_covariance: Option<[[f64; 6]; 6]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) payload_delta: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) payload_diagonal_deviation_kg_m2: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) payload_diagonal_bounds_kg_m2: Option<[f64; 2]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) payload_angle_deviation_rad: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) stage_deviation_kg_m2: Option<[[f64; 3]; 3]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stage_covariance_kg2_m4: Option<[[f64; 6]; 6]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stage_log_cholesky_covariance: Option<[[f64; 6]; 6]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stage_delta: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stage_diagonal_deviation_kg_m2: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stage_diagonal_bounds_kg_m2: Option<[f64; 2]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stage_angle_deviation_rad: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) matched_to: Option<String>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum LawFile {
-    Principal,
-    Entrywise,
+/// What a model file says of one body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GivenFile {
+    pub(crate) deviation_kg_m2: Option<[[f64; 3]; 3]>,
+    pub(crate) covariance_kg2_m4: Option<[[f64; 6]; 6]>,
+    pub(crate) log_cholesky_covariance: Option<[[f64; 6]; 6]>,
+    pub(crate) delta: Option<f64>,
+    pub(crate) diagonal_deviation_kg_m2: Option<f64>,
+    pub(crate) diagonal_bounds_kg_m2: Option<[f64; 2]>,
+    pub(crate) angle_deviation_rad: Option<f64>,
+}
+
+impl ModelFile {
+    pub(crate) fn payload(&self) -> GivenFile {
+        GivenFile {
+            deviation_kg_m2: self.payload_deviation_kg_m2,
+            covariance_kg2_m4: self.payload_covariance_kg2_m4,
+            log_cholesky_covariance: self.payload_log_cholesky_covariance,
+            delta: self.payload_delta,
+            diagonal_deviation_kg_m2: self.payload_diagonal_deviation_kg_m2,
+            diagonal_bounds_kg_m2: self.payload_diagonal_bounds_kg_m2,
+            angle_deviation_rad: self.payload_angle_deviation_rad,
+        }
+    }
+
+    pub(crate) fn stage(&self) -> GivenFile {
+        GivenFile {
+            deviation_kg_m2: self.stage_deviation_kg_m2,
+            covariance_kg2_m4: self.stage_covariance_kg2_m4,
+            log_cholesky_covariance: self.stage_log_cholesky_covariance,
+            delta: self.stage_delta,
+            diagonal_deviation_kg_m2: self.stage_diagonal_deviation_kg_m2,
+            diagonal_bounds_kg_m2: self.stage_diagonal_bounds_kg_m2,
+            angle_deviation_rad: self.stage_angle_deviation_rad,
+        }
+    }
+
+    /// With the defaults of its law filled in.
+    pub(crate) fn fill(&mut self) {
+        if self.law == ModelKind::Basilisk && self.matched_to.is_none() {
+            self.payload_diagonal_bounds_kg_m2.get_or_insert(BasiliskDispersion::NO_BOUNDS);
+            self.stage_diagonal_bounds_kg_m2.get_or_insert(BasiliskDispersion::NO_BOUNDS);
+        }
+    }
+}
+
+impl GivenFile {
+    /// Every field and whether it is there.
+    pub(crate) fn fields(&self) -> [(&'static str, bool); 7] {
+        [
+            ("deviation_kg_m2", self.deviation_kg_m2.is_some()),
+            ("covariance_kg2_m4", self.covariance_kg2_m4.is_some()),
+            ("log_cholesky_covariance", self.log_cholesky_covariance.is_some()),
+            ("delta", self.delta.is_some()),
+            ("diagonal_deviation_kg_m2", self.diagonal_deviation_kg_m2.is_some()),
+            ("diagonal_bounds_kg_m2", self.diagonal_bounds_kg_m2.is_some()),
+            ("angle_deviation_rad", self.angle_deviation_rad.is_some()),
+        ]
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

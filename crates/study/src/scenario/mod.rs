@@ -127,7 +127,8 @@ impl Scenario {
         Ok(Self { file: ScenarioFile { seed, ..self.file }, ..self })
     }
 
-    fn check(file: ScenarioFile) -> Result<Self, ScenarioError> {
+    fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
+        file.models.iter_mut().for_each(file::ModelFile::fill);
         check_name("name", &file.name)?;
         check_runs(file.runs)?;
         check_seed(file.seed)?;
@@ -166,7 +167,7 @@ impl Scenario {
         let settings =
             Settings::new(file.integration.relative_tolerance, file.integration.horizon_s)
                 .map_err(|e| ScenarioError::field("integration", e))?;
-        let models = model::check_models(&file.models)?;
+        let models = model::check_models(&file.models, [&payload, &stage])?;
         let comparisons = model::check_comparisons(&file.comparisons, &models)?;
         Ok(Self { file, spin_axis, payload, stage, separation, settings, models, comparisons })
     }
@@ -234,8 +235,8 @@ impl Scenario {
 
     /// Whether a model was given exactly the deviations of another.
     pub(crate) fn is_matched(&self, model: &str, to: &str) -> bool {
-        let matched = |m: &ModelSpec| m.law == Law::EntrywiseMatched(to.to_owned());
-        self.models.iter().any(|m| m.name == model && matched(m))
+        let matched = |law: &Law| matches!(law, Law::Matched { to: name, .. } if name == to);
+        self.models.iter().any(|m| m.name == model && matched(&m.law))
     }
 
     pub(crate) fn comparisons(&self) -> &[Comparison] {

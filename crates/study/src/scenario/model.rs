@@ -1,6 +1,13 @@
+use gyradius_dispersion::{
+    BasiliskDispersion, BasiliskError, CorrelatedEntries, DispersionModel, EntrywiseGaussian,
+    LogCholeskyGaussian, ModelKind, RealizableOnly, Wishart,
+};
+use gyradius_inertia::Inertia;
+use nalgebra::SMatrix;
+
 use super::{
-    ScenarioError, check_name,
-    file::{AxesFile as Axes, ComparisonFile, LawFile, ModelFile},
+    ScenarioError, UncertainBody, check_name,
+    file::{AxesFile as Axes, ComparisonFile, GivenFile, ModelFile},
 };
 
 /// A model as the scenario describes it.
@@ -13,13 +20,36 @@ pub(crate) struct ModelSpec {
 /// A law of inertia.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Law {
-    /// Gaussian roots of the second moments; axes from the radially constrained Gaussian.
+    /// Roots and axes as payload.dispersion and stage.dispersion say.
     Principal(Axes),
-    /// Independent Gaussian entries with given deviations of payload and stage, in the order
-    /// I11, I22, I33, I12, I13, I23, kg·m².
-    Entrywise { payload: [f64; 6], stage: [f64; 6] },
-    /// Independent Gaussian entries with the deviations of a principal model.
-    EntrywiseMatched(String),
+    /// Any other model with given parameters of payload and stage.
+    Given { kind: ModelKind, payload: Box<Given>, stage: Box<Given> },
+    /// Any other model with the moments of a principal one.
+    Matched { kind: ModelKind, to: String },
+}
+
+/// The parameters of a model for one body.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Given {
+    /// Of I11, I22, I33, I12, I13, I23, kg·m².
+    Deviations([f64; 6]),
+    /// Of the same, (kg·m²)².
+    Covariance(SMatrix<f64, 6, 6>),
+    /// Of d1, d2, d3, s12, s23, s13.
+    LogCholesky(SMatrix<f64, 6, 6>),
+    /// Dispersion parameter.
+    Delta(f64),
+    /// Of the diagonal, kg·m², and of the angles, rad.
+    Basilisk { diagonal: f64, bounds: [f64; 2], angle: f64 },
+}
+
+impl Law {
+    pub(crate) fn kind(&self) -> ModelKind {
+        match self {
+            Self::Principal(_) => ModelKind::Principal,
+            Self::Given { kind, .. } | Self::Matched { kind, .. } => *kind,
+        }
+    }
 }
 
 /// A physical model and the naive one that it is set against.
@@ -31,7 +61,10 @@ pub(crate) struct Comparison {
     pub(crate) naive: usize,
 }
 
-pub(crate) fn check_models(files: &[ModelFile]) -> Result<Vec<ModelSpec>, ScenarioError> {
+pub(crate) fn check_models(
+    files: &[ModelFile],
+    bodies: [&UncertainBody; 2],
+) -> Result<Vec<ModelSpec>, ScenarioError> {
     if files.is_empty() {
         return Err(ScenarioError::field("models", "none: there must be at least one"));
     }
@@ -44,51 +77,175 @@ pub(crate) fn check_models(files: &[ModelFile]) -> Result<Vec<ModelSpec>, Scenar
             return Err(ScenarioError::field("models", problem));
         }
     }
-    files.iter().map(|file| check_model(file, files)).collect()
+    files.iter().map(|file| check_model(file, files, bodies)).collect()
 }
 
-fn check_model(file: &ModelFile, all: &[ModelFile]) -> Result<ModelSpec, ScenarioError> {
+fn check_model(
+    file: &ModelFile,
+    all: &[ModelFile],
+    bodies: [&UncertainBody; 2],
+) -> Result<ModelSpec, ScenarioError> {
     let place = format!("models.{}", file.name);
-    let fail = |problem: &str| Err(ScenarioError::field(place.clone(), problem));
-    let deviations = (file.payload_deviation_kg_m2, file.stage_deviation_kg_m2);
-    let law = match (file.law, file.axes, deviations, &file.matched_to) {
-        (LawFile::Principal, Some(axes), (None, None), None) => Law::Principal(axes),
-        (LawFile::Principal, None, ..) => {
-            return fail(
+    let kind = file.law;
+    let field_error = |field: &str, problem: String| {
+        Err(ScenarioError::field(format!("{place}.{field}"), problem))
+    };
+    let (payload, stage) = (file.payload(), file.stage());
+    let given = || {
+        let of = |body: &str, given: &GivenFile| {
+            let body = body.to_owned();
+            given.fields().map(|(field, there)| (format!("{body}_{field}"), field, there))
+        };
+        of("payload", &payload).into_iter().chain(of("stage", &stage)).filter(|f| f.2)
+    };
+
+    if kind == ModelKind::Principal {
+        let Some(axes) = file.axes else {
+            return Err(ScenarioError::field(
+                place,
                 "law \"principal\" needs axes: \"whole-sphere\", \"mean-half\" or \"jacobian-twice\"",
-            );
+            ));
+        };
+        let only = "law \"principal\" takes axes and nothing else: its variances are those of \
+                    payload.dispersion and stage.dispersion";
+        if let Some((field, ..)) = given().next() {
+            return field_error(&field, only.to_owned());
         }
-        (LawFile::Principal, ..) => {
-            return fail(
-                "law \"principal\" takes axes and nothing else: its variances are those of \
-                         payload.dispersion and stage.dispersion",
-            );
+        if file.matched_to.is_some() {
+            return field_error("matched_to", only.to_owned());
         }
-        (LawFile::Entrywise, None, (Some(payload), Some(stage)), None) => Law::Entrywise {
-            payload: entries(&format!("{place}.payload_deviation_kg_m2"), &payload)?,
-            stage: entries(&format!("{place}.stage_deviation_kg_m2"), &stage)?,
-        },
-        (LawFile::Entrywise, None, (None, None), Some(other)) => {
-            let matchable = |m: &ModelFile| {
-                m.name == *other && m.law == LawFile::Principal && m.axes == Some(Axes::WholeSphere)
-            };
-            if !all.iter().any(matchable) {
-                let problem = format!(
-                    "{other:?}: it must name a model with law \"principal\" and axes \
-                     \"whole-sphere\", whose deviations can be computed"
-                );
-                return Err(ScenarioError::field(format!("{place}.matched_to"), problem));
+        if axes != Axes::WholeSphere && bodies.iter().any(|b| b.gaussian_axes().is_none()) {
+            let problem = "only \"whole-sphere\" goes with bodies whose dispersion.axes are \"uniform\" \
+                           or \"fixed\": they have no far half";
+            return field_error("axes", problem.to_owned());
+        }
+        return Ok(ModelSpec { name: file.name.clone(), law: Law::Principal(axes) });
+    }
+
+    if file.axes.is_some() {
+        return field_error("axes", format!("law \"{kind}\" does not take it"));
+    }
+    let (needs, takes) = parameters(kind);
+    let choice = format!(
+        "law \"{kind}\" needs either {}, or matched_to, and nothing else",
+        needs.iter().map(|f| format!("payload_{f} and stage_{f}")).collect::<Vec<_>>().join(", ")
+    );
+    if let Some((field, ..)) = given().find(|(_, field, _)| !takes.contains(field)) {
+        return field_error(&field, format!("{choice}; it does not take this"));
+    }
+    let law = if let Some(other) = &file.matched_to {
+        if let Some((field, ..)) = given().next() {
+            return field_error(&field, choice);
+        }
+        if !all.iter().any(|m| m.name == *other && m.law == ModelKind::Principal) {
+            let problem = format!(
+                "{other:?}: it must name a model with law \"principal\", whose mean and deviations \
+                 can be computed"
+            );
+            return field_error("matched_to", problem);
+        }
+        Law::Matched { kind, to: other.clone() }
+    } else {
+        for (body, given) in [("payload", &payload), ("stage", &stage)] {
+            for need in needs {
+                if !given.fields().contains(&(*need, true)) {
+                    return field_error(&format!("{body}_{need}"), format!("missing: {choice}"));
+                }
             }
-            Law::EntrywiseMatched(other.clone())
         }
-        (LawFile::Entrywise, ..) => {
-            return fail(
-                "law \"entrywise\" needs either payload_deviation_kg_m2 and \
-                         stage_deviation_kg_m2, or matched_to, and nothing else",
-            );
-        }
+        let [p, s] = bodies.map(UncertainBody::nominal);
+        let payload = Box::new(check_given(kind, &format!("{place}.payload"), &payload, p)?);
+        let stage = Box::new(check_given(kind, &format!("{place}.stage"), &stage, s)?);
+        Law::Given { kind, payload, stage }
     };
     Ok(ModelSpec { name: file.name.clone(), law })
+}
+
+/// The fields that a law needs, and those that it takes.
+fn parameters(kind: ModelKind) -> (&'static [&'static str], &'static [&'static str]) {
+    match kind {
+        ModelKind::Entrywise | ModelKind::RealizableEntrywise => {
+            (&["deviation_kg_m2"], &["deviation_kg_m2"])
+        }
+        ModelKind::CorrelatedEntries | ModelKind::RealizableCorrelatedEntries => {
+            (&["covariance_kg2_m4"], &["covariance_kg2_m4"])
+        }
+        ModelKind::LogCholesky => (&["log_cholesky_covariance"], &["log_cholesky_covariance"]),
+        ModelKind::Wishart => (&["delta"], &["delta"]),
+        ModelKind::Basilisk => (
+            &["diagonal_deviation_kg_m2", "angle_deviation_rad"],
+            &["diagonal_deviation_kg_m2", "diagonal_bounds_kg_m2", "angle_deviation_rad"],
+        ),
+        _ => (&[], &[]),
+    }
+}
+
+/// What a law was given for one body, checked by making the model. `place` ends with the body's name.
+fn check_given(
+    kind: ModelKind,
+    place: &str,
+    file: &GivenFile,
+    nominal: &Inertia,
+) -> Result<Given, ScenarioError> {
+    let square = |m: &[[f64; 6]; 6]| SMatrix::from_fn(|i, j| m[i][j]);
+    let (field, given) = if let Some(m) = &file.deviation_kg_m2 {
+        let field = "deviation_kg_m2";
+        (field, Given::Deviations(entries(&format!("{place}_{field}"), m)?))
+    } else if let Some(m) = &file.covariance_kg2_m4 {
+        ("covariance_kg2_m4", Given::Covariance(square(m)))
+    } else if let Some(m) = &file.log_cholesky_covariance {
+        ("log_cholesky_covariance", Given::LogCholesky(square(m)))
+    } else if let Some(delta) = file.delta {
+        ("delta", Given::Delta(delta))
+    } else {
+        let bounds = file.diagonal_bounds_kg_m2.unwrap_or(BasiliskDispersion::NO_BOUNDS);
+        let diagonal = file.diagonal_deviation_kg_m2.unwrap_or(0.0);
+        let angle = file.angle_deviation_rad.unwrap_or(0.0);
+        let field = match BasiliskDispersion::new(*nominal, diagonal, bounds, angle) {
+            Err(BasiliskError::Bounds { .. }) => "diagonal_bounds_kg_m2",
+            Err(BasiliskError::Deviation { which: "angle", .. }) => "angle_deviation_rad",
+            _ => "diagonal_deviation_kg_m2",
+        };
+        (field, Given::Basilisk { diagonal, bounds, angle })
+    };
+    let made = given.model(kind, nominal);
+    made.map_err(|e| ScenarioError::field(format!("{place}_{field}"), e))?;
+    Ok(given)
+}
+
+impl Given {
+    /// The model of a kind with these parameters, about a nominal body.
+    pub(crate) fn model(
+        &self,
+        kind: ModelKind,
+        nominal: &Inertia,
+    ) -> Result<DispersionModel, Box<dyn std::error::Error>> {
+        Ok(match self {
+            Self::Deviations(deviations) => {
+                let law = EntrywiseGaussian::new(*nominal, *deviations)?;
+                if kind == ModelKind::RealizableEntrywise {
+                    RealizableOnly::new(law)?.into()
+                } else {
+                    law.into()
+                }
+            }
+            Self::Covariance(covariance) => {
+                let law = CorrelatedEntries::new(*nominal, *covariance)?;
+                if kind == ModelKind::RealizableCorrelatedEntries {
+                    RealizableOnly::new(law)?.into()
+                } else {
+                    law.into()
+                }
+            }
+            Self::LogCholesky(covariance) => {
+                LogCholeskyGaussian::about(nominal, *covariance)?.into()
+            }
+            Self::Delta(delta) => Wishart::new(*nominal, *delta)?.into(),
+            Self::Basilisk { diagonal, bounds, angle } => {
+                BasiliskDispersion::new(*nominal, *diagonal, *bounds, *angle)?.into()
+            }
+        })
+    }
 }
 
 /// The six entries of a symmetric matrix of deviations.
@@ -121,14 +278,23 @@ pub(crate) fn check_comparisons(
     models: &[ModelSpec],
 ) -> Result<Vec<Comparison>, ScenarioError> {
     let find = |i: usize, role: &str, name: &str| {
-        let law = if role == "physical" { "principal" } else { "entrywise" };
-        let fits = |m: &&ModelSpec| matches!(m.law, Law::Principal(_)) == (role == "physical");
+        let fits = |m: &&ModelSpec| {
+            let kind = m.law.kind();
+            if role == "physical" {
+                kind.is_realizable_by_construction()
+            } else {
+                kind != ModelKind::Principal
+            }
+        };
+        let which = if role == "physical" {
+            "whose law is realizable by construction"
+        } else {
+            "with another law than \"principal\""
+        };
         let names: Vec<&str> = models.iter().filter(fits).map(|m| m.name.as_str()).collect();
         models.iter().position(|m| m.name == name && fits(&m)).ok_or_else(|| {
-            let problem = format!(
-                "{name:?}: it must be one of the models with law {law:?}: {}",
-                names.join(", ")
-            );
+            let problem =
+                format!("{name:?}: it must be one of the models {which}: {}", names.join(", "));
             ScenarioError::field(format!("comparisons[{}].{role}", i + 1), problem)
         })
     };
