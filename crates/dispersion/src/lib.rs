@@ -41,6 +41,7 @@
 mod any_body;
 mod axes;
 mod basilisk;
+mod batch;
 mod correlated_entries;
 mod entry_moments;
 mod entrywise;
@@ -59,6 +60,7 @@ mod wishart;
 pub use any_body::{AnyBody, AnyBodyError};
 pub use axes::{AttitudeMoments, AxesLaw, FixedAttitude, JacobianTwice, JacobianTwiceError};
 pub use basilisk::{BasiliskDispersion, BasiliskError};
+pub use batch::{BatchAttitudes, BatchRoots, ColumnsError};
 pub use correlated_entries::CorrelatedEntries;
 pub use entry_moments::{EntryMoments, EntryMomentsError};
 pub use entrywise::{EntrywiseError, EntrywiseGaussian};

@@ -373,6 +373,254 @@ mod tests {
         }
     }
 
+    const VARIANCE: &str = "root_second_moment_variance_kg_m2 = [0.125, 0.1, 0.075]";
+
+    fn covariance(size: usize, variance: f64) -> String {
+        let row = |i: usize| {
+            let entry = |j: usize| if i == j { format!("{variance:e}") } else { "0.0".to_owned() };
+            format!("[{}]", (0..size).map(entry).collect::<Vec<_>>().join(", "))
+        };
+        format!("[{}]", (0..size).map(row).collect::<Vec<_>>().join(", "))
+    }
+
+    /// The resolved scenario says the same again, and its models can be made.
+    fn round_trip(text: &str) -> String {
+        let s = Scenario::from_toml(text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let resolved = s.to_toml();
+        let again = Scenario::from_toml(&resolved).unwrap_or_else(|e| panic!("{e}\n{resolved}"));
+        assert_eq!(again.to_toml(), resolved);
+        crate::runner::models(&s).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        resolved
+    }
+
+    #[test]
+    fn every_law_of_roots_and_axes_can_be_written() {
+        let rcg = &PECK_2003[PECK_2003.find("axes_covariance").unwrap()..];
+        let rcg = &rcg[..rcg.find("\n]\n").unwrap() + 3];
+        let roots = [
+            ("gaussian", VARIANCE.to_owned()),
+            ("uniform", VARIANCE.to_owned()),
+            ("lognormal", VARIANCE.to_owned()),
+            (
+                "correlated-gaussian",
+                format!("root_second_moment_covariance_kg_m2 = {}", covariance(3, 0.1)),
+            ),
+            (
+                "truncated-gaussian",
+                format!(
+                    "{VARIANCE}\nroot_second_moment_bounds_sqrt_kg_m = [[30.0, 33.0], [0.0, inf], [-inf, inf]]"
+                ),
+            ),
+            (
+                "empirical",
+                "root_second_moment_samples_sqrt_kg_m = [[31.0, 44.0, 54.0], [32.0, 45.0, 55.0]]"
+                    .to_owned(),
+            ),
+        ];
+        for (law, fields) in &roots {
+            for (axes, covariance) in
+                [("radially-constrained-gaussian", rcg), ("uniform", ""), ("fixed", "")]
+            {
+                // The naive model is then matched to each.
+                let text = PECK_2003
+                    .replacen(
+                        VARIANCE,
+                        &format!("roots = \"{law}\"\n{fields}\naxes = \"{axes}\""),
+                        1,
+                    )
+                    .replacen(rcg, covariance, 1);
+                let text = if axes == "radially-constrained-gaussian" {
+                    text
+                } else {
+                    text.replace("axes = \"jacobian-twice\"", "axes = \"whole-sphere\"")
+                };
+                let resolved = round_trip(&text);
+                assert!(resolved.contains(&format!("roots = \"{law}\"")), "{resolved}");
+                assert!(resolved.contains(&format!("axes = \"{axes}\"")), "{resolved}");
+            }
+        }
+        // What is not said is spelled out.
+        let resolved = round_trip(PECK_2003);
+        assert!(resolved.contains("roots = \"gaussian\""), "{resolved}");
+        assert!(resolved.contains("axes = \"radially-constrained-gaussian\""), "{resolved}");
+    }
+
+    /// A scenario with one more model.
+    fn with_model(law: &str, fields: &str) -> String {
+        let at = PECK_2003.find("[[comparisons]]").unwrap();
+        let (head, tail) = PECK_2003.split_at(at);
+        format!("{head}[[models]]\nname = \"other\"\nlaw = \"{law}\"\n{fields}\n\n{tail}")
+    }
+
+    #[test]
+    fn every_model_can_be_written() {
+        let both = |field: &str, value: &str| {
+            format!("payload_{field} = {value}\nstage_{field} = {value}")
+        };
+        let deviations = both("deviation_kg_m2", &covariance(3, 10.0));
+        let entries = both("covariance_kg2_m4", &covariance(6, 100.0));
+        let basilisk =
+            both("diagonal_deviation_kg_m2", "50.0") + "\n" + &both("angle_deviation_rad", "0.02");
+        let bounded = basilisk.clone() + "\n" + &both("diagonal_bounds_kg_m2", "[-100.0, 100.0]");
+        let cases = [
+            ("principal", "axes = \"mean-half\"".to_owned()),
+            ("entrywise", deviations.clone()),
+            ("realizable-entrywise", deviations),
+            ("correlated-entries", entries.clone()),
+            ("realizable-correlated-entries", entries),
+            ("log-cholesky", both("log_cholesky_covariance", &covariance(6, 1e-4))),
+            ("wishart", both("delta", "0.05")),
+            ("basilisk", basilisk),
+            ("basilisk", bounded),
+        ];
+        for (law, fields) in cases {
+            let resolved = round_trip(&with_model(law, &fields));
+            if law == "basilisk" {
+                assert!(resolved.contains("payload_diagonal_bounds_kg_m2"), "{resolved}");
+            }
+        }
+        for kind in gyradius_dispersion::ModelKind::ALL.into_iter().skip(1) {
+            // Making the published law takes a while: one model matched to it will do.
+            let wishart = kind == gyradius_dispersion::ModelKind::Wishart;
+            for to in if wishart { &["proposed", "published"][..] } else { &["proposed"] } {
+                let matched = format!("matched_to = \"{to}\"");
+                // The stage has two equal moments, which Basilisk's small turns need not reach.
+                let text = with_model(kind.name(), &matched);
+                let s = Scenario::from_toml(&text).unwrap();
+                assert_eq!(Scenario::from_toml(&s.to_toml()).unwrap().to_toml(), s.to_toml());
+                if let Err(error) = crate::runner::models(&s) {
+                    assert!(error.to_string().starts_with("models.other: basilisk:"), "{error}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bad_parameters_of_models_are_named() {
+        let both = |field: &str, value: &str| {
+            format!("payload_{field} = {value}\nstage_{field} = {value}")
+        };
+        let basilisk = |diagonal: &str, bounds: &str, angle: &str| {
+            [
+                both("diagonal_deviation_kg_m2", diagonal),
+                both("diagonal_bounds_kg_m2", bounds),
+                both("angle_deviation_rad", angle),
+            ]
+            .join("\n")
+        };
+        let cases = [
+            ("wishart", both("delta", "1.5"), "models.other.payload_delta: dispersion δ = 1.5"),
+            ("wishart", both("delta", "nan"), "models.other.payload_delta: dispersion δ = NaN"),
+            ("wishart", "payload_delta = 0.1".to_owned(), "models.other.stage_delta: missing"),
+            ("wishart", String::new(), "models.other.payload_delta: missing"),
+            (
+                "wishart",
+                both("deviation_kg_m2", &covariance(3, 1.0)),
+                "models.other.payload_deviation_kg_m2: law \"wishart\" needs either payload_delta",
+            ),
+            (
+                "wishart",
+                both("delta", "0.1") + "\nmatched_to = \"proposed\"",
+                "models.other.payload_delta: law \"wishart\" needs either",
+            ),
+            ("wishart", "matched_to = \"naive\"".to_owned(), "models.other.matched_to: \"naive\""),
+            ("wishart", "axes = \"mean-half\"".to_owned(), "models.other.axes: law \"wishart\""),
+            (
+                "correlated-entries",
+                both("covariance_kg2_m4", &covariance(6, -1.0)),
+                "models.other.payload_covariance_kg2_m4: covariance entry (1, 1)",
+            ),
+            (
+                "realizable-entrywise",
+                both("deviation_kg_m2", &covariance(3, -1.0)),
+                "models.other.payload_deviation_kg_m2: -1",
+            ),
+            (
+                "log-cholesky",
+                both("log_cholesky_covariance", &covariance(6, 100.0)),
+                "models.other.payload_log_cholesky_covariance: coordinate d1",
+            ),
+            (
+                "basilisk",
+                basilisk("-1.0", "[-1.0, 1.0]", "0.1"),
+                "models.other.payload_diagonal_deviation_kg_m2: diagonal deviation = -1.0",
+            ),
+            (
+                "basilisk",
+                basilisk("1.0", "[1.0, -1.0]", "0.1"),
+                "models.other.payload_diagonal_bounds_kg_m2: bounds from 1.0 to -1.0",
+            ),
+            (
+                "basilisk",
+                basilisk("1.0", "[-1.0, 1.0]", "nan"),
+                "models.other.payload_angle_deviation_rad: angle deviation = NaN",
+            ),
+            (
+                "principal",
+                "axes = \"mean-half\"\npayload_delta = 0.1".to_owned(),
+                "models.other.payload_delta: law \"principal\" takes axes",
+            ),
+        ];
+        for (law, fields, expected) in cases {
+            let message = Scenario::from_toml(&with_model(law, &fields)).unwrap_err().to_string();
+            assert!(message.starts_with(expected), "{message}\nexpected {expected}");
+        }
+        let message = Scenario::from_toml(&with_model("naive", "")).unwrap_err().to_string();
+        assert!(message.contains("naive") && message.contains("wishart"), "{message}");
+    }
+
+    #[test]
+    fn bad_dispersions_are_named() {
+        let place = "payload.dispersion";
+        let cases = [
+            (VARIANCE.to_owned(), String::new(), "root_second_moment_variance_kg_m2: missing"),
+            (
+                VARIANCE.to_owned(),
+                "roots = \"empirical\"".to_owned(),
+                "root_second_moment_samples_sqrt_kg_m: missing",
+            ),
+            (
+                VARIANCE.to_owned(),
+                "roots = \"empirical\"\nroot_second_moment_samples_sqrt_kg_m = [[1.0, nan, 2.0]]"
+                    .to_owned(),
+                "root_second_moment_samples_sqrt_kg_m: sample 1, k_2",
+            ),
+            (
+                VARIANCE.to_owned(),
+                format!("roots = \"correlated-gaussian\"\n{VARIANCE}"),
+                "root_second_moment_variance_kg_m2: roots = \"correlated-gaussian\" does not take it",
+            ),
+            (
+                VARIANCE.to_owned(),
+                format!("roots = \"truncated-gaussian\"\n{VARIANCE}"),
+                "root_second_moment_bounds_sqrt_kg_m: missing",
+            ),
+            (
+                VARIANCE.to_owned(),
+                format!(
+                    "roots = \"truncated-gaussian\"\n{VARIANCE}\nroot_second_moment_bounds_sqrt_kg_m = [[0.0, 1.0], [0.0, 1.0], [0.0, 1.0]]"
+                ),
+                "root_second_moment_bounds_sqrt_kg_m: k_1",
+            ),
+            (
+                VARIANCE.to_owned(),
+                format!("{VARIANCE}\naxes = \"uniform\""),
+                "axes_covariance: axes = \"uniform\"",
+            ),
+        ];
+        for (from, to, expected) in cases {
+            let message = error(&from, &to);
+            assert!(message.starts_with(&format!("{place}.{expected}")), "{message}\n{expected}");
+        }
+        let message = error(VARIANCE, &format!("{VARIANCE}\nroots = \"normal\""));
+        assert!(message.contains("normal") && message.contains("lognormal"), "{message}");
+        // No half of the sphere to keep to.
+        let rcg = &PECK_2003[PECK_2003.find("axes_covariance").unwrap()..];
+        let rcg = &rcg[..rcg.find("\n]\n").unwrap() + 3];
+        let message = error(rcg, "axes = \"fixed\"\n");
+        assert!(message.starts_with("models.published.axes: only \"whole-sphere\""), "{message}");
+    }
+
     #[test]
     fn touching_pads_are_refused_and_explained() {
         let text = PECK_2003.replace("-0.9]", "-1.0]").replace(", 0.9]", ", 1.0]");
