@@ -62,7 +62,7 @@ pub enum BasiliskError {
 ///
 /// # Source
 /// `InertiaTensorDispersion.generate` in `src/utilities/MonteCarlo/Dispersions.py` and `euler3212C` in
-/// `RigidBodyKinematics.py` of AVSLab/basilisk, as published in 2024. Here as a baseline.
+/// `RigidBodyKinematics.py` of AVSLab/basilisk. Here as a baseline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

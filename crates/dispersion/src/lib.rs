@@ -3,13 +3,17 @@
 //! * [`PrincipalDispersion`]: second mass moments from the square of any law of their roots, axes
 //!   from any law of attitudes (Peck 2003). Every draw is an [`Inertia`], a body that could be
 //!   built, whatever the variances.
-//! * [`EntrywiseGaussian`]: six independent Gaussians, the common practice; draws are
-//!   [`InertiaMatrix`]es, some of which no body has.
+//! * [`EntrywiseGaussian`], [`CorrelatedEntries`]: six Gaussian entries, the common practice; draws are
+//!   [`InertiaMatrix`]es, some of which no body has. [`RealizableOnly`] rejects those.
+//! * [`LogCholeskyGaussian`], [`Wishart`]: Gaussian in unconstrained coordinates, and maximum entropy;
+//!   every draw is an [`Inertia`].
+//! * [`BasiliskDispersion`]: what a well-known simulator does.
 //! * [`AnyBody`]: every shape, size and attitude, for property tests and domain randomisation.
 //!
-//! All are [`Distribution`](rand_distr::Distribution)s. For the first with Gaussian roots and a
-//! radially constrained Gaussian of the axes, [`EntryMoments`] are the mean and covariance of the
-//! six entries by quadrature, not by sampling.
+//! All are [`Distribution`](rand_distr::Distribution)s; [`DispersionModel`] is any of them, chosen at
+//! run time and matched to the moments of another. [`EntryMoments`] are the mean and covariance of the
+//! six entries by quadrature or in closed form, not by sampling.
+//! [`sample_columns`](PrincipalDispersion::sample_columns) draws in bulk.
 //!
 //! ```
 //! use gyradius_attitude::RadiallyConstrainedGaussian;

@@ -57,8 +57,7 @@ pub enum WishartError {
 /// 0 ≤ δ < √2. From √½ on, E‖G⁻¹‖² is infinite, which Soize rules out for matrices that are to be
 /// inverted: [`has_inverse_moments`](Self::has_inverse_moments). One number spreads everything:
 /// moments and axes cannot be told apart, and a body known to 10 % has axes as loose as its shape
-/// allows. Mass and mass centre, which Batou & Soize draw too, are not: neither is the bound that
-/// they put on Σ by a box around the body.
+/// allows. Mass and mass centre, which Batou & Soize draw too, are left alone.
 ///
 /// # Source
 /// C. Soize (2000), doi:10.1016/S0266-8920(99)00028-4; A. Batou & C. Soize (2012), Rigid multibody system
