@@ -81,8 +81,14 @@ where
 {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Inertia {
-        let draw: PrincipalDraw = self.sample(rng);
-        draw.inertia
+        // The same draws, without the parts being written down.
+        loop {
+            let moments = self.roots.sample(rng).squared();
+            let axes = self.axes.sample(rng);
+            if let Ok(inertia) = Inertia::from_second_moments(moments, &axes) {
+                return inertia;
+            }
+        }
     }
 }
 
