@@ -128,3 +128,58 @@ impl AttitudeMoments for JacobianTwice {
         EntryMoments::by_quadrature(k, HalfSphere::new(self.once(), weight).nodes())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix4, Quaternion, Vector4};
+
+    /// The whole sphere's quadrature with any weight.
+    struct Weighted<W>(AngularQuadrature, W);
+
+    impl<W: Fn(&UnitQuaternion<f64>) -> f64> Expectation for Weighted<W> {
+        fn expect<const N: usize>(
+            &self,
+            mut functions: impl FnMut(&UnitQuaternion<f64>) -> [f64; N],
+        ) -> [f64; N] {
+            let [total] = self.0.expect(|q| [(self.1)(q)]);
+            self.0.expect(|q| functions(q).map(|x| x * (self.1)(q))).map(|x| x / total)
+        }
+    }
+
+    /// On the paper's example nothing lies at the edge of the half, and the quadrature over the angles
+    /// of the whole sphere, the far half left out, is another way to the same moments.
+    #[test]
+    fn cubature_and_quadrature_agree() {
+        let mean =
+            UnitQuaternion::from_quaternion(Quaternion::new(0.9996, 0.0249, 0.0005, -0.0100));
+        let covariance = Matrix4::from_diagonal(&Vector4::new(2e-5, 6e-4, 6e-4, 0.6));
+        let law = RadiallyConstrainedGaussian::new(mean, covariance).unwrap();
+        let k =
+            SecondMomentStatistics::independent([1000.0, 2000.0, 3000.0], [500.0, 700.0, 900.0]);
+        let inside = |q: &UnitQuaternion<f64>| f64::from(u8::from(law.in_mean_half(q)));
+        let jacobian = |q: &UnitQuaternion<f64>| {
+            let planar = q.i * q.i + q.j * q.j;
+            ((planar + q.k * q.k) * planar).sqrt()
+        };
+
+        let half = MeanHalf::new(law.clone()).entry_moments(&k);
+        let twice = JacobianTwice::new(law.clone()).unwrap().entry_moments(&k);
+        let plain = Weighted(law.by_quadrature(), inside);
+        let weighted = Weighted(law.by_quadrature(), |q: &_| inside(q) * jacobian(q));
+        for (found, expected, allowed) in [
+            (half, EntryMoments::by_expectation(&k, &plain), 1e-7),
+            (twice, EntryMoments::by_expectation(&k, &weighted), 1e-5),
+        ] {
+            let size = expected.covariance().amax();
+            let error = (found.covariance() - expected.covariance()).amax() / size;
+            assert!(error < allowed, "{error:e}");
+            for e in 0..6 {
+                let error = (found.mean()[e] - expected.mean()[e]).abs() / 5000.0;
+                assert!(error < allowed, "{error:e}");
+            }
+        }
+        // The two laws are not the same.
+        assert!((half.covariance() - twice.covariance()).amax() > 0.1 * half.covariance().amax());
+    }
+}
