@@ -25,7 +25,68 @@ pub(crate) enum Command {
     /// the others, or a moment is negative. Also lists inertia on a mass of zero or less.
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
+    /// Fit the inertia uncertainty of a scenario to a table of samples
+    ///
+    /// Reads one inertia a row (CAD variants, a product line, past flights), matches the principal
+    /// axes, fits the model of Peck (2003): Gaussian roots of the second moments, radially
+    /// constrained Gaussian axes. Prints parameters with standard errors, says whether the model
+    /// fits, and writes the part of a scenario file that holds it.
+    #[command(after_help = FIT_EXAMPLES)]
+    Fit(FitArgs),
+    /// Make the inertia uncertainty of a scenario from plain statements
+    ///
+    /// Reads a nominal inertia and what is known of it, “moments ±10 % (1σ), products within ±50
+    /// kg·m² (3σ), axes within 2°, mass ±1 %, centre ±10 mm”, each of them optional. Prints the
+    /// deviations of all six entries that they come to beside those stated, warns where they
+    /// contradict each other or no body, and writes the part of a scenario file that holds the model
+    /// of Peck (2003).
+    #[command(after_help = MODEL_EXAMPLES)]
+    Model(ModelArgs),
 }
+
+const MODEL_EXAMPLES: &str = "\
+Examples:
+  gyradius model payload.toml
+      The report, as comments, and the fragment: all of it can be pasted into a scenario
+  gyradius model stage.toml --body stage -o fragment.toml
+      The report on the screen, report and fragment in a file
+
+The file:
+  [nominal]
+  inertia_kg_m2 = [[5000.0, 20.0, 2.0], [20.0, 4000.0, -50.0], [2.0, -50.0, 3000.0]]
+  mass_kg = 10000.0    # for mass in kg, and for centre
+  [moments]            # about body axes, whatever the cause
+  percent = 1.0        # or kg_m2; one number, or a list of three
+  sigmas = 1           # how many standard deviations ± stands for
+  [products]
+  kg_m2 = 50.0
+  sigmas = 3
+  [axes]               # turns about principal axes
+  deg = 2.0
+  sigmas = 3           # of = \"total\": the angle of the whole turn
+  [mass]
+  percent = 1.0        # or kg
+  sigmas = 3
+  [centre]
+  mm = 10.0
+  sigmas = 3           # arm_m = [0.0, 0.0, 1.5]: from where it was measured to the centre
+
+Exit code: 0, with warnings too; 2 if something could not be read or written.";
+
+const FIT_EXAMPLES: &str = "\
+Examples:
+  gyradius fit samples.csv
+      The report, as comments, and the fragment: all of it can be pasted into a scenario
+  gyradius fit samples.csv --body stage -o stage.toml
+      The report on the screen, report and fragment in a file
+  gyradius fit samples.json --format json > fit.json
+      Everything as one JSON object
+
+Files are read as by `gyradius check`: a CSV with a header ixx,iyy,izz,ixy,ixz,iyz (or i11…), or
+JSON or TOML; kg·m² unless the header says otherwise. At least 13 samples.
+
+Exit code: 0 if nothing speaks against the model, 1 if the samples do (the fragment is written
+all the same), 2 if something could not be read, fitted or written.";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:
@@ -117,11 +178,68 @@ pub(crate) struct CheckArgs {
     pub(crate) format: Form,
 }
 
+#[derive(Args, Debug)]
+pub(crate) struct FitArgs {
+    /// Table of samples, one inertia a row
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) fragment: FragmentArgs,
+
+    /// Set samples aside that no body has, and count them, instead of refusing the table
+    #[arg(long)]
+    pub(crate) skip_impossible: bool,
+
+    /// Products of inertia are positive integrals of xy, not matrix entries, in files that do not
+    /// say which
+    #[arg(long)]
+    pub(crate) flip_products: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct ModelArgs {
+    /// Nominal inertia and statements (TOML)
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) fragment: FragmentArgs,
+}
+
+/// Where a fragment of a scenario goes.
+#[derive(Args, Debug)]
+pub(crate) struct FragmentArgs {
+    /// Body of the scenario that the fragment is for
+    #[arg(long, value_enum, default_value_t = BodyArg::Payload)]
+    pub(crate) body: BodyArg,
+
+    /// File to write the fragment to [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Replace the file if it is there
+    #[arg(long, requires = "output")]
+    pub(crate) force: bool,
+
+    /// Form of the report
+    #[arg(long, value_enum, default_value_t = Form::Text)]
+    pub(crate) format: Form,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum BodyArg {
+    /// What is separated
+    Payload,
+    /// What it is separated from
+    Stage,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Form {
     /// A table to be read by people
     Text,
-    /// One JSON object, described in docs/check.md
+    /// One JSON object, described in the documentation of the command
     Json,
 }
 

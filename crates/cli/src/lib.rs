@@ -2,19 +2,23 @@
 
 mod args;
 mod check;
+mod fit;
+mod model;
+mod number;
+mod output;
 mod progress;
 
 use args::{Cli, Command, StudyArgs};
 use clap::Parser;
 use gyradius_study::{Options, Scenario, Study, StudyError};
-use std::{ffi::OsString, process::ExitCode};
+use std::{error::Error, ffi::OsString, process::ExitCode};
 
 /// What the program returns when it was asked for something that cannot be done.
 const REFUSED: u8 = 2;
 
 /// Runs the program with the given arguments, the first of which is its name.
 ///
-/// Returns 0, or 2 after a message on standard error; `check` also returns 1, for findings.
+/// Returns 0, or 2 after a message on standard error; `check` and `fit` also return 1, for findings.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
@@ -25,9 +29,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             return ExitCode::from(code);
         }
     };
-    let result = match &cli.command {
+    let result: Result<(), Box<dyn Error>> = match &cli.command {
         Command::Check(arguments) => return check::check(arguments),
-        Command::Study(arguments) => study(arguments),
+        Command::Fit(arguments) => return fit::fit(arguments),
+        Command::Model(arguments) => model::model(arguments),
+        Command::Study(arguments) => study(arguments).map_err(Into::into),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

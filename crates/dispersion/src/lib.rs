@@ -9,6 +9,8 @@
 //!   every draw is an [`Inertia`].
 //! * [`BasiliskDispersion`]: what a well-known simulator does.
 //! * [`AnyBody`]: every shape, size and attitude, for property tests and domain randomisation.
+//! * [`PrincipalFit`] and [`Statements`]: the first of these from samples of an inertia, or from what
+//!   engineers know before there are any.
 //!
 //! All are [`Distribution`](rand_distr::Distribution)s; [`DispersionModel`] is any of them, chosen at
 //! run time and matched to the moments of another. [`EntryMoments`] are the mean and covariance of the
@@ -49,6 +51,7 @@ mod batch;
 mod correlated_entries;
 mod entry_moments;
 mod entrywise;
+mod fit;
 mod known_moments;
 mod log_cholesky;
 mod matched;
@@ -59,6 +62,8 @@ mod root_moments;
 mod roots;
 mod second_moment_matrix;
 mod semidefinite;
+mod statements;
+mod turns;
 mod wishart;
 
 pub use any_body::{AnyBody, AnyBodyError};
@@ -68,6 +73,10 @@ pub use batch::{BatchAttitudes, BatchRoots, ColumnsError};
 pub use correlated_entries::CorrelatedEntries;
 pub use entry_moments::{EntryMoments, EntryMomentsError};
 pub use entrywise::{EntrywiseError, EntrywiseGaussian};
+pub use fit::{
+    Aspect, Assessment, AxesFinding, AxesFit, FitNote, FitTest, Matching, PrincipalFit,
+    PrincipalFitError, RootEstimate, RootFit,
+};
 pub use known_moments::KnownMoments;
 pub use log_cholesky::{LogCholeskyGaussian, LogCholeskyGaussianError};
 pub use matched::{MatchError, Matched};
@@ -84,6 +93,10 @@ pub use roots::{
     UniformRootsError,
 };
 pub use semidefinite::CovarianceError;
+pub use statements::{
+    Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, Part,
+    ProductsStatement, StatedModel, StatementError, StatementWarning, Statements,
+};
 pub use wishart::{Wishart, WishartError};
 
 #[cfg(doctest)]

@@ -18,6 +18,7 @@ mod claims;
 mod figures;
 mod folder;
 mod format;
+mod fragment;
 mod model;
 mod plates;
 mod report;
@@ -30,6 +31,7 @@ mod summary;
 mod table;
 mod text;
 
+pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use row::{Axis, Entry, Quantity, Row};
 pub use runner::Progress;
 pub use scenario::{Scenario, ScenarioError};

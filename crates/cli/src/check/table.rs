@@ -2,28 +2,10 @@ use gyradius_formats::{Fault, Judgement, Note, RELATIVE_TOLERANCE, Realizability
 use std::io::{self, Write};
 
 use super::{Finding, Report, Status, harmless, place};
-use crate::args::CheckArgs;
+use crate::{args::CheckArgs, number::short};
 
 /// Widest name, and widest reason, that are not shortened or moved.
 const NAME: usize = 24;
-
-/// A number as an engineer writes it: four digits, and no more zeros than it needs.
-fn short(x: f64) -> String {
-    let size = x.abs();
-    if size != 0.0 && !(1e-4..1e6).contains(&size) {
-        let text = format!("{x:.3e}");
-        let Some((digits, exponent)) = text.split_once('e') else { return text };
-        let digits = digits.trim_end_matches('0').trim_end_matches('.');
-        return format!("{digits}e{exponent}");
-    }
-    let decimals = if size == 0.0 { 0 } else { (3.0 - size.log10().floor()).max(0.0) as usize };
-    let text = format!("{x:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
-}
 
 fn shortfall(finding: &Finding) -> String {
     let Some(report) = finding.report() else { return "unread".to_owned() };
@@ -180,23 +162,6 @@ fn summary(out: &mut impl Write, report: &Report, arguments: &CheckArgs) -> io::
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_are_short() {
-        for (x, text) in [
-            (0.0, "0"),
-            (1.0, "1"),
-            (0.012345, "0.01235"),
-            (1234.56, "1235"),
-            (300.0, "300"),
-            (1e-7, "1e-7"),
-            (1.25e9, "1.25e9"),
-            (-0.5, "-0.5"),
-            (123456.0, "123456"),
-        ] {
-            assert_eq!(short(x), text);
-        }
-    }
 
     #[test]
     fn control_characters_do_not_reach_the_terminal() {

@@ -1,0 +1,58 @@
+//! `gyradius fit`: which samples, what is said of the fit, and the exit code.
+
+mod json;
+mod report;
+mod table;
+
+use gyradius_dispersion::{EntryMoments, PrincipalFit};
+use gyradius_formats::Products;
+use gyradius_study::Fragment;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use std::{error::Error, process::ExitCode};
+
+use crate::{
+    REFUSED,
+    args::FitArgs,
+    output::{self, complain},
+    progress,
+};
+
+pub(crate) use json::FragmentJson;
+pub(crate) use report::wrapped;
+
+/// What the program returns when samples speak against the model.
+const DOUBTED: u8 = 1;
+/// Seed of the simulations behind the verdict: the same table has the same verdict.
+const SEED: u64 = 2003;
+
+/// Runs the verb.
+pub(crate) fn fit(arguments: &FitArgs) -> ExitCode {
+    match run(arguments) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(DOUBTED),
+        Err(error) => {
+            complain(error);
+            ExitCode::from(REFUSED)
+        }
+    }
+}
+
+/// Whether nothing speaks against the model.
+fn run(arguments: &FitArgs) -> Result<bool, Box<dyn Error>> {
+    let products =
+        if arguments.flip_products { Products::Integrals } else { Products::TensorEntries };
+    let table = table::read(&arguments.file, products, arguments.skip_impossible)?;
+    let file = arguments.file.display();
+    let fit = PrincipalFit::new(&table.samples).map_err(|error| format!("{file}: {error}"))?;
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let assessment = progress::show(fit.simulations(), "simulated tables", |report| {
+        fit.assess_with(&mut rng, report)
+    });
+    let fragment = Fragment::new(arguments.fragment.body.into(), fit.nominal(), fit.law())
+        .map_err(|error| format!("{file}: {error}"))?;
+    let moments = EntryMoments::of(fit.law());
+    let report = report::text(arguments, &table, &fit, &moments, &assessment);
+    let json = || json::text(arguments, &table, &fit, &moments, &assessment, &fragment);
+    output::write(&arguments.fragment, &arguments.file, &report, &json, &fragment)?;
+    Ok(assessment.fits())
+}

@@ -1,0 +1,175 @@
+//! `gyradius model`: a nominal inertia and plain statements, and what they come to.
+
+use gyradius_dispersion::{
+    AxesStatement, CentreStatement, MassStatement, MomentsStatement, ProductsStatement,
+    StatedModel, Statements,
+};
+use gyradius_inertia::Inertia;
+use gyradius_study::{Fragment, FragmentBody};
+use serde::{Deserialize, Serialize};
+use std::{error::Error, fmt::Write, fs::File, io::Read, path::Path};
+
+use crate::{
+    args::ModelArgs,
+    fit::{FragmentJson, wrapped},
+    number::short,
+    output,
+};
+
+const ENTRIES: [&str; 6] = ["I11", "I22", "I33", "I12", "I13", "I23"];
+/// Bytes of the largest file that is read: such files have a few lines.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// The file. Its parts check themselves.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stated {
+    nominal: Nominal,
+    moments: Option<MomentsStatement>,
+    products: Option<ProductsStatement>,
+    axes: Option<AxesStatement>,
+    mass: Option<MassStatement>,
+    centre: Option<CentreStatement>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Nominal {
+    inertia_kg_m2: [[f64; 3]; 3],
+    mass_kg: Option<f64>,
+}
+
+/// Grows when a field changes its meaning or goes; new fields may come without it.
+const SCHEMA: u32 = 1;
+
+/// Entries in the order 11, 22, 33, 12, 13, 23.
+#[derive(Serialize)]
+struct Document {
+    schema: u32,
+    version: &'static str,
+    nominal_kg_m2: [f64; 6],
+    stated_deviation_kg_m2: [Option<f64>; 6],
+    implied_deviation_kg_m2: [f64; 6],
+    implied_mean_kg_m2: [f64; 6],
+    implied_covariance_kg2_m4: [[f64; 6]; 6],
+    /// About the principal axes; null where any turn is.
+    turn_deviation_rad: [Option<f64>; 3],
+    warnings: Vec<String>,
+    fragment: FragmentJson,
+}
+
+/// Runs the verb.
+pub(crate) fn model(arguments: &ModelArgs) -> Result<(), Box<dyn Error>> {
+    let file = arguments.file.display();
+    let stated: Stated = toml::from_str(&read(&arguments.file)?)
+        .map_err(|error| format!("{file}: {}", error.to_string().trim_end()))?;
+    let nominal = Inertia::try_from(stated.nominal.inertia_kg_m2)
+        .map_err(|error| format!("{file}: nominal.inertia_kg_m2: {error}"))?;
+    let Stated { moments, products, axes, mass, centre, .. } = stated;
+    let statements = Statements { moments, products, axes, mass, centre };
+    let model = statements
+        .model(&nominal, stated.nominal.mass_kg)
+        .map_err(|error| format!("{file}: {error}"))?;
+    let body = FragmentBody::from(arguments.fragment.body);
+    let fragment =
+        Fragment::new(body, &nominal, model.law()).map_err(|error| format!("{file}: {error}"))?;
+    let json = || json(&model, body, &fragment);
+    output::write(
+        &arguments.fragment,
+        &arguments.file,
+        &report(arguments, &model),
+        &json,
+        &fragment,
+    )?;
+    Ok(())
+}
+
+fn read(path: &Path) -> Result<String, String> {
+    let fail = |error: &dyn std::fmt::Display| format!("cannot read {}: {error}", path.display());
+    // Asked before opening, which would wait for the other end of a pipe.
+    if !path.metadata().map_err(|e| fail(&e))?.is_file() {
+        return Err(fail(&"it is not a regular file"));
+    }
+    let mut text = String::new();
+    File::open(path)
+        .and_then(|file| file.take(MAX_BYTES + 1).read_to_string(&mut text))
+        .map_err(|e| fail(&e))?;
+    if text.len() as u64 > MAX_BYTES {
+        return Err(fail(&"it is larger than 1 MiB"));
+    }
+    Ok(text)
+}
+
+fn report(arguments: &ModelArgs, model: &StatedModel) -> String {
+    let mut out = String::new();
+    let file = arguments.file.file_name().unwrap_or_default().to_string_lossy();
+    // Writing to a string does not fail.
+    let _ = write_report(&mut out, &file, model);
+    out
+}
+
+fn write_report(out: &mut String, file: &str, model: &StatedModel) -> std::fmt::Result {
+    writeln!(out, "Made by gyradius {} of the statements in {file}\n", env!("CARGO_PKG_VERSION"))?;
+    writeln!(out, "kg·m²          nominal    deviation: stated    implied    correlations")?;
+    let nominal = model.nominal().entries();
+    let deviations = model.implied().deviations();
+    let covariance = model.implied().covariance();
+    for (e, name) in ENTRIES.iter().enumerate() {
+        let stated = model.stated()[e].map_or_else(|| "-".to_owned(), short);
+        let [nominal, implied] = [nominal[e], deviations[e]].map(short);
+        write!(out, "  {name}{nominal:>17}{stated:>21}{implied:>11}   ")?;
+        for f in 0..e {
+            let scale = deviations[e] * deviations[f];
+            let r = if scale > 0.0 { covariance[(e, f)] / scale } else { 0.0 };
+            // No sign before what rounds to zero.
+            let r = if r.abs() < 0.005 { 0.0 } else { r };
+            write!(out, " {r:>5.2}")?;
+        }
+        writeln!(out)?;
+    }
+    write!(out, "\nturns about principal axes 1, 2, 3 (1σ):")?;
+    for (i, turn) in model.turns().iter().enumerate() {
+        out.push_str(if i == 0 { " " } else { ", " });
+        if turn.is_finite() {
+            write!(out, "{}°", short(turn.to_degrees()))?
+        } else {
+            out.push_str("any")
+        }
+    }
+    let (roots, scatter) = (model.law().roots().mean().values(), model.law().roots().deviations());
+    write!(out, "\nroots of the second moments, √kg·m:")?;
+    for k in 0..3 {
+        let comma = if k == 0 { "" } else { "," };
+        write!(out, "{comma} {} ± {}", short(roots[k]), short(scatter[k]))?;
+    }
+    out.push('\n');
+    for warning in model.warnings() {
+        for line in wrapped(&format!("warning: {warning}")) {
+            writeln!(out, "{line}")?;
+        }
+    }
+    Ok(())
+}
+
+fn json(
+    model: &StatedModel,
+    body: FragmentBody,
+    fragment: &Fragment,
+) -> serde_json::Result<String> {
+    let implied = model.implied();
+    let covariance = implied.covariance();
+    serde_json::to_string_pretty(&Document {
+        schema: SCHEMA,
+        version: env!("CARGO_PKG_VERSION"),
+        nominal_kg_m2: model.nominal().entries(),
+        stated_deviation_kg_m2: model.stated(),
+        implied_deviation_kg_m2: implied.deviations(),
+        implied_mean_kg_m2: implied.mean(),
+        implied_covariance_kg2_m4: std::array::from_fn(|i| {
+            std::array::from_fn(|j| covariance[(i, j)])
+        }),
+        turn_deviation_rad: model.turns().map(|t| t.is_finite().then_some(t)),
+        warnings: model.warnings().iter().map(ToString::to_string).collect(),
+        fragment: FragmentJson::of(&body.to_string(), fragment),
+    })
+}

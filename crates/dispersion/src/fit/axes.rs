@@ -1,0 +1,407 @@
+use gyradius_attitude::{Family, FitError, RadialVariance, RadiallyConstrainedGaussian};
+use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
+
+use super::{
+    matching::{mean_attitude, vector_part},
+    relabel::Sample,
+    root::RootFit,
+    tail,
+};
+use crate::turns::{FIXED, law_of_turns};
+
+/// Uniform angles are taken for not uniform this often.
+const SIZE: f64 = 0.01;
+/// Moments this many deviations apart are never taken for each other.
+const APART: f64 = 3.0;
+/// Below this radial variance there is no second lobe, and narrow laws are all the same.
+const CONCENTRATED: f64 = 0.01;
+/// Turns narrower than this, rad², say nothing of the radial variance unless there are two groups.
+const NARROW: f64 = 0.1;
+
+/// What the samples say of the principal axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum AxesFinding {
+    /// All three angles have a mean and a scatter.
+    Determined,
+    /// The axes of all samples are the same, or turn about fewer than three directions.
+    Still,
+    /// One principal axis has a direction, the other two point anywhere about it: as for two equal
+    /// moments.
+    FreeTurn {
+        /// The axis that has a direction, from 1.
+        axis: usize,
+    },
+    /// The axes point anywhere: as for three equal moments.
+    Free,
+}
+
+/// The law of the principal axes, fitted to attitudes of matched axes.
+#[derive(Clone, Debug)]
+pub struct AxesFit {
+    law: RadiallyConstrainedGaussian,
+    finding: AxesFinding,
+    turn_covariance: Matrix3<f64>,
+    turn_errors: Option<Matrix3<f64>>,
+    mean_covariance: Option<Matrix3<f64>>,
+    radial: Option<RadialVariance>,
+    converged: bool,
+    isotropy: Option<f64>,
+}
+
+impl AxesFit {
+    pub(super) fn of(samples: &[Sample], roots: &[RootFit; 3]) -> Result<Self, FitError> {
+        let mean = mean_attitude(samples.iter().map(|s| &s.attitude));
+        match undetermined(samples, roots, &mean) {
+            AxesFinding::Free => Ok(Self::plain(mean, [f64::INFINITY; 3], AxesFinding::Free)),
+            AxesFinding::FreeTurn { axis } => Ok(Self::about(samples, &mean, axis - 1)),
+            _ => Self::determined(samples, mean),
+        }
+    }
+
+    /// The same law where the nominal body has the axes `mean`, which differ from those of the fit by
+    /// a turn that the law does not see.
+    pub(super) fn at(self, mean: UnitQuaternion<f64>) -> Self {
+        let local = self.principal_turns();
+        match self.finding {
+            AxesFinding::Free | AxesFinding::FreeTurn { .. } => {
+                let turns = Self::plain(mean, local, self.finding);
+                Self { law: turns.law, turn_covariance: turns.turn_covariance, ..self }
+            }
+            _ => self,
+        }
+    }
+
+    fn plain(mean: UnitQuaternion<f64>, local: [f64; 3], finding: AxesFinding) -> Self {
+        let r = *mean.to_rotation_matrix().matrix();
+        // Infinite variances have no matrix: the finding tells them.
+        let finite = local.map(|v| if v.is_finite() { v } else { 0.0 });
+        let turns = Matrix3::from_diagonal(&Vector3::from(finite));
+        // Turning back leaves rounding where there was nothing.
+        let rounding = f64::EPSILON * turns.amax();
+        let turned = r.tr_mul(&(turns * r));
+        let turn_covariance = turned.map(|x| if x.abs() > 8.0 * rounding { x } else { 0.0 });
+        // Refused only for means that are no attitudes.
+        let law = law_of_turns(mean, local)
+            .or_else(|_| law_of_turns(UnitQuaternion::identity(), local))
+            .unwrap_or_else(|_| unreachable!("variances are clamped"));
+        Self {
+            law,
+            finding,
+            turn_covariance,
+            turn_errors: None,
+            mean_covariance: None,
+            radial: None,
+            converged: true,
+            isotropy: None,
+        }
+    }
+
+    /// Turns about principal axes, rad²; infinite where free.
+    fn principal_turns(&self) -> [f64; 3] {
+        let r = *self.law.mean().to_rotation_matrix().matrix();
+        let local = r * self.turn_covariance * r.transpose();
+        std::array::from_fn(|k| match self.finding {
+            AxesFinding::Free => f64::INFINITY,
+            AxesFinding::FreeTurn { axis } if axis == k + 1 => f64::INFINITY,
+            _ => local[(k, k)],
+        })
+    }
+
+    /// One axis has a direction. With its tilt t = (t_a, t_b), half turns, and the free angle taken
+    /// out, |t|² has the density ∝ exp(−|t|²/(2σ²)) on [0, 1].
+    fn about(samples: &[Sample], mean: &UnitQuaternion<f64>, axis: usize) -> Self {
+        let n = samples.len() as f64;
+        // The mean direction of the axis in the body, sign and all the rest aside.
+        let direction = |q: &UnitQuaternion<f64>| q.inverse() * Vector3::ith(axis, 1.0);
+        let sum: Matrix3<f64> =
+            samples.iter().map(|s| direction(&s.attitude)).map(|a| a * a.transpose()).sum();
+        let eigen = sum.symmetric_eigen();
+        let mut mean_axis: Vector3<f64> =
+            eigen.eigenvectors.column(eigen.eigenvalues.imax()).into();
+        let old = direction(mean);
+        if mean_axis.dot(&old) < 0.0 {
+            mean_axis = -mean_axis;
+        }
+        let mean = match UnitQuaternion::rotation_between(&old, &mean_axis) {
+            Some(turn) => mean * turn.inverse(),
+            None => *mean,
+        };
+        // |t|² = sin² of half the tilt.
+        let share = samples.iter().map(|s| {
+            let c = direction(&s.attitude).dot(&mean_axis);
+            0.5 * (1.0 - c.abs()).max(0.0)
+        });
+        let share = share.sum::<f64>() / n;
+        let variance = tilt_variance(share);
+        let mut local = [4.0 * variance; 3];
+        local[axis] = f64::INFINITY;
+        let mut fit = Self::plain(mean, local, AxesFinding::FreeTurn { axis: axis + 1 });
+        let r = *mean.to_rotation_matrix().matrix();
+        let across = Matrix3::identity() - mean_axis * mean_axis.transpose();
+        fit.mean_covariance = Some(across * (4.0 * variance / n));
+        // |t|² is exponential, to first order.
+        fit.turn_errors = Some(across.map(f64::abs) * (4.0 * variance / n.sqrt()));
+        // The tilts in the body, along the other two axes of the mean.
+        let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
+        for s in samples {
+            let a = direction(&s.attitude);
+            let a = a * 1.0_f64.copysign(a.dot(&mean_axis));
+            let p = r * a;
+            let (x, y) = (p[(axis + 1) % 3], p[(axis + 2) % 3]);
+            aa += x * x;
+            ab += x * y;
+            bb += y * y;
+        }
+        let round = 4.0 * (aa * bb - ab * ab) / ((aa + bb) * (aa + bb));
+        if round.is_finite() && variance > FIXED * FIXED {
+            fit.isotropy = Some(tail::chi_squared(-n * libm::log(round.clamp(1e-300, 1.0)), 2));
+        }
+        fit
+    }
+
+    fn determined(samples: &[Sample], mean: UnitQuaternion<f64>) -> Result<Self, FitError> {
+        let attitudes: Vec<_> = samples.iter().map(|s| s.attitude).collect();
+        let mut fit = match RadiallyConstrainedGaussian::fit(&attitudes) {
+            Err(FitError::Degenerate { .. }) => return Ok(Self::still(samples, mean)),
+            other => other?,
+        };
+        let radial = fit.radial();
+        if let RadialVariance::Undetermined { low } = radial {
+            // Any value fits: a small one keeps the covariance readable, and has no second lobe.
+            let radial_variance = (10.0 * low).clamp(CONCENTRATED, 1e4);
+            let family = Family::AlignedWith { radial_variance };
+            fit = RadiallyConstrainedGaussian::fit_family(&attitudes, family)?;
+        }
+        // q and −q are one attitude: the mean on the side of the samples' mean.
+        Ok(Self {
+            law: fit.law().clone(),
+            finding: AxesFinding::Determined,
+            turn_covariance: fit.turn_covariance(),
+            turn_errors: fit.turn_covariance_errors(),
+            mean_covariance: fit.mean_covariance(),
+            radial: Some(radial),
+            converged: fit.convergence().converged,
+            isotropy: None,
+        })
+    }
+
+    /// Attitudes on a sphere of lower dimension: independent turns about the principal axes, as far
+    /// as there are any.
+    fn still(samples: &[Sample], mean: UnitQuaternion<f64>) -> Self {
+        let n = samples.len() as f64;
+        let mut local = [0.0; 3];
+        for s in samples {
+            let t = vector_part(&mean, &s.attitude);
+            for k in 0..3 {
+                local[k] += 4.0 * t[k] * t[k] / n;
+            }
+        }
+        Self::plain(
+            mean,
+            local.map(|v| if v > FIXED * FIXED { v } else { 0.0 }),
+            AxesFinding::Still,
+        )
+    }
+
+    /// The law of the axes, q and −q alike.
+    #[must_use]
+    pub fn law(&self) -> &RadiallyConstrainedGaussian {
+        &self.law
+    }
+
+    /// What the samples say of the axes.
+    #[must_use]
+    pub fn finding(&self) -> AxesFinding {
+        self.finding
+    }
+
+    /// Covariance of small turns about the mean, in rad², in body axes; without the free turns.
+    #[must_use]
+    pub fn turn_covariance(&self) -> Matrix3<f64> {
+        self.turn_covariance
+    }
+
+    /// Standard errors of the entries of [`turn_covariance`](Self::turn_covariance), rad².
+    #[must_use]
+    pub fn turn_errors(&self) -> Option<Matrix3<f64>> {
+        self.turn_errors
+    }
+
+    /// Covariance of the error of the mean attitude, as a rotation vector in body axes, rad²; without
+    /// the free turns.
+    #[must_use]
+    pub fn mean_covariance(&self) -> Option<Matrix3<f64>> {
+        self.mean_covariance
+    }
+
+    /// What the samples say of the radial variance, where the axes are determined. Where it is not
+    /// determined the law has a small one, with the same attitudes and no second lobe.
+    #[must_use]
+    pub fn radial(&self) -> Option<RadialVariance> {
+        self.radial
+    }
+
+    /// Whether the search for the maximum of the likelihood has reached it.
+    #[must_use]
+    pub fn converged(&self) -> bool {
+        self.converged
+    }
+
+    /// The share of the law beyond a right angle of the mean quaternion, where the attitudes determine
+    /// the radial variance: narrow axes that fall into two groups or have outliers are held by a
+    /// second lobe, about the inverse of the mean.
+    #[must_use]
+    pub fn second_lobe(&self) -> Option<f64> {
+        let determined = matches!(self.radial, Some(RadialVariance::Determined { .. }));
+        (determined && self.turn_covariance.trace() < NARROW).then(|| self.law.far_half_share())
+    }
+
+    /// p-value of equal tilt in all directions, which is all that the law can hold where one turn
+    /// is free.
+    pub(super) fn isotropy(&self) -> Option<f64> {
+        self.isotropy
+    }
+}
+
+/// θ/2 with θ − 1/(e^{1/θ} − 1) = `share`, the mean of an exponential law cut off at one.
+fn tilt_variance(share: f64) -> f64 {
+    let mean = |theta: f64| theta - 1.0 / libm::expm1(1.0 / theta);
+    if !(share < 0.499) {
+        return f64::INFINITY;
+    }
+    if share < 0.01 {
+        return 0.5 * share;
+    }
+    let (mut low, mut high) = (share, 1e3);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if mean(middle) < share { low = middle } else { high = middle }
+    }
+    0.5 * low
+}
+
+/// Whether the samples leave angles of the axes undetermined: by tests of uniformity that do not
+/// depend on how axes of equal moments are named, at 1 %.
+fn undetermined(
+    samples: &[Sample],
+    roots: &[RootFit; 3],
+    mean: &UnitQuaternion<f64>,
+) -> AxesFinding {
+    let n = samples.len() as f64;
+    // Axis k is the odd one of the pair that remains.
+    let apart: [bool; 3] = std::array::from_fn(|k| {
+        let (a, b) = (roots[(k + 1) % 3], roots[(k + 2) % 3]);
+        (a.mean() - b.mean()).abs() > APART * a.deviation().hypot(b.deviation())
+    });
+    if uniform_p_value(samples, apart) > SIZE {
+        return AxesFinding::Free;
+    }
+    let mut free = None;
+    for (axis, apart) in apart.into_iter().enumerate() {
+        // Named by moment, an axis is known but for its sign; else up to quarter turns.
+        let fold = if apart { 2.0 } else { 4.0 };
+        let (mut c, mut s) = (0.0, 0.0);
+        for sample in samples {
+            let p = sample.attitude * mean.inverse();
+            let angle = 2.0 * libm::atan2(p.imag()[axis], p.w);
+            let (sin, cos) = libm::sincos(fold * angle);
+            c += cos / n;
+            s += sin / n;
+        }
+        let p = tail::rayleigh(libm::hypot(c, s), n);
+        if p > SIZE {
+            // The one whose own direction scatters least.
+            let tilt: f64 = samples
+                .iter()
+                .map(|s| {
+                    let a = s.attitude.inverse() * Vector3::ith(axis, 1.0);
+                    1.0 - a.dot(&(mean.inverse() * Vector3::ith(axis, 1.0))).abs()
+                })
+                .sum();
+            if free.is_none_or(|(least, _)| tilt < least) {
+                free = Some((tilt, axis));
+            }
+        }
+    }
+    free.map_or(AxesFinding::Determined, |(_, axis)| AxesFinding::FreeTurn { axis: axis + 1 })
+}
+
+/// p-value of uniform axes, from tensors that change with no naming of the axes that could be
+/// confused: Σ a_k aₖᵀ of each axis that is known by its moment, Σ_k a_k⊗a_k⊗a_k⊗a_k if none is.
+fn uniform_p_value(samples: &[Sample], apart: [bool; 3]) -> f64 {
+    let n = samples.len() as f64;
+    let axes = |s: &Sample| *s.attitude.to_rotation_matrix().matrix();
+    let known = apart.iter().filter(|a| **a).count();
+    if known == 0 {
+        // Harmonics of degree four: 9 components, of variance 2/15 each.
+        let mut sum = SMatrix::<f64, 9, 9>::zeros();
+        for s in samples {
+            let r = axes(s);
+            for k in 0..3 {
+                let a: Vector3<f64> = r.row(k).transpose();
+                let square = SMatrix::<f64, 9, 1>::from_fn(|i, _| a[i / 3] * a[i % 3]);
+                sum += square * square.transpose() / n;
+            }
+        }
+        return tail::chi_squared(n * (sum.norm_squared() - 9.0 / 5.0) * 7.5, 9);
+    }
+    let mut tensors = [-Matrix3::identity() / 3.0; 3];
+    for s in samples {
+        let r = axes(s);
+        for (k, tensor) in tensors.iter_mut().enumerate() {
+            let a: Vector3<f64> = r.row(k).transpose();
+            *tensor += a * a.transpose() / n;
+        }
+    }
+    if known == 3 {
+        let [q1, q2, q3] = tensors;
+        let statistic = (q1 - q2).norm_squared() * 2.5 + q3.norm_squared() * 7.5;
+        return tail::chi_squared(n * statistic, 10);
+    }
+    // One pair cannot be told apart: the third axis can. With two such pairs, none can.
+    let pairs: Vec<usize> = (0..3).filter(|k| !apart[*k]).collect();
+    match pairs[..] {
+        [axis] => tail::chi_squared(n * tensors[axis].norm_squared() * 7.5, 5),
+        _ => uniform_p_value(samples, [false; 3]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gyradius_attitude::UniformAttitude;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    use rand_distr::Distribution;
+
+    /// The test of uniform axes rejects uniform axes as often as it says.
+    #[test]
+    fn uniformity_has_its_size() {
+        let mut rng = ChaCha8Rng::seed_from_u64(2);
+        let mut rejected = [0; 3];
+        const REPEATS: usize = 2000;
+        for _ in 0..REPEATS {
+            let samples: Vec<Sample> = (0..100)
+                .map(|_| Sample { roots: [1.0; 3], attitude: UniformAttitude.sample(&mut rng) })
+                .collect();
+            let cases = [[false; 3], [true; 3], [true, true, false]];
+            for (count, apart) in rejected.iter_mut().zip(cases) {
+                *count += usize::from(uniform_p_value(&samples, apart) < 0.05);
+            }
+        }
+        for count in rejected {
+            // 5 % ± 4 deviations, and a little for n = 100.
+            assert!((60..=145).contains(&count), "{rejected:?}");
+        }
+    }
+
+    #[test]
+    fn tilts_of_a_cut_exponential_come_back() {
+        for variance in [1e-6, 0.004, 0.02, 0.3] {
+            let theta: f64 = 2.0 * variance;
+            let share = theta - 1.0 / (1.0 / theta).exp_m1();
+            assert!((tilt_variance(share) / variance - 1.0).abs() < 1e-6, "{variance}");
+        }
+        assert_eq!(tilt_variance(0.5), f64::INFINITY);
+    }
+}

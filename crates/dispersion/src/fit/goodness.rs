@@ -1,0 +1,394 @@
+use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+use std::fmt;
+
+use super::{
+    AxesFinding, PrincipalFit, matching::mean_attitude, relabel::Sample, root::RootEstimate,
+    root::RootFit, tail,
+};
+
+/// The verdict falls when a model that is right would look worse this often.
+const SIZE: f64 = 0.05;
+/// Simulated samples at most, and as few as suffice to see this many that look worse.
+const SIMULATED: usize = 999;
+const SIMULATED_IF_MANY: usize = 399;
+const MANY: usize = 2000;
+const WORSE: usize = 20;
+/// From this many deviations on, a folded law is a Gaussian to any test.
+const UNFOLDED: f64 = 4.0;
+/// Turns that scatter less than this, rad, are not tested: laws of fixed axes scatter by as much.
+const STILL: f64 = 2e-5;
+
+/// What of the model a test looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Aspect {
+    /// The distribution of one root.
+    Root {
+        /// Axis, from 1.
+        axis: usize,
+    },
+    /// That the roots are independent of each other.
+    Roots,
+    /// The distribution of the axes.
+    Axes,
+    /// Where one turn of the axes is free: that the axis that stays tilts alike in all directions.
+    Tilt,
+    /// That roots and axes are independent.
+    RootsAndAxes,
+}
+
+impl fmt::Display for Aspect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Root { axis } => write!(f, "k{axis} is Gaussian"),
+            Self::Roots => f.write_str("roots are independent of each other"),
+            Self::Axes => f.write_str("axes scatter as the law says"),
+            Self::Tilt => f.write_str("the axis tilts alike in all directions"),
+            Self::RootsAndAxes => f.write_str("roots and axes are independent"),
+        }
+    }
+}
+
+/// One test of the model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FitTest {
+    aspect: Aspect,
+    p_value: f64,
+    least: f64,
+}
+
+impl FitTest {
+    /// What it looks at.
+    #[must_use]
+    pub fn aspect(&self) -> Aspect {
+        self.aspect
+    }
+
+    /// How often samples of the model itself would look worse.
+    #[must_use]
+    pub fn p_value(&self) -> f64 {
+        self.p_value
+    }
+
+    /// The smallest p-value that the test can give, zero if it is not by simulation.
+    #[must_use]
+    pub fn resolution(&self) -> f64 {
+        self.least
+    }
+}
+
+/// Whether the samples look like draws of the fitted model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assessment {
+    tests: Vec<FitTest>,
+}
+
+impl Assessment {
+    /// The tests, each at its own level.
+    #[must_use]
+    pub fn tests(&self) -> &[FitTest] {
+        &self.tests
+    }
+
+    /// How often samples of the model itself would fare worse in any of the tests: Šidák's
+    /// 1 − (1 − min p)ᵐ for m tests, which are independent of each other for many samples.
+    #[must_use]
+    pub fn p_value(&self) -> f64 {
+        if self.tests.is_empty() {
+            return 1.0;
+        }
+        let least = self.tests.iter().map(|t| t.p_value).fold(1.0, f64::min);
+        -libm::expm1(self.tests.len() as f64 * libm::log1p(-least))
+    }
+
+    /// Whether nothing speaks against the model at 5 %.
+    #[must_use]
+    pub fn fits(&self) -> bool {
+        self.p_value() >= SIZE
+    }
+
+    /// What speaks against the model: the tests that fail at 5 % though there are several (Šidák).
+    pub fn objections(&self) -> impl Iterator<Item = &FitTest> {
+        let each = -libm::expm1(libm::log1p(-SIZE) / self.tests.len().max(1) as f64);
+        self.tests.iter().filter(move |t| t.p_value < each)
+    }
+}
+
+impl fmt::Display for Assessment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.tests.is_empty() {
+            return f.write_str("nothing scatters, so there is nothing to test");
+        }
+        if self.fits() {
+            return write!(
+                f,
+                "nothing speaks against the model (p = {:.2}: so often would samples of the model \
+                 itself look worse)",
+                self.p_value()
+            );
+        }
+        f.write_str("the model does not fit:")?;
+        for (i, test) in self.objections().enumerate() {
+            f.write_str(if i == 0 { " " } else { "; " })?;
+            match test.aspect {
+                Aspect::Root { axis } => write!(f, "k{axis} is not Gaussian")?,
+                Aspect::Roots => f.write_str("the roots depend on each other")?,
+                Aspect::Axes => f.write_str(
+                    "the axes do not scatter as the law says (several groups, or outliers)",
+                )?,
+                Aspect::Tilt => f.write_str("the axis tilts more one way than another")?,
+                Aspect::RootsAndAxes => f.write_str("the axes depend on the roots")?,
+            }
+            let below = if test.p_value <= test.least { "≤" } else { "=" };
+            let p = test.p_value;
+            if p == 0.0 || (p < 1e-99 && test.least == 0.0) {
+                write!(f, " (p < 1e-99)")?;
+            } else if p < 1e-3 {
+                write!(f, " (p {below} {p:.0e})")?;
+            } else {
+                write!(f, " (p {below} {p:.3})")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl PrincipalFit {
+    /// Tests whether the samples look like draws of the model.
+    ///
+    /// # Algorithm
+    /// * Each root: Anderson and Darling's A² with both parameters estimated (D'Agostino &
+    ///   Stephens 1986); where the mean is within four deviations of zero, against the folded
+    ///   normal law by parametric bootstrap, refitted each time.
+    /// * The roots among themselves, and the roots against the turns: Bartlett's likelihood ratio
+    ///   of correlations, χ².
+    /// * The turns from their mean: Mardia's (1970, doi:10.1093/biomet/57.3.519) skewness and
+    ///   kurtosis in one number, by parametric bootstrap from the fitted law, with the naming of axes
+    ///   by likelihood included, so that no normal approximation enters. Bootstraps stop as soon as
+    ///   20 simulations look worse (Besag & Clifford 1991, doi:10.1093/biomet/78.2.301).
+    /// * What does not scatter is not tested, nor are turns that are free.
+    ///
+    /// # Limits
+    /// Tests see what they look at: dependence that leaves no correlation passes.
+    pub fn assess<R: Rng + ?Sized>(&self, rng: &mut R) -> Assessment {
+        self.assess_with(rng, &|_| {})
+    }
+
+    /// The same, and reports how many samples it has simulated, of
+    /// [`simulations`](Self::simulations) at most.
+    pub fn assess_with<R: Rng + ?Sized>(&self, rng: &mut R, progress: &dyn Fn(u64)) -> Assessment {
+        let mut done = 0;
+        let mut tick = || {
+            done += 1;
+            progress(done);
+        };
+        let mut tests = Vec::new();
+        let n = self.samples.len();
+        let scatters: Vec<usize> =
+            (0..3).filter(|k| self.roots[*k].law() != RootEstimate::Constant).collect();
+        for &k in &scatters {
+            let values: Vec<f64> = self.samples.iter().map(|s| s.roots[k]).collect();
+            let (p_value, least) = root_p_value(&self.roots[k], values, rng, &mut tick);
+            tests.push(FitTest { aspect: Aspect::Root { axis: k + 1 }, p_value, least });
+        }
+        let roots: Vec<Vec<f64>> =
+            scatters.iter().map(|&k| self.samples.iter().map(|s| s.roots[k]).collect()).collect();
+        if roots.len() > 1 {
+            let p_value = independence(&roots, &[], n);
+            tests.push(FitTest { aspect: Aspect::Roots, p_value, least: 0.0 });
+        }
+        let turns = self.turns();
+        if let Some(observed) = omnibus(&turns) {
+            let center = self.center();
+            let (p_value, least) = bootstrap(observed, n, &mut tick, || {
+                let samples: Vec<Sample> = (0..n)
+                    .map(|_| {
+                        let roots = self.law.roots().sample(rng).values().map(f64::abs);
+                        center.relabel(&Sample { roots, attitude: self.law.axes().sample(rng) })
+                    })
+                    .collect();
+                omnibus(&self.turns_of(&samples)).unwrap_or(0.0)
+            });
+            tests.push(FitTest { aspect: Aspect::Axes, p_value, least });
+        }
+        if let Some(p_value) = self.axes.isotropy() {
+            tests.push(FitTest { aspect: Aspect::Tilt, p_value, least: 0.0 });
+        }
+        if !turns.is_empty() && !roots.is_empty() {
+            let p_value = independence(&roots, &turns, n);
+            tests.push(FitTest { aspect: Aspect::RootsAndAxes, p_value, least: 0.0 });
+        }
+        Assessment { tests }
+    }
+
+    /// How many samples [`assess_with`](Self::assess_with) simulates at most.
+    #[must_use]
+    pub fn simulations(&self) -> u64 {
+        let folded = self.roots.iter().filter(|r| is_folded(r)).count() as u64;
+        (folded + 1) * most(self.samples.len()) as u64
+    }
+
+    fn turns(&self) -> Vec<Vec<f64>> {
+        self.turns_of(&self.samples)
+    }
+
+    /// Coordinates of the turns from their own mean that scatter, one list each.
+    fn turns_of(&self, samples: &[Sample]) -> Vec<Vec<f64>> {
+        let mean = match self.axes.finding() {
+            AxesFinding::Free => return Vec::new(),
+            AxesFinding::FreeTurn { .. } => self.axes.law().mean(),
+            _ => mean_attitude(samples.iter().map(|s| &s.attitude)),
+        };
+        let all: Vec<Vector3<f64>> = match self.axes.finding() {
+            // The tilt of the axis that has a direction, in the body.
+            AxesFinding::FreeTurn { axis } => {
+                let k = axis - 1;
+                let direction = |q: &UnitQuaternion<f64>| q.inverse() * Vector3::ith(k, 1.0);
+                let center = direction(&mean);
+                let tilt = |s: &Sample| {
+                    let a = direction(&s.attitude);
+                    let p = mean * (a * 1.0_f64.copysign(a.dot(&center)));
+                    Vector3::new(p[(k + 1) % 3], p[(k + 2) % 3], 0.0)
+                };
+                samples.iter().map(tilt).collect()
+            }
+            _ => {
+                let inverse = mean.inverse();
+                samples.iter().map(|s| (inverse * s.attitude).scaled_axis()).collect()
+            }
+        };
+        // Directions that do not scatter are left out: those of the covariance, or all.
+        let n = all.len() as f64;
+        let center = all.iter().sum::<Vector3<f64>>() / n;
+        let scatter: Matrix3<f64> =
+            all.iter().map(|t| (t - center) * (t - center).transpose()).sum::<Matrix3<f64>>() / n;
+        let eigen = scatter.symmetric_eigen();
+        let largest = eigen.eigenvalues.max();
+        (0..3)
+            .filter(|i| eigen.eigenvalues[*i] > (1e-9 * largest).max(STILL * STILL))
+            .map(|i| all.iter().map(|t| (t - center).dot(&eigen.eigenvectors.column(i))).collect())
+            .collect()
+    }
+}
+
+fn is_folded(root: &RootFit) -> bool {
+    root.law() == RootEstimate::Folded && root.mean() < UNFOLDED * root.deviation()
+}
+
+fn most(n: usize) -> usize {
+    if n > MANY { SIMULATED_IF_MANY } else { SIMULATED }
+}
+
+/// Share of simulated statistics at least as large as the observed, and the least it can be.
+fn bootstrap(
+    observed: f64,
+    n: usize,
+    tick: &mut dyn FnMut(),
+    mut simulate: impl FnMut() -> f64,
+) -> (f64, f64) {
+    let most = most(n);
+    let least = 1.0 / (most as f64 + 1.0);
+    let mut worse = 0;
+    for i in 0..most {
+        worse += usize::from(simulate() >= observed);
+        tick();
+        if worse == WORSE {
+            return (WORSE as f64 / (i as f64 + 1.0), least);
+        }
+    }
+    ((worse as f64 + 1.0) * least, least)
+}
+
+fn root_p_value<R: Rng + ?Sized>(
+    fit: &RootFit,
+    mut values: Vec<f64>,
+    rng: &mut R,
+    tick: &mut dyn FnMut(),
+) -> (f64, f64) {
+    let n = values.len();
+    values.sort_by(f64::total_cmp);
+    let statistic =
+        |fit: &RootFit, sorted: &[f64]| anderson_darling(sorted.iter().map(|k| fit.below(*k)));
+    let observed = statistic(fit, &values);
+    if !is_folded(fit) {
+        return (tail::anderson_darling(observed, n as f64), 0.0);
+    }
+    bootstrap(observed, n, tick, || {
+        let mut drawn: Vec<f64> = (0..n)
+            .map(|_| {
+                let z: f64 = StandardNormal.sample(rng);
+                (fit.mean() + fit.deviation() * z).abs()
+            })
+            .collect();
+        let again = RootFit::of(&drawn, 0.0);
+        drawn.sort_by(f64::total_cmp);
+        statistic(&again, &drawn)
+    })
+}
+
+/// A² of probabilities in ascending order.
+fn anderson_darling(below: impl Iterator<Item = f64>) -> f64 {
+    let below: Vec<f64> = below.collect();
+    let n = below.len();
+    let ln = |p: f64| libm::log(p.max(1e-300));
+    let sum: f64 =
+        (0..n).map(|i| (2 * i + 1) as f64 * (ln(below[i]) + ln(1.0 - below[n - 1 - i]))).sum();
+    -(n as f64) - sum / n as f64
+}
+
+/// Mardia's skewness n·b₁/6 plus the square of his standardised kurtosis, of centred coordinates that
+/// are uncorrelated; none if there are no coordinates. It is not changed by linear maps.
+fn omnibus(coordinates: &[Vec<f64>]) -> Option<f64> {
+    let p = coordinates.len();
+    let n = coordinates.first()?.len();
+    let count = n as f64;
+    let scale: Vec<f64> =
+        coordinates.iter().map(|c| (count / c.iter().map(|x| x * x).sum::<f64>()).sqrt()).collect();
+    let mut third = [0.0; 27];
+    let mut fourth = 0.0;
+    for i in 0..n {
+        let mut z = [0.0; 3];
+        for (z, (c, s)) in z.iter_mut().zip(coordinates.iter().zip(&scale)) {
+            *z = c[i] * s;
+        }
+        let square = z[0] * z[0] + z[1] * z[1] + z[2] * z[2];
+        fourth += square * square;
+        for (k, sum) in third.iter_mut().enumerate() {
+            *sum += z[k / 9] * z[k / 3 % 3] * z[k % 3];
+        }
+    }
+    let skewness = third.iter().map(|s| (s / count) * (s / count)).sum::<f64>() * count / 6.0;
+    let p = p as f64;
+    let kurtosis = (fourth / count - p * (p + 2.0)) / (8.0 * p * (p + 2.0) / count).sqrt();
+    Some(skewness + kurtosis * kurtosis)
+}
+
+/// p-value of no correlation: within `a` if `b` is empty, else between `a` and `b` (Bartlett).
+fn independence(a: &[Vec<f64>], b: &[Vec<f64>], n: usize) -> f64 {
+    let all: Vec<&Vec<f64>> = a.iter().chain(b).collect();
+    let (p, q) = (a.len(), b.len());
+    let count = n as f64;
+    let standard: Vec<Vec<f64>> = all
+        .iter()
+        .map(|x| {
+            let mean = x.iter().sum::<f64>() / count;
+            let norm = x.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>().sqrt();
+            x.iter().map(|v| (v - mean) / norm).collect()
+        })
+        .collect();
+    let correlation = DMatrix::from_fn(p + q, p + q, |i, j| {
+        if i == j { 1.0 } else { standard[i].iter().zip(&standard[j]).map(|(x, y)| x * y).sum() }
+    });
+    let whole = correlation.determinant().max(1e-300);
+    let size = (p + q) as f64;
+    let (ratio, factor, freedom) = if b.is_empty() {
+        (whole, count - 1.0 - (2.0 * size + 5.0) / 6.0, p * (p - 1) / 2)
+    } else {
+        let first = correlation.view((0, 0), (p, p)).into_owned().determinant();
+        let second = correlation.view((p, p), (q, q)).into_owned().determinant();
+        ((whole / (first * second)).max(1e-300), count - 1.0 - 0.5 * (size + 1.0), p * q)
+    };
+    tail::chi_squared(-factor * libm::log(ratio.min(1.0)), freedom)
+}

@@ -1,0 +1,282 @@
+mod axes;
+mod goodness;
+mod matching;
+mod notes;
+mod relabel;
+mod root;
+pub(crate) mod tail;
+#[cfg(test)]
+mod tests;
+
+use gyradius_attitude::{FitError, RadiallyConstrainedGaussian};
+use gyradius_inertia::{Inertia, RootSecondMoments, SecondMoments};
+use nalgebra::{Matrix3, UnitQuaternion};
+
+use crate::{GaussianRoots, GaussianRootsError, PrincipalDispersion};
+use matching::{Center, matched};
+use relabel::{Relabeling, Sample};
+
+pub use axes::{AxesFinding, AxesFit};
+pub use goodness::{Aspect, Assessment, FitTest};
+pub use notes::FitNote;
+pub use root::{RootEstimate, RootFit};
+
+/// The law of the axes alone has 13 parameters.
+const NEEDED: usize = 13;
+/// A second moment below this share of the trace is rounding, and the body a plate.
+const ROUNDING: f64 = 1e-13;
+/// Two attitudes nearer than this, rad, are the same axes.
+const SAME: f64 = 1e-3;
+
+/// Why samples have no [`PrincipalFit`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PrincipalFitError {
+    /// Too few samples.
+    #[error("{count} samples: a fit needs at least {NEEDED}, one for each parameter of the axes")]
+    TooFew {
+        /// How many were given.
+        count: usize,
+    },
+    /// All moments are zero: there are no axes.
+    #[error("sample {index} is a point: all its moments of inertia are zero")]
+    Point {
+        /// Its place, from 0.
+        index: usize,
+    },
+    /// The axes have no fit.
+    #[error("axes: {0}")]
+    Axes(#[from] FitError),
+    /// The roots are out of range.
+    #[error(transparent)]
+    Roots(#[from] GaussianRootsError),
+}
+
+/// How the principal axes of the samples were matched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Matching {
+    /// Samples whose axes got another order than the nearest to the body axes.
+    pub swapped: usize,
+    /// Samples whose axes kept that order but not the signs.
+    pub flipped: usize,
+    /// Samples whose axes could be named otherwise, at odds below 20 : 1.
+    pub doubtful: usize,
+    /// Whether the names settled.
+    pub converged: bool,
+}
+
+/// The model of Peck (2003), Gaussian roots of the second moments about axes from a radially
+/// constrained Gaussian, fitted to samples of an inertia matrix.
+///
+/// # Algorithm
+/// 1. Each sample is taken apart into principal moments and axes, whose order and signs mean nothing.
+///    *Matching*: each sample gets the one of its 24 namings that is likeliest under mean and
+///    scatter of roots and attitudes, and these are taken anew, until no name changes
+///    (classification EM; Celeux & Govaert 1992, doi:10.1016/0167-9473(92)90042-E). Nearness of the
+///    axes and of the moments count together, each in units of its own scatter.
+/// 2. *Roots*: [`RootFit`], each by itself.
+/// 3. *Axes*: [`AxesFit`]. First whether they have a mean at all: two moments equal within their
+///    scatter may leave a turn undetermined. Then [`RadiallyConstrainedGaussian::fit`].
+/// 4. The nominal inertia is that of the mean roots about the mean axes, and names its axes as
+///    [`Inertia::principal_axes`] does.
+///
+/// # Limits
+/// At least 13 samples, no point among them. Where many namings are doubtful, scatter is
+/// underestimated: a sample goes to the nearer name though it came from the farther one.
+/// Standard errors suppose the names are right.
+///
+/// ```
+/// use gyradius_attitude::RadiallyConstrainedGaussian;
+/// use gyradius_dispersion::{GaussianRoots, PrincipalDispersion, PrincipalFit};
+/// use gyradius_inertia::{Inertia, RootSecondMoments};
+/// use nalgebra::{Matrix3, UnitQuaternion};
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use rand_distr::Distribution;
+///
+/// let truth = PrincipalDispersion::new(
+///     GaussianRoots::new(RootSecondMoments::new([30.0, 40.0, 50.0])?, [1.0, 2.0, 3.0])?,
+///     RadiallyConstrainedGaussian::from_rotation_covariance(
+///         UnitQuaternion::identity(),
+///         Matrix3::identity() * 1e-3,
+///         0.01,
+///     )?,
+/// );
+/// let mut rng = ChaCha8Rng::seed_from_u64(1);
+/// let samples: Vec<Inertia> = (0..500).map(|_| truth.sample(&mut rng)).collect();
+///
+/// let fit = PrincipalFit::new(&samples)?;
+/// let root = fit.roots()[1];
+/// assert!((root.mean() - 40.0).abs() < 4.0 * root.errors().unwrap()[0]);
+/// assert!(fit.assess(&mut rng).fits());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PrincipalFit {
+    samples: Vec<Sample>,
+    nominal: Inertia,
+    roots: [RootFit; 3],
+    axes: AxesFit,
+    matching: Matching,
+    deviations: [f64; 6],
+    law: PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>,
+}
+
+impl PrincipalFit {
+    /// Fits the model.
+    ///
+    /// # Errors
+    /// Fewer than 13 samples, a point among them, or moments out of range.
+    pub fn new(samples: &[Inertia]) -> Result<Self, PrincipalFitError> {
+        if samples.len() < NEEDED {
+            return Err(PrincipalFitError::TooFew { count: samples.len() });
+        }
+        if let Some(index) = samples.iter().position(|s| !(s.matrix().trace() > 0.0)) {
+            return Err(PrincipalFitError::Point { index });
+        }
+        let apart: Vec<Sample> = samples.iter().map(take_apart).collect();
+        let mut matched = matched(&apart, &mean_axes(samples));
+        let mut fitted = fit(&matched.samples)?;
+        // The fitted mean may be named otherwise than the first guess of it.
+        for _ in 0..3 {
+            let axes = fitted.nominal.principal_axes().attitude();
+            let g = nearest(&fitted.axes.law().mean(), &axes);
+            if fitted.axes.law().mean().angle_to(&axes) < SAME {
+                break;
+            }
+            if g.turn.angle() > 1e-6 {
+                for sample in &mut matched.samples {
+                    *sample = sample.relabeled(g);
+                }
+                fitted = fit(&matched.samples)?;
+            } else {
+                // Moments equal to rounding: a turn of the axes that nothing depends on.
+                fitted.axes = fitted.axes.at(axes);
+                break;
+            }
+        }
+        let Fitted { nominal, roots, axes } = fitted;
+        let (mut swapped, mut flipped) = (0, 0);
+        for (sample, before) in matched.samples.iter().zip(&apart) {
+            let g = nearest(&before.attitude, &sample.attitude);
+            swapped += usize::from(g.swaps());
+            flipped += usize::from(!g.swaps() && g.turn.angle() > 1e-6);
+        }
+        let mean = RootSecondMoments::new(roots.map(|r| r.mean()))
+            .map_err(|_| GaussianRootsError::Variance { axis: 1, value: f64::INFINITY })?;
+        let gaussian = GaussianRoots::new(mean, roots.map(|r| r.deviation() * r.deviation()))?;
+        let law = PrincipalDispersion::new(gaussian, axes.law().clone());
+        let matching =
+            Matching { swapped, flipped, doubtful: matched.doubtful, converged: matched.converged };
+        Ok(Self {
+            samples: matched.samples,
+            nominal,
+            roots,
+            axes,
+            matching,
+            deviations: deviations(samples),
+            law,
+        })
+    }
+
+    /// How many samples were fitted.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.samples.len()
+    }
+
+    /// The inertia of the mean roots about the mean axes. It is not the mean of the samples, which
+    /// scatter moves: see [`EntryMoments`](crate::EntryMoments).
+    #[must_use]
+    pub fn nominal(&self) -> &Inertia {
+        &self.nominal
+    }
+
+    /// The roots of the second moments, in the order of the principal axes of
+    /// [`nominal`](Self::nominal).
+    #[must_use]
+    pub fn roots(&self) -> &[RootFit; 3] {
+        &self.roots
+    }
+
+    /// The axes.
+    #[must_use]
+    pub fn axes(&self) -> &AxesFit {
+        &self.axes
+    }
+
+    /// How axes were matched.
+    #[must_use]
+    pub fn matching(&self) -> Matching {
+        self.matching
+    }
+
+    /// The fitted law.
+    #[must_use]
+    pub fn law(&self) -> &PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian> {
+        &self.law
+    }
+
+    /// Standard deviations of the six entries of the samples, kg·m², in the order 11, 22, 33, 12, 13,
+    /// 23: to be compared with those of the law, [`EntryMoments`](crate::EntryMoments).
+    #[must_use]
+    pub fn sample_deviations(&self) -> [f64; 6] {
+        self.deviations
+    }
+
+    fn center(&self) -> Center {
+        Center::of(&self.samples)
+    }
+}
+
+fn deviations(samples: &[Inertia]) -> [f64; 6] {
+    let rows: Vec<[f64; 6]> = samples.iter().map(Inertia::entries).collect();
+    let n = rows.len() as f64;
+    std::array::from_fn(|e| {
+        let mean = rows.iter().map(|r| r[e] / n).sum::<f64>();
+        (rows.iter().map(|r| (r[e] - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()
+    })
+}
+
+struct Fitted {
+    nominal: Inertia,
+    roots: [RootFit; 3],
+    axes: AxesFit,
+}
+
+fn fit(samples: &[Sample]) -> Result<Fitted, PrincipalFitError> {
+    let columns = [0, 1, 2].map(|k| samples.iter().map(|s| s.roots[k]).collect::<Vec<f64>>());
+    let n = samples.len() as f64;
+    let sizes = columns.each_ref().map(|c| (c.iter().map(|k| k * k).sum::<f64>() / n).sqrt());
+    let size = sizes.into_iter().fold(0.0, f64::max);
+    let roots = columns.each_ref().map(|c| RootFit::of(c, size));
+    let axes = AxesFit::of(samples, &roots)?;
+    let out_of_range = |_| GaussianRootsError::Variance { axis: 1, value: f64::INFINITY };
+    let mean = SecondMoments::new(roots.map(|r| r.mean() * r.mean())).map_err(out_of_range)?;
+    let nominal = Inertia::from_second_moments(mean, &axes.law().mean())
+        .map_err(|_| GaussianRootsError::Variance { axis: 1, value: f64::INFINITY })?;
+    Ok(Fitted { nominal, roots, axes })
+}
+
+fn take_apart(inertia: &Inertia) -> Sample {
+    let rounding = ROUNDING * inertia.matrix().trace();
+    let k = inertia.second_moments().values();
+    Sample {
+        roots: k.map(|k| if k > rounding { k.sqrt() } else { 0.0 }),
+        attitude: inertia.principal_axes().attitude(),
+    }
+}
+
+/// The axes of the mean matrix, each sample scaled to trace one.
+fn mean_axes(samples: &[Inertia]) -> UnitQuaternion<f64> {
+    let sum: Matrix3<f64> = samples.iter().map(|s| s.matrix() / s.matrix().trace()).sum();
+    // A sum of bodies is a body.
+    Inertia::new((sum + sum.transpose()) * 0.5)
+        .map_or_else(|_| UnitQuaternion::identity(), |mean| mean.principal_axes().attitude())
+}
+
+/// The naming g for which g ⊗ `from` is nearest to `to`.
+fn nearest(from: &UnitQuaternion<f64>, to: &UnitQuaternion<f64>) -> &'static Relabeling {
+    let all = Relabeling::all();
+    let score = |g: &Relabeling| (g.turn * from).coords.dot(&to.coords).abs();
+    all.iter().max_by(|a, b| score(a).total_cmp(&score(b))).unwrap_or(&all[0])
+}

@@ -1,0 +1,184 @@
+use std::fmt;
+
+use super::{AxesFinding, PrincipalFit, root::RootEstimate};
+
+/// Moments nearer than this, in deviations of their difference, count as equal within their scatter.
+const EQUAL: f64 = 2.0;
+/// A share of doubtful names that is worth a word.
+const DOUBTFUL: f64 = 0.01;
+/// Deviation of a turn, rad, beyond which signs and names run into each other: 20°.
+const WIDE: f64 = 0.35;
+
+/// What a reader of a fit should know before using it. Written out by `Display`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FitNote {
+    /// Two principal moments are equal within their scatter, and what the axes do about it.
+    EqualMoments {
+        /// The two axes, from 1.
+        axes: [usize; 2],
+        /// Whether the turn about the third axis is undetermined.
+        free: bool,
+        /// Deviation of that turn otherwise, rad.
+        turn: f64,
+    },
+    /// One turn of the axes is undetermined though no two moments are equal.
+    FreeTurn {
+        /// The axis that has a direction, from 1.
+        axis: usize,
+    },
+    /// The axes point anywhere.
+    Free,
+    /// The axes turn about fewer than three directions.
+    Still {
+        /// Whether they do not turn at all.
+        fixed: bool,
+    },
+    /// Axes in two groups or with outliers, held by a second lobe.
+    SecondLobe {
+        /// Its share.
+        share: f64,
+    },
+    /// Mean and deviation of a root cannot be told apart.
+    Unidentified {
+        /// Axis, from 1.
+        axis: usize,
+    },
+    /// A root that has lost its sign.
+    Folded {
+        /// Axis, from 1.
+        axis: usize,
+    },
+    /// Many samples could be matched otherwise.
+    Doubtful {
+        /// How many.
+        count: usize,
+    },
+    /// Matching did not settle, or the search for the law of the axes did not arrive.
+    NotConverged,
+}
+
+impl fmt::Display for FitNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::EqualMoments { axes: [a, b], free: true, .. } => {
+                let third = 6 - a - b;
+                write!(
+                    f,
+                    "principal moments {a} and {b} are equal within their scatter, and the samples do \
+                     not determine the turn about axis {third}: the law has it uniform"
+                )
+            }
+            Self::EqualMoments { axes: [a, b], turn, .. } => {
+                let third = 6 - a - b;
+                let degrees = turn.to_degrees();
+                write!(f, "principal moments {a} and {b} are equal within their scatter; ")?;
+                if *turn > WIDE {
+                    write!(
+                        f,
+                        "the turn about axis {third} scatters by {degrees:.0}°, so wide that names run \
+                         into each other and it comes out too small"
+                    )?;
+                } else {
+                    write!(
+                        f,
+                        "the turn about axis {third} is known all the same, with a scatter of \
+                         {degrees:.2}°"
+                    )?;
+                }
+                Ok(())
+            }
+            Self::FreeTurn { axis } => write!(
+                f,
+                "the samples do not determine the turn about principal axis {axis}: the law has it \
+                 uniform"
+            ),
+            Self::Free => f.write_str(
+                "the principal axes point anywhere, as those of a body with three equal moments do: \
+                 the law has them uniform",
+            ),
+            Self::Still { fixed: true } => {
+                f.write_str("the principal axes do not scatter: the law has them fixed to 1e-4°")
+            }
+            Self::Still { fixed: false } => f.write_str(
+                "the principal axes turn about fewer than three directions: the law has the others \
+                 fixed to 1e-4°",
+            ),
+            Self::SecondLobe { share } => write!(
+                f,
+                "the axes lie in two groups or have outliers: the law holds them by a second lobe of \
+                 {:.1} % about the inverse of the mean",
+                100.0 * share
+            ),
+            Self::Unidentified { axis } => write!(
+                f,
+                "k{axis} is nearer to zero than its deviation: samples of its square do not tell mean \
+                 and deviation apart, only mean² + deviation²; a body nearly flat across axis {axis}"
+            ),
+            Self::Folded { axis } => write!(
+                f,
+                "k{axis} comes near zero, where its sign is lost: fitted as a folded Gaussian"
+            ),
+            Self::Doubtful { count } => write!(
+                f,
+                "{count} samples could be matched otherwise, at odds below 20 : 1: scatter is \
+                 underestimated, and errors suppose the matching is right"
+            ),
+            Self::NotConverged => f.write_str("the search for the best fit did not arrive"),
+        }
+    }
+}
+
+impl PrincipalFit {
+    /// What a reader should know: equal moments, undetermined turns, lost signs, doubtful matches.
+    #[must_use]
+    pub fn notes(&self) -> Vec<FitNote> {
+        let mut notes = Vec::new();
+        let finding = self.axes.finding();
+        let mut told = false;
+        for axis in 0..3 {
+            let (a, b) = (self.roots[(axis + 1) % 3], self.roots[(axis + 2) % 3]);
+            let scatter = a.deviation().hypot(b.deviation());
+            if !((a.mean() - b.mean()).abs() < EQUAL * scatter) {
+                continue;
+            }
+            let free = finding == AxesFinding::FreeTurn { axis: axis + 1 };
+            told |= free;
+            let r = *self.axes.law().mean().to_rotation_matrix().matrix();
+            let turn = (r * self.axes.turn_covariance() * r.transpose())[(axis, axis)];
+            let mut axes = [(axis + 1) % 3 + 1, (axis + 2) % 3 + 1];
+            axes.sort_unstable();
+            if finding != AxesFinding::Free {
+                notes.push(FitNote::EqualMoments { axes, free, turn: turn.max(0.0).sqrt() });
+            }
+        }
+        match finding {
+            AxesFinding::FreeTurn { axis } if !told => notes.push(FitNote::FreeTurn { axis }),
+            AxesFinding::Free => notes.push(FitNote::Free),
+            AxesFinding::Still => {
+                let fixed = self.axes.turn_covariance().amax() == 0.0;
+                notes.push(FitNote::Still { fixed });
+            }
+            _ => {}
+        }
+        if let Some(share) = self.axes.second_lobe() {
+            notes.push(FitNote::SecondLobe { share });
+        }
+        for (axis, root) in (1..).zip(&self.roots) {
+            if !root.is_identified() {
+                notes.push(FitNote::Unidentified { axis });
+            } else if root.law() == RootEstimate::Folded {
+                notes.push(FitNote::Folded { axis });
+            }
+        }
+        let count = self.matching.doubtful;
+        let settled = matches!(finding, AxesFinding::Determined | AxesFinding::Still);
+        if settled && count as f64 > DOUBTFUL * self.count() as f64 {
+            notes.push(FitNote::Doubtful { count });
+        }
+        if !(self.matching.converged && self.axes.converged()) {
+            notes.push(FitNote::NotConverged);
+        }
+        notes
+    }
+}

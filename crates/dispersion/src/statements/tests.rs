@@ -1,0 +1,304 @@
+use super::*;
+use gyradius_inertia::InertiaMatrix;
+use proptest::prelude::*;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use rand_distr::Distribution;
+
+fn body(moments: [f64; 3], products: [f64; 3]) -> Inertia {
+    Inertia::try_from(InertiaMatrix::from_entries(moments, products).unwrap()).unwrap()
+}
+
+fn percent(x: f64) -> Option<MomentsStatement> {
+    Some(MomentsStatement::new(Amount::Percent([x; 3]), 1.0).unwrap())
+}
+
+fn products(x: f64, sigmas: f64) -> Option<ProductsStatement> {
+    Some(ProductsStatement::new([x; 3], sigmas).unwrap())
+}
+
+/// What is stated comes out, on a body whose axes are not those of the body, and draws have it.
+#[test]
+fn moments_and_products_come_out_as_stated() {
+    let nominal = body([5000.0, 4000.0, 3000.0], [300.0, 200.0, -400.0]);
+    let deviations = [40.0, 36.0, 38.0];
+    let statements = Statements {
+        moments: Some(MomentsStatement::new(Amount::Absolute(deviations), 1.0).unwrap()),
+        products: Some(ProductsStatement::new([60.0, 120.0, 60.0], 3.0).unwrap()),
+        ..Statements::default()
+    };
+    let model = statements.model(&nominal, None).unwrap();
+    let implied = model.implied().deviations();
+    for (found, expected) in implied.iter().zip([40.0, 36.0, 38.0, 20.0, 40.0, 20.0]) {
+        assert!((found / expected - 1.0).abs() < 0.01, "{implied:?}");
+    }
+    assert!(model.warnings().is_empty(), "{:?}", model.warnings());
+    const N: usize = 50_000;
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let draws: Vec<[f64; 6]> = (0..N)
+        .map(|_| {
+            let drawn: Inertia = model.law().sample(&mut rng);
+            drawn.entries()
+        })
+        .collect();
+    for e in 0..6 {
+        let mean = draws.iter().map(|d| d[e]).sum::<f64>() / N as f64;
+        let square = draws.iter().map(|d| (d[e] - mean).powi(2)).sum::<f64>() / N as f64;
+        // A deviation of 50,000 draws is known to 0.3 %.
+        assert!((square.sqrt() / implied[e] - 1.0).abs() < 0.02, "{e}");
+    }
+}
+
+/// Three equal tolerances on a slender body: the largest moment is the sum of the others but for
+/// little, and cannot scatter less than they do.
+#[test]
+fn moments_that_no_independent_second_moments_have_are_told() {
+    let model = Statements { moments: percent(10.0), ..Statements::default() }
+        .model(&body([2000.0, 15000.0, 15500.0], [0.0; 3]), None)
+        .unwrap();
+    let missed = model
+        .warnings()
+        .iter()
+        .filter(|w| matches!(w, StatementWarning::Missed { entry: 0..3, .. }));
+    // w₃ = (V₁ + V₂ − V₃)/2 < 0: what is nearest is within a few percent, or it is said.
+    let implied = model.implied().deviations();
+    let off = (0..3).any(|e| (implied[e] / model.stated()[e].unwrap() - 1.0).abs() > 0.1);
+    assert_eq!(off, missed.count() > 0, "{implied:?} {:?}", model.warnings());
+    let one = Statements {
+        moments: Some(MomentsStatement::new(Amount::Absolute([200.0, 10.0, 10.0]), 1.0).unwrap()),
+        ..Statements::default()
+    };
+    let model = one.model(&body([2000.0, 15000.0, 15500.0], [0.0; 3]), None).unwrap();
+    assert!(
+        model.warnings().iter().any(|w| matches!(w, StatementWarning::Missed { .. })),
+        "{:?}",
+        model.warnings()
+    );
+}
+
+#[test]
+fn a_plate_contradicts_independent_moments() {
+    let model = Statements { moments: percent(10.0), axes: None, ..Statements::default() }
+        .model(&body([500.0, 520.0, 1000.0], [0.0; 3]), None)
+        .unwrap();
+    let said: String = model.warnings().iter().map(|w| format!("{w}\n")).collect();
+    assert!(said.contains("contradict realizability") && said.contains("K3 < 0"), "{said}");
+    let moments = MomentsStatement::new(Amount::Absolute([50.0, 52.0, 60.0]), 1.0).unwrap();
+    let model = Statements { moments: Some(moments), ..Statements::default() }
+        .model(&body([500.0, 520.0, 1000.0], [0.0; 3]), None)
+        .unwrap();
+    let said: String = model.warnings().iter().map(|w| format!("{w}\n")).collect();
+    assert!(said.contains("nearly flat across principal axis 3"), "{said}");
+    let compact = Statements { moments: percent(2.0), ..Statements::default() }
+        .model(&body([900.0, 1000.0, 1100.0], [0.0; 3]), None)
+        .unwrap();
+    assert_eq!(compact.warnings(), [StatementWarning::FixedAxes]);
+}
+
+/// ± 2° of the axes is ± (I_i − I_j)·2° of a product; both stated, the tighter one holds.
+#[test]
+fn the_tighter_of_axes_and_products_holds() {
+    let nominal = body([5000.0, 4000.0, 3000.0], [0.0; 3]);
+    let axes = Some(AxesStatement::each([1.0; 3], 1.0).unwrap());
+    let alone = Statements { axes, ..Statements::default() }.model(&nominal, None).unwrap();
+    let gaps = [1000.0, 2000.0, 1000.0];
+    for (found, gap) in alone.implied().deviations()[3..].iter().zip(gaps) {
+        assert!((found / (gap * 1_f64.to_radians()) - 1.0).abs() < 0.01);
+    }
+    assert_eq!(alone.warnings(), [StatementWarning::FixedMoments]);
+    let both = Statements { axes, products: products(50.0, 3.0), ..Statements::default() };
+    let model = both.model(&nominal, None).unwrap();
+    let implied = model.implied().deviations();
+    // 1° would be 17.5, 34.9, 17.5; 16.7 is stated.
+    for found in &implied[3..] {
+        assert!((found / (50.0 / 3.0) - 1.0).abs() < 0.01, "{implied:?}");
+    }
+    let said: String = model.warnings().iter().map(ToString::to_string).collect();
+    assert!(said.contains("1.00°, 1.00°, 1.00°") && said.contains("0.96°, 0.48°, 0.96°"), "{said}");
+}
+
+/// Two equal moments: a turn about the third axis moves their product only as far as they scatter.
+#[test]
+fn products_of_equal_moments_come_from_their_scatter() {
+    let nominal = body([6700.0, 6700.0, 2000.0], [0.0; 3]);
+    let make = |product| Statements {
+        moments: Some(MomentsStatement::new(Amount::Absolute([67.0, 67.0, 20.0]), 1.0).unwrap()),
+        products: Some(ProductsStatement::new([product, 50.0, 50.0], 1.0).unwrap()),
+        ..Statements::default()
+    };
+    // Within reach.
+    let model = make(3.0).model(&nominal, None).unwrap();
+    let implied = model.implied().deviations();
+    assert!((implied[3] / 3.0 - 1.0).abs() < 0.05, "{implied:?} {:?}", model.warnings());
+    assert!((implied[4] / 50.0 - 1.0).abs() < 0.02, "{implied:?}");
+    assert_eq!(model.warnings(), [StatementWarning::EqualMoments { axes: [1, 2] }]);
+    // Beyond it: any turn, and still too little.
+    let model = make(100.0).model(&nominal, None).unwrap();
+    let said: String = model.warnings().iter().map(|w| format!("{w}\n")).collect();
+    assert!(said.contains("axis 3 is taken to be uniform"), "{said}");
+    assert!(said.contains("I12: a deviation of 100"), "{said}");
+}
+
+#[test]
+fn mass_scales_and_the_centre_adds_parallel_axes() {
+    let nominal = body([5000.0, 4000.0, 3000.0], [0.0; 3]);
+    let mass = Some(MassStatement::percent(3.0, 3.0).unwrap());
+    let model = Statements { mass, ..Statements::default() }.model(&nominal, None).unwrap();
+    for (found, expected) in model.implied().deviations().iter().zip([50.0, 40.0, 30.0]) {
+        assert!((found / expected - 1.0).abs() < 0.01, "{:?}", model.implied().deviations());
+    }
+    assert!(model.warnings().contains(&StatementWarning::Together));
+    let kg = Some(MassStatement::kg(100.0, 1.0).unwrap());
+    let same = Statements { mass: kg, ..Statements::default() };
+    assert!(matches!(same.model(&nominal, None), Err(StatementError::NoMass { .. })));
+    let again = same.model(&nominal, Some(1e4)).unwrap();
+    let (a, b) = (again.implied().deviations(), model.implied().deviations());
+    for e in 0..3 {
+        assert!((a[e] / b[e] - 1.0).abs() < 1e-9);
+    }
+
+    // Without an arm 10 mm of 10 t is nothing: 2 m s² = 2 kg·m².
+    let centre = |arm| {
+        let centre = Some(CentreStatement::new([0.01; 3], 1.0, arm).unwrap());
+        Statements { centre, ..Statements::default() }.model(&nominal, Some(1e4)).unwrap()
+    };
+    for found in &centre([0.0; 3]).implied().deviations()[..3] {
+        assert!((found / 2.0 - 1.0).abs() < 0.05, "{found}");
+    }
+    // Measured 1.5 m below: I11 and I22 by 2 m L s = 300, products by m L s = 150.
+    let lever = centre([0.0, 0.0, 1.5]);
+    let implied = lever.implied().deviations();
+    for (e, expected) in [(0, 300.0), (1, 300.0), (4, 150.0), (5, 150.0)] {
+        assert!((implied[e] / expected - 1.0).abs() < 0.1, "{implied:?}");
+    }
+}
+
+/// The variances that the rule for the mass centre claims, against draws of it.
+#[test]
+fn the_mass_centre_moves_entries_as_claimed() {
+    use rand_distr::StandardNormal;
+    const N: usize = 200_000;
+    let (arm, s, m) = ([0.02, -0.05, 0.03], [0.01, 0.02, 0.015], 7.0);
+    let claimed = CentreStatement::new(s, 1.0, arm).unwrap().entry_variances(m);
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    let about = |p: Vector3<f64>| (Matrix3::identity() * p.norm_squared() - p * p.transpose()) * m;
+    let draws: Vec<[f64; 6]> = (0..N)
+        .map(|_| {
+            let z: [f64; 3] = [0; 3].map(|_| StandardNormal.sample(&mut rng));
+            let l = Vector3::from(arm);
+            let d = Vector3::new(s[0] * z[0], s[1] * z[1], s[2] * z[2]);
+            let off = about(l + d) - about(l);
+            ENTRIES.map(|e| off[e])
+        })
+        .collect();
+    for e in 0..6 {
+        let mean = draws.iter().map(|x| x[e]).sum::<f64>() / N as f64;
+        let squares: Vec<f64> = draws.iter().map(|x| (x[e] - mean).powi(2)).collect();
+        let variance = squares.iter().sum::<f64>() / N as f64;
+        let spread = squares.iter().map(|x| (x - variance).powi(2)).sum::<f64>() / N as f64;
+        let z = (variance - claimed[e]) / (spread / N as f64).sqrt();
+        assert!(z.abs() < 4.0, "{e}: {z}");
+    }
+}
+
+#[test]
+fn what_is_stated_includes_mass_and_centre() {
+    let nominal = body([5000.0, 4000.0, 3000.0], [0.0; 3]);
+    let mass = Some(MassStatement::percent(5.0, 1.0).unwrap());
+    let moments = Some(MomentsStatement::new(Amount::Absolute([40.0; 3]), 1.0).unwrap());
+    let model = Statements { moments, mass, ..Statements::default() };
+    let model = model.model(&nominal, None).unwrap();
+    assert!((model.implied().deviations()[0] / 40.0 - 1.0).abs() < 0.01);
+    let said: String = model.warnings().iter().map(ToString::to_string).collect();
+    assert!(said.contains("the mass alone moves I11 by 250"), "{said}");
+}
+
+#[test]
+fn bad_statements_are_named() {
+    let message = |e: StatementError| e.to_string();
+    let bad = MomentsStatement::new(Amount::Percent([1.0, -1.0, 1.0]), 1.0).unwrap_err();
+    assert!(message(bad).contains("moments: ± -1"));
+    for sigmas in [0.0, -1.0, f64::NAN, 1e9] {
+        let error = message(ProductsStatement::new([1.0; 3], sigmas).unwrap_err());
+        assert!(error.contains("products: sigmas ="), "{error}");
+    }
+    assert!(message(AxesStatement::each([100.0; 3], 1.0).unwrap_err()).contains("at most 45°"));
+    assert!(message(AxesStatement::total(f64::NAN, 1.0).unwrap_err()).contains("NaN"));
+    assert!(message(MassStatement::kg(f64::INFINITY, 1.0).unwrap_err()).contains("mass: ± inf"));
+    assert!(CentreStatement::new([0.0; 3], 1.0, [f64::NAN, 0.0, 0.0]).is_err());
+    let point = Inertia::new(Matrix3::zeros()).unwrap();
+    assert!(matches!(
+        Statements::default().model(&point, None),
+        Err(StatementError::Nominal { .. })
+    ));
+    let nominal = body([5.0, 4.0, 3.0], [0.0; 3]);
+    for mass in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(
+            Statements::default().model(&nominal, Some(mass)),
+            Err(StatementError::Mass { .. })
+        ));
+    }
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn serde_goes_through_the_constructors() {
+    let json = r#"{"moments": {"percent": 10, "sigmas": 1}, "products": {"kg_m2": [1, 2, 3], "sigmas": 3},
+        "axes": {"deg": 2, "sigmas": 3, "of": "total"}, "mass": {"kg": 5, "sigmas": 1},
+        "centre": {"mm": 10, "sigmas": 3, "arm_m": [0, 0, 1]}}"#;
+    let statements: Statements = serde_json::from_str(json).unwrap();
+    let again = serde_json::to_string(&statements).unwrap();
+    let again: Statements = serde_json::from_str(&again).unwrap();
+    let nominal = body([5000.0, 4000.0, 3000.0], [0.0; 3]);
+    let deviations = |s: &Statements| s.model(&nominal, Some(1e3)).unwrap().implied().deviations();
+    for (a, b) in deviations(&statements).iter().zip(deviations(&again)) {
+        assert!((a / b - 1.0).abs() < 1e-6);
+    }
+    for (from, to, word) in [
+        ("\"percent\": 10", "\"percent\": -10", "moments: ±"),
+        ("\"percent\": 10", "\"percent\": 10, \"kg_m2\": 3", "exactly one of percent, kg_m2"),
+        ("\"sigmas\": 1}", "\"sigma\": 1}", "unknown field"),
+        ("\"percent\": 10, \"sigmas\": 1", "\"percent\": 10", "sigmas"),
+        ("\"deg\": 2", "\"deg\": [1, 2, 3]", "one number of deg"),
+    ] {
+        let error = serde_json::from_str::<Statements>(&json.replacen(from, to, 1)).unwrap_err();
+        assert!(error.to_string().contains(word), "{error}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Whatever is stated of whatever body: a law that draws bodies, or an error; no panic.
+    #[test]
+    fn any_statements_make_a_law_or_an_error(
+        k in prop::array::uniform3(0.0..100.0f64),
+        turn in prop::array::uniform3(-3.0..3.0f64),
+        moments in prop::option::of(prop::array::uniform3(0.0..2000.0f64)),
+        products in prop::option::of(prop::array::uniform3(0.0..2000.0f64)),
+        axes in prop::option::of(prop::array::uniform3(0.0..45.0f64)),
+        mass in prop::option::of(0.0..50.0f64),
+        centre in prop::option::of(prop::array::uniform3(0.0..0.5f64)),
+        flat in any::<bool>(),
+    ) {
+        let k = if flat { [k[0], k[0], 0.0] } else { k };
+        let k = gyradius_inertia::SecondMoments::new(k).unwrap();
+        let q = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
+        let nominal = Inertia::from_second_moments(k, &q).unwrap();
+        let statements = Statements {
+            moments: moments.map(|x| MomentsStatement::new(Amount::Absolute(x), 1.0).unwrap()),
+            products: products.map(|x| ProductsStatement::new(x, 1.0).unwrap()),
+            axes: axes.map(|x| AxesStatement::each(x, 1.0).unwrap()),
+            mass: mass.map(|x| MassStatement::percent(x, 1.0).unwrap()),
+            centre: centre.map(|x| CentreStatement::new(x, 1.0, [1.0, 0.0, 0.0]).unwrap()),
+        };
+        if let Ok(model) = statements.model(&nominal, Some(100.0)) {
+            let mut rng = ChaCha8Rng::seed_from_u64(1);
+            let drawn: Inertia = model.law().sample(&mut rng);
+            prop_assert!(drawn.as_inertia_matrix().is_realizable());
+            prop_assert!(model.implied().deviations().iter().all(|d| d.is_finite()));
+            for warning in model.warnings() {
+                prop_assert!(!warning.to_string().is_empty());
+            }
+        }
+    }
+}

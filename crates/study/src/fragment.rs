@@ -1,0 +1,219 @@
+use gyradius_attitude::{RadiallyConstrainedGaussian, RcgError};
+use gyradius_dispersion::{GaussianRoots, GaussianRootsError, PrincipalDispersion};
+use gyradius_inertia::{Inertia, RealizabilityError};
+use nalgebra::Matrix4;
+use std::fmt;
+
+/// Two mean attitudes nearer than this, rad, are one to any study.
+const SAME: f64 = 1e-6;
+
+/// Which body of a scenario a [`Fragment`] is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FragmentBody {
+    /// `[payload]`
+    #[default]
+    Payload,
+    /// `[stage]`
+    Stage,
+}
+
+/// Why a law cannot be written into a scenario.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FragmentError {
+    /// The nominal inertia does not read back.
+    #[error("nominal inertia: {0}")]
+    Inertia(#[from] RealizabilityError),
+    /// The variances of the roots do not read back.
+    #[error(transparent)]
+    Roots(#[from] GaussianRootsError),
+    /// The covariance of the axes does not read back.
+    #[error("axes: {0}")]
+    Axes(#[from] RcgError),
+    /// The law is about other axes than those of the nominal inertia.
+    #[error(
+        "the mean of the axes lies {degrees:.1e}° from the principal axes of the nominal inertia, \
+         which is where a scenario puts it"
+    )]
+    Mean {
+        /// The angle between them.
+        degrees: f64,
+    },
+}
+
+/// The part of a scenario file that says how uncertain the inertia of a body is: nominal inertia,
+/// variances of the roots, covariance of the axes. Written by `Display` as TOML, every number so that
+/// it reads back bit for bit.
+///
+/// A scenario takes the mean roots and the mean axes from the nominal inertia; the fragment is
+/// checked to give the law back when it is read so.
+///
+/// ```
+/// use gyradius_attitude::RadiallyConstrainedGaussian;
+/// use gyradius_dispersion::{GaussianRoots, PrincipalDispersion};
+/// use gyradius_inertia::{Inertia, InertiaMatrix};
+/// use gyradius_study::{Fragment, FragmentBody};
+/// use nalgebra::Matrix3;
+///
+/// let nominal = Inertia::try_from(InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0])?)?;
+/// let roots = GaussianRoots::new(nominal.second_moments().roots(), [0.125, 0.1, 0.075])?;
+/// let axes = RadiallyConstrainedGaussian::from_rotation_covariance(
+///     nominal.principal_axes().attitude(),
+///     Matrix3::identity() * 1e-3,
+///     0.01,
+/// )?;
+/// let law = PrincipalDispersion::new(roots, axes);
+/// let fragment = Fragment::new(FragmentBody::Payload, &nominal, &law)?;
+/// assert!(fragment.to_string().starts_with("[payload]\ninertia_kg_m2 = [\n"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fragment {
+    body: FragmentBody,
+    inertia: [[f64; 3]; 3],
+    variances: [f64; 3],
+    covariance: [[f64; 4]; 4],
+}
+
+impl Fragment {
+    /// Of a law about a nominal inertia.
+    ///
+    /// # Errors
+    /// What a scenario would read is not allowed, or is another law: its mean axes are not the
+    /// principal axes of the nominal inertia.
+    pub fn new(
+        body: FragmentBody,
+        nominal: &Inertia,
+        law: &PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>,
+    ) -> Result<Self, FragmentError> {
+        let inertia: [[f64; 3]; 3] = (*nominal).into();
+        let variances = law.roots().variances();
+        let covariance = law.axes().covariance();
+        let covariance = std::array::from_fn(|i| std::array::from_fn(|j| covariance[(i, j)]));
+        let fragment = Self { body, inertia, variances, covariance };
+
+        // As a scenario reads it.
+        let read = Inertia::try_from(inertia)?;
+        GaussianRoots::new(read.second_moments().roots(), variances)?;
+        let mean = read.principal_axes().attitude();
+        RadiallyConstrainedGaussian::new(mean, Matrix4::from_fn(|i, j| covariance[i][j]))?;
+        let off = mean.angle_to(&law.axes().mean());
+        if !(off < SAME) {
+            return Err(FragmentError::Mean { degrees: off.to_degrees() });
+        }
+        Ok(fragment)
+    }
+
+    /// Nominal inertia by rows, kg·m².
+    #[must_use]
+    pub fn inertia(&self) -> [[f64; 3]; 3] {
+        self.inertia
+    }
+
+    /// Variances of the roots, kg·m².
+    #[must_use]
+    pub fn root_variances(&self) -> [f64; 3] {
+        self.variances
+    }
+
+    /// Covariance of the axes by rows, in ℝ⁴, scalar last.
+    #[must_use]
+    pub fn axes_covariance(&self) -> [[f64; 4]; 4] {
+        self.covariance
+    }
+}
+
+impl fmt::Display for FragmentBody {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Payload => "payload",
+            Self::Stage => "stage",
+        })
+    }
+}
+
+impl fmt::Display for Fragment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let body = self.body;
+        writeln!(f, "[{body}]\ninertia_kg_m2 = [")?;
+        for row in self.inertia {
+            writeln!(f, "    {row:?},")?;
+        }
+        writeln!(f, "]\n\n[{body}.dispersion]")?;
+        writeln!(f, "root_second_moment_variance_kg_m2 = {:?}", self.variances)?;
+        writeln!(f, "axes_covariance = [")?;
+        for row in self.covariance {
+            writeln!(f, "    {row:?},")?;
+        }
+        writeln!(f, "]")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Scenario, scenario::Axes};
+    use gyradius_dispersion::RootLaw;
+    use nalgebra::{Matrix3, UnitQuaternion};
+
+    type Law = PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>;
+
+    fn law(moments: [f64; 3], turn: UnitQuaternion<f64>) -> (Inertia, Law) {
+        let nominal = Inertia::from_principal_moments(moments, &turn).unwrap();
+        let roots = nominal.second_moments().roots();
+        let axes = RadiallyConstrainedGaussian::from_rotation_covariance(
+            nominal.principal_axes().attitude(),
+            Matrix3::new(4e-4, 1e-4, 0.0, 1e-4, 1e-4, 0.0, 0.0, 0.0, 9e-4),
+            0.01,
+        );
+        let roots = GaussianRoots::new(roots, [0.1, 0.2, 0.0]).unwrap();
+        (nominal, PrincipalDispersion::new(roots, axes.unwrap()))
+    }
+
+    /// The paper's scenario with its payload taken out and the fragment pasted in.
+    fn pasted(fragment: &Fragment) -> String {
+        let scenario = Scenario::peck_2003().unwrap().to_toml();
+        let mut keep = true;
+        let mut text = String::new();
+        for line in scenario.lines() {
+            if line.starts_with('[') {
+                keep = !line.starts_with("[payload");
+            }
+            if keep {
+                text.push_str(line);
+                text.push('\n');
+            }
+        }
+        let fragment = fragment.to_string();
+        let state = "\nmass_kg = 1e4\nposition_m = [0.0, 0.0, 1.0]\n\n[payload.dispersion]";
+        format!("{text}\n{}", fragment.replace("\n[payload.dispersion]", state))
+    }
+
+    #[test]
+    fn a_scenario_reads_the_same_law_back() {
+        for turn in [UnitQuaternion::identity(), UnitQuaternion::from_euler_angles(0.1, 0.3, -0.5)]
+        {
+            let (nominal, law) = law([5000.0, 4000.0, 3000.0], turn);
+            let fragment = Fragment::new(FragmentBody::Payload, &nominal, &law).unwrap();
+            let scenario = Scenario::from_toml(&pasted(&fragment)).unwrap();
+            let body = scenario.payload();
+            assert_eq!(body.nominal(), &nominal);
+            let read = body.principal(Axes::WholeSphere).unwrap();
+            let RootLaw::Gaussian(roots) = read.roots() else { panic!("{read:?}") };
+            assert_eq!(roots.variances(), law.roots().variances());
+            let axes = body.gaussian_axes().unwrap();
+            assert_eq!(axes.covariance(), law.axes().covariance());
+            assert!(axes.mean().angle_to(&law.axes().mean()) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_law_about_other_axes_is_refused() {
+        let (nominal, _) = law([5000.0, 4000.0, 3000.0], UnitQuaternion::identity());
+        let (_, other) =
+            law([5000.0, 4000.0, 3000.0], UnitQuaternion::from_euler_angles(0.1, 0.0, 0.0));
+        let error = Fragment::new(FragmentBody::Stage, &nominal, &other).unwrap_err();
+        assert!(matches!(error, FragmentError::Mean { .. }), "{error}");
+        assert!(error.to_string().contains("5.7e0°"), "{error}");
+    }
+}
