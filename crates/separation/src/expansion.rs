@@ -123,7 +123,7 @@ fn square<const L: usize>(a: &[V3<L>; TERMS], k: usize) -> Lanes<L> {
         sum += dot(&a[j], &a[k - j]);
     }
     sum += sum;
-    if k % 2 == 0 { sum + dot(&a[k / 2], &a[k / 2]) } else { sum }
+    if k.is_multiple_of(2) { sum + dot(&a[k / 2], &a[k / 2]) } else { sum }
 }
 
 /// A few neighbouring entries of a state.
@@ -183,7 +183,7 @@ impl SpringSeries {
         };
         let mut push = self.free_length * self.inverse[k];
         if k == 0 {
-            push = push - one;
+            push -= one;
         }
         // A lost spring may come to length zero.
         self.push[k] = self.stiffness.zip(push, |k, x| if k == 0.0 { 0.0 } else { k * x });
