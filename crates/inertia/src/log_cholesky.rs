@@ -35,7 +35,7 @@ pub enum LogCholeskyError {
 
 /// Log-Cholesky coordinates of a body: ten numbers without constraints, in the order
 /// (α, d₁, d₂, d₃, s₁₂, s₂₃, s₁₃, t₁, t₂, t₃) of Rucker & Wensing (2022),
-/// doi:10.1109/LRA.2022.3193246. The pseudo-inertia is J = U Uᵀ with
+/// doi:10.1109/LRA.2022.3144517. The pseudo-inertia is J = U Uᵀ with
 ///
 /// ```text
 /// U = exp(α) | exp(d₁)  s₁₂      s₁₃      t₁ |
