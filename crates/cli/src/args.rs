@@ -1,4 +1,5 @@
 use clap::{Args, Parser, Subcommand};
+use gyradius_study::{CompareOptions, ModelKind};
 use std::path::PathBuf;
 
 /// Uncertain rigid-body inertia: Monte Carlo studies of spacecraft separation.
@@ -42,6 +43,14 @@ pub(crate) enum Command {
     /// of Peck (2003).
     #[command(after_help = MODEL_EXAMPLES)]
     Model(ModelArgs),
+    /// Compare the models of inertia uncertainty on the same bodies
+    ///
+    /// Draws from every model about nominal bodies over a growing uncertainty, each model with the same
+    /// mean and covariance of the six entries as far as its kind can have them, and shows the share
+    /// of draws that no body has, and how widely inertia ratio, wobble, and nutation after a separation
+    /// spread. What was matched, and how far it is off, is shown with it.
+    #[command(after_help = COMPARE_EXAMPLES)]
+    Compare(CompareArgs),
 }
 
 const MODEL_EXAMPLES: &str = "\
@@ -87,6 +96,21 @@ JSON or TOML; kg·m² unless the header says otherwise. At least 13 samples.
 
 Exit code: 0 if nothing speaks against the model, 1 if the samples do (the fragment is written
 all the same), 2 if something could not be read, fitted or written.";
+
+const COMPARE_EXAMPLES: &str = "\
+Examples:
+  gyradius compare
+      Every model on four bodies, from 1 to 50 % of the largest moment
+  gyradius compare --body 5000,4000,3000,20,2,-50 --levels 3,10 --out report
+      Another body, with page, tables and figures in the folder report
+  gyradius compare --scenario my-vehicle.toml --body payload
+      The payload of a scenario, in that scenario's separation
+  gyradius compare --reference entries --body slender-stage
+      Six independent deviations of that size instead, as in common practice
+  gyradius compare --models principal,entrywise --format csv > comparison.csv
+      Two models, for another program
+
+The same options and seed give the same numbers on any number of threads.";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:
@@ -233,6 +257,83 @@ pub(crate) enum BodyArg {
     Payload,
     /// What it is separated from
     Stage,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct CompareArgs {
+    /// A body: payload, slender-stage, panel or bus; payload or stage of the scenario; or its inertia
+    /// in kg·m², I11,I22,I33[,I12,I13,I23]. May be given several times [default: all by name]
+    #[arg(long = "body", value_name = "NAME|I11,I22,...", allow_hyphen_values = true)]
+    pub(crate) bodies: Vec<String>,
+
+    /// Scenario file (TOML) for the bodies and the separation [default: Peck (2003)]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scenario: Option<PathBuf>,
+
+    /// Uncertainties in percent of the largest moment
+    #[arg(
+        long,
+        value_name = "P,P,...",
+        value_delimiter = ',',
+        default_value = "1,2,5,10,20,50",
+        allow_hyphen_values = true
+    )]
+    pub(crate) levels: Vec<f64>,
+
+    /// What every model is matched to at a level
+    #[arg(long, value_enum, default_value_t = ReferenceName::Principal)]
+    pub(crate) reference: ReferenceName,
+
+    /// Models [default: all]: principal, entrywise, correlated-entries, realizable-entrywise,
+    /// realizable-correlated-entries, log-cholesky, wishart, basilisk
+    #[arg(long, value_name = "M,M,...", value_delimiter = ',')]
+    pub(crate) models: Vec<ModelKind>,
+
+    /// Draws of each model about each body at each level
+    #[arg(long, value_name = "N", default_value_t = CompareOptions::default().draws)]
+    pub(crate) draws: u64,
+
+    /// How many of the draws are separated [default: 150, or all draws if they are fewer]
+    #[arg(long, value_name = "N")]
+    pub(crate) separations: Option<u64>,
+
+    /// Seed of all random numbers
+    #[arg(long, value_name = "S", default_value_t = CompareOptions::default().seed)]
+    pub(crate) seed: u64,
+
+    /// Number of threads [default: one for each core]
+    #[arg(long, value_name = "T")]
+    pub(crate) threads: Option<usize>,
+
+    /// Form of the output
+    #[arg(long, value_enum, default_value_t = CompareForm::Text)]
+    pub(crate) format: CompareForm,
+
+    /// Folder to write compare.html, compare.csv, compare.json and figures to
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Replace another comparison in the folder
+    #[arg(long, requires = "out")]
+    pub(crate) force: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum ReferenceName {
+    /// The moments of a law of bodies: the paper's, of that size
+    Principal,
+    /// Six independent entries with deviations of that size
+    Entries,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum CompareForm {
+    /// Tables to be read by people
+    Text,
+    /// One JSON object, described in docs/compare.md
+    Json,
+    /// One row for each body, level, model and measure
+    Csv,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod compare;
 mod fit;
 mod model;
 mod number;
@@ -34,6 +35,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Fit(arguments) => return fit::fit(arguments),
         Command::Model(arguments) => model::model(arguments),
         Command::Study(arguments) => study(arguments).map_err(Into::into),
+        Command::Compare(arguments) => compare::compare(arguments).map_err(Into::into),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

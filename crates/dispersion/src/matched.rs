@@ -266,7 +266,7 @@ fn first_order(
         let fourth = k[i] * k[i] - 0.5 * spread[(i, i)];
         if !(k[i] >= 0.0 && fourth >= 0.0) {
             return Err(format!(
-                "K_{} of mean {:e} kg·m² and deviation {:e} kg·m²: the square of no Gaussian is \
+                "K_{} of mean {:.3e} kg·m² and deviation {:.3e} kg·m²: the square of no Gaussian is \
                  this wide",
                 i + 1,
                 k[i],
@@ -300,7 +300,7 @@ fn first_order(
         let varies = products[(a, a)] > (ROUNDING * size).powi(2);
         if deviation > MAX_TURN || (varies && deviation == 0.0) {
             return Err(format!(
-                "{} varies by {:e} kg·m² in principal axes: no small turn of the axes does that, for \
+                "{} varies by {:.3e} kg·m² in principal axes: no small turn of the axes does that, for \
                  the two moments are too alike",
                 NAMES[3 + a],
                 products[(a, a)].sqrt()

@@ -1,4 +1,4 @@
-//! The folder of a study: written in full in a draft inside it, then put in place.
+//! The folder of a study or a comparison: written in full in a draft inside it, then put in place.
 
 use std::{
     fs::{self, File, TryLockError},
@@ -9,20 +9,73 @@ use std::{
 use crate::{scenario::Scenario, study::StudyError};
 
 const SCENARIO: &str = "scenario.toml";
+const COMPARISON: &str = "compare.json";
 const DRAFT: &str = ".draft-";
 const LOCK: &str = ".lock";
-/// Folders and files that a study writes, and whether they are folders.
-const ENTRIES: [(&str, bool); 5] = [
-    ("runs", true),
-    ("figures", true),
-    ("summary.json", false),
-    ("report.html", false),
-    (SCENARIO, false),
-];
+
+/// What is written to a folder, so that nothing else is touched.
+pub(crate) struct Contents<'a> {
+    /// What it is called.
+    what: &'static str,
+    /// Folders and files, and whether they are folders.
+    entries: &'static [(&'static str, bool)],
+    /// The file that tells one from another, without which a folder is not whole.
+    mark: &'static str,
+    /// How the names of its figures begin.
+    figures: &'static str,
+    /// Whether this text of the mark is that of the very same.
+    same: Box<dyn Fn(&str) -> bool + 'a>,
+}
+
+impl<'a> Contents<'a> {
+    pub(crate) fn of_study(scenario: &'a Scenario) -> Self {
+        Self {
+            what: "study",
+            entries: &[
+                ("runs", true),
+                ("figures", true),
+                ("summary.json", false),
+                ("report.html", false),
+                (SCENARIO, false),
+            ],
+            mark: SCENARIO,
+            figures: "figure-",
+            same: Box::new(|text| text == scenario.to_toml()),
+        }
+    }
+
+    /// `same` tells whether a `compare.json` is of the same comparison.
+    pub(crate) fn of_comparison(same: impl Fn(&str) -> bool + 'a) -> Self {
+        Self {
+            what: "comparison",
+            entries: &[
+                ("figures", true),
+                ("compare.html", false),
+                ("compare.csv", false),
+                (COMPARISON, false),
+            ],
+            mark: COMPARISON,
+            figures: "compare-",
+            same: Box::new(same),
+        }
+    }
+
+    fn wrote(&self, file: &Path) -> bool {
+        let name = file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        match file.components().next().map(|c| c.as_os_str().to_string_lossy().into_owned()) {
+            Some(top) if top == "runs" => name == "runs.parquet",
+            Some(top) if top == "figures" => {
+                name.starts_with(self.figures) && name.ends_with(".svg")
+            }
+            Some(top) => self.entries.iter().any(|(entry, is_folder)| !is_folder && *entry == top),
+            None => false,
+        }
+    }
+}
 
 /// A folder being prepared. Dropped before it is published, it leaves no trace.
-#[derive(Debug)]
-pub(crate) struct Folder {
+pub(crate) struct Folder<'a> {
+    contents: &'a Contents<'a>,
     place: PathBuf,
     draft: PathBuf,
     /// Held until the end, and given back by the system if the program dies.
@@ -31,12 +84,12 @@ pub(crate) struct Folder {
     made: bool,
 }
 
-impl Folder {
-    /// Checks that the study may go to `place` and can be written there, before anything is
-    /// computed, and keeps other studies out.
+impl<'a> Folder<'a> {
+    /// Checks that it may go to `place` and can be written there, before anything is
+    /// computed, and keeps others out.
     pub(crate) fn prepare(
         place: &Path,
-        scenario: &Scenario,
+        contents: &'a Contents<'a>,
         force: bool,
     ) -> Result<Self, StudyError> {
         let problem = |problem: String| StudyError::Folder { path: place.to_owned(), problem };
@@ -50,13 +103,13 @@ impl Folder {
         match lock.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                return Err(problem("another study is being written there".to_owned()));
+                return Err(problem("something else is being written there".to_owned()));
             }
             Err(TryLockError::Error(e)) => return Err(unwritable(e)),
         }
         let draft = place.join(format!("{DRAFT}{}", std::process::id()));
-        let folder = Self { place: place.to_owned(), draft, lock, made };
-        folder.check(scenario, force).map_err(problem)?;
+        let folder = Self { contents, place: place.to_owned(), draft, lock, made };
+        folder.check(force).map_err(problem)?;
         folder.clear_drafts().map_err(unwritable)?;
         for name in ["new", "old"] {
             fs::create_dir_all(folder.draft.join(name)).map_err(unwritable)?;
@@ -64,34 +117,34 @@ impl Folder {
         Ok(folder)
     }
 
-    /// What is in the way of this study, if anything is.
-    fn check(&self, scenario: &Scenario, force: bool) -> Result<(), String> {
+    /// What is in the way, if anything is.
+    fn check(&self, force: bool) -> Result<(), String> {
         let mut occupied = false;
         for entry in fs::read_dir(&self.place).map_err(|e| e.to_string())? {
             let name = entry.map_err(|e| e.to_string())?.file_name();
             let name = name.to_string_lossy();
             occupied |= !name.starts_with(DRAFT) && name != LOCK;
         }
-        let same = fs::read_to_string(self.place.join(SCENARIO))
-            .is_ok_and(|text| text == scenario.to_toml());
+        let Contents { what, mark, .. } = self.contents;
+        let same =
+            fs::read_to_string(self.place.join(mark)).is_ok_and(|text| (self.contents.same)(&text));
         if occupied && !same && !force {
-            return Err(
-                "it already holds another study or other files; choose another folder with \
-                        --out, or pass --force to replace what a study writes there"
-                    .to_owned(),
-            );
+            return Err(format!(
+                "it already holds another {what} or other files; choose another folder with \
+                 --out, or pass --force to replace what a {what} writes there"
+            ));
         }
-        for (name, is_folder) in ENTRIES {
+        for &(name, is_folder) in self.contents.entries {
             let path = self.place.join(name);
             if path.exists() && path.is_dir() != is_folder {
                 let (is, should) = if is_folder { ("file", "folder") } else { ("folder", "file") };
-                return Err(format!("{name} in it is a {is} where a study has a {should}"));
+                return Err(format!("{name} in it is a {is} where a {what} has a {should}"));
             }
         }
         Ok(())
     }
 
-    /// Drafts of studies that were broken off: nobody is writing them, or the lock would be held.
+    /// Drafts that were broken off: nobody is writing them, or the lock would be held.
     fn clear_drafts(&self) -> io::Result<()> {
         for entry in fs::read_dir(&self.place)? {
             let entry = entry?;
@@ -100,6 +153,23 @@ impl Folder {
             }
         }
         Ok(())
+    }
+
+    /// The files that a run before wrote here, by their paths.
+    fn written_before(&self) -> io::Result<Vec<PathBuf>> {
+        let mut files = Vec::new();
+        for &(entry, is_folder) in self.contents.entries {
+            let path = self.place.join(entry);
+            if is_folder && path.is_dir() {
+                files.extend(files_below(&path, Path::new(entry))?);
+            } else if path.exists() {
+                files.push(PathBuf::from(entry));
+            }
+        }
+        files.retain(|file| self.contents.wrote(file));
+        // The mark goes first: a folder without one is not whole.
+        files.sort_by_key(|file| file != Path::new(self.contents.mark));
+        Ok(files)
     }
 
     /// Writes a file of the draft, making the folders above it.
@@ -122,18 +192,18 @@ impl Folder {
         create().map_err(|source| StudyError::Write { path: self.place.join(name), source })
     }
 
-    /// Puts the draft in place of the files of the study that was there, and of nothing else. If
+    /// Puts the draft in place of the files of the one that was there, and of nothing else. If
     /// that fails half-way, what was there is put back.
     pub(crate) fn publish(self) -> Result<PathBuf, StudyError> {
         let (new, old) = (self.draft.join("new"), self.draft.join("old"));
         let mut moves: Vec<(PathBuf, PathBuf)> = Vec::new();
         let mut put = || -> io::Result<()> {
-            for file in written_by_a_study(&self.place)? {
+            for file in self.written_before()? {
                 moved(&self.place.join(&file), &old.join(&file), &mut moves)?;
             }
-            // The scenario goes last: a folder with one is whole.
+            // The mark goes last: a folder with one is whole.
             let mut files = files_below(&new, Path::new(""))?;
-            files.sort_by_key(|file| (file == Path::new(SCENARIO), file.clone()));
+            files.sort_by_key(|file| (file == Path::new(self.contents.mark), file.clone()));
             for file in files {
                 moved(&new.join(&file), &self.place.join(&file), &mut moves)?;
             }
@@ -150,14 +220,14 @@ impl Folder {
     }
 }
 
-impl Drop for Folder {
+impl Drop for Folder<'_> {
     fn drop(&mut self) {
         // Failures here leave hidden files behind and harm nothing.
         let _ = fs::remove_dir_all(&self.draft);
         let _ = fs::remove_file(self.place.join(LOCK));
         let _ = self.lock.unlock();
         if self.made {
-            // Goes only if empty: the study failed.
+            // Goes only if empty: nothing was published.
             let _ = fs::remove_dir(&self.place);
         }
     }
@@ -170,32 +240,6 @@ fn moved(from: &Path, to: &Path, moves: &mut Vec<(PathBuf, PathBuf)>) -> io::Res
     fs::rename(from, to)?;
     moves.push((from.to_owned(), to.to_owned()));
     Ok(())
-}
-
-/// The files of a study in a folder, by their paths in it.
-fn written_by_a_study(place: &Path) -> io::Result<Vec<PathBuf>> {
-    let ours = |file: &PathBuf| {
-        let name = file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        match file.components().next().map(|c| c.as_os_str().to_string_lossy().into_owned()) {
-            Some(top) if top == "runs" => name == "runs.parquet",
-            Some(top) if top == "figures" => name.starts_with("figure-") && name.ends_with(".svg"),
-            Some(top) => ENTRIES.iter().any(|(entry, is_folder)| !is_folder && *entry == top),
-            None => false,
-        }
-    };
-    let mut files = Vec::new();
-    for (entry, is_folder) in ENTRIES {
-        let path = place.join(entry);
-        if is_folder && path.is_dir() {
-            files.extend(files_below(&path, Path::new(entry))?);
-        } else if path.exists() {
-            files.push(PathBuf::from(entry));
-        }
-    }
-    files.retain(ours);
-    // The scenario goes first: a folder without one is not whole.
-    files.sort_by_key(|file| file != Path::new(SCENARIO));
-    Ok(files)
 }
 
 /// Every file below a folder, as paths from `prefix`.
@@ -215,7 +259,11 @@ fn files_below(folder: &Path, prefix: &Path) -> io::Result<Vec<PathBuf>> {
 
 /// Folders of models that are no longer there.
 fn remove_empty_folders(place: &Path) -> io::Result<()> {
-    for entry in fs::read_dir(place.join("runs"))? {
+    let runs = place.join("runs");
+    if !runs.is_dir() {
+        return Ok(());
+    }
+    for entry in fs::read_dir(runs)? {
         // Only empty folders can be removed so.
         let _ = fs::remove_dir(entry?.path());
     }

@@ -15,6 +15,7 @@
 //! ```
 
 mod claims;
+mod compare;
 mod figures;
 mod folder;
 mod format;
@@ -31,7 +32,9 @@ mod summary;
 mod table;
 mod text;
 
+pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
 pub use fragment::{Fragment, FragmentBody, FragmentError};
+pub use gyradius_dispersion::ModelKind;
 pub use row::{Axis, Entry, Quantity, Row};
 pub use runner::Progress;
 pub use scenario::{Scenario, ScenarioError};

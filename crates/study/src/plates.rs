@@ -84,6 +84,7 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
             3,
         ));
     }
+    plates.extend(summary.every_model.plate());
     plates
 }
 

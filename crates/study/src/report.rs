@@ -31,6 +31,7 @@ pub(crate) fn html(scenario: &Scenario, summary: &Summary, plates: &[Plate]) -> 
                     (ratios(summary))
                     (deviations(scenario, summary))
                     (far_lobe(summary))
+                    (summary.every_model.markup())
                     (figures(plates))
                     (inputs(scenario, summary))
                 }

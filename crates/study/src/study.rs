@@ -3,7 +3,9 @@ use parquet::errors::ParquetError;
 use std::path::{Path, PathBuf};
 
 use crate::{
-    Progress, RunTable, Scenario, ScenarioError, Summary, folder::Folder, plates, report, runner,
+    Progress, RunTable, Scenario, ScenarioError, Summary,
+    folder::{Contents, Folder},
+    plates, report, runner,
 };
 
 /// Most threads that may be asked for.
@@ -89,10 +91,11 @@ impl Study {
         let default = || Path::new("target/study").join(scenario.name());
         let place = options.out.clone().unwrap_or_else(default);
         let models = runner::models(scenario)?;
-        let folder = Folder::prepare(&place, scenario, options.force)?;
+        let contents = Contents::of_study(scenario);
+        let folder = Folder::prepare(&place, &contents, options.force)?;
 
         let tables = runner::run(scenario, &models, &threads, progress);
-        let summary = Summary::new(scenario, &models, &tables)?;
+        let summary = threads.install(|| Summary::new(scenario, &models, &tables))?;
         let figures = plates::of_study(scenario, &summary, &tables);
 
         folder.write("scenario.toml", &scenario.to_toml())?;
@@ -130,7 +133,7 @@ impl Study {
     }
 }
 
-fn threads(number: Option<usize>) -> Result<rayon::ThreadPool, StudyError> {
+pub(crate) fn threads(number: Option<usize>) -> Result<rayon::ThreadPool, StudyError> {
     if let Some(n) = number
         && !(1..=MAX_THREADS).contains(&n)
     {

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::{
     claims::{self, Claim},
+    compare::Section,
     model::{Model, separate},
     row::{Body, Quantity, Row},
     scenario::Scenario,
@@ -29,6 +30,8 @@ pub struct Summary {
     pub(crate) models: Vec<ModelSummary>,
     pub(crate) comparisons: Vec<ComparisonSummary>,
     pub(crate) claims: Vec<Claim>,
+    /// Every model of inertia with the moments of the scenario's bodies.
+    pub(crate) every_model: Section,
 }
 
 /// A quantity of the run without any dispersion.
@@ -62,7 +65,7 @@ pub(crate) struct ModelSummary {
 }
 
 /// A share of the runs.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Share {
     pub(crate) count: u64,
     pub(crate) of: u64,
@@ -156,6 +159,7 @@ impl Summary {
             models,
             comparisons,
             claims: Vec::new(),
+            every_model: Section::new(scenario)?,
         };
         summary.claims = claims::judge(scenario, &summary, tables);
         Ok(summary)
@@ -241,7 +245,11 @@ impl ModelSummary {
 }
 
 impl Share {
-    fn new(count: u64, of: u64, confidence: Confidence) -> Result<Self, StatisticsError> {
+    pub(crate) fn new(
+        count: u64,
+        of: u64,
+        confidence: Confidence,
+    ) -> Result<Self, StatisticsError> {
         let proportion = Proportion::new(count, of)?;
         let interval = proportion.interval(confidence);
         Ok(Self { count, of, share: proportion.value(), interval })

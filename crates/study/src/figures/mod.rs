@@ -12,11 +12,15 @@ mod axis;
 mod bins;
 mod histogram;
 mod legend;
+mod lines;
 mod panel;
+mod ranges;
 mod sphere;
 mod style;
 mod svg;
 mod text;
 
 pub(crate) use histogram::{Panel, Series, histogram_grid};
+pub(crate) use lines::{Line, LinePanel, LinePoint, Range, line_grid};
+pub(crate) use ranges::{Label, RangePanel, range_grid};
 pub(crate) use sphere::{Cloud, attitude_spheres};

@@ -1,0 +1,167 @@
+//! One model about one body at one level.
+
+use gyradius_dispersion::{ModelDraw, ModelKind};
+use gyradius_inertia::InertiaMatrix;
+use gyradius_separation::SpinMetrics;
+use gyradius_statistics::{Confidence, StatisticsError};
+use rand_distr::Distribution;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{
+    fit::Fit,
+    measure::{Measure, Spread},
+    options::Size,
+    reference::Target,
+};
+use crate::{model::separate, row::Failure, scenario::Scenario, streams::Streams, summary::Share};
+
+/// How a model did, or why there is none.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Cell {
+    pub(crate) model: ModelKind,
+    pub(crate) realizable_by_construction: bool,
+    /// Why no model of this kind has the moments.
+    pub(crate) problem: Option<String>,
+    pub(crate) results: Option<Results>,
+}
+
+/// What the draws of a model are like.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Results {
+    /// What of the moments it was given.
+    pub(crate) matched: &'static str,
+    pub(crate) fit: Fit,
+    /// The share of draws that rejection keeps, if it rejects.
+    pub(crate) acceptance: Option<f64>,
+    pub(crate) unrealizable: Share,
+    pub(crate) spreads: Vec<Spread>,
+    pub(crate) separations: u64,
+    pub(crate) failed_separations: u64,
+    pub(crate) failures: Vec<(String, u64)>,
+}
+
+impl Results {
+    pub(crate) fn spread(&self, measure: Measure) -> Option<&Spread> {
+        self.spreads.iter().find(|s| s.measure == measure)
+    }
+}
+
+struct Drawn {
+    entries: [f64; 6],
+    realizable: bool,
+    measures: [f64; Measure::OF_DRAWS],
+}
+
+impl Cell {
+    pub(crate) fn new(
+        kind: ModelKind,
+        target: &Target,
+        scenario: &Scenario,
+        streams: &Streams,
+        size: Size,
+    ) -> Result<Self, StatisticsError> {
+        let mut cell = Self {
+            model: kind,
+            realizable_by_construction: kind.is_realizable_by_construction(),
+            problem: None,
+            results: None,
+        };
+        match target.model(kind) {
+            Err(problem) => cell.problem = Some(problem),
+            Ok((model, matched)) => {
+                let draw = |run: u64| -> InertiaMatrix {
+                    let draw: ModelDraw = model.sample(&mut streams.run(run));
+                    draw.inertia
+                };
+                let drawn: Vec<Drawn> = (0..size.draws)
+                    .into_par_iter()
+                    .map(|run| Drawn::new(&draw(run), scenario))
+                    .collect();
+                let separated: Vec<Result<Option<f64>, Failure>> = (0..size.separations)
+                    .into_par_iter()
+                    .map(|run| nutation(draw(run), scenario))
+                    .collect();
+                let known = model.entry_moments();
+                let entries = || drawn.iter().map(|d| d.entries).collect::<Vec<_>>();
+                let fit = match known {
+                    Some(moments) => Some(Fit::known(&moments, target.moments())),
+                    None => Fit::of_draws(&entries(), target.moments()),
+                };
+                if let Some(fit) = fit {
+                    let results =
+                        Results::new(matched, fit, model.acceptance(), &drawn, &separated)?;
+                    cell.results = Some(results);
+                } else {
+                    cell.problem = Some("too few draws".to_owned());
+                }
+            }
+        }
+        Ok(cell)
+    }
+}
+
+impl Results {
+    fn new(
+        matched: &'static str,
+        fit: Fit,
+        acceptance: Option<f64>,
+        drawn: &[Drawn],
+        separated: &[Result<Option<f64>, Failure>],
+    ) -> Result<Self, StatisticsError> {
+        let unrealizable = drawn.iter().filter(|d| !d.realizable).count() as u64;
+        let mut failures: Vec<(String, u64)> = Vec::new();
+        for failure in separated.iter().filter_map(|s| s.as_ref().err()) {
+            match failures.iter_mut().find(|(kind, _)| *kind == failure.kind) {
+                Some((_, count)) => *count += 1,
+                None => failures.push((failure.kind.clone(), 1)),
+            }
+        }
+        let spreads = Measure::ALL.into_iter().enumerate().map(|(i, measure)| {
+            if i < Measure::OF_DRAWS {
+                Spread::new(measure, drawn.iter().map(|d| Some(d.measures[i])))
+            } else {
+                Spread::new(measure, separated.iter().flatten().copied())
+            }
+        });
+        Ok(Self {
+            matched,
+            fit,
+            acceptance,
+            unrealizable: Share::new(unrealizable, drawn.len() as u64, Confidence::default())?,
+            spreads: spreads.collect(),
+            separations: separated.len() as u64,
+            failed_separations: failures.iter().map(|f| f.1).sum(),
+            failures,
+        })
+    }
+}
+
+impl Drawn {
+    fn new(inertia: &InertiaMatrix, scenario: &Scenario) -> Self {
+        Self {
+            entries: inertia.entries(),
+            realizable: inertia.is_realizable(),
+            measures: measures(inertia, scenario),
+        }
+    }
+}
+
+/// Principal moments in descending order, inertia ratio, wobble in degrees.
+pub(crate) fn measures(inertia: &InertiaMatrix, scenario: &Scenario) -> [f64; Measure::OF_DRAWS] {
+    let mut moments = inertia.principal_axes().moments();
+    moments.sort_by(f64::total_cmp);
+    let [smallest, middle, largest] = moments;
+    // Neither depends on how fast the body turns.
+    let spin = SpinMetrics::new(inertia, scenario.spin_axis().as_ref(), scenario.spin_axis());
+    [largest, middle, smallest, spin.inertia_ratio(), spin.wobble().to_degrees()]
+}
+
+/// Nutation in degrees after the separation of the scenario with this payload.
+pub(crate) fn nutation(
+    payload: InertiaMatrix,
+    scenario: &Scenario,
+) -> Result<Option<f64>, Failure> {
+    let stage = *scenario.stage().nominal().as_inertia_matrix();
+    separate(scenario, payload, stage).map(|outcome| outcome.nutation_deg)
+}

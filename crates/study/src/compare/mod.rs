@@ -1,0 +1,320 @@
+//! The models of inertia uncertainty head to head: about the same nominal bodies, with the same mean
+//! and covariance of the entries as far as each can, over a growing uncertainty.
+
+mod body;
+mod contest;
+mod fit;
+mod measure;
+mod options;
+mod page;
+mod plates;
+mod reference;
+mod section;
+mod table;
+#[cfg(test)]
+mod tests;
+mod text;
+
+use gyradius_dispersion::ModelKind;
+use gyradius_statistics::StatisticsError;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicU64, Ordering},
+};
+
+pub use options::CompareOptions;
+pub use reference::Reference;
+
+pub(crate) use section::Section;
+
+use crate::{
+    Progress, StudyError,
+    folder::{Contents, Folder},
+    scenario::{Scenario, ScenarioError},
+    streams::Streams,
+    study::threads,
+};
+use body::NominalBody;
+use contest::{Cell, measures, nutation};
+use measure::Measure;
+use options::{Plan, Size};
+use reference::Target;
+
+/// Why models could not be compared. Nothing has been overwritten.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// A value is not allowed.
+    #[error("{field}: {problem}")]
+    Field {
+        /// Which.
+        field: String,
+        /// The value and what is allowed.
+        problem: String,
+    },
+    /// The scenario is refused.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The draws cannot be summarised.
+    #[error("cannot summarise the draws: {0}")]
+    Statistics(#[from] StatisticsError),
+    /// The result cannot be written, or no threads be started.
+    #[error(transparent)]
+    Write(#[from] StudyError),
+    /// The result cannot be put into JSON.
+    #[error("cannot write the comparison: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+impl CompareError {
+    #[allow(clippy::needless_pass_by_value, reason = "errors are given away as they come")]
+    fn field(field: impl Into<String>, problem: impl std::fmt::Display) -> Self {
+        Self::Field { field: field.into(), problem: format!("{problem}") }
+    }
+}
+
+/// Models of inertia uncertainty compared.
+///
+/// Every draw depends on (seed, model, body, level, number of the draw) alone: results are the same
+/// bits on any number of threads, and more draws leave the first ones alone.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelComparison {
+    gyradius_version: &'static str,
+    settings: Settings,
+    /// Of every interval.
+    confidence: f64,
+    bodies: Vec<BodyResult>,
+    /// Where it was written to, if it was.
+    #[serde(skip)]
+    folder: Option<PathBuf>,
+}
+
+/// What makes a comparison the same as another.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Settings {
+    scenario: String,
+    scenario_fingerprint: String,
+    reference: Reference,
+    reference_meaning: &'static str,
+    bodies: Vec<(String, [f64; 6])>,
+    levels_percent: Vec<f64>,
+    models: Vec<ModelKind>,
+    draws: u64,
+    separations: u64,
+    seed: u64,
+}
+
+/// All models about one body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct BodyResult {
+    name: String,
+    /// I11, I22, I33, I12, I13, I23.
+    inertia_kg_m2: [f64; 6],
+    /// In the order of [`Measure::ALL`]; none for a nutation that does not exist.
+    nominal: Vec<NominalValue>,
+    levels: Vec<LevelResult>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct NominalValue {
+    measure: Measure,
+    unit: &'static str,
+    value: Option<f64>,
+}
+
+/// All models at one level.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct LevelResult {
+    /// None for a body's own uncertainty, which no percentage says.
+    level_percent: Option<f64>,
+    reference: Option<ReferenceResult>,
+    /// Why there is no reference.
+    problem: Option<String>,
+    models: Vec<Cell>,
+}
+
+/// What the models were to have at a level.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct ReferenceResult {
+    mean_kg_m2: [f64; 6],
+    deviations_kg_m2: [f64; 6],
+    /// That no law of bodies has these moments, where it can be shown.
+    impossible: Option<String>,
+}
+
+impl ModelComparison {
+    /// Draws from every model and writes the folder, if one is asked for. `progress` is told how many
+    /// of [`CompareOptions::cells`] are done.
+    ///
+    /// # Errors
+    /// An option is refused, or the folder holds something else and `force` is not set, or something
+    /// cannot be written. What was there stays as it was.
+    pub fn run(options: &CompareOptions, progress: Progress<'_>) -> Result<Self, CompareError> {
+        let plan = Plan::new(options)?;
+        let threads = threads(options.threads)?;
+        let settings = Settings::new(&plan);
+        let wanted = serde_json::to_value(&settings)?;
+        let contents = Contents::of_comparison(|text| {
+            serde_json::from_str::<serde_json::Value>(text)
+                .is_ok_and(|found| found.get("settings") == Some(&wanted))
+        });
+        let folder = match &options.out {
+            Some(place) => Some(Folder::prepare(place, &contents, options.force)?),
+            None => None,
+        };
+        let bodies = threads.install(|| bodies(&plan, progress))?;
+        let mut comparison = Self {
+            gyradius_version: env!("CARGO_PKG_VERSION"),
+            settings,
+            confidence: gyradius_statistics::Confidence::default().level(),
+            bodies,
+            folder: None,
+        };
+        if let Some(folder) = folder {
+            comparison.folder = Some(comparison.write(folder)?);
+        }
+        Ok(comparison)
+    }
+
+    fn write(&self, folder: Folder<'_>) -> Result<PathBuf, CompareError> {
+        let plates = self.plates();
+        for plate in &plates {
+            folder.write(&format!("figures/{}.svg", plate.name), &plate.svg)?;
+        }
+        folder.write("compare.html", &self.page(&plates))?;
+        folder.write("compare.csv", &self.to_csv())?;
+        folder.write("compare.json", &self.to_json()?)?;
+        Ok(folder.publish()?)
+    }
+
+    /// The folder that was written, if one was asked for.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
+    /// Every number, described in docs/compare.md.
+    ///
+    /// # Errors
+    /// None for what this program computes: numbers that JSON does not know are null.
+    pub fn to_json(&self) -> Result<String, CompareError> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+}
+
+impl Settings {
+    fn new(plan: &Plan) -> Self {
+        Self {
+            scenario: plan.scenario.name().to_owned(),
+            scenario_fingerprint: plan.scenario.fingerprint(),
+            reference: plan.reference,
+            reference_meaning: plan.reference.meaning(),
+            bodies: plan
+                .bodies
+                .iter()
+                .map(|b| (b.name().to_owned(), b.inertia().entries()))
+                .collect(),
+            levels_percent: plan.levels_percent.clone(),
+            models: plan.models.clone(),
+            draws: plan.size.draws,
+            separations: plan.size.separations,
+            seed: plan.size.seed,
+        }
+    }
+}
+
+/// Everything at once: the cells are independent of each other.
+fn bodies(plan: &Plan, progress: Progress<'_>) -> Result<Vec<BodyResult>, StatisticsError> {
+    let done = AtomicU64::new(0);
+    plan.bodies
+        .par_iter()
+        .map(|body| {
+            let levels = plan.levels_percent.par_iter().map(|percent| {
+                let target = plan.reference.at(body, percent / 100.0);
+                let target = target.map_err(|e| e.to_string());
+                let label = format!("{} at {percent:?} %, {}", body.name(), plan.reference.name());
+                let result = level(
+                    Some(*percent),
+                    &label,
+                    target,
+                    &plan.models,
+                    &plan.scenario,
+                    plan.size,
+                    &|| progress(done.fetch_add(1, Ordering::Relaxed) + 1),
+                );
+                result
+            });
+            Ok(BodyResult::new(body, &plan.scenario, levels.collect::<Result<_, _>>()?))
+        })
+        .collect()
+}
+
+/// All models at a level. `label` tells its random streams from others.
+fn level(
+    level_percent: Option<f64>,
+    label: &str,
+    target: Result<Target, String>,
+    models: &[ModelKind],
+    scenario: &Scenario,
+    size: Size,
+    done: &(dyn Fn() + Sync),
+) -> Result<LevelResult, StatisticsError> {
+    let target = match target {
+        Ok(target) => target,
+        Err(problem) => {
+            models.iter().for_each(|_| done());
+            let problem = Some(problem);
+            return Ok(LevelResult { level_percent, reference: None, problem, models: Vec::new() });
+        }
+    };
+    let cells: Result<Vec<Cell>, StatisticsError> = models
+        .par_iter()
+        .map(|kind| {
+            let streams = Streams::new(size.seed, kind.name(), &format!("compare {label}"));
+            let cell = Cell::new(*kind, &target, scenario, &streams, size);
+            done();
+            cell
+        })
+        .collect();
+    let reference = ReferenceResult {
+        mean_kg_m2: target.moments().mean(),
+        deviations_kg_m2: target.moments().deviations(),
+        impossible: target.impossible(),
+    };
+    Ok(LevelResult { level_percent, reference: Some(reference), problem: None, models: cells? })
+}
+
+impl BodyResult {
+    fn new(body: &NominalBody, scenario: &Scenario, levels: Vec<LevelResult>) -> Self {
+        let matrix = *body.inertia().as_inertia_matrix();
+        let of_draws = measures(&matrix, scenario).map(Some);
+        let nutation = nutation(matrix, scenario).ok().flatten();
+        let values = of_draws.into_iter().chain([nutation]);
+        Self {
+            name: body.name().to_owned(),
+            inertia_kg_m2: body.inertia().entries(),
+            nominal: Measure::ALL
+                .into_iter()
+                .zip(values)
+                .map(|(measure, value)| NominalValue {
+                    measure,
+                    unit: measure.unit(),
+                    value: value.filter(|x| x.is_finite()),
+                })
+                .collect(),
+            levels,
+        }
+    }
+
+    fn nominal(&self, measure: Measure) -> Option<f64> {
+        self.nominal.iter().find(|n| n.measure == measure)?.value
+    }
+}
+
+impl LevelResult {
+    fn cell(&self, kind: ModelKind) -> Option<&Cell> {
+        self.models.iter().find(|cell| cell.model == kind)
+    }
+}

@@ -1,0 +1,146 @@
+//! The comparison as one page of HTML that needs nothing but itself.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::{
+    BodyResult, ModelComparison,
+    measure::Measure,
+    text::{Block, heading, is_poor, kinds, matched, remarks},
+};
+use crate::{format::optional, plates::Plate};
+
+const STYLE: &str = include_str!("../report.css");
+
+const BLOCKS: [Block; 9] = [
+    Block::Unrealizable,
+    Block::Spread(Measure::InertiaRatio),
+    Block::Spread(Measure::Wobble),
+    Block::Spread(Measure::Nutation),
+    Block::Spread(Measure::LargestMoment),
+    Block::Spread(Measure::MiddleMoment),
+    Block::Spread(Measure::SmallestMoment),
+    Block::MeanOff,
+    Block::CovarianceOff,
+];
+
+impl ModelComparison {
+    pub(super) fn page(&self, plates: &[Plate]) -> String {
+        let s = &self.settings;
+        html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    title { "gyradius: models of inertia uncertainty compared" }
+                    style { (PreEscaped(STYLE)) }
+                }
+                body { main {
+                    h1 { "Models of inertia uncertainty, head to head" }
+                    p.lead {
+                        (s.draws) " draws of each model about each body at each level, "
+                        (s.separations) " of them separated in the scenario " strong { (s.scenario) }
+                        " in place of its payload; seed " (s.seed) ". Intervals have a confidence of "
+                        (100.0 * self.confidence) " %."
+                    }
+                    (reading(s.reference_meaning))
+                    h2 { "Figures" }
+                    @for plate in plates {
+                        figure id=(plate.name) {
+                            (PreEscaped(plate.svg.as_str()))
+                            figcaption { (plate.caption) ". " code { "figures/" (plate.name) ".svg" } }
+                        }
+                    }
+                    @for body in &self.bodies { (body_tables(body)) }
+                    p {
+                        "Every number of this page, and more, is in " code { "compare.json" } " and "
+                        code { "compare.csv" } ". Made by gyradius " (self.gyradius_version)
+                        "; the scenario's SHA-256 is " code.hash { (s.scenario_fingerprint) } "."
+                    }
+                } }
+            }
+        }
+        .into_string()
+    }
+}
+
+fn reading(meaning: &str) -> Markup {
+    html! {
+        h2 { "How to read this" }
+        p { (meaning) }
+        p {
+            "Not every kind of model can have every covariance. How far each is off is in the tables: "
+            "the distance of its mean from the reference's over the reference's deviation, and the "
+            "distance of the covariances over the size of the reference's, both for the whole matrix. "
+            "Where the covariance is further off than that of a body known exactly (100 %), points are "
+            "hollow and numbers in brackets: there the comparison is not of like with like."
+        }
+        p {
+            "Spreads are given by quantiles: a matrix that no body has can have an inertia ratio as "
+            "large as one likes, and a single such draw would make the standard deviation, which is in "
+            "the files. “<” is an upper bound where none of the draws was unrealizable."
+        }
+    }
+}
+
+fn body_tables(body: &BodyResult) -> Markup {
+    let [i11, i22, i33, i12, i13, i23] = body.inertia_kg_m2;
+    html! {
+        h2 { (body.name) }
+        p {
+            "I₁₁, I₂₂, I₃₃ = " (i11) ", " (i22) ", " (i33) " and I₁₂, I₁₃, I₂₃ = " (i12) ", " (i13)
+            ", " (i23) " kg·m². Nominal inertia ratio "
+            (optional(body.nominal(Measure::InertiaRatio), 4)) ", wobble "
+            (optional(body.nominal(Measure::Wobble), 3)) "°, nutation "
+            (optional(body.nominal(Measure::Nutation), 3)) "°."
+        }
+        div.wide { table {
+            @for block in BLOCKS { (block_rows(body, block)) }
+        } }
+        @let remarks = remarks(body);
+        @if !remarks.is_empty() {
+            ul { @for remark in remarks { li { (remark) } } }
+        }
+        details {
+            summary { "What was matched" }
+            div.wide { table.claims { tbody {
+                @for kind in kinds(body) {
+                    tr { th scope="row" { (kind) } td { (matched(body, kind)) } }
+                }
+            } } }
+        }
+    }
+}
+
+/// A table of models by levels, as part of a larger one.
+fn block_rows(body: &BodyResult, block: Block) -> Markup {
+    html! {
+        thead { tr {
+            th { (block.title()) }
+            @for level in &body.levels { th { (heading(level)) } }
+        } }
+        tbody {
+            @for kind in kinds(body) {
+                tr {
+                    th scope="row" { (kind) }
+                    @for level in &body.levels {
+                        @let cell = level.cell(kind);
+                        td title=(interval(cell)) {
+                            @if is_poor(cell) { "(" (block.cell(cell)) ")" }
+                            @else { (block.cell(cell)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn interval(cell: Option<&super::contest::Cell>) -> String {
+    let results = cell.and_then(|cell| cell.results.as_ref());
+    results.map_or_else(String::new, |r| {
+        let i = r.unrealizable.interval;
+        let percent = |x: f64| crate::format::significant(100.0 * x, 3);
+        format!("unrealizable: {} to {} %", percent(i.lower()), percent(i.upper()))
+    })
+}

@@ -1,0 +1,166 @@
+//! The figures of a comparison.
+
+use gyradius_dispersion::ModelKind;
+
+use super::{BodyResult, LevelResult, ModelComparison, contest::Results, measure::Measure};
+use crate::{
+    figures::{Line, LinePanel, LinePoint, Range, line_grid},
+    plates::Plate,
+};
+
+/// Colour and dashes of a model: kept for conditioned twins, which are dashed.
+pub(super) fn pen(kind: ModelKind) -> (usize, bool) {
+    match kind {
+        ModelKind::Entrywise => (1, false),
+        ModelKind::CorrelatedEntries => (3, false),
+        ModelKind::RealizableEntrywise => (1, true),
+        ModelKind::RealizableCorrelatedEntries => (3, true),
+        ModelKind::LogCholesky => (2, false),
+        ModelKind::Wishart => (4, false),
+        ModelKind::Basilisk => (5, false),
+        // The paper's, and models to come.
+        _ => (0, false),
+    }
+}
+
+/// Whether a value is divided by its level, which takes out what all models have in common.
+#[derive(Clone, Copy)]
+enum Scale {
+    Plain,
+    PerPercent,
+}
+
+type Value = fn(&Results) -> Option<(f64, Option<[f64; 2]>)>;
+
+fn line(body: &BodyResult, kind: ModelKind, value: Value, scale: Scale) -> Line {
+    let (colour, dashed) = pen(kind);
+    let point = |level: &LevelResult| {
+        let r = level.cell(kind)?.results.as_ref()?;
+        let (y, interval) = value(r)?;
+        let x = level.level_percent?;
+        let y = match scale {
+            Scale::Plain => y,
+            Scale::PerPercent => y / x,
+        };
+        Some(LinePoint { x, y, interval, hollow: r.fit.is_poor() })
+    };
+    Line {
+        name: kind.name().to_owned(),
+        colour,
+        dashed,
+        points: body.levels.iter().filter_map(point).collect(),
+    }
+}
+
+impl ModelComparison {
+    pub(super) fn plates(&self) -> Vec<Plate> {
+        let share: Value = |r| {
+            let u = &r.unrealizable;
+            let percent = [u.interval.lower() * 100.0, u.interval.upper() * 100.0];
+            Some((100.0 * u.share, Some(percent)))
+        };
+        let spread: [(Measure, Value); 4] = [
+            (Measure::InertiaRatio, |r| headline(r, Measure::InertiaRatio)),
+            (Measure::Wobble, |r| headline(r, Measure::Wobble)),
+            (Measure::Nutation, |r| headline(r, Measure::Nutation)),
+            (Measure::LargestMoment, |r| headline(r, Measure::LargestMoment)),
+        ];
+        let may_fail = |kind: &ModelKind| !kind.is_realizable_by_construction();
+        let mut plates = Vec::new();
+        if self.settings.models.iter().any(may_fail) {
+            let safe: Vec<&str> = self
+                .settings
+                .models
+                .iter()
+                .filter(|kind| !may_fail(kind))
+                .map(|kind| kind.name())
+                .collect();
+            let caption = if safe.is_empty() {
+                String::new()
+            } else {
+                format!(". Zero at every level, and not shown: {}", safe.join(", "))
+            };
+            plates.push(self.plate(
+                "compare-unrealizable",
+                "Draws that no body has",
+                "share of draws (%)",
+                &caption,
+                may_fail,
+                share,
+                Scale::Plain,
+            ));
+        }
+        for (measure, value) in spread {
+            plates.push(self.plate(
+                &format!("compare-{}", measure.name().replace('_', "-")),
+                &format!("{}, for each percent of uncertainty", capital(measure)),
+                &unit(measure),
+                "",
+                |_| true,
+                value,
+                Scale::PerPercent,
+            ));
+        }
+        plates
+    }
+
+    fn plate(
+        &self,
+        name: &str,
+        title: &str,
+        label: &str,
+        caption: &str,
+        shown: impl Fn(&ModelKind) -> bool,
+        value: Value,
+        scale: Scale,
+    ) -> Plate {
+        let panels: Vec<LinePanel> = self
+            .bodies
+            .iter()
+            .map(|body| LinePanel {
+                title: body.name.clone(),
+                lines: self
+                    .settings
+                    .models
+                    .iter()
+                    .filter(|kind| shown(kind))
+                    .map(|kind| line(body, *kind, value, scale))
+                    .collect(),
+            })
+            .collect();
+        let svg = line_grid(
+            title,
+            &panels,
+            "uncertainty (% of the largest moment)",
+            label,
+            &self.settings.levels_percent,
+            match scale {
+                Scale::Plain => Range::Common,
+                Scale::PerPercent => Range::Own,
+            },
+        );
+        Plate {
+            name: name.to_owned(),
+            caption: format!("{title}, over the uncertainty, for each body{caption}"),
+            svg,
+        }
+    }
+}
+
+fn headline(results: &Results, measure: Measure) -> Option<(f64, Option<[f64; 2]>)> {
+    Some((results.spread(measure)?.headline()?, None))
+}
+
+fn unit(measure: Measure) -> String {
+    match measure.unit() {
+        "1" => "per %".to_owned(),
+        unit => format!("{unit} per %"),
+    }
+}
+
+/// Measure and what is told of it, the first letter large.
+fn capital(measure: Measure) -> String {
+    let text = format!("{}: {}", measure.label(), measure.headline().0);
+    let mut chars = text.chars();
+    chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
+}
