@@ -252,9 +252,11 @@ fn wrapped(f: &mut Formatter<'_>, text: &str, indent: &str) -> fmt::Result {
     line.push_str(&start);
     let mut fresh = true;
     // Runs of spaces within are columns, and kept.
+    // A number and its percent sign stay together.
+    let text = text.replace(" %", "\u{a0}%");
     for word in text.trim_start().split(' ') {
         if !fresh && line.chars().count() + 1 + word.chars().count() > MOST {
-            writeln!(f, "{}", line.trim_end())?;
+            writeln!(f, "{}", line.trim_end().replace('\u{a0}', " "))?;
             line = indent.to_owned();
             fresh = true;
         }
@@ -264,5 +266,5 @@ fn wrapped(f: &mut Formatter<'_>, text: &str, indent: &str) -> fmt::Result {
         line.push_str(word);
         fresh = false;
     }
-    writeln!(f, "{}", line.trim_end())
+    writeln!(f, "{}", line.trim_end().replace('\u{a0}', " "))
 }
