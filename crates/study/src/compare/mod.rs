@@ -235,7 +235,7 @@ fn bodies(plan: &Plan, progress: Progress<'_>) -> Result<Vec<BodyResult>, Statis
                 let target = plan.reference.at(body, percent / 100.0);
                 let target = target.map_err(|e| e.to_string());
                 let label = format!("{} at {percent:?} %, {}", body.name(), plan.reference.name());
-                let result = level(
+                level(
                     Some(*percent),
                     &label,
                     target,
@@ -243,8 +243,7 @@ fn bodies(plan: &Plan, progress: Progress<'_>) -> Result<Vec<BodyResult>, Statis
                     &plan.scenario,
                     plan.size,
                     &|| progress(done.fetch_add(1, Ordering::Relaxed) + 1),
-                );
-                result
+                )
             });
             Ok(BodyResult::new(body, &plan.scenario, levels.collect::<Result<_, _>>()?))
         })

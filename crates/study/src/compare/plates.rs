@@ -23,6 +23,14 @@ pub(super) fn pen(kind: ModelKind) -> (usize, bool) {
     }
 }
 
+/// What a figure says of itself.
+struct Words {
+    name: String,
+    title: String,
+    label: String,
+    caption: String,
+}
+
 /// Whether a value is divided by its level, which takes out what all models have in common.
 #[derive(Clone, Copy)]
 enum Scale {
@@ -81,10 +89,12 @@ impl ModelComparison {
                 format!(". Zero at every level, and not shown: {}", safe.join(", "))
             };
             plates.push(self.plate(
-                "compare-unrealizable",
-                "Draws that no body has",
-                "share of draws (%)",
-                &caption,
+                &Words {
+                    name: "compare-unrealizable".to_owned(),
+                    title: "Draws that no body has".to_owned(),
+                    label: "share of draws (%)".to_owned(),
+                    caption,
+                },
                 may_fail,
                 share,
                 Scale::Plain,
@@ -92,10 +102,12 @@ impl ModelComparison {
         }
         for (measure, value) in spread {
             plates.push(self.plate(
-                &format!("compare-{}", measure.name().replace('_', "-")),
-                &format!("{}, for each percent of uncertainty", capital(measure)),
-                &unit(measure),
-                "",
+                &Words {
+                    name: format!("compare-{}", measure.name().replace('_', "-")),
+                    title: format!("{}, for each percent of uncertainty", capital(measure)),
+                    label: unit(measure),
+                    caption: String::new(),
+                },
                 |_| true,
                 value,
                 Scale::PerPercent,
@@ -106,10 +118,7 @@ impl ModelComparison {
 
     fn plate(
         &self,
-        name: &str,
-        title: &str,
-        label: &str,
-        caption: &str,
+        Words { name, title, label, caption }: &Words,
         shown: impl Fn(&ModelKind) -> bool,
         value: Value,
         scale: Scale,
@@ -140,7 +149,7 @@ impl ModelComparison {
             },
         );
         Plate {
-            name: name.to_owned(),
+            name: name.clone(),
             caption: format!("{title}, over the uncertainty, for each body{caption}"),
             svg,
         }

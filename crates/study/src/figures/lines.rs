@@ -181,12 +181,12 @@ impl Axes {
         let mut y = [lowest.floor(), (highest + 0.02).ceil()];
         // An end at 2 or 5 is a tick as well, and leaves less empty.
         let top = y[1];
-        for end in [5_f64, 2.0].map(|m| m.log10()) {
+        for end in [5_f64, 2.0].map(f64::log10) {
             if highest < top - 1.0 + end - 0.02 && top - 1.0 + end > y[0] + 0.9 {
                 y[1] = top - 1.0 + end;
             }
         }
-        for start in [2_f64, 5.0].map(|m| m.log10()) {
+        for start in [2_f64, 5.0].map(f64::log10) {
             if lowest > lowest.floor() + start + 0.02 && y[1] - lowest.floor() - start > 0.9 {
                 y[0] = lowest.floor() + start;
             }
