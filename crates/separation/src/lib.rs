@@ -3,8 +3,9 @@
 //! A payload sits on a stage; compressed springs act between fixed points of the two bodies, each
 //! along the line between its points, until it reaches its free length and is lost for good. This
 //! crate integrates the motion to the last release at full precision ([`Separation::run`], many at a
-//! time in a [`Batch`], with all that lies between as a [`Trajectory`]) and says what became of the payload's spin ([`SpinMetrics`]: wobble, nutation, coning, inertia
-//! ratio; Peck 2003, Eq. 28-37). It knows no probability.
+//! time in a [`Batch`], with all that lies between as a [`Trajectory`]) and says what became of the
+//! payload's spin ([`SpinMetrics`]: wobble, nutation, coning, inertia ratio; Peck 2003, Eq. 28-37) and
+//! how near the bodies come to each other afterwards ([`Clearance`]). It knows no probability.
 //!
 //! # Conventions
 //! * SI units; angles in rad. Inertia about the mass centre in body axes, products as tensor
@@ -38,6 +39,7 @@
 
 mod batch;
 mod body;
+mod clearance;
 mod expansion;
 mod integrator;
 mod lanes;
@@ -55,6 +57,10 @@ mod vector;
 
 pub use batch::Batch;
 pub use body::{Body, BodyError, BodyState, MovingBody};
+pub use clearance::{
+    Approach, Clearance, ClearanceError, ClearanceSettings, ClearanceSettingsError, Coast, Motion,
+    MotionLimits, Outline, OutlineError, Shape, ShapeClearance,
+};
 pub use metrics::SpinMetrics;
 pub use outcome::Outcome;
 pub use run::RunError;

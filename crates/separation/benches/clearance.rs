@@ -1,0 +1,83 @@
+//! One clearance query over a coast of 60 s.
+#![allow(missing_docs, reason = "criterion's macros make public items")]
+#![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use gyradius_inertia::InertiaMatrix;
+use gyradius_separation::{
+    Body, BodyState, Clearance, ClearanceSettings, Coast, MovingBody, Outline, Shape,
+};
+use nalgebra::Vector3;
+use std::hint::black_box;
+
+type V = Vector3<f64>;
+
+fn moving(moments: [f64; 3], position: V, velocity: V, angular_velocity: V) -> MovingBody {
+    let inertia = InertiaMatrix::from_entries(moments, [20.0, 10.0, -20.0]).unwrap();
+    let state = BodyState { position, velocity, angular_velocity, ..BodyState::default() };
+    Body::new(1e4, inertia).unwrap().moving(state)
+}
+
+/// A prism of `sides` sides about z.
+fn prism(sides: u32, radius: f64, bottom: f64, top: f64) -> Outline {
+    let corner = |i: u32, z: f64| {
+        let (s, c) = (f64::from(i) * std::f64::consts::TAU / f64::from(sides)).sin_cos();
+        V::new(radius * c, radius * s, z)
+    };
+    let points: Vec<V> = (0..sides).flat_map(|i| [corner(i, bottom), corner(i, top)]).collect();
+    Shape::hull(&points).unwrap().into()
+}
+
+fn ring(z: f64, radius: f64) -> Outline {
+    Shape::ring(V::z() * z, V::z(), radius).unwrap().into()
+}
+
+fn clearance(c: &mut Criterion) {
+    // After a separation with tip-off, spinning and at rest.
+    let tip_off = [
+        moving([5e3, 4e3, 3e3], V::z(), V::z() * 0.3, V::new(0.05, -0.02, 0.01)),
+        moving([6.7e3, 6.7e3, 2e3], -V::z(), V::z() * -0.6, V::new(-0.02, 0.04, 0.0)),
+    ];
+    // Slow and tumbling: comes near again before it is clear.
+    let tumbling = [
+        moving([5e3, 4e3, 3e3], V::z() * 1.1, V::z() * 0.06, V::new(0.15, 0.05, 0.0)),
+        moving([6.7e3, 6.7e3, 2e3], -V::z(), V::zeros(), V::zeros()),
+    ];
+    let cases: [(&str, &[MovingBody; 2], Outline, Outline); 7] = [
+        ("hulls of 8", &tip_off, prism(4, 1.0, -0.9, 1.5), prism(4, 1.0, -2.0, 0.9)),
+        ("hulls of 30", &tip_off, prism(15, 1.0, -0.9, 1.5), prism(15, 1.0, -2.0, 0.9)),
+        ("hulls of 8, near again", &tumbling, prism(4, 1.0, -0.9, 1.5), prism(4, 1.0, -2.0, 0.9)),
+        (
+            "hulls of 30, near again",
+            &tumbling,
+            prism(15, 1.0, -0.9, 1.5),
+            prism(15, 1.0, -2.0, 0.9),
+        ),
+        ("rings", &tip_off, ring(-0.95, 0.6), ring(0.95, 0.6)),
+        ("ring from a well", &tip_off, ring(-1.4, 0.5), ring(0.9, 0.6)),
+        ("ring and hull of 30", &tip_off, ring(-0.95, 0.6), prism(15, 1.0, -2.0, 0.9)),
+    ];
+    let settings = ClearanceSettings::default();
+    let mut group = c.benchmark_group("clearance");
+    for (name, bodies, payload, stage) in &cases {
+        let query = || {
+            let [p, s] = black_box(*bodies);
+            let mut coast = Coast::new(p, s, 0.0);
+            Clearance::new(payload, stage, &mut coast, 0.0, 60.0, &settings).unwrap()
+        };
+        let found = query();
+        let closest = found.closest().unwrap();
+        eprintln!(
+            "{name}: {:.6} m at {:.3} s, contact {:?}, {} looks",
+            closest.distance_m(),
+            closest.time_s(),
+            found.contact_s(),
+            found.looks()
+        );
+        group.bench_function(*name, |b| b.iter(query));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, clearance);
+criterion_main!(benches);

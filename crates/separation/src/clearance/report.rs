@@ -1,0 +1,366 @@
+use nalgebra::Vector3;
+
+use super::motion::Motion;
+use super::outline::Outline;
+use super::search::{Search, Seen};
+
+/// Why there is no clearance to report.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ClearanceError {
+    /// The span is none.
+    #[error(
+        "clearance from {from:?} s to {to:?} s: both must be finite, and the end not before the start"
+    )]
+    Span {
+        /// Start, s.
+        from: f64,
+        /// End, s.
+        to: f64,
+    },
+    /// The motion is not known, or not finite.
+    #[error("clearance at {time} s: where the bodies are then is not known or not finite")]
+    Motion {
+        /// When, s.
+        time: f64,
+    },
+    /// Bounds on speeds are negative or not finite.
+    #[error("clearance from {time} s on: the speeds of the bodies have no finite bound")]
+    Limits {
+        /// From when on, s.
+        time: f64,
+    },
+    /// Bodies that touch at the start hang on to each other for too long to be followed.
+    #[error(
+        "clearance at {time} s: bodies that touch at the start have not parted after so many steps"
+    )]
+    Undecided {
+        /// When, s.
+        time: f64,
+    },
+}
+
+/// Why clearance settings are refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ClearanceSettingsError {
+    /// The tolerance is out of range.
+    #[error("tolerance = {value:?} m: it must be between 1e-12 and 1e-2 m")]
+    Tolerance {
+        /// The tolerance, m.
+        value: f64,
+    },
+    /// The distance of touching is out of range.
+    #[error("touch = {value:?} m: it must be at least 100 tolerances ({least:e} m) and finite")]
+    Touch {
+        /// The distance, m.
+        value: f64,
+        /// What it must be at least, m.
+        least: f64,
+    },
+    /// The distance of having parted is out of range.
+    #[error("parted = {value:?} m: it must be finite and more than twice the touch ({touch:e} m)")]
+    Parted {
+        /// The distance, m.
+        value: f64,
+        /// The distance of touching, m.
+        touch: f64,
+    },
+}
+
+/// How closely clearance is found, and what touching and parting mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClearanceSettings {
+    tolerance: f64,
+    touch: f64,
+    parted: f64,
+}
+
+impl Default for ClearanceSettings {
+    /// Distances to 1e-9 m; nearer than 1e-6 m is touching; a millimetre is parted.
+    fn default() -> Self {
+        Self { tolerance: 1e-9, touch: 1e-6, parted: 1e-3 }
+    }
+}
+
+impl ClearanceSettings {
+    /// Tolerance of the smallest distance; distance up to which shapes touch; distance from which
+    /// shapes that touched at the start have parted. All in m.
+    ///
+    /// # Errors
+    /// The tolerance is not in 1e-12 to 1e-2, the touch below a hundred tolerances, the parting not
+    /// above twice the touch.
+    pub fn new(
+        tolerance_m: f64,
+        touch_m: f64,
+        parted_m: f64,
+    ) -> Result<Self, ClearanceSettingsError> {
+        if !(1e-12..=1e-2).contains(&tolerance_m) {
+            return Err(ClearanceSettingsError::Tolerance { value: tolerance_m });
+        }
+        // Decimal inputs such as 1e-9 and 1e-7 are to pass.
+        let least = 100.0 * tolerance_m;
+        if !(touch_m >= least * (1.0 - 1e-12) && touch_m.is_finite()) {
+            return Err(ClearanceSettingsError::Touch { value: touch_m, least });
+        }
+        if !(parted_m > 2.0 * touch_m && parted_m.is_finite()) {
+            return Err(ClearanceSettingsError::Parted { value: parted_m, touch: touch_m });
+        }
+        Ok(Self { tolerance: tolerance_m, touch: touch_m, parted: parted_m })
+    }
+
+    /// Tolerance of the smallest distance, m.
+    #[must_use]
+    pub fn tolerance_m(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Distance up to which shapes touch, m.
+    #[must_use]
+    pub fn touch_m(&self) -> f64 {
+        self.touch
+    }
+
+    /// Distance from which shapes that touched at the start have parted, m.
+    #[must_use]
+    pub fn parted_m(&self) -> f64 {
+        self.parted
+    }
+}
+
+/// The closest that two shapes come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    distance: f64,
+    at_least: f64,
+    time: f64,
+    points: [Vector3<f64>; 2],
+}
+
+impl Approach {
+    /// Their distance, m; 0 if they touch.
+    #[must_use]
+    pub fn distance_m(&self) -> f64 {
+        self.distance
+    }
+
+    /// Proven lower bound on the smallest distance, m: below [`Approach::distance_m`] by the
+    /// tolerance.
+    #[must_use]
+    pub fn at_least_m(&self) -> f64 {
+        self.at_least
+    }
+
+    /// When, s: of the first contact if they touch.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.time
+    }
+
+    /// Where on the payload, from its mass centre, body axes, m.
+    #[must_use]
+    pub fn payload_point_m(&self) -> Vector3<f64> {
+        self.points[0]
+    }
+
+    /// Where on the stage, from its mass centre, body axes, m.
+    #[must_use]
+    pub fn stage_point_m(&self) -> Vector3<f64> {
+        self.points[1]
+    }
+}
+
+/// What becomes of the distance of one shape of the payload from one of the stage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeClearance {
+    payload_shape: usize,
+    stage_shape: usize,
+    mated: bool,
+    counts_from: Option<f64>,
+    closest: Option<Approach>,
+    contact: Option<f64>,
+}
+
+impl ShapeClearance {
+    /// Which shape of the payload's outline, from 0.
+    #[must_use]
+    pub fn payload_shape(&self) -> usize {
+        self.payload_shape
+    }
+
+    /// Which shape of the stage's outline, from 0.
+    #[must_use]
+    pub fn stage_shape(&self) -> usize {
+        self.stage_shape
+    }
+
+    /// Whether they touch at the start of the span: they count from when they have parted.
+    #[must_use]
+    pub fn is_mated(&self) -> bool {
+        self.mated
+    }
+
+    /// From when on the distance counts, s: the start of the span, or when they have parted. None
+    /// if they touch at the start and do not part.
+    #[must_use]
+    pub fn counts_from_s(&self) -> Option<f64> {
+        self.counts_from
+    }
+
+    /// The closest they come while it counts; none if it never does.
+    #[must_use]
+    pub fn closest(&self) -> Option<&Approach> {
+        self.closest.as_ref()
+    }
+
+    /// When they first touch while it counts, s.
+    #[must_use]
+    pub fn contact_s(&self) -> Option<f64> {
+        self.contact
+    }
+}
+
+/// Clearance of payload and stage over a span of time, shape by shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clearance {
+    shapes: Vec<ShapeClearance>,
+    looks: usize,
+}
+
+impl Clearance {
+    /// The smallest distance of two outlines over [from, to] (s), and whether they touch.
+    ///
+    /// # Definition
+    /// For each shape of the payload and each of the stage, the least distance of their points over
+    /// the span, exact to the tolerance and with the proof of it; they touch when it is at most the
+    /// touch of the settings, and what comes after the first contact does not count, for then the
+    /// motion would be another one.
+    ///
+    /// Shapes that touch when the span begins are mated: rings on each other, pads on springs. They
+    /// count from when they have parted, and a later contact is a recontact. Their smallest distance
+    /// is often that of parting: [`Clearance::closest`] looks at them only where there are no others.
+    ///
+    /// # Algorithm
+    /// Branch and bound over time; see `docs/models/clearance.md`.
+    ///
+    /// # Errors
+    /// The span is none, or the motion not known or not finite on it.
+    pub fn new<M: Motion>(
+        payload: &Outline,
+        stage: &Outline,
+        motion: &mut M,
+        from_s: f64,
+        to_s: f64,
+        settings: &ClearanceSettings,
+    ) -> Result<Self, ClearanceError> {
+        if !(from_s.is_finite() && to_s.is_finite() && from_s <= to_s) {
+            return Err(ClearanceError::Span { from: from_s, to: to_s });
+        }
+        let mut shapes = Vec::with_capacity(payload.shapes().len() * stage.shapes().len());
+        let mut looks = 0;
+        for (i, p) in payload.shapes().iter().enumerate() {
+            for (j, s) in stage.shapes().iter().enumerate() {
+                let mut search = Search::new(motion, p, s, settings.tolerance);
+                let mut found = shape_clearance(&mut search, from_s, to_s, settings)?;
+                (found.payload_shape, found.stage_shape) = (i, j);
+                looks += search.nodes();
+                shapes.push(found);
+            }
+        }
+        Ok(Self { shapes, looks })
+    }
+
+    /// Every shape of the payload with every shape of the stage, the payload's in the outer order.
+    #[must_use]
+    pub fn shapes(&self) -> &[ShapeClearance] {
+        &self.shapes
+    }
+
+    /// The closest approach: of shapes that are apart at the start; where there are none, of mated
+    /// ones after parting. None if none ever part.
+    #[must_use]
+    pub fn closest(&self) -> Option<&Approach> {
+        let least = |mated: bool| {
+            let all = self.shapes.iter().filter(move |s| s.mated == mated);
+            all.filter_map(|s| s.closest.as_ref())
+                .reduce(|a, b| if b.distance < a.distance { b } else { a })
+        };
+        least(false).or_else(|| least(true))
+    }
+
+    /// When any shapes first touch, mated ones after having parted, s.
+    #[must_use]
+    pub fn contact_s(&self) -> Option<f64> {
+        self.shapes.iter().filter_map(|s| s.contact).reduce(f64::min)
+    }
+
+    /// Instants and spans looked at.
+    #[must_use]
+    pub fn looks(&self) -> usize {
+        self.looks
+    }
+}
+
+/// Steps in which mated shapes have to part.
+const MOST_STEPS: usize = 200_000;
+
+fn shape_clearance<M: Motion>(
+    search: &mut Search<'_, M>,
+    from: f64,
+    to: f64,
+    settings: &ClearanceSettings,
+) -> Result<ShapeClearance, ClearanceError> {
+    let at_start = search.smallest(from, from, settings.touch)?.seen.distance;
+    let mated = at_start <= settings.touch;
+    let start = if mated { parting(search, from, to, settings)? } else { Some(from) };
+    let mut result = ShapeClearance {
+        payload_shape: 0,
+        stage_shape: 0,
+        mated,
+        counts_from: start,
+        closest: None,
+        contact: None,
+    };
+    let Some(start) = start else {
+        return Ok(result);
+    };
+    let smallest = search.smallest(start, to, settings.touch)?;
+    let Seen { distance, time, points } = smallest.seen;
+    if distance <= settings.touch {
+        let Seen { time, points, .. } =
+            search.first_contact(start, smallest.seen, settings.touch)?;
+        result.closest = Some(Approach { distance: 0.0, at_least: 0.0, time, points });
+        result.contact = Some(time);
+    } else {
+        result.closest = Some(Approach { distance, at_least: smallest.at_least, time, points });
+    }
+    Ok(result)
+}
+
+/// When shapes that touch have parted: steps that they need at least for what is missing.
+fn parting<M: Motion>(
+    search: &mut Search<'_, M>,
+    from: f64,
+    to: f64,
+    settings: &ClearanceSettings,
+) -> Result<Option<f64>, ClearanceError> {
+    let rate = search.rate(from, to)?;
+    let mut time = from;
+    for _ in 0..MOST_STEPS {
+        // Half a touch short is parted: the last bit would take for ever.
+        let missing = settings.parted - search.smallest(time, time, 0.0)?.seen.distance;
+        if missing <= 0.5 * settings.touch {
+            return Ok(Some(time));
+        }
+        let next = time + missing / rate;
+        if !(next > time && next < to) {
+            return if next >= to || rate == 0.0 {
+                Ok(None)
+            } else {
+                Err(ClearanceError::Undecided { time })
+            };
+        }
+        time = next;
+    }
+    Err(ClearanceError::Undecided { time })
+}
