@@ -4,8 +4,8 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use serde_json::Value;
 
-fn compare(options: CompareOptions) -> ModelComparison {
-    ModelComparison::run(&options, &|_| {}).unwrap()
+fn compare(options: &CompareOptions) -> ModelComparison {
+    ModelComparison::run(options, &|_| {}).unwrap()
 }
 
 fn share(comparison: &ModelComparison, body: usize, level: usize, kind: ModelKind) -> (u64, u64) {
@@ -17,7 +17,7 @@ fn share(comparison: &ModelComparison, body: usize, level: usize, kind: ModelKin
 #[test]
 fn no_draw_is_impossible_where_none_can_be() {
     let options = CompareOptions { draws: 300, separations: 5, ..CompareOptions::default() };
-    let comparison = compare(options);
+    let comparison = compare(&options);
     let mut built = 0;
     for body in &comparison.bodies {
         for cell in body.levels.iter().flat_map(|level| &level.models) {
@@ -58,7 +58,7 @@ fn naive_share(moments: [f64; 3], deviation: f64) -> f64 {
 /// of a compact bus; at 1 % none of the bus.
 #[test]
 fn the_naive_model_is_as_bad_as_it_is() {
-    let comparison = compare(CompareOptions {
+    let comparison = compare(&CompareOptions {
         bodies: vec!["slender-stage".into(), "bus".into()],
         reference: Reference::Entries,
         levels_percent: vec![1.0, 10.0],
@@ -90,7 +90,7 @@ fn the_naive_model_is_as_bad_as_it_is() {
 /// What cannot be made stays in sight, with its reason.
 #[test]
 fn models_that_do_not_exist_are_told() {
-    let comparison = compare(CompareOptions {
+    let comparison = compare(&CompareOptions {
         bodies: vec!["panel".into()],
         reference: Reference::Entries,
         levels_percent: vec![50.0],
@@ -127,12 +127,12 @@ fn small() -> CompareOptions {
 
 #[test]
 fn the_number_of_threads_changes_nothing() {
-    let with = |threads| compare(CompareOptions { threads: Some(threads), ..small() });
+    let with = |threads| compare(&CompareOptions { threads: Some(threads), ..small() });
     let (one, four) = (with(1), with(4));
     assert_eq!(one.to_json().unwrap(), four.to_json().unwrap());
     assert_eq!(one.to_csv(), four.to_csv());
     assert_eq!(one.to_string(), four.to_string());
-    let other = compare(CompareOptions { seed: 7, ..small() });
+    let other = compare(&CompareOptions { seed: 7, ..small() });
     assert_ne!(one.to_csv(), other.to_csv());
     assert!(
         ModelComparison::run(&CompareOptions { threads: Some(0), ..small() }, &|_| {}).is_err()
@@ -142,8 +142,8 @@ fn the_number_of_threads_changes_nothing() {
 /// A model draws the same whatever else is compared.
 #[test]
 fn other_models_levels_and_bodies_shift_no_draw() {
-    let many = compare(small());
-    let one = compare(CompareOptions {
+    let many = compare(&small());
+    let one = compare(&CompareOptions {
         bodies: vec!["panel".into()],
         levels_percent: vec![50.0],
         models: vec![ModelKind::Basilisk],
@@ -158,7 +158,7 @@ fn other_models_levels_and_bodies_shift_no_draw() {
 /// Numbers read back bit for bit, from JSON and from CSV.
 #[test]
 fn files_read_back() {
-    let comparison = compare(small());
+    let comparison = compare(&small());
     let json: Value = serde_json::from_str(&comparison.to_json().unwrap()).unwrap();
     assert_eq!(
         serde_json::to_string_pretty(&json).unwrap().len() + 1,
@@ -199,7 +199,7 @@ fn files_read_back() {
 /// of the reference law varies as its level says.
 #[test]
 fn the_largest_moment_varies_by_the_level() {
-    let comparison = compare(CompareOptions {
+    let comparison = compare(&CompareOptions {
         bodies: vec!["slender-stage".into()],
         levels_percent: vec![2.0],
         models: vec![ModelKind::Principal],
@@ -221,7 +221,7 @@ fn the_largest_moment_varies_by_the_level() {
 #[test]
 fn lines_fit_a_terminal() {
     for reference in [Reference::Principal, Reference::Entries] {
-        let text = compare(CompareOptions { reference, ..small() }).to_string();
+        let text = compare(&CompareOptions { reference, ..small() }).to_string();
         for line in text.lines() {
             assert!(line.chars().count() <= 100, "{line}");
         }
