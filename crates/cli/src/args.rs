@@ -19,6 +19,13 @@ pub(crate) enum Command {
     /// figures (SVG) and report.html.
     #[command(after_help = EXAMPLES)]
     Study(StudyArgs),
+    /// Do one run of a study again, bit for bit, and write its full history
+    ///
+    /// Holds the run against its row in the run table, prints a page on it, and writes a folder with
+    /// history.csv (states, spring forces, energies, momenta against time), history.svg (rates,
+    /// nutation, spring forces) and animation.html (bodies and springs in three dimensions).
+    #[command(after_help = REPLAY_EXAMPLES)]
+    Replay(ReplayArgs),
     /// Check the inertias in robot and CAD files, and write repaired copies
     ///
     /// Reads URDF, MJCF, SDF, CSV, TOML and JSON files and lists the bodies whose inertia no
@@ -52,6 +59,21 @@ pub(crate) enum Command {
     #[command(after_help = COMPARE_EXAMPLES)]
     Compare(CompareArgs),
 }
+
+const REPLAY_EXAMPLES: &str = "\
+Examples:
+  gyradius replay --run 1234
+      Run 1234 of the first model of target/study/peck-2003, into
+      target/replay/peck-2003/proposed-1234
+  gyradius replay --run 1234 --model naive --out odd-one
+      The same run of another model
+  gyradius replay /tmp/quick --run 7 --coast 60
+      A run of the study in /tmp/quick, and the minute after the last release
+  gyradius replay my-vehicle.toml --run 7
+      A run of a scenario file, which has no run table to be held against
+
+Exit code: 0, for a run that failed as it did in the study too; 2 if there is no such run, if it is not
+what the table says, or if something could not be read or written.";
 
 const MODEL_EXAMPLES: &str = "\
 Examples:
@@ -165,6 +187,33 @@ pub(crate) struct StudyArgs {
     pub(crate) threads: Option<usize>,
 
     /// Replace another study in the folder
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct ReplayArgs {
+    /// Folder of a study, or a scenario file [default: target/study/peck-2003]
+    #[arg(value_name = "STUDY")]
+    pub(crate) study: Option<PathBuf>,
+
+    /// Which run, from 0
+    #[arg(long, value_name = "N")]
+    pub(crate) run: u64,
+
+    /// Which model [default: the first of the scenario]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) model: Option<String>,
+
+    /// Seconds to go on for after the last release
+    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, allow_negative_numbers = true)]
+    pub(crate) coast: f64,
+
+    /// Folder to write [default: target/replay/<scenario name>/<model>-<run>]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Replace files of another replay in the folder
     #[arg(long)]
     pub(crate) force: bool,
 }

@@ -8,6 +8,7 @@ mod model;
 mod number;
 mod output;
 mod progress;
+mod replay;
 
 use args::{Cli, Command, StudyArgs};
 use clap::Parser;
@@ -34,6 +35,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(arguments) => return check::check(arguments),
         Command::Fit(arguments) => return fit::fit(arguments),
         Command::Model(arguments) => model::model(arguments),
+        Command::Replay(arguments) => replay::replay(arguments).map_err(Into::into),
         Command::Study(arguments) => study(arguments).map_err(Into::into),
         Command::Compare(arguments) => compare::compare(arguments).map_err(Into::into),
     };

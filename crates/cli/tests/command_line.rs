@@ -254,3 +254,41 @@ fn studies_do_not_mix() {
         .filter(|e| e.as_ref().unwrap().file_name().to_string_lossy().starts_with('.'));
     assert_eq!(hidden.count(), 0);
 }
+
+#[test]
+fn a_run_is_replayed_into_a_folder() {
+    let shell = Shell::new();
+    let missing = shell.refused(&["replay", "--run", "0"]);
+    assert!(missing.contains("target/study/peck-2003: there is no such study"), "{missing}");
+    assert!(shell.run(&["study", "--runs", "8"]).status.success());
+
+    let output = shell.run(&["replay", "--run", "7", "--model", "naive"]);
+    let page = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for word in ["peck-2003, model naive, run 7 of 8", "status: ok", "bit for bit", "lets go at"] {
+        assert!(page.contains(word), "{word} is missing:\n{page}");
+    }
+    assert!(page.lines().count() < 50, "one page");
+    let folder = shell.path().join("target/replay/peck-2003/naive-7");
+    for name in ["history.csv", "history.svg", "animation.html"] {
+        assert!(folder.join(name).is_file(), "{name} is missing");
+    }
+
+    assert!(shell.refused(&["replay", "--run", "8"]).contains("run 8: the runs are numbered"));
+    assert!(shell.refused(&["replay", "--run", "-1"]).contains("-1"));
+    assert!(shell.refused(&["replay"]).contains("--run"));
+    let model = shell.refused(&["replay", "--run", "0", "--model", "naif"]);
+    assert!(model.contains("model \"naif\": the scenario has proposed"), "{model}");
+    assert!(shell.refused(&["replay", "--run", "0", "--coast", "-1"]).contains("coast = -1 s"));
+    let taken =
+        shell.refused(&["replay", "--run", "1", "--out", "target/replay/peck-2003/naive-7"]);
+    assert!(taken.contains("history.csv is there already"), "{taken}");
+
+    // A scenario file has no table.
+    let file = shell.scenario("runs = 5", "runs = 9");
+    let output = shell.run(&["replay", &file, "--run", "8", "--out", "again"]);
+    let page = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && page.contains("no run table"), "{page}");
+    let help = shell.run(&["replay", "--help"]).stdout;
+    assert!(String::from_utf8(help).unwrap().contains("Examples:"));
+}

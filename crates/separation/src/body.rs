@@ -1,5 +1,7 @@
 use gyradius_inertia::InertiaMatrix;
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
+
+use crate::{SpinMetrics, metrics::angle_of};
 
 /// Why a body cannot take part in a separation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -183,18 +185,41 @@ impl MovingBody {
         self.body.inertia.matrix() * self.state.angular_velocity
     }
 
+    /// Angular momentum about the mass centre, I ω, inertial axes, kg·m²/s: constant once nothing pushes.
+    #[must_use]
+    pub fn inertial_spin_angular_momentum(&self) -> Vector3<f64> {
+        self.state.attitude * self.spin_angular_momentum()
+    }
+
     /// Angular momentum about the inertial origin, m r × v + I ω, inertial axes, kg·m²/s.
     #[must_use]
     pub fn angular_momentum(&self) -> Vector3<f64> {
-        self.state.position.cross(&self.momentum())
-            + self.state.attitude * self.spin_angular_momentum()
+        self.state.position.cross(&self.momentum()) + self.inertial_spin_angular_momentum()
     }
 
     /// Kinetic energy, translation and rotation, J.
     #[must_use]
     pub fn kinetic_energy(&self) -> f64 {
-        let spin = self.state.angular_velocity.dot(&self.spin_angular_momentum());
-        0.5 * (self.body.mass * self.state.velocity.norm_squared() + spin)
+        0.5 * self.body.mass * self.state.velocity.norm_squared() + self.rotational_energy()
+    }
+
+    /// Kinetic energy of rotation, ½ωᵀIω, J.
+    #[must_use]
+    pub fn rotational_energy(&self) -> f64 {
+        0.5 * self.state.angular_velocity.dot(&self.spin_angular_momentum())
+    }
+
+    /// Wobble, nutation, coning and the rest about a body axis.
+    #[must_use]
+    pub fn spin_metrics(&self, spin_axis: &Unit<Vector3<f64>>) -> SpinMetrics {
+        SpinMetrics::new(&self.body.inertia, &self.state.angular_velocity, spin_axis)
+    }
+
+    /// Angle between the angular momentum about the mass centre and a direction in inertial axes, rad;
+    /// none if the body does not turn.
+    #[must_use]
+    pub fn momentum_error(&self, intended: &Unit<Vector3<f64>>) -> Option<f64> {
+        angle_of(&self.inertial_spin_angular_momentum(), intended)
     }
 
     pub(crate) fn with_body(&self, body: Body) -> Self {
@@ -205,6 +230,30 @@ impl MovingBody {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    /// Turned by 90° about z, body x is inertial y.
+    #[test]
+    fn momentum_is_told_in_inertial_axes() {
+        let inertia = InertiaMatrix::from_entries([2.0, 3.0, 4.0], [0.0; 3]).unwrap();
+        let state = BodyState {
+            attitude: UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_2),
+            angular_velocity: Vector3::x() * 5.0,
+            ..BodyState::default()
+        };
+        let body = Body::new(1.0, inertia).unwrap().moving(state);
+        let found = body.inertial_spin_angular_momentum();
+        assert!((found - Vector3::y() * 10.0).norm() < 1e-14, "{found}");
+        assert!((body.rotational_energy() - 25.0).abs() < 1e-14);
+        assert!(body.momentum_error(&Vector3::y_axis()).unwrap() < 1e-15);
+        for axis in [Vector3::x_axis(), Vector3::z_axis()] {
+            assert!((body.momentum_error(&axis).unwrap() - FRAC_PI_2).abs() < 1e-15);
+        }
+        let small = 1e-9;
+        let near = Unit::new_normalize(Vector3::new(small, 1.0, 0.0));
+        assert!((body.momentum_error(&near).unwrap() / small - 1.0).abs() < 1e-6);
+        assert_eq!(body.body().at(Vector3::zeros()).momentum_error(&Vector3::y_axis()), None);
+    }
 
     #[test]
     fn bad_bodies_are_refused() {

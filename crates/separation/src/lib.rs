@@ -3,8 +3,9 @@
 //! A payload sits on a stage; compressed springs act between fixed points of the two bodies, each
 //! along the line between its points, until it reaches its free length and is lost for good. This
 //! crate integrates the motion to the last release at full precision ([`Separation::run`], many at a
-//! time in a [`Batch`], with all that lies between as a [`Trajectory`]) and says what became of the
-//! payload's spin ([`SpinMetrics`]: wobble, nutation, coning, inertia ratio; Peck 2003, Eq. 28-37) and
+//! time in a [`Batch`], with all that lies between as a [`Trajectory`]) and says what became of it
+//! ([`Outcome`]: relative velocity, tip-off rates, releases, energy split), of the payload's spin
+//! ([`SpinMetrics`]: wobble, nutation and its bounds, coning, inertia ratio; Peck 2003, Eq. 28-37), and
 //! how near the bodies come to each other afterwards ([`Clearance`]). It knows no probability.
 //!
 //! # Conventions
@@ -40,10 +41,12 @@
 mod batch;
 mod body;
 mod clearance;
+mod energy;
 mod expansion;
 mod integrator;
 mod lanes;
 mod metrics;
+mod nutation;
 mod outcome;
 mod polynomial;
 mod run;
@@ -61,6 +64,7 @@ pub use clearance::{
     Approach, Clearance, ClearanceError, ClearanceSettings, ClearanceSettingsError, Coast, Motion,
     MotionLimits, Outline, OutlineError, Shape, ShapeClearance,
 };
+pub use energy::EnergySplit;
 pub use metrics::SpinMetrics;
 pub use outcome::Outcome;
 pub use run::RunError;

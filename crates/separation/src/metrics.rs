@@ -1,6 +1,8 @@
 use gyradius_inertia::InertiaMatrix;
 use nalgebra::{Unit, Vector3};
 
+use crate::nutation;
+
 /// What became of the spin: the measures of Peck (2003, Eq. 32-37), in rad.
 ///
 /// The spin axis s is a direction fixed in the body. a₁ is the principal axis nearest to it,
@@ -14,6 +16,7 @@ pub struct SpinMetrics {
     nutation: Option<f64>,
     nutation_2: Option<f64>,
     nutation_3: Option<f64>,
+    nutation_bounds: Option<[f64; 2]>,
     cone: Option<f64>,
     inertia_ratio: f64,
 }
@@ -41,6 +44,9 @@ impl SpinMetrics {
         let w = axes.tr_mul(angular_velocity);
         let (w2, w3) = (w[second], w[third]);
         let square = momentum.norm_squared();
+        let h = axes.tr_mul(&momentum);
+        // H along a₁ and the two other axes.
+        let along_a1 = [h[first].copysign(a1.dot(&momentum)), h[second], h[third]];
         // Eq. 35 as sin², free of cancellation:
         // 1 − cos²θ₂ = I₂[I₂ω₂² + I₃ω₃²(I₃ − I₁)/(I₂ − I₁)]/H².
         let extreme = |ia: f64, wa: f64, ib: f64, wb: f64| {
@@ -58,6 +64,7 @@ impl SpinMetrics {
             nutation: turns.then(|| angle(&a1, &momentum)),
             nutation_2: extreme(i2, w2, i3, w3),
             nutation_3: extreme(i3, w3, i2, w2),
+            nutation_bounds: nutation::bounds([i1, i2, i3], along_a1),
             cone: turns.then(|| angle(spin_axis, &momentum)),
             inertia_ratio: inertia_ratio(i1, i2, i3),
         }
@@ -95,6 +102,15 @@ impl SpinMetrics {
         self.nutation_3
     }
 
+    /// Least and greatest nutation of the free motion, rad: what energy and momentum allow, whatever
+    /// axis H circles. Where H circles another axis than a₁, a₁ passes through 90° and the two add up to
+    /// 180°. None if the body does not turn. On the separatrix, and at rest on the intermediate axis
+    /// itself, the bounds are those of the motion that leaves it.
+    #[must_use]
+    pub fn nutation_bounds(&self) -> Option<[f64; 2]> {
+        self.nutation_bounds
+    }
+
     /// Angle between the spin axis and H (Eq. 36), rad; none if the body does not turn.
     #[must_use]
     pub fn cone(&self) -> Option<f64> {
@@ -112,6 +128,13 @@ impl SpinMetrics {
 fn inertia_ratio(i1: f64, i2: f64, i3: f64) -> f64 {
     let product = (1.0 - i1 / i2) * (1.0 - i1 / i3);
     if product > 0.0 { 1.0 + product.sqrt().copysign(i1 - i2) } else { 1.0 }
+}
+
+/// Angle between a vector and a direction; none for a vector of length zero or that is not finite.
+pub(crate) fn angle_of(vector: &Vector3<f64>, direction: &Unit<Vector3<f64>>) -> Option<f64> {
+    // Scaled, for squares over- and underflow.
+    let scaled = vector / vector.amax();
+    scaled.iter().all(|x| x.is_finite()).then(|| angle(&scaled, direction))
 }
 
 /// Angle between two directions, accurate near 0 and π, where acos is not.
@@ -143,6 +166,7 @@ mod tests {
     fn a_body_at_rest_has_no_nutation() {
         let m = SpinMetrics::new(&matrix([3.0, 2.0, 2.5], [0.0; 3]), &Vector3::zeros(), &X);
         assert_eq!((m.nutation(), m.cone(), m.nutation_2()), (None, None, None));
+        assert_eq!(m.nutation_bounds(), None);
         assert_eq!(m.wobble(), 0.0);
     }
 
@@ -174,6 +198,10 @@ mod tests {
         assert_eq!(m.nutation(), Some(0.0));
         let backwards = SpinMetrics::new(&matrix([3.0, 2.0, 2.5], [0.0; 3]), &Vector3::z(), &s);
         assert!((backwards.nutation().unwrap() - std::f64::consts::PI).abs() < 1e-15);
+        // The axis is the intermediate one, which the body leaves for its opposite.
+        for metrics in [m, backwards] {
+            assert_eq!(metrics.nutation_bounds(), Some([0.0, std::f64::consts::PI]));
+        }
     }
 
     proptest! {
@@ -200,6 +228,9 @@ mod tests {
                 prop_assert!((t3 - printed(i3)).abs() < 1e-7);
                 let now = m.nutation().unwrap();
                 prop_assert!(now >= t2.min(t3) - 1e-12 && now <= t2.max(t3) + 1e-12);
+                let [least, greatest] = m.nutation_bounds().unwrap();
+                prop_assert!((least - t2.min(t3)).abs() < 1e-12, "{least} {t2} {t3}");
+                prop_assert!((greatest - t2.max(t3)).abs() < 1e-12, "{greatest} {t2} {t3}");
             }
         }
     }

@@ -1,6 +1,8 @@
 use nalgebra::{Unit, Vector3};
 
-use crate::{MovingBody, SpinMetrics, integrator::Fates};
+use crate::{
+    EnergySplit, MovingBody, Separation, SpinMetrics, integrator::Fates, metrics::angle_of,
+};
 
 /// The two bodies at the release of the last spring, from where they move freely.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,11 +56,42 @@ impl Outcome {
         self.relative_velocity().norm()
     }
 
+    /// Angle between the relative velocity and the intended direction of separation (inertial axes),
+    /// rad; none if the mass centres do not part.
+    #[must_use]
+    pub fn direction_error(&self, intended: &Unit<Vector3<f64>>) -> Option<f64> {
+        angle_of(&self.relative_velocity(), intended)
+    }
+
+    /// Tip-off rates: angular velocities of payload and stage after the last release less those at the
+    /// start of the separation, each in its body's axes, rad/s.
+    #[must_use]
+    pub fn tip_off(&self, separation: &Separation) -> [Vector3<f64>; 2] {
+        let of = |after: &MovingBody, before: &MovingBody| {
+            after.state().angular_velocity - before.state().angular_velocity
+        };
+        [of(&self.payload, separation.payload()), of(&self.stage, separation.stage())]
+    }
+
+    /// The springs in the order in which they let go, from 1; those that let go at one time together.
+    #[must_use]
+    pub fn release_order(&self) -> Vec<Vec<usize>> {
+        let mut times: Vec<(f64, usize)> = self.release_times().zip(1..).collect();
+        times.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let groups = times.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq());
+        groups.map(|group| group.iter().map(|(_, spring)| *spring).collect()).collect()
+    }
+
+    /// Where the energy of the springs of `separation`, of which this is the outcome, has gone.
+    #[must_use]
+    pub fn energy_split(&self, separation: &Separation) -> EnergySplit {
+        EnergySplit::new(separation, self)
+    }
+
     /// Wobble, nutation, coning and the rest, of the payload about the given body axis.
     #[must_use]
     pub fn spin_metrics(&self, spin_axis: &Unit<Vector3<f64>>) -> SpinMetrics {
-        let angular_velocity = &self.payload.state().angular_velocity;
-        SpinMetrics::new(self.payload.body().inertia(), angular_velocity, spin_axis)
+        self.payload.spin_metrics(spin_axis)
     }
 
     /// Integration steps taken, each an expansion of the motion to order 14.

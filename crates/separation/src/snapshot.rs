@@ -1,7 +1,7 @@
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
-use crate::{MovingBody, Separation, expansion::INLINE_SPRINGS, state};
+use crate::{MovingBody, Separation, energy::translations, expansion::INLINE_SPRINGS, state};
 
 /// A spring at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,6 +115,12 @@ impl Snapshot {
     pub fn energy_j(&self) -> f64 {
         let stored: f64 = self.springs.iter().map(SpringState::energy_j).sum();
         self.payload.kinetic_energy() + self.stage.kinetic_energy() + stored
+    }
+
+    /// Energies of translation of payload and stage relative to their common mass centre, J.
+    #[must_use]
+    pub fn translational_energies_j(&self) -> [f64; 2] {
+        translations([&self.payload, &self.stage])
     }
 
     /// Linear momentum of both bodies, inertial axes, kg·m/s: conserved.

@@ -15,6 +15,7 @@
 //! ```
 
 mod claims;
+mod column;
 mod compare;
 mod figures;
 mod folder;
@@ -22,6 +23,7 @@ mod format;
 mod fragment;
 mod model;
 mod plates;
+mod replay;
 mod report;
 mod row;
 mod runner;
@@ -35,7 +37,8 @@ mod text;
 pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_dispersion::ModelKind;
-pub use row::{Axis, Entry, Quantity, Row};
+pub use replay::{Replay, ReplayError};
+pub use row::{Axis, Entry, Failure, Quantity, Row};
 pub use runner::Progress;
 pub use scenario::{Scenario, ScenarioError};
 pub use study::{Options, Study, StudyError};

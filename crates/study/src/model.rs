@@ -2,8 +2,10 @@ use gyradius_dispersion::{
     DispersionModel, EntrywiseGaussian, KnownMoments, ModelDraw, ModelKind, RealizableOnly,
 };
 use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{RunError, SeparationError};
+use gyradius_separation::{Batch, RunError, Separation};
+use nalgebra::UnitQuaternion;
 use rand_distr::Distribution;
+use std::ops::Range;
 
 use crate::{
     row::{Body, Failure, Outcome, Row},
@@ -67,45 +69,81 @@ impl Model {
         }
     }
 
-    /// Draws the bodies of one run and separates them.
-    pub(crate) fn run(&self, scenario: &Scenario, run: u64) -> Row {
+    /// Draws the bodies of one run.
+    pub(crate) fn draw(&self, scenario: &Scenario, run: u64) -> Case {
         let payload = self.payload.draw(run);
         let stage = self.stage.draw(run);
-        let outcome = separate(scenario, payload.inertia, stage.inertia);
-        Row {
+        let separation = scenario.separation().with_inertias(payload.inertia, stage.inertia);
+        Case {
             run,
-            payload: payload.inertia.entries(),
-            stage: stage.inertia.entries(),
-            realizable: payload.inertia.is_realizable() && stage.inertia.is_realizable(),
+            payload: payload.inertia,
+            stage: stage.inertia,
             payload_axes: payload.axes,
             stage_axes: stage.axes,
-            outcome,
+            separation: separation.map_err(Failure::from),
         }
+    }
+
+    /// Draws the bodies of several runs and separates them together, to the bits that each has alone.
+    pub(crate) fn run(&self, scenario: &Scenario, runs: Range<u64>, batch: &mut Batch) -> Vec<Row> {
+        let cases: Vec<Case> = runs.map(|run| self.draw(scenario, run)).collect();
+        let sound = |i: &usize| cases[*i].separation.is_ok();
+        let places: Vec<usize> = (0..cases.len()).filter(sound).collect();
+        let mut results: Vec<_> = cases.iter().map(|_| None).collect();
+        let queue = cases.iter().filter_map(|case| case.separation.as_ref().ok());
+        batch.run(queue, |i, result| results[places[i]] = Some(result));
+        let cases = cases.iter().zip(results);
+        cases.map(|(case, result)| case.row(scenario, result)).collect()
     }
 }
 
-/// Separates the scenario's bodies with the given inertias.
-pub(crate) fn separate(
-    scenario: &Scenario,
-    payload: InertiaMatrix,
-    stage: InertiaMatrix,
-) -> Result<Outcome, Failure> {
-    let bodies = scenario.separation().with_inertias(payload, stage);
-    let bodies = bodies.map_err(|error| Failure {
-        kind: match &error {
-            SeparationError::Body { body, .. } => format!("{body}: inertia not positive definite"),
-            _ => "separation refused".to_owned(),
-        },
-        reason: error.to_string(),
-    })?;
-    let separated = bodies.run(scenario.settings()).map_err(|error| Failure {
-        kind: match &error {
-            RunError::NotReleased { .. } => "springs not released within the horizon".to_owned(),
-            _ => "integration failed".to_owned(),
-        },
-        reason: error.to_string(),
-    })?;
-    Ok(Outcome::new(&separated, scenario.spin_axis()))
+/// What is drawn for a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Case {
+    pub(crate) run: u64,
+    pub(crate) payload: InertiaMatrix,
+    pub(crate) stage: InertiaMatrix,
+    pub(crate) payload_axes: Option<UnitQuaternion<f64>>,
+    pub(crate) stage_axes: Option<UnitQuaternion<f64>>,
+    pub(crate) separation: Result<Separation, Failure>,
+}
+
+impl Case {
+    /// The bodies without any dispersion.
+    pub(crate) fn nominal(scenario: &Scenario) -> Self {
+        Self {
+            run: 0,
+            payload: *scenario.payload().nominal().as_inertia_matrix(),
+            stage: *scenario.stage().nominal().as_inertia_matrix(),
+            payload_axes: None,
+            stage_axes: None,
+            separation: Ok(scenario.separation().clone()),
+        }
+    }
+
+    /// The row of a run that ended so; without a separation there is no end.
+    pub(crate) fn row(
+        &self,
+        scenario: &Scenario,
+        result: Option<Result<gyradius_separation::Outcome, RunError>>,
+    ) -> Row {
+        let outcome = match (&self.separation, result) {
+            (Ok(separation), Some(Ok(outcome))) => Ok(Outcome::new(scenario, separation, &outcome)),
+            (Ok(_), Some(Err(error))) => Err(error.into()),
+            (Err(failure), _) => Err(failure.clone()),
+            // A batch gives every run a result.
+            (Ok(_), None) => Err(RunError::NotFinite { time: 0.0 }.into()),
+        };
+        Row {
+            run: self.run,
+            payload: self.payload.entries(),
+            stage: self.stage.entries(),
+            realizable: self.payload.is_realizable() && self.stage.is_realizable(),
+            payload_axes: self.payload_axes,
+            stage_axes: self.stage_axes,
+            outcome,
+        }
+    }
 }
 
 impl BodyModel {

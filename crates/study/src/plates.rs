@@ -126,7 +126,7 @@ fn attitudes(
 
 fn axis_label(quantity: Quantity) -> String {
     match quantity.unit() {
-        "1" => quantity.label().to_owned(),
+        "1" => quantity.label().into_owned(),
         unit => format!("{} ({unit})", quantity.label()),
     }
 }

@@ -1,6 +1,7 @@
 //! The report: one page of HTML that needs nothing but itself.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use nalgebra::{Unit, Vector3};
 
 use crate::{
     claims::{CONSIDERABLE, Claim, IDENTICAL, LESS, ONE_SIDED, Verdict},
@@ -11,7 +12,7 @@ use crate::{
     summary::{ComparisonSummary, ModelSummary, Summary},
 };
 
-const STYLE: &str = include_str!("report.css");
+pub(crate) const STYLE: &str = include_str!("report.css");
 
 pub(crate) fn html(scenario: &Scenario, summary: &Summary, plates: &[Plate]) -> String {
     html! {
@@ -27,6 +28,7 @@ pub(crate) fn html(scenario: &Scenario, summary: &Summary, plates: &[Plate]) -> 
                 main {
                     (head(summary))
                     (results(summary))
+                    (parting(scenario, summary))
                     (claims(summary))
                     (ratios(summary))
                     (deviations(scenario, summary))
@@ -103,6 +105,96 @@ fn results(summary: &Summary) -> Markup {
             }
         }
     }
+}
+
+/// How the bodies part, a quantity a row.
+fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
+    let said = |direction: Option<&Unit<Vector3<f64>>>| {
+        let entries = |d: &Unit<Vector3<f64>>| {
+            let entries: Vec<_> = d.iter().map(|x| significant(*x, 3)).collect();
+            format!("({})", entries.join(", "))
+        };
+        direction.map_or_else(|| "none, for the springs' forces cancel".to_owned(), entries)
+    };
+    html! {
+        h2 { "How they part" }
+        p {
+            "Velocity of the mass centres from each other, and its angle to the intended direction "
+            (said(scenario.separation_direction())) "; tip-off: change of the angular velocity, body axes; "
+            "greatest nutation of the free motion that follows; angle of the payload's angular momentum "
+            "to the intended direction " (said(Some(scenario.momentum_direction())))
+            ". Directions are in inertial axes. Ranges are from the 5th to the 95th percentile."
+        }
+        div.wide { table.results {
+            thead {
+                tr {
+                    th rowspan="2" { "quantity" }
+                    @for model in &summary.models { th.group colspan="3" { (model.name) } }
+                    th.group rowspan="2" { "nominal bodies" }
+                }
+                tr { @for _ in &summary.models { th.group { "mean" } th { "sd" } th { "range" } } }
+            }
+            tbody {
+                @for q in Quantity::PARTING {
+                    tr {
+                        th scope="row" { (q.label()) (unit(q)) }
+                        @for model in &summary.models {
+                            @let s = model.quantity(q);
+                            td.group title=(interval(s.and_then(|s| s.mean_interval), 4)) {
+                                (optional(s.and_then(|s| s.mean), 4))
+                            }
+                            td title=(interval(s.and_then(|s| s.deviation_interval), 4)) {
+                                (optional(s.and_then(|s| s.deviation), 3))
+                            }
+                            td title=(interval(s.and_then(|s| s.p95_interval), 4)) {
+                                (optional(s.and_then(|s| s.p05), 4)) " … "
+                                (optional(s.and_then(|s| s.p95), 4))
+                            }
+                        }
+                        td.group { (optional(summary.nominal_value(q), 4)) }
+                    }
+                }
+            }
+        } }
+        h3 { "Springs" }
+        ul {
+            @for model in &summary.models { @if let Some(pressed) = model.releases.recompressed {
+                li {
+                    strong { (model.name) } ": let go in the order "
+                    @for (i, order) in model.releases.orders.iter().take(3).enumerate() {
+                        @if i > 0 { "; " }
+                        (order.order) " in " (significant(100.0 * order.share.share, 3)) " % of the runs "
+                        (interval_percent(order.share.interval.lower(), order.share.interval.upper()))
+                    }
+                    @if model.releases.orders.len() > 3 { "; others" }
+                    ". " (energy(model))
+                    @if pressed.count > 0 {
+                        " A spring was pressed again after its release in "
+                        (significant(100.0 * pressed.share, 3)) " % of the runs "
+                        (interval_percent(pressed.interval.lower(), pressed.interval.upper())) "."
+                    }
+                }
+            } }
+        }
+    }
+}
+
+/// Where the energy of the springs goes, on the average.
+fn energy(model: &ModelSummary) -> String {
+    let mean = |q| model.quantity(q).and_then(|s| s.mean);
+    let Some(whole) = mean(Quantity::SpringEnergy).filter(|whole| *whole > 0.0) else {
+        return String::new();
+    };
+    let percent = |q| optional(mean(q).map(|part| 100.0 * part / whole), 3);
+    format!(
+        "Of {} J in the springs {} % go into translation and {} % into rotation of the payload, {} % \
+         and {} % of the stage.",
+        significant(whole, 4),
+        percent(Quantity::PayloadTranslation),
+        percent(Quantity::PayloadRotation),
+        percent(Quantity::StageTranslation),
+        percent(Quantity::StageRotation)
+    )
 }
 
 fn share(model: &ModelSummary) -> String {

@@ -1,5 +1,10 @@
-use gyradius_separation::Outcome as Separated;
-use nalgebra::{Unit, UnitQuaternion, Vector3};
+use gyradius_separation::{
+    BodyError, Outcome as Separated, RunError, Separation, SeparationError, SpinMetrics,
+};
+use nalgebra::UnitQuaternion;
+use std::borrow::Cow;
+
+use crate::scenario::Scenario;
 
 /// One run of one model.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,44 +20,106 @@ pub struct Row {
     pub(crate) outcome: Result<Outcome, Failure>,
 }
 
-/// Why a run failed.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Failure {
-    /// Without numbers, so that failures of a kind can be counted.
-    pub(crate) kind: String,
-    pub(crate) reason: String,
+/// Why a run failed, with the numbers of the run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Failure {
+    /// What was drawn makes no separation.
+    #[error(transparent)]
+    Refused(#[from] SeparationError),
+    /// The separation does not come to an end.
+    #[error(transparent)]
+    Broken(#[from] RunError),
+}
+
+impl Failure {
+    /// What kind it is, without numbers, so that failures of a kind can be counted.
+    #[must_use]
+    pub fn kind(&self) -> Cow<'static, str> {
+        let plain: &'static str = match self {
+            Self::Refused(SeparationError::Body { body, source }) => {
+                let what = match source {
+                    BodyError::Mass { .. } => "mass not positive",
+                    BodyError::NotPositiveDefinite { .. } => "inertia not positive definite",
+                    _ => "state refused",
+                };
+                return format!("{body}: {what}").into();
+            }
+            Self::Refused(SeparationError::TouchingPads { .. }) => "points of a spring touch",
+            Self::Refused(SeparationError::ShortStroke { .. }) => "stroke too short",
+            Self::Refused(_) => "separation refused",
+            Self::Broken(RunError::NotReleased { .. }) => "springs not released within the horizon",
+            Self::Broken(RunError::PadsMeet { .. }) => "points of a spring meet",
+            Self::Broken(RunError::StepUnderflow { .. }) => "step underflow",
+            Self::Broken(RunError::TooManySteps { .. }) => "too many steps",
+            Self::Broken(RunError::NotFinite { .. }) => "numbers out of range",
+            Self::Broken(_) => "integration failed",
+        };
+        plain.into()
+    }
 }
 
 /// What a run is about; angles in degrees.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Outcome {
     pub(crate) release_time_s: f64,
     pub(crate) relative_speed_m_per_s: f64,
     pub(crate) payload_rate_rad_per_s: [f64; 3],
-    pub(crate) spin_rate_rad_per_s: f64,
-    pub(crate) wobble_deg: f64,
-    pub(crate) nutation_deg: Option<f64>,
-    pub(crate) nutation_2_deg: Option<f64>,
-    pub(crate) nutation_3_deg: Option<f64>,
-    pub(crate) cone_deg: Option<f64>,
-    pub(crate) inertia_ratio: f64,
+    /// Of the payload after the last release.
+    pub(crate) spin: SpinMetrics,
+    /// Of the payload at the start.
+    pub(crate) spin_before: SpinMetrics,
+    pub(crate) relative_velocity_m_per_s: [f64; 3],
+    pub(crate) direction_error_deg: Option<f64>,
+    pub(crate) payload_tip_off_deg_per_s: [f64; 3],
+    pub(crate) stage_tip_off_deg_per_s: [f64; 3],
+    pub(crate) momentum_kg_m2_per_s: [f64; 3],
+    pub(crate) momentum_error_deg: Option<f64>,
+    /// Of the springs; into translation and rotation of payload and stage.
+    pub(crate) energies_j: [f64; 5],
+    /// Spring by spring.
+    pub(crate) releases_s: Vec<f64>,
+    /// Springs from 1 in the order of their releases, `+` between those that let go together.
+    pub(crate) release_order: String,
+    /// Springs from 1 that were pressed again after they had let go.
+    pub(crate) recompressed: Vec<usize>,
 }
 
 impl Outcome {
-    pub(crate) fn new(separated: &Separated, spin_axis: &Unit<Vector3<f64>>) -> Self {
-        let metrics = separated.spin_metrics(spin_axis);
+    pub(crate) fn new(scenario: &Scenario, separation: &Separation, separated: &Separated) -> Self {
         let degrees = |angle: Option<f64>| angle.map(f64::to_degrees);
+        let [payload_tip_off, stage_tip_off] =
+            separated.tip_off(separation).map(|rate| rate.map(f64::to_degrees).into());
+        let direction = scenario.separation_direction();
+        let energy = separated.energy_split(separation);
+        let words = |springs: &[usize], between: &str| {
+            springs.iter().map(ToString::to_string).collect::<Vec<_>>().join(between)
+        };
+        let order: Vec<_> = separated.release_order().iter().map(|s| words(s, "+")).collect();
         Self {
             release_time_s: separated.release_time(),
             relative_speed_m_per_s: separated.relative_speed(),
             payload_rate_rad_per_s: separated.payload().state().angular_velocity.into(),
-            spin_rate_rad_per_s: metrics.spin_rate(),
-            wobble_deg: metrics.wobble().to_degrees(),
-            nutation_deg: degrees(metrics.nutation()),
-            nutation_2_deg: degrees(metrics.nutation_2()),
-            nutation_3_deg: degrees(metrics.nutation_3()),
-            cone_deg: degrees(metrics.cone()),
-            inertia_ratio: metrics.inertia_ratio(),
+            spin: separated.spin_metrics(scenario.spin_axis()),
+            spin_before: separation.payload().spin_metrics(scenario.spin_axis()),
+            relative_velocity_m_per_s: separated.relative_velocity().into(),
+            direction_error_deg: degrees(direction.and_then(|d| separated.direction_error(d))),
+            payload_tip_off_deg_per_s: payload_tip_off,
+            stage_tip_off_deg_per_s: stage_tip_off,
+            momentum_kg_m2_per_s: separated.payload().inertial_spin_angular_momentum().into(),
+            momentum_error_deg: degrees(
+                separated.payload().momentum_error(scenario.momentum_direction()),
+            ),
+            energies_j: [
+                energy.stored_j(),
+                energy.payload_translation_j(),
+                energy.payload_rotation_j(),
+                energy.stage_translation_j(),
+                energy.stage_rotation_j(),
+            ],
+            releases_s: separated.release_times().collect(),
+            release_order: order.join(" "),
+            recompressed: separated.recompressed().map(|(spring, _)| spring).collect(),
         }
     }
 }
@@ -66,8 +133,27 @@ impl Row {
 
     /// `ok`, or why the run failed.
     #[must_use]
-    pub fn status(&self) -> &str {
-        self.outcome.as_ref().err().map_or("ok", |failure| failure.reason.as_str())
+    pub fn status(&self) -> Cow<'static, str> {
+        self.failure().map_or("ok".into(), |failure| failure.to_string().into())
+    }
+
+    /// Why the run failed, if it did.
+    #[must_use]
+    pub fn failure(&self) -> Option<&Failure> {
+        self.outcome.as_ref().err()
+    }
+
+    /// Springs from 1 in the order of their releases, `+` between those that let go together; none if
+    /// the run failed.
+    #[must_use]
+    pub fn release_order(&self) -> Option<&str> {
+        self.outcome.as_ref().ok().map(|o| o.release_order.as_str())
+    }
+
+    /// Springs from 1 that were pressed below their free length again after they had let go.
+    #[must_use]
+    pub fn recompressed(&self) -> &[usize] {
+        self.outcome.as_ref().map_or(&[], |o| &o.recompressed)
     }
 
     /// Whether both drawn inertias are realizable.
@@ -79,20 +165,43 @@ impl Row {
     /// The value of a quantity; none if the run failed or it has no meaning for this run.
     #[must_use]
     pub fn value(&self, quantity: Quantity) -> Option<f64> {
-        let outcome = self.outcome.as_ref().ok();
+        let quantity = match quantity {
+            Quantity::Payload(entry) => return Some(self.payload[entry as usize]),
+            Quantity::Stage(entry) => return Some(self.stage[entry as usize]),
+            other => other,
+        };
+        let o = self.outcome.as_ref().ok()?;
+        let bounds =
+            |metrics: &SpinMetrics| metrics.nutation_bounds().map(|b| b.map(f64::to_degrees));
         match quantity {
-            Quantity::Payload(entry) => Some(self.payload[entry as usize]),
-            Quantity::Stage(entry) => Some(self.stage[entry as usize]),
-            Quantity::ReleaseTime => outcome.map(|o| o.release_time_s),
-            Quantity::RelativeSpeed => outcome.map(|o| o.relative_speed_m_per_s),
-            Quantity::PayloadRate(axis) => outcome.map(|o| o.payload_rate_rad_per_s[axis as usize]),
-            Quantity::SpinRate => outcome.map(|o| o.spin_rate_rad_per_s),
-            Quantity::Wobble => outcome.map(|o| o.wobble_deg),
-            Quantity::Nutation => outcome.and_then(|o| o.nutation_deg),
-            Quantity::Nutation2 => outcome.and_then(|o| o.nutation_2_deg),
-            Quantity::Nutation3 => outcome.and_then(|o| o.nutation_3_deg),
-            Quantity::Cone => outcome.and_then(|o| o.cone_deg),
-            Quantity::InertiaRatio => outcome.map(|o| o.inertia_ratio),
+            Quantity::Payload(_) | Quantity::Stage(_) => None,
+            Quantity::ReleaseTime => Some(o.release_time_s),
+            Quantity::RelativeSpeed => Some(o.relative_speed_m_per_s),
+            Quantity::PayloadRate(axis) => Some(o.payload_rate_rad_per_s[axis as usize]),
+            Quantity::SpinRate => Some(o.spin.spin_rate()),
+            Quantity::Wobble => Some(o.spin.wobble().to_degrees()),
+            Quantity::Nutation => o.spin.nutation().map(f64::to_degrees),
+            Quantity::Nutation2 => o.spin.nutation_2().map(f64::to_degrees),
+            Quantity::Nutation3 => o.spin.nutation_3().map(f64::to_degrees),
+            Quantity::Cone => o.spin.cone().map(f64::to_degrees),
+            Quantity::InertiaRatio => Some(o.spin.inertia_ratio()),
+            Quantity::RelativeVelocity(axis) => Some(o.relative_velocity_m_per_s[axis as usize]),
+            Quantity::DirectionError => o.direction_error_deg,
+            Quantity::PayloadTipOff(axis) => Some(o.payload_tip_off_deg_per_s[axis as usize]),
+            Quantity::StageTipOff(axis) => Some(o.stage_tip_off_deg_per_s[axis as usize]),
+            Quantity::NutationLeast => bounds(&o.spin).map(|b| b[0]),
+            Quantity::NutationGreatest => bounds(&o.spin).map(|b| b[1]),
+            Quantity::NutationBefore => o.spin_before.nutation().map(f64::to_degrees),
+            Quantity::NutationLeastBefore => bounds(&o.spin_before).map(|b| b[0]),
+            Quantity::NutationGreatestBefore => bounds(&o.spin_before).map(|b| b[1]),
+            Quantity::Momentum(axis) => Some(o.momentum_kg_m2_per_s[axis as usize]),
+            Quantity::MomentumError => o.momentum_error_deg,
+            Quantity::SpringEnergy => Some(o.energies_j[0]),
+            Quantity::PayloadTranslation => Some(o.energies_j[1]),
+            Quantity::PayloadRotation => Some(o.energies_j[2]),
+            Quantity::StageTranslation => Some(o.energies_j[3]),
+            Quantity::StageRotation => Some(o.energies_j[4]),
+            Quantity::SpringRelease(spring) => o.releases_s.get(spring).copied(),
         }
     }
 }
@@ -148,7 +257,7 @@ impl Body {
     }
 }
 
-/// A body axis.
+/// An axis of a body or of the inertial frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the names are the axes")]
 pub enum Axis {
@@ -184,44 +293,129 @@ pub enum Quantity {
     Cone,
     /// Inertia ratio, 1.
     InertiaRatio,
+    /// Velocity of the payload's mass centre relative to the stage's, inertial axes, m/s.
+    RelativeVelocity(Axis),
+    /// Angle between it and the intended direction of separation, deg.
+    DirectionError,
+    /// Change of the payload's angular velocity from the start, body axes, deg/s.
+    PayloadTipOff(Axis),
+    /// Change of the stage's angular velocity from the start, body axes, deg/s.
+    StageTipOff(Axis),
+    /// Least nutation of the free motion, deg.
+    NutationLeast,
+    /// Greatest nutation of the free motion, deg.
+    NutationGreatest,
+    /// Nutation at the start, deg.
+    NutationBefore,
+    /// Least nutation if the payload had gone on as it started, deg.
+    NutationLeastBefore,
+    /// Greatest nutation if the payload had gone on as it started, deg.
+    NutationGreatestBefore,
+    /// Angular momentum of the payload about its mass centre, inertial axes, kg·m²/s.
+    Momentum(Axis),
+    /// Angle between it and its intended direction, deg.
+    MomentumError,
+    /// Energy that the springs had stored, J.
+    SpringEnergy,
+    /// What of it went into the payload's translation, J.
+    PayloadTranslation,
+    /// Into the payload's rotation, J.
+    PayloadRotation,
+    /// Into the stage's translation, J.
+    StageTranslation,
+    /// Into the stage's rotation, J.
+    StageRotation,
+    /// When a spring let go, s; springs from 0.
+    SpringRelease(usize),
 }
 
 impl Quantity {
-    /// All numeric columns of the run table, in its order.
-    pub const ALL: [Self; 24] = [
-        Self::Payload(Entry::I11),
-        Self::Payload(Entry::I22),
-        Self::Payload(Entry::I33),
-        Self::Payload(Entry::I12),
-        Self::Payload(Entry::I13),
-        Self::Payload(Entry::I23),
-        Self::Stage(Entry::I11),
-        Self::Stage(Entry::I22),
-        Self::Stage(Entry::I33),
-        Self::Stage(Entry::I12),
-        Self::Stage(Entry::I13),
-        Self::Stage(Entry::I23),
-        Self::ReleaseTime,
-        Self::RelativeSpeed,
-        Self::PayloadRate(Axis::One),
-        Self::PayloadRate(Axis::Two),
-        Self::PayloadRate(Axis::Three),
-        Self::SpinRate,
-        Self::Wobble,
-        Self::Nutation,
-        Self::Nutation2,
-        Self::Nutation3,
-        Self::Cone,
-        Self::InertiaRatio,
-    ];
+    /// All but those of single springs, in the order of the run table.
+    pub const ALL: [Self; 48] = {
+        use Axis::{One, Three, Two};
+        [
+            Self::Payload(Entry::I11),
+            Self::Payload(Entry::I22),
+            Self::Payload(Entry::I33),
+            Self::Payload(Entry::I12),
+            Self::Payload(Entry::I13),
+            Self::Payload(Entry::I23),
+            Self::Stage(Entry::I11),
+            Self::Stage(Entry::I22),
+            Self::Stage(Entry::I33),
+            Self::Stage(Entry::I12),
+            Self::Stage(Entry::I13),
+            Self::Stage(Entry::I23),
+            Self::ReleaseTime,
+            Self::RelativeSpeed,
+            Self::PayloadRate(One),
+            Self::PayloadRate(Two),
+            Self::PayloadRate(Three),
+            Self::SpinRate,
+            Self::Wobble,
+            Self::Nutation,
+            Self::Nutation2,
+            Self::Nutation3,
+            Self::Cone,
+            Self::InertiaRatio,
+            Self::RelativeVelocity(One),
+            Self::RelativeVelocity(Two),
+            Self::RelativeVelocity(Three),
+            Self::DirectionError,
+            Self::PayloadTipOff(One),
+            Self::PayloadTipOff(Two),
+            Self::PayloadTipOff(Three),
+            Self::StageTipOff(One),
+            Self::StageTipOff(Two),
+            Self::StageTipOff(Three),
+            Self::NutationLeast,
+            Self::NutationGreatest,
+            Self::NutationBefore,
+            Self::NutationLeastBefore,
+            Self::NutationGreatestBefore,
+            Self::Momentum(One),
+            Self::Momentum(Two),
+            Self::Momentum(Three),
+            Self::MomentumError,
+            Self::SpringEnergy,
+            Self::PayloadTranslation,
+            Self::PayloadRotation,
+            Self::StageTranslation,
+            Self::StageRotation,
+        ]
+    };
+
+    /// How many of [`ALL`](Self::ALL) come before `realizable` in the run table; the rest come after the
+    /// attitudes.
+    pub(crate) const FIRST: usize = 24;
+
+    /// All of them, of a separation by so many springs.
+    pub fn of(springs: usize) -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().chain((0..springs).map(Self::SpringRelease))
+    }
 
     /// What the paper's results are about.
     pub const BEHAVIOUR: [Self; 5] =
         [Self::Wobble, Self::Nutation, Self::Cone, Self::InertiaRatio, Self::SpinRate];
 
+    /// How the bodies part: what a separation analyst asks for.
+    pub const PARTING: [Self; 11] = [
+        Self::RelativeSpeed,
+        Self::DirectionError,
+        Self::PayloadTipOff(Axis::One),
+        Self::PayloadTipOff(Axis::Two),
+        Self::PayloadTipOff(Axis::Three),
+        Self::StageTipOff(Axis::One),
+        Self::StageTipOff(Axis::Two),
+        Self::StageTipOff(Axis::Three),
+        Self::NutationGreatest,
+        Self::MomentumError,
+        Self::ReleaseTime,
+    ];
+
     /// Name of the column in the run table, with its unit.
     #[must_use]
-    pub fn column(self) -> &'static str {
+    pub fn column(self) -> Cow<'static, str> {
         const PAYLOAD: [&str; 6] = [
             "payload_i11",
             "payload_i22",
@@ -234,7 +428,18 @@ impl Quantity {
             ["stage_i11", "stage_i22", "stage_i33", "stage_i12", "stage_i13", "stage_i23"];
         const RATE: [&str; 3] =
             ["payload_w1_rad_per_s", "payload_w2_rad_per_s", "payload_w3_rad_per_s"];
-        match self {
+        const VELOCITY: [&str; 3] =
+            ["relative_v1_m_per_s", "relative_v2_m_per_s", "relative_v3_m_per_s"];
+        const PAYLOAD_TIP_OFF: [&str; 3] = [
+            "payload_tip_off_1_deg_per_s",
+            "payload_tip_off_2_deg_per_s",
+            "payload_tip_off_3_deg_per_s",
+        ];
+        const STAGE_TIP_OFF: [&str; 3] =
+            ["stage_tip_off_1_deg_per_s", "stage_tip_off_2_deg_per_s", "stage_tip_off_3_deg_per_s"];
+        const MOMENTUM: [&str; 3] =
+            ["payload_h1_kg_m2_per_s", "payload_h2_kg_m2_per_s", "payload_h3_kg_m2_per_s"];
+        let plain = match self {
             Self::Payload(entry) => PAYLOAD[entry as usize],
             Self::Stage(entry) => STAGE[entry as usize],
             Self::ReleaseTime => "release_time_s",
@@ -247,15 +452,41 @@ impl Quantity {
             Self::Nutation3 => "nutation_3_deg",
             Self::Cone => "cone_deg",
             Self::InertiaRatio => "inertia_ratio",
-        }
+            Self::RelativeVelocity(axis) => VELOCITY[axis as usize],
+            Self::DirectionError => "direction_error_deg",
+            Self::PayloadTipOff(axis) => PAYLOAD_TIP_OFF[axis as usize],
+            Self::StageTipOff(axis) => STAGE_TIP_OFF[axis as usize],
+            Self::NutationLeast => "nutation_least_deg",
+            Self::NutationGreatest => "nutation_greatest_deg",
+            Self::NutationBefore => "nutation_before_deg",
+            Self::NutationLeastBefore => "nutation_least_before_deg",
+            Self::NutationGreatestBefore => "nutation_greatest_before_deg",
+            Self::Momentum(axis) => MOMENTUM[axis as usize],
+            Self::MomentumError => "momentum_error_deg",
+            Self::SpringEnergy => "spring_energy_j",
+            Self::PayloadTranslation => "payload_translation_j",
+            Self::PayloadRotation => "payload_rotation_j",
+            Self::StageTranslation => "stage_translation_j",
+            Self::StageRotation => "stage_rotation_j",
+            Self::SpringRelease(spring) => {
+                return format!("spring_{}_release_s", spring + 1).into();
+            }
+        };
+        plain.into()
     }
 
     /// What it is called in tables and figures.
     #[must_use]
-    pub fn label(self) -> &'static str {
+    pub fn label(self) -> Cow<'static, str> {
         const ENTRY: [&str; 6] = ["I₁₁", "I₂₂", "I₃₃", "I₁₂", "I₁₃", "I₂₃"];
         const RATE: [&str; 3] = ["ω₁", "ω₂", "ω₃"];
-        match self {
+        const VELOCITY: [&str; 3] = ["relative v₁", "relative v₂", "relative v₃"];
+        const PAYLOAD_TIP_OFF: [&str; 3] =
+            ["payload tip-off ω₁", "payload tip-off ω₂", "payload tip-off ω₃"];
+        const STAGE_TIP_OFF: [&str; 3] =
+            ["stage tip-off ω₁", "stage tip-off ω₂", "stage tip-off ω₃"];
+        const MOMENTUM: [&str; 3] = ["momentum h₁", "momentum h₂", "momentum h₃"];
+        let plain = match self {
             Self::Payload(entry) | Self::Stage(entry) => ENTRY[entry as usize],
             Self::ReleaseTime => "release time",
             Self::RelativeSpeed => "relative speed",
@@ -267,7 +498,27 @@ impl Quantity {
             Self::Nutation3 => "nutation θ₃",
             Self::Cone => "cone",
             Self::InertiaRatio => "inertia ratio",
-        }
+            Self::RelativeVelocity(axis) => VELOCITY[axis as usize],
+            Self::DirectionError => "direction error",
+            Self::PayloadTipOff(axis) => PAYLOAD_TIP_OFF[axis as usize],
+            Self::StageTipOff(axis) => STAGE_TIP_OFF[axis as usize],
+            Self::NutationLeast => "least nutation",
+            Self::NutationGreatest => "greatest nutation",
+            Self::NutationBefore => "nutation before",
+            Self::NutationLeastBefore => "least nutation before",
+            Self::NutationGreatestBefore => "greatest nutation before",
+            Self::Momentum(axis) => MOMENTUM[axis as usize],
+            Self::MomentumError => "momentum error",
+            Self::SpringEnergy => "spring energy",
+            Self::PayloadTranslation => "payload translation",
+            Self::PayloadRotation => "payload rotation",
+            Self::StageTranslation => "stage translation",
+            Self::StageRotation => "stage rotation",
+            Self::SpringRelease(spring) => {
+                return format!("release of spring {}", spring + 1).into();
+            }
+        };
+        plain.into()
     }
 
     /// Its unit.
@@ -275,9 +526,16 @@ impl Quantity {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Payload(_) | Self::Stage(_) => "kg·m²",
-            Self::ReleaseTime => "s",
-            Self::RelativeSpeed => "m/s",
+            Self::ReleaseTime | Self::SpringRelease(_) => "s",
+            Self::RelativeSpeed | Self::RelativeVelocity(_) => "m/s",
             Self::PayloadRate(_) | Self::SpinRate => "rad/s",
+            Self::PayloadTipOff(_) | Self::StageTipOff(_) => "deg/s",
+            Self::Momentum(_) => "kg·m²/s",
+            Self::SpringEnergy
+            | Self::PayloadTranslation
+            | Self::PayloadRotation
+            | Self::StageTranslation
+            | Self::StageRotation => "J",
             Self::InertiaRatio => "1",
             _ => "deg",
         }

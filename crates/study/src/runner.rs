@@ -1,11 +1,17 @@
+use gyradius_separation::Batch;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::{
     model::Model,
+    row::Row,
     scenario::{Scenario, ScenarioError},
     table::RunTable,
 };
+
+/// Runs that a thread takes at a time: many for the lanes of a batch, few for other threads to be idle
+/// at the end.
+const TOGETHER: u64 = 64;
 
 /// Told how many runs, of all models together, are done.
 pub type Progress<'a> = &'a (dyn Fn(u64) + Sync);
@@ -21,17 +27,24 @@ pub(crate) fn run(
     progress: Progress<'_>,
 ) -> Vec<RunTable> {
     let done = AtomicU64::new(0);
-    let row = |model: &Model, run| {
-        let row = model.run(scenario, run);
-        progress(done.fetch_add(1, Ordering::Relaxed) + 1);
-        row
+    let springs = scenario.separation().springs().len();
+    let rows = |model: &Model, batch: &mut Batch, first: u64| {
+        let rows = model.run(scenario, first..(first + TOGETHER).min(scenario.runs()), batch);
+        for _ in &rows {
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+        }
+        rows
     };
     threads.install(|| {
         models
             .iter()
             .map(|model| {
-                let runs = (0..scenario.runs()).into_par_iter();
-                RunTable::new(model.name(), runs.map(|run| row(model, run)).collect())
+                let groups = (0..scenario.runs().div_ceil(TOGETHER)).into_par_iter();
+                let batch = || Batch::new(*scenario.settings());
+                let rows: Vec<Vec<Row>> = groups
+                    .map_init(batch, |batch, group| rows(model, batch, group * TOGETHER))
+                    .collect();
+                RunTable::new(model.name(), springs, rows.into_iter().flatten().collect())
             })
             .collect()
     })

@@ -5,11 +5,12 @@ use gyradius_statistics::{
 };
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 use crate::{
     claims::{self, Claim},
     compare::Section,
-    model::{Model, separate},
+    model::{Case, Model},
     row::{Body, Quantity, Row},
     scenario::Scenario,
     table::RunTable,
@@ -61,7 +62,25 @@ pub(crate) struct ModelSummary {
     /// Deviations that an entrywise law was given: payload and stage, each in the order of the run
     /// table, kg·m².
     pub(crate) given_deviations_kg_m2: Option<[[f64; 6]; 2]>,
+    pub(crate) releases: Releases,
     pub(crate) quantities: Vec<QuantitySummary>,
+}
+
+/// How springs let go in the runs that succeed.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Releases {
+    /// The orders of releases, as in the run table, the most frequent first.
+    pub(crate) orders: Vec<Order>,
+    /// Runs in which a spring was pressed again after it had let go; none if no run succeeds.
+    pub(crate) recompressed: Option<Share>,
+}
+
+/// How often springs let go in an order.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Order {
+    pub(crate) order: String,
+    #[serde(flatten)]
+    pub(crate) share: Share,
 }
 
 /// A share of the runs.
@@ -117,7 +136,7 @@ pub(crate) struct Ratio {
 }
 
 fn column<S: serde::Serializer>(quantity: &Quantity, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(quantity.column())
+    serializer.serialize_str(&quantity.column())
 }
 
 impl Summary {
@@ -128,6 +147,7 @@ impl Summary {
     ) -> Result<Self, StatisticsError> {
         let confidence = Confidence::default();
         let nominal = nominal(scenario);
+        let springs = scenario.separation().springs().len();
         let models = models
             .iter()
             .zip(tables)
@@ -142,9 +162,9 @@ impl Summary {
                     title: c.title.clone(),
                     physical: physical.model().to_owned(),
                     naive: naive.model().to_owned(),
-                    ratios: Quantity::ALL
+                    ratios: Quantity::of(springs)
                         .map(|q| Ratio::new(q, physical, naive, confidence))
-                        .to_vec(),
+                        .collect(),
                 }
             })
             .collect();
@@ -176,18 +196,10 @@ impl Summary {
 
 /// The run of the nominal bodies.
 fn nominal(scenario: &Scenario) -> Vec<Nominal> {
-    let (payload, stage) = (scenario.payload().nominal(), scenario.stage().nominal());
-    let row = Row {
-        run: 0,
-        payload: payload.entries(),
-        stage: stage.entries(),
-        realizable: true,
-        payload_axes: None,
-        stage_axes: None,
-        outcome: separate(scenario, *payload.as_inertia_matrix(), *stage.as_inertia_matrix()),
-    };
-    Quantity::ALL
-        .into_iter()
+    let case = Case::nominal(scenario);
+    let result = scenario.separation().run(scenario.settings());
+    let row = case.row(scenario, Some(result));
+    Quantity::of(scenario.separation().springs().len())
         .filter_map(|quantity| {
             let value = row.value(quantity)?;
             Some(Nominal { quantity, unit: quantity.unit(), value })
@@ -206,9 +218,10 @@ impl ModelSummary {
         let share = |count: usize| Share::new(count as u64, rows.len() as u64, confidence);
         let mut failures: Vec<(String, u64)> = Vec::new();
         for failure in rows.iter().filter_map(|r| r.outcome.as_ref().err()) {
-            match failures.iter_mut().find(|(kind, _)| *kind == failure.kind) {
+            let kind = failure.kind();
+            match failures.iter_mut().find(|(other, _)| *other == kind) {
                 Some((_, count)) => *count += 1,
-                None => failures.push((failure.kind.clone(), 1)),
+                None => failures.push((kind.into_owned(), 1)),
             }
         }
         let draws_axes = rows.iter().any(|r| r.payload_axes.is_some());
@@ -233,14 +246,38 @@ impl ModelSummary {
             unrealizable: share(rows.iter().filter(|r| !r.realizable).count())?,
             far_half,
             given_deviations_kg_m2: model.given_deviations(),
-            quantities: Quantity::ALL
+            releases: Releases::new(table, confidence)?,
+            quantities: Quantity::of(scenario.separation().springs().len())
                 .map(|q| QuantitySummary::new(q, &table.values(q), confidence))
-                .to_vec(),
+                .collect(),
         })
     }
 
     pub(crate) fn quantity(&self, quantity: Quantity) -> Option<&QuantitySummary> {
         self.quantities.iter().find(|q| q.quantity == quantity)
+    }
+}
+
+/// Orders of releases that are listed.
+const ORDERS: usize = 12;
+
+impl Releases {
+    fn new(table: &RunTable, confidence: Confidence) -> Result<Self, StatisticsError> {
+        let mut counts = BTreeMap::<&str, u64>::new();
+        for order in table.rows().iter().filter_map(Row::release_order) {
+            *counts.entry(order).or_default() += 1;
+        }
+        let of = counts.values().sum();
+        let pressed = table.rows().iter().filter(|r| !r.recompressed().is_empty()).count();
+        let recompressed =
+            if of == 0 { None } else { Some(Share::new(pressed as u64, of, confidence)?) };
+        let mut counts: Vec<_> = counts.into_iter().collect();
+        // Stable: equal counts stay in the order of their names.
+        counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        let orders = counts.into_iter().take(ORDERS).map(|(order, count)| {
+            Ok(Order { order: order.to_owned(), share: Share::new(count, of, confidence)? })
+        });
+        Ok(Self { orders: orders.collect::<Result<_, StatisticsError>>()?, recompressed })
     }
 }
 

@@ -10,7 +10,10 @@ use parquet::{
 };
 use std::{io::Write, sync::Arc};
 
-use crate::row::{Body, Quantity, Row};
+use crate::{
+    column::{Cell, Column},
+    row::{Quantity, Row},
+};
 
 /// Rows of one row group: enough to compress well, little enough to read in part.
 const ROWS_PER_GROUP: usize = 131_072;
@@ -19,12 +22,13 @@ const ROWS_PER_GROUP: usize = 131_072;
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunTable {
     model: String,
+    springs: usize,
     rows: Vec<Row>,
 }
 
 impl RunTable {
-    pub(crate) fn new(model: &str, rows: Vec<Row>) -> Self {
-        Self { model: model.to_owned(), rows }
+    pub(crate) fn new(model: &str, springs: usize, rows: Vec<Row>) -> Self {
+        Self { model: model.to_owned(), springs, rows }
     }
 
     /// Name of the model.
@@ -47,74 +51,62 @@ impl RunTable {
 
     /// Writes the table as Parquet.
     ///
-    /// Columns in the order of the rows' fields: `model`, `run`, `status`, the numbers of
-    /// [`Quantity::ALL`] (null where a run has none), `realizable`, and the attitudes of the
-    /// principal axes as drawn, scalar last (null for entrywise models). Floats are stored as they
-    /// are, bit for bit.
+    /// Columns: `model`, `run`, `status`, the first numbers of [`Quantity::ALL`] to `inertia_ratio` (null
+    /// where a run has none), `realizable`, the attitudes of the principal axes as drawn, scalar last
+    /// (null for entrywise models), the other numbers of [`Quantity::ALL`], releases spring by spring,
+    /// `release_order` and `recompressed`. Floats are stored as they are, bit for bit.
     ///
     /// # Errors
     /// Writing fails.
     pub fn write_parquet(&self, output: impl Write + Send) -> Result<(), ParquetError> {
-        let schema = Arc::new(parse_message_type(&schema())?);
+        let columns = Column::of(self.springs);
+        let fields: Vec<_> = columns.iter().map(|column| column.field()).collect();
+        let schema = format!("message run {{ {}; }}", fields.join("; "));
+        let schema = Arc::new(parse_message_type(&schema)?);
         let properties =
             WriterProperties::builder().set_compression(Compression::UNCOMPRESSED).build();
         let mut writer = SerializedFileWriter::new(output, schema, Arc::new(properties))?;
         for rows in self.rows.chunks(ROWS_PER_GROUP) {
             let mut group = writer.next_row_group()?;
-            self.write_group(&mut group, rows)?;
+            for column in &columns {
+                self.write_column(&mut group, *column, rows)?;
+            }
             group.close()?;
         }
         writer.close()?;
         Ok(())
     }
 
-    fn write_group<W: Write + Send>(
+    fn write_column<W: Write + Send>(
         &self,
         group: &mut SerializedRowGroupWriter<'_, W>,
+        column: Column,
         rows: &[Row],
     ) -> Result<(), ParquetError> {
-        let model = ByteArray::from(self.model.as_str());
-        write::<ByteArrayType, _>(group, &vec![model; rows.len()], None)?;
-        let runs: Vec<i64> = rows.iter().map(|r| r.run as i64).collect();
-        write::<Int64Type, _>(group, &runs, None)?;
-        let status: Vec<ByteArray> = rows.iter().map(|r| ByteArray::from(r.status())).collect();
-        write::<ByteArrayType, _>(group, &status, None)?;
-        for quantity in Quantity::ALL {
-            write_optional(group, rows.iter().map(|r| r.value(quantity)))?;
-        }
-        let realizable: Vec<bool> = rows.iter().map(|r| r.realizable).collect();
-        write::<BoolType, _>(group, &realizable, None)?;
-        for body in Body::BOTH {
-            for i in 0..4 {
-                write_optional(group, rows.iter().map(|r| body.axes(r).map(|q| q.coords[i])))?;
+        let (mut texts, mut integers) = (Vec::<ByteArray>::new(), Vec::new());
+        let (mut numbers, mut flags) = (Vec::new(), Vec::new());
+        let mut levels = Vec::with_capacity(rows.len());
+        for row in rows {
+            let cell = column.cell(&self.model, row);
+            levels.push(i16::from(cell != Cell::Null));
+            match cell {
+                Cell::Text(text) => texts.push(text.as_str().into()),
+                Cell::Integer(integer) => integers.push(integer),
+                Cell::Number(number) => numbers.push(number),
+                Cell::Flag(flag) => flags.push(flag),
+                Cell::Null => {}
             }
         }
-        Ok(())
+        let levels = column.is_optional().then_some(&levels[..]);
+        match column {
+            Column::Run => write::<Int64Type, _>(group, &integers, levels),
+            Column::Realizable => write::<BoolType, _>(group, &flags, levels),
+            Column::Number(_) | Column::Axes(..) => write::<DoubleType, _>(group, &numbers, levels),
+            Column::Model | Column::Status | Column::ReleaseOrder | Column::Recompressed => {
+                write::<ByteArrayType, _>(group, &texts, levels)
+            }
+        }
     }
-}
-
-/// The columns, as Parquet's message type.
-fn schema() -> String {
-    let mut fields = vec![
-        "required binary model (string)".to_owned(),
-        "required int64 run".to_owned(),
-        "required binary status (string)".to_owned(),
-    ];
-    fields.extend(Quantity::ALL.map(|q| format!("optional double {}", q.column())));
-    fields.push("required boolean realizable".to_owned());
-    for body in Body::BOTH {
-        fields.extend((1..=4).map(|i| format!("optional double {}_q{i}", body.name())));
-    }
-    format!("message run {{ {}; }}", fields.join("; "))
-}
-
-fn write_optional<W: Write + Send>(
-    group: &mut SerializedRowGroupWriter<'_, W>,
-    values: impl Iterator<Item = Option<f64>> + Clone,
-) -> Result<(), ParquetError> {
-    let levels: Vec<i16> = values.clone().map(|v| i16::from(v.is_some())).collect();
-    let present: Vec<f64> = values.flatten().collect();
-    write::<DoubleType, _>(group, &present, Some(&levels))
 }
 
 fn write<T: parquet::data_type::DataType, W: Write + Send>(
@@ -133,6 +125,9 @@ fn write<T: parquet::data_type::DataType, W: Write + Send>(
 mod tests {
     use super::*;
     use crate::row::{Failure, Outcome};
+    use gyradius_inertia::InertiaMatrix;
+    use gyradius_separation::{RunError, SpinMetrics};
+    use nalgebra::Vector3;
     use parquet::{
         file::reader::{FileReader, SerializedFileReader},
         record::Field,
@@ -140,17 +135,25 @@ mod tests {
 
     /// A good run with numbers that do not survive careless printing, and a failed one.
     fn table() -> RunTable {
+        let inertia = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0]).unwrap();
+        let axis = Vector3::x_axis();
+        let spin = |w: f64| SpinMetrics::new(&inertia, &Vector3::new(w, 0.1 * w, 0.03 * w), &axis);
         let outcome = Outcome {
             release_time_s: 0.1 + 0.2,
             relative_speed_m_per_s: f64::MIN_POSITIVE / 8.0,
             payload_rate_rad_per_s: [1e300, -0.0, 1.0 / 3.0],
-            spin_rate_rad_per_s: 1e-17 + 1e-33,
-            wobble_deg: 2_f64.sqrt(),
-            nutation_deg: Some(3.0),
-            nutation_2_deg: None,
-            nutation_3_deg: Some(4.0),
-            cone_deg: Some(5.0),
-            inertia_ratio: 1.5,
+            spin: spin(1.0 / 3.0),
+            spin_before: spin(0.0),
+            relative_velocity_m_per_s: [1e-17 + 1e-33, -0.0, 0.7],
+            direction_error_deg: None,
+            payload_tip_off_deg_per_s: [2_f64.sqrt(), 0.0, -1e-300],
+            stage_tip_off_deg_per_s: [0.1; 3],
+            momentum_kg_m2_per_s: [1e5, 2e5, -3e5],
+            momentum_error_deg: Some(5.0),
+            energies_j: [1300.0, 0.1, 0.2, 0.3, 0.7],
+            releases_s: vec![0.3, 0.1 + 0.2],
+            release_order: "1 2".to_owned(),
+            recompressed: vec![2],
         };
         let good = Row {
             run: 0,
@@ -164,13 +167,10 @@ mod tests {
         let failed = Row {
             run: 1,
             realizable: false,
-            outcome: Err(Failure {
-                kind: "late".to_owned(),
-                reason: "springs [1] late".to_owned(),
-            }),
+            outcome: Err(Failure::Broken(RunError::NotFinite { time: 0.1 + 0.2 })),
             ..good.clone()
         };
-        RunTable::new("naive", vec![good, failed])
+        RunTable::new("naive", 2, vec![good, failed])
     }
 
     #[test]
@@ -183,7 +183,18 @@ mod tests {
         let names: Vec<&str> = columns.iter().map(|c| c.name()).collect();
         assert_eq!(&names[..5], ["model", "run", "status", "payload_i11", "payload_i22"]);
         assert_eq!(names[27], "realizable");
-        assert_eq!(names.len(), 36);
+        assert_eq!(names[35], "stage_q4");
+        assert_eq!(names[36], "relative_v1_m_per_s");
+        assert_eq!(
+            names[59..],
+            [
+                "stage_rotation_j",
+                "spring_1_release_s",
+                "spring_2_release_s",
+                "release_order",
+                "recompressed"
+            ]
+        );
 
         let rows: Vec<_> = reader.get_row_iter(None).unwrap().map(Result::unwrap).collect();
         assert_eq!(rows.len(), 2);
@@ -193,10 +204,10 @@ mod tests {
             };
             assert_eq!(field("model"), Field::Str("naive".to_owned()));
             assert_eq!(field("run"), Field::Long(original.run() as i64));
-            assert_eq!(field("status"), Field::Str(original.status().to_owned()));
+            assert_eq!(field("status"), Field::Str(original.status().into_owned()));
             assert_eq!(field("realizable"), Field::Bool(original.realizable()));
-            for quantity in Quantity::ALL {
-                match (field(quantity.column()), original.value(quantity)) {
+            for quantity in Quantity::of(2) {
+                match (field(&quantity.column()), original.value(quantity)) {
                     (Field::Double(found), Some(value)) => {
                         assert_eq!(found.to_bits(), value.to_bits(), "{quantity:?}");
                     }
@@ -205,6 +216,10 @@ mod tests {
             }
             assert_eq!(field("payload_q4"), Field::Double(1.0));
             assert_eq!(field("stage_q1"), Field::Null);
+            let text = |text: Option<&str>| text.map_or(Field::Null, |t| Field::Str(t.to_owned()));
+            let order = original.release_order();
+            assert_eq!(field("release_order"), text(order));
+            assert_eq!(field("recompressed"), text(order.map(|_| "2")));
         }
     }
 

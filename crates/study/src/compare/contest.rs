@@ -14,7 +14,7 @@ use super::{
     options::Size,
     reference::Target,
 };
-use crate::{model::separate, row::Failure, scenario::Scenario, streams::Streams, summary::Share};
+use crate::{row::Failure, scenario::Scenario, streams::Streams, summary::Share};
 
 /// How a model did, or why there is none.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -112,9 +112,9 @@ impl Results {
         let unrealizable = drawn.iter().filter(|d| !d.realizable).count() as u64;
         let mut failures: Vec<(String, u64)> = Vec::new();
         for failure in separated.iter().filter_map(|s| s.as_ref().err()) {
-            match failures.iter_mut().find(|(kind, _)| *kind == failure.kind) {
+            match failures.iter_mut().find(|(kind, _)| *kind == failure.kind()) {
                 Some((_, count)) => *count += 1,
-                None => failures.push((failure.kind.clone(), 1)),
+                None => failures.push((failure.kind().into_owned(), 1)),
             }
         }
         let spreads = Measure::ALL.into_iter().enumerate().map(|(i, measure)| {
@@ -163,5 +163,7 @@ pub(crate) fn nutation(
     scenario: &Scenario,
 ) -> Result<Option<f64>, Failure> {
     let stage = *scenario.stage().nominal().as_inertia_matrix();
-    separate(scenario, payload, stage).map(|outcome| outcome.nutation_deg)
+    let separated =
+        scenario.separation().with_inertias(payload, stage)?.run(scenario.settings())?;
+    Ok(separated.spin_metrics(scenario.spin_axis()).nutation().map(f64::to_degrees))
 }

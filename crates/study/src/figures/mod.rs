@@ -10,6 +10,7 @@
 
 mod axis;
 mod bins;
+mod curves;
 mod histogram;
 mod legend;
 mod lines;
@@ -20,6 +21,7 @@ mod style;
 mod svg;
 mod text;
 
+pub(crate) use curves::{Chart, Colours, Curve, time_charts};
 pub(crate) use histogram::{Panel, Series, histogram_grid};
 pub(crate) use lines::{Line, LinePanel, LinePoint, Range, line_grid};
 pub(crate) use ranges::{Label, RangePanel, range_grid};

@@ -12,6 +12,12 @@ pub(crate) struct ScenarioFile {
     pub(crate) seed: u64,
     #[serde(default = "default_spin_axis")]
     pub(crate) spin_axis: [f64; 3],
+    /// Inertial axes; the force of the springs at the start if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) separation_direction: Option<[f64; 3]>,
+    /// Inertial axes; the spin axis at the start if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) momentum_direction: Option<[f64; 3]>,
     pub(crate) payload: BodyFile,
     pub(crate) stage: BodyFile,
     #[serde(default)]

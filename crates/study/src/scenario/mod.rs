@@ -62,6 +62,8 @@ impl ScenarioError {
 pub struct Scenario {
     file: ScenarioFile,
     spin_axis: Unit<Vector3<f64>>,
+    separation_direction: Option<Unit<Vector3<f64>>>,
+    momentum_direction: Unit<Vector3<f64>>,
     payload: UncertainBody,
     stage: UncertainBody,
     separation: Separation,
@@ -132,14 +134,7 @@ impl Scenario {
         check_name("name", &file.name)?;
         check_runs(file.runs)?;
         check_seed(file.seed)?;
-        let axis = Vector3::from(file.spin_axis);
-        // Scaled first: the norm of 1e300 overflows.
-        let spin_axis = Unit::try_new(axis / axis.amax(), 0.0)
-            .filter(|u| u.iter().all(|x| x.is_finite()))
-            .ok_or_else(|| {
-                let problem = format!("{:?}: it must be finite and not zero", file.spin_axis);
-                ScenarioError::field("spin_axis", problem)
-            })?;
+        let spin_axis = direction("spin_axis", file.spin_axis)?;
         if let Some(source) = &file.source {
             let values =
                 [("inertia_ratio", source.inertia_ratio), ("wobble_deg", source.wobble_deg)];
@@ -164,12 +159,34 @@ impl Scenario {
             .collect::<Result<Vec<_>, _>>()?;
         let separation = Separation::new(*payload.moving(), *stage.moving(), &springs)
             .map_err(|e| ScenarioError::field("springs", e))?;
+        // Defaults go by way of the file, so that the resolved scenario gives the same bits.
+        if file.separation_direction.is_none() {
+            file.separation_direction = push(&separation).map(|d| d.into_inner().into());
+        }
+        let separation_direction = file
+            .separation_direction
+            .map(|given| direction("separation_direction", given))
+            .transpose()?;
+        let intended = payload.moving().state().attitude * spin_axis;
+        let intended = *file.momentum_direction.get_or_insert(intended.into_inner().into());
+        let momentum_direction = direction("momentum_direction", intended)?;
         let settings =
             Settings::new(file.integration.relative_tolerance, file.integration.horizon_s)
                 .map_err(|e| ScenarioError::field("integration", e))?;
         let models = model::check_models(&file.models, [&payload, &stage])?;
         let comparisons = model::check_comparisons(&file.comparisons, &models)?;
-        Ok(Self { file, spin_axis, payload, stage, separation, settings, models, comparisons })
+        Ok(Self {
+            file,
+            spin_axis,
+            separation_direction,
+            momentum_direction,
+            payload,
+            stage,
+            separation,
+            settings,
+            models,
+            comparisons,
+        })
     }
 
     /// Its name.
@@ -213,6 +230,17 @@ impl Scenario {
         &self.spin_axis
     }
 
+    /// Where the payload's mass centre is meant to go from the stage's, inertial axes; none if not said
+    /// and the springs' forces cancel at the start.
+    pub(crate) fn separation_direction(&self) -> Option<&Unit<Vector3<f64>>> {
+        self.separation_direction.as_ref()
+    }
+
+    /// Where the payload's angular momentum is meant to point, inertial axes.
+    pub(crate) fn momentum_direction(&self) -> &Unit<Vector3<f64>> {
+        &self.momentum_direction
+    }
+
     pub(crate) fn payload(&self) -> &UncertainBody {
         &self.payload
     }
@@ -247,6 +275,36 @@ impl Scenario {
     pub(crate) fn source(&self) -> Option<(&str, Option<f64>, Option<f64>)> {
         self.file.source.as_ref().map(|s| (s.title.as_str(), s.inertia_ratio, s.wobble_deg))
     }
+}
+
+fn direction(field: &str, given: [f64; 3]) -> Result<Unit<Vector3<f64>>, ScenarioError> {
+    unit(given.into()).ok_or_else(|| {
+        let problem = format!("{given:?}: it must be finite and not zero");
+        ScenarioError::field(field, problem)
+    })
+}
+
+fn unit(vector: Vector3<f64>) -> Option<Unit<Vector3<f64>>> {
+    // Scaled first: the norm of 1e300 overflows.
+    let scaled = vector / vector.amax();
+    Unit::try_new(scaled, 0.0).filter(|u| u.iter().all(|x| x.is_finite()))
+}
+
+/// The direction in which the springs push the payload at the start, if they do not cancel.
+fn push(separation: &Separation) -> Option<Unit<Vector3<f64>>> {
+    let (payload, stage) = (separation.payload().state(), separation.stage().state());
+    let forces = separation.springs().iter().map(|spring| {
+        let line = (payload.position - stage.position)
+            + payload.attitude * spring.payload_point_m()
+            - stage.attitude * spring.stage_point_m();
+        line * (spring.stiffness_n_per_m() * spring.stroke_m() / line.norm())
+    });
+    let (sum, size) = forces
+        .fold((Vector3::zeros(), 0.0), |(sum, size): (Vector3<f64>, f64), f| {
+            (sum + f, size + f.norm())
+        });
+    // What is left of forces that cancel is rounding.
+    if sum.norm() > 1e-9 * size { unit(sum) } else { None }
 }
 
 fn check_runs(runs: u64) -> Result<(), ScenarioError> {

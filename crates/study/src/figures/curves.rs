@@ -1,0 +1,250 @@
+//! Quantities against time, in two columns of charts.
+
+use super::axis::{Spacing, Units, ticks};
+use super::style::{self, MARGIN};
+use super::svg::{Anchor, Look, Svg, px};
+use super::text::{fit, width};
+
+const TICK: Look = Look::new(11.0, style::MUTED);
+const LABEL: Look = Look::new(12.0, style::INK);
+const NOTE: Look = Look::new(10.5, style::MUTED);
+const WIDTH: f64 = 372.0;
+const HEIGHT: f64 = 118.0;
+const GUTTER: f64 = 28.0;
+/// Names of a chart's curves at most.
+const NAMES: usize = 12;
+
+/// What colours the curves of a chart have.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Colours {
+    /// Those of axes 1, 2, 3.
+    Axes,
+    /// One after the other.
+    Series,
+}
+
+/// A quantity against time.
+#[derive(Clone, Debug)]
+pub(crate) struct Curve {
+    /// What it is called beside the label; may be empty.
+    pub(crate) name: String,
+    /// Time and value; what is not finite is left out.
+    pub(crate) points: Vec<(f64, f64)>,
+}
+
+/// Curves on the same axes from time zero on.
+#[derive(Clone, Debug)]
+pub(crate) struct Chart {
+    /// What is shown, with its unit.
+    pub(crate) label: String,
+    pub(crate) colours: Colours,
+    pub(crate) curves: Vec<Curve>,
+    /// The end of the time axis.
+    pub(crate) until: f64,
+}
+
+/// Charts row by row in two columns, with marks (their numbers, and when) on all of them.
+pub(crate) fn time_charts(title: &str, charts: &[Chart], marks: &[(usize, f64)]) -> String {
+    let scales: Vec<Scale> = charts.iter().map(Scale::new).collect();
+    let room = scales.iter().map(Scale::room).fold(26.0, f64::max);
+    let pitch = room + WIDTH + GUTTER;
+    let figure_width = 2.0 * MARGIN + 2.0 * pitch - GUTTER + 12.0;
+    let mut svg = Svg::new();
+    let mut y = svg.heading(title, figure_width);
+    if !marks.is_empty() {
+        y += 15.0;
+        svg.text(MARGIN, y - 3.0, NOTE, "dashed: springs let go, by their numbers");
+    }
+    for (charts, scales) in charts.chunks(2).zip(scales.chunks(2)) {
+        for (column, (chart, scale)) in charts.iter().zip(scales).enumerate() {
+            let left = MARGIN + room + pitch * column as f64;
+            draw(&mut svg, chart, scale, (left, y + 34.0), marks);
+        }
+        y += 34.0 + HEIGHT + 34.0;
+    }
+    let names: Vec<_> = charts.iter().map(|c| c.label.as_str()).collect();
+    let description = format!("Against time in seconds: {}.", names.join(", "));
+    svg.finish((figure_width, y + 4.0), title, &description)
+}
+
+/// The vertical axis of a chart.
+struct Scale {
+    units: Units,
+    lower: f64,
+    upper: f64,
+    ticks: Vec<super::axis::Tick>,
+}
+
+impl Scale {
+    fn new(chart: &Chart) -> Self {
+        let shown = chart.curves.iter().flat_map(|curve| shown(curve, chart.until));
+        let (lower, upper) = shown
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), (_, value)| {
+                (l.min(value), u.max(value))
+            });
+        let (lower, upper) = if lower <= upper { (lower, upper) } else { (0.0, 1.0) };
+        let size = lower.abs().max(upper.abs());
+        // What differs by rounding only is a line.
+        let half = 0.5 * upper - 0.5 * lower;
+        let pad = match size {
+            0.0 => 1.0,
+            _ if half < 1e-9 * size => 0.05 * size,
+            _ => 0.12 * half,
+        };
+        // Beyond f64 is no axis.
+        let limit = 0.4 * f64::MAX;
+        let (lower, upper) =
+            ((lower - pad).clamp(-limit, limit), (upper + pad).clamp(-limit, limit));
+        let units = Units::for_range(lower, upper);
+        let (lower, upper) = (units.of(lower), units.of(upper));
+        let spacing = Spacing { length: HEIGHT, most: 5, side_by_side: None, whole: false };
+        Self { units, lower, upper, ticks: ticks(lower, upper, spacing) }
+    }
+
+    fn room(&self) -> f64 {
+        8.0 + self.ticks.iter().map(|t| width(&t.label, TICK.size)).fold(0.0, f64::max)
+    }
+
+    /// The share of the height, from below, where a value in the units of the axis is.
+    fn share(&self, value: f64) -> f64 {
+        ((value - self.lower) / (self.upper - self.lower)).clamp(0.0, 1.0)
+    }
+}
+
+/// The points of a curve that a chart shows.
+fn shown(curve: &Curve, until: f64) -> impl Iterator<Item = (f64, f64)> {
+    let points = curve.points.iter().copied();
+    points.filter(move |(time, value)| *time <= until && value.is_finite())
+}
+
+fn draw(svg: &mut Svg, chart: &Chart, scale: &Scale, origin: (f64, f64), marks: &[(usize, f64)]) {
+    let (left, top) = origin;
+    let base = top + HEIGHT;
+    let until = if chart.until > 0.0 { chart.until } else { 1.0 };
+    let x = |time: f64| left + time / until * WIDTH;
+    let y = |share: f64| base - share * HEIGHT;
+    let line = |y: f64| format!("M{} {}h{}", px(left), px(y), px(WIDTH));
+    let grid: String = scale.ticks.iter().map(|tick| line(y(scale.share(tick.at)))).collect();
+    svg.path(&format!("stroke=\"{}\"", style::GRID), &grid);
+    for tick in &scale.ticks {
+        let at = y(scale.share(tick.at)) + 4.0;
+        svg.text(left - 5.0, at, TICK.at(Anchor::End), &tick.label);
+    }
+    let spacing = Spacing { length: WIDTH, most: 7, side_by_side: Some(TICK.size), whole: false };
+    let units = Units::for_range(0.0, until);
+    let times = ticks(0.0, units.of(until), spacing);
+    let at = |tick: f64| left + tick / units.of(until) * WIDTH;
+    let strokes: String =
+        times.iter().map(|t| format!("M{} {}v4", px(at(t.at)), px(base))).collect();
+    svg.path(&format!("stroke=\"{}\"", style::AXIS), &(line(base) + &strokes));
+    for tick in &times {
+        svg.text(at(tick.at), base + 16.0, TICK.at(Anchor::Middle), &tick.label);
+    }
+    let note = units.note();
+    let seconds = format!("time (s)  {note}");
+    svg.text(left + WIDTH, base + 29.0, NOTE.at(Anchor::End), seconds.trim_end());
+    releases(svg, origin, until, marks);
+
+    let colour = |i: usize| match chart.colours {
+        Colours::Axes => style::AXES[i % 3],
+        Colours::Series => style::model(i),
+    };
+    for (i, curve) in chart.curves.iter().enumerate() {
+        let mut d = String::new();
+        let mut last = f64::NEG_INFINITY;
+        let points: Vec<_> = shown(curve, chart.until).collect();
+        for (k, (time, value)) in points.iter().enumerate() {
+            let across = x(*time);
+            // More points than pixels show nothing more.
+            if across - last >= 0.75 || k + 1 == points.len() {
+                let pen = if d.is_empty() { 'M' } else { 'L' };
+                let height = y(scale.share(scale.units.of(*value)));
+                d.push_str(&format!("{pen}{} {}", px(across), px(height)));
+                last = across;
+            }
+        }
+        svg.path(&format!("stroke=\"{}\" stroke-width=\"1.5\"", colour(i)), &d);
+    }
+
+    let note = scale.units.note();
+    let label =
+        if note.is_empty() { chart.label.clone() } else { format!("{}  {note}", chart.label) };
+    let label = fit(&label, LABEL.size, WIDTH);
+    svg.text(left, top - 20.0, LABEL, &label);
+    let mut across = left + width(&label, LABEL.size) + 10.0;
+    for (i, curve) in chart.curves.iter().enumerate().take(NAMES) {
+        let more = i + 1 == NAMES && chart.curves.len() > NAMES;
+        let name = if more { "…" } else { curve.name.as_str() };
+        let wide = width(name, LABEL.size);
+        if name.is_empty() || across + wide > left + WIDTH {
+            continue;
+        }
+        let look = Look::new(LABEL.size, colour(i)).bold();
+        svg.text(across, top - 20.0, look, name);
+        across += wide + 10.0;
+    }
+}
+
+/// Dashed lines where springs let go, and their numbers where these have room.
+fn releases(svg: &mut Svg, (left, top): (f64, f64), until: f64, marks: &[(usize, f64)]) {
+    let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
+    for (spring, time) in marks.iter().filter(|(_, time)| *time <= until) {
+        let across = left + time / until * WIDTH;
+        match groups.last_mut() {
+            Some((at, springs)) if across - *at < 3.0 => springs.push(*spring),
+            _ => groups.push((across, vec![*spring])),
+        }
+    }
+    let d: String =
+        groups.iter().map(|(at, _)| format!("M{} {}v{}", px(*at), px(top), px(HEIGHT))).collect();
+    let pen = format!("stroke=\"{}\" stroke-width=\"0.8\" stroke-dasharray=\"3 3\"", style::AXIS);
+    svg.path(&pen, &d);
+    let mut free = f64::NEG_INFINITY;
+    for (at, springs) in groups {
+        let names: Vec<_> = springs.iter().map(ToString::to_string).collect();
+        let name = fit(&names.join(", "), NOTE.size, 60.0);
+        let half = 0.5 * width(&name, NOTE.size);
+        if at - half > free {
+            svg.text(at, top - 4.0, NOTE.at(Anchor::Middle), &name);
+            free = at + half + 3.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::svg::tests::read;
+    use super::*;
+
+    fn chart(values: impl Fn(f64) -> f64) -> Chart {
+        let points = (0..2000).map(|i| f64::from(i) * 0.01).map(|t| (t, values(t))).collect();
+        Chart {
+            label: "rate (deg/s)".to_owned(),
+            colours: Colours::Axes,
+            curves: vec![Curve { name: "ω₁".to_owned(), points }],
+            until: 15.0,
+        }
+    }
+
+    #[test]
+    fn charts_are_well_formed_and_small() {
+        let charts = [chart(f64::sin), chart(|t| 1e-300 * t), chart(|_| 7.0), chart(|_| f64::NAN)];
+        let svg = time_charts("a <title>", &charts, &[(1, 0.3), (2, 0.301), (3, 14.0), (4, 17.0)]);
+        let seen = read(&svg);
+        for text in ["a <title>", "rate (deg/s)", "ω1", "1, 2", "3", "time (s)"] {
+            assert!(seen.contains(text), "{text} is missing: {seen}");
+        }
+        assert!(!seen.contains("\n4\n"), "beyond the axis: {seen}");
+        assert!(svg.len() < 60_000, "{} bytes", svg.len());
+    }
+
+    #[test]
+    fn any_numbers_give_a_figure() {
+        for extreme in [f64::MAX, f64::MIN, f64::INFINITY, 5e-324, 0.0, -0.0] {
+            read(&time_charts("", &[chart(|t| extreme * (t - 1.0)), chart(|_| extreme)], &[]));
+        }
+        read(&time_charts("", &[], &[(1, 0.0)]));
+        let empty = Chart { curves: Vec::new(), until: 0.0, ..chart(|t| t) };
+        read(&time_charts("", &[empty], &[(1, 0.0)]));
+    }
+}

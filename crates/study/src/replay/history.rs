@@ -1,0 +1,194 @@
+//! The motion of a run, sampled, and as a table.
+
+use gyradius_separation::{MovingBody, Snapshot, Step};
+use nalgebra::{Unit, Vector3};
+use std::fmt::Write;
+
+/// Rows on the even grid at most.
+const MOST: f64 = 20_000.0;
+/// Rows to the last release, about.
+const PUSHING: f64 = 100.0;
+
+/// A moment of a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Moment {
+    pub(crate) now: Snapshot,
+    /// What happens then, if anything does.
+    pub(crate) event: String,
+}
+
+/// The motion on an even grid in time and at every event.
+#[derive(Clone, Debug)]
+pub(crate) struct History {
+    pub(crate) moments: Vec<Moment>,
+    /// Spring from 1 and when it let go, s, in the order of time.
+    pub(crate) releases: Vec<(usize, f64)>,
+}
+
+impl History {
+    /// Of the steps of a run, and of springs (from 1) that are pressed again at times (s).
+    pub(crate) fn new(steps: &[Step], recompressed: &[(usize, f64)]) -> Self {
+        let end = steps.last().map_or(0.0, Step::end_s);
+        let mut releases = Vec::new();
+        for step in steps {
+            releases.extend(step.released().iter().map(|spring| (*spring, step.end_s())));
+        }
+        let pushing = releases.last().map_or(end, |(_, time)| *time);
+        let interval = round(f64::max(pushing / PUSHING, end / MOST));
+        let mut moments: Vec<Moment> = Vec::new();
+        let mut next = 0_u32;
+        for step in steps {
+            let mut due: Vec<(f64, String)> = Vec::new();
+            // A grid of multiples, not of sums.
+            while f64::from(next) * interval < step.end_s() {
+                due.push((f64::from(next) * interval, String::new()));
+                next += 1;
+            }
+            for (spring, time) in recompressed {
+                if (step.start_s()..step.end_s()).contains(time) {
+                    due.push((*time, format!("spring {spring} pressed again")));
+                }
+            }
+            if !step.released().is_empty() {
+                let names: Vec<_> = step.released().iter().map(ToString::to_string).collect();
+                let plural = if names.len() > 1 { "s" } else { "" };
+                let event = format!("spring{plural} {} released", names.join(" and "));
+                due.push((step.end_s(), event));
+            } else if step.end_s() == end {
+                due.push((end, "end".to_owned()));
+            }
+            due.sort_by(|a, b| a.0.total_cmp(&b.0));
+            moments.extend(due.into_iter().map(|(t, event)| Moment { now: step.at(t), event }));
+        }
+        if let Some(first) = moments.first_mut() {
+            first.event.insert_str(0, "clamp opens");
+        }
+        Self { moments, releases }
+    }
+
+    /// When it ends, s.
+    pub(crate) fn end_s(&self) -> f64 {
+        self.moments.last().map_or(0.0, |m| m.now.time_s())
+    }
+
+    /// When the last spring lets go, s; the end if some do not.
+    pub(crate) fn pushing_s(&self) -> f64 {
+        let springs = self.moments.first().map_or(0, |m| m.now.springs().len());
+        match self.releases.last() {
+            Some((_, time)) if self.releases.len() == springs => *time,
+            _ => self.end_s(),
+        }
+    }
+
+    /// The table: a row a moment, columns with units in their names.
+    pub(crate) fn csv(&self, spin_axis: &Unit<Vector3<f64>>) -> String {
+        let springs = self.moments.first().map_or(0, |m| m.now.springs().len());
+        let mut out = columns(springs).join(",");
+        out.push('\n');
+        for moment in &self.moments {
+            // Writing to a string does not fail.
+            let _ = write!(out, "{:?},{}", moment.now.time_s(), moment.event);
+            for value in values(&moment.now, spin_axis) {
+                match value {
+                    // As many digits as read back bit for bit.
+                    Some(value) => {
+                        let _ = write!(out, ",{value:?}");
+                    }
+                    None => out.push(','),
+                }
+            }
+            out.push('\n');
+        }
+        out
+    }
+}
+
+/// The nearest of 1, 2 and 5 times a power of ten below.
+fn round(interval: f64) -> f64 {
+    let text = format!("{interval:e}");
+    let Some((digits, exponent)) = text.split_once('e') else { return interval };
+    let digit = match digits.parse::<f64>() {
+        Ok(x) if x >= 5.0 => 5,
+        Ok(x) if x >= 2.0 => 2,
+        _ => 1,
+    };
+    let rounded = format!("{digit}e{exponent}").parse().unwrap_or(interval);
+    if rounded > 0.0 { rounded } else { f64::MIN_POSITIVE }
+}
+
+fn columns(springs: usize) -> Vec<String> {
+    let mut names = vec!["time_s".to_owned(), "event".to_owned()];
+    for body in ["payload", "stage"] {
+        let mut three = |what: &str, unit: &str| {
+            names.extend((1..=3).map(|i| format!("{body}_{what}{i}_{unit}")));
+        };
+        three("x", "m");
+        three("v", "m_per_s");
+        names.extend((1..=4).map(|i| format!("{body}_q{i}")));
+        names.extend((1..=3).map(|i| format!("{body}_w{i}_rad_per_s")));
+    }
+    for spring in 1..=springs {
+        names.push(format!("spring_{spring}_compression_m"));
+        names.push(format!("spring_{spring}_force_n"));
+        names.extend((1..=3).map(|i| format!("spring_{spring}_force_{i}_n")));
+    }
+    names.extend((1..=3).map(|i| format!("momentum_{i}_kg_m_per_s")));
+    names.extend((1..=3).map(|i| format!("angular_momentum_{i}_kg_m2_per_s")));
+    for name in [
+        "springs_j",
+        "payload_translation_j",
+        "payload_rotation_j",
+        "stage_translation_j",
+        "stage_rotation_j",
+        "energy_j",
+        "payload_nutation_deg",
+    ] {
+        names.push(name.to_owned());
+    }
+    names
+}
+
+fn values(now: &Snapshot, spin_axis: &Unit<Vector3<f64>>) -> Vec<Option<f64>> {
+    let mut values = Vec::new();
+    for body in [now.payload(), now.stage()] {
+        let state = body.state();
+        values.extend(state.position.iter().chain(state.velocity.iter()));
+        values.extend(state.attitude.coords.iter().chain(state.angular_velocity.iter()));
+    }
+    for spring in now.springs() {
+        values.extend([spring.compression_m(), spring.force_n().norm()]);
+        values.extend(spring.force_n().iter());
+    }
+    values.extend(now.momentum().iter().chain(now.angular_momentum().iter()));
+    values.extend(energies(now));
+    values.push(energies(now).iter().sum());
+    let mut values: Vec<_> = values.into_iter().map(Some).collect();
+    values.push(nutation_deg(now.payload(), spin_axis));
+    values
+}
+
+/// Of the springs; of translation (relative to the common mass centre) and rotation of payload and
+/// stage, J.
+pub(crate) fn energies(now: &Snapshot) -> [f64; 5] {
+    let stored = now.springs().iter().map(|s| s.energy_j()).sum();
+    let [payload, stage] = now.translational_energies_j();
+    let rotation = MovingBody::rotational_energy;
+    [stored, payload, rotation(now.payload()), stage, rotation(now.stage())]
+}
+
+pub(crate) fn nutation_deg(payload: &MovingBody, spin_axis: &Unit<Vector3<f64>>) -> Option<f64> {
+    payload.spin_metrics(spin_axis).nutation().map(f64::to_degrees)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::round;
+
+    #[test]
+    fn intervals_are_round() {
+        for (x, expected) in [(0.0026, 0.002), (1.0, 1.0), (7.3e-9, 5e-9), (1.99, 1.0)] {
+            assert_eq!(round(x), expected);
+        }
+        assert!(round(0.0) > 0.0 && round(5e-324) > 0.0);
+    }
+}

@@ -1,0 +1,361 @@
+//! One run of a study again, bit for bit, with all that happens in it.
+
+mod history;
+mod page;
+mod picture;
+mod record;
+mod words;
+
+use gyradius_separation::{RunError, Step};
+use parquet::errors::ParquetError;
+use serde_json::Value;
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use crate::{
+    Row, Scenario, ScenarioError,
+    column::Column,
+    model::{Case, Model},
+};
+use history::History;
+
+/// Longest coast, s: what a history still shows.
+const MOST_COAST: f64 = 3600.0;
+
+/// Why a run is not replayed. Nothing has been overwritten.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReplayError {
+    /// The scenario is refused.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// There is no study.
+    #[error("{}: {problem}", path.display())]
+    Study {
+        /// Where it was looked for.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The study was made by another version, whose numbers need not be these.
+    #[error(
+        "{}: the study was made by gyradius {found}, and this is {}: run it again, or replay it with \
+         that version", path.display(), env!("CARGO_PKG_VERSION")
+    )]
+    Version {
+        /// The study's folder.
+        path: PathBuf,
+        /// The version in its summary.
+        found: String,
+    },
+    /// The scenario in the folder is not the one that its runs are from.
+    #[error(
+        "{}: scenario.toml has the fingerprint {scenario}, and the runs are from a scenario with \
+         {summary}: it was changed after the study; run the study again",
+        path.display()
+    )]
+    Fingerprint {
+        /// The study's folder.
+        path: PathBuf,
+        /// Fingerprint of the scenario.
+        scenario: String,
+        /// Fingerprint in the summary.
+        summary: String,
+    },
+    /// The scenario has no such model.
+    #[error("model {model:?}: the scenario has {}", known.join(", "))]
+    Model {
+        /// What was asked for.
+        model: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// There is no such run.
+    #[error("run {run}: the runs are numbered from 0 to {}", runs - 1)]
+    Run {
+        /// What was asked for.
+        run: u64,
+        /// How many there are.
+        runs: u64,
+    },
+    /// The coast is none.
+    #[error("coast = {value} s: it must lie between 0 and {MOST_COAST}")]
+    Coast {
+        /// What was asked for, s.
+        value: f64,
+    },
+    /// The coast cannot be followed to its end.
+    #[error("the run ends well, but not its coast: {0}; ask for a shorter one")]
+    Coasting(RunError),
+    /// The run table cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Table {
+        /// The table.
+        path: PathBuf,
+        /// Why.
+        source: ParquetError,
+    },
+    /// The replay is not what the table says.
+    #[error(
+        "{}: {column} of the run is {table}, and the replay has {replayed}: the table was changed, or \
+         made by another build", path.display()
+    )]
+    Differs {
+        /// The table.
+        path: PathBuf,
+        /// The column.
+        column: String,
+        /// What stands in it.
+        table: String,
+        /// What the replay gives.
+        replayed: String,
+    },
+    /// A file is there already, and another.
+    #[error(
+        "{} is there already; choose another folder with --out, or pass --force to replace it",
+        path.display()
+    )]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+/// A run of a study, done again and followed through.
+///
+/// Its row is that of the study, bit for bit. Printed, it is a page of what happened.
+#[derive(Debug)]
+pub struct Replay {
+    scenario: Scenario,
+    model: String,
+    case: Case,
+    row: Row,
+    history: History,
+    /// The table whose row it was held against.
+    table: Option<PathBuf>,
+}
+
+impl Replay {
+    /// Replays a run of the study in a folder, and holds it against the run table there; or of a
+    /// scenario file, which has none. The model is the first of the scenario if not given. The history
+    /// goes on for `coast_s` after the last release.
+    ///
+    /// # Errors
+    /// The folder holds no study, or one by another version or from another scenario; there is no such
+    /// model or run; the coast is not within 0 and 3600 s; the table says otherwise.
+    pub fn open(
+        path: &Path,
+        model: Option<&str>,
+        run: u64,
+        coast_s: f64,
+    ) -> Result<Self, ReplayError> {
+        if !path.is_dir() {
+            if !path.exists() {
+                let problem =
+                    "there is no such study: run `gyradius study`, or name the folder of one \
+                               or a scenario file"
+                        .to_owned();
+                return Err(ReplayError::Study { path: path.to_owned(), problem });
+            }
+            return Self::new(&Scenario::read(path)?, model, run, coast_s);
+        }
+        let scenario = scenario_of(path)?;
+        let mut replay = Self::new(&scenario, model, run, coast_s)?;
+        let table = path.join(format!("runs/{}/runs.parquet", replay.model));
+        replay.compare(&table)?;
+        replay.table = Some(table);
+        Ok(replay)
+    }
+
+    /// Replays a run of a scenario.
+    ///
+    /// # Errors
+    /// There is no such model or run; the coast is not within 0 and 3600 s.
+    pub fn new(
+        scenario: &Scenario,
+        model: Option<&str>,
+        run: u64,
+        coast_s: f64,
+    ) -> Result<Self, ReplayError> {
+        if !(0.0..=MOST_COAST).contains(&coast_s) {
+            return Err(ReplayError::Coast { value: coast_s });
+        }
+        if run >= scenario.runs() {
+            return Err(ReplayError::Run { run, runs: scenario.runs() });
+        }
+        let specs = scenario.models();
+        let asked = specs.iter().find(|spec| model.is_none_or(|name| spec.name == name));
+        let Some(spec) = asked else {
+            let known = scenario.model_names().map(str::to_owned).collect();
+            return Err(ReplayError::Model { model: model.unwrap_or_default().to_owned(), known });
+        };
+        let case = Model::new(spec, scenario)?.draw(scenario, run);
+        let (mut steps, mut result) = (Vec::<Step>::new(), None);
+        let mut recompressed = Vec::new();
+        if let Ok(separation) = &case.separation {
+            let settings = scenario.settings();
+            let outcome = separation.run(settings);
+            let followed = separation.follow(settings, coast_s, |step| steps.push(step.clone()));
+            if let (Ok(_), Err(error)) = (&outcome, followed) {
+                return Err(ReplayError::Coasting(error));
+            }
+            if let Ok(outcome) = &outcome {
+                recompressed.extend(outcome.recompressed());
+            }
+            result = Some(outcome);
+        }
+        Ok(Self {
+            row: case.row(scenario, result),
+            history: History::new(&steps, &recompressed),
+            scenario: scenario.clone(),
+            model: spec.name.clone(),
+            case,
+            table: None,
+        })
+    }
+
+    /// What came of it.
+    #[must_use]
+    pub fn row(&self) -> &Row {
+        &self.row
+    }
+
+    /// Name of the model.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// Where its files go if nothing else is said: `target/replay/<scenario>/<model>-<run>`.
+    #[must_use]
+    pub fn default_folder(&self) -> PathBuf {
+        let name = format!("{}-{}", self.model, self.row.run());
+        Path::new("target/replay").join(self.scenario.name()).join(name)
+    }
+
+    /// Writes the history as a table and as a figure, and the animation: `history.csv`, `history.svg`,
+    /// `animation.html`; returns what it wrote, nothing if the run never began. A file that is there
+    /// with the same content is left alone.
+    ///
+    /// # Errors
+    /// A file is there with other content and `force` is not set, or cannot be written.
+    pub fn write(&self, folder: &Path, force: bool) -> Result<Vec<PathBuf>, ReplayError> {
+        if self.history.moments.is_empty() {
+            return Ok(Vec::new());
+        }
+        let files = [
+            ("history.csv", self.history.csv(self.scenario.spin_axis())),
+            ("history.svg", picture::svg(self)),
+            ("animation.html", page::html(self)),
+        ]
+        .map(|(name, content)| (folder.join(name), content));
+        let mut different = Vec::new();
+        for (path, content) in &files {
+            let same = match fs::symlink_metadata(path) {
+                Err(error) if error.kind() == io::ErrorKind::NotFound => false,
+                // A folder of that name cannot be replaced.
+                Ok(found) if found.is_dir() => {
+                    let source = io::Error::other("it is a folder");
+                    return Err(ReplayError::Write { path: path.clone(), source });
+                }
+                _ if fs::read(path).is_ok_and(|found| found == content.as_bytes()) => true,
+                _ if force => false,
+                _ => return Err(ReplayError::Exists { path: path.clone() }),
+            };
+            if !same {
+                different.push((path, content));
+            }
+        }
+        let failed = |path: &Path| {
+            let path = path.to_owned();
+            |source| ReplayError::Write { path, source }
+        };
+        fs::create_dir_all(folder).map_err(failed(folder))?;
+        for (path, content) in different {
+            // Half a file is never in place, and a link is replaced, not followed.
+            let mut draft = path.clone().into_os_string();
+            draft.push(format!(".draft-{}", std::process::id()));
+            let draft = PathBuf::from(draft);
+            let written = fs::write(&draft, content).and_then(|()| fs::rename(&draft, path));
+            written.map_err(|source| {
+                // Nothing better can be done about a draft that stays.
+                let _ = fs::remove_file(&draft);
+                ReplayError::Write { path: path.clone(), source }
+            })?;
+        }
+        Ok(files.map(|(path, _)| path).into())
+    }
+
+    /// Holds the row against that of a run table, bit by bit.
+    fn compare(&self, table: &Path) -> Result<(), ReplayError> {
+        let unreadable = |source| ReplayError::Table { path: table.to_owned(), source };
+        let differs = |column: &str, found: String, replayed: String| ReplayError::Differs {
+            path: table.to_owned(),
+            column: column.to_owned(),
+            table: found,
+            replayed,
+        };
+        let found = record::read(table, self.row.run()).map_err(unreadable)?;
+        let found = found
+            .ok_or_else(|| unreadable(ParquetError::General("it has no such run".to_owned())))?;
+        let columns = Column::of(self.scenario.separation().springs().len());
+        if columns.len() != found.len() {
+            let count = |n: usize| format!("{n} columns");
+            return Err(differs("the number of columns", count(found.len()), count(columns.len())));
+        }
+        for (column, (name, cell)) in columns.into_iter().zip(found) {
+            let own = column.cell(&self.model, &self.row);
+            if column.name() != name {
+                return Err(differs("the name of a column", name, column.name().into_owned()));
+            }
+            if own != cell {
+                return Err(differs(&name, cell.to_string(), own.to_string()));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The scenario of the study in a folder, if its runs are this program's.
+fn scenario_of(folder: &Path) -> Result<Scenario, ReplayError> {
+    let (file, summary) = (folder.join("scenario.toml"), folder.join("summary.json"));
+    let problem = |problem: String| ReplayError::Study { path: folder.to_owned(), problem };
+    if !file.is_file() || !summary.is_file() {
+        return Err(problem(
+            "it holds no study, which has a scenario.toml and a summary.json; name the folder of one or \
+             a scenario file"
+                .to_owned(),
+        ));
+    }
+    let text = fs::read_to_string(&summary)
+        .map_err(|e| problem(format!("summary.json cannot be read: {e}")))?;
+    let value: Value = serde_json::from_str(&text)
+        .map_err(|e| problem(format!("summary.json is no summary: {e}")))?;
+    let said = |field: &str| value[field].as_str().map(str::to_owned);
+    let (Some(version), Some(fingerprint)) = (said("gyradius_version"), said("fingerprint")) else {
+        return Err(problem("summary.json names no version and no fingerprint".to_owned()));
+    };
+    // First: another version may read other scenarios.
+    if version != env!("CARGO_PKG_VERSION") {
+        return Err(ReplayError::Version { path: folder.to_owned(), found: version });
+    }
+    let scenario = Scenario::read(&file)?;
+    if scenario.fingerprint() != fingerprint {
+        return Err(ReplayError::Fingerprint {
+            path: folder.to_owned(),
+            scenario: scenario.fingerprint(),
+            summary: fingerprint,
+        });
+    }
+    Ok(scenario)
+}

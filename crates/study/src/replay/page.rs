@@ -1,0 +1,156 @@
+//! The animation of a run: one page of HTML that needs nothing but itself.
+
+use gyradius_inertia::InertiaMatrix;
+use gyradius_separation::MovingBody;
+use maud::{DOCTYPE, PreEscaped, html};
+use nalgebra::UnitQuaternion;
+use serde_json::{Value, json};
+
+use super::{
+    Replay,
+    history::{Moment, nutation_deg},
+};
+use crate::report;
+
+const SCRIPT: &str = include_str!("page.js");
+const STYLE: &str = include_str!("page.css");
+/// Moments shown: enough to be smooth, few enough for a small file.
+const FRAMES: usize = 260;
+/// Springs drawn at most.
+const SPRINGS: usize = 200;
+
+pub(super) fn html(replay: &Replay) -> String {
+    let name = replay.scenario.name();
+    let (model, run) = (&replay.model, replay.row.run());
+    // JSON in a script must not end it.
+    let data = data(replay).to_string().replace('<', "\\u003c");
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (name) ": " (model) ", run " (run) }
+                style { (PreEscaped(report::STYLE)) (PreEscaped(STYLE)) }
+            }
+            body { main {
+                h1 { "Run " (run) " of " (model) }
+                p.lead {
+                    "Scenario " strong { (name) } ": payload and stage, seen from their common mass centre. Each is "
+                    "drawn as the uniform box that has its mass and inertia, which is not its shape; boxes may "
+                    "overlap."
+                    @if !replay.row.realizable() {
+                        " No distribution of mass has the inertia drawn: boxes are flat where they would be less."
+                    }
+                }
+                @if replay.row.failure().is_some() { p.warning { (replay.row.status()) } }
+                div.scene { canvas #scene tabindex="0" aria-label="Payload, stage and springs in three dimensions" {} }
+                div.controls {
+                    button #play type="button" { "Pause" }
+                    input #time type="range" min="0" max="1000" step="any" value="0" aria-label="time";
+                    output #clock {}
+                    label { "speed " select #speed {} }
+                }
+                p.key {
+                    span.payload { "payload" } " " span.stage { "stage" } " "
+                    span.spring { "springs that push" } " "
+                    span.momentum { "angular momentum of the payload" } " "
+                    span.spin { "spin axis" } " "
+                    span.one { "1" } " " span.two { "2" } " " span.three { "3" } " body axes"
+                }
+                table.now { tbody #now {} }
+                p { small { "Drag to turn, wheel to zoom, space to stop and go." } }
+                script { (PreEscaped("const data = ")) (PreEscaped(data)) (PreEscaped(";\n")) (PreEscaped(SCRIPT)) }
+            } }
+        }
+    }
+    .into_string()
+}
+
+/// What the script draws. Numbers have as many digits as can be seen.
+fn data(replay: &Replay) -> Value {
+    let history = &replay.history;
+    let frames: Vec<Value> = frames(replay).iter().map(|m| frame(replay, m)).collect();
+    let separation = replay.case.separation.as_ref().ok();
+    let springs: Vec<Value> = separation
+        .iter()
+        .flat_map(|s| s.springs())
+        .take(SPRINGS)
+        .enumerate()
+        .map(|(i, spring)| {
+            let released = history.releases.iter().find(|(number, _)| *number == i + 1);
+            json!({
+                "p": short(spring.payload_point_m().as_slice()),
+                "s": short(spring.stage_point_m().as_slice()),
+                "free": released.map(|(_, time)| short(&[*time])[0].clone()),
+            })
+        })
+        .collect();
+    let bodies = separation.map(|s| [cuboid(s.payload()), cuboid(s.stage())]);
+    json!({
+        "frames": frames,
+        "springs": springs,
+        "boxes": bodies.map_or_else(Vec::new, Vec::from),
+        "spin": short(replay.scenario.spin_axis().as_slice()),
+        "releases": history.releases.iter().take(SPRINGS).map(|(spring, time)| {
+            json!([spring, short(&[*time])[0]])
+        }).collect::<Vec<_>>(),
+    })
+}
+
+/// Moments to be shown: half of them while springs push.
+fn frames(replay: &Replay) -> Vec<&Moment> {
+    let moments = &replay.history.moments;
+    let until = 1.2 * replay.history.pushing_s();
+    let pushing = moments.partition_point(|m| m.now.time_s() <= until);
+    let thin = |from: usize, to: usize| {
+        let count = (to - from).min(FRAMES / 2);
+        (0..count).map(move |i| from + i * (to - from) / count)
+    };
+    let mut chosen: Vec<usize> = thin(0, pushing).chain(thin(pushing, moments.len())).collect();
+    chosen.extend(moments.len().checked_sub(1));
+    chosen.dedup();
+    chosen.into_iter().map(|i| &moments[i]).collect()
+}
+
+/// Time, then of payload and stage position, attitude and rates (deg/s), then the payload's angular
+/// momentum (inertial axes) and nutation (deg).
+fn frame(replay: &Replay, moment: &Moment) -> Value {
+    let now = &moment.now;
+    let (payload, stage) = (now.payload(), now.stage());
+    let (mp, ml) = (payload.body().mass_kg(), stage.body().mass_kg());
+    let (p, l) = (payload.state().position, stage.state().position);
+    // From the common mass centre.
+    let positions = [(p - l) * (ml / (mp + ml)), (l - p) * (mp / (mp + ml))];
+    let mut values = vec![now.time_s()];
+    for (body, position) in [payload, stage].into_iter().zip(positions) {
+        let state = body.state();
+        values.extend(position.iter().chain(state.attitude.coords.iter()));
+        values.extend(state.angular_velocity.iter().map(|w| w.to_degrees()));
+    }
+    values.extend(payload.inertial_spin_angular_momentum().iter());
+    values.extend(nutation_deg(payload, replay.scenario.spin_axis()));
+    Value::Array(short(&values))
+}
+
+/// Sides and attitude of the uniform box with the mass and inertia of a body: sides √(12 K/m) along the
+/// principal axes, zero where K is negative.
+fn cuboid(body: &MovingBody) -> Value {
+    let inertia: &InertiaMatrix = body.body().inertia();
+    let principal = inertia.principal_axes();
+    let sides =
+        principal.second_moments().map(|k| (12.0 * k.max(0.0) / body.body().mass_kg()).sqrt());
+    let attitude = UnitQuaternion::from_rotation_matrix(&principal.axes());
+    let (sides, attitude) = (short(&sides), short(attitude.coords.as_slice()));
+    json!({ "sides": sides, "q": attitude })
+}
+
+/// To six digits; what is not finite is zero, which draws.
+fn short(values: &[f64]) -> Vec<Value> {
+    let number = |x: &f64| {
+        let text = if x.is_finite() { format!("{x:.5e}") } else { "0".to_owned() };
+        // Back from text, for the shortest form of it.
+        json!(text.parse::<f64>().unwrap_or(0.0))
+    };
+    values.iter().map(number).collect()
+}

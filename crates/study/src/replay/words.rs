@@ -1,0 +1,100 @@
+//! A run on a page.
+
+use std::fmt::{self, Display, Formatter};
+
+use super::Replay;
+use crate::{
+    format::{optional, significant},
+    row::{Axis, Body, Entry, Quantity},
+};
+
+impl Display for Replay {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let (scenario, row) = (&self.scenario, &self.row);
+        writeln!(
+            f,
+            "{}, model {}, run {} of {}, seed {}",
+            scenario.name(),
+            self.model,
+            row.run(),
+            scenario.runs(),
+            scenario.seed()
+        )?;
+        writeln!(f, "status: {}", row.status())?;
+        match &self.table {
+            Some(table) => writeln!(f, "the same, bit for bit, as in {}", table.display())?,
+            None => writeln!(f, "there is no run table to hold it against")?,
+        }
+        write!(f, "\ninertia (kg·m²)")?;
+        for entry in Entry::ALL {
+            write!(f, "{:>11}", Quantity::Payload(entry).label())?;
+        }
+        for body in Body::BOTH {
+            write!(f, "\n  {:13}", body.name())?;
+            for entry in Entry::ALL {
+                write!(f, "{:>11}", optional(row.value(body.entry(entry)), 5))?;
+            }
+        }
+        writeln!(f)?;
+        if !row.realizable() {
+            writeln!(f, "  no distribution of mass has such inertia")?;
+        }
+        if row.failure().is_some() {
+            return match self.history.moments.last() {
+                Some(last) => writeln!(
+                    f,
+                    "\nfollowed to {} s, springs released by then: {}",
+                    significant(last.now.time_s(), 5),
+                    self.history.releases.len()
+                ),
+                None => writeln!(f, "\nit never began"),
+            };
+        }
+
+        write!(f, "\nsprings")?;
+        for (spring, time) in &self.history.releases {
+            write!(f, "\n  {spring} lets go at {time:.9} s")?;
+        }
+        for spring in row.recompressed() {
+            write!(f, "\n  {spring} is pressed again later, and stays lost")?;
+        }
+        let value = |quantity| optional(row.value(quantity), 6);
+        let three = |of: fn(Axis) -> Quantity| {
+            [Axis::One, Axis::Two, Axis::Three].map(|axis| value(of(axis))).join(", ")
+        };
+        let mut line = |what: &str, value: String, unit: &str| {
+            let unit = if value == "–" { "" } else { unit };
+            write!(f, "\n  {what:40}{value}{unit}")
+        };
+        let nutation = |now, least, greatest| {
+            format!("{}° in [{}°, {}°]", value(now), value(least), value(greatest))
+        };
+        line("", String::new(), "")?;
+        line("relative speed", value(Quantity::RelativeSpeed), " m/s")?;
+        line("relative velocity, inertial axes", three(Quantity::RelativeVelocity), " m/s")?;
+        line("angle to the intended direction", value(Quantity::DirectionError), "°")?;
+        line("tip-off of the payload, body axes", three(Quantity::PayloadTipOff), " deg/s")?;
+        line("tip-off of the stage, body axes", three(Quantity::StageTipOff), " deg/s")?;
+        let rate = row.value(Quantity::SpinRate).map(f64::to_degrees);
+        line("spin rate of the payload", optional(rate, 6), " deg/s")?;
+        line("wobble", value(Quantity::Wobble), "°")?;
+        let (now, least) = (Quantity::Nutation, Quantity::NutationLeast);
+        line("nutation, and its bounds", nutation(now, least, Quantity::NutationGreatest), "")?;
+        if row.value(Quantity::NutationBefore).is_some() {
+            let (now, least) = (Quantity::NutationBefore, Quantity::NutationLeastBefore);
+            let greatest = Quantity::NutationGreatestBefore;
+            line("the same at the start", nutation(now, least, greatest), "")?;
+        }
+        line("cone", value(Quantity::Cone), "°")?;
+        line("angular momentum, inertial axes", three(Quantity::Momentum), " kg·m²/s")?;
+        line("angle to its intended direction", value(Quantity::MomentumError), "°")?;
+        line("inertia ratio", value(Quantity::InertiaRatio), "")?;
+        line("energy of the springs", value(Quantity::SpringEnergy), " J")?;
+        let both = |a, b| format!("{} and {}", value(a), value(b));
+        let (translation, rotation) = (Quantity::PayloadTranslation, Quantity::PayloadRotation);
+        line("  payload: translation and rotation", both(translation, rotation), " J")?;
+        let (translation, rotation) = (Quantity::StageTranslation, Quantity::StageRotation);
+        line("  stage: translation and rotation", both(translation, rotation), " J")?;
+        writeln!(f)
+    }
+}
