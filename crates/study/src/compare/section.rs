@@ -108,7 +108,7 @@ impl Section {
                 "nominal stage. Numbers in brackets: the covariance is further off than that of a body "
                 "known exactly (100 %), so not like for like. " code { "gyradius compare" } " does this for other bodies and levels."
             }
-            div.wide { table {
+            div.wide { table.results {
                 thead { tr {
                     th { "model" }
                     th { "unrealizable: payload, %" }
