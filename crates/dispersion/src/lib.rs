@@ -49,6 +49,7 @@ mod axes;
 mod basilisk;
 mod batch;
 mod correlated_entries;
+mod correlation;
 mod entry_moments;
 mod entrywise;
 mod fit;
@@ -60,6 +61,7 @@ mod principal;
 mod realizable_only;
 mod root_moments;
 mod roots;
+mod scalar;
 mod second_moment_matrix;
 mod semidefinite;
 mod statements;
@@ -71,6 +73,7 @@ pub use axes::{AttitudeMoments, AxesLaw, FixedAttitude, JacobianTwice, JacobianT
 pub use basilisk::{BasiliskDispersion, BasiliskError};
 pub use batch::{BatchAttitudes, BatchRoots, ColumnsError};
 pub use correlated_entries::CorrelatedEntries;
+pub use correlation::{Correlation, CorrelationError};
 pub use entry_moments::{EntryMoments, EntryMomentsError};
 pub use entrywise::{EntrywiseError, EntrywiseGaussian};
 pub use fit::{
@@ -92,6 +95,7 @@ pub use roots::{
     LognormalRootsError, RootLaw, TruncatedRoots, TruncatedRootsError, UniformRoots,
     UniformRootsError,
 };
+pub use scalar::{ScalarLaw, ScalarLawError};
 pub use semidefinite::CovarianceError;
 pub use statements::{
     Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, Part,

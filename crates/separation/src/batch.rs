@@ -79,7 +79,13 @@ mod tests {
                         let (s, c) = libm::sincos(f64::from(j) * 2.1 + x);
                         let stiffness = if i == 9 { 1e-3 } else { 1e3 * (1.0 + f64::from(j)) };
                         let at = |z| Vector3::new(s, c, z);
-                        Spring::new(stiffness, 0.1 + 0.01 * x, at(-0.8), at(0.8)).unwrap()
+                        let spring = Spring::new(stiffness, 0.1 + 0.01 * x, at(-0.8), at(0.8));
+                        let spring = spring.unwrap().with_friction(f64::from(i % 3)).unwrap();
+                        match (i + j) % 5 {
+                            1 => spring.starting_at(0.02 * f64::from(j)).unwrap(),
+                            2 if j > 0 => spring.never_pushing(),
+                            _ => spring,
+                        }
                     })
                     .collect();
                 Separation::new(

@@ -2,7 +2,7 @@ use smallvec::SmallVec;
 use std::borrow::Borrow;
 
 use crate::{
-    Outcome, RunError, Separation, Settings,
+    Outcome, RunError, Separation, Settings, Spring,
     expansion::{Expansion, INLINE_SPRINGS, ORDER, Rotor, STATE, SpringSeries, TERMS},
     lanes::{Lanes, M3, Packing},
     polynomial::first_zero,
@@ -20,11 +20,26 @@ const UNDERFLOW: f64 = 1e-13;
 const RECOMPRESSED: f64 = 1e-9;
 
 /// What becomes of one spring: when it lets go, and when it is first shorter than its free length
-/// after that.
+/// after that; and whether it is yet to start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Fate {
     pub(crate) released: Option<f64>,
     pub(crate) recompressed: Option<f64>,
+    pub(crate) waiting: bool,
+}
+
+impl Fate {
+    fn of(spring: &Spring) -> Self {
+        Self {
+            released: (!spring.can_push()).then_some(0.0),
+            recompressed: None,
+            waiting: spring.can_push() && spring.start_s() != Some(0.0),
+        }
+    }
+
+    pub(crate) fn pushes(&self) -> bool {
+        self.released.is_none() && !self.waiting
+    }
 }
 
 /// What becomes of the springs, in their order.
@@ -65,9 +80,17 @@ where
 }
 
 impl<S: Borrow<Separation>> Track<S> {
+    /// The springs that push or will.
     pub(crate) fn pushing(&self) -> impl Iterator<Item = usize> {
         let springs = self.springs.iter().enumerate();
         springs.filter(|(_, fate)| fate.released.is_none()).map(|(i, _)| i)
+    }
+
+    /// When the next spring starts.
+    fn next_start(&self) -> f64 {
+        let springs = self.separation.borrow().springs().iter().zip(&self.springs);
+        let starts = springs.filter(|(_, fate)| fate.waiting).filter_map(|(s, _)| s.start_s());
+        starts.fold(f64::INFINITY, f64::min)
     }
 
     pub(crate) fn all_released(&self) -> bool {
@@ -133,7 +156,9 @@ where
             let series = &mut expansion.springs[block];
             series.stiffness.0[lane] = 0.0;
             if let Some(spring) = run.springs().get(i) {
-                series.stiffness.0[lane] = spring.stiffness_n_per_m();
+                if Fate::of(spring).pushes() {
+                    series.stiffness.0[lane] = spring.stiffness_n_per_m();
+                }
                 series.free_length.0[lane] = run.free_lengths()[i];
                 for axis in 0..3 {
                     series.payload_point[axis].0[lane] = spring.payload_point_m()[axis];
@@ -158,7 +183,7 @@ where
         let scales = state::scales(run);
         set(&mut expansion.inverse_scale, &scales.map(|s| 1.0 / s));
         self.set_state(lane, &state::initial(run));
-        let springs = SmallVec::from_elem(Fate::default(), run.springs().len());
+        let springs = run.springs().iter().map(Fate::of).collect();
         Track { time: 0.0, steps: 0, springs, time_scale: state::time_scale(&scales), separation }
     }
 
@@ -192,8 +217,8 @@ where
         track.check(&self.state(lane), &self.settings)
     }
 
-    /// Takes the run in a lane as far as its expansion is good, to the next release, or to a time,
-    /// whichever comes first. Returns the length of the step.
+    /// Takes the run in a lane as far as its expansion is good, to the next release or start of a
+    /// spring, or to a time, whichever comes first. Returns the length of the step.
     pub(crate) fn advance<S: Borrow<Separation>>(
         &mut self,
         lane: usize,
@@ -213,7 +238,8 @@ where
                 relative_tolerance: self.settings.relative_tolerance(),
             });
         }
-        let h = reach.min(until - track.time);
+        let start = track.next_start();
+        let h = reach.min(until.min(start) - track.time);
         let mut first: Option<(f64, usize)> = None;
         for i in track.pushing() {
             let gap = self.gap(lane, i, h, 1.0, 0.0);
@@ -237,7 +263,7 @@ where
                 next = self.at(lane, taken);
             }
         }
-        for i in track.pushing() {
+        for i in track.pushing().filter(|i| track.springs[*i].pushes()) {
             self.check_apart(lane, track, i, taken)?;
         }
         state::normalize(&mut next);
@@ -245,7 +271,8 @@ where
             return Err(self.failure(lane, track, reach));
         }
         self.note_recompression(lane, track, taken);
-        track.time += taken;
+        let starts = first.is_none() && start <= until && h >= start - track.time;
+        track.time = if starts { start } else { track.time + taken };
         if let Some((_, spring)) = first {
             let run = track.separation.borrow();
             for (i, fate) in track.springs.iter_mut().enumerate() {
@@ -253,9 +280,23 @@ where
                 let free = || state::gap(run, &next, i).value >= -state::rounding(run, &next, i);
                 if fate.released.is_none() && (i == spring || free()) {
                     fate.released = Some(track.time);
+                    fate.waiting = false;
                     let (block, lane) = slot::<L>(lane, i);
                     self.expansion.springs[block].stiffness.0[lane] = 0.0;
                 }
+            }
+        }
+        for (i, fate) in track.springs.iter_mut().enumerate() {
+            let run = track.separation.borrow();
+            let spring = &run.springs()[i];
+            if fate.waiting && spring.start_s().is_some_and(|start| start <= track.time) {
+                if !(state::line(&next, spring).norm() > TOUCHING * spring.stroke_m()) {
+                    let speed = -state::gap(run, &self.at(lane, 0.999 * taken), i).rate;
+                    return Err(RunError::PadsMeet { spring: i + 1, time: track.time, speed });
+                }
+                fate.waiting = false;
+                let (block, lane) = slot::<L>(lane, i);
+                self.expansion.springs[block].stiffness.0[lane] = spring.stiffness_n_per_m();
             }
         }
         self.set_state(lane, &next);
@@ -335,7 +376,8 @@ where
         }
         let run = track.separation.borrow();
         for (i, fate) in track.springs.iter_mut().enumerate() {
-            if fate.released.is_some() && fate.recompressed.is_none() {
+            let lost = fate.released.is_some() && run.springs()[i].can_push();
+            if lost && fate.recompressed.is_none() {
                 let slack =
                     2.0 * run.free_lengths()[i] * RECOMPRESSED * run.springs()[i].stroke_m();
                 let gap = self.gap(lane, i, taken, -1.0, slack);

@@ -15,7 +15,8 @@
 //!   angular velocity is in body axes.
 //! * Springs push: with s the vector from stage point to payload point, the force on the payload
 //!   is +k(L₀ − |s|) s/|s| and on the stage its opposite, torques r × F likewise. The free length
-//!   L₀ is the initial distance of the two points plus the stroke.
+//!   L₀ is the initial distance of the two points plus the stroke. Springs may have friction, start
+//!   late or fail ([`Spring::with_friction`], [`Spring::starting_at`], [`Spring::never_pushing`]).
 //!
 //! ```
 //! use gyradius_inertia::InertiaMatrix;

@@ -14,7 +14,8 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// When each spring let go, s, in the order of the springs.
+    /// When each spring let go, s, in the order of the springs: when it came to its free length, whether
+    /// it had started by then or not; zero for one that never pushes.
     pub fn release_times(&self) -> impl ExactSizeIterator<Item = f64> {
         // All have, or there would be no outcome.
         self.springs.iter().map(|fate| fate.released.unwrap_or(f64::NAN))

@@ -26,6 +26,9 @@ pub enum SeparationError {
     /// There is no spring.
     #[error("no springs: there must be at least one")]
     NoSprings,
+    /// All springs fail, or none overcomes its friction.
+    #[error("none of the springs ever pushes: at least one must")]
+    NonePushes,
     /// The two points of a spring coincide at the start, which leaves its direction undefined.
     #[error(
         "spring {spring}: its points are {distance:e} m apart at the start: they must be apart by \
@@ -43,13 +46,13 @@ pub enum SeparationError {
     },
     /// A stroke is so short beside the body that rounding of positions would drown it.
     #[error(
-        "spring {spring}: its stroke of {stroke:e} m must be more than {SHORTEST:e} of its distance \
+        "spring {spring}: its stroke of {stroke:e} m, less what friction takes of it, must be more than {SHORTEST:e} of its distance \
          from the mass centres ({reach:?} m) for double precision to follow it"
     )]
     ShortStroke {
         /// Which spring, from 1.
         spring: usize,
-        /// Its stroke, m.
+        /// Its stroke less friction over stiffness, m.
         stroke: f64,
         /// Distance of its points from each other and from their mass centres, m.
         reach: f64,
@@ -69,10 +72,11 @@ pub struct Separation {
 
 impl Separation {
     /// Puts bodies and springs together. The free length of each spring is the distance of its
-    /// points in the given states plus its stroke.
+    /// points in the given states plus its stroke, less what friction takes of that: where it ceases to
+    /// push.
     ///
     /// # Errors
-    /// A state is not finite, there is no spring, or a spring's points touch.
+    /// A state is not finite, there is no spring that pushes, or a spring's points touch.
     pub fn new(
         payload: MovingBody,
         stage: MovingBody,
@@ -88,6 +92,9 @@ impl Separation {
         if springs.is_empty() {
             return Err(SeparationError::NoSprings);
         }
+        if !springs.iter().any(Spring::can_push) {
+            return Err(SeparationError::NonePushes);
+        }
         let mut free_lengths = Vec::with_capacity(springs.len());
         for (i, spring) in springs.iter().enumerate() {
             let distance = spring_vector(payload.state(), stage.state(), spring).norm();
@@ -96,6 +103,8 @@ impl Separation {
                 return Err(SeparationError::TouchingPads { spring: i + 1, distance, stroke });
             }
             let reach = distance + spring.payload_point_m().norm() + spring.stage_point_m().norm();
+            // One that never pushes only has its place.
+            let stroke = if spring.can_push() { spring.travel_m() } else { stroke };
             if !(stroke > SHORTEST * reach) {
                 return Err(SeparationError::ShortStroke { spring: i + 1, stroke, reach });
             }
@@ -144,7 +153,7 @@ impl Separation {
         &self.springs
     }
 
-    /// Free length of each spring, m.
+    /// Free length of each spring, m: where it ceases to push.
     #[must_use]
     pub fn free_lengths(&self) -> &[f64] {
         &self.free_lengths
@@ -197,6 +206,13 @@ mod tests {
             let error = with(&[spring(0.2), spring(gap)]).unwrap_err();
             assert!(matches!(error, SeparationError::TouchingPads { spring: 2, .. }), "{error}");
         }
+        let stuck = spring(0.2).with_friction(0.1).unwrap();
+        for none in [[stuck, stuck], [stuck, spring(0.2).never_pushing()]] {
+            assert!(matches!(with(&none), Err(SeparationError::NonePushes)));
+        }
+        assert_eq!(with(&[stuck, spring(0.2)]).unwrap().free_lengths()[1], 0.2 + 0.1);
+        let nearly = spring(0.2).with_friction(0.1 * (1.0 - 1e-9)).unwrap();
+        assert!(matches!(with(&[nearly]), Err(SeparationError::ShortStroke { spring: 1, .. })));
         let short = Spring::new(1.0, 1e-8, Vector3::z() * -0.9, Vector3::z() * 0.9).unwrap();
         assert!(matches!(with(&[short]), Err(SeparationError::ShortStroke { spring: 1, .. })));
         let ok = with(&[spring(1e-5)]).unwrap();

@@ -14,7 +14,7 @@ pub struct SpringState {
 }
 
 impl SpringState {
-    /// Whether it has not yet let go.
+    /// Whether it has started and has not yet let go.
     #[must_use]
     pub fn is_pushing(&self) -> bool {
         self.pushing
@@ -33,13 +33,14 @@ impl SpringState {
     }
 
     /// Force on the payload, inertial axes, N; that on the stage is its opposite. Zero once the
-    /// spring has let go.
+    /// spring has let go, and before it starts.
     #[must_use]
     pub fn force_n(&self) -> Vector3<f64> {
         self.force
     }
 
-    /// Energy stored, J. Zero once the spring has let go.
+    /// Energy that it can still give, J: what friction will take of the stored energy left out. Zero
+    /// once the spring has let go, and before it starts.
     #[must_use]
     pub fn energy_j(&self) -> f64 {
         self.energy
@@ -110,7 +111,8 @@ impl Snapshot {
         &self.springs
     }
 
-    /// Energy of both bodies and of the springs that push, J: conserved.
+    /// Energy of both bodies and of the springs that push, J: conserved but for what a late spring
+    /// brings in when it starts.
     #[must_use]
     pub fn energy_j(&self) -> f64 {
         let stored: f64 = self.springs.iter().map(SpringState::energy_j).sum();

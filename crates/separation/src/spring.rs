@@ -16,6 +16,18 @@ pub enum SpringError {
         /// The stroke, m.
         value: f64,
     },
+    /// The friction is negative or not finite.
+    #[error("friction = {value:?} N: it must be zero or positive, and finite")]
+    Friction {
+        /// The friction, N.
+        value: f64,
+    },
+    /// The start is negative or not finite.
+    #[error("start = {value:?} s: it must be zero or positive, and finite")]
+    Start {
+        /// The start, s.
+        value: f64,
+    },
     /// An attachment point is not finite.
     #[error("{body} attachment point has entry {value}: it must be finite")]
     Point {
@@ -28,6 +40,10 @@ pub enum SpringError {
 
 /// A massless linear spring between a point of the payload and a point of the stage, compressed at
 /// the start by its stroke.
+///
+/// At a compression x it pushes with k x − f, f the friction of its guide, which opposes the
+/// expansion, and is lost once that is zero. A late spring is held back by its latch, which rides
+/// on one of the bodies: it pushes from its start, with what compression is left by then.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -39,6 +55,9 @@ pub struct Spring {
     stroke: f64,
     payload_point: Vector3<f64>,
     stage_point: Vector3<f64>,
+    friction: f64,
+    /// Infinite if it never does.
+    start: f64,
 }
 
 impl Spring {
@@ -70,7 +89,39 @@ impl Spring {
             stroke: stroke_m,
             payload_point: payload_point_m,
             stage_point: stage_point_m,
+            friction: 0.0,
+            start: 0.0,
         })
+    }
+
+    /// The same spring with a constant friction f in N, which opposes its expansion. One that the
+    /// spring cannot overcome, f ≥ k δ, holds it for good: it never pushes.
+    ///
+    /// # Errors
+    /// The friction is negative or not finite.
+    pub fn with_friction(self, friction_n: f64) -> Result<Self, SpringError> {
+        if !(friction_n >= 0.0 && friction_n.is_finite()) {
+            return Err(SpringError::Friction { value: friction_n });
+        }
+        Ok(Self { friction: friction_n, ..self })
+    }
+
+    /// The same spring, let off `start_s` after the clamp opens. It exerts no force before, and none
+    /// at all if its points have come to be its free length apart by then.
+    ///
+    /// # Errors
+    /// The start is negative or not finite.
+    pub fn starting_at(self, start_s: f64) -> Result<Self, SpringError> {
+        if !(start_s >= 0.0 && start_s.is_finite()) {
+            return Err(SpringError::Start { value: start_s });
+        }
+        Ok(Self { start: start_s, ..self })
+    }
+
+    /// The same spring if it fails: it never pushes.
+    #[must_use]
+    pub fn never_pushing(self) -> Self {
+        Self { start: f64::INFINITY, ..self }
     }
 
     /// Stiffness k, N/m.
@@ -97,7 +148,32 @@ impl Spring {
         self.stage_point
     }
 
-    /// Energy stored at the start, ½kδ², J.
+    /// Friction f that opposes the expansion, N.
+    #[must_use]
+    pub fn friction_n(&self) -> f64 {
+        self.friction
+    }
+
+    /// When it is let off, s; none if it fails.
+    #[must_use]
+    pub fn start_s(&self) -> Option<f64> {
+        self.start.is_finite().then_some(self.start)
+    }
+
+    /// How far it can push, m: the stroke less f/k, where friction holds it; zero or less if it
+    /// cannot overcome its friction.
+    #[must_use]
+    pub fn travel_m(&self) -> f64 {
+        self.stroke - self.friction / self.stiffness
+    }
+
+    /// Whether it can push at all: it does not fail, and overcomes its friction.
+    #[must_use]
+    pub fn can_push(&self) -> bool {
+        self.start.is_finite() && self.travel_m() > 0.0
+    }
+
+    /// Energy stored at the start, ½kδ², J: before friction and latch have their part.
     #[must_use]
     pub fn stored_energy(&self) -> f64 {
         0.5 * self.stiffness * self.stroke * self.stroke
@@ -113,6 +189,12 @@ struct Fields {
     stroke_m: f64,
     payload_point_m: [f64; 3],
     stage_point_m: [f64; 3],
+    #[serde(default)]
+    friction_n: f64,
+    #[serde(default)]
+    start_s: f64,
+    #[serde(default)]
+    never_pushes: bool,
 }
 
 #[cfg(feature = "serde")]
@@ -121,7 +203,10 @@ impl TryFrom<Fields> for Spring {
 
     fn try_from(f: Fields) -> Result<Self, SpringError> {
         let (payload, stage) = (f.payload_point_m.into(), f.stage_point_m.into());
-        Self::new(f.stiffness_n_per_m, f.stroke_m, payload, stage)
+        let spring = Self::new(f.stiffness_n_per_m, f.stroke_m, payload, stage)?
+            .with_friction(f.friction_n)?
+            .starting_at(f.start_s)?;
+        Ok(if f.never_pushes { spring.never_pushing() } else { spring })
     }
 }
 
@@ -133,6 +218,9 @@ impl From<Spring> for Fields {
             stroke_m: spring.stroke,
             payload_point_m: spring.payload_point.into(),
             stage_point_m: spring.stage_point.into(),
+            friction_n: spring.friction,
+            start_s: spring.start_s().unwrap_or(0.0),
+            never_pushes: spring.start_s().is_none(),
         }
     }
 }
@@ -151,7 +239,16 @@ mod tests {
         let nan = Vector3::new(0.0, f64::NAN, 0.0);
         let error = Spring::new(1.0, 1.0, o, nan).unwrap_err();
         assert!(matches!(error, SpringError::Point { body: "stage", .. }));
-        assert_eq!(Spring::new(2.0, 3.0, o, o).unwrap().stored_energy(), 9.0);
+        let spring = Spring::new(2.0, 3.0, o, o).unwrap();
+        assert_eq!(spring.stored_energy(), 9.0);
+        for bad in [-1e-300, f64::NAN, f64::INFINITY] {
+            assert!(matches!(spring.with_friction(bad), Err(SpringError::Friction { .. })));
+            assert!(matches!(spring.starting_at(bad), Err(SpringError::Start { .. })));
+        }
+        assert_eq!(spring.with_friction(1.0).unwrap().travel_m(), 2.5);
+        assert!(!spring.with_friction(6.0).unwrap().can_push());
+        assert!(spring.starting_at(1e9).unwrap().can_push());
+        assert!(!spring.never_pushing().can_push());
     }
 
     #[cfg(feature = "serde")]

@@ -3,14 +3,14 @@ use smallvec::SmallVec;
 use crate::{
     Outcome, RunError, Separation, Settings, Snapshot,
     expansion::{INLINE_SPRINGS, ORDER, TERMS},
-    integrator::Integrator,
+    integrator::{Fate, Integrator},
     state::{self, State},
 };
 
 /// A step of the integration: the motion between two times as a power series, which is the
 /// integration itself and as accurate as it anywhere in between.
 ///
-/// A step ends where its series ceases to be good or where a spring lets go.
+/// A step ends where its series ceases to be good or where a spring starts or lets go.
 #[derive(Clone, Debug)]
 pub struct Step {
     separation: Separation,
@@ -115,10 +115,11 @@ impl Separation {
         while outcome.is_none() || track.time < end {
             integrator.expand();
             let (start, series) = (track.time, integrator.series(0));
-            let pushing: SmallVec<_> = track.springs.iter().map(|s| s.released.is_none()).collect();
+            let pushing: SmallVec<_> = track.springs.iter().map(Fate::pushes).collect();
+            let before = track.springs.clone();
             let duration = integrator.advance(0, &mut track, end)?;
-            let released = track.springs.iter().zip(&pushing).enumerate();
-            let released = released.filter(|(_, (fate, was))| **was && fate.released.is_some());
+            let released = track.springs.iter().zip(&before).enumerate();
+            let released = released.filter(|(_, (fate, was))| fate.released != was.released);
             let released = released.map(|(i, _)| i + 1).collect();
             let separation = self.clone();
             observer(&Step { separation, start, duration, series, pushing, released });

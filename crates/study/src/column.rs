@@ -6,7 +6,7 @@ use crate::row::{Body, Quantity, Row};
 
 /// A column of the run table.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Column {
+pub(crate) enum Column<'a> {
     Model,
     Run,
     Status,
@@ -16,6 +16,8 @@ pub(crate) enum Column {
     Axes(Body, usize),
     ReleaseOrder,
     Recompressed,
+    /// What else was drawn, by its place and its name.
+    Drawn(usize, &'a str),
 }
 
 /// What stands in a column for a run.
@@ -54,9 +56,9 @@ impl std::fmt::Display for Cell {
     }
 }
 
-impl Column {
-    /// All columns, in order, of a separation by so many springs.
-    pub(crate) fn of(springs: usize) -> Vec<Self> {
+impl<'a> Column<'a> {
+    /// All columns, in order, of a separation by so many springs in which that else was drawn.
+    pub(crate) fn of(springs: usize, drawn: &'a [String]) -> Vec<Self> {
         let mut columns = vec![Self::Model, Self::Run, Self::Status];
         let mut numbers = Quantity::of(springs).map(Self::Number);
         columns.extend(numbers.by_ref().take(Quantity::FIRST));
@@ -64,10 +66,11 @@ impl Column {
         columns.extend(Body::BOTH.into_iter().flat_map(|b| (0..4).map(move |i| Self::Axes(b, i))));
         columns.extend(numbers);
         columns.extend([Self::ReleaseOrder, Self::Recompressed]);
+        columns.extend(drawn.iter().enumerate().map(|(i, name)| Self::Drawn(i, name)));
         columns
     }
 
-    pub(crate) fn name(self) -> Cow<'static, str> {
+    pub(crate) fn name(self) -> Cow<'a, str> {
         match self {
             Self::Model => "model".into(),
             Self::Run => "run".into(),
@@ -77,6 +80,7 @@ impl Column {
             Self::Axes(body, i) => format!("{}_q{}", body.name(), i + 1).into(),
             Self::ReleaseOrder => "release_order".into(),
             Self::Recompressed => "recompressed".into(),
+            Self::Drawn(_, name) => name.into(),
         }
     }
 
@@ -89,7 +93,7 @@ impl Column {
         let kind = match self {
             Self::Run => "int64",
             Self::Realizable => "boolean",
-            Self::Number(_) | Self::Axes(..) => "double",
+            Self::Number(_) | Self::Axes(..) | Self::Drawn(..) => "double",
             Self::Model | Self::Status | Self::ReleaseOrder | Self::Recompressed => "binary",
         };
         let needed = if self.is_optional() { "optional" } else { "required" };
@@ -106,6 +110,7 @@ impl Column {
             Self::Status => Cell::Text(row.status().into_owned()),
             Self::Number(quantity) => number(row.value(quantity)),
             Self::Realizable => Cell::Flag(row.realizable()),
+            Self::Drawn(i, _) => number(row.drawn.get(i).copied()),
             Self::Axes(body, i) => number(body.axes(row).map(|q| q.coords[i])),
             Self::ReleaseOrder => {
                 row.release_order().map_or(Cell::Null, |order| Cell::Text(order.to_owned()))

@@ -17,6 +17,7 @@
 mod claims;
 mod column;
 mod compare;
+mod drawn;
 mod figures;
 mod folder;
 mod format;

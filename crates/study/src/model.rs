@@ -8,6 +8,7 @@ use rand_distr::Distribution;
 use std::ops::Range;
 
 use crate::{
+    drawn::{self, Draws},
     row::{Body, Failure, Outcome, Row},
     scenario::{Law, ModelSpec, Scenario, ScenarioError, UncertainBody},
     streams::Streams,
@@ -19,6 +20,7 @@ pub(crate) struct Model {
     name: String,
     payload: BodyModel,
     stage: BodyModel,
+    draws: Draws,
 }
 
 #[derive(Debug)]
@@ -41,6 +43,7 @@ impl Model {
             name: spec.name.clone(),
             payload: body(Body::Payload, scenario.payload())?,
             stage: body(Body::Stage, scenario.stage())?,
+            draws: Draws::new(scenario.seed(), &spec.name, scenario.dispersions()),
         })
     }
 
@@ -71,9 +74,13 @@ impl Model {
 
     /// Draws the bodies of one run.
     pub(crate) fn draw(&self, scenario: &Scenario, run: u64) -> Case {
-        let payload = self.payload.draw(run);
-        let stage = self.stage.draw(run);
-        let separation = scenario.separation().with_inertias(payload.inertia, stage.inertia);
+        let drawn = self.draws.run(scenario.dispersions(), run);
+        let mut payload = self.payload.draw(run);
+        let mut stage = self.stage.draw(run);
+        for (body, draw) in [(Body::Payload, &mut payload), (Body::Stage, &mut stage)] {
+            draw.inertia = drawn::scaled(scenario, body, &drawn, draw.inertia);
+        }
+        let separation = drawn::separation(scenario, &drawn, payload.inertia, stage.inertia);
         Case {
             run,
             payload: payload.inertia,
@@ -81,6 +88,7 @@ impl Model {
             payload_axes: payload.axes,
             stage_axes: stage.axes,
             separation: separation.map_err(Failure::from),
+            drawn,
         }
     }
 
@@ -106,6 +114,8 @@ pub(crate) struct Case {
     pub(crate) payload_axes: Option<UnitQuaternion<f64>>,
     pub(crate) stage_axes: Option<UnitQuaternion<f64>>,
     pub(crate) separation: Result<Separation, Failure>,
+    /// What else was drawn, in the order of the scenario's dispersions.
+    pub(crate) drawn: Box<[f64]>,
 }
 
 impl Case {
@@ -118,6 +128,7 @@ impl Case {
             payload_axes: None,
             stage_axes: None,
             separation: Ok(scenario.separation().clone()),
+            drawn: Box::default(),
         }
     }
 
@@ -142,6 +153,7 @@ impl Case {
             payload_axes: self.payload_axes,
             stage_axes: self.stage_axes,
             outcome,
+            drawn: self.drawn.clone(),
         }
     }
 }

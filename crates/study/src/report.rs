@@ -33,6 +33,7 @@ pub(crate) fn html(scenario: &Scenario, summary: &Summary, plates: &[Plate]) -> 
                     (ratios(summary))
                     (deviations(scenario, summary))
                     (far_lobe(summary))
+                    (dispersed(summary))
                     (summary.every_model.markup())
                     (figures(plates))
                     (inputs(scenario, summary))
@@ -380,6 +381,43 @@ fn far_lobe(summary: &Summary) -> Markup {
                     }
                 }
             }
+        }
+    }
+}
+
+/// What is uncertain besides the inertias.
+fn dispersed(summary: &Summary) -> Markup {
+    html! {
+        @if let Some(given) = summary.models.first().map(|m| &m.dispersed).filter(|d| !d.is_empty()) {
+            h2 { "What else was dispersed" }
+            p {
+                "Mean and standard deviation of the law of each quantity, and of what each model drew, in "
+                "the unit of its name. Every draw is in the run table."
+            }
+            div.wide { table {
+                thead { tr {
+                    th { "quantity" } th { "law" } th { "nominal" } th { "mean" } th { "sd" }
+                    @for model in &summary.models { th { "drawn by " (model.name) } }
+                } }
+                tbody {
+                    @for (i, d) in given.iter().enumerate() {
+                        tr {
+                            th scope="row" { code { (d.quantity) } }
+                            td { (d.law) }
+                            @for value in [d.nominal, d.law_mean, d.law_deviation] {
+                                td { (significant(value, 5)) }
+                            }
+                            @for model in &summary.models {
+                                @let drawn = model.dispersed.get(i);
+                                td {
+                                    (optional(drawn.and_then(|d| d.mean), 5)) " ± "
+                                    (optional(drawn.and_then(|d| d.deviation), 4))
+                                }
+                            }
+                        }
+                    }
+                }
+            } }
         }
     }
 }

@@ -1,5 +1,6 @@
 use gyradius_separation::{
     BodyError, Outcome as Separated, RunError, Separation, SeparationError, SpinMetrics,
+    SpringError,
 };
 use nalgebra::UnitQuaternion;
 use std::borrow::Cow;
@@ -18,6 +19,8 @@ pub struct Row {
     pub(crate) stage_axes: Option<UnitQuaternion<f64>>,
     /// What came of it, or why nothing did.
     pub(crate) outcome: Result<Outcome, Failure>,
+    /// What else was drawn, in the order of the scenario's dispersions.
+    pub(crate) drawn: Box<[f64]>,
 }
 
 /// Why a run failed, with the numbers of the run.
@@ -27,6 +30,14 @@ pub enum Failure {
     /// What was drawn makes no separation.
     #[error(transparent)]
     Refused(#[from] SeparationError),
+    /// What was drawn makes no spring.
+    #[error("spring {spring}: {source}")]
+    Spring {
+        /// Its number, from 1.
+        spring: usize,
+        /// What is wrong with it.
+        source: SpringError,
+    },
     /// The separation does not come to an end.
     #[error(transparent)]
     Broken(#[from] RunError),
@@ -45,6 +56,8 @@ impl Failure {
                 };
                 return format!("{body}: {what}").into();
             }
+            Self::Spring { spring, .. } => return format!("spring {spring}: impossible").into(),
+            Self::Refused(SeparationError::NonePushes) => "no spring pushes",
             Self::Refused(SeparationError::TouchingPads { .. }) => "points of a spring touch",
             Self::Refused(SeparationError::ShortStroke { .. }) => "stroke too short",
             Self::Refused(_) => "separation refused",

@@ -45,6 +45,7 @@ pub(crate) fn run(
                     .map_init(batch, |batch, group| rows(model, batch, group * TOGETHER))
                     .collect();
                 RunTable::new(model.name(), springs, rows.into_iter().flatten().collect())
+                    .with_drawn(scenario.dispersions().columns())
             })
             .collect()
     })

@@ -12,7 +12,7 @@ use crate::{
     compare::Section,
     model::{Case, Model},
     row::{Body, Quantity, Row},
-    scenario::Scenario,
+    scenario::{Dispersed, Scenario},
     table::RunTable,
 };
 
@@ -64,6 +64,21 @@ pub(crate) struct ModelSummary {
     pub(crate) given_deviations_kg_m2: Option<[[f64; 6]; 2]>,
     pub(crate) releases: Releases,
     pub(crate) quantities: Vec<QuantitySummary>,
+    /// What else was drawn, in all runs, those that failed too.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) dispersed: Vec<DispersedSummary>,
+}
+
+/// A dispersed quantity: its law, and what one model drew of it.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct DispersedSummary {
+    pub(crate) quantity: String,
+    pub(crate) law: &'static str,
+    pub(crate) nominal: f64,
+    pub(crate) law_mean: f64,
+    pub(crate) law_deviation: f64,
+    pub(crate) mean: Option<f64>,
+    pub(crate) deviation: Option<f64>,
 }
 
 /// How springs let go in the runs that succeed.
@@ -207,6 +222,22 @@ fn nominal(scenario: &Scenario) -> Vec<Nominal> {
         .collect()
 }
 
+fn dispersed(scenario: &Scenario, table: &RunTable) -> Vec<DispersedSummary> {
+    let summary = |d: &Dispersed| {
+        let moments = table.drawn(&d.column).and_then(|values| Moments::new(&values).ok());
+        DispersedSummary {
+            quantity: d.column.clone(),
+            law: d.law.name(),
+            nominal: d.nominal,
+            law_mean: d.law.mean(),
+            law_deviation: d.law.deviation(),
+            mean: moments.map(|m| m.mean()),
+            deviation: moments.map(|m| m.standard_deviation()),
+        }
+    };
+    scenario.dispersions().all.iter().map(summary).collect()
+}
+
 impl ModelSummary {
     fn new(
         scenario: &Scenario,
@@ -250,6 +281,7 @@ impl ModelSummary {
             quantities: Quantity::of(scenario.separation().springs().len())
                 .map(|q| QuantitySummary::new(q, &table.values(q), confidence))
                 .collect(),
+            dispersed: dispersed(scenario, table),
         })
     }
 

@@ -24,11 +24,30 @@ pub struct RunTable {
     model: String,
     springs: usize,
     rows: Vec<Row>,
+    drawn: Vec<String>,
 }
 
 impl RunTable {
     pub(crate) fn new(model: &str, springs: usize, rows: Vec<Row>) -> Self {
-        Self { model: model.to_owned(), springs, rows }
+        Self { model: model.to_owned(), springs, rows, drawn: Vec::new() }
+    }
+
+    /// The same with names for what else the rows have drawn.
+    pub(crate) fn with_drawn(self, columns: Vec<String>) -> Self {
+        Self { drawn: columns, ..self }
+    }
+
+    /// Names of what else was drawn than inertias, in the order of their columns.
+    #[must_use]
+    pub fn drawn_columns(&self) -> &[String] {
+        &self.drawn
+    }
+
+    /// The drawn values of a column of [`drawn_columns`](Self::drawn_columns), one for each run.
+    #[must_use]
+    pub fn drawn(&self, column: &str) -> Option<Vec<f64>> {
+        let i = self.drawn.iter().position(|name| name == column)?;
+        Some(self.rows.iter().filter_map(|row| row.drawn.get(i).copied()).collect())
     }
 
     /// Name of the model.
@@ -54,12 +73,13 @@ impl RunTable {
     /// Columns: `model`, `run`, `status`, the first numbers of [`Quantity::ALL`] to `inertia_ratio` (null
     /// where a run has none), `realizable`, the attitudes of the principal axes as drawn, scalar last
     /// (null for entrywise models), the other numbers of [`Quantity::ALL`], releases spring by spring,
-    /// `release_order` and `recompressed`. Floats are stored as they are, bit for bit.
+    /// `release_order` and `recompressed`, and what else was drawn. Floats are stored as they are, bit
+    /// for bit.
     ///
     /// # Errors
     /// Writing fails.
     pub fn write_parquet(&self, output: impl Write + Send) -> Result<(), ParquetError> {
-        let columns = Column::of(self.springs);
+        let columns = Column::of(self.springs, &self.drawn);
         let fields: Vec<_> = columns.iter().map(|column| column.field()).collect();
         let schema = format!("message run {{ {}; }}", fields.join("; "));
         let schema = Arc::new(parse_message_type(&schema)?);
@@ -80,7 +100,7 @@ impl RunTable {
     fn write_column<W: Write + Send>(
         &self,
         group: &mut SerializedRowGroupWriter<'_, W>,
-        column: Column,
+        column: Column<'_>,
         rows: &[Row],
     ) -> Result<(), ParquetError> {
         let (mut texts, mut integers) = (Vec::<ByteArray>::new(), Vec::new());
@@ -101,7 +121,9 @@ impl RunTable {
         match column {
             Column::Run => write::<Int64Type, _>(group, &integers, levels),
             Column::Realizable => write::<BoolType, _>(group, &flags, levels),
-            Column::Number(_) | Column::Axes(..) => write::<DoubleType, _>(group, &numbers, levels),
+            Column::Number(_) | Column::Axes(..) | Column::Drawn(..) => {
+                write::<DoubleType, _>(group, &numbers, levels)
+            }
             Column::Model | Column::Status | Column::ReleaseOrder | Column::Recompressed => {
                 write::<ByteArrayType, _>(group, &texts, levels)
             }
@@ -163,6 +185,7 @@ mod tests {
             payload_axes: Some(nalgebra::UnitQuaternion::identity()),
             stage_axes: None,
             outcome: Ok(outcome),
+            drawn: Box::new([9_999.5, -0.0]),
         };
         let failed = Row {
             run: 1,
@@ -170,7 +193,8 @@ mod tests {
             outcome: Err(Failure::Broken(RunError::NotFinite { time: 0.1 + 0.2 })),
             ..good.clone()
         };
-        RunTable::new("naive", 2, vec![good, failed])
+        let columns = ["payload_mass_kg", "spring_1_friction_n"].map(str::to_owned);
+        RunTable::new("naive", 2, vec![good, failed]).with_drawn(columns.into())
     }
 
     #[test]
@@ -192,7 +216,9 @@ mod tests {
                 "spring_1_release_s",
                 "spring_2_release_s",
                 "release_order",
-                "recompressed"
+                "recompressed",
+                "payload_mass_kg",
+                "spring_1_friction_n"
             ]
         );
 
@@ -220,6 +246,7 @@ mod tests {
             let order = original.release_order();
             assert_eq!(field("release_order"), text(order));
             assert_eq!(field("recompressed"), text(order.map(|_| "2")));
+            assert_eq!(field("payload_mass_kg"), Field::Double(9_999.5));
         }
     }
 

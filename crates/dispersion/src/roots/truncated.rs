@@ -227,7 +227,7 @@ impl Truncated {
 }
 
 /// Φ(β) − Φ(α), without cancellation in the tails.
-fn share(alpha: f64, beta: f64) -> f64 {
+pub(crate) fn share(alpha: f64, beta: f64) -> f64 {
     let tail = |t: f64| 0.5 * libm::erfc(t * FRAC_1_SQRT_2);
     if alpha > 0.0 {
         tail(alpha) - tail(beta)

@@ -308,7 +308,8 @@ impl Replay {
         let found = record::read(table, self.row.run()).map_err(unreadable)?;
         let found = found
             .ok_or_else(|| unreadable(ParquetError::General("it has no such run".to_owned())))?;
-        let columns = Column::of(self.scenario.separation().springs().len());
+        let drawn = self.scenario.dispersions().columns();
+        let columns = Column::of(self.scenario.separation().springs().len(), &drawn);
         if columns.len() != found.len() {
             let count = |n: usize| format!("{n} columns");
             return Err(differs("the number of columns", count(found.len()), count(columns.len())));

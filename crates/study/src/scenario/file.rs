@@ -1,6 +1,8 @@
 use gyradius_dispersion::{BasiliskDispersion, ModelKind};
 use serde::{Deserialize, Serialize};
 
+use super::law::{LawFile, VectorLawFile};
+
 /// A scenario as it stands in a TOML file, defaults filled in. Units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -20,11 +22,15 @@ pub(crate) struct ScenarioFile {
     pub(crate) momentum_direction: Option<[f64; 3]>,
     pub(crate) payload: BodyFile,
     pub(crate) stage: BodyFile,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stack: Option<StackFile>,
     #[serde(default)]
     pub(crate) integration: IntegrationFile,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) source: Option<SourceFile>,
     pub(crate) springs: Vec<SpringFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) correlations: Vec<CorrelationFile>,
     pub(crate) models: Vec<ModelFile>,
     #[serde(default)]
     pub(crate) comparisons: Vec<ComparisonFile>,
@@ -65,6 +71,47 @@ pub(crate) struct DispersionFile {
     pub(crate) axes: AxesLawFile,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) axes_covariance: Option<[[f64; 4]; 4]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) mass_kg: Option<LawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) mass_percent: Option<LawFile>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) inertia_follows_mass: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) mass_centre_m: Option<VectorLawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) position_m: Option<VectorLawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) velocity_m_per_s: Option<VectorLawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) attitude_deg: Option<VectorLawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) angular_velocity_rad_per_s: Option<VectorLawFile>,
+}
+
+/// The two bodies as long as they are one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StackFile {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) dispersion: Option<StackDispersionFile>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StackDispersionFile {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) attitude_deg: Option<VectorLawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) angular_velocity_rad_per_s: Option<VectorLawFile>,
+}
+
+/// One coefficient for every pair of those named.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CorrelationFile {
+    pub(crate) between: Vec<String>,
+    pub(crate) coefficient: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -95,6 +142,39 @@ pub(crate) struct SpringFile {
     pub(crate) stroke_m: f64,
     pub(crate) payload_point_m: [f64; 3],
     pub(crate) stage_point_m: [f64; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) friction_n: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) start_s: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) dispersion: Option<SpringDispersionFile>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SpringDispersionFile {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stiffness_n_per_m: Option<LawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stiffness_percent: Option<LawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stroke_m: Option<LawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stroke_percent: Option<LawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) friction_n: Option<LawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) line_of_action_deg: Option<VectorLawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) payload_point_m: Option<VectorLawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) stage_point_m: Option<VectorLawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) start_s: Option<LawFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) late_probability: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) failure_probability: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,7 +1,9 @@
 //! Scenario files: what is uncertain, what flies, how often.
 
 mod body;
+mod dispersions;
 mod file;
+mod law;
 mod model;
 
 use gyradius_separation::{Separation, Settings, Spring};
@@ -10,6 +12,7 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 pub(crate) use body::UncertainBody;
+pub(crate) use dispersions::{BodyPart, Dispersed, Dispersions, SpringPart, StackPart, Target};
 pub(crate) use file::AxesFile as Axes;
 use file::ScenarioFile;
 pub(crate) use model::{Comparison, Law, ModelSpec};
@@ -68,6 +71,7 @@ pub struct Scenario {
     stage: UncertainBody,
     separation: Separation,
     settings: Settings,
+    dispersions: Dispersions,
     models: Vec<ModelSpec>,
     comparisons: Vec<Comparison>,
 }
@@ -154,6 +158,8 @@ impl Scenario {
             .map(|(i, s)| {
                 let (p, l) = (s.payload_point_m.into(), s.stage_point_m.into());
                 Spring::new(s.stiffness_n_per_m, s.stroke_m, p, l)
+                    .and_then(|spring| spring.with_friction(s.friction_n.unwrap_or(0.0)))
+                    .and_then(|spring| spring.starting_at(s.start_s.unwrap_or(0.0)))
                     .map_err(|e| ScenarioError::field(format!("springs[{}]", i + 1), e))
             })
             .collect::<Result<Vec<_>, _>>()?;
@@ -173,6 +179,7 @@ impl Scenario {
         let settings =
             Settings::new(file.integration.relative_tolerance, file.integration.horizon_s)
                 .map_err(|e| ScenarioError::field("integration", e))?;
+        let dispersions = Dispersions::new(&file)?;
         let models = model::check_models(&file.models, [&payload, &stage])?;
         let comparisons = model::check_comparisons(&file.comparisons, &models)?;
         Ok(Self {
@@ -184,6 +191,7 @@ impl Scenario {
             stage,
             separation,
             settings,
+            dispersions,
             models,
             comparisons,
         })
@@ -255,6 +263,11 @@ impl Scenario {
 
     pub(crate) fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// What is uncertain besides the inertias.
+    pub(crate) fn dispersions(&self) -> &Dispersions {
+        &self.dispersions
     }
 
     pub(crate) fn models(&self) -> &[ModelSpec] {

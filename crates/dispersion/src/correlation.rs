@@ -1,0 +1,239 @@
+use nalgebra::DMatrix;
+
+/// Rounding that an eigenvalue may carry: coefficients come from files with so many digits.
+const ROUNDING: f64 = 1e-9;
+
+/// Why coefficients are not correlations.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CorrelationError {
+    /// A coefficient is outside [−1, 1] or NaN.
+    #[error("coefficient = {value:?}: it must lie in [-1, 1]")]
+    Coefficient {
+        /// Which of those given, from 0.
+        pair: usize,
+        /// The coefficient.
+        value: f64,
+    },
+    /// A quantity with itself, or one that there is not.
+    #[error("it must be of two different quantities")]
+    NoPair {
+        /// Which of those given, from 0.
+        pair: usize,
+    },
+    /// The same two quantities again.
+    #[error("these two have been given a coefficient before")]
+    Twice {
+        /// Which of those given, from 0.
+        pair: usize,
+    },
+    /// Some combination of the quantities would have a negative variance.
+    #[error(
+        "coefficient = {value:?} contradicts the others: together they have an eigenvalue of \
+         {eigenvalue:.3}, and none may be negative"
+    )]
+    Indefinite {
+        /// The one that does most to it, from 0.
+        pair: usize,
+        /// Its coefficient.
+        value: f64,
+        /// The smallest eigenvalue of the matrix.
+        eigenvalue: f64,
+    },
+}
+
+/// Correlations of standard normal scores.
+///
+/// # Definition
+/// Scores z of independent streams become L z, L Lᵀ the matrix of the coefficients with ones on its
+/// diagonal. For normal laws the coefficients are the correlations of the values; for others the
+/// values' are somewhat smaller in magnitude (a Gaussian copula).
+///
+/// # Algorithm
+/// Cholesky's factor without pivoting, so that a quantity which is correlated with none keeps its
+/// score, and its coming or going leaves the others as they are, to the bit. Pivots of nothing but
+/// rounding count as zero: the matrix may be singular.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Correlation {
+    /// Indices of the quantities that are correlated at all, rising.
+    members: Vec<usize>,
+    /// Rows of L, each up to its diagonal.
+    rows: Vec<Vec<f64>>,
+}
+
+impl Correlation {
+    /// Coefficients of pairs of quantities, which are numbered from 0; others are not correlated.
+    ///
+    /// # Errors
+    /// A coefficient is outside [−1, 1], a pair is none or comes twice, or the matrix is not positive
+    /// semidefinite.
+    pub fn new(pairs: &[(usize, usize, f64)]) -> Result<Self, CorrelationError> {
+        for (pair, &(a, b, value)) in pairs.iter().enumerate() {
+            if !(value.abs() <= 1.0) {
+                return Err(CorrelationError::Coefficient { pair, value });
+            }
+            if a == b {
+                return Err(CorrelationError::NoPair { pair });
+            }
+            if pairs[..pair].iter().any(|&(c, d, _)| (c, d) == (a, b) || (d, c) == (a, b)) {
+                return Err(CorrelationError::Twice { pair });
+            }
+        }
+        let mut members: Vec<usize> = pairs.iter().flat_map(|&(a, b, _)| [a, b]).collect();
+        members.sort_unstable();
+        members.dedup();
+        let place = |index: usize| members.partition_point(|m| *m < index);
+        let n = members.len();
+        let mut matrix = DMatrix::<f64>::identity(n, n);
+        for &(a, b, value) in pairs {
+            matrix[(place(a), place(b))] = value;
+            matrix[(place(b), place(a))] = value;
+        }
+        if n > 0 {
+            let eigen = matrix.clone().symmetric_eigen();
+            let least = eigen.eigenvalues.imin();
+            let eigenvalue = eigen.eigenvalues[least];
+            if !(eigenvalue >= -ROUNDING * n as f64) {
+                let v = eigen.eigenvectors.column(least);
+                let part = |&(a, b, value): &(usize, usize, f64)| value * v[place(a)] * v[place(b)];
+                let worst =
+                    (0..pairs.len()).min_by(|a, b| part(&pairs[*a]).total_cmp(&part(&pairs[*b])));
+                let pair = worst.unwrap_or(0);
+                let value = pairs[pair].2;
+                return Err(CorrelationError::Indefinite { pair, value, eigenvalue });
+            }
+        }
+        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(n);
+        for i in 0..n {
+            let mut row: Vec<f64> = Vec::with_capacity(i + 1);
+            for j in 0..i {
+                let known: f64 = row.iter().zip(&rows[j]).map(|(a, b)| a * b).sum();
+                let pivot = rows[j][j];
+                row.push(if pivot > 0.0 { (matrix[(i, j)] - known) / pivot } else { 0.0 });
+            }
+            let rest = 1.0 - row.iter().map(|x| x * x).sum::<f64>();
+            row.push(if rest > ROUNDING * n as f64 { rest.sqrt() } else { 0.0 });
+            rows.push(row);
+        }
+        Ok(Self { members, rows })
+    }
+
+    /// Makes independent scores of all quantities correlated ones.
+    ///
+    /// # Panics
+    /// Never: quantities beyond the end of the scores are left out.
+    pub fn mix(&self, scores: &mut [f64]) {
+        // From the last: a row needs the independent scores of those before it.
+        for (&member, row) in self.members.iter().zip(&self.rows).rev() {
+            let terms = row.iter().zip(&self.members);
+            let sum = terms.map(|(l, &m)| l * scores.get(m).copied().unwrap_or(0.0)).sum();
+            if let Some(score) = scores.get_mut(member) {
+                *score = sum;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    use rand_distr::{Distribution, StandardNormal};
+
+    /// Sample correlations, Fisher's z below 4, those that are zero too.
+    #[test]
+    fn correlations_are_recovered() {
+        const N: usize = 20_000;
+        let pairs = [(0, 2, 0.8), (2, 3, -0.5), (5, 4, 0.99)];
+        let law = Correlation::new(&pairs).unwrap();
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        let mut sums = [[0.0; 6]; 6];
+        for _ in 0..N {
+            let mut z: [f64; 6] = std::array::from_fn(|_| StandardNormal.sample(&mut rng));
+            law.mix(&mut z);
+            for i in 0..6 {
+                for j in 0..6 {
+                    sums[i][j] += z[i] * z[j];
+                }
+            }
+        }
+        for i in 0..6 {
+            let z = (sums[i][i] - N as f64) / (2.0 * N as f64).sqrt();
+            assert!(z.abs() < 4.0, "variance {i}: {z}");
+            for j in 0..i {
+                let found = sums[i][j] / (sums[i][i] * sums[j][j]).sqrt();
+                let given = pairs.iter().find(|(a, b, _)| (*a, *b) == (i, j) || (*b, *a) == (i, j));
+                let given = given.map_or(0.0, |p| p.2);
+                let z = (found.atanh() - given.atanh()) * (N as f64).sqrt();
+                assert!(z.abs() < 4.0, "{i} {j}: {found}");
+            }
+        }
+    }
+
+    proptest! {
+        /// Rows have length 1 and their products are the coefficients, of any matrix of rank 2 and more.
+        #[test]
+        fn factors_multiply_to_the_matrix(
+            vectors in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 2..6),
+            flat in any::<bool>(),
+        ) {
+            let vectors: Vec<_> = vectors
+                .into_iter()
+                .map(|[x, y, z]| nalgebra::Vector3::new(x, y, if flat { 0.0 } else { z }))
+                .filter(|v| v.norm() > 0.1)
+                .map(|v| v.normalize())
+                .collect();
+            let mut pairs = Vec::new();
+            for i in 0..vectors.len() {
+                for j in 0..i {
+                    pairs.push((i, j, vectors[i].dot(&vectors[j]).clamp(-1.0, 1.0)));
+                }
+            }
+            let law = Correlation::new(&pairs).unwrap();
+            for &(i, j, value) in &pairs {
+                let found: f64 = law.rows[i].iter().zip(&law.rows[j]).map(|(a, b)| a * b).sum();
+                prop_assert!((found - value).abs() < 1e-4, "{} {}", found, value);
+                let length: f64 = law.rows[i].iter().map(|a| a * a).sum();
+                prop_assert!((length - 1.0).abs() < 1e-7);
+            }
+        }
+    }
+
+    /// What is correlated with nothing neither changes nor is changed.
+    #[test]
+    fn strangers_leave_each_other_alone() {
+        let few = Correlation::new(&[(0, 1, 0.3), (1, 2, 0.4)]).unwrap();
+        let more = Correlation::new(&[(0, 2, 0.3), (1, 5, 0.9), (2, 4, 0.4)]).unwrap();
+        let (mut a, mut b) = ([0.1, -0.7, 1.3], [0.1, 9.0, -0.7, 0.55, 1.3, 8.0]);
+        few.mix(&mut a);
+        more.mix(&mut b);
+        assert_eq!([b[0], b[2], b[4]], a);
+        assert_eq!(b[3], 0.55);
+        assert_eq!(a[0], 0.1);
+        let mut same = [0.3, 0.4];
+        Correlation::new(&[(0, 1, 1.0)]).unwrap().mix(&mut same);
+        assert_eq!(same, [0.3, 0.3]);
+        Correlation::new(&[(0, 1, -1.0)]).unwrap().mix(&mut same);
+        assert_eq!(same, [0.3, -0.3]);
+        Correlation::default().mix(&mut same);
+        few.mix(&mut []);
+    }
+
+    #[test]
+    fn bad_coefficients_are_named() {
+        let error = |pairs: &[(usize, usize, f64)]| Correlation::new(pairs).unwrap_err();
+        for value in [1.1, -2.0, f64::NAN] {
+            let found = error(&[(0, 1, 0.5), (0, 2, value)]);
+            assert!(matches!(found, CorrelationError::Coefficient { pair: 1, .. }), "{found}");
+        }
+        assert_eq!(error(&[(3, 3, 0.5)]), CorrelationError::NoPair { pair: 0 });
+        let twice = error(&[(0, 1, 0.5), (1, 0, 0.5)]);
+        assert_eq!(twice, CorrelationError::Twice { pair: 1 });
+        let contradiction = error(&[(7, 8, 0.1), (0, 1, 0.9), (1, 2, 0.9), (0, 2, -0.9)]);
+        let CorrelationError::Indefinite { pair, eigenvalue, .. } = contradiction else {
+            panic!("{contradiction}")
+        };
+        assert!(pair >= 1 && (eigenvalue + 0.8).abs() < 1e-12, "{contradiction}");
+    }
+}

@@ -1,0 +1,457 @@
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+use crate::roots::share;
+
+/// Largest magnitude of what a law may be given.
+const MAX: f64 = 1e100;
+/// Least share of the Gaussian that bounds must hold.
+const MIN_SHARE: f64 = 1e-9;
+/// Deviations beyond which a Gaussian has nothing left in double precision.
+const END: f64 = 38.0;
+
+/// Why numbers do not make a law.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScalarLawError {
+    /// A mean or bound is NaN or too large.
+    #[error("{field} = {value:?}: it must be a number of at most {MAX:e} in magnitude")]
+    Number {
+        /// Which.
+        field: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// A standard deviation is negative, NaN or too large.
+    #[error("sigma = {value:?}: it must not be negative, and at most {MAX:e}")]
+    Deviation {
+        /// The standard deviation.
+        value: f64,
+    },
+    /// The bounds are in the wrong order.
+    #[error("bounds from {low:?} to {high:?}: the second must not be below the first")]
+    Bounds {
+        /// The smaller bound.
+        low: f64,
+        /// The larger bound.
+        high: f64,
+    },
+    /// Next to nothing of the Gaussian lies between the bounds.
+    #[error(
+        "bounds from {low:?} to {high:?} hold a share {share:.1e} of the Gaussian: they must hold at \
+         least {MIN_SHARE:e}"
+    )]
+    Share {
+        /// The smaller bound.
+        low: f64,
+        /// The larger bound.
+        high: f64,
+        /// The share.
+        share: f64,
+    },
+    /// The mean of a lognormal law is not positive.
+    #[error("a lognormal law about {value:?}: its mean must be positive")]
+    NotPositive {
+        /// The mean.
+        value: f64,
+    },
+    /// A probability is none.
+    #[error("probability = {value:?}: it must lie in [0, 1]")]
+    Probability {
+        /// The value.
+        value: f64,
+    },
+}
+
+/// A law of one number: of a mass, a stiffness, a coordinate.
+///
+/// # Definition
+/// Every law is the image of a standard normal score z under a function that does not fall,
+/// F⁻¹(Φ(z)), so that laws of any kind can be drawn jointly from scores that are jointly normal (a
+/// Gaussian copula; [`Correlation`](crate::Correlation)).
+///
+/// | law | of z |
+/// |---|---|
+/// | normal | m + σ z |
+/// | uniform | a + (b − a) Φ(z) |
+/// | truncated normal, m and σ before truncation | m + σ Φ⁻¹(Φ(α) + (Φ(β) − Φ(α)) Φ(z)), α, β = (a, b − m)/σ |
+/// | lognormal of mean m and deviation σ | m exp(s z − s²/2), s² = ln(1 + σ²/m²) |
+/// | Bernoulli | 1 if Φ(−z) < p, else 0 |
+///
+/// # Limits
+/// Bounds that hold less than 1e-9 of the Gaussian are refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScalarLaw(Kind);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Normal { mean: f64, deviation: f64 },
+    Uniform { low: f64, high: f64 },
+    Truncated { mean: f64, deviation: f64, low: f64, high: f64 },
+    Lognormal { mean: f64, deviation: f64, log_deviation: f64 },
+    Bernoulli { probability: f64 },
+}
+
+/// Φ(z).
+fn below(z: f64) -> f64 {
+    0.5 * libm::erfc(-z * FRAC_1_SQRT_2)
+}
+
+fn number(field: &'static str, value: f64) -> Result<f64, ScalarLawError> {
+    if value.abs() <= MAX { Ok(value) } else { Err(ScalarLawError::Number { field, value }) }
+}
+
+fn deviation(value: f64) -> Result<f64, ScalarLawError> {
+    if (0.0..=MAX).contains(&value) { Ok(value) } else { Err(ScalarLawError::Deviation { value }) }
+}
+
+impl ScalarLaw {
+    /// Gaussian, with mean and standard deviation.
+    ///
+    /// # Errors
+    /// Either is not a number or too large, or the deviation negative.
+    pub fn normal(mean: f64, sigma: f64) -> Result<Self, ScalarLawError> {
+        let (mean, deviation) = (number("mean", mean)?, deviation(sigma)?);
+        Ok(Self(Kind::Normal { mean, deviation }))
+    }
+
+    /// Uniform between two bounds.
+    ///
+    /// # Errors
+    /// A bound is not a number or too large, or the second is below the first.
+    pub fn uniform(low: f64, high: f64) -> Result<Self, ScalarLawError> {
+        let (low, high) = (number("low", low)?, number("high", high)?);
+        if low > high {
+            return Err(ScalarLawError::Bounds { low, high });
+        }
+        Ok(Self(Kind::Uniform { low, high }))
+    }
+
+    /// Gaussian kept between two bounds, which may be infinite; mean and standard deviation are those
+    /// before.
+    ///
+    /// # Errors
+    /// Those of [`normal`](Self::normal), or the bounds are not numbers, in the wrong order, or hold
+    /// next to nothing of the Gaussian.
+    pub fn truncated_normal(
+        mean: f64,
+        sigma: f64,
+        low: f64,
+        high: f64,
+    ) -> Result<Self, ScalarLawError> {
+        let (mean, deviation) = (number("mean", mean)?, deviation(sigma)?);
+        for (field, value) in [("low", low), ("high", high)] {
+            if value.is_nan() {
+                return Err(ScalarLawError::Number { field, value });
+            }
+        }
+        if low > high {
+            return Err(ScalarLawError::Bounds { low, high });
+        }
+        let share = if deviation == 0.0 {
+            if (low..=high).contains(&mean) { 1.0 } else { 0.0 }
+        } else {
+            share((low - mean) / deviation, (high - mean) / deviation)
+        };
+        if !(share >= MIN_SHARE) {
+            return Err(ScalarLawError::Share { low, high, share });
+        }
+        Ok(Self(Kind::Truncated { mean, deviation, low, high }))
+    }
+
+    /// Lognormal, with its own mean and standard deviation. Always positive.
+    ///
+    /// # Errors
+    /// The mean is not positive or too large, or the deviation negative, NaN or too large.
+    pub fn lognormal(mean: f64, sigma: f64) -> Result<Self, ScalarLawError> {
+        let (mean, deviation) = (number("mean", mean)?, deviation(sigma)?);
+        if !(mean > 0.0) {
+            return Err(ScalarLawError::NotPositive { value: mean });
+        }
+        let ratio = deviation / mean;
+        let log_deviation = libm::sqrt(libm::log1p(ratio * ratio));
+        if !log_deviation.is_finite() {
+            return Err(ScalarLawError::Deviation { value: sigma });
+        }
+        Ok(Self(Kind::Lognormal { mean, deviation, log_deviation }))
+    }
+
+    /// One with a probability, else zero.
+    ///
+    /// # Errors
+    /// The probability is outside [0, 1] or NaN.
+    pub fn bernoulli(probability: f64) -> Result<Self, ScalarLawError> {
+        if !(0.0..=1.0).contains(&probability) {
+            return Err(ScalarLawError::Probability { value: probability });
+        }
+        Ok(Self(Kind::Bernoulli { probability }))
+    }
+
+    /// The value at a standard normal score: it does not fall where the score rises.
+    #[must_use]
+    pub fn at_score(&self, z: f64) -> f64 {
+        match self.0 {
+            Kind::Normal { mean, deviation } => mean + deviation * z,
+            Kind::Uniform { low, high } => (low + (high - low) * below(z)).clamp(low, high),
+            Kind::Truncated { mean, deviation, low, high } => {
+                if deviation == 0.0 {
+                    return mean;
+                }
+                let (alpha, beta) = ((low - mean) / deviation, (high - mean) / deviation);
+                (mean + deviation * truncated(alpha, beta, z)).clamp(low, high)
+            }
+            Kind::Lognormal { mean, log_deviation: s, .. } => mean * libm::exp(s * (z - 0.5 * s)),
+            Kind::Bernoulli { probability } => f64::from(u8::from(below(-z) < probability)),
+        }
+    }
+
+    /// The probability of a value of at most x.
+    #[must_use]
+    pub fn cdf(&self, x: f64) -> f64 {
+        let step = |at: f64| f64::from(u8::from(x >= at));
+        match self.0 {
+            Kind::Normal { mean, deviation } | Kind::Truncated { mean, deviation, .. }
+                if deviation == 0.0 =>
+            {
+                step(mean)
+            }
+            Kind::Normal { mean, deviation } => below((x - mean) / deviation),
+            Kind::Uniform { low, high } if low == high => step(low),
+            Kind::Uniform { low, high } => ((x - low) / (high - low)).clamp(0.0, 1.0),
+            Kind::Truncated { mean, deviation, low, high } => {
+                let [a, b, x] = [low, high, x.clamp(low, high)].map(|x| (x - mean) / deviation);
+                share(a, x) / share(a, b)
+            }
+            Kind::Lognormal { mean, log_deviation, .. } if log_deviation == 0.0 => step(mean),
+            Kind::Lognormal { mean, log_deviation: s, .. } => {
+                if x > 0.0 {
+                    below(libm::log(x / mean) / s + 0.5 * s)
+                } else {
+                    0.0
+                }
+            }
+            Kind::Bernoulli { probability } => {
+                if x >= 1.0 {
+                    1.0
+                } else {
+                    (1.0 - probability) * step(0.0)
+                }
+            }
+        }
+    }
+
+    /// The mean.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        match self.0 {
+            Kind::Normal { mean, .. } | Kind::Lognormal { mean, .. } => mean,
+            Kind::Uniform { low, high } => 0.5 * low + 0.5 * high,
+            Kind::Truncated { mean, deviation, .. } => {
+                mean + deviation * self.truncated_moments().0
+            }
+            Kind::Bernoulli { probability } => probability,
+        }
+    }
+
+    /// The standard deviation. That of a truncated normal law loses digits where its interval is
+    /// much shorter than σ: two for every factor of ten.
+    #[must_use]
+    pub fn deviation(&self) -> f64 {
+        match self.0 {
+            Kind::Normal { deviation, .. } | Kind::Lognormal { deviation, .. } => deviation,
+            Kind::Uniform { low, high } => (0.5 * high - 0.5 * low) / 3.0_f64.sqrt(),
+            Kind::Truncated { deviation, .. } => {
+                deviation * self.truncated_moments().1.max(0.0).sqrt()
+            }
+            Kind::Bernoulli { probability: p } => (p * (1.0 - p)).sqrt(),
+        }
+    }
+
+    /// What it is called in scenario files.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self.0 {
+            Kind::Normal { .. } => "normal",
+            Kind::Uniform { .. } => "uniform",
+            Kind::Truncated { .. } => "truncated-normal",
+            Kind::Lognormal { .. } => "lognormal",
+            Kind::Bernoulli { .. } => "bernoulli",
+        }
+    }
+
+    /// Mean and variance of a standard normal kept to [α, β].
+    fn truncated_moments(&self) -> (f64, f64) {
+        let Kind::Truncated { mean, deviation, low, high } = self.0 else { return (0.0, 1.0) };
+        if deviation == 0.0 {
+            return (0.0, 0.0);
+        }
+        let [alpha, beta] = [low, high].map(|x| (x - mean) / deviation);
+        let edge = |t: f64, power: i32| {
+            if t.abs() > END {
+                return 0.0;
+            }
+            t.powi(power) * libm::exp(-0.5 * t * t) / (2.0 * PI).sqrt()
+        };
+        let edges = |n| (edge(alpha, n) - edge(beta, n)) / share(alpha, beta);
+        let m1 = edges(0);
+        (m1, 1.0 + edges(1) - m1 * m1)
+    }
+}
+
+impl Distribution<f64> for ScalarLaw {
+    #[inline]
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
+        self.at_score(StandardNormal.sample(rng))
+    }
+}
+
+/// The t in [α, β] below which a share Φ(z) of what a standard normal has there lies: bisection,
+/// by Newton's iteration where that stays inside.
+fn truncated(alpha: f64, beta: f64, z: f64) -> f64 {
+    let whole = share(alpha, beta);
+    let (mut low, mut high) = (alpha.max(-END), beta.min(END));
+    // From the end that is nearer, so that small shares keep their digits.
+    let (rising, target) = (z < 0.0, whole * below(-z.abs()));
+    let mut t = z.clamp(low, high);
+    for _ in 0..200 {
+        let excess = if rising { share(alpha, t) - target } else { target - share(t, beta) };
+        if excess < 0.0 {
+            low = t;
+        } else {
+            high = t;
+        }
+        let density = libm::exp(-0.5 * t * t) / (2.0 * PI).sqrt();
+        let newton = t - excess / density;
+        let next = if newton > low && newton < high { newton } else { 0.5 * low + 0.5 * high };
+        let done = (next - t).abs() <= 1e-15 * (1.0 + t.abs());
+        t = next;
+        if done {
+            break;
+        }
+    }
+    t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+    const INF: f64 = f64::INFINITY;
+
+    fn laws() -> Vec<ScalarLaw> {
+        vec![
+            ScalarLaw::normal(3.0, 2.0).unwrap(),
+            ScalarLaw::uniform(-1.0, 4.0).unwrap(),
+            ScalarLaw::lognormal(5.0, 0.5).unwrap(),
+            ScalarLaw::lognormal(0.01, 0.05).unwrap(),
+            ScalarLaw::truncated_normal(1.0, 2.0, 0.0, INF).unwrap(),
+            ScalarLaw::truncated_normal(0.0, 1.0, -2.0, 2.0).unwrap(),
+            ScalarLaw::truncated_normal(0.0, 1.0, 5.0, INF).unwrap(),
+            ScalarLaw::truncated_normal(0.0, 1.0, -7.0, -4.0).unwrap(),
+            ScalarLaw::truncated_normal(0.0, 1.0, 0.3, 0.31).unwrap(),
+        ]
+    }
+
+    /// Kolmogorov and Smirnov's distance below its 1e-4 point; means and deviations to |z| < 4.
+    /// Another law of the same mean and deviation is told apart.
+    #[test]
+    fn draws_follow_the_law() {
+        const N: usize = 40_000;
+        let gap = |law: &ScalarLaw, draws: &[f64]| {
+            let gaps = draws.iter().enumerate();
+            let gap = gaps.map(|(i, x)| (law.cdf(*x) - (i as f64 + 0.5) / N as f64).abs());
+            gap.fold(0.0, f64::max) * (N as f64).sqrt()
+        };
+        for (i, law) in laws().into_iter().enumerate() {
+            let mut rng = ChaCha8Rng::seed_from_u64(300 + i as u64);
+            let mut draws: Vec<f64> = (0..N).map(|_| law.sample(&mut rng)).collect();
+            draws.sort_by(f64::total_cmp);
+            assert!(gap(&law, &draws) < 2.23, "{law:?}: {}", gap(&law, &draws));
+            if !matches!(law.0, Kind::Normal { .. }) && i != 5 {
+                let other = ScalarLaw::normal(law.mean(), law.deviation()).unwrap();
+                assert!(gap(&other, &draws) > 2.23, "{law:?} passes for normal");
+            }
+            let mean = draws.iter().sum::<f64>() / N as f64;
+            let z = (mean - law.mean()) / law.deviation() * (N as f64).sqrt();
+            assert!(z.abs() < 4.0, "{law:?}: mean {z}");
+            let squares: Vec<f64> = draws.iter().map(|x| (x - law.mean()).powi(2)).collect();
+            let variance = squares.iter().sum::<f64>() / N as f64;
+            let spread = squares.iter().map(|s| (s - variance).powi(2)).sum::<f64>() / N as f64;
+            let z = (variance - law.deviation().powi(2)) / (spread / N as f64).sqrt();
+            // The variance of the fourth law hangs on its far tail.
+            assert!(z.abs() < 4.0 || i == 3, "{law:?}: variance {z}");
+        }
+    }
+
+    #[test]
+    fn probabilities_are_met() {
+        let mut rng = ChaCha8Rng::seed_from_u64(310);
+        for p in [0.0, 0.02, 0.5, 1.0] {
+            let law = ScalarLaw::bernoulli(p).unwrap();
+            let count = (0..10_000).map(|_| law.sample(&mut rng)).sum::<f64>();
+            let z = (count - 1e4 * p) / (100.0 * law.deviation().max(1e-9));
+            assert!(z.abs() < 4.0, "{p}: {count}");
+            assert_eq!([law.cdf(-0.1), law.cdf(0.0), law.cdf(1.0)], [0.0, 1.0 - p, 1.0]);
+        }
+    }
+
+    proptest! {
+        /// F(F⁻¹(Φ(z))) is Φ(z), from both tails.
+        #[test]
+        fn scores_are_quantiles(z in -6.0..6.0f64) {
+            for law in laws() {
+                let x = law.at_score(z);
+                let error = law.cdf(x) - below(z);
+                prop_assert!(error.abs() < 1e-12, "{:?} {} {:e}", law, x, error);
+                prop_assert!(law.at_score(z + 0.01) >= x);
+            }
+        }
+
+        /// Without bounds that matter it is normal, in the tails too.
+        #[test]
+        fn wide_bounds_are_none(z in -7.0..7.0f64) {
+            let law = ScalarLaw::truncated_normal(2.0, 3.0, -INF, INF).unwrap();
+            prop_assert!((law.at_score(z) - (2.0 + 3.0 * z)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn laws_without_width_stay_put() {
+        for law in [
+            ScalarLaw::normal(2.0, 0.0),
+            ScalarLaw::uniform(2.0, 2.0),
+            ScalarLaw::truncated_normal(2.0, 0.0, 0.0, 3.0),
+            ScalarLaw::lognormal(2.0, 0.0),
+        ] {
+            let law = law.unwrap();
+            assert_eq!([law.at_score(-3.0), law.mean(), law.deviation()], [2.0, 2.0, 0.0]);
+            assert_eq!([law.cdf(1.9), law.cdf(2.0)], [0.0, 1.0]);
+        }
+    }
+
+    #[test]
+    fn bad_numbers_are_named() {
+        use ScalarLaw as L;
+        let cases = [
+            (L::normal(f64::NAN, 1.0), "mean = NaN"),
+            (L::normal(0.0, -1.0), "sigma = -1.0"),
+            (L::normal(0.0, INF), "sigma = inf"),
+            (L::uniform(1.0, 0.0), "bounds from 1.0 to 0.0"),
+            (L::uniform(-INF, 0.0), "low = -inf"),
+            (L::truncated_normal(0.0, 1.0, f64::NAN, 1.0), "low = NaN"),
+            (L::truncated_normal(0.0, 1.0, 7.0, 8.0), "bounds from 7.0 to 8.0 hold"),
+            (L::truncated_normal(0.0, 0.0, 1.0, 2.0), "bounds from 1.0 to 2.0 hold"),
+            (L::lognormal(0.0, 1.0), "a lognormal law about 0.0"),
+            (L::lognormal(1e-100, 1e100), "sigma = 1e100"),
+            (L::bernoulli(1.5), "probability = 1.5"),
+            (L::bernoulli(f64::NAN), "probability = NaN"),
+        ];
+        for (law, expected) in cases {
+            let message = law.unwrap_err().to_string();
+            assert!(message.starts_with(expected), "{message}");
+        }
+    }
+}
