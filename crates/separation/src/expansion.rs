@@ -9,10 +9,16 @@
 
 use smallvec::SmallVec;
 
-use crate::lanes::{Lanes, M3, Packing, V3, WIDTH, add, cross, dot, scale, sub, times, transposed};
+use crate::{
+    lanes::{Lanes, M3, Packing, V3, WIDTH, add, cross, dot, scale, sub, times},
+    products::{Factors, Products, Row, Term},
+    vector::{Four, Simd},
+};
 
 /// Degree of the series of a state.
 pub(crate) const ORDER: usize = 14;
+/// Degrees at which an expansion may stop: sooner than at the last where a release ends the step.
+pub(crate) const STOPS: [usize; 3] = [5, 9, ORDER];
 /// Coefficients of a series.
 pub(crate) const TERMS: usize = ORDER + 1;
 
@@ -41,11 +47,30 @@ const INVERSE: [f64; TERMS] = {
     inverse
 };
 
+/// k/2.
+const HALVES: [f64; 2 * TERMS] = {
+    let mut halves = [0.0; 2 * TERMS];
+    let mut k = 1;
+    while k < 2 * TERMS {
+        halves[k] = 0.5 * k as f64;
+        k += 1;
+    }
+    halves
+};
+
 /// What a body resists torques with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rotor<const L: usize> {
     pub(crate) inertia: M3<L>,
     pub(crate) inverse: M3<L>,
+}
+
+/// Parts of sums that make the coefficients of one order.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    square: Lanes<WIDTH>,
+    slope: Lanes<WIDTH>,
+    force: V3<WIDTH>,
 }
 
 /// As many springs as there are lanes, and their series.
@@ -65,79 +90,77 @@ pub(crate) struct SpringSeries {
     inverse: [Lanes<WIDTH>; TERMS],
     /// Force over length, k(L₀/|s| − 1).
     push: [Lanes<WIDTH>; TERMS],
-}
-
-/// Coefficients of what the equations of motion are made of.
-#[derive(Clone, Copy, Debug)]
-struct Parts<const L: usize> {
-    /// Takes stage components to payload components.
-    rotation: M3<L>,
-    force: V3<L>,
-    /// −(ρ × F + T), payload axes.
-    reaction: V3<L>,
-    /// Angular momenta about the mass centres, body axes.
-    payload_momentum: V3<L>,
-    stage_momentum: V3<L>,
-    /// ω_L − ω_P and ω_L + ω_P, each component in the axes of its body.
-    rate_difference: V3<L>,
-    rate_sum: V3<L>,
+    known: Known,
+    /// That none of them pushes any more.
+    lost: bool,
+    /// What s² stays below and above as far as the series is good.
+    pub(crate) upper: Lanes<WIDTH>,
+    pub(crate) lower: Lanes<WIDTH>,
 }
 
 /// The series of a state and all that goes into it.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub(crate) struct Expansion<const L: usize> {
-    pub(crate) state: [[Lanes<L>; STATE]; TERMS],
-    parts: [Parts<L>; TERMS],
+pub(crate) struct Expansion<const L: usize>
+where
+    Lanes<L>: Packing<L>,
+{
+    pub(crate) state: [Row<L>; TERMS],
+    products: [<Lanes<L> as Packing<L>>::Products; TERMS],
     pub(crate) springs: SmallVec<[SpringSeries; INLINE_SPRINGS / WIDTH]>,
     pub(crate) payload: Rotor<L>,
     pub(crate) stage: Rotor<L>,
     /// 1 over what each entry of the state is measured by.
     pub(crate) inverse_scale: [Lanes<L>; STATE],
-    /// The radius of convergence, s.
+    /// The radius of convergence, s; zero before the first expansion.
     pub(crate) radius: Lanes<L>,
+    /// The share of the radius that a step may take, for each degree to stop at.
+    pub(crate) stretch: [f64; STOPS.len()],
+    /// How far the series are good for, s.
+    pub(crate) reach: Lanes<L>,
+    /// The degrees that they have come to; coefficients beyond are left over.
+    pub(crate) order: [usize; L],
+    /// The state there.
+    pub(crate) end: Row<L>,
     /// 1/m of the payload plus 1/m of the stage.
     pub(crate) inverse_mass: Lanes<L>,
 }
 
-/// The coefficient of order k of a bilinear function of two series.
-#[inline(always)]
-fn product<A, B, const N: usize, const L: usize>(
-    a: &[A; TERMS],
-    b: &[B; TERMS],
-    k: usize,
-    f: impl Fn(&A, &B) -> [Lanes<L>; N],
-) -> [Lanes<L>; N] {
-    let mut sum = [Lanes::ZERO; N];
-    for (a, b) in a[..=k].iter().zip(b[..=k].iter().rev()) {
-        sum = add(sum, f(a, b));
-    }
-    sum
+/// The part of a product's coefficient of order k that comes of those between the first and the
+/// newest: it waits for nothing. A macro, for closures are not sure to be inlined.
+macro_rules! known {
+    ($simd:expr, $term:path, $y:expr, $products:expr, $k:expr) => {{
+        let mut sum = Term::zero($simd);
+        if $k > 1 {
+            let (y, products) = (&$y[1..$k], &$products[1..$k]);
+            let other = y.iter().zip(products).rev();
+            for ((ya, a), (yb, b)) in y.iter().zip(products).zip(other) {
+                sum = Term::plus(sum, $term($simd, Factors(ya, a), Factors(yb, b)));
+            }
+        }
+        sum
+    }};
 }
 
-/// The coefficient of order k of the square of a vector.
-#[inline(always)]
-fn square<const L: usize>(a: &[V3<L>; TERMS], k: usize) -> Lanes<L> {
-    let mut sum = Lanes::ZERO;
-    for j in 0..k.div_ceil(2) {
-        sum += dot(&a[j], &a[k - j]);
-    }
-    sum += sum;
-    if k.is_multiple_of(2) { sum + dot(&a[k / 2], &a[k / 2]) } else { sum }
+/// The rest of it.
+macro_rules! whole {
+    ($simd:expr, $known:expr, $term:path, $first:expr, $newest:expr) => {
+        Term::plus(
+            $known,
+            match $first {
+                Some(first) => {
+                    Term::plus($term($simd, first, $newest), $term($simd, $newest, first))
+                }
+                None => $term($simd, $newest, $newest),
+            },
+        )
+    };
 }
 
 /// A few neighbouring entries of a state.
 #[inline(always)]
 pub(crate) fn part<T: Copy, const N: usize>(state: &[T; STATE], at: usize) -> [T; N] {
     std::array::from_fn(|i| state[at + i])
-}
-
-/// ½ q ∘ ω, and ½ (q ∘ ω_L − ω_P ∘ q) if given ω_L − ω_P and ω_L + ω_P.
-#[inline(always)]
-fn turned<const L: usize>(q: &[Lanes<L>; 4], w: &V3<L>, sum: &V3<L>) -> [Lanes<L>; 4] {
-    let v = [q[0], q[1], q[2]];
-    let [x, y, z] = add(scale(*w, q[3]), cross(&v, sum));
-    [x, y, z, -dot(&v, w)]
 }
 
 impl SpringSeries {
@@ -152,7 +175,44 @@ impl SpringSeries {
             square: [zero; TERMS],
             inverse: [zero; TERMS],
             push: [zero; TERMS],
+            known: Known { square: zero, slope: zero, force: vector },
+            lost: true,
+            upper: zero,
+            lower: zero,
         }
+    }
+
+    /// What goes into the coefficients of order k and waits for nothing.
+    #[inline(always)]
+    fn prepare<S: Simd>(&mut self, simd: S, k: usize) {
+        let load = |x: &Lanes<WIDTH>| Four::load(simd, x);
+        let zero = Four::splat(simd, 0.0);
+        let mut square = zero;
+        for j in 1..k.div_ceil(2) {
+            let ([x, y, z], [u, v, w]) = (&self.line[j], &self.line[k - j]);
+            square = square + (load(x) * load(u) + load(y) * load(v) + load(z) * load(w));
+        }
+        square = square + square;
+        if k > 0 && k.is_multiple_of(2) {
+            let [x, y, z] = &self.line[k / 2];
+            square = square + (load(x) * load(x) + load(y) * load(y) + load(z) * load(z));
+        }
+        self.known.square = square.store();
+        self.lost = self.stiffness.0.iter().all(|s| *s == 0.0);
+        let (mut slope, mut force) = (zero, [zero; 3]);
+        if k > 1 && !self.lost {
+            let weights = HALVES[k + 1..2 * k].iter().rev();
+            let known = self.square[1..k].iter().zip(self.inverse[1..k].iter().rev()).zip(weights);
+            let forces = self.push[1..k].iter().zip(self.line[1..k].iter().rev());
+            for (((s, u), weight), (push, [x, y, z])) in known.zip(forces) {
+                slope = slope + load(s) * load(u) * Four::splat(simd, *weight);
+                let push = load(push);
+                let [a, b, c] = force;
+                force = [a + load(x) * push, b + load(y) * push, c + load(z) * push];
+            }
+        }
+        self.known.slope = slope.store();
+        self.known.force = force.map(Four::store);
     }
 
     /// The coefficients of order k of the forces on the payload, zero once a spring is lost.
@@ -163,172 +223,270 @@ impl SpringSeries {
             line = add(line, self.payload_point);
         }
         self.line[k] = line;
-        let square = square(&self.line, k);
+        let ends = dot(&self.line[0], &line);
+        let square = if k == 0 { ends } else { self.known.square + (ends + ends) };
         self.square[k] = square;
-        if self.stiffness.0.iter().all(|s| *s == 0.0) {
+        if self.lost {
             return [Lanes::ZERO; 3];
         }
         let one = Lanes::splat(1.0);
-        self.inverse[k] = if k == 0 {
-            one / square.sqrt()
+        let inverse = if k == 0 {
+            // A lost spring may come to length zero.
+            self.stiffness.zip(one / square.sqrt(), |k, x| if k == 0.0 { 0.0 } else { x })
         } else {
             // u = (s²)^(−1/2): s² u' = −½ (s²)' u.
-            let mut sum = Lanes::ZERO;
-            for j in 1..=k {
-                let weight = k as f64 - 0.5 * j as f64;
-                sum += self.square[j] * self.inverse[k - j] * weight;
-            }
             let u = self.inverse[0];
-            -(sum * (u * u)) * INVERSE[k]
+            (self.known.slope + square * (u * HALVES[k])) * (u * u * -INVERSE[k])
         };
-        let mut push = self.free_length * self.inverse[k];
+        self.inverse[k] = inverse;
+        let mut push = self.free_length * inverse;
         if k == 0 {
             push -= one;
         }
-        // A lost spring may come to length zero.
-        self.push[k] = self.stiffness.zip(push, |k, x| if k == 0.0 { 0.0 } else { k * x });
-        product(&self.push, &self.line, k, |a, b| scale(*b, *a))
+        let push = self.stiffness * push;
+        self.push[k] = push;
+        let ends = scale(self.line[0], push);
+        if k == 0 { ends } else { add(add(self.known.force, scale(line, self.push[0])), ends) }
     }
 }
 
 impl<const L: usize> Expansion<L>
 where
-    Lanes<L>: Packing,
+    Lanes<L>: Packing<L>,
 {
     pub(crate) fn new() -> Self {
         let vector = [Lanes::ZERO; 3];
         let rotor = Rotor { inertia: [vector; 3], inverse: [vector; 3] };
-        let parts = Parts {
-            rotation: [vector; 3],
-            force: vector,
-            reaction: vector,
-            payload_momentum: vector,
-            stage_momentum: vector,
-            rate_difference: vector,
-            rate_sum: vector,
-        };
         Self {
             state: [[Lanes::ZERO; STATE]; TERMS],
-            parts: [parts; TERMS],
+            products: [Products::ZERO; TERMS],
             springs: SmallVec::new(),
             payload: rotor,
             stage: rotor,
             inverse_scale: [Lanes::ZERO; STATE],
             radius: Lanes::ZERO,
+            stretch: [0.0; STOPS.len()],
+            reach: Lanes::ZERO,
+            order: [ORDER; L],
+            end: [Lanes::ZERO; STATE],
             inverse_mass: Lanes::ZERO,
         }
     }
 
     /// Expands the motion about the state in `state[0]`: this evaluates the equations of motion, for
     /// all coefficients at once.
+    ///
+    /// A lane stops at a low degree if a spring lets go before its series ceases to be good. Whether
+    /// it does depends on nothing but the lane.
     #[inline(always)]
-    pub(crate) fn expand(&mut self) {
-        for k in 0..ORDER {
-            self.expand_once(k);
+    pub(crate) fn expand<S: Simd>(&mut self, simd: S) {
+        let top = self.expand_lanes(simd);
+        for lane in 0..L {
+            let beyond = self.order[lane] + 1..=top;
+            for row in &mut self.state[beyond] {
+                for x in row {
+                    x.0[lane] = 0.0;
+                }
+            }
+            // Lanes differ where springs have the lanes of their runs.
+            let beyond = self.order[lane]..top;
+            for springs in &mut self.springs {
+                for square in &mut springs.square[beyond.clone()] {
+                    square.0[lane] = 0.0;
+                }
+            }
         }
-        self.radius = self.radius();
+        self.end = self.state[top];
+        for row in self.state[..top].iter().rev() {
+            for (end, x) in self.end.iter_mut().zip(row) {
+                *end = *end * self.reach + *x;
+            }
+        }
+        let reach = self.reach.spread();
+        for springs in &mut self.springs {
+            let (mut power, mut up, mut down) = (reach, Lanes::ZERO, Lanes::ZERO);
+            for square in &springs.square[1..top] {
+                let term = *square * power;
+                up += term.map(|x| if x > 0.0 { x } else { 0.0 });
+                down += term.map(|x| if x < 0.0 { x } else { 0.0 });
+                power = power * reach;
+            }
+            springs.upper = springs.square[0] + up;
+            springs.lower = springs.square[0] + down;
+        }
+    }
+
+    /// To the degrees that the lanes need, of which it returns the highest.
+    #[inline(always)]
+    fn expand_lanes<S: Simd>(&mut self, simd: S) -> usize {
+        let before = self.radius;
+        let mut under_way = [true; L];
+        let mut from = 0;
+        for (stop, stretch) in STOPS.into_iter().zip(self.stretch) {
+            for k in from..stop {
+                self.expand_once(simd, k);
+            }
+            from = stop;
+            let mut stops = [true; L];
+            if stop < ORDER {
+                // The radius seldom grows much from one step to the next, and takes time to find.
+                stops = self.releases_within(before * (2.0 * stretch), stop);
+                if !stops.iter().any(|x| *x) {
+                    continue;
+                }
+            }
+            let radius = self.radius(stop);
+            let reach = radius * stretch;
+            let ends = self.releases_within(reach, stop);
+            for lane in 0..L {
+                if under_way[lane] && stops[lane] && (ends[lane] || stop == ORDER) {
+                    under_way[lane] = false;
+                    self.radius.0[lane] = radius.0[lane];
+                    self.reach.0[lane] = reach.0[lane];
+                    self.order[lane] = stop;
+                }
+            }
+            if !under_way.iter().any(|x| *x) {
+                return stop;
+            }
+        }
+        ORDER
+    }
+
+    /// Whether a spring reaches its free length by a time, as far as the coefficients below an order
+    /// tell.
+    #[inline(always)]
+    fn releases_within(&self, time: Lanes<L>, order: usize) -> [bool; L] {
+        let mut released = Lanes::ZERO;
+        let time = time.spread();
+        for springs in &self.springs {
+            let mut sum = Lanes::ZERO;
+            for term in springs.square[..order].iter().rev() {
+                sum = sum * time + *term;
+            }
+            let beyond = sum.zip(springs.free_length, |s, l| if s >= l * l { 1.0 } else { 0.0 });
+            let pushes = springs.stiffness.map(|k| if k == 0.0 { 0.0 } else { 1.0 });
+            released = released.collect(beyond * pushes);
+        }
+        released.0.map(|x| x > 0.0)
     }
 
     /// From the coefficients up to k of the state to those of order k + 1.
     #[inline(always)]
-    fn expand_once(&mut self, k: usize) {
-        let (y, parts) = (&mut self.state, &mut self.parts);
-        let rotation = rotation(y, k);
-        let offset = part(&y[k], OFFSET);
-        let (mut force, mut torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
-        let (arm, turn) =
-            (offset.map(Packing::spread), rotation.map(|row| row.map(Packing::spread)));
+    fn expand_once<S: Simd>(&mut self, simd: S, k: usize) {
+        type Of<const L: usize> = <Lanes<L> as Packing<L>>::Products;
+        let (y, (products, newest)) = (&mut self.state, self.products.split_at_mut(k));
+        let newest = &mut newest[0];
+        for springs in &mut self.springs {
+            springs.prepare(simd, k);
+        }
+        let squares = known!(simd, Of::<L>::squares, y, products, k);
+        let crosses = known!(simd, Of::<L>::crosses, y, products, k);
+        let gyration = known!(simd, Of::<L>::gyration, y, products, k);
+        let relative = known!(simd, Of::<L>::relative, y, products, k);
+        let attitude = known!(simd, Of::<L>::attitude, y, products, k);
+        let moment = known!(simd, Of::<L>::moment, y, products, k);
+        let torque = known!(simd, Of::<L>::torque, y, products, k);
+
+        let row = y[k];
+        let momenta = [
+            times(&self.payload.inertia, &part(&row, PAYLOAD_RATE)),
+            times(&self.stage.inertia, &part(&row, STAGE_RATE)),
+        ];
+        *newest = Of::<L>::new(simd, &row, &momenta);
+        let first = products.first().map(|first| Factors(&y[0], first));
+        let rotation = rotation(
+            &Of::<L>::of_squares(&whole!(
+                simd,
+                squares,
+                Of::<L>::squares,
+                first,
+                Factors(&row, newest)
+            )),
+            k,
+        );
+        newest.set_rotation(simd, &rotation);
+        let (mut force, mut spring_torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
+        let (arm, turn) = (
+            part::<_, 3>(&row, OFFSET).map(Packing::spread),
+            rotation.map(|row| row.map(Packing::spread)),
+        );
         for springs in &mut self.springs {
             let push = springs.expand(k, &arm, &turn);
             let moment = cross(&springs.payload_point, &push);
             force = std::array::from_fn(|i| force[i].collect(push[i]));
-            torque = std::array::from_fn(|i| torque[i].collect(moment[i]));
+            spring_torque = std::array::from_fn(|i| spring_torque[i].collect(moment[i]));
         }
-        let (payload_rate, stage_rate) = (part(&y[k], PAYLOAD_RATE), part(&y[k], STAGE_RATE));
-        parts[k].rotation = rotation;
-        parts[k].force = force;
-        parts[k].payload_momentum = times(&self.payload.inertia, &payload_rate);
-        parts[k].stage_momentum = times(&self.stage.inertia, &stage_rate);
-        parts[k].rate_difference = sub(stage_rate, payload_rate);
-        parts[k].rate_sum = add(stage_rate, payload_rate);
-        let moment = product(y, parts, k, |y, p| cross(&part(y, OFFSET), &p.force));
-        parts[k].reaction = add(moment, torque).map(|x| -x);
+        newest.set_force(simd, &force);
+        let moment = Of::<L>::of_vector(&whole!(
+            simd,
+            moment,
+            Of::<L>::moment,
+            first,
+            Factors(&row, newest)
+        ));
+        newest.set_reaction(&add(moment, spring_torque).map(|x| -x));
 
-        let stage_torque = product(parts, parts, k, |a, b| transposed(&a.rotation, &b.reaction));
-        let gyroscopic: [_; 6] = product(y, parts, k, |y, p| {
-            join(
-                cross(&part(y, PAYLOAD_RATE), &p.payload_momentum),
-                cross(&part(y, STAGE_RATE), &p.stage_momentum),
-            )
-        });
-        let [a, b, c, d, e, f] = gyroscopic;
-        let payload_turn = times(&self.payload.inverse, &sub(torque, [a, b, c]));
-        let stage_turn = times(&self.stage.inverse, &sub(stage_torque, [d, e, f]));
-
-        // Derivatives in axes that turn.
-        let carried: [_; 6] = product(y, y, k, |a, b| {
-            let w = part(a, PAYLOAD_RATE);
-            join(cross(&part(b, OFFSET), &w), cross(&part(b, VELOCITY), &w))
-        });
-        let [a, b, c, d, e, f] = carried;
-        let velocity = add(part(&y[k], VELOCITY), [a, b, c]);
-        let acceleration = add(scale(force, self.inverse_mass), [d, e, f]);
-        let attitude = product(y, y, k, |q, w| {
-            let w = part(w, PAYLOAD_RATE);
-            turned(&part(q, ATTITUDE), &w, &w)
-        });
-        let relative = product(y, parts, k, |q, p| {
-            turned(&part(q, RELATIVE), &p.rate_difference, &p.rate_sum)
-        });
+        let stage_torque = Of::<L>::of_vector(&whole!(
+            simd,
+            torque,
+            Of::<L>::torque,
+            first,
+            Factors(&row, newest)
+        ));
+        let crosses = whole!(simd, crosses, Of::<L>::crosses, first, Factors(&row, newest));
+        let gyration = whole!(simd, gyration, Of::<L>::gyration, first, Factors(&row, newest));
+        let [offset, velocity, payload_turn, stage_turn] = Of::<L>::of_crosses(&crosses, &gyration);
+        let relative = whole!(simd, relative, Of::<L>::relative, first, Factors(&row, newest));
+        let attitude = whole!(simd, attitude, Of::<L>::attitude, first, Factors(&row, newest));
+        let [relative, attitude] = [relative, attitude].map(|x| Of::<L>::of_turn(&x));
 
         let step = INVERSE[k + 1];
         let next = &mut y[k + 1];
-        put(next, OFFSET, &velocity, step);
-        put(next, VELOCITY, &acceleration, step);
+        put(next, OFFSET, &add(part(&row, VELOCITY), offset), step);
+        put(next, VELOCITY, &add(scale(force, self.inverse_mass), velocity), step);
         put(next, RELATIVE, &relative, 0.5 * step);
         put(next, ATTITUDE, &attitude, 0.5 * step);
+        let payload_turn = times(&self.payload.inverse, &add(spring_torque, payload_turn));
         put(next, PAYLOAD_RATE, &payload_turn, step);
+        let stage_turn = times(&self.stage.inverse, &add(stage_torque, stage_turn));
         put(next, STAGE_RATE, &stage_turn, step);
     }
 
-    /// The radius of convergence as the last two coefficients tell it, each entry measured by its
-    /// scale: of both, for series of even or odd functions have every other one.
+    /// The radius of convergence as the last two coefficients up to an order tell it, each entry
+    /// measured by its scale: of both, for series of even or odd functions have every other one.
     #[inline(always)]
-    fn radius(&self) -> Lanes<L> {
-        let [last, previous] = [ORDER, ORDER - 1].map(|order| {
-            let mut largest = Lanes::ZERO;
-            for (x, s) in self.state[order].iter().zip(&self.inverse_scale) {
-                // NaN stays, which `f64::max` would pass over.
-                largest = largest.zip(*x * *s, |m, x| if x.abs() <= m { m } else { x.abs() });
-            }
-            largest.map(|x| inverse_root(x, order as u32))
-        });
+    fn radius(&self, order: usize) -> Lanes<L> {
+        let (mut last, mut previous) = (Lanes::ZERO, Lanes::ZERO);
+        // NaN stays, which `f64::max` would pass over.
+        let larger = |m: f64, x: f64| if x.abs() <= m { m } else { x.abs() };
+        let rows = self.state[order].iter().zip(&self.state[order - 1]);
+        for ((x, y), scale) in rows.zip(&self.inverse_scale) {
+            last = last.zip(*x * *scale, larger);
+            previous = previous.zip(*y * *scale, larger);
+        }
+        let n = order as f64;
+        last = last.map(|x| inverse_root(x, n));
+        previous = previous.map(|x| inverse_root(x, n - 1.0));
         last.zip(previous, |a, b| if a < b { a } else { b })
     }
 }
 
 /// About x^(−1/n), to 1 %: a step need not be exact.
 #[inline(always)]
-fn inverse_root(x: f64, n: u32) -> f64 {
-    // The exponent divided by −n, then Newton's iteration for y⁻ⁿ = x.
-    const ONE: u64 = 1023 << 52;
+fn inverse_root(x: f64, n: f64) -> f64 {
     const LEAST: f64 = 1e-290;
+    // Added, it leaves the nearest integer in the lowest bits.
+    const ROUND: f64 = 6_755_399_441_055_744.0;
     let x = if x < LEAST { LEAST } else { x };
-    let n64 = u64::from(n);
-    let mut y = f64::from_bits((ONE + ONE / n64).saturating_sub(x.to_bits() / n64));
-    for _ in 0..3 {
-        let mut power = y;
-        for _ in 1..n {
-            power *= y;
-        }
-        y += y * (1.0 - x * power) / f64::from(n);
-    }
-    y
-}
-
-#[inline(always)]
-fn join<T: Copy>(a: [T; 3], b: [T; 3]) -> [T; 6] {
-    [a[0], a[1], a[2], b[0], b[1], b[2]]
+    // The logarithm to base 2 is the exponent and, to ±0.043, the mantissa.
+    let log = x.to_bits() as f64 / 4_503_599_627_370_496.0 - 1022.957;
+    let y = -log / n;
+    let whole = (y + ROUND) - ROUND;
+    let f = y - whole;
+    let power = f64::from_bits(((1023.0 + whole) as u64) << 52);
+    // Infinity and NaN come out as NaN.
+    power * (1.0 + f * (0.6931 + f * (0.2402 + f * 0.0555))) + (x - x)
 }
 
 #[inline(always)]
@@ -343,14 +501,10 @@ fn put<const N: usize, const L: usize>(
     }
 }
 
-/// The rotation matrix of the relative attitude.
+/// The rotation matrix, from the coefficients of order k of squares of the quaternion.
 #[inline(always)]
-fn rotation<const L: usize>(y: &[[Lanes<L>; STATE]; TERMS], k: usize) -> M3<L> {
-    let [xx, yy, zz, xy, xz, yz, wx, wy, wz] = product(y, y, k, |a, b| {
-        let [x, y, z, w]: [_; 4] = part(a, RELATIVE);
-        let [bx, by, bz, _]: [_; 4] = part(b, RELATIVE);
-        [x * bx, y * by, z * bz, x * by, x * bz, y * bz, w * bx, w * by, w * bz]
-    });
+fn rotation<const L: usize>(squares: &[Lanes<L>; 9], k: usize) -> M3<L> {
+    let [xx, yy, zz, xy, xz, yz, wx, wy, wz] = *squares;
     let one = Lanes::splat(if k == 0 { 1.0 } else { 0.0 });
     let double = |x: Lanes<L>| x + x;
     [
@@ -367,17 +521,17 @@ mod tests {
 
     proptest! {
         #[test]
-        fn roots_are_about_right(e in -290.0..290.0f64, n in 8..20_u32) {
-            let x = libm::pow(10.0, e);
-            let exact = libm::pow(x, -1.0 / f64::from(n));
+        fn roots_are_about_right(e in -290.0..308.0f64, n in 4..20_u32) {
+            let (x, n) = (libm::pow(10.0, e), f64::from(n));
+            let exact = libm::pow(x, -1.0 / n);
             prop_assert!((inverse_root(x, n) / exact - 1.0).abs() < 0.01);
         }
     }
 
     #[test]
     fn roots_of_nothing_and_of_no_number() {
-        assert!(inverse_root(0.0, 13) > 1e20);
-        assert!(inverse_root(f64::NAN, 13).is_nan());
-        assert!(!(inverse_root(f64::INFINITY, 13) > 0.0));
+        assert!(inverse_root(0.0, 13.0) > 1e20);
+        assert!(inverse_root(f64::NAN, 13.0).is_nan());
+        assert!(!(inverse_root(f64::INFINITY, 13.0) > 0.0));
     }
 }

@@ -3,7 +3,7 @@ use std::borrow::Borrow;
 
 use crate::{
     Outcome, RunError, Separation, Settings, Spring,
-    expansion::{Expansion, INLINE_SPRINGS, ORDER, Rotor, STATE, SpringSeries, TERMS},
+    expansion::{Expansion, INLINE_SPRINGS, ORDER, Rotor, STATE, STOPS, SpringSeries, TERMS},
     lanes::{Lanes, M3, Packing},
     polynomial::first_zero,
     separation::TOUCHING,
@@ -58,24 +58,27 @@ pub(crate) struct Track<S> {
 
 /// Several runs, one in each lane.
 #[derive(Debug)]
-pub(crate) struct Integrator<const L: usize> {
+pub(crate) struct Integrator<const L: usize>
+where
+    Lanes<L>: Packing<L>,
+{
     expansion: Expansion<L>,
     settings: Settings,
-    /// The share of the radius of convergence that a step may take: the first term left out,
-    /// extrapolated geometrically from the last two, is then the tolerance (Jorba & Zou 2005, §3.2).
-    stretch: f64,
+    machine: vector::Machine,
 }
 
 /// The expansion of all lanes, compiled for the vector units there are.
-struct Expand<'a, const L: usize>(&'a mut Expansion<L>);
+struct Expand<'a, const L: usize>(&'a mut Expansion<L>)
+where
+    Lanes<L>: Packing<L>;
 
 impl<const L: usize> vector::Kernel for Expand<'_, L>
 where
-    Lanes<L>: Packing,
+    Lanes<L>: Packing<L>,
 {
     #[inline(always)]
-    fn run(self) {
-        self.0.expand();
+    fn run<S: vector::Simd>(self, simd: S) {
+        self.0.expand(simd);
     }
 }
 
@@ -122,26 +125,32 @@ impl<S: Borrow<Separation>> Track<S> {
 /// Where a spring of the run in a lane is: which of the series, and which of their lanes.
 fn slot<const L: usize>(lane: usize, spring: usize) -> (usize, usize)
 where
-    Lanes<L>: Packing,
+    Lanes<L>: Packing<L>,
 {
-    let side_by_side = <Lanes<L> as Packing>::SPRINGS;
+    let side_by_side = <Lanes<L> as Packing<L>>::SPRINGS;
     (spring / side_by_side, lane + spring % side_by_side)
 }
 
 impl<const L: usize> Integrator<L>
 where
-    Lanes<L>: Packing,
+    Lanes<L>: Packing<L>,
 {
     pub(crate) fn new(settings: Settings) -> Self {
-        let stretch = libm::pow(settings.relative_tolerance(), 1.0 / TERMS as f64);
-        Self { expansion: Expansion::new(), settings, stretch }
+        let mut expansion = Expansion::new();
+        // The first term left out, extrapolated geometrically from the last two, is the tolerance
+        // (Jorba & Zou 2005, §3.2). Few terms tell less: half of that.
+        for (stretch, order) in expansion.stretch.iter_mut().zip(STOPS) {
+            let root = libm::pow(settings.relative_tolerance(), 1.0 / (order + 1) as f64);
+            *stretch = if order < ORDER { 0.5 * root } else { root };
+        }
+        Self { expansion, settings, machine: vector::Machine::new() }
     }
 
     /// Puts a run at its start into a lane.
     pub(crate) fn load<S: Borrow<Separation>>(&mut self, lane: usize, separation: S) -> Track<S> {
         let run: &Separation = separation.borrow();
         let expansion = &mut self.expansion;
-        let blocks = run.springs().len().div_ceil(<Lanes<L> as Packing>::SPRINGS);
+        let blocks = run.springs().len().div_ceil(<Lanes<L> as Packing<L>>::SPRINGS);
         while expansion.springs.len() < blocks {
             expansion.springs.push(SpringSeries::new());
         }
@@ -151,7 +160,7 @@ where
             }
         };
         // A run with fewer springs than there is room for has some that do not push.
-        for i in 0..expansion.springs.len() * <Lanes<L> as Packing>::SPRINGS {
+        for i in 0..expansion.springs.len() * <Lanes<L> as Packing<L>>::SPRINGS {
             let (block, lane) = slot::<L>(lane, i);
             let series = &mut expansion.springs[block];
             series.stiffness.0[lane] = 0.0;
@@ -179,6 +188,7 @@ where
         };
         rotor(&mut expansion.payload, run.payload().body());
         rotor(&mut expansion.stage, run.stage().body());
+        expansion.radius.0[lane] = 0.0;
         expansion.inverse_mass.0[lane] = run.inverse_reduced_mass();
         let scales = state::scales(run);
         set(&mut expansion.inverse_scale, &scales.map(|s| 1.0 / s));
@@ -189,12 +199,14 @@ where
 
     /// Expands the motion in all lanes.
     pub(crate) fn expand(&mut self) {
-        vector::run(Expand(&mut self.expansion));
+        self.machine.run(Expand(&mut self.expansion));
     }
 
     /// The series about the state that a lane is in.
     pub(crate) fn series(&self, lane: usize) -> [State; TERMS] {
-        self.expansion.state.map(|row| row.map(|x| x.0[lane]))
+        let mut series = self.expansion.state.map(|row| row.map(|x| x.0[lane]));
+        series[self.expansion.order[lane] + 1..].fill([0.0; STATE]);
+        series
     }
 
     pub(crate) fn state(&self, lane: usize) -> State {
@@ -225,7 +237,7 @@ where
         track: &mut Track<S>,
         until: f64,
     ) -> Result<f64, RunError> {
-        let reach = self.reach(lane);
+        let reach = self.expansion.reach.0[lane];
         // NaN goes to the error as well.
         if !(reach > UNDERFLOW * track.time_scale) {
             return Err(self.failure(lane, track, reach));
@@ -242,6 +254,12 @@ where
         let h = reach.min(until.min(start) - track.time);
         let mut first: Option<(f64, usize)> = None;
         for i in track.pushing() {
+            let (spring, at) = self.spring(lane, i);
+            let free = spring.free_length.0[at];
+            // Most come nowhere near. NaN does not pass.
+            if spring.upper.0[at] < free * free {
+                continue;
+            }
             let gap = self.gap(lane, i, h, 1.0, 0.0);
             if let Some(x) = first_zero(&gap)
                 && first.is_none_or(|(earliest, _)| x * h < earliest)
@@ -251,7 +269,11 @@ where
         }
         let run = track.separation.borrow();
         let mut taken = first.map_or(h, |(time, _)| time);
-        let mut next = self.at(lane, taken);
+        let mut next = if taken == reach {
+            self.expansion.end.map(|x| x.0[lane])
+        } else {
+            self.at(lane, taken)
+        };
         if let Some((time, spring)) = first
             && time > 0.0
         {
@@ -303,30 +325,31 @@ where
         Ok(taken)
     }
 
-    /// How far the series of a lane is good for.
-    fn reach(&self, lane: usize) -> f64 {
-        self.stretch * self.expansion.radius.0[lane]
+    /// The series that a spring is in, and its lane.
+    fn spring(&self, lane: usize, spring: usize) -> (&SpringSeries, usize) {
+        let (block, lane) = slot::<L>(lane, spring);
+        (&self.expansion.springs[block], lane)
     }
 
     /// The square of a spring's length less that of its free length, times a sign, less an offset,
     /// as a polynomial on [0, 1] for [0, h].
     fn gap(&self, lane: usize, spring: usize, h: f64, sign: f64, offset: f64) -> [f64; ORDER] {
-        let (block, lane) = slot::<L>(lane, spring);
-        let series = &self.expansion.springs[block];
+        let order = self.expansion.order[lane];
+        let (series, lane) = self.spring(lane, spring);
         let free = series.free_length.0[lane];
         let mut power = sign;
-        let mut gap = std::array::from_fn(|k| {
-            let term = series.square[k].0[lane] * power;
+        let mut gap = [0.0; ORDER];
+        for (term, square) in gap.iter_mut().zip(&series.square[..order]) {
+            *term = square.0[lane] * power;
             power *= h;
-            term
-        });
+        }
         gap[0] -= sign * free * free + offset;
         gap
     }
 
     fn at(&self, lane: usize, time: f64) -> State {
         let mut sum = [0.0; STATE];
-        for row in self.expansion.state.iter().rev() {
+        for row in self.expansion.state[..=self.expansion.order[lane]].iter().rev() {
             for (s, x) in sum.iter_mut().zip(row) {
                 *s = *s * time + x.0[lane];
             }
@@ -345,15 +368,14 @@ where
     ) -> Result<(), RunError> {
         let run = track.separation.borrow();
         let touching = (TOUCHING * run.springs()[spring].stroke_m()).powi(2);
+        let (series, at) = self.spring(lane, spring);
+        // The terms that bring them nearer do not suffice, most often.
+        if series.lower.0[at] > touching {
+            return Ok(());
+        }
         let free = run.free_lengths()[spring];
         let mut nearness = self.gap(lane, spring, taken, -1.0, 0.0);
         nearness[0] += touching - free * free;
-        // The terms that bring them nearer do not suffice, most often.
-        let sum =
-            nearness.iter().fold(0.0, |sum, x| sum + if sum == 0.0 { *x } else { x.max(0.0) });
-        if sum < 0.0 {
-            return Ok(());
-        }
         match first_zero(&nearness) {
             Some(x) => Err(RunError::PadsMeet {
                 spring: spring + 1,
@@ -380,6 +402,11 @@ where
             if lost && fate.recompressed.is_none() {
                 let slack =
                     2.0 * run.free_lengths()[i] * RECOMPRESSED * run.springs()[i].stroke_m();
+                let (series, at) = self.spring(lane, i);
+                let free = run.free_lengths()[i];
+                if series.lower.0[at] > free * free - slack {
+                    continue;
+                }
                 let gap = self.gap(lane, i, taken, -1.0, slack);
                 fate.recompressed = first_zero(&gap).map(|x| track.time + x * taken);
             }
@@ -430,7 +457,7 @@ mod tests {
         let mut integrator = Integrator::<1>::new(Settings::default());
         let mut track = integrator.load(0, separation);
         // Whatever the error, a step is taken.
-        integrator.stretch = 1e9;
+        integrator.expansion.stretch = [0.0, 0.0, 1e9];
         let mut n = 0.0;
         while track.time < until {
             integrator.expand();

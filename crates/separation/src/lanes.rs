@@ -5,6 +5,8 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+use crate::products::{Abreast, Alone, Products};
+
 /// One number for each of `L` runs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lanes<const L: usize>(pub(crate) [f64; L]);
@@ -17,14 +19,21 @@ impl<const L: usize> Lanes<L> {
         Self([x; L])
     }
 
+    // Loops, for the library's functions are not always inlined.
     #[inline(always)]
-    pub(crate) fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i])))
+    pub(crate) fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for x in &mut self.0 {
+            *x = f(*x);
+        }
+        self
     }
 
     #[inline(always)]
-    pub(crate) fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+    pub(crate) fn zip(mut self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        for (x, y) in self.0.iter_mut().zip(&other.0) {
+            *x = f(*x, *y);
+        }
+        self
     }
 
     #[inline(always)]
@@ -81,7 +90,9 @@ pub(crate) const WIDTH: usize = 4;
 
 /// How runs and their springs share lanes. Springs are added in their order either way, so that a
 /// run comes to the same bits alone and in a batch.
-pub(crate) trait Packing: Sized {
+pub(crate) trait Packing<const L: usize>: Sized {
+    /// Coefficients that go into products.
+    type Products: Products<L>;
     /// Springs of one run that go into the lanes side by side.
     const SPRINGS: usize;
     /// What all springs in the lanes share.
@@ -90,7 +101,8 @@ pub(crate) trait Packing: Sized {
     fn collect(self, springs: Lanes<WIDTH>) -> Self;
 }
 
-impl Packing for Lanes<1> {
+impl Packing<1> for Lanes<1> {
+    type Products = Alone;
     const SPRINGS: usize = WIDTH;
     #[inline(always)]
     fn spread(self) -> Lanes<WIDTH> {
@@ -102,7 +114,8 @@ impl Packing for Lanes<1> {
     }
 }
 
-impl Packing for Lanes<WIDTH> {
+impl Packing<WIDTH> for Lanes<WIDTH> {
+    type Products = Abreast;
     const SPRINGS: usize = 1;
     #[inline(always)]
     fn spread(self) -> Lanes<WIDTH> {
@@ -155,10 +168,4 @@ pub(crate) fn cross<const L: usize>(a: &V3<L>, b: &V3<L>) -> V3<L> {
 #[inline(always)]
 pub(crate) fn times<const L: usize>(m: &M3<L>, v: &V3<L>) -> V3<L> {
     [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v)]
-}
-
-/// The transpose of a matrix times a vector.
-#[inline(always)]
-pub(crate) fn transposed<const L: usize>(m: &M3<L>, v: &V3<L>) -> V3<L> {
-    std::array::from_fn(|i| m[0][i] * v[0] + m[1][i] * v[1] + m[2][i] * v[2])
 }

@@ -50,6 +50,7 @@ mod metrics;
 mod nutation;
 mod outcome;
 mod polynomial;
+mod products;
 mod run;
 mod separation;
 mod settings;

@@ -14,28 +14,38 @@ pub(crate) fn first_zero<const N: usize>(p: &[f64; N]) -> Option<f64> {
     if p[0] >= 0.0 {
         return Some(0.0);
     }
-    // Most are negative throughout.
-    if rises(p) {
-        let end: f64 = p.iter().sum();
-        return (end >= 0.0).then(|| bracketed(p, 0.0, 1.0));
+    match direction(p) {
+        Some(Direction::Up) => {
+            let end: f64 = p.iter().sum();
+            (end >= 0.0).then(|| bracketed(p, 0.0, 1.0, p[0] / (p[0] - end)))
+        }
+        Some(Direction::Down) => None,
+        None => search(p, 0.0, 1.0),
     }
-    search(p, 0.0, 1.0)
 }
 
-/// Whether p' > 0 on (0, 1] for sure: its first coefficients are not negative, and their sum exceeds
-/// those of either sign that follow and are (x^m falls with m).
-fn rises<const N: usize>(p: &[f64; N]) -> bool {
-    let (mut first, mut negative, mut leading) = (0.0, 0.0, true);
+#[derive(Clone, Copy)]
+enum Direction {
+    Up,
+    Down,
+}
+
+/// Which way p goes on all of [0, 1], if that is sure: its first coefficients are of one sign, and
+/// their sum exceeds those of the other sign that follow (x^m falls with m).
+fn direction<const N: usize>(p: &[f64; N]) -> Option<Direction> {
+    let sign = p[1];
+    let (mut first, mut against, mut leading) = (0.0, 0.0, true);
     for (k, x) in p.iter().enumerate().skip(1) {
-        let slope = k as f64 * x;
-        leading &= slope >= 0.0;
-        if leading {
-            first += slope;
+        let slope = k as f64 * x.abs();
+        if (*x >= 0.0) == (sign >= 0.0) {
+            first += if leading { slope } else { 0.0 };
         } else {
-            negative -= slope.min(0.0);
+            leading = false;
+            against += slope;
         }
     }
-    first > negative
+    // NaN goes no way.
+    (first > against).then_some(if sign >= 0.0 { Direction::Up } else { Direction::Down })
 }
 
 /// Value and slope.
@@ -67,16 +77,16 @@ fn search<const N: usize>(p: &[f64; N], from: f64, to: f64) -> Option<f64> {
         return (v >= -TOUCHED * size).then_some(middle);
     }
     if slope > half * bound {
-        return (value(p, to).0 >= 0.0).then(|| bracketed(p, from, to));
+        return (value(p, to).0 >= 0.0).then(|| bracketed(p, from, to, middle - v / slope));
     }
     let left = search(p, from, middle);
     if left.is_some() || v >= 0.0 { left.or(Some(middle)) } else { search(p, middle, to) }
 }
 
 /// The zero between a point where the polynomial is negative and one where it is not: Newton's
-/// iteration, bisection where it leaves the bracket.
-fn bracketed<const N: usize>(p: &[f64; N], mut low: f64, mut high: f64) -> f64 {
-    let mut x = 0.5 * (low + high);
+/// iteration from a guess, bisection where it leaves the bracket.
+fn bracketed<const N: usize>(p: &[f64; N], mut low: f64, mut high: f64, guess: f64) -> f64 {
+    let mut x = if low <= guess && guess <= high { guess } else { 0.5 * (low + high) };
     for _ in 0..100 {
         let (v, slope) = value(p, x);
         if v < 0.0 {
