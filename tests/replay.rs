@@ -52,14 +52,14 @@ fn rows_are_those_of_the_study_bit_for_bit() {
 fn a_run_that_fails_under_way_has_a_history() {
     let scratch = tempfile::tempdir().unwrap();
     let out = scratch.path().join("study");
-    study(&paper().replace("horizon_s = 60.0", "horizon_s = 0.25"), 3, &out);
+    study(&paper().replace("horizon_s = 60.0", "horizon_s = 0.2"), 3, &out);
     let replay = Replay::open(&out, None, 1, 5.0).unwrap();
-    assert!(replay.row().status().contains("had not let go after 0.25 s"), "{replay}");
+    assert!(replay.row().status().contains("had not let go after 0.2 s"), "{replay}");
     let files = replay.write(&scratch.path().join("replay"), false).unwrap();
     let table = table(&files[0]);
-    assert_eq!(table["time_s"].last(), Some(&0.25));
+    assert_eq!(table["time_s"].last(), Some(&0.2));
     let page = fs::read_to_string(&files[2]).unwrap();
-    assert!(page.contains("had not let go after 0.25 s"));
+    assert!(page.contains("had not let go after 0.2 s"));
 }
 
 /// Columns of numbers by name; events are left out.
@@ -180,6 +180,9 @@ fn animations_are_small() {
     let files = replay.write(&scratch.path().join("replay"), false).unwrap();
     let page = fs::read_to_string(&files[2]).unwrap();
     assert!(page.len() < 200_000, "{} bytes", page.len());
+    // And the table within bounds.
+    let size = fs::metadata(&files[0]).unwrap().len();
+    assert!(size < 60_000_000, "{size} bytes");
 }
 
 #[test]

@@ -112,7 +112,8 @@ fn results(summary: &Summary) -> Markup {
 fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
     let said = |direction: Option<&Unit<Vector3<f64>>>| {
         let entries = |d: &Unit<Vector3<f64>>| {
-            let entries: Vec<_> = d.iter().map(|x| significant(*x, 3)).collect();
+            let entries: Vec<_> =
+                d.iter().map(|x| format!("{}", (1e3 * x).round() / 1e3 + 0.0)).collect();
             format!("({})", entries.join(", "))
         };
         direction.map_or_else(|| "none, for the springs' forces cancel".to_owned(), entries)
@@ -124,16 +125,16 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
             (said(scenario.separation_direction())) "; tip-off: change of the angular velocity, body axes; "
             "greatest nutation of the free motion that follows; angle of the payload's angular momentum "
             "to the intended direction " (said(Some(scenario.momentum_direction())))
-            ". Directions are in inertial axes. Ranges are from the 5th to the 95th percentile."
+            ". Directions are in inertial axes. Mean ± standard deviation, and the range from the 5th to the 95th "
+            "percentile."
         }
         div.wide { table.results {
             thead {
                 tr {
-                    th rowspan="2" { "quantity" }
-                    @for model in &summary.models { th.group colspan="3" { (model.name) } }
-                    th.group rowspan="2" { "nominal bodies" }
+                    th { "quantity" }
+                    @for model in &summary.models { th { (model.name) } }
+                    th { "nominal bodies" }
                 }
-                tr { @for _ in &summary.models { th.group { "mean" } th { "sd" } th { "range" } } }
             }
             tbody {
                 @for q in Quantity::PARTING {
@@ -141,18 +142,22 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                         th scope="row" { (q.label()) (unit(q)) }
                         @for model in &summary.models {
                             @let s = model.quantity(q);
-                            td.group title=(interval(s.and_then(|s| s.mean_interval), 4)) {
-                                (optional(s.and_then(|s| s.mean), 4))
-                            }
-                            td title=(interval(s.and_then(|s| s.deviation_interval), 4)) {
-                                (optional(s.and_then(|s| s.deviation), 3))
-                            }
-                            td title=(interval(s.and_then(|s| s.p95_interval), 4)) {
-                                (optional(s.and_then(|s| s.p05), 4)) " … "
-                                (optional(s.and_then(|s| s.p95), 4))
+                            td {
+                                span title=(interval(s.and_then(|s| s.mean_interval), 4)) {
+                                    (optional(s.and_then(|s| s.mean), 4))
+                                }
+                                " ± "
+                                span title=(interval(s.and_then(|s| s.deviation_interval), 4)) {
+                                    (optional(s.and_then(|s| s.deviation), 3))
+                                }
+                                br;
+                                small title=(interval(s.and_then(|s| s.p95_interval), 4)) {
+                                    (optional(s.and_then(|s| s.p05), 4)) " … "
+                                    (optional(s.and_then(|s| s.p95), 4))
+                                }
                             }
                         }
-                        td.group { (optional(summary.nominal_value(q), 4)) }
+                        td { (optional(summary.nominal_value(q), 4)) }
                     }
                 }
             }
@@ -164,7 +169,7 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                     strong { (model.name) } ": let go in the order "
                     @for (i, order) in model.releases.orders.iter().take(3).enumerate() {
                         @if i > 0 { "; " }
-                        (order.order) " in " (significant(100.0 * order.share.share, 3)) " % of the runs "
+                        code { (order.order) } " in " (significant(100.0 * order.share.share, 3)) " % of the runs "
                         (interval_percent(order.share.interval.lower(), order.share.interval.upper()))
                     }
                     @if model.releases.orders.len() > 3 { "; others" }

@@ -1,11 +1,12 @@
 //! The motion of a run, sampled, and as a table.
 
-use gyradius_separation::{MovingBody, Snapshot, Step};
+use gyradius_separation::{MovingBody, Snapshot, SpringState, Step};
 use nalgebra::{Unit, Vector3};
 use std::fmt::Write;
 
-/// Rows on the even grid at most.
+/// Rows on the even grid at most, and numbers in all of them.
 const MOST: f64 = 20_000.0;
+const NUMBERS: f64 = 1e6;
 /// Rows to the last release, about.
 const PUSHING: f64 = 100.0;
 
@@ -34,7 +35,9 @@ impl History {
             releases.extend(step.released().iter().map(|spring| (*spring, step.end_s())));
         }
         let pushing = releases.last().map_or(end, |(_, time)| *time);
-        let interval = round(f64::max(pushing / PUSHING, end / MOST));
+        let springs = steps.first().map_or(0, |step| step.at(0.0).springs().len());
+        let most = MOST.min(NUMBERS / columns(springs).len() as f64);
+        let interval = round(f64::max(pushing / PUSHING, end / most));
         let mut moments: Vec<Moment> = Vec::new();
         let mut next = 0_u32;
         for step in steps {
@@ -170,7 +173,7 @@ fn values(now: &Snapshot, spin_axis: &Unit<Vector3<f64>>) -> Vec<Option<f64>> {
 /// Of the springs; of translation (relative to the common mass centre) and rotation of payload and
 /// stage, J.
 pub(crate) fn energies(now: &Snapshot) -> [f64; 5] {
-    let stored = now.springs().iter().map(|s| s.energy_j()).sum();
+    let stored = now.springs().iter().map(SpringState::energy_j).sum();
     let [payload, stage] = now.translational_energies_j();
     let rotation = MovingBody::rotational_energy;
     [stored, payload, rotation(now.payload()), stage, rotation(now.stage())]

@@ -58,6 +58,7 @@ impl Display for Replay {
         for spring in row.recompressed() {
             write!(f, "\n  {spring} is pressed again later, and stays lost")?;
         }
+        writeln!(f)?;
         let value = |quantity| optional(row.value(quantity), 6);
         let three = |of: fn(Axis) -> Quantity| {
             [Axis::One, Axis::Two, Axis::Three].map(|axis| value(of(axis))).join(", ")
@@ -69,7 +70,6 @@ impl Display for Replay {
         let nutation = |now, least, greatest| {
             format!("{}° in [{}°, {}°]", value(now), value(least), value(greatest))
         };
-        line("", String::new(), "")?;
         line("relative speed", value(Quantity::RelativeSpeed), " m/s")?;
         line("relative velocity, inertial axes", three(Quantity::RelativeVelocity), " m/s")?;
         line("angle to the intended direction", value(Quantity::DirectionError), "°")?;
