@@ -223,7 +223,7 @@ impl ScalarLaw {
                 let [a, b, x] = [low, high, x.clamp(low, high)].map(|x| (x - mean) / deviation);
                 share(a, x) / share(a, b)
             }
-            Kind::Lognormal { mean, log_deviation, .. } if log_deviation == 0.0 => step(mean),
+            Kind::Lognormal { mean, log_deviation: 0.0, .. } => step(mean),
             Kind::Lognormal { mean, log_deviation: s, .. } => {
                 if x > 0.0 {
                     below(libm::log(x / mean) / s + 0.5 * s)

@@ -8,6 +8,7 @@
 //! on the payload.
 
 use smallvec::SmallVec;
+use std::f64::consts::LN_2;
 
 use crate::{
     lanes::{Lanes, M3, Packing, V3, WIDTH, add, cross, dot, scale, sub, times},
@@ -388,12 +389,13 @@ where
         let moment = known!(simd, Of::<L>::moment, y, products, k);
         let torque = known!(simd, Of::<L>::torque, y, products, k);
 
-        let row = y[k];
+        let (y, next) = y.split_at_mut(k + 1);
+        let (row, next) = (&y[k], &mut next[0]);
         let momenta = [
-            times(&self.payload.inertia, &part(&row, PAYLOAD_RATE)),
-            times(&self.stage.inertia, &part(&row, STAGE_RATE)),
+            times(&self.payload.inertia, &part(row, PAYLOAD_RATE)),
+            times(&self.stage.inertia, &part(row, STAGE_RATE)),
         ];
-        *newest = Of::<L>::new(simd, &row, &momenta);
+        newest.set_motion(simd, row, &momenta);
         let first = products.first().map(|first| Factors(&y[0], first));
         let rotation = rotation(
             &Of::<L>::of_squares(&whole!(
@@ -401,14 +403,14 @@ where
                 squares,
                 Of::<L>::squares,
                 first,
-                Factors(&row, newest)
+                Factors(row, newest)
             )),
             k,
         );
         newest.set_rotation(simd, &rotation);
         let (mut force, mut spring_torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
         let (arm, turn) = (
-            part::<_, 3>(&row, OFFSET).map(Packing::spread),
+            part::<_, 3>(row, OFFSET).map(Packing::spread),
             rotation.map(|row| row.map(Packing::spread)),
         );
         for springs in &mut self.springs {
@@ -418,32 +420,21 @@ where
             spring_torque = std::array::from_fn(|i| spring_torque[i].collect(moment[i]));
         }
         newest.set_force(simd, &force);
-        let moment = Of::<L>::of_vector(&whole!(
-            simd,
-            moment,
-            Of::<L>::moment,
-            first,
-            Factors(&row, newest)
-        ));
+        let moment =
+            Of::<L>::of_vector(&whole!(simd, moment, Of::<L>::moment, first, Factors(row, newest)));
         newest.set_reaction(&add(moment, spring_torque).map(|x| -x));
 
-        let stage_torque = Of::<L>::of_vector(&whole!(
-            simd,
-            torque,
-            Of::<L>::torque,
-            first,
-            Factors(&row, newest)
-        ));
-        let crosses = whole!(simd, crosses, Of::<L>::crosses, first, Factors(&row, newest));
-        let gyration = whole!(simd, gyration, Of::<L>::gyration, first, Factors(&row, newest));
+        let stage_torque =
+            Of::<L>::of_vector(&whole!(simd, torque, Of::<L>::torque, first, Factors(row, newest)));
+        let crosses = whole!(simd, crosses, Of::<L>::crosses, first, Factors(row, newest));
+        let gyration = whole!(simd, gyration, Of::<L>::gyration, first, Factors(row, newest));
         let [offset, velocity, payload_turn, stage_turn] = Of::<L>::of_crosses(&crosses, &gyration);
-        let relative = whole!(simd, relative, Of::<L>::relative, first, Factors(&row, newest));
-        let attitude = whole!(simd, attitude, Of::<L>::attitude, first, Factors(&row, newest));
+        let relative = whole!(simd, relative, Of::<L>::relative, first, Factors(row, newest));
+        let attitude = whole!(simd, attitude, Of::<L>::attitude, first, Factors(row, newest));
         let [relative, attitude] = [relative, attitude].map(|x| Of::<L>::of_turn(&x));
 
         let step = INVERSE[k + 1];
-        let next = &mut y[k + 1];
-        put(next, OFFSET, &add(part(&row, VELOCITY), offset), step);
+        put(next, OFFSET, &add(part(row, VELOCITY), offset), step);
         put(next, VELOCITY, &add(scale(force, self.inverse_mass), velocity), step);
         put(next, RELATIVE, &relative, 0.5 * step);
         put(next, ATTITUDE, &attitude, 0.5 * step);
@@ -486,7 +477,7 @@ fn inverse_root(x: f64, n: f64) -> f64 {
     let f = y - whole;
     let power = f64::from_bits(((1023.0 + whole) as u64) << 52);
     // Infinity and NaN come out as NaN.
-    power * (1.0 + f * (0.6931 + f * (0.2402 + f * 0.0555))) + (x - x)
+    power * (1.0 + f * (LN_2 + f * (0.2402 + f * 0.0555))) + x * 0.0
 }
 
 #[inline(always)]

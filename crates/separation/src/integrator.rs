@@ -427,7 +427,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Body, BodyState, Spring};
+    use crate::{Body, BodyState, Spring, lanes::WIDTH};
     use gyradius_inertia::InertiaMatrix;
     use nalgebra::Vector3;
 
@@ -512,6 +512,69 @@ mod tests {
             (h, distance(&fixed_steps(separation, h, until, located), &exact))
         };
         steps.iter().map(error).collect()
+    }
+
+    /// The paper's separation: two releases are soon after others, one soon after a step. A change is
+    /// one of the speed.
+    #[test]
+    fn degrees_are_pinned() {
+        let inertia = |moments, products| InertiaMatrix::from_entries(moments, products).unwrap();
+        let spring = |k: f64, x: f64, y: f64| {
+            Spring::new(k, 0.1, Vector3::new(x, y, -0.9), Vector3::new(x, y, 0.9)).unwrap()
+        };
+        let separation = Separation::new(
+            Body::new(1e4, inertia([5e3, 4e3, 3e3], [20.0, 2.0, -50.0])).unwrap().at(Vector3::z()),
+            Body::new(4e3, inertia([6.7e3, 6.7e3, 2e3], [0.0, 20.0, -20.0]))
+                .unwrap()
+                .at(-Vector3::z()),
+            &[
+                spring(1e5, 1.0, 1.0),
+                spring(1e5, -1.0, 1.0),
+                spring(3e4, 1.0, -1.0),
+                spring(3e4, -1.0, -1.0),
+            ],
+        )
+        .unwrap();
+        let mut integrator = Integrator::<1>::new(Settings::default());
+        let mut track = integrator.load(0, &separation);
+        let mut degrees = vec![];
+        while !track.all_released() {
+            integrator.expand();
+            degrees.push(integrator.expansion.order[0]);
+            integrator.step(0, &mut track).unwrap();
+        }
+        assert_eq!(degrees, [14, 14, 14, 14, 9, 5, 14, 14, 5]);
+    }
+
+    #[test]
+    fn every_machine_gets_the_same_bits() {
+        fn ends<const L: usize>(machine: vector::Machine) -> Vec<String>
+        where
+            Lanes<L>: Packing<L>,
+        {
+            let separation = turning(true);
+            let mut integrator = Integrator::<L>::new(Settings::default());
+            integrator.machine = machine;
+            let mut tracks: [_; L] =
+                std::array::from_fn(|lane| integrator.load(lane, separation.clone()));
+            // Lanes that stop at a degree of their own.
+            while !tracks.iter().all(Track::all_released) {
+                integrator.expand();
+                for (lane, track) in tracks.iter_mut().enumerate() {
+                    let until = if track.steps == 0 { 0.01 * (lane + 1) as f64 } else { 60.0 };
+                    if !track.all_released() {
+                        integrator.advance(lane, track, until).unwrap();
+                    }
+                }
+            }
+            (0..L).map(|lane| format!("{:?} {:?}", integrator.state(lane), tracks[lane])).collect()
+        }
+        let (here, any) = (vector::Machine::new(), vector::Machine::BASELINE);
+        assert_eq!(ends::<1>(here), ends::<1>(any));
+        let abreast = ends::<WIDTH>(here);
+        assert_eq!(abreast, ends::<WIDTH>(any));
+        assert_eq!(abreast[0], ends::<1>(here)[0]);
+        assert_ne!(abreast[0], abreast[1]);
     }
 
     /// One step from the same state, all that moves moving.

@@ -95,7 +95,7 @@ impl Outcome {
         self.payload.spin_metrics(spin_axis)
     }
 
-    /// Integration steps taken, each an expansion of the motion to order 14.
+    /// Integration steps taken, each an expansion of the motion, to order 14 at most.
     #[must_use]
     pub fn steps(&self) -> u32 {
         self.steps

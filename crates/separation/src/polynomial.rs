@@ -6,7 +6,7 @@ const SHORTEST: f64 = 1e-6;
 const TOUCHED: f64 = 1e-11;
 
 /// A correction as small as this leaves an error of its square.
-const CONVERGED: f64 = 1e-9;
+const CONVERGED: f64 = 1e-7;
 
 /// Where a polynomial that is negative at 0 first reaches zero on [0, 1], from below. Coefficients
 /// from the constant up. A zero that is touched and not crossed counts.

@@ -50,7 +50,7 @@ pub(crate) trait Products<const L: usize>: Copy + Debug {
 
     const ZERO: Self;
     /// From the state and the angular momenta about the mass centres, body axes.
-    fn new<S: Simd>(simd: S, state: &Row<L>, momenta: &[V3<L>; 2]) -> Self;
+    fn set_motion<S: Simd>(&mut self, simd: S, state: &Row<L>, momenta: &[V3<L>; 2]);
     /// Takes stage components to payload components.
     fn set_rotation<S: Simd>(&mut self, simd: S, rotation: &M3<L>);
     /// On the payload, payload axes.
@@ -113,8 +113,6 @@ fn cross<S: Simd>(a: &[Four<S>; 3], b: &[Four<S>; 3]) -> [Four<S>; 3] {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Abreast {
     momenta: [V3<WIDTH>; 2],
-    difference: V3<WIDTH>,
-    sum: V3<WIDTH>,
     rotation: M3<WIDTH>,
     force: V3<WIDTH>,
     reaction: V3<WIDTH>,
@@ -132,22 +130,12 @@ impl Products<WIDTH> for Abreast {
 
     const ZERO: Self = {
         let zero = [Lanes::ZERO; 3];
-        Self {
-            momenta: [zero; 2],
-            difference: zero,
-            sum: zero,
-            rotation: [zero; 3],
-            force: zero,
-            reaction: zero,
-        }
+        Self { momenta: [zero; 2], rotation: [zero; 3], force: zero, reaction: zero }
     };
 
     #[inline(always)]
-    fn new<S: Simd>(_: S, state: &Row<WIDTH>, momenta: &[V3<WIDTH>; 2]) -> Self {
-        let (p, l): (V3<_>, V3<_>) = (part(state, PAYLOAD_RATE), part(state, STAGE_RATE));
-        let difference = std::array::from_fn(|i| l[i] - p[i]);
-        let sum = std::array::from_fn(|i| l[i] + p[i]);
-        Self { momenta: *momenta, difference, sum, ..Self::ZERO }
+    fn set_motion<S: Simd>(&mut self, _: S, _: &Row<WIDTH>, momenta: &[V3<WIDTH>; 2]) {
+        self.momenta = *momenta;
     }
 
     #[inline(always)]
@@ -180,7 +168,9 @@ impl Products<WIDTH> for Abreast {
     #[inline(always)]
     fn relative<S: Simd>(simd: S, a: Pair<'_>, b: Pair<'_>) -> Self::Turn<S> {
         let [x, y, z, w] = load_part(simd, a.0, RELATIVE);
-        let (d, s) = (load(simd, &b.1.difference), load(simd, &b.1.sum));
+        let l: [Four<S>; 3] = load_part(simd, b.0, STAGE_RATE);
+        let p: [Four<S>; 3] = load_part(simd, b.0, PAYLOAD_RATE);
+        let (d, s) = ([0, 1, 2].map(|i| l[i] - p[i]), [0, 1, 2].map(|i| l[i] + p[i]));
         [
             y * s[2] + (w * d[0] - z * s[1]),
             (z * s[0] + w * d[1]) - x * s[2],
@@ -303,31 +293,25 @@ impl Products<1> for Alone {
     };
 
     #[inline(always)]
-    fn new<S: Simd>(simd: S, state: &Row<1>, momenta: &[V3<1>; 2]) -> Self {
+    fn set_motion<S: Simd>(&mut self, simd: S, state: &Row<1>, momenta: &[V3<1>; 2]) {
         let y = state.map(|x| x.0[0]);
         let [m, n] = momenta.map(|m| m.map(|x| x.0[0]));
         let (p, l): ([_; 3], [_; 3]) = (part(&y, PAYLOAD_RATE), part(&y, STAGE_RATE));
         let d: [_; 3] = std::array::from_fn(|i| l[i] - p[i]);
         let s: [_; 3] = std::array::from_fn(|i| l[i] + p[i]);
         let [i, j, k, r] = part(&y, ATTITUDE);
-        Self {
-            carried: [0, 1, 2].map(|i| pack(simd, [y[OFFSET + i], y[VELOCITY + i], m[i], n[i]])),
-            rates: [0, 1, 2].map(|i| pack(simd, [p[i], p[i], p[i], l[i]])),
-            attitude: [
-                pack(simd, [r, k, -j, -i]),
-                pack(simd, [-k, r, i, -j]),
-                pack(simd, [j, -i, r, -k]),
-            ],
-            relative: pack(simd, part(&y, RELATIVE)),
-            turn: [
-                pack(simd, [0.0, -s[2], s[1], -d[0]]),
-                pack(simd, [s[2], 0.0, -s[0], -d[1]]),
-                pack(simd, [-s[1], s[0], 0.0, -d[2]]),
-                pack(simd, [d[0], d[1], d[2], 0.0]),
-            ],
-            offset: turned_about(simd, &part(state, OFFSET)),
-            ..Self::ZERO
-        }
+        self.carried = [0, 1, 2].map(|i| pack(simd, [y[OFFSET + i], y[VELOCITY + i], m[i], n[i]]));
+        self.rates = [0, 1, 2].map(|i| pack(simd, [p[i], p[i], p[i], l[i]]));
+        self.attitude =
+            [pack(simd, [r, k, -j, -i]), pack(simd, [-k, r, i, -j]), pack(simd, [j, -i, r, -k])];
+        self.relative = pack(simd, part(&y, RELATIVE));
+        self.turn = [
+            pack(simd, [0.0, -s[2], s[1], -d[0]]),
+            pack(simd, [s[2], 0.0, -s[0], -d[1]]),
+            pack(simd, [-s[1], s[0], 0.0, -d[2]]),
+            pack(simd, [d[0], d[1], d[2], 0.0]),
+        ];
+        self.offset = turned_about(simd, &part(state, OFFSET));
     }
 
     #[inline(always)]

@@ -152,6 +152,13 @@ pub(crate) struct Machine {
 }
 
 impl Machine {
+    /// Any machine.
+    #[cfg(test)]
+    pub(crate) const BASELINE: Self = Self {
+        #[cfg(target_arch = "x86_64")]
+        avx2: None,
+    };
+
     pub(crate) fn new() -> Self {
         Self {
             #[cfg(target_arch = "x86_64")]

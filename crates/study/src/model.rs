@@ -87,7 +87,7 @@ impl Model {
             stage: stage.inertia,
             payload_axes: payload.axes,
             stage_axes: stage.axes,
-            separation: separation.map_err(Failure::from),
+            separation,
             drawn,
         }
     }
