@@ -78,11 +78,11 @@ impl Dispersions {
             let zero = [0.0; 3];
             let target = |i| Target::Stack(StackPart::Attitude(i));
             let place = Place::new("stack.dispersion.attitude_deg", "stack_attitude", "deg");
-            list.vector(place, stack.attitude_deg.as_ref(), &zero, target)?;
+            list.vector(&place, stack.attitude_deg.as_ref(), &zero, target)?;
             let target = |i| Target::Stack(StackPart::AngularVelocity(i));
             let place = "stack.dispersion.angular_velocity_rad_per_s";
             let place = Place::new(place, "stack_angular_velocity", "rad_per_s");
-            list.vector(place, stack.angular_velocity_rad_per_s.as_ref(), &zero, target)?;
+            list.vector(&place, stack.angular_velocity_rad_per_s.as_ref(), &zero, target)?;
         }
         for (i, spring) in file.springs.iter().enumerate() {
             list.spring(i, spring)?;
@@ -135,7 +135,7 @@ impl List {
 
     fn scalar(
         &mut self,
-        place: Place,
+        place: &Place,
         law: Option<&LawFile>,
         nominal: f64,
         target: Target,
@@ -151,7 +151,7 @@ impl List {
     /// A number given in its unit or in percent.
     fn either(
         &mut self,
-        place: Place,
+        place: &Place,
         law: Option<&LawFile>,
         percent: (&str, Option<&LawFile>),
         nominal: f64,
@@ -174,7 +174,7 @@ impl List {
 
     fn vector(
         &mut self,
-        place: Place,
+        place: &Place,
         law: Option<&VectorLawFile>,
         nominal: &[f64],
         target: impl Fn(usize) -> Target,
@@ -201,7 +201,7 @@ impl List {
         let place = Place::new(at("mass_kg"), format!("{name}_mass"), "kg");
         let percent = at("mass_percent");
         let percent = (percent.as_str(), d.mass_percent.as_ref());
-        self.either(place, d.mass_kg.as_ref(), percent, file.mass_kg, of(BodyPart::Mass))?;
+        self.either(&place, d.mass_kg.as_ref(), percent, file.mass_kg, of(BodyPart::Mass))?;
         if d.inertia_follows_mass && d.mass_kg.is_none() && d.mass_percent.is_none() {
             let problem = "the mass is not dispersed: it needs mass_kg or mass_percent";
             return Err(ScenarioError::field(at("inertia_follows_mass"), problem));
@@ -211,18 +211,18 @@ impl List {
         };
         let zero = [0.0; 3];
         let p = place("mass_centre_m", "mass_centre", "m");
-        self.vector(p, d.mass_centre_m.as_ref(), &zero, |i| of(BodyPart::MassCentre(i)))?;
+        self.vector(&p, d.mass_centre_m.as_ref(), &zero, |i| of(BodyPart::MassCentre(i)))?;
         let p = place("position_m", "position", "m");
         let nominal = &file.position_m;
-        self.vector(p, d.position_m.as_ref(), nominal, |i| of(BodyPart::Position(i)))?;
+        self.vector(&p, d.position_m.as_ref(), nominal, |i| of(BodyPart::Position(i)))?;
         let p = place("velocity_m_per_s", "velocity", "m_per_s");
         let nominal = &file.velocity_m_per_s;
-        self.vector(p, d.velocity_m_per_s.as_ref(), nominal, |i| of(BodyPart::Velocity(i)))?;
+        self.vector(&p, d.velocity_m_per_s.as_ref(), nominal, |i| of(BodyPart::Velocity(i)))?;
         let p = place("attitude_deg", "attitude", "deg");
-        self.vector(p, d.attitude_deg.as_ref(), &zero, |i| of(BodyPart::Attitude(i)))?;
+        self.vector(&p, d.attitude_deg.as_ref(), &zero, |i| of(BodyPart::Attitude(i)))?;
         let p = place("angular_velocity_rad_per_s", "angular_velocity", "rad_per_s");
         let (law, nominal) = (&d.angular_velocity_rad_per_s, &file.angular_velocity_rad_per_s);
-        self.vector(p, law.as_ref(), nominal, |i| of(BodyPart::AngularVelocity(i)))
+        self.vector(&p, law.as_ref(), nominal, |i| of(BodyPart::AngularVelocity(i)))
     }
 
     fn spring(&mut self, spring: usize, file: &SpringFile) -> Result<(), ScenarioError> {
@@ -237,26 +237,26 @@ impl List {
         let percent = (percent.as_str(), d.stiffness_percent.as_ref());
         let nominal = file.stiffness_n_per_m;
         let law = d.stiffness_n_per_m.as_ref();
-        self.either(p, law, percent, nominal, of(SpringPart::Stiffness))?;
+        self.either(&p, law, percent, nominal, of(SpringPart::Stiffness))?;
         let p = place("stroke_m", "stroke", "m");
         let percent = at("stroke_percent");
         let percent = (percent.as_str(), d.stroke_percent.as_ref());
-        self.either(p, d.stroke_m.as_ref(), percent, file.stroke_m, of(SpringPart::Stroke))?;
+        self.either(&p, d.stroke_m.as_ref(), percent, file.stroke_m, of(SpringPart::Stroke))?;
         let p = place("friction_n", "friction", "n");
         let nominal = file.friction_n.unwrap_or(0.0);
-        self.scalar(p, d.friction_n.as_ref(), nominal, of(SpringPart::Friction))?;
+        self.scalar(&p, d.friction_n.as_ref(), nominal, of(SpringPart::Friction))?;
         let p = place("line_of_action_deg", "line_of_action", "deg");
         let law = d.line_of_action_deg.as_ref();
-        self.vector(p, law, &[0.0; 2], |i| of(SpringPart::LineOfAction(i)))?;
+        self.vector(&p, law, &[0.0; 2], |i| of(SpringPart::LineOfAction(i)))?;
         let p = place("payload_point_m", "payload_point", "m");
         let (law, nominal) = (d.payload_point_m.as_ref(), &file.payload_point_m);
-        self.vector(p, law, nominal, |i| of(SpringPart::PayloadPoint(i)))?;
+        self.vector(&p, law, nominal, |i| of(SpringPart::PayloadPoint(i)))?;
         let p = place("stage_point_m", "stage_point", "m");
         let (law, nominal) = (d.stage_point_m.as_ref(), &file.stage_point_m);
-        self.vector(p, law, nominal, |i| of(SpringPart::StagePoint(i)))?;
+        self.vector(&p, law, nominal, |i| of(SpringPart::StagePoint(i)))?;
         let p = place("start_s", "start", "s");
         let nominal = file.start_s.unwrap_or(0.0);
-        self.scalar(p, d.start_s.as_ref(), nominal, of(SpringPart::Start))?;
+        self.scalar(&p, d.start_s.as_ref(), nominal, of(SpringPart::Start))?;
         if d.late_probability.is_some() && d.start_s.is_none() {
             let problem = "it needs start_s, which says how late a late spring is";
             return Err(ScenarioError::field(at("late_probability"), problem));
