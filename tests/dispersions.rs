@@ -401,3 +401,32 @@ fn bad_dispersions_are_named() {
         assert!(error.contains(expected) && error.contains("line"), "{error}");
     }
 }
+
+/// The pads of the last spring are its free length apart as it lets go, wherever mass centres are: the
+/// outlines stay with the structure.
+#[test]
+fn outlines_stay_with_the_structure() {
+    let pads = |z: f64| {
+        format!(
+            "{{ points_m = [[1.0, 1.0, {z:?}], [-1.0, 1.0, {z:?}], [-1.0, -1.0, {z:?}], [1.0, -1.0, {z:?}]] }}"
+        )
+    };
+    let clearance =
+        format!("[clearance]\npayload = [{}]\nstage = [{}]\n\n[payload]", pads(-0.9), pads(0.9));
+    let text = with("mass_centre_m = 0.05", "", "").replacen("[payload]", &clearance, 1).replacen(
+        "[stage.dispersion]",
+        "[stage.dispersion]\nmass_centre_m = 0.1",
+        1,
+    );
+    for table in tables(&text, 300) {
+        let values = |q| table.values(q);
+        let (clearance, when) = (values(Quantity::Clearance), values(Quantity::ClearanceTime));
+        assert_eq!(clearance.len(), 300);
+        for ((clearance, when), release) in
+            clearance.iter().zip(&when).zip(&values(Quantity::ReleaseTime))
+        {
+            assert!((clearance - 0.3).abs() < 1e-9, "{clearance} m");
+            assert!((when - release).abs() < 1e-9);
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! Studies in which things go wrong.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use gyradius_study::{Options, Quantity, Scenario, Study};
+use gyradius_study::{Options, Quantity, Replay, Scenario, Study};
 use std::fs;
 
 fn run(text: &str) -> (Study, tempfile::TempDir) {
@@ -82,4 +82,43 @@ fn what_users_write_is_escaped() {
     let (study, _scratch) = run(&text);
     let report = fs::read_to_string(study.folder().join("report.html")).unwrap();
     assert!(!report.contains("<script>") && report.contains("&lt;script&gt;"));
+}
+
+/// Outlines that come near and touch again: an outcome of a run, not its failure.
+#[test]
+fn recontact_is_an_outcome() {
+    // An arm of the payload that sweeps towards a plate on the stage as both turn about x.
+    let outlines = |reach: f64, plate: f64| {
+        format!(
+            "[clearance]\ncoast_s = 30.0\n\
+             payload = [{{ points_m = [[0.0, {reach:?}, -0.9]] }}]\n\
+             stage = [{{ hull_m = [[-{plate:?}, -{plate:?}, 0.5], [{plate:?}, -{plate:?}, 0.5], [0.0, {plate:?}, 0.5]] }}]\n\n"
+        )
+    };
+    let at = |reach: f64, plate: f64| {
+        paper().replacen("[payload]", &format!("{}[payload]", outlines(reach, plate)), 1)
+    };
+    let (study, _scratch) = run(&at(-5.0, 8.0));
+    for table in study.tables() {
+        assert!(table.rows().iter().all(|r| r.status() == "ok"));
+        let (clearance, touch) =
+            (table.values(Quantity::Clearance), table.values(Quantity::RecontactTime));
+        assert_eq!(clearance.len(), 300);
+        assert_eq!(touch.len(), 300, "the arm turns into the stage");
+        assert!(clearance.iter().all(|c| *c == 0.0));
+    }
+    let report = fs::read_to_string(study.folder().join("report.html")).unwrap();
+    assert!(report.contains("The bodies touch again in 100 % of the runs"));
+    let replay = Replay::open(study.folder(), None, 5, 0.0).unwrap().to_string();
+    assert!(replay.contains("clearance") && replay.contains("recontact"), "{replay}");
+
+    // A short arm over a small plate stays clear: they are nearest at the start of the coast.
+    let (study, _scratch) = run(&at(-0.5, 1.0));
+    let table = &study.tables()[0];
+    assert_eq!(table.values(Quantity::RecontactTime).len(), 0);
+    let clearance = table.values(Quantity::Clearance);
+    assert!(clearance.iter().all(|c| (0.5..1.0).contains(c)), "{clearance:?}");
+    let summary = fs::read_to_string(study.folder().join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["models"][0]["releases"]["recontact"]["count"], 0);
 }

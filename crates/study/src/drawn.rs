@@ -72,6 +72,17 @@ pub(crate) fn scaled(
     InertiaMatrix::new(inertia.matrix() * factor).unwrap_or(inertia)
 }
 
+/// From the nominal mass centres of payload and stage to the drawn ones, body axes, m.
+pub(crate) fn mass_centres(dispersions: &Dispersions, drawn: &[f64]) -> [Vector3<f64>; 2] {
+    let mut centres = [Vector3::zeros(); 2];
+    for (d, value) in dispersions.all.iter().zip(drawn) {
+        if let Target::Body(body, BodyPart::MassCentre(i)) = d.target {
+            centres[body as usize][i] = *value;
+        }
+    }
+    centres
+}
+
 /// The separation of a run: the scenario's with drawn values and inertias in the place of its own.
 pub(crate) fn separation(
     scenario: &Scenario,

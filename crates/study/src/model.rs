@@ -139,7 +139,9 @@ impl Case {
         result: Option<Result<gyradius_separation::Outcome, RunError>>,
     ) -> Row {
         let outcome = match (&self.separation, result) {
-            (Ok(separation), Some(Ok(outcome))) => Ok(Outcome::new(scenario, separation, &outcome)),
+            (Ok(separation), Some(Ok(outcome))) => {
+                Outcome::new(scenario, separation, &outcome, &self.drawn)
+            }
             (Ok(_), Some(Err(error))) => Err(error.into()),
             (Err(failure), _) => Err(failure.clone()),
             // A batch gives every run a result.

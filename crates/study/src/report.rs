@@ -118,6 +118,9 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
         };
         direction.map_or_else(|| "none, for the springs' forces cancel".to_owned(), entries)
     };
+    // What no run has is not asked.
+    let has = |q: &Quantity| summary.models.iter().any(|m| m.quantity(*q).is_some_and(|q| q.n > 0));
+    let parting = Quantity::PARTING.into_iter().filter(has);
     html! {
         h2 { "How they part" }
         p {
@@ -137,7 +140,7 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                 }
             }
             tbody {
-                @for q in Quantity::PARTING {
+                @for q in parting {
                     tr {
                         th scope="row" { (q.label()) (unit(q)) }
                         @for model in &summary.models {
@@ -162,7 +165,7 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                 }
             }
         } }
-        h3 { "Springs" }
+        h3 { "Springs and contact" }
         ul {
             @for model in &summary.models { @if let Some(pressed) = model.releases.recompressed {
                 li {
@@ -174,6 +177,10 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                     }
                     @if model.releases.orders.len() > 3 { "; others" }
                     ". " (energy(model))
+                    @if let Some(touch) = model.releases.recontact {
+                        " The bodies touch again in " (significant(100.0 * touch.share, 3)) " % of the runs "
+                        (interval_percent(touch.interval.lower(), touch.interval.upper())) "."
+                    }
                     @if pressed.count > 0 {
                         " A spring was pressed again after its release in "
                         (significant(100.0 * pressed.share, 3)) " % of the runs "

@@ -1,11 +1,11 @@
 use gyradius_separation::{
-    BodyError, Outcome as Separated, RunError, Separation, SeparationError, SpinMetrics,
-    SpringError,
+    BodyError, Clearance, ClearanceError, Outcome as Separated, OutlineError, RunError, Separation,
+    SeparationError, SpinMetrics, SpringError,
 };
 use nalgebra::UnitQuaternion;
 use std::borrow::Cow;
 
-use crate::scenario::Scenario;
+use crate::{drawn, scenario::Scenario};
 
 /// One run of one model.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +41,17 @@ pub enum Failure {
     /// The separation does not come to an end.
     #[error(transparent)]
     Broken(#[from] RunError),
+    /// The outline of a body cannot be placed about its mass centre.
+    #[error("{body}: outline: {source}")]
+    Outline {
+        /// Whose.
+        body: &'static str,
+        /// Why.
+        source: OutlineError,
+    },
+    /// How near the bodies come to each other afterwards cannot be told.
+    #[error(transparent)]
+    Unclear(#[from] ClearanceError),
 }
 
 impl Failure {
@@ -67,6 +78,8 @@ impl Failure {
             Self::Broken(RunError::TooManySteps { .. }) => "too many steps",
             Self::Broken(RunError::NotFinite { .. }) => "numbers out of range",
             Self::Broken(_) => "integration failed",
+            Self::Outline { body, .. } => return format!("{body}: outline beyond bounds").into(),
+            Self::Unclear(_) => "clearance not found",
         };
         plain.into()
     }
@@ -96,10 +109,22 @@ pub(crate) struct Outcome {
     pub(crate) release_order: String,
     /// Springs from 1 that were pressed again after they had let go.
     pub(crate) recompressed: Vec<usize>,
+    /// Smallest distance of the outlines, m, and when, s.
+    pub(crate) clearance: Option<[f64; 2]>,
+    pub(crate) recontact_s: Option<f64>,
 }
 
 impl Outcome {
-    pub(crate) fn new(scenario: &Scenario, separation: &Separation, separated: &Separated) -> Self {
+    pub(crate) fn new(
+        scenario: &Scenario,
+        separation: &Separation,
+        separated: &Separated,
+        drawn: &[f64],
+    ) -> Result<Self, Failure> {
+        let clearance = scenario.outlines().map(|outlines| {
+            outlines.clearance(separated, &drawn::mass_centres(scenario.dispersions(), drawn))
+        });
+        let clearance = clearance.transpose()?;
         let degrees = |angle: Option<f64>| angle.map(f64::to_degrees);
         let [payload_tip_off, stage_tip_off] =
             separated.tip_off(separation).map(|rate| rate.map(f64::to_degrees).into());
@@ -109,7 +134,7 @@ impl Outcome {
             springs.iter().map(ToString::to_string).collect::<Vec<_>>().join(between)
         };
         let order: Vec<_> = separated.release_order().iter().map(|s| words(s, "+")).collect();
-        Self {
+        Ok(Self {
             release_time_s: separated.release_time(),
             relative_speed_m_per_s: separated.relative_speed(),
             payload_rate_rad_per_s: separated.payload().state().angular_velocity.into(),
@@ -133,7 +158,12 @@ impl Outcome {
             releases_s: separated.release_times().collect(),
             release_order: order.join(" "),
             recompressed: separated.recompressed().map(|(spring, _)| spring).collect(),
-        }
+            clearance: clearance
+                .as_ref()
+                .and_then(Clearance::closest)
+                .map(|closest| [closest.distance_m(), closest.time_s()]),
+            recontact_s: clearance.as_ref().and_then(Clearance::contact_s),
+        })
     }
 }
 
@@ -214,6 +244,9 @@ impl Row {
             Quantity::PayloadRotation => Some(o.energies_j[2]),
             Quantity::StageTranslation => Some(o.energies_j[3]),
             Quantity::StageRotation => Some(o.energies_j[4]),
+            Quantity::Clearance => o.clearance.map(|c| c[0]),
+            Quantity::ClearanceTime => o.clearance.map(|c| c[1]),
+            Quantity::RecontactTime => o.recontact_s,
             Quantity::SpringRelease(spring) => o.releases_s.get(spring).copied(),
         }
     }
@@ -338,13 +371,19 @@ pub enum Quantity {
     StageTranslation,
     /// Into the stage's rotation, J.
     StageRotation,
+    /// Smallest distance of the outlines over the coast, m; 0 if they touch.
+    Clearance,
+    /// When that is, s.
+    ClearanceTime,
+    /// When outlines first touch, s.
+    RecontactTime,
     /// When a spring let go, s; springs from 0.
     SpringRelease(usize),
 }
 
 impl Quantity {
     /// All but those of single springs, in the order of the run table.
-    pub const ALL: [Self; 48] = {
+    pub const ALL: [Self; 51] = {
         use Axis::{One, Three, Two};
         [
             Self::Payload(Entry::I11),
@@ -395,6 +434,9 @@ impl Quantity {
             Self::PayloadRotation,
             Self::StageTranslation,
             Self::StageRotation,
+            Self::Clearance,
+            Self::ClearanceTime,
+            Self::RecontactTime,
         ]
     };
 
@@ -412,7 +454,7 @@ impl Quantity {
         [Self::Wobble, Self::Nutation, Self::Cone, Self::InertiaRatio, Self::SpinRate];
 
     /// How the bodies part: what a separation analyst asks for.
-    pub const PARTING: [Self; 11] = [
+    pub const PARTING: [Self; 12] = [
         Self::RelativeSpeed,
         Self::DirectionError,
         Self::PayloadTipOff(Axis::One),
@@ -424,6 +466,7 @@ impl Quantity {
         Self::NutationGreatest,
         Self::MomentumError,
         Self::ReleaseTime,
+        Self::Clearance,
     ];
 
     /// Name of the column in the run table, with its unit.
@@ -481,6 +524,9 @@ impl Quantity {
             Self::PayloadRotation => "payload_rotation_j",
             Self::StageTranslation => "stage_translation_j",
             Self::StageRotation => "stage_rotation_j",
+            Self::Clearance => "clearance_m",
+            Self::ClearanceTime => "clearance_time_s",
+            Self::RecontactTime => "recontact_s",
             Self::SpringRelease(spring) => {
                 return format!("spring_{}_release_s", spring + 1).into();
             }
@@ -527,6 +573,9 @@ impl Quantity {
             Self::PayloadRotation => "payload rotation",
             Self::StageTranslation => "stage translation",
             Self::StageRotation => "stage rotation",
+            Self::Clearance => "clearance",
+            Self::ClearanceTime => "time of clearance",
+            Self::RecontactTime => "recontact",
             Self::SpringRelease(spring) => {
                 return format!("release of spring {}", spring + 1).into();
             }
@@ -539,7 +588,11 @@ impl Quantity {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Payload(_) | Self::Stage(_) => "kg·m²",
-            Self::ReleaseTime | Self::SpringRelease(_) => "s",
+            Self::ReleaseTime
+            | Self::SpringRelease(_)
+            | Self::ClearanceTime
+            | Self::RecontactTime => "s",
+            Self::Clearance => "m",
             Self::RelativeSpeed | Self::RelativeVelocity(_) => "m/s",
             Self::PayloadRate(_) | Self::SpinRate => "rad/s",
             Self::PayloadTipOff(_) | Self::StageTipOff(_) => "deg/s",

@@ -88,6 +88,8 @@ pub(crate) struct Releases {
     pub(crate) orders: Vec<Order>,
     /// Runs in which a spring was pressed again after it had let go; none if no run succeeds.
     pub(crate) recompressed: Option<Share>,
+    /// Runs in which outlines touch again; none without outlines or if no run succeeds.
+    pub(crate) recontact: Option<Share>,
 }
 
 /// How often springs let go in an order.
@@ -277,7 +279,7 @@ impl ModelSummary {
             unrealizable: share(rows.iter().filter(|r| !r.realizable).count())?,
             far_half,
             given_deviations_kg_m2: model.given_deviations(),
-            releases: Releases::new(table, confidence)?,
+            releases: Releases::new(table, scenario.outlines().is_some(), confidence)?,
             quantities: Quantity::of(scenario.separation().springs().len())
                 .map(|q| QuantitySummary::new(q, &table.values(q), confidence))
                 .collect(),
@@ -294,7 +296,11 @@ impl ModelSummary {
 const ORDERS: usize = 12;
 
 impl Releases {
-    fn new(table: &RunTable, confidence: Confidence) -> Result<Self, StatisticsError> {
+    fn new(
+        table: &RunTable,
+        watched: bool,
+        confidence: Confidence,
+    ) -> Result<Self, StatisticsError> {
         let mut counts = BTreeMap::<&str, u64>::new();
         for order in table.rows().iter().filter_map(Row::release_order) {
             *counts.entry(order).or_default() += 1;
@@ -303,13 +309,20 @@ impl Releases {
         let pressed = table.rows().iter().filter(|r| !r.recompressed().is_empty()).count();
         let recompressed =
             if of == 0 { None } else { Some(Share::new(pressed as u64, of, confidence)?) };
+        let touching = table.values(Quantity::RecontactTime).len() as u64;
+        let recontact =
+            if of == 0 || !watched { None } else { Some(Share::new(touching, of, confidence)?) };
         let mut counts: Vec<_> = counts.into_iter().collect();
         // Stable: equal counts stay in the order of their names.
         counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         let orders = counts.into_iter().take(ORDERS).map(|(order, count)| {
             Ok(Order { order: order.to_owned(), share: Share::new(count, of, confidence)? })
         });
-        Ok(Self { orders: orders.collect::<Result<_, StatisticsError>>()?, recompressed })
+        Ok(Self {
+            orders: orders.collect::<Result<_, StatisticsError>>()?,
+            recompressed,
+            recontact,
+        })
     }
 }
 

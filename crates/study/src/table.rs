@@ -176,6 +176,8 @@ mod tests {
             releases_s: vec![0.3, 0.1 + 0.2],
             release_order: "1 2".to_owned(),
             recompressed: vec![2],
+            clearance: Some([0.125, 0.1 + 0.2]),
+            recontact_s: None,
         };
         let good = Row {
             run: 0,
@@ -213,6 +215,9 @@ mod tests {
             names[59..],
             [
                 "stage_rotation_j",
+                "clearance_m",
+                "clearance_time_s",
+                "recontact_s",
                 "spring_1_release_s",
                 "spring_2_release_s",
                 "release_order",

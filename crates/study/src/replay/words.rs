@@ -89,6 +89,13 @@ impl Display for Replay {
         line("angular momentum, inertial axes", three(Quantity::Momentum), " kg·m²/s")?;
         line("angle to its intended direction", value(Quantity::MomentumError), "°")?;
         line("inertia ratio", value(Quantity::InertiaRatio), "")?;
+        if self.scenario.outlines().is_some() {
+            let when = value(Quantity::ClearanceTime);
+            line("clearance", value(Quantity::Clearance), &format!(" m at {when} s"))?;
+            let touch = row.value(Quantity::RecontactTime);
+            let touch = touch.map_or("none".to_owned(), |time| format!("at {time:.9} s"));
+            line("recontact", touch, "")?;
+        }
         line("energy of the springs", value(Quantity::SpringEnergy), " J")?;
         let both = |a, b| format!("{} and {}", value(a), value(b));
         let (translation, rotation) = (Quantity::PayloadTranslation, Quantity::PayloadRotation);

@@ -28,6 +28,8 @@ pub(crate) struct ScenarioFile {
     pub(crate) integration: IntegrationFile,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) source: Option<SourceFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) clearance: Option<ClearanceFile>,
     pub(crate) springs: Vec<SpringFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) correlations: Vec<CorrelationFile>,
@@ -133,6 +135,24 @@ pub(crate) enum AxesLawFile {
     RadiallyConstrainedGaussian,
     Uniform,
     Fixed,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ClearanceFile {
+    #[serde(default = "default_coast")]
+    pub(crate) coast_s: f64,
+    pub(crate) payload: Vec<ShapeFile>,
+    pub(crate) stage: Vec<ShapeFile>,
+}
+
+/// As given: what is made of it need not have the same bits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum ShapeFile {
+    PointsM(Vec<[f64; 3]>),
+    HullM(Vec<[f64; 3]>),
+    Ring { centre_m: [f64; 3], axis: [f64; 3], radius_m: f64 },
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -316,6 +336,10 @@ impl Default for IntegrationFile {
         let settings = gyradius_separation::Settings::default();
         Self { relative_tolerance: settings.relative_tolerance(), horizon_s: settings.horizon_s() }
     }
+}
+
+fn default_coast() -> f64 {
+    60.0
 }
 
 fn default_runs() -> u64 {

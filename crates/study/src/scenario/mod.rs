@@ -1,6 +1,7 @@
 //! Scenario files: what is uncertain, what flies, how often.
 
 mod body;
+mod clearance;
 mod dispersions;
 mod file;
 mod law;
@@ -12,6 +13,7 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 pub(crate) use body::UncertainBody;
+use clearance::Outlines;
 pub(crate) use dispersions::{BodyPart, Dispersed, Dispersions, SpringPart, StackPart, Target};
 pub(crate) use file::AxesFile as Axes;
 use file::ScenarioFile;
@@ -72,6 +74,7 @@ pub struct Scenario {
     separation: Separation,
     settings: Settings,
     dispersions: Dispersions,
+    outlines: Option<Outlines>,
     models: Vec<ModelSpec>,
     comparisons: Vec<Comparison>,
 }
@@ -180,6 +183,7 @@ impl Scenario {
             Settings::new(file.integration.relative_tolerance, file.integration.horizon_s)
                 .map_err(|e| ScenarioError::field("integration", e))?;
         let dispersions = Dispersions::new(&file)?;
+        let outlines = file.clearance.as_ref().map(Outlines::new).transpose()?;
         let models = model::check_models(&file.models, [&payload, &stage])?;
         let comparisons = model::check_comparisons(&file.comparisons, &models)?;
         Ok(Self {
@@ -192,6 +196,7 @@ impl Scenario {
             separation,
             settings,
             dispersions,
+            outlines,
             models,
             comparisons,
         })
@@ -268,6 +273,11 @@ impl Scenario {
     /// What is uncertain besides the inertias.
     pub(crate) fn dispersions(&self) -> &Dispersions {
         &self.dispersions
+    }
+
+    /// What of the bodies may touch, if that is asked.
+    pub(crate) fn outlines(&self) -> Option<&Outlines> {
+        self.outlines.as_ref()
     }
 
     pub(crate) fn models(&self) -> &[ModelSpec] {
@@ -368,6 +378,46 @@ mod tests {
         assert_eq!(names, ["proposed", "published", "naive", "naive-matched"]);
         assert!((s.separation().stored_energy() - 1300.0).abs() < 1e-9);
         assert!((s.separation().free_lengths()[0] - 0.3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn directions_and_outlines_are_read_resolved_and_checked() {
+        let outlines = "[clearance]\npayload = [{ hull_m = [[0.0, 0.0, -0.5], [0.5, 0.0, -0.5]] }]\n\
+                        stage = [{ ring = { centre_m = [0.0, 0.0, 0.4], axis = [0.0, 1.0, 7.0], \
+                        radius_m = 0.3 } }, { points_m = [[0.0, 0.0, 0.3]] }]\n";
+        let text = PECK_2003.replacen("[payload]", &format!("{outlines}\n[payload]"), 1);
+        let text = text.replacen(
+            "spin_axis",
+            "separation_direction = [0.1, 0.0, 3.0]\nmomentum_direction = [1e300, 1e299, 0.0]\nspin_axis",
+            1,
+        );
+        let resolved = round_trip(&text);
+        assert!(resolved.contains("coast_s = 60.0"), "{resolved}");
+        assert!(Scenario::from_toml(&text).unwrap().outlines().is_some());
+        let error = |from: &str, to: &str| {
+            assert!(text.contains(from), "{from}");
+            Scenario::from_toml(&text.replacen(from, to, 1)).unwrap_err().to_string()
+        };
+        for (from, to, expected) in [
+            (
+                "[0.1, 0.0, 3.0]",
+                "[0.0, 0.0, 0.0]",
+                "separation_direction: [0.0, 0.0, 0.0]: it must",
+            ),
+            ("[1e300, 1e299, 0.0]", "[nan, 1.0, 0.0]", "momentum_direction: [NaN, 1.0, 0.0]"),
+            ("radius_m = 0.3", "radius_m = -0.3", "clearance.stage[1]: "),
+            ("points_m = [[0.0, 0.0, 0.3]]", "points_m = []", "clearance.stage[2]: "),
+            ("[clearance]\n", "[clearance]\ncoast_s = 0.0\n", "clearance.coast_s: 0.0: it must"),
+            ("[clearance]\n", "[clearance]\ncoast_s = nan\n", "clearance.coast_s: NaN"),
+        ] {
+            let message = error(from, to);
+            assert!(message.starts_with(expected), "{message}");
+        }
+        // The paper's springs push along z, and its payload is to spin about inertial x.
+        let paper = Scenario::peck_2003().unwrap();
+        assert_eq!(paper.separation_direction(), Some(&Vector3::z_axis()));
+        assert_eq!(paper.momentum_direction(), &Vector3::x_axis());
+        assert!(paper.outlines().is_none());
     }
 
     #[test]

@@ -1,0 +1,70 @@
+use gyradius_separation::{
+    Clearance, ClearanceSettings, Coast, Outcome, Outline, OutlineError, Shape,
+};
+use nalgebra::Vector3;
+
+use super::{
+    ScenarioError,
+    file::{ClearanceFile, ShapeFile},
+};
+use crate::row::{Body, Failure};
+
+/// Longest coast, s.
+const MOST_COAST: f64 = 1e6;
+
+/// What of the bodies may touch, and how long it is watched.
+#[derive(Clone, Debug)]
+pub(crate) struct Outlines {
+    payload: Outline,
+    stage: Outline,
+    coast: f64,
+}
+
+impl Outlines {
+    pub(crate) fn new(file: &ClearanceFile) -> Result<Self, ScenarioError> {
+        let coast = file.coast_s;
+        if !(coast > 0.0 && coast <= MOST_COAST) {
+            let problem = format!("{coast:?}: it must be positive and at most {MOST_COAST:e}");
+            return Err(ScenarioError::field("clearance.coast_s", problem));
+        }
+        let outline = |body: &str, shapes: &[ShapeFile]| {
+            let at = |i: usize| format!("clearance.{body}[{}]", i + 1);
+            let shapes = shapes.iter().enumerate();
+            let shapes = shapes.map(|(i, s)| shape(s).map_err(|e| ScenarioError::field(at(i), e)));
+            Outline::new(shapes.collect::<Result<Vec<_>, _>>()?)
+                .map_err(|e| ScenarioError::field(format!("clearance.{body}"), e))
+        };
+        let payload = outline("payload", &file.payload)?;
+        Ok(Self { payload, stage: outline("stage", &file.stage)?, coast })
+    }
+
+    /// The clearance over the coast after the last release, of outlines about mass centres that lie
+    /// so far off the nominal ones, body axes, m.
+    pub(crate) fn clearance(
+        &self,
+        outcome: &Outcome,
+        [payload, stage]: &[Vector3<f64>; 2],
+    ) -> Result<Clearance, Failure> {
+        let about = |body: Body, outline: &Outline, centre: &Vector3<f64>| {
+            outline.about(*centre).map_err(|source| Failure::Outline { body: body.name(), source })
+        };
+        let payload = about(Body::Payload, &self.payload, payload)?;
+        let stage = about(Body::Stage, &self.stage, stage)?;
+        let from = outcome.release_time();
+        let mut coast = Coast::new(outcome.payload(), outcome.stage(), from);
+        let settings = ClearanceSettings::default();
+        let to = from + self.coast;
+        Ok(Clearance::new(&payload, &stage, &mut coast, from, to, &settings)?)
+    }
+}
+
+fn shape(file: &ShapeFile) -> Result<Shape, OutlineError> {
+    let vectors = |p: &[[f64; 3]]| p.iter().map(|x| Vector3::from(*x)).collect::<Vec<_>>();
+    match file {
+        ShapeFile::PointsM(p) => Shape::points(&vectors(p)),
+        ShapeFile::HullM(p) => Shape::hull(&vectors(p)),
+        ShapeFile::Ring { centre_m, axis, radius_m } => {
+            Shape::ring((*centre_m).into(), (*axis).into(), *radius_m)
+        }
+    }
+}
