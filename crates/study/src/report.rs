@@ -79,7 +79,7 @@ fn results(summary: &Summary) -> Markup {
                             @let s = model.quantity(q);
                             td.group { (optional(s.and_then(|s| s.mean), 4)) }
                             td title=(interval(s.and_then(|s| s.deviation_interval), 4)) {
-                                (optional(s.and_then(|s| s.deviation), 4))
+                                (optional(s.and_then(|s| s.deviation), 3))
                             }
                             td title=(interval(s.and_then(|s| s.p95_interval), 4)) {
                                 (optional(s.and_then(|s| s.p95), 4))
