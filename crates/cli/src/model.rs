@@ -136,7 +136,8 @@ fn write_report(out: &mut String, file: &str, model: &StatedModel) -> std::fmt::
             out.push_str("any")
         }
     }
-    let (roots, scatter) = (model.law().roots().mean().values(), model.law().roots().deviations());
+    let roots = model.nominal().second_moments().roots().values();
+    let scatter = model.root_deviations();
     write!(out, "\nroots of the second moments, √kg·m:")?;
     for k in 0..3 {
         let comma = if k == 0 { "" } else { "," };

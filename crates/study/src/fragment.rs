@@ -1,7 +1,10 @@
 use gyradius_attitude::{RadiallyConstrainedGaussian, RcgError};
-use gyradius_dispersion::{GaussianRoots, GaussianRootsError, PrincipalDispersion};
+use gyradius_dispersion::{
+    CorrelatedRoots, CorrelatedRootsError, GaussianRoots, GaussianRootsError, PrincipalDispersion,
+    RootLaw,
+};
 use gyradius_inertia::{Inertia, RealizabilityError};
-use nalgebra::Matrix4;
+use nalgebra::{Matrix3, Matrix4};
 use std::fmt;
 
 /// Two mean attitudes nearer than this, rad, are one to any study.
@@ -27,6 +30,12 @@ pub enum FragmentError {
     /// The variances of the roots do not read back.
     #[error(transparent)]
     Roots(#[from] GaussianRootsError),
+    /// The covariance of the roots does not read back.
+    #[error(transparent)]
+    CorrelatedRoots(#[from] CorrelatedRootsError),
+    /// The roots are not Gaussian.
+    #[error("roots: only Gaussian laws are written, correlated or not")]
+    RootLaw,
     /// The covariance of the axes does not read back.
     #[error("axes: {0}")]
     Axes(#[from] RcgError),
@@ -42,7 +51,7 @@ pub enum FragmentError {
 }
 
 /// The part of a scenario file that says how uncertain the inertia of a body is: nominal inertia,
-/// variances of the roots, covariance of the axes. Written by `Display` as TOML, every number so that
+/// variances or covariance of the roots, covariance of the axes. Written by `Display` as TOML, every number so that
 /// it reads back bit for bit.
 ///
 /// A scenario takes the mean roots and the mean axes from the nominal inertia; the fragment is
@@ -71,30 +80,49 @@ pub enum FragmentError {
 pub struct Fragment {
     body: FragmentBody,
     inertia: [[f64; 3]; 3],
-    variances: [f64; 3],
+    roots: Roots,
     covariance: [[f64; 4]; 4],
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Roots {
+    Variances([f64; 3]),
+    Covariance([[f64; 3]; 3]),
 }
 
 impl Fragment {
     /// Of a law about a nominal inertia.
     ///
     /// # Errors
-    /// What a scenario would read is not allowed, or is another law: its mean axes are not the
-    /// principal axes of the nominal inertia.
-    pub fn new(
+    /// The roots are not Gaussian, what a scenario would read is not allowed, or is another law: its
+    /// mean axes are not the principal axes of the nominal inertia.
+    pub fn new<K: Clone + Into<RootLaw>>(
         body: FragmentBody,
         nominal: &Inertia,
-        law: &PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>,
+        law: &PrincipalDispersion<K, RadiallyConstrainedGaussian>,
     ) -> Result<Self, FragmentError> {
         let inertia: [[f64; 3]; 3] = (*nominal).into();
-        let variances = law.roots().variances();
+        let roots = match law.roots().clone().into() {
+            RootLaw::Gaussian(roots) => Roots::Variances(roots.variances()),
+            RootLaw::CorrelatedGaussian(roots) => {
+                let c = roots.covariance();
+                Roots::Covariance(std::array::from_fn(|i| std::array::from_fn(|j| c[(i, j)])))
+            }
+            _ => return Err(FragmentError::RootLaw),
+        };
         let covariance = law.axes().covariance();
         let covariance = std::array::from_fn(|i| std::array::from_fn(|j| covariance[(i, j)]));
-        let fragment = Self { body, inertia, variances, covariance };
+        let fragment = Self { body, inertia, roots, covariance };
 
         // As a scenario reads it.
         let read = Inertia::try_from(inertia)?;
-        GaussianRoots::new(read.second_moments().roots(), variances)?;
+        let mean = read.second_moments().roots();
+        match fragment.roots {
+            Roots::Variances(v) => GaussianRoots::new(mean, v).map(|_| ())?,
+            Roots::Covariance(c) => {
+                CorrelatedRoots::new(mean, Matrix3::from_fn(|i, j| c[i][j])).map(|_| ())?;
+            }
+        }
         let mean = read.principal_axes().attitude();
         RadiallyConstrainedGaussian::new(mean, Matrix4::from_fn(|i, j| covariance[i][j]))?;
         let off = mean.angle_to(&law.axes().mean());
@@ -110,10 +138,22 @@ impl Fragment {
         self.inertia
     }
 
-    /// Variances of the roots, kg·m².
+    /// Variances of the roots, kg·m², if they are independent.
     #[must_use]
-    pub fn root_variances(&self) -> [f64; 3] {
-        self.variances
+    pub fn root_variances(&self) -> Option<[f64; 3]> {
+        match self.roots {
+            Roots::Variances(v) => Some(v),
+            Roots::Covariance(_) => None,
+        }
+    }
+
+    /// Covariance of the roots by rows, kg·m², if they are correlated.
+    #[must_use]
+    pub fn root_covariance(&self) -> Option<[[f64; 3]; 3]> {
+        match self.roots {
+            Roots::Variances(_) => None,
+            Roots::Covariance(c) => Some(c),
+        }
     }
 
     /// Covariance of the axes by rows, in ℝ⁴, scalar last.
@@ -140,7 +180,17 @@ impl fmt::Display for Fragment {
             writeln!(f, "    {row:?},")?;
         }
         writeln!(f, "]\n\n[{body}.dispersion]")?;
-        writeln!(f, "root_second_moment_variance_kg_m2 = {:?}", self.variances)?;
+        match self.roots {
+            Roots::Variances(v) => writeln!(f, "root_second_moment_variance_kg_m2 = {v:?}")?,
+            Roots::Covariance(c) => {
+                writeln!(f, "roots = \"correlated-gaussian\"")?;
+                writeln!(f, "root_second_moment_covariance_kg_m2 = [")?;
+                for row in c {
+                    writeln!(f, "    {row:?},")?;
+                }
+                writeln!(f, "]")?;
+            }
+        }
         writeln!(f, "axes_covariance = [")?;
         for row in self.covariance {
             writeln!(f, "    {row:?},")?;
@@ -153,8 +203,7 @@ impl fmt::Display for Fragment {
 mod tests {
     use super::*;
     use crate::{Scenario, scenario::Axes};
-    use gyradius_dispersion::RootLaw;
-    use nalgebra::{Matrix3, UnitQuaternion};
+    use nalgebra::UnitQuaternion;
 
     type Law = PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>;
 
@@ -205,6 +254,25 @@ mod tests {
             assert_eq!(axes.covariance(), law.axes().covariance());
             assert!(axes.mean().angle_to(&law.axes().mean()) < 1e-12);
         }
+    }
+
+    #[test]
+    fn correlated_roots_are_read_back_too() {
+        let (nominal, law) = law([5000.0, 4000.0, 3000.0], UnitQuaternion::identity());
+        let c = Matrix3::new(0.1, 0.05, -0.01, 0.05, 0.2, 0.1, -0.01, 0.1, 0.3);
+        let roots = CorrelatedRoots::new(law.roots().mean(), c).unwrap();
+        let law = PrincipalDispersion::new(roots, law.axes().clone());
+        let fragment = Fragment::new(FragmentBody::Payload, &nominal, &law).unwrap();
+        assert_eq!(fragment.root_variances(), None);
+        let scenario = Scenario::from_toml(&pasted(&fragment)).unwrap();
+        let read = scenario.payload().principal(Axes::WholeSphere).unwrap();
+        let RootLaw::CorrelatedGaussian(roots) = read.roots() else { panic!("{read:?}") };
+        assert_eq!(*roots.covariance(), c);
+
+        let uniform = gyradius_dispersion::UniformRoots::new([[1.0, 2.0]; 3]).unwrap();
+        let law = PrincipalDispersion::new(uniform, law.axes().clone());
+        let refused = Fragment::new(FragmentBody::Payload, &nominal, &law);
+        assert_eq!(refused.unwrap_err(), FragmentError::RootLaw);
     }
 
     #[test]

@@ -77,7 +77,10 @@ struct TestJson {
 pub(crate) struct FragmentJson {
     body: String,
     inertia_kg_m2: [[f64; 3]; 3],
-    root_second_moment_variance_kg_m2: [f64; 3],
+    /// Null where the roots are correlated.
+    root_second_moment_variance_kg_m2: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    root_second_moment_covariance_kg_m2: Option<[[f64; 3]; 3]>,
     axes_covariance: [[f64; 4]; 4],
     toml: String,
 }
@@ -88,6 +91,7 @@ impl FragmentJson {
             body: body.to_owned(),
             inertia_kg_m2: fragment.inertia(),
             root_second_moment_variance_kg_m2: fragment.root_variances(),
+            root_second_moment_covariance_kg_m2: fragment.root_covariance(),
             axes_covariance: fragment.axes_covariance(),
             toml: fragment.to_string(),
         }

@@ -6,7 +6,9 @@ use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_inertia::Inertia;
 use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 
-use crate::{EntryMoments, GaussianRoots, PrincipalDispersion, turns::law_of_turns};
+use crate::{
+    CorrelatedRoots, EntryMoments, GaussianRoots, PrincipalDispersion, RootLaw, turns::law_of_turns,
+};
 use nonnegative::{UNKNOWNS, least_squares};
 
 pub use parts::{
@@ -33,8 +35,8 @@ const TRACES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 ///   everything that moves them, mass and mass centre included.
 /// * *Axes* are turns about the principal axes.
 /// * *Mass* and *centre* speak for those entries of which nothing else is said: the whole inertia
-///   grows with the mass, and the mass centre adds what parallel axes add. Of entries that are
-///   stated they are part, and are only compared with them.
+///   grows with the mass, all its entries together, and the mass centre adds what parallel axes add.
+///   Of entries that are stated they are part, and are only compared with them.
 /// * *Products* and *axes* both limit the axes: about each axis the tighter one holds.
 /// * Of what nothing is said does not scatter, with a warning.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -65,7 +67,8 @@ pub struct Statements {
 #[derive(Clone, Debug)]
 pub struct StatedModel {
     nominal: Inertia,
-    law: PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>,
+    law: PrincipalDispersion<RootLaw, RadiallyConstrainedGaussian>,
+    root_deviations: [f64; 3],
     turns: [f64; 3],
     stated: [Option<f64>; 6],
     implied: EntryMoments,
@@ -84,14 +87,15 @@ impl Statements {
     /// with R(q) = (r_ka) of the nominal body, D_j the symmetric product of the two axes that turn j
     /// mixes, ΔI_j the difference of their moments, E[(ΔI_j)²] = ΔI_j² + w_a + w_b. The stated variances
     /// give up to six equations, of which the non-negative least squares solution is taken, each in
-    /// units of what is stated, and repeated until E[(ΔI)²] has settled. Then σ_k² from
-    /// w_k = 4k̄²σ² + 2σ⁴, and the variance of φ from u = (1 − e^{−8 Var φ})/8; u ≥ 1/8 is a turn of
+    /// units of what is stated, and repeated until E[(ΔI)²] has settled. What a mass moves by the share
+    /// ρ is left out there and added as ρ²K_i K_j to the covariance of the second moments. Then the
+    /// covariance C of the roots from Cov(K_i, K_j) = 4k̄_i k̄_j C_ij + 2C_ij², and the variance of φ from u = (1 − e^{−8 Var φ})/8; u ≥ 1/8 is a turn of
     /// which nothing is known. What comes out is computed back by quadrature, not by this
     /// approximation: [`StatedModel::implied`].
     ///
     /// # Limits
-    /// Three independent K_k cannot have any three variances of the moments, nor moments that move
-    /// together, as a mass moves them. What cannot be had is said in a warning.
+    /// Three K_k that are independent but for the mass cannot have any three variances of the
+    /// moments. What cannot be had is said in a warning.
     ///
     /// # Errors
     /// The mass is needed and not given or not positive, or the nominal body is a point or out of
@@ -149,20 +153,24 @@ impl Statements {
                 }
             }
         }
-        let target: [Option<f64>; 6] = std::array::from_fn(|e| {
-            stated[e].map(|s| s * s).or_else(|| {
+        let common = match self.mass {
+            Some(mass) if moments.is_none() => mass.relative(mass_kg)?,
+            _ => 0.0,
+        };
+        let target: [Option<Target>; 6] = std::array::from_fn(|e| {
+            let whole = stated[e].map(|s| s * s).or_else(|| {
                 let (mass, centre) = beside?;
                 // Of products beside stated axes nothing else need be said.
                 (e < 3 || self.axes.is_none()).then(|| mass[e] + centre[e])
-            })
+            });
+            let mass = (common * entries[e]).powi(2);
+            whole.map(|whole| Target { rest: (whole - mass).max(0.0), whole })
         });
         if target[..3].iter().all(Option::is_none) {
             warnings.push(StatementWarning::FixedMoments);
-        } else if moments.is_none() && self.mass.is_some() {
-            warnings.push(StatementWarning::Together);
         }
 
-        let (mut variances, mut mixing) = body.solve(&target, None);
+        let (mut variances, mut mixing) = body.solve(&target, common, None);
         if let Some(axes) = self.axes {
             let allowed = axes.deviations().map(|s| mixing_of(s * s));
             let both = if self.products.is_some() {
@@ -182,7 +190,7 @@ impl Statements {
             } else {
                 allowed
             };
-            (variances, mixing) = body.solve(&target, Some(both));
+            (variances, mixing) = body.solve(&target, common, Some(both));
         } else if target[3..].iter().all(Option::is_none) {
             warnings.push(StatementWarning::FixedAxes);
         }
@@ -193,24 +201,24 @@ impl Statements {
                 warnings.push(StatementWarning::Free { axis: j + 1 });
             }
         }
-        let roots = nominal.second_moments().roots();
-        let squares = std::array::from_fn(|k| {
-            // w = 4k²v + 2v².
-            let (square, half) = (roots.values()[k].powi(2), 0.5 * variances[k]);
-            if half > 0.0 { half / (square + (square * square + half).sqrt()) } else { 0.0 }
-        });
         let law =
             |problem: &dyn std::fmt::Display| StatementError::Law { problem: problem.to_string() };
-        let gaussian = GaussianRoots::new(roots, squares).map_err(|e| law(&e))?;
+        let (roots, root_deviations) = roots(nominal, variances, common).map_err(|e| law(&e))?;
         let axes = law_of_turns(body.attitude, turns).map_err(|e| law(&e))?;
-        let law = PrincipalDispersion::new(gaussian, axes);
+        let law = PrincipalDispersion::new(roots, axes);
         let implied = EntryMoments::of(&law);
         // “Within” is a limit: products that stated axes keep smaller are within it.
         let limited = self.axes.is_some();
-        let outcome =
-            StatementWarning::of_outcome(&stated, limited, &implied, nominal, law.roots(), trace);
-        warnings.extend(outcome);
-        Ok(StatedModel { nominal: *nominal, law, turns, stated, implied, warnings })
+        let model = StatedModel {
+            nominal: *nominal,
+            law,
+            root_deviations,
+            turns,
+            stated,
+            implied,
+            warnings,
+        };
+        Ok(StatedModel { warnings: StatementWarning::of_outcome(&model, limited), ..model })
     }
 
     /// Variances of the six entries from mass and from mass centre, if either is stated.
@@ -248,8 +256,15 @@ impl StatedModel {
 
     /// The law.
     #[must_use]
-    pub fn law(&self) -> &PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian> {
+    pub fn law(&self) -> &PrincipalDispersion<RootLaw, RadiallyConstrainedGaussian> {
         &self.law
+    }
+
+    /// Deviations of the roots of the second moments, √kg·m. Their means are those of the nominal
+    /// inertia.
+    #[must_use]
+    pub fn root_deviations(&self) -> [f64; 3] {
+        self.root_deviations
     }
 
     /// Standard deviations of the turns about principal axes 1, 2, 3, rad; infinite where nothing
@@ -276,6 +291,46 @@ impl StatedModel {
     pub fn warnings(&self) -> &[StatementWarning] {
         &self.warnings
     }
+}
+
+/// The variance of an entry.
+#[derive(Clone, Copy, Debug)]
+struct Target {
+    /// Without what a mass contributes to all.
+    rest: f64,
+    whole: f64,
+}
+
+/// Gaussian roots about a nominal body and their deviations, such that the second moments have the variances
+/// `independent` and the relative deviation `common` beside.
+fn roots(
+    nominal: &Inertia,
+    independent: [f64; 3],
+    common: f64,
+) -> Result<(RootLaw, [f64; 3]), Box<dyn std::error::Error>> {
+    let mean = nominal.second_moments().roots();
+    let k = mean.values();
+    // The variance v of a root: 4k²v + 2v² is that of its square.
+    let of_root = |square: f64, variance: f64| {
+        let half = 0.5 * variance;
+        if half > 0.0 { half / (square + (square * square + half).sqrt()) } else { 0.0 }
+    };
+    let shared = of_root(1.0, common * common);
+    let rest: [f64; 3] = std::array::from_fn(|i| {
+        if !(independent[i] > 0.0) {
+            return 0.0;
+        }
+        let square = k[i] * k[i];
+        let whole = of_root(square, independent[i] + (common * square).powi(2));
+        (whole - shared * square).max(0.0)
+    });
+    if common == 0.0 {
+        return Ok((GaussianRoots::new(mean, rest)?.into(), rest.map(f64::sqrt)));
+    }
+    let k = Vector3::from(k);
+    let covariance = k * k.transpose() * shared + Matrix3::from_diagonal(&Vector3::from(rest));
+    let deviations = covariance.diagonal().map(f64::sqrt).into();
+    Ok((CorrelatedRoots::new(mean, covariance)?.into(), deviations))
 }
 
 /// What a turn about a principal axis mixes.
@@ -319,20 +374,26 @@ impl Body {
         Self { attitude, shares, turns, zero: ZERO * trace }
     }
 
-    /// Variances of the second moments and the mixing u of the three turns, which may be given.
-    fn solve(&self, target: &[Option<f64>; 6], given: Option<[f64; 3]>) -> ([f64; 3], [f64; 3]) {
+    /// Variances of the second moments beside their common relative deviation, and the mixing u of the
+    /// three turns, which may be given.
+    fn solve(
+        &self,
+        target: &[Option<Target>; 6],
+        common: f64,
+        given: Option<[f64; 3]>,
+    ) -> ([f64; 3], [f64; 3]) {
         let (mut variances, mut mixing) = ([0.0; 3], given.unwrap_or([0.0; 3]));
         for _ in 0..ROUNDS {
             let squares: [f64; 3] = std::array::from_fn(|j| {
                 let scatter = variances[(j + 1) % 3] + variances[(j + 2) % 3];
-                self.turns[j].gap.powi(2) + scatter
+                self.turns[j].gap.powi(2) * (1.0 + common * common) + scatter
             });
             let mut a = SMatrix::<f64, 6, UNKNOWNS>::zeros();
             let mut b = SVector::<f64, 6>::zeros();
             for (e, target) in target.iter().enumerate() {
                 let Some(target) = target else { continue };
-                let unit = target.max(self.zero * self.zero);
-                b[e] = target / unit;
+                let unit = target.whole.max(self.zero * self.zero);
+                b[e] = target.rest / unit;
                 for k in 0..3 {
                     a[(e, k)] = self.shares[e][k] / unit;
                     let turned = self.turns[k].squares[e] * squares[k] / unit;

@@ -146,7 +146,22 @@ fn mass_scales_and_the_centre_adds_parallel_axes() {
     for (found, expected) in model.implied().deviations().iter().zip([50.0, 40.0, 30.0]) {
         assert!((found / expected - 1.0).abs() < 0.01, "{:?}", model.implied().deviations());
     }
-    assert!(model.warnings().contains(&StatementWarning::Together));
+    // All together: the body keeps its shape.
+    let covariance = model.implied().covariance();
+    for (e, f) in [(0, 1), (0, 2), (1, 2)] {
+        let scale = (covariance[(e, e)] * covariance[(f, f)]).sqrt();
+        assert!((covariance[(e, f)] / scale - 1.0).abs() < 1e-12);
+    }
+    // Tilted axes, and products of which more is said than the mass does: within 1 % of 50 kg·m².
+    let tilted = body([5000.0, 4000.0, 3000.0], [20.0, 2.0, -50.0]);
+    let with = Statements { mass, products: products(50.0, 1.0), ..Statements::default() };
+    let implied = with.model(&tilted, None).unwrap();
+    for (found, expected) in implied.implied().deviations().iter().zip([50.0, 40.0, 30.0]) {
+        assert!((found / expected - 1.0).abs() < 0.06, "{:?}", implied.implied().deviations());
+    }
+    for found in &implied.implied().deviations()[3..] {
+        assert!((found / 50.0 - 1.0).abs() < 0.03, "{:?}", implied.implied().deviations());
+    }
     let kg = Some(MassStatement::kg(100.0, 1.0).unwrap());
     let same = Statements { mass: kg, ..Statements::default() };
     assert!(matches!(same.model(&nominal, None), Err(StatementError::NoMass { .. })));

@@ -1,8 +1,7 @@
-use gyradius_inertia::Inertia;
 use std::fmt;
 
-use super::Part;
-use crate::{EntryMoments, GaussianRoots, fit::tail};
+use super::{Part, StatedModel};
+use crate::{RootMoments, fit::tail};
 
 /// Stated and implied deviations that differ by no more are the same.
 const AGREE: f64 = 0.1;
@@ -73,8 +72,6 @@ pub enum StatementWarning {
         /// The two axes, from 1.
         axes: [usize; 2],
     },
-    /// A mass moves all moments together, the model each for itself.
-    Together,
     /// Nothing is said of the moments.
     FixedMoments,
     /// Nothing is said of the axes.
@@ -88,15 +85,10 @@ pub enum StatementWarning {
 
 impl StatementWarning {
     /// What the outcome gives rise to.
-    pub(super) fn of_outcome(
-        stated: &[Option<f64>; 6],
-        products_limited: bool,
-        implied: &EntryMoments,
-        nominal: &Inertia,
-        roots: &GaussianRoots,
-        trace: f64,
-    ) -> Vec<Self> {
-        let mut warnings = Vec::new();
+    pub(super) fn of_outcome(model: &StatedModel, products_limited: bool) -> Vec<Self> {
+        let StatedModel { nominal, stated, implied, .. } = model;
+        let trace = nominal.matrix().trace();
+        let mut warnings = model.warnings.clone();
         let deviations = implied.deviations();
         for (entry, (stated, implied)) in stated.iter().zip(deviations).enumerate() {
             let within = entry >= 3 && products_limited && stated.is_some_and(|s| implied < s);
@@ -118,14 +110,17 @@ impl StatementWarning {
             }
         }
         for axis in 0..3 {
-            let ratio = roots.mean().values()[axis] / roots.deviations()[axis];
+            let root = nominal.second_moments().roots().values()[axis];
+            let ratio = root / model.root_deviations[axis];
             if ratio < FLAT {
                 warnings.push(Self::Flat { axis: axis + 1, ratio });
             }
         }
-        let (k, scatter) = (nominal.second_moments().values(), roots.second_moment_variances());
+        let k = nominal.second_moments().values();
+        let moments = model.law.roots().second_moment_statistics();
+        let (scatter, c) = (moments.variances(), moments.covariance());
         for [m, n] in [[0, 1], [0, 2], [1, 2]] {
-            if (k[m] - k[n]).abs() < (scatter[m] + scatter[n]).sqrt() {
+            if (k[m] - k[n]).abs() < (scatter[m] + scatter[n] - 2.0 * c[(m, n)]).sqrt() {
                 warnings.push(Self::EqualMoments { axes: [m + 1, n + 1] });
             }
         }
@@ -210,16 +205,12 @@ impl fmt::Display for StatementWarning {
                 "principal moments {a} and {b} differ by less than they scatter: which way the nominal \
                  body has these two axes means little, and the model keeps them there"
             ),
-            Self::Together => f.write_str(
-                "a mass moves all moments together; the model has their scatter about right one by one, \
-                 but moves each second moment by itself",
-            ),
             Self::FixedMoments => {
                 f.write_str("nothing is said of the moments: the second moments do not scatter")
             }
-            Self::FixedAxes => {
-                f.write_str("nothing is said of products or axes: the principal axes do not scatter")
-            }
+            Self::FixedAxes => f.write_str(
+                "nothing is said of products or axes: the principal axes do not scatter",
+            ),
             Self::Free { axis } => write!(
                 f,
                 "the turn about principal axis {axis} is taken to be uniform: the products stated allow \
