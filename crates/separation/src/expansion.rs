@@ -11,9 +11,10 @@ use smallvec::SmallVec;
 use std::f64::consts::LN_2;
 
 use crate::{
-    lanes::{Lanes, M3, Packing, V3, WIDTH, add, cross, dot, scale, sub, times},
-    products::{Factors, Products, Row, Term},
-    vector::{Four, Simd},
+    lanes::{Lanes, M3, Packing, WIDTH, add, scale, times},
+    products::{Coefficients, Products, Row, Term},
+    spring_series::SpringSeries,
+    vector::Simd,
 };
 
 /// Degree of the series of a state.
@@ -38,7 +39,7 @@ pub(crate) const STAGE_RATE: usize = 17;
 pub(crate) const INLINE_SPRINGS: usize = 8;
 
 /// 1/k.
-const INVERSE: [f64; TERMS] = {
+pub(crate) const INVERSE: [f64; TERMS] = {
     let mut inverse = [0.0; TERMS];
     let mut k = 1;
     while k < TERMS {
@@ -48,17 +49,6 @@ const INVERSE: [f64; TERMS] = {
     inverse
 };
 
-/// k/2.
-const HALVES: [f64; 2 * TERMS] = {
-    let mut halves = [0.0; 2 * TERMS];
-    let mut k = 1;
-    while k < 2 * TERMS {
-        halves[k] = 0.5 * k as f64;
-        k += 1;
-    }
-    halves
-};
-
 /// What a body resists torques with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rotor<const L: usize> {
@@ -66,38 +56,8 @@ pub(crate) struct Rotor<const L: usize> {
     pub(crate) inverse: M3<L>,
 }
 
-/// Parts of sums that make the coefficients of one order.
-#[derive(Clone, Copy, Debug)]
-struct Known {
-    square: Lanes<WIDTH>,
-    slope: Lanes<WIDTH>,
-    force: V3<WIDTH>,
-}
-
-/// As many springs as there are lanes, and their series.
-#[derive(Clone, Debug)]
-#[repr(align(64))]
-pub(crate) struct SpringSeries {
-    /// Zero where a spring no longer pushes.
-    pub(crate) stiffness: Lanes<WIDTH>,
-    pub(crate) free_length: Lanes<WIDTH>,
-    pub(crate) payload_point: V3<WIDTH>,
-    pub(crate) stage_point: V3<WIDTH>,
-    /// From stage point to payload point, s.
-    line: [V3<WIDTH>; TERMS],
-    /// s².
-    pub(crate) square: [Lanes<WIDTH>; TERMS],
-    /// 1/|s|.
-    inverse: [Lanes<WIDTH>; TERMS],
-    /// Force over length, k(L₀/|s| − 1).
-    push: [Lanes<WIDTH>; TERMS],
-    known: Known,
-    /// That none of them pushes any more.
-    lost: bool,
-    /// What s² stays below and above as far as the series is good.
-    pub(crate) upper: Lanes<WIDTH>,
-    pub(crate) lower: Lanes<WIDTH>,
-}
+/// What goes into products beside the state.
+type Of<const L: usize> = <Lanes<L> as Packing<L>>::Products;
 
 /// The series of a state and all that goes into it.
 #[derive(Clone, Debug)]
@@ -106,8 +66,7 @@ pub(crate) struct Expansion<const L: usize>
 where
     Lanes<L>: Packing<L>,
 {
-    pub(crate) state: [Row<L>; TERMS],
-    products: [<Lanes<L> as Packing<L>>::Products; TERMS],
+    pub(crate) terms: [Coefficients<Of<L>, L>; TERMS],
     pub(crate) springs: SmallVec<[SpringSeries; INLINE_SPRINGS / WIDTH]>,
     pub(crate) payload: Rotor<L>,
     pub(crate) stage: Rotor<L>,
@@ -127,128 +86,21 @@ where
     pub(crate) inverse_mass: Lanes<L>,
 }
 
-/// The part of a product's coefficient of order k that comes of those between the first and the
-/// newest: it waits for nothing. A macro, for closures are not sure to be inlined.
-macro_rules! known {
-    ($simd:expr, $term:path, $y:expr, $products:expr, $k:expr) => {{
-        let mut sum = Term::zero($simd);
-        if $k > 1 {
-            let (y, products) = (&$y[1..$k], &$products[1..$k]);
-            let other = y.iter().zip(products).rev();
-            for ((ya, a), (yb, b)) in y.iter().zip(products).zip(other) {
-                sum = Term::plus(sum, $term($simd, Factors(ya, a), Factors(yb, b)));
-            }
-        }
-        sum
-    }};
-}
-
-/// The rest of it.
-macro_rules! whole {
-    ($simd:expr, $known:expr, $term:path, $first:expr, $newest:expr) => {
-        Term::plus(
-            $known,
-            match $first {
-                Some(first) => {
-                    Term::plus($term($simd, first, $newest), $term($simd, $newest, first))
-                }
-                None => $term($simd, $newest, $newest),
-            },
-        )
-    };
+/// The coefficient of a product by Cauchy's rule, of the order that coefficients are given to. What
+/// waits for the newest of the second factor comes last.
+#[inline(always)]
+fn cauchy<S: Simd, T: Term<S>, C>(simd: S, of: &[C], term: impl Fn(S, &C, &C) -> T) -> T {
+    let mut sum = T::zero(simd);
+    for (a, b) in of.iter().rev().zip(of) {
+        sum = sum.plus(term(simd, a, b));
+    }
+    sum
 }
 
 /// A few neighbouring entries of a state.
 #[inline(always)]
 pub(crate) fn part<T: Copy, const N: usize>(state: &[T; STATE], at: usize) -> [T; N] {
     std::array::from_fn(|i| state[at + i])
-}
-
-impl SpringSeries {
-    pub(crate) fn new() -> Self {
-        let (zero, vector) = (Lanes::ZERO, [Lanes::ZERO; 3]);
-        Self {
-            stiffness: zero,
-            free_length: zero,
-            payload_point: vector,
-            stage_point: vector,
-            line: [vector; TERMS],
-            square: [zero; TERMS],
-            inverse: [zero; TERMS],
-            push: [zero; TERMS],
-            known: Known { square: zero, slope: zero, force: vector },
-            lost: true,
-            upper: zero,
-            lower: zero,
-        }
-    }
-
-    /// What goes into the coefficients of order k and waits for nothing.
-    #[inline(always)]
-    fn prepare<S: Simd>(&mut self, simd: S, k: usize) {
-        let load = |x: &Lanes<WIDTH>| Four::load(simd, x);
-        let zero = Four::splat(simd, 0.0);
-        let mut square = zero;
-        for j in 1..k.div_ceil(2) {
-            let ([x, y, z], [u, v, w]) = (&self.line[j], &self.line[k - j]);
-            square = square + (load(x) * load(u) + load(y) * load(v) + load(z) * load(w));
-        }
-        square = square + square;
-        if k > 0 && k.is_multiple_of(2) {
-            let [x, y, z] = &self.line[k / 2];
-            square = square + (load(x) * load(x) + load(y) * load(y) + load(z) * load(z));
-        }
-        self.known.square = square.store();
-        self.lost = self.stiffness.0.iter().all(|s| *s == 0.0);
-        let (mut slope, mut force) = (zero, [zero; 3]);
-        if k > 1 && !self.lost {
-            let weights = HALVES[k + 1..2 * k].iter().rev();
-            let known = self.square[1..k].iter().zip(self.inverse[1..k].iter().rev()).zip(weights);
-            let forces = self.push[1..k].iter().zip(self.line[1..k].iter().rev());
-            for (((s, u), weight), (push, [x, y, z])) in known.zip(forces) {
-                slope = slope + load(s) * load(u) * Four::splat(simd, *weight);
-                let push = load(push);
-                let [a, b, c] = force;
-                force = [a + load(x) * push, b + load(y) * push, c + load(z) * push];
-            }
-        }
-        self.known.slope = slope.store();
-        self.known.force = force.map(Four::store);
-    }
-
-    /// The coefficients of order k of the forces on the payload, zero once a spring is lost.
-    #[inline(always)]
-    fn expand(&mut self, k: usize, offset: &V3<WIDTH>, rotation: &M3<WIDTH>) -> V3<WIDTH> {
-        let mut line = sub(*offset, times(rotation, &self.stage_point));
-        if k == 0 {
-            line = add(line, self.payload_point);
-        }
-        self.line[k] = line;
-        let ends = dot(&self.line[0], &line);
-        let square = if k == 0 { ends } else { self.known.square + (ends + ends) };
-        self.square[k] = square;
-        if self.lost {
-            return [Lanes::ZERO; 3];
-        }
-        let one = Lanes::splat(1.0);
-        let inverse = if k == 0 {
-            // A lost spring may come to length zero.
-            self.stiffness.zip(one / square.sqrt(), |k, x| if k == 0.0 { 0.0 } else { x })
-        } else {
-            // u = (s²)^(−1/2): s² u' = −½ (s²)' u.
-            let u = self.inverse[0];
-            (self.known.slope + square * (u * HALVES[k])) * (u * u * -INVERSE[k])
-        };
-        self.inverse[k] = inverse;
-        let mut push = self.free_length * inverse;
-        if k == 0 {
-            push -= one;
-        }
-        let push = self.stiffness * push;
-        self.push[k] = push;
-        let ends = scale(self.line[0], push);
-        if k == 0 { ends } else { add(add(self.known.force, scale(line, self.push[0])), ends) }
-    }
 }
 
 impl<const L: usize> Expansion<L>
@@ -259,8 +111,7 @@ where
         let vector = [Lanes::ZERO; 3];
         let rotor = Rotor { inertia: [vector; 3], inverse: [vector; 3] };
         Self {
-            state: [[Lanes::ZERO; STATE]; TERMS],
-            products: [Products::ZERO; TERMS],
+            terms: [Coefficients { state: [Lanes::ZERO; STATE], products: Products::ZERO }; TERMS],
             springs: SmallVec::new(),
             payload: rotor,
             stage: rotor,
@@ -274,7 +125,7 @@ where
         }
     }
 
-    /// Expands the motion about the state in `state[0]`: this evaluates the equations of motion, for
+    /// Expands the motion about the state in `terms[0]`: this evaluates the equations of motion, for
     /// all coefficients at once.
     ///
     /// A lane stops at a low degree if a spring lets go before its series ceases to be good. Whether
@@ -284,36 +135,36 @@ where
         let top = self.expand_lanes(simd);
         for lane in 0..L {
             let beyond = self.order[lane] + 1..=top;
-            for row in &mut self.state[beyond] {
-                for x in row {
+            for term in &mut self.terms[beyond] {
+                for x in &mut term.state {
                     x.0[lane] = 0.0;
                 }
             }
             // Lanes differ where springs have the lanes of their runs.
             let beyond = self.order[lane]..top;
             for springs in &mut self.springs {
-                for square in &mut springs.square[beyond.clone()] {
-                    square.0[lane] = 0.0;
+                for term in &mut springs.terms[beyond.clone()] {
+                    term.square.0[lane] = 0.0;
                 }
             }
         }
-        self.end = self.state[top];
-        for row in self.state[..top].iter().rev() {
-            for (end, x) in self.end.iter_mut().zip(row) {
+        self.end = self.terms[top].state;
+        for term in self.terms[..top].iter().rev() {
+            for (end, x) in self.end.iter_mut().zip(&term.state) {
                 *end = *end * self.reach + *x;
             }
         }
         let reach = self.reach.spread();
         for springs in &mut self.springs {
             let (mut power, mut up, mut down) = (reach, Lanes::ZERO, Lanes::ZERO);
-            for square in &springs.square[1..top] {
-                let term = *square * power;
+            for term in &springs.terms[1..top] {
+                let term = term.square * power;
                 up += term.map(|x| if x > 0.0 { x } else { 0.0 });
                 down += term.map(|x| if x < 0.0 { x } else { 0.0 });
                 power = power * reach;
             }
-            springs.upper = springs.square[0] + up;
-            springs.lower = springs.square[0] + down;
+            springs.upper = springs.terms[0].square + up;
+            springs.lower = springs.terms[0].square + down;
         }
     }
 
@@ -362,8 +213,8 @@ where
         let time = time.spread();
         for springs in &self.springs {
             let mut sum = Lanes::ZERO;
-            for term in springs.square[..order].iter().rev() {
-                sum = sum * time + *term;
+            for term in springs.terms[..order].iter().rev() {
+                sum = sum * time + term.square;
             }
             let beyond = sum.zip(springs.free_length, |s, l| if s >= l * l { 1.0 } else { 0.0 });
             let pushes = springs.stiffness.map(|k| if k == 0.0 { 0.0 } else { 1.0 });
@@ -375,66 +226,41 @@ where
     /// From the coefficients up to k of the state to those of order k + 1.
     #[inline(always)]
     fn expand_once<S: Simd>(&mut self, simd: S, k: usize) {
-        type Of<const L: usize> = <Lanes<L> as Packing<L>>::Products;
-        let (y, (products, newest)) = (&mut self.state, self.products.split_at_mut(k));
-        let newest = &mut newest[0];
-        for springs in &mut self.springs {
-            springs.prepare(simd, k);
-        }
-        let squares = known!(simd, Of::<L>::squares, y, products, k);
-        let crosses = known!(simd, Of::<L>::crosses, y, products, k);
-        let gyration = known!(simd, Of::<L>::gyration, y, products, k);
-        let relative = known!(simd, Of::<L>::relative, y, products, k);
-        let attitude = known!(simd, Of::<L>::attitude, y, products, k);
-        let moment = known!(simd, Of::<L>::moment, y, products, k);
-        let torque = known!(simd, Of::<L>::torque, y, products, k);
-
-        let (y, next) = y.split_at_mut(k + 1);
-        let (row, next) = (&y[k], &mut next[0]);
+        let newest = &mut self.terms[k];
         let momenta = [
-            times(&self.payload.inertia, &part(row, PAYLOAD_RATE)),
-            times(&self.stage.inertia, &part(row, STAGE_RATE)),
+            times(&self.payload.inertia, &part(&newest.state, PAYLOAD_RATE)),
+            times(&self.stage.inertia, &part(&newest.state, STAGE_RATE)),
         ];
-        newest.set_motion(simd, row, &momenta);
-        let first = products.first().map(|first| Factors(&y[0], first));
-        let rotation = rotation(
-            &Of::<L>::of_squares(&whole!(
-                simd,
-                squares,
-                Of::<L>::squares,
-                first,
-                Factors(row, newest)
-            )),
-            k,
-        );
-        newest.set_rotation(simd, &rotation);
-        let (mut force, mut spring_torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
+        newest.products.set_motion(simd, &newest.state, &momenta);
+        let rotation = rotation(&squares(simd, &self.terms[..=k]), k);
+        let newest = &mut self.terms[k];
+        newest.products.set_rotation(simd, &rotation);
         let (arm, turn) = (
-            part::<_, 3>(row, OFFSET).map(Packing::spread),
+            part::<_, 3>(&newest.state, OFFSET).map(Packing::spread),
             rotation.map(|row| row.map(Packing::spread)),
         );
+        // Loops that wait for nothing between those that wait for what came last.
+        let terms = &mut self.terms[..=k];
+        let attitude = Of::<L>::of_turn(&cauchy(simd, terms, Of::<L>::attitude));
+        let (mut force, mut spring_torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
         for springs in &mut self.springs {
-            let push = springs.expand(k, &arm, &turn);
-            let moment = cross(&springs.payload_point, &push);
+            let Some([push, moment]) = springs.expand(simd, k, &arm, &turn) else { continue };
             force = std::array::from_fn(|i| force[i].collect(push[i]));
             spring_torque = std::array::from_fn(|i| spring_torque[i].collect(moment[i]));
         }
-        newest.set_force(simd, &force);
-        let moment =
-            Of::<L>::of_vector(&whole!(simd, moment, Of::<L>::moment, first, Factors(row, newest)));
-        newest.set_reaction(&add(moment, spring_torque).map(|x| -x));
-
-        let stage_torque =
-            Of::<L>::of_vector(&whole!(simd, torque, Of::<L>::torque, first, Factors(row, newest)));
-        let crosses = whole!(simd, crosses, Of::<L>::crosses, first, Factors(row, newest));
-        let gyration = whole!(simd, gyration, Of::<L>::gyration, first, Factors(row, newest));
+        terms[k].products.set_force(simd, &force);
+        let crosses = cauchy(simd, terms, Of::<L>::crosses);
+        let gyration = cauchy(simd, terms, Of::<L>::gyration);
+        let moment = Of::<L>::of_vector(&cauchy(simd, terms, Of::<L>::moment));
+        terms[k].products.set_reaction(&add(moment, spring_torque).map(|x| -x));
+        let relative = Of::<L>::of_turn(&cauchy(simd, terms, Of::<L>::relative));
+        let stage_torque = Of::<L>::of_vector(&cauchy(simd, terms, Of::<L>::torque));
         let [offset, velocity, payload_turn, stage_turn] = Of::<L>::of_crosses(&crosses, &gyration);
-        let relative = whole!(simd, relative, Of::<L>::relative, first, Factors(row, newest));
-        let attitude = whole!(simd, attitude, Of::<L>::attitude, first, Factors(row, newest));
-        let [relative, attitude] = [relative, attitude].map(|x| Of::<L>::of_turn(&x));
 
+        let velocity_now = part(&terms[k].state, VELOCITY);
         let step = INVERSE[k + 1];
-        put(next, OFFSET, &add(part(row, VELOCITY), offset), step);
+        let next = &mut self.terms[k + 1].state;
+        put(next, OFFSET, &add(velocity_now, offset), step);
         put(next, VELOCITY, &add(scale(force, self.inverse_mass), velocity), step);
         put(next, RELATIVE, &relative, 0.5 * step);
         put(next, ATTITUDE, &attitude, 0.5 * step);
@@ -451,7 +277,7 @@ where
         let (mut last, mut previous) = (Lanes::ZERO, Lanes::ZERO);
         // NaN stays, which `f64::max` would pass over.
         let larger = |m: f64, x: f64| if x.abs() <= m { m } else { x.abs() };
-        let rows = self.state[order].iter().zip(&self.state[order - 1]);
+        let rows = self.terms[order].state.iter().zip(&self.terms[order - 1].state);
         for ((x, y), scale) in rows.zip(&self.inverse_scale) {
             last = last.zip(*x * *scale, larger);
             previous = previous.zip(*y * *scale, larger);
@@ -490,6 +316,25 @@ fn put<const N: usize, const L: usize>(
     for (x, v) in row[at..at + N].iter_mut().zip(values) {
         *x = *v * factor;
     }
+}
+
+/// The coefficients of order k of squares of the quaternion from stage to payload.
+#[inline(always)]
+fn squares<S: Simd, const L: usize>(simd: S, terms: &[Coefficients<Of<L>, L>]) -> [Lanes<L>; 9]
+where
+    Lanes<L>: Packing<L>,
+{
+    let half = terms.len() / 2;
+    let (low, high) = (&terms[..half], &terms[terms.len() - half..]);
+    let mut pairs = Term::zero(simd);
+    for (a, b) in low.iter().zip(high.iter().rev()) {
+        pairs = Term::plus(pairs, Of::<L>::squares(simd, a, b));
+    }
+    let own = match terms.len() % 2 {
+        0 => Term::zero(simd),
+        _ => Of::<L>::own_squares(simd, &terms[half]),
+    };
+    Of::<L>::of_squares(&pairs, &own)
 }
 
 /// The rotation matrix, from the coefficients of order k of squares of the quaternion.

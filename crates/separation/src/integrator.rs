@@ -3,10 +3,11 @@ use std::borrow::Borrow;
 
 use crate::{
     Outcome, RunError, Separation, Settings, Spring,
-    expansion::{Expansion, INLINE_SPRINGS, ORDER, Rotor, STATE, STOPS, SpringSeries, TERMS},
+    expansion::{Expansion, INLINE_SPRINGS, ORDER, Rotor, STATE, STOPS, TERMS},
     lanes::{Lanes, M3, Packing},
     polynomial::first_zero,
     separation::TOUCHING,
+    spring_series::SpringSeries,
     state::{self, State},
     vector,
 };
@@ -204,17 +205,17 @@ where
 
     /// The series about the state that a lane is in.
     pub(crate) fn series(&self, lane: usize) -> [State; TERMS] {
-        let mut series = self.expansion.state.map(|row| row.map(|x| x.0[lane]));
+        let mut series = self.expansion.terms.map(|term| term.state.map(|x| x.0[lane]));
         series[self.expansion.order[lane] + 1..].fill([0.0; STATE]);
         series
     }
 
     pub(crate) fn state(&self, lane: usize) -> State {
-        std::array::from_fn(|i| self.expansion.state[0][i].0[lane])
+        std::array::from_fn(|i| self.expansion.terms[0].state[i].0[lane])
     }
 
     fn set_state(&mut self, lane: usize, state: &State) {
-        for (to, from) in self.expansion.state[0].iter_mut().zip(state) {
+        for (to, from) in self.expansion.terms[0].state.iter_mut().zip(state) {
             to.0[lane] = *from;
         }
     }
@@ -339,8 +340,8 @@ where
         let free = series.free_length.0[lane];
         let mut power = sign;
         let mut gap = [0.0; ORDER];
-        for (term, square) in gap.iter_mut().zip(&series.square[..order]) {
-            *term = square.0[lane] * power;
+        for (term, of) in gap.iter_mut().zip(&series.terms[..order]) {
+            *term = of.square.0[lane] * power;
             power *= h;
         }
         gap[0] -= sign * free * free + offset;
@@ -349,8 +350,8 @@ where
 
     fn at(&self, lane: usize, time: f64) -> State {
         let mut sum = [0.0; STATE];
-        for row in self.expansion.state[..=self.expansion.order[lane]].iter().rev() {
-            for (s, x) in sum.iter_mut().zip(row) {
+        for term in self.expansion.terms[..=self.expansion.order[lane]].iter().rev() {
+            for (s, x) in sum.iter_mut().zip(&term.state) {
                 *s = *s * time + x.0[lane];
             }
         }

@@ -56,6 +56,7 @@ mod separation;
 mod settings;
 mod snapshot;
 mod spring;
+mod spring_series;
 mod state;
 mod trajectory;
 mod vector;

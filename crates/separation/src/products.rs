@@ -33,12 +33,13 @@ impl<const N: usize, S: Simd> Term<S> for [Four<S>; N] {
     }
 }
 
-/// Coefficients of one order: of a state, and of what else goes into products.
+/// The coefficients of one order: of a state, and of what else goes into products.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Factors<'a, P: Products<L>, const L: usize>(
-    pub(crate) &'a Row<L>,
-    pub(crate) &'a P,
-);
+#[repr(align(32))]
+pub(crate) struct Coefficients<P, const L: usize> {
+    pub(crate) state: Row<L>,
+    pub(crate) products: P,
+}
 
 /// Coefficients of one order of what is not in the state, and the terms they make.
 pub(crate) trait Products<const L: usize>: Copy + Debug {
@@ -58,33 +59,35 @@ pub(crate) trait Products<const L: usize>: Copy + Debug {
     /// On the stage, −(ρ × F + T), payload axes.
     fn set_reaction(&mut self, reaction: &V3<L>);
 
-    /// Of the quaternion from stage to payload.
-    fn squares<S: Simd>(s: S, a: Factors<'_, Self, L>, b: Factors<'_, Self, L>)
+    /// Of the quaternion from stage to payload: of two orders, either way round.
+    fn squares<S: Simd>(s: S, a: &Coefficients<Self, L>, b: &Coefficients<Self, L>)
     -> Self::Squares<S>;
+    /// Of one order by itself.
+    fn own_squares<S: Simd>(s: S, a: &Coefficients<Self, L>) -> Self::Squares<S>;
     /// xx, yy, zz, xy, xz, yz, xw, yw, zw.
-    fn of_squares<S: Simd>(sum: &Self::Squares<S>) -> [Lanes<L>; 9];
+    fn of_squares<S: Simd>(pairs: &Self::Squares<S>, own: &Self::Squares<S>) -> [Lanes<L>; 9];
 
     /// 2q̇ of the quaternion from stage to payload, q ∘ ω_L − ω_P ∘ q, by ω_L − ω_P and ω_L + ω_P.
-    fn relative<S: Simd>(s: S, a: Factors<'_, Self, L>, b: Factors<'_, Self, L>) -> Self::Turn<S>;
+    fn relative<S: Simd>(s: S, a: &Coefficients<Self, L>, b: &Coefficients<Self, L>) -> Self::Turn<S>;
     /// 2q̇ of the quaternion from payload to inertial, q ∘ ω_P.
-    fn attitude<S: Simd>(s: S, a: Factors<'_, Self, L>, b: Factors<'_, Self, L>) -> Self::Turn<S>;
+    fn attitude<S: Simd>(s: S, a: &Coefficients<Self, L>, b: &Coefficients<Self, L>) -> Self::Turn<S>;
     fn of_turn<S: Simd>(sum: &Self::Turn<S>) -> [Lanes<L>; 4];
 
     /// Offset and velocity, each × the rate of its axes.
-    fn crosses<S: Simd>(s: S, a: Factors<'_, Self, L>, b: Factors<'_, Self, L>)
+    fn crosses<S: Simd>(s: S, a: &Coefficients<Self, L>, b: &Coefficients<Self, L>)
     -> Self::Crosses<S>;
     /// The angular momenta, each × the rate of its axes, if not among the former.
     fn gyration<S: Simd>(
         s: S,
-        a: Factors<'_, Self, L>,
-        b: Factors<'_, Self, L>,
+        a: &Coefficients<Self, L>,
+        b: &Coefficients<Self, L>,
     ) -> Self::Gyration<S>;
     fn of_crosses<S: Simd>(first: &Self::Crosses<S>, second: &Self::Gyration<S>) -> [V3<L>; 4];
 
     /// ρ × F.
-    fn moment<S: Simd>(s: S, a: Factors<'_, Self, L>, b: Factors<'_, Self, L>) -> Self::Vector<S>;
+    fn moment<S: Simd>(s: S, a: &Coefficients<Self, L>, b: &Coefficients<Self, L>) -> Self::Vector<S>;
     /// The reaction in stage axes.
-    fn torque<S: Simd>(s: S, a: Factors<'_, Self, L>, b: Factors<'_, Self, L>) -> Self::Vector<S>;
+    fn torque<S: Simd>(s: S, a: &Coefficients<Self, L>, b: &Coefficients<Self, L>) -> Self::Vector<S>;
     fn of_vector<S: Simd>(sum: &Self::Vector<S>) -> V3<L>;
 }
 
@@ -118,7 +121,7 @@ pub(crate) struct Abreast {
     reaction: V3<WIDTH>,
 }
 
-type Pair<'a> = Factors<'a, Abreast, WIDTH>;
+type Pair = Coefficients<Abreast, WIDTH>;
 
 impl Products<WIDTH> for Abreast {
     type Squares<S: Simd> = [Four<S>; 9];
@@ -154,60 +157,80 @@ impl Products<WIDTH> for Abreast {
     }
 
     #[inline(always)]
-    fn squares<S: Simd>(s: S, a: Pair<'_>, b: Pair<'_>) -> Self::Squares<S> {
-        let [x, y, z] = load_part(s, a.0, RELATIVE);
-        let [bx, by, bz, bw] = load_part(s, b.0, RELATIVE);
-        [x * bx, y * by, z * bz, x * by, x * bz, y * bz, x * bw, y * bw, z * bw]
+    fn squares<S: Simd>(s: S, a: &Pair, b: &Pair) -> Self::Squares<S> {
+        let [x, y, z, w] = load_part(s, &a.state, RELATIVE);
+        let [bx, by, bz, bw] = load_part(s, &b.state, RELATIVE);
+        [
+            x * bx,
+            y * by,
+            z * bz,
+            x * by + bx * y,
+            x * bz + bx * z,
+            y * bz + by * z,
+            x * bw + bx * w,
+            y * bw + by * w,
+            z * bw + bz * w,
+        ]
     }
 
     #[inline(always)]
-    fn of_squares<S: Simd>(sum: &Self::Squares<S>) -> [Lanes<WIDTH>; 9] {
-        sum.map(Four::store)
+    fn own_squares<S: Simd>(s: S, a: &Pair) -> Self::Squares<S> {
+        let [x, y, z, w] = load_part(s, &a.state, RELATIVE);
+        [x * x, y * y, z * z, x * y, x * z, y * z, x * w, y * w, z * w]
     }
 
     #[inline(always)]
-    fn relative<S: Simd>(simd: S, a: Pair<'_>, b: Pair<'_>) -> Self::Turn<S> {
-        let [x, y, z, w] = load_part(simd, a.0, RELATIVE);
-        let l: [Four<S>; 3] = load_part(simd, b.0, STAGE_RATE);
-        let p: [Four<S>; 3] = load_part(simd, b.0, PAYLOAD_RATE);
+    fn of_squares<S: Simd>(pairs: &Self::Squares<S>, own: &Self::Squares<S>) -> [Lanes<WIDTH>; 9] {
+        // Doubling is exact, whenever it is done.
+        let sum = |i: usize| if i < 3 { pairs[i] + pairs[i] } else { pairs[i] };
+        std::array::from_fn(|i| (sum(i) + own[i]).store())
+    }
+
+    #[inline(always)]
+    fn relative<S: Simd>(simd: S, a: &Pair, b: &Pair) -> Self::Turn<S> {
+        let [x, y, z, w] = load_part(simd, &a.state, RELATIVE);
+        let l: [Four<S>; 3] = load_part(simd, &b.state, STAGE_RATE);
+        let p: [Four<S>; 3] = load_part(simd, &b.state, PAYLOAD_RATE);
         let (d, s) = ([0, 1, 2].map(|i| l[i] - p[i]), [0, 1, 2].map(|i| l[i] + p[i]));
         [
             y * s[2] + (w * d[0] - z * s[1]),
             (z * s[0] + w * d[1]) - x * s[2],
             (x * s[1] - y * s[0]) + w * d[2],
-            -(x * d[0] + y * d[1]) - z * d[2],
+            (x * d[0] + y * d[1]) + z * d[2],
         ]
     }
 
     #[inline(always)]
-    fn attitude<S: Simd>(s: S, a: Pair<'_>, b: Pair<'_>) -> Self::Turn<S> {
-        let [i, j, k, r] = load_part(s, a.0, ATTITUDE);
-        let [u, v, t] = load_part(s, b.0, PAYLOAD_RATE);
+    fn attitude<S: Simd>(s: S, a: &Pair, b: &Pair) -> Self::Turn<S> {
+        let [i, j, k, r] = load_part(s, &a.state, ATTITUDE);
+        let [u, v, t] = load_part(s, &b.state, PAYLOAD_RATE);
         [
             (u * r - v * k) + t * j,
             (u * k + v * r) - t * i,
             (v * i - u * j) + t * r,
-            -(u * i + v * j) - t * k,
+            (u * i + v * j) + t * k,
         ]
     }
 
     #[inline(always)]
     fn of_turn<S: Simd>(sum: &Self::Turn<S>) -> [Lanes<WIDTH>; 4] {
-        sum.map(Four::store)
+        let [x, y, z, w] = sum.map(Four::store);
+        // The sign was left out.
+        [x, y, z, Lanes::ZERO - w]
     }
 
     #[inline(always)]
-    fn crosses<S: Simd>(s: S, a: Pair<'_>, b: Pair<'_>) -> Self::Crosses<S> {
-        let rate = load_part(s, b.0, PAYLOAD_RATE);
-        let [x, y, z] = cross(&load_part(s, a.0, OFFSET), &rate);
-        let [u, v, w] = cross(&load_part(s, a.0, VELOCITY), &rate);
+    fn crosses<S: Simd>(s: S, a: &Pair, b: &Pair) -> Self::Crosses<S> {
+        let rate = load_part(s, &b.state, PAYLOAD_RATE);
+        let [x, y, z] = cross(&load_part(s, &a.state, OFFSET), &rate);
+        let [u, v, w] = cross(&load_part(s, &a.state, VELOCITY), &rate);
         [x, y, z, u, v, w]
     }
 
     #[inline(always)]
-    fn gyration<S: Simd>(s: S, a: Pair<'_>, b: Pair<'_>) -> Self::Gyration<S> {
-        let [x, y, z] = cross(&load(s, &a.1.momenta[0]), &load_part(s, b.0, PAYLOAD_RATE));
-        let [u, v, w] = cross(&load(s, &a.1.momenta[1]), &load_part(s, b.0, STAGE_RATE));
+    fn gyration<S: Simd>(s: S, a: &Pair, b: &Pair) -> Self::Gyration<S> {
+        let [x, y, z] = cross(&load(s, &a.products.momenta[0]), &load_part(s, &b.state, PAYLOAD_RATE));
+        let [u, v, w] = cross(&load(s, &a.products.momenta[1]), &load_part(s, &b.state, STAGE_RATE));
         [x, y, z, u, v, w]
     }
 
@@ -219,13 +242,13 @@ impl Products<WIDTH> for Abreast {
     }
 
     #[inline(always)]
-    fn moment<S: Simd>(s: S, a: Pair<'_>, b: Pair<'_>) -> Self::Vector<S> {
-        cross(&load_part(s, a.0, OFFSET), &load(s, &b.1.force))
+    fn moment<S: Simd>(s: S, a: &Pair, b: &Pair) -> Self::Vector<S> {
+        cross(&load_part(s, &a.state, OFFSET), &load(s, &b.products.force))
     }
 
     #[inline(always)]
-    fn torque<S: Simd>(s: S, a: Pair<'_>, b: Pair<'_>) -> Self::Vector<S> {
-        let (m, v) = (&a.1.rotation, load(s, &b.1.reaction));
+    fn torque<S: Simd>(s: S, a: &Pair, b: &Pair) -> Self::Vector<S> {
+        let (m, v) = (&a.products.rotation, load(s, &b.products.reaction));
         let [x, y, z] = [load(s, &m[0]), load(s, &m[1]), load(s, &m[2])];
         std::array::from_fn(|i| x[i] * v[0] + y[i] * v[1] + z[i] * v[2])
     }
@@ -256,7 +279,7 @@ pub(crate) struct Alone {
     reaction: V3<1>,
 }
 
-type One<'a> = Factors<'a, Alone, 1>;
+type One = Coefficients<Alone, 1>;
 
 /// Numbers to be loaded together are stored together, which the machine wants.
 #[inline(always)]
@@ -330,26 +353,34 @@ impl Products<1> for Alone {
     }
 
     #[inline(always)]
-    fn squares<S: Simd>(s: S, a: One<'_>, b: One<'_>) -> Self::Squares<S> {
-        let q = Four::load(s, &b.1.relative);
-        broad::<3, S>(s, a.0, RELATIVE).map(|x| x * q)
+    fn squares<S: Simd>(s: S, a: &One, b: &One) -> Self::Squares<S> {
+        let [p, q] = load(s, &[a.products.relative, b.products.relative]);
+        let (x, y) = (broad::<3, S>(s, &a.state, RELATIVE), broad::<3, S>(s, &b.state, RELATIVE));
+        std::array::from_fn(|i| x[i] * q + y[i] * p)
     }
 
     #[inline(always)]
-    fn of_squares<S: Simd>(sum: &Self::Squares<S>) -> [Lanes<1>; 9] {
+    fn own_squares<S: Simd>(s: S, a: &One) -> Self::Squares<S> {
+        let q = Four::load(s, &a.products.relative);
+        broad::<3, S>(s, &a.state, RELATIVE).map(|x| x * q)
+    }
+
+    #[inline(always)]
+    fn of_squares<S: Simd>(pairs: &Self::Squares<S>, own: &Self::Squares<S>) -> [Lanes<1>; 9] {
+        let sum = pairs.plus(*own);
         let [[xx, xy, xz, xw], [_, yy, yz, yw], [_, _, zz, zw]] = sum.map(|x| x.store().0);
         [xx, yy, zz, xy, xz, yz, xw, yw, zw].map(|x| Lanes([x]))
     }
 
     #[inline(always)]
-    fn relative<S: Simd>(s: S, a: One<'_>, b: One<'_>) -> Self::Turn<S> {
-        let ([x, y, z, w], turn) = (broad(s, a.0, RELATIVE), load(s, &b.1.turn));
+    fn relative<S: Simd>(s: S, a: &One, b: &One) -> Self::Turn<S> {
+        let ([x, y, z, w], turn) = (broad(s, &a.state, RELATIVE), load(s, &b.products.turn));
         [(x * turn[0] + y * turn[1]) + (z * turn[2] + w * turn[3])]
     }
 
     #[inline(always)]
-    fn attitude<S: Simd>(s: S, a: One<'_>, b: One<'_>) -> Self::Turn<S> {
-        let ([u, v, t], q) = (broad(s, b.0, PAYLOAD_RATE), load(s, &a.1.attitude));
+    fn attitude<S: Simd>(s: S, a: &One, b: &One) -> Self::Turn<S> {
+        let ([u, v, t], q) = (broad(s, &b.state, PAYLOAD_RATE), load(s, &a.products.attitude));
         [(u * q[0] + v * q[1]) + t * q[2]]
     }
 
@@ -359,12 +390,12 @@ impl Products<1> for Alone {
     }
 
     #[inline(always)]
-    fn crosses<S: Simd>(s: S, a: One<'_>, b: One<'_>) -> Self::Crosses<S> {
-        cross(&load(s, &a.1.carried), &load(s, &b.1.rates))
+    fn crosses<S: Simd>(s: S, a: &One, b: &One) -> Self::Crosses<S> {
+        cross(&load(s, &a.products.carried), &load(s, &b.products.rates))
     }
 
     #[inline(always)]
-    fn gyration<S: Simd>(_: S, _: One<'_>, _: One<'_>) -> Self::Gyration<S> {
+    fn gyration<S: Simd>(_: S, _: &One, _: &One) -> Self::Gyration<S> {
         []
     }
 
@@ -375,15 +406,15 @@ impl Products<1> for Alone {
     }
 
     #[inline(always)]
-    fn moment<S: Simd>(s: S, a: One<'_>, b: One<'_>) -> Self::Vector<S> {
-        let (offset, force) = (load(s, &a.1.offset), load(s, &b.1.force));
+    fn moment<S: Simd>(s: S, a: &One, b: &One) -> Self::Vector<S> {
+        let (offset, force) = (load(s, &a.products.offset), load(s, &b.products.force));
         [offset[0] * force[1] - offset[1] * force[0]]
     }
 
     #[inline(always)]
-    fn torque<S: Simd>(s: S, a: One<'_>, b: One<'_>) -> Self::Vector<S> {
-        let [x, y, z] = b.1.reaction.map(|x| Four::splat(s, x.0[0]));
-        let rows = load(s, &a.1.rotation);
+    fn torque<S: Simd>(s: S, a: &One, b: &One) -> Self::Vector<S> {
+        let [x, y, z] = b.products.reaction.map(|x| Four::splat(s, x.0[0]));
+        let rows = load(s, &a.products.rotation);
         [rows[0] * x + rows[1] * y + rows[2] * z]
     }
 

@@ -1,0 +1,186 @@
+//! The series of springs, as many at a time as there are lanes: of a run alone side by side, of runs
+//! abreast one of each.
+
+use crate::{
+    expansion::{INVERSE, TERMS},
+    lanes::{Lanes, M3, V3, WIDTH},
+    vector::{Four, Simd},
+};
+
+/// k/4.
+const QUARTERS: [f64; 4 * TERMS] = {
+    let mut quarters = [0.0; 4 * TERMS];
+    let mut k = 1;
+    while k < 4 * TERMS {
+        quarters[k] = 0.25 * k as f64;
+        k += 1;
+    }
+    quarters
+};
+
+/// Coefficients of one order.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpringTerm {
+    /// From stage point to payload point, s.
+    line: V3<WIDTH>,
+    /// s².
+    pub(crate) square: Lanes<WIDTH>,
+    /// k L₀/|s|: less k, the force over the length.
+    push: Lanes<WIDTH>,
+}
+
+/// As many springs as there are lanes, and their series.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub(crate) struct SpringSeries {
+    pub(crate) terms: [SpringTerm; TERMS],
+    /// Zero where a spring no longer pushes.
+    pub(crate) stiffness: Lanes<WIDTH>,
+    pub(crate) free_length: Lanes<WIDTH>,
+    pub(crate) payload_point: V3<WIDTH>,
+    pub(crate) stage_point: V3<WIDTH>,
+    /// What s² stays below and above as far as the series is good.
+    pub(crate) upper: Lanes<WIDTH>,
+    pub(crate) lower: Lanes<WIDTH>,
+    /// Force over the length, of order 0.
+    first_push: Lanes<WIDTH>,
+    /// 1/s² of order 0, zero for springs that do not push.
+    inverse_square: Lanes<WIDTH>,
+    /// That none of them pushes any more.
+    lost: bool,
+}
+
+#[inline(always)]
+fn load<const N: usize, S: Simd>(simd: S, x: &[Lanes<WIDTH>; N]) -> [Four<S>; N] {
+    std::array::from_fn(|i| Four::load(simd, &x[i]))
+}
+
+#[inline(always)]
+fn dot<S: Simd>(a: &[Four<S>; 3], b: &[Four<S>; 3]) -> Four<S> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+impl SpringSeries {
+    pub(crate) fn new() -> Self {
+        let (zero, vector) = (Lanes::ZERO, [Lanes::ZERO; 3]);
+        Self {
+            terms: [SpringTerm { line: vector, square: zero, push: zero }; TERMS],
+            stiffness: zero,
+            free_length: zero,
+            payload_point: vector,
+            stage_point: vector,
+            upper: zero,
+            lower: zero,
+            first_push: zero,
+            inverse_square: zero,
+            lost: true,
+        }
+    }
+
+    /// The coefficients of order k of the forces on the payload, and of their moments about its mass
+    /// centre; none if all springs are lost. From those of where the stage's mass centre is and of the
+    /// rotation from stage to payload.
+    #[inline(always)]
+    pub(crate) fn expand<S: Simd>(
+        &mut self,
+        simd: S,
+        k: usize,
+        offset: &V3<WIDTH>,
+        rotation: &M3<WIDTH>,
+    ) -> Option<[V3<WIDTH>; 2]> {
+        if k == 0 {
+            self.lost = self.stiffness.0.iter().all(|s| *s == 0.0);
+        }
+        let (square, slope, force) = self.known(simd, k);
+        let (offset, stage_point) = (load(simd, offset), load(simd, &self.stage_point));
+        let payload_point = load(simd, &self.payload_point);
+        let mut line: [_; 3] =
+            std::array::from_fn(|i| offset[i] - dot(&load(simd, &rotation[i]), &stage_point));
+        if k == 0 {
+            line = std::array::from_fn(|i| line[i] + payload_point[i]);
+        }
+        self.terms[k].line = line.map(Four::store);
+        let first = load(simd, &self.terms[0].line);
+        let ends = dot(&first, &line);
+        let square = if k == 0 { ends } else { square + (ends + ends) };
+        self.terms[k].square = square.store();
+        if self.lost {
+            return None;
+        }
+        let force = if k == 0 {
+            self.start();
+            let push = Four::load(simd, &self.first_push);
+            line.map(|x| x * push)
+        } else {
+            // u = (s²)^(−1/2): s² u' = −½ (s²)' u.
+            let u = Four::load(simd, &self.terms[0].push);
+            let factor = Four::load(simd, &self.inverse_square) * Four::splat(simd, -INVERSE[k]);
+            let push = (slope + square * (u * Four::splat(simd, QUARTERS[2 * k]))) * factor;
+            self.terms[k].push = push.store();
+            let before = Four::load(simd, &self.first_push);
+            std::array::from_fn(|i| (force[i] + line[i] * before) + first[i] * push)
+        };
+        let [x, y, z] = force;
+        let [a, b, c] = payload_point;
+        let moment = [b * z - c * y, c * x - a * z, a * y - b * x];
+        Some([force.map(Four::store), moment.map(Four::store)])
+    }
+
+    /// What goes into the coefficients of order k of s², of the force and of the slope that the push
+    /// is found from, and waits for nothing.
+    #[inline(always)]
+    fn known<S: Simd>(&self, simd: S, k: usize) -> (Four<S>, Four<S>, [Four<S>; 3]) {
+        let zero = Four::splat(simd, 0.0);
+        let (mut square, mut slope, mut force) = (zero, zero, [zero; 3]);
+        if k < 2 {
+            return (square, slope, force);
+        }
+        let terms = &self.terms[1..k];
+        let pairs = terms.len() / 2;
+        let (low, high) = (&terms[..pairs], &terms[terms.len() - pairs..]);
+        if self.lost {
+            for i in 0..pairs {
+                let (a, b) = (&low[i], &high[pairs - 1 - i]);
+                square = square + dot(&load(simd, &a.line), &load(simd, &b.line));
+            }
+        } else {
+            // Of order j: (2k − j)/2, and of order k − j.
+            let (down, up) = (&QUARTERS[4 * k - 2 * pairs..4 * k], &QUARTERS[2 * k..4 * k]);
+            for i in 0..pairs {
+                let (a, b) = (&low[i], &high[pairs - 1 - i]);
+                let (line, other) = (load(simd, &a.line), load(simd, &b.line));
+                square = square + dot(&line, &other);
+                let [push, pushed] = load(simd, &[a.push, b.push]);
+                force = std::array::from_fn(|x| force[x] + (push * other[x] + pushed * line[x]));
+                let weights = [down[down.len() - 2 - 2 * i], up[2 * i + 2]];
+                let [heavy, light] = weights.map(|w| Four::splat(simd, w));
+                let [s, t] = load(simd, &[a.square, b.square]);
+                slope = slope + (s * pushed * heavy + t * push * light);
+            }
+        }
+        square = square + square;
+        if terms.len() % 2 == 1 {
+            let middle = &terms[pairs];
+            let line = load(simd, &middle.line);
+            square = square + dot(&line, &line);
+            if !self.lost {
+                let push = Four::load(simd, &middle.push);
+                force = std::array::from_fn(|x| force[x] + push * line[x]);
+                let weight = Four::splat(simd, QUARTERS[3 * k]);
+                slope = slope + Four::load(simd, &middle.square) * push * weight;
+            }
+        }
+        (square, slope, force)
+    }
+
+    /// The pushes of order 0.
+    #[inline(always)]
+    fn start(&mut self) {
+        // A lost spring may come to length zero.
+        let of = |x: Lanes<WIDTH>| self.stiffness.zip(x, |k, x| if k == 0.0 { 0.0 } else { x });
+        let inverse = of(Lanes::splat(1.0) / self.terms[0].square.sqrt());
+        self.inverse_square = inverse * inverse;
+        self.terms[0].push = self.stiffness * (self.free_length * inverse);
+        self.first_push = self.stiffness * (self.free_length * inverse - Lanes::splat(1.0));
+    }
+}
