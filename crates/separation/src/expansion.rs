@@ -148,11 +148,14 @@ where
                 }
             }
         }
-        self.end = self.terms[top].state;
-        for term in self.terms[..top].iter().rev() {
-            for (end, x) in self.end.iter_mut().zip(&term.state) {
-                *end = *end * self.reach + *x;
+        // As many sums at a time as there are registers for.
+        const SUMS: usize = STATE / 2;
+        for at in [0, SUMS] {
+            let mut sum: [_; SUMS] = part(&self.terms[top].state, at);
+            for term in self.terms[..top].iter().rev() {
+                sum = std::array::from_fn(|i| sum[i] * self.reach + term.state[at + i]);
             }
+            self.end[at..at + SUMS].copy_from_slice(&sum);
         }
         let reach = self.reach.spread();
         for springs in &mut self.springs {
@@ -227,11 +230,7 @@ where
     #[inline(always)]
     fn expand_once<S: Simd>(&mut self, simd: S, k: usize) {
         let newest = &mut self.terms[k];
-        let momenta = [
-            times(&self.payload.inertia, &part(&newest.state, PAYLOAD_RATE)),
-            times(&self.stage.inertia, &part(&newest.state, STAGE_RATE)),
-        ];
-        newest.products.set_motion(simd, &newest.state, &momenta);
+        newest.products.set_motion(simd, &newest.state);
         let rotation = rotation(&squares(simd, &self.terms[..=k]), k);
         let newest = &mut self.terms[k];
         newest.products.set_rotation(simd, &rotation);
@@ -242,6 +241,12 @@ where
         // Loops that wait for nothing between those that wait for what came last.
         let terms = &mut self.terms[..=k];
         let attitude = Of::<L>::of_turn(&cauchy(simd, terms, Of::<L>::attitude));
+        let newest = &mut terms[k];
+        let momenta = [
+            times(&self.payload.inertia, &part(&newest.state, PAYLOAD_RATE)),
+            times(&self.stage.inertia, &part(&newest.state, STAGE_RATE)),
+        ];
+        newest.products.set_momenta(simd, &newest.state, &momenta);
         let (mut force, mut spring_torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
         for springs in &mut self.springs {
             let Some([push, moment]) = springs.expand(simd, k, &arm, &turn) else { continue };

@@ -50,8 +50,10 @@ pub(crate) trait Products<const L: usize>: Copy + Debug {
     type Vector<S: Simd>: Term<S>;
 
     const ZERO: Self;
-    /// From the state and the angular momenta about the mass centres, body axes.
-    fn set_motion<S: Simd>(&mut self, simd: S, state: &Row<L>, momenta: &[V3<L>; 2]);
+    /// From the state.
+    fn set_motion<S: Simd>(&mut self, simd: S, state: &Row<L>);
+    /// The angular momenta about the mass centres, body axes.
+    fn set_momenta<S: Simd>(&mut self, simd: S, state: &Row<L>, momenta: &[V3<L>; 2]);
     /// Takes stage components to payload components.
     fn set_rotation<S: Simd>(&mut self, simd: S, rotation: &M3<L>);
     /// On the payload, payload axes.
@@ -73,10 +75,10 @@ pub(crate) trait Products<const L: usize>: Copy + Debug {
     fn attitude<S: Simd>(s: S, a: &Coefficients<Self, L>, b: &Coefficients<Self, L>) -> Self::Turn<S>;
     fn of_turn<S: Simd>(sum: &Self::Turn<S>) -> [Lanes<L>; 4];
 
-    /// Offset and velocity, each × the rate of its axes.
+    /// Offset, velocity and angular momentum of the payload, each × the rate of its axes.
     fn crosses<S: Simd>(s: S, a: &Coefficients<Self, L>, b: &Coefficients<Self, L>)
     -> Self::Crosses<S>;
-    /// The angular momenta, each × the rate of its axes, if not among the former.
+    /// The angular momentum of the stage × the rate of its axes, if not among the former.
     fn gyration<S: Simd>(
         s: S,
         a: &Coefficients<Self, L>,
@@ -127,8 +129,8 @@ impl Products<WIDTH> for Abreast {
     type Squares<S: Simd> = [Four<S>; 9];
     // As many sums at a time as there are registers for.
     type Turn<S: Simd> = [Four<S>; 4];
-    type Crosses<S: Simd> = [Four<S>; 6];
-    type Gyration<S: Simd> = [Four<S>; 6];
+    type Crosses<S: Simd> = [Four<S>; 9];
+    type Gyration<S: Simd> = [Four<S>; 3];
     type Vector<S: Simd> = [Four<S>; 3];
 
     const ZERO: Self = {
@@ -137,7 +139,10 @@ impl Products<WIDTH> for Abreast {
     };
 
     #[inline(always)]
-    fn set_motion<S: Simd>(&mut self, _: S, _: &Row<WIDTH>, momenta: &[V3<WIDTH>; 2]) {
+    fn set_motion<S: Simd>(&mut self, _: S, _: &Row<WIDTH>) {}
+
+    #[inline(always)]
+    fn set_momenta<S: Simd>(&mut self, _: S, _: &Row<WIDTH>, momenta: &[V3<WIDTH>; 2]) {
         self.momenta = *momenta;
     }
 
@@ -224,21 +229,19 @@ impl Products<WIDTH> for Abreast {
         let rate = load_part(s, &b.state, PAYLOAD_RATE);
         let [x, y, z] = cross(&load_part(s, &a.state, OFFSET), &rate);
         let [u, v, w] = cross(&load_part(s, &a.state, VELOCITY), &rate);
-        [x, y, z, u, v, w]
+        let [l, m, n] = cross(&load(s, &a.products.momenta[0]), &rate);
+        [x, y, z, u, v, w, l, m, n]
     }
 
     #[inline(always)]
     fn gyration<S: Simd>(s: S, a: &Pair, b: &Pair) -> Self::Gyration<S> {
-        let [x, y, z] = cross(&load(s, &a.products.momenta[0]), &load_part(s, &b.state, PAYLOAD_RATE));
-        let [u, v, w] = cross(&load(s, &a.products.momenta[1]), &load_part(s, &b.state, STAGE_RATE));
-        [x, y, z, u, v, w]
+        cross(&load(s, &a.products.momenta[1]), &load_part(s, &b.state, STAGE_RATE))
     }
 
     #[inline(always)]
     fn of_crosses<S: Simd>(first: &Self::Crosses<S>, second: &Self::Gyration<S>) -> [V3<WIDTH>; 4] {
-        let [a, b, c, d, e, f] = first.map(Four::store);
-        let [g, h, i, j, k, l] = second.map(Four::store);
-        [[a, b, c], [d, e, f], [g, h, i], [j, k, l]]
+        let [a, b, c, d, e, f, g, h, i] = first.map(Four::store);
+        [[a, b, c], [d, e, f], [g, h, i], second.map(Four::store)]
     }
 
     #[inline(always)]
@@ -316,15 +319,12 @@ impl Products<1> for Alone {
     };
 
     #[inline(always)]
-    fn set_motion<S: Simd>(&mut self, simd: S, state: &Row<1>, momenta: &[V3<1>; 2]) {
+    fn set_motion<S: Simd>(&mut self, simd: S, state: &Row<1>) {
         let y = state.map(|x| x.0[0]);
-        let [m, n] = momenta.map(|m| m.map(|x| x.0[0]));
         let (p, l): ([_; 3], [_; 3]) = (part(&y, PAYLOAD_RATE), part(&y, STAGE_RATE));
         let d: [_; 3] = std::array::from_fn(|i| l[i] - p[i]);
         let s: [_; 3] = std::array::from_fn(|i| l[i] + p[i]);
         let [i, j, k, r] = part(&y, ATTITUDE);
-        self.carried = [0, 1, 2].map(|i| pack(simd, [y[OFFSET + i], y[VELOCITY + i], m[i], n[i]]));
-        self.rates = [0, 1, 2].map(|i| pack(simd, [p[i], p[i], p[i], l[i]]));
         self.attitude =
             [pack(simd, [r, k, -j, -i]), pack(simd, [-k, r, i, -j]), pack(simd, [j, -i, r, -k])];
         self.relative = pack(simd, part(&y, RELATIVE));
@@ -335,6 +335,15 @@ impl Products<1> for Alone {
             pack(simd, [d[0], d[1], d[2], 0.0]),
         ];
         self.offset = turned_about(simd, &part(state, OFFSET));
+    }
+
+    #[inline(always)]
+    fn set_momenta<S: Simd>(&mut self, simd: S, state: &Row<1>, momenta: &[V3<1>; 2]) {
+        let y = state.map(|x| x.0[0]);
+        let [m, n] = momenta.map(|m| m.map(|x| x.0[0]));
+        let (p, l): ([_; 3], [_; 3]) = (part(&y, PAYLOAD_RATE), part(&y, STAGE_RATE));
+        self.carried = [0, 1, 2].map(|i| pack(simd, [y[OFFSET + i], y[VELOCITY + i], m[i], n[i]]));
+        self.rates = [0, 1, 2].map(|i| pack(simd, [p[i], p[i], p[i], l[i]]));
     }
 
     #[inline(always)]
