@@ -231,6 +231,12 @@ where
     fn expand_once<S: Simd>(&mut self, simd: S, k: usize) {
         let newest = &mut self.terms[k];
         newest.products.set_motion(simd, &newest.state);
+        let (step, velocity) = (INVERSE[k + 1], part(&newest.state, VELOCITY));
+        // Loops that wait for nothing stand between those that wait for what came last, and what comes
+        // of them is put away: all registers are for the sums.
+        let attitude = Of::<L>::of_turn(&cauchy(simd, &self.terms[..=k], Of::<L>::attitude));
+        put(&mut self.terms[k + 1].state, ATTITUDE, &attitude, 0.5 * step);
+
         let rotation = rotation(&squares(simd, &self.terms[..=k]), k);
         let newest = &mut self.terms[k];
         newest.products.set_rotation(simd, &rotation);
@@ -238,41 +244,49 @@ where
             part::<_, 3>(&newest.state, OFFSET).map(Packing::spread),
             rotation.map(|row| row.map(Packing::spread)),
         );
-        // Loops that wait for nothing between those that wait for what came last.
-        let terms = &mut self.terms[..=k];
-        let attitude = Of::<L>::of_turn(&cauchy(simd, terms, Of::<L>::attitude));
-        let newest = &mut terms[k];
         let momenta = [
             times(&self.payload.inertia, &part(&newest.state, PAYLOAD_RATE)),
             times(&self.stage.inertia, &part(&newest.state, STAGE_RATE)),
         ];
         newest.products.set_momenta(simd, &newest.state, &momenta);
-        let (mut force, mut spring_torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
         for springs in &mut self.springs {
-            let Some([push, moment]) = springs.expand(simd, k, &arm, &turn) else { continue };
-            force = std::array::from_fn(|i| force[i].collect(push[i]));
-            spring_torque = std::array::from_fn(|i| spring_torque[i].collect(moment[i]));
+            springs.stretch(simd, k, &arm, &turn);
         }
-        terms[k].products.set_force(simd, &force);
-        let crosses = cauchy(simd, terms, Of::<L>::crosses);
-        let gyration = cauchy(simd, terms, Of::<L>::gyration);
-        let moment = Of::<L>::of_vector(&cauchy(simd, terms, Of::<L>::moment));
-        terms[k].products.set_reaction(&add(moment, spring_torque).map(|x| -x));
-        let relative = Of::<L>::of_turn(&cauchy(simd, terms, Of::<L>::relative));
-        let stage_torque = Of::<L>::of_vector(&cauchy(simd, terms, Of::<L>::torque));
-        let [offset, velocity, payload_turn, stage_turn] = Of::<L>::of_crosses(&crosses, &gyration);
 
-        let velocity_now = part(&terms[k].state, VELOCITY);
-        let step = INVERSE[k + 1];
+        let crosses = cauchy(simd, &self.terms[..=k], Of::<L>::crosses);
+        let [offset, acceleration, payload_turn] = Of::<L>::of_crosses(&crosses);
         let next = &mut self.terms[k + 1].state;
-        put(next, OFFSET, &add(velocity_now, offset), step);
-        put(next, VELOCITY, &add(scale(force, self.inverse_mass), velocity), step);
-        put(next, RELATIVE, &relative, 0.5 * step);
-        put(next, ATTITUDE, &attitude, 0.5 * step);
-        let payload_turn = times(&self.payload.inverse, &add(spring_torque, payload_turn));
-        put(next, PAYLOAD_RATE, &payload_turn, step);
-        let stage_turn = times(&self.stage.inverse, &add(stage_torque, stage_turn));
-        put(next, STAGE_RATE, &stage_turn, step);
+        put(next, OFFSET, &add(velocity, offset), step);
+        put(next, VELOCITY, &acceleration, 1.0);
+        put(next, PAYLOAD_RATE, &payload_turn, 1.0);
+
+        let (mut force, mut torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
+        for springs in &mut self.springs {
+            let Some([push, moment]) = springs.push(simd, k) else { continue };
+            force = std::array::from_fn(|i| force[i].collect(push[i]));
+            torque = std::array::from_fn(|i| torque[i].collect(moment[i]));
+        }
+        self.terms[k].products.set_force(simd, &force);
+        let next = &mut self.terms[k + 1].state;
+        let acceleration = add(scale(force, self.inverse_mass), part(next, VELOCITY));
+        put(next, VELOCITY, &acceleration, step);
+        let payload_turn = add(torque, part(next, PAYLOAD_RATE));
+        put(next, PAYLOAD_RATE, &times(&self.payload.inverse, &payload_turn), step);
+
+        let gyration = cauchy(simd, &self.terms[..=k], Of::<L>::gyration);
+        let stage_turn = Of::<L>::of_gyration(&crosses, &gyration);
+        put(&mut self.terms[k + 1].state, STAGE_RATE, &stage_turn, 1.0);
+
+        let moment = Of::<L>::of_vector(&cauchy(simd, &self.terms[..=k], Of::<L>::moment));
+        self.terms[k].products.set_reaction(&add(moment, torque).map(|x| -x));
+
+        let relative = Of::<L>::of_turn(&cauchy(simd, &self.terms[..=k], Of::<L>::relative));
+        put(&mut self.terms[k + 1].state, RELATIVE, &relative, 0.5 * step);
+
+        let torque = Of::<L>::of_vector(&cauchy(simd, &self.terms[..=k], Of::<L>::torque));
+        let next = &mut self.terms[k + 1].state;
+        let stage_turn = add(torque, part(next, STAGE_RATE));
+        put(next, STAGE_RATE, &times(&self.stage.inverse, &stage_turn), step);
     }
 
     /// The radius of convergence as the last two coefficients up to an order tell it, each entry

@@ -84,7 +84,8 @@ pub(crate) trait Products<const L: usize>: Copy + Debug {
         a: &Coefficients<Self, L>,
         b: &Coefficients<Self, L>,
     ) -> Self::Gyration<S>;
-    fn of_crosses<S: Simd>(first: &Self::Crosses<S>, second: &Self::Gyration<S>) -> [V3<L>; 4];
+    fn of_crosses<S: Simd>(sum: &Self::Crosses<S>) -> [V3<L>; 3];
+    fn of_gyration<S: Simd>(crosses: &Self::Crosses<S>, sum: &Self::Gyration<S>) -> V3<L>;
 
     /// ρ × F.
     fn moment<S: Simd>(s: S, a: &Coefficients<Self, L>, b: &Coefficients<Self, L>) -> Self::Vector<S>;
@@ -117,6 +118,8 @@ fn cross<S: Simd>(a: &[Four<S>; 3], b: &[Four<S>; 3]) -> [Four<S>; 3] {
 /// Of runs abreast.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Abreast {
+    /// ω_L − ω_P and ω_L + ω_P.
+    rates: [V3<WIDTH>; 2],
     momenta: [V3<WIDTH>; 2],
     rotation: M3<WIDTH>,
     force: V3<WIDTH>,
@@ -135,11 +138,15 @@ impl Products<WIDTH> for Abreast {
 
     const ZERO: Self = {
         let zero = [Lanes::ZERO; 3];
-        Self { momenta: [zero; 2], rotation: [zero; 3], force: zero, reaction: zero }
+        Self { rates: [zero; 2], momenta: [zero; 2], rotation: [zero; 3], force: zero, reaction: zero }
     };
 
     #[inline(always)]
-    fn set_motion<S: Simd>(&mut self, _: S, _: &Row<WIDTH>) {}
+    fn set_motion<S: Simd>(&mut self, simd: S, state: &Row<WIDTH>) {
+        let l: [Four<S>; 3] = load_part(simd, state, STAGE_RATE);
+        let p: [Four<S>; 3] = load_part(simd, state, PAYLOAD_RATE);
+        self.rates = [[0, 1, 2].map(|i| (l[i] - p[i]).store()), [0, 1, 2].map(|i| (l[i] + p[i]).store())];
+    }
 
     #[inline(always)]
     fn set_momenta<S: Simd>(&mut self, _: S, _: &Row<WIDTH>, momenta: &[V3<WIDTH>; 2]) {
@@ -194,9 +201,7 @@ impl Products<WIDTH> for Abreast {
     #[inline(always)]
     fn relative<S: Simd>(simd: S, a: &Pair, b: &Pair) -> Self::Turn<S> {
         let [x, y, z, w] = load_part(simd, &a.state, RELATIVE);
-        let l: [Four<S>; 3] = load_part(simd, &b.state, STAGE_RATE);
-        let p: [Four<S>; 3] = load_part(simd, &b.state, PAYLOAD_RATE);
-        let (d, s) = ([0, 1, 2].map(|i| l[i] - p[i]), [0, 1, 2].map(|i| l[i] + p[i]));
+        let [d, s] = b.products.rates.map(|x| load(simd, &x));
         [
             y * s[2] + (w * d[0] - z * s[1]),
             (z * s[0] + w * d[1]) - x * s[2],
@@ -239,9 +244,14 @@ impl Products<WIDTH> for Abreast {
     }
 
     #[inline(always)]
-    fn of_crosses<S: Simd>(first: &Self::Crosses<S>, second: &Self::Gyration<S>) -> [V3<WIDTH>; 4] {
-        let [a, b, c, d, e, f, g, h, i] = first.map(Four::store);
-        [[a, b, c], [d, e, f], [g, h, i], second.map(Four::store)]
+    fn of_crosses<S: Simd>(sum: &Self::Crosses<S>) -> [V3<WIDTH>; 3] {
+        let [a, b, c, d, e, f, g, h, i] = sum.map(Four::store);
+        [[a, b, c], [d, e, f], [g, h, i]]
+    }
+
+    #[inline(always)]
+    fn of_gyration<S: Simd>(_: &Self::Crosses<S>, sum: &Self::Gyration<S>) -> V3<WIDTH> {
+        sum.map(Four::store)
     }
 
     #[inline(always)]
@@ -409,9 +419,14 @@ impl Products<1> for Alone {
     }
 
     #[inline(always)]
-    fn of_crosses<S: Simd>(first: &Self::Crosses<S>, _: &Self::Gyration<S>) -> [V3<1>; 4] {
-        let sum = first.map(|x| x.store().0);
-        [0, 1, 2, 3].map(|i| sum.map(|x| Lanes([x[i]])))
+    fn of_crosses<S: Simd>(sum: &Self::Crosses<S>) -> [V3<1>; 3] {
+        let sum = sum.map(|x| x.store().0);
+        [0, 1, 2].map(|i| sum.map(|x| Lanes([x[i]])))
+    }
+
+    #[inline(always)]
+    fn of_gyration<S: Simd>(crosses: &Self::Crosses<S>, _: &Self::Gyration<S>) -> V3<1> {
+        crosses.map(|x| Lanes([x.store().0[3]]))
     }
 
     #[inline(always)]

@@ -46,6 +46,11 @@ pub(crate) struct SpringSeries {
     first_push: Lanes<WIDTH>,
     /// 1/s² of order 0, zero for springs that do not push.
     inverse_square: Lanes<WIDTH>,
+    /// Half of the push of order 0.
+    half_push: Lanes<WIDTH>,
+    /// What there is of the sums of the order under way.
+    slope: Lanes<WIDTH>,
+    force: V3<WIDTH>,
     /// That none of them pushes any more.
     lost: bool,
 }
@@ -73,55 +78,71 @@ impl SpringSeries {
             lower: zero,
             first_push: zero,
             inverse_square: zero,
+            half_push: zero,
+            slope: zero,
+            force: vector,
             lost: true,
         }
     }
 
-    /// The coefficients of order k of the forces on the payload, and of their moments about its mass
-    /// centre; none if all springs are lost. From those of where the stage's mass centre is and of the
-    /// rotation from stage to payload.
+    /// The coefficients of order k of the lines and of s², from those of where the stage's mass centre
+    /// is and of the rotation from stage to payload; and what else of order k waits for nothing.
     #[inline(always)]
-    pub(crate) fn expand<S: Simd>(
+    pub(crate) fn stretch<S: Simd>(
         &mut self,
         simd: S,
         k: usize,
         offset: &V3<WIDTH>,
         rotation: &M3<WIDTH>,
-    ) -> Option<[V3<WIDTH>; 2]> {
+    ) {
         if k == 0 {
             self.lost = self.stiffness.0.iter().all(|s| *s == 0.0);
         }
         let (square, slope, force) = self.known(simd, k);
-        let (offset, stage_point) = (load(simd, offset), load(simd, &self.stage_point));
-        let payload_point = load(simd, &self.payload_point);
+        self.slope = slope.store();
+        self.force = force.map(Four::store);
+        let (offset, point) = (load(simd, offset), load(simd, &self.stage_point));
         let mut line: [_; 3] =
-            std::array::from_fn(|i| offset[i] - dot(&load(simd, &rotation[i]), &stage_point));
+            std::array::from_fn(|i| offset[i] - dot(&load(simd, &rotation[i]), &point));
         if k == 0 {
-            line = std::array::from_fn(|i| line[i] + payload_point[i]);
+            let point = load(simd, &self.payload_point);
+            line = std::array::from_fn(|i| line[i] + point[i]);
+            self.terms[0].line = line.map(Four::store);
+            self.terms[0].square = dot(&line, &line).store();
+        } else {
+            self.terms[k].line = line.map(Four::store);
+            let ends = dot(&load(simd, &self.terms[0].line), &line);
+            self.terms[k].square = (square + (ends + ends)).store();
         }
-        self.terms[k].line = line.map(Four::store);
-        let first = load(simd, &self.terms[0].line);
-        let ends = dot(&first, &line);
-        let square = if k == 0 { ends } else { square + (ends + ends) };
-        self.terms[k].square = square.store();
+    }
+
+    /// The coefficients of order k of the forces on the payload, and of their moments about its mass
+    /// centre; none if all springs are lost.
+    #[inline(always)]
+    pub(crate) fn push<S: Simd>(&mut self, simd: S, k: usize) -> Option<[V3<WIDTH>; 2]> {
         if self.lost {
             return None;
         }
-        let force = if k == 0 {
+        if k == 0 {
             self.start();
-            let push = Four::load(simd, &self.first_push);
-            line.map(|x| x * push)
+        }
+        let first = load(simd, &self.terms[0].line);
+        let newest = &mut self.terms[k];
+        let before = Four::load(simd, &self.first_push);
+        let force = if k == 0 {
+            first.map(|x| x * before)
         } else {
             // u = (s²)^(−1/2): s² u' = −½ (s²)' u.
-            let u = Four::load(simd, &self.terms[0].push);
+            let half = Four::load(simd, &self.half_push) * Four::splat(simd, k as f64);
             let factor = Four::load(simd, &self.inverse_square) * Four::splat(simd, -INVERSE[k]);
-            let push = (slope + square * (u * Four::splat(simd, QUARTERS[2 * k]))) * factor;
-            self.terms[k].push = push.store();
-            let before = Four::load(simd, &self.first_push);
+            let slope = Four::load(simd, &self.slope) + Four::load(simd, &newest.square) * half;
+            let push = slope * factor;
+            newest.push = push.store();
+            let (force, line) = (load(simd, &self.force), load(simd, &newest.line));
             std::array::from_fn(|i| (force[i] + line[i] * before) + first[i] * push)
         };
         let [x, y, z] = force;
-        let [a, b, c] = payload_point;
+        let [a, b, c] = load(simd, &self.payload_point);
         let moment = [b * z - c * y, c * x - a * z, a * y - b * x];
         Some([force.map(Four::store), moment.map(Four::store)])
     }
@@ -180,7 +201,9 @@ impl SpringSeries {
         let of = |x: Lanes<WIDTH>| self.stiffness.zip(x, |k, x| if k == 0.0 { 0.0 } else { x });
         let inverse = of(Lanes::splat(1.0) / self.terms[0].square.sqrt());
         self.inverse_square = inverse * inverse;
-        self.terms[0].push = self.stiffness * (self.free_length * inverse);
+        let push = self.stiffness * (self.free_length * inverse);
+        self.terms[0].push = push;
+        self.half_push = push * 0.5;
         self.first_push = self.stiffness * (self.free_length * inverse - Lanes::splat(1.0));
     }
 }
