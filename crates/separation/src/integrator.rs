@@ -16,6 +16,9 @@ use crate::{
 const MAX_STEPS: u32 = 100_000;
 /// Steps below this share of the time that the springs act are not taken.
 const UNDERFLOW: f64 = 1e-13;
+/// A spring whose squared length stays below this share of that of its free length does not come to it,
+/// whatever the rounding.
+const NEAR: f64 = 1.0 - 1e-9;
 /// A spring that is shorter than its free length by more than this share of its stroke pushes no
 /// more but is reported.
 const RECOMPRESSED: f64 = 1e-9;
@@ -262,7 +265,7 @@ where
                 continue;
             }
             let gap = self.gap(lane, i, h, 1.0, 0.0);
-            if let Some(x) = first_zero(&gap)
+            if let Some(x) = first_zero(self.known(lane, &gap))
                 && first.is_none_or(|(earliest, _)| x * h < earliest)
             {
                 first = Some((x * h, i));
@@ -300,7 +303,12 @@ where
             let run = track.separation.borrow();
             for (i, fate) in track.springs.iter_mut().enumerate() {
                 // Springs that are as long to rounding let go together.
-                let free = || state::gap(run, &next, i).value >= -state::rounding(run, &next, i);
+                let free = || {
+                    let (series, at) = self.spring(lane, i);
+                    // Most come nowhere near.
+                    series.upper.0[at] >= NEAR * series.free_length.0[at].powi(2)
+                        && state::gap(run, &next, i).value >= -state::rounding(run, &next, i)
+                };
                 if fate.released.is_none() && (i == spring || free()) {
                     fate.released = Some(track.time);
                     fate.waiting = false;
@@ -348,6 +356,11 @@ where
         gap
     }
 
+    /// The coefficients that there are.
+    fn known<'a>(&self, lane: usize, polynomial: &'a [f64; ORDER]) -> &'a [f64] {
+        &polynomial[..self.expansion.order[lane]]
+    }
+
     fn at(&self, lane: usize, time: f64) -> State {
         let mut sum = [0.0; STATE];
         for term in self.expansion.terms[..=self.expansion.order[lane]].iter().rev() {
@@ -377,7 +390,7 @@ where
         let free = run.free_lengths()[spring];
         let mut nearness = self.gap(lane, spring, taken, -1.0, 0.0);
         nearness[0] += touching - free * free;
-        match first_zero(&nearness) {
+        match first_zero(self.known(lane, &nearness)) {
             Some(x) => Err(RunError::PadsMeet {
                 spring: spring + 1,
                 time: track.time + x * taken,
@@ -409,7 +422,7 @@ where
                     continue;
                 }
                 let gap = self.gap(lane, i, taken, -1.0, slack);
-                fate.recompressed = first_zero(&gap).map(|x| track.time + x * taken);
+                fate.recompressed = first_zero(self.known(lane, &gap)).map(|x| track.time + x * taken);
             }
         }
     }

@@ -9,15 +9,18 @@ const TOUCHED: f64 = 1e-11;
 const CONVERGED: f64 = 1e-7;
 
 /// Where a polynomial that is negative at 0 first reaches zero on [0, 1], from below. Coefficients
-/// from the constant up. A zero that is touched and not crossed counts.
-pub(crate) fn first_zero<const N: usize>(p: &[f64; N]) -> Option<f64> {
+/// from the constant up, two at least. A zero that is touched and not crossed counts.
+pub(crate) fn first_zero(p: &[f64]) -> Option<f64> {
     if p[0] >= 0.0 {
         return Some(0.0);
     }
     match direction(p) {
         Some(Direction::Up) => {
             let end: f64 = p.iter().sum();
-            (end >= 0.0).then(|| bracketed(p, 0.0, 1.0, p[0] / (p[0] - end)))
+            // A parabola of the same values at both ends and the same slope at the first.
+            let bend = end - p[0] - p[1];
+            let root = (p[1] * p[1] - 4.0 * bend * p[0]).sqrt();
+            (end >= 0.0).then(|| bracketed(p, 0.0, 1.0, -2.0 * p[0] / (p[1] + root)))
         }
         Some(Direction::Down) => None,
         None => search(p, 0.0, 1.0),
@@ -32,7 +35,7 @@ enum Direction {
 
 /// Which way p goes on all of [0, 1], if that is sure: its first coefficients are of one sign, and
 /// their sum exceeds those of the other sign that follow (x^m falls with m).
-fn direction<const N: usize>(p: &[f64; N]) -> Option<Direction> {
+fn direction(p: &[f64]) -> Option<Direction> {
     let sign = p[1];
     let (mut first, mut against, mut leading) = (0.0, 0.0, true);
     for (k, x) in p.iter().enumerate().skip(1) {
@@ -48,18 +51,21 @@ fn direction<const N: usize>(p: &[f64; N]) -> Option<Direction> {
     (first > against).then_some(if sign >= 0.0 { Direction::Up } else { Direction::Down })
 }
 
-/// Value and slope.
-fn value<const N: usize>(p: &[f64; N], x: f64) -> (f64, f64) {
-    let (mut value, mut slope) = (0.0, 0.0);
-    for c in p.iter().rev() {
-        slope = slope * x + value;
-        value = value * x + c;
+/// Value and slope. Even and odd terms by themselves, which halves the wait for what comes before.
+fn value(p: &[f64], x: f64) -> (f64, f64) {
+    let y = x * x;
+    let (mut even, mut odd) = ((0.0, 0.0), (0.0, 0.0));
+    for pair in p.chunks(2).rev() {
+        even.1 = even.1 * y + even.0;
+        even.0 = even.0 * y + pair[0];
+        odd.1 = odd.1 * y + odd.0;
+        odd.0 = odd.0 * y + if let [_, c] = pair { *c } else { 0.0 };
     }
-    (value, slope)
+    (even.0 + x * odd.0, odd.0 + 2.0 * (x * even.1 + y * odd.1))
 }
 
 /// The first zero between two points, negative at the first.
-fn search<const N: usize>(p: &[f64; N], from: f64, to: f64) -> Option<f64> {
+fn search(p: &[f64], from: f64, to: f64) -> Option<f64> {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     // Bound of the second derivative on the interval.
     let (mut bound, mut power) = (0.0, 1.0);
@@ -85,7 +91,7 @@ fn search<const N: usize>(p: &[f64; N], from: f64, to: f64) -> Option<f64> {
 
 /// The zero between a point where the polynomial is negative and one where it is not: Newton's
 /// iteration from a guess, bisection where it leaves the bracket.
-fn bracketed<const N: usize>(p: &[f64; N], mut low: f64, mut high: f64, guess: f64) -> f64 {
+fn bracketed(p: &[f64], mut low: f64, mut high: f64, guess: f64) -> f64 {
     let mut x = if low <= guess && guess <= high { guess } else { 0.5 * (low + high) };
     for _ in 0..100 {
         let (v, slope) = value(p, x);

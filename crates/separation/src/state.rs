@@ -47,8 +47,8 @@ pub(crate) fn initial(separation: &Separation) -> State {
 pub(crate) fn normalize(state: &mut State) {
     for at in [RELATIVE, ATTITUDE] {
         let [x, y, z, w] = part(state, at);
-        let norm = (x * x + y * y + z * z + w * w).sqrt();
-        put(state, at, &[x / norm, y / norm, z / norm, w / norm]);
+        let scale = 1.0 / (x * x + y * y + z * z + w * w).sqrt();
+        put(state, at, &[x * scale, y * scale, z * scale, w * scale]);
     }
 }
 
