@@ -16,6 +16,8 @@ use crate::{
 const MAX_STEPS: u32 = 100_000;
 /// Steps below this share of the time that the springs act are not taken.
 const UNDERFLOW: f64 = 1e-13;
+/// The square of a time that is this share of a step does not tell in the state.
+const TINY: f64 = 1e-9;
 /// A spring whose squared length stays below this share of that of its free length does not come to it,
 /// whatever the rounding.
 const NEAR: f64 = 1.0 - 1e-9;
@@ -272,28 +274,33 @@ where
             }
         }
         let run = track.separation.borrow();
-        let mut taken = first.map_or(h, |(time, _)| time);
-        let mut next = if taken == reach {
-            self.expansion.end.map(|x| x.0[lane])
-        } else {
-            self.at(lane, taken)
-        };
-        if let Some((time, spring)) = first
-            && time > 0.0
-        {
-            // The series of the gap ends an order before that of the state.
-            let gap = state::gap(run, &next, spring);
-            let correction = -gap.value / gap.rate;
-            if correction.abs() <= 1e-3 * h {
-                taken = (time + correction).clamp(0.0, h);
-                next = self.at(lane, taken);
+        let mut taken = h;
+        let mut next = match first {
+            Some((time, spring)) => {
+                taken = time;
+                let (mut next, slope) = self.with_slope(lane, time);
+                // The series of the gap ends an order before that of the state.
+                let gap = state::gap(run, &next, spring);
+                let correction = -gap.value / gap.rate;
+                if time > 0.0 && correction.abs() <= 1e-3 * h {
+                    taken = (time + correction).clamp(0.0, h);
+                    if (taken - time).abs() <= TINY * h {
+                        next = std::array::from_fn(|i| next[i] + (taken - time) * slope[i]);
+                    } else {
+                        next = self.at(lane, taken);
+                    }
+                }
+                next
             }
-        }
+            None if h == reach => self.expansion.end.map(|x| x.0[lane]),
+            None => self.at(lane, h),
+        };
         for i in track.pushing().filter(|i| track.springs[*i].pushes()) {
             self.check_apart(lane, track, i, taken)?;
         }
         state::normalize(&mut next);
-        if !next.iter().all(|x| x.is_finite()) {
+        // No way out of the loop: it goes in vector lanes.
+        if !next.iter().fold(true, |finite, x| finite & x.is_finite()) {
             return Err(self.failure(lane, track, reach));
         }
         self.note_recompression(lane, track, taken);
@@ -369,6 +376,18 @@ where
             }
         }
         sum
+    }
+
+    /// The state after a time, and how fast it changes.
+    fn with_slope(&self, lane: usize, time: f64) -> (State, State) {
+        let (mut sum, mut slope) = ([0.0; STATE], [0.0; STATE]);
+        for term in self.expansion.terms[..=self.expansion.order[lane]].iter().rev() {
+            for ((sum, slope), x) in sum.iter_mut().zip(&mut slope).zip(&term.state) {
+                *slope = *slope * time + *sum;
+                *sum = *sum * time + x.0[lane];
+            }
+        }
+        (sum, slope)
     }
 
     /// That the points of a spring do not come together within a step. Where they fly straight at each
