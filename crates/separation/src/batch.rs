@@ -1,9 +1,7 @@
 use std::borrow::Borrow;
 
 use crate::{
-    Outcome, RunError, Separation, Settings,
-    integrator::{Integrator, Track},
-    lanes::WIDTH,
+    Outcome, RunError, Separation, Settings, integrator::Integrator, lanes::WIDTH, track::Track,
 };
 
 /// Many separations, several at a time in vector lanes.

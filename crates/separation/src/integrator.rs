@@ -1,14 +1,14 @@
-use smallvec::SmallVec;
 use std::borrow::Borrow;
 
 use crate::{
-    Outcome, RunError, Separation, Settings, Spring,
-    expansion::{Expansion, INLINE_SPRINGS, ORDER, Rotor, STATE, STOPS, TERMS},
+    RunError, Separation, Settings,
+    expansion::{Expansion, ORDER, Rotor, STATE, STOPS, TERMS},
     lanes::{Lanes, M3, Packing},
     polynomial::first_zero,
     separation::TOUCHING,
     spring_series::SpringSeries,
     state::{self, State},
+    track::{Fate, Track},
     vector,
 };
 
@@ -21,46 +21,6 @@ const TINY: f64 = 1e-9;
 /// A spring whose squared length stays below this share of that of its free length does not come to it,
 /// whatever the rounding.
 const NEAR: f64 = 1.0 - 1e-9;
-/// A spring that is shorter than its free length by more than this share of its stroke pushes no
-/// more but is reported.
-const RECOMPRESSED: f64 = 1e-9;
-
-/// What becomes of one spring: when it lets go, and when it is first shorter than its free length
-/// after that; and whether it is yet to start.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Fate {
-    pub(crate) released: Option<f64>,
-    pub(crate) recompressed: Option<f64>,
-    pub(crate) waiting: bool,
-}
-
-impl Fate {
-    fn of(spring: &Spring) -> Self {
-        Self {
-            released: (!spring.can_push()).then_some(0.0),
-            recompressed: None,
-            waiting: spring.can_push() && spring.start_s() != Some(0.0),
-        }
-    }
-
-    pub(crate) fn pushes(&self) -> bool {
-        self.released.is_none() && !self.waiting
-    }
-}
-
-/// What becomes of the springs, in their order.
-pub(crate) type Fates = SmallVec<[Fate; INLINE_SPRINGS]>;
-
-/// A run under way in one lane.
-#[derive(Clone, Debug)]
-pub(crate) struct Track<S> {
-    pub(crate) separation: S,
-    pub(crate) time: f64,
-    pub(crate) steps: u32,
-    pub(crate) springs: Fates,
-    /// The time that the springs act, about.
-    time_scale: f64,
-}
 
 /// Several runs, one in each lane.
 #[derive(Debug)]
@@ -68,7 +28,7 @@ pub(crate) struct Integrator<const L: usize>
 where
     Lanes<L>: Packing<L>,
 {
-    expansion: Expansion<L>,
+    pub(crate) expansion: Expansion<L>,
     settings: Settings,
     machine: vector::Machine,
 }
@@ -85,46 +45,6 @@ where
     #[inline(always)]
     fn run<S: vector::Simd>(self, simd: S) {
         self.0.expand(simd);
-    }
-}
-
-impl<S: Borrow<Separation>> Track<S> {
-    /// The springs that push or will.
-    pub(crate) fn pushing(&self) -> impl Iterator<Item = usize> {
-        let springs = self.springs.iter().enumerate();
-        springs.filter(|(_, fate)| fate.released.is_none()).map(|(i, _)| i)
-    }
-
-    /// When the next spring starts.
-    fn next_start(&self) -> f64 {
-        let springs = self.separation.borrow().springs().iter().zip(&self.springs);
-        let starts = springs.filter(|(_, fate)| fate.waiting).filter_map(|(s, _)| s.start_s());
-        starts.fold(f64::INFINITY, f64::min)
-    }
-
-    pub(crate) fn all_released(&self) -> bool {
-        self.pushing().next().is_none()
-    }
-
-    /// That the springs have let go by the horizon.
-    pub(crate) fn check(&self, state: &State, settings: &Settings) -> Result<(), RunError> {
-        match self.pushing().next() {
-            Some(spring) if self.time >= settings.horizon_s() => {
-                let gap = state::gap(self.separation.borrow(), state, spring);
-                Err(RunError::NotReleased {
-                    springs: self.pushing().map(|i| i + 1).collect(),
-                    horizon: settings.horizon_s(),
-                    compression: -gap.value,
-                    rate: gap.rate,
-                })
-            }
-            _ => Ok(()),
-        }
-    }
-
-    pub(crate) fn outcome(self, state: &State) -> Outcome {
-        let (payload, stage) = state::bodies(self.separation.borrow(), state, self.time);
-        Outcome { springs: self.springs, payload, stage, steps: self.steps }
     }
 }
 
@@ -342,33 +262,13 @@ where
     }
 
     /// The series that a spring is in, and its lane.
-    fn spring(&self, lane: usize, spring: usize) -> (&SpringSeries, usize) {
+    pub(crate) fn spring(&self, lane: usize, spring: usize) -> (&SpringSeries, usize) {
         let (block, lane) = slot::<L>(lane, spring);
         (&self.expansion.springs[block], lane)
     }
 
-    /// The square of a spring's length less that of its free length, times a sign, less an offset,
-    /// as a polynomial on [0, 1] for [0, h].
-    fn gap(&self, lane: usize, spring: usize, h: f64, sign: f64, offset: f64) -> [f64; ORDER] {
-        let order = self.expansion.order[lane];
-        let (series, lane) = self.spring(lane, spring);
-        let free = series.free_length.0[lane];
-        let mut power = sign;
-        let mut gap = [0.0; ORDER];
-        for (term, of) in gap.iter_mut().zip(&series.terms[..order]) {
-            *term = of.square.0[lane] * power;
-            power *= h;
-        }
-        gap[0] -= sign * free * free + offset;
-        gap
-    }
-
-    /// The coefficients that there are.
-    fn known<'a>(&self, lane: usize, polynomial: &'a [f64; ORDER]) -> &'a [f64] {
-        &polynomial[..self.expansion.order[lane]]
-    }
-
-    fn at(&self, lane: usize, time: f64) -> State {
+    /// The state after a time.
+    pub(crate) fn at(&self, lane: usize, time: f64) -> State {
         let mut sum = [0.0; STATE];
         for term in self.expansion.terms[..=self.expansion.order[lane]].iter().rev() {
             for (s, x) in sum.iter_mut().zip(&term.state) {
@@ -390,62 +290,6 @@ where
         (sum, slope)
     }
 
-    /// That the points of a spring do not come together within a step. Where they fly straight at each
-    /// other the equations of motion do not notice.
-    fn check_apart<S: Borrow<Separation>>(
-        &self,
-        lane: usize,
-        track: &Track<S>,
-        spring: usize,
-        taken: f64,
-    ) -> Result<(), RunError> {
-        let run = track.separation.borrow();
-        let touching = (TOUCHING * run.springs()[spring].stroke_m()).powi(2);
-        let (series, at) = self.spring(lane, spring);
-        // The terms that bring them nearer do not suffice, most often.
-        if series.lower.0[at] > touching {
-            return Ok(());
-        }
-        let free = run.free_lengths()[spring];
-        let mut nearness = self.gap(lane, spring, taken, -1.0, 0.0);
-        nearness[0] += touching - free * free;
-        match first_zero(self.known(lane, &nearness)) {
-            Some(x) => Err(RunError::PadsMeet {
-                spring: spring + 1,
-                time: track.time + x * taken,
-                speed: -state::gap(run, &self.at(lane, 0.999 * x * taken), spring).rate,
-            }),
-            None => Ok(()),
-        }
-    }
-
-    /// Notes released springs that a step makes shorter than their free length.
-    fn note_recompression<S: Borrow<Separation>>(
-        &self,
-        lane: usize,
-        track: &mut Track<S>,
-        taken: f64,
-    ) {
-        if !(taken > 0.0) {
-            return;
-        }
-        let run = track.separation.borrow();
-        for (i, fate) in track.springs.iter_mut().enumerate() {
-            let lost = fate.released.is_some() && run.springs()[i].can_push();
-            if lost && fate.recompressed.is_none() {
-                let slack =
-                    2.0 * run.free_lengths()[i] * RECOMPRESSED * run.springs()[i].stroke_m();
-                let (series, at) = self.spring(lane, i);
-                let free = run.free_lengths()[i];
-                if series.lower.0[at] > free * free - slack {
-                    continue;
-                }
-                let gap = self.gap(lane, i, taken, -1.0, slack);
-                fate.recompressed = first_zero(self.known(lane, &gap)).map(|x| track.time + x * taken);
-            }
-        }
-    }
-
     fn failure<S: Borrow<Separation>>(&self, lane: usize, track: &Track<S>, step: f64) -> RunError {
         let time = track.time;
         let finite = self.series(lane).iter().flatten().all(|x| x.is_finite());
@@ -458,94 +302,14 @@ where
 }
 
 #[cfg(test)]
+mod order;
+
+#[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::{Body, BodyState, Spring, lanes::WIDTH};
+    use super::{order::turning, *};
+    use crate::{Body, Spring, lanes::WIDTH};
     use gyradius_inertia::InertiaMatrix;
     use nalgebra::Vector3;
-
-    /// Two bodies that turn, and two springs that let go apart.
-    fn turning(springs: bool) -> Separation {
-        let inertia = |a, b, c| InertiaMatrix::from_entries([a, b, c], [0.1, 0.05, -0.1]).unwrap();
-        let state = |z: f64| BodyState {
-            position: Vector3::z() * z,
-            angular_velocity: Vector3::new(0.4, 2.0 * z, 1.0),
-            ..BodyState::default()
-        };
-        let point = |x, z| Vector3::new(x, 0.2, z);
-        // Springs of next to no stiffness leave the bodies to turn as they like.
-        let stiffness = if springs { 30.0 } else { 1e-6 };
-        let spring = |k: f64, x| Spring::new(k, 0.3, point(x, -0.5), point(x, 0.5)).unwrap();
-        Separation::new(
-            Body::new(3.0, inertia(2.0, 1.5, 1.0)).unwrap().moving(state(1.0)),
-            Body::new(2.0, inertia(1.0, 1.2, 1.4)).unwrap().moving(state(-1.0)),
-            &[spring(stiffness, 0.4), spring(0.5 * stiffness, -0.4)],
-        )
-        .unwrap()
-    }
-
-    /// Steps of a given length to a time. Springs let go where they do, or, `located` not, at the end
-    /// of the step in which they do.
-    fn fixed_steps(separation: &Separation, h: f64, until: f64, located: bool) -> State {
-        let mut integrator = Integrator::<1>::new(Settings::default());
-        let mut track = integrator.load(0, separation);
-        // Whatever the error, a step is taken.
-        integrator.expansion.stretch = [0.0, 0.0, 1e9];
-        let mut n = 0.0;
-        while track.time < until {
-            integrator.expand();
-            if track.time >= (n + 0.999) * h {
-                n += 1.0;
-            }
-            let end = f64::min((n + 1.0) * h, until);
-            if located {
-                integrator.advance(0, &mut track, end).unwrap();
-                continue;
-            }
-            let mut next = integrator.at(0, end - track.time);
-            state::normalize(&mut next);
-            integrator.set_state(0, &next);
-            track.time = end;
-            for (i, fate) in track.springs.iter_mut().enumerate() {
-                if fate.released.is_none() && state::gap(separation, &next, i).value >= 0.0 {
-                    fate.released = Some(end);
-                    let (block, lane) = slot::<1>(0, i);
-                    integrator.expansion.springs[block].stiffness.0[lane] = 0.0;
-                }
-            }
-        }
-        integrator.state(0)
-    }
-
-    fn distance(a: &State, b: &State) -> f64 {
-        a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
-    }
-
-    /// Slope and correlation of log error over log step.
-    fn fit(errors: &[(f64, f64)]) -> (f64, f64) {
-        let points: Vec<_> = errors.iter().map(|(h, e)| (h.ln(), e.ln())).collect();
-        let n = points.len() as f64;
-        let (mx, my) = points.iter().fold((0.0, 0.0), |m, p| (m.0 + p.0 / n, m.1 + p.1 / n));
-        let (sxy, sxx, syy) = points.iter().fold((0.0, 0.0, 0.0), |s, p| {
-            let (x, y) = (p.0 - mx, p.1 - my);
-            (s.0 + x * y, s.1 + x * x, s.2 + y * y)
-        });
-        (sxy / sxx, sxy / (sxx * syy).sqrt())
-    }
-
-    fn errors(
-        separation: &Separation,
-        steps: &[u32],
-        until: f64,
-        located: bool,
-    ) -> Vec<(f64, f64)> {
-        let exact = fixed_steps(separation, until / 100.0, until, true);
-        let error = |n: &u32| {
-            let h = until / f64::from(*n);
-            (h, distance(&fixed_steps(separation, h, until, located), &exact))
-        };
-        steps.iter().map(error).collect()
-    }
 
     /// The paper's separation: two releases are soon after others, one soon after a step. A change is
     /// one of the speed.
@@ -608,56 +372,5 @@ mod tests {
         assert_eq!(abreast, ends::<WIDTH>(any));
         assert_eq!(abreast[0], ends::<1>(here)[0]);
         assert_ne!(abreast[0], abreast[1]);
-    }
-
-    /// One step from the same state, all that moves moving.
-    #[test]
-    fn a_step_errs_by_the_first_term_left_out() {
-        let separation = turning(true);
-        let one: Vec<_> = (0..12)
-            .map(|i| {
-                let h = 0.12 * 0.93_f64.powi(i);
-                let exact = fixed_steps(&separation, h / 8.0, h, true);
-                (h, distance(&fixed_steps(&separation, h, h, true), &exact))
-            })
-            .collect();
-        let (slope, correlation) = fit(&one);
-        assert!((slope - (ORDER + 1) as f64).abs() < 0.6, "{slope} {one:?}");
-        assert!(correlation > 0.999, "{correlation} {one:?}");
-    }
-
-    /// Many steps over a given time: a sphere that turns evenly, seen from which all else turns.
-    #[test]
-    fn errors_fall_at_the_order_of_the_series() {
-        let sphere = InertiaMatrix::from_entries([1.0; 3], [0.0; 3]).unwrap();
-        let body = Body::new(2.0, sphere).unwrap();
-        let state = BodyState {
-            position: Vector3::z(),
-            angular_velocity: Vector3::new(2.0, 4.0, 4.0),
-            ..BodyState::default()
-        };
-        let spring = Spring::new(1e-6, 0.5, Vector3::zeros(), Vector3::zeros()).unwrap();
-        let stage = body.at(-Vector3::z());
-        let separation = Separation::new(body.moving(state), stage, &[spring]).unwrap();
-        let found = errors(&separation, &[12, 14, 16, 18, 20, 22, 24, 26, 28], 6.0, true);
-        let (slope, correlation) = fit(&found);
-        assert!((slope - ORDER as f64).abs() < 0.6, "{slope} {found:?}");
-        assert!(correlation > 0.999, "{correlation} {found:?}");
-    }
-
-    /// Releases at the ends of steps leave an integration of second order at best; found as events
-    /// they leave the order be.
-    #[test]
-    fn releases_must_be_located() {
-        let separation = turning(true);
-        let late = errors(&separation, &[14, 20, 28, 40, 57, 80, 113, 160, 226], 1.2, false);
-        let (slope, _) = fit(&late);
-        assert!((0.5..2.5).contains(&slope), "{slope} {late:?}");
-        let found = errors(&separation, &[10, 11, 12, 13, 14, 15, 16, 18, 20], 1.2, true);
-        let (slope, correlation) = fit(&found);
-        assert!(
-            slope > ORDER as f64 - 1.0 && correlation > 0.99,
-            "{slope} {correlation} {found:?}"
-        );
     }
 }

@@ -5,7 +5,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use crate::products::{Abreast, Alone, Products};
+use crate::{abreast::Abreast, alone::Alone, products::Products};
 
 /// One number for each of `L` runs.
 #[derive(Clone, Copy, Debug)]
@@ -140,14 +140,6 @@ pub(crate) fn add<const N: usize, const L: usize>(
 }
 
 #[inline(always)]
-pub(crate) fn sub<const N: usize, const L: usize>(
-    a: [Lanes<L>; N],
-    b: [Lanes<L>; N],
-) -> [Lanes<L>; N] {
-    std::array::from_fn(|i| a[i] - b[i])
-}
-
-#[inline(always)]
 pub(crate) fn scale<const N: usize, const L: usize>(
     a: [Lanes<L>; N],
     s: Lanes<L>,
@@ -158,11 +150,6 @@ pub(crate) fn scale<const N: usize, const L: usize>(
 #[inline(always)]
 pub(crate) fn dot<const L: usize>(a: &V3<L>, b: &V3<L>) -> Lanes<L> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-pub(crate) fn cross<const L: usize>(a: &V3<L>, b: &V3<L>) -> V3<L> {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[inline(always)]

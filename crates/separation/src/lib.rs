@@ -39,11 +39,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod abreast;
+mod alone;
 mod batch;
 mod body;
 mod clearance;
 mod energy;
 mod expansion;
+mod gaps;
 mod integrator;
 mod lanes;
 mod metrics;
@@ -51,6 +54,7 @@ mod nutation;
 mod outcome;
 mod polynomial;
 mod products;
+mod root;
 mod run;
 mod separation;
 mod settings;
@@ -58,6 +62,7 @@ mod snapshot;
 mod spring;
 mod spring_series;
 mod state;
+mod track;
 mod trajectory;
 mod vector;
 

@@ -1,8 +1,6 @@
 use nalgebra::{Unit, Vector3};
 
-use crate::{
-    EnergySplit, MovingBody, Separation, SpinMetrics, integrator::Fates, metrics::angle_of,
-};
+use crate::{EnergySplit, MovingBody, Separation, SpinMetrics, metrics::angle_of, track::Fates};
 
 /// The two bodies at the release of the last spring, from where they move freely.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,6 +4,7 @@
 use crate::{
     expansion::{INVERSE, TERMS},
     lanes::{Lanes, M3, V3, WIDTH},
+    products::{cross, load},
     vector::{Four, Simd},
 };
 
@@ -53,11 +54,6 @@ pub(crate) struct SpringSeries {
     force: V3<WIDTH>,
     /// That none of them pushes any more.
     lost: bool,
-}
-
-#[inline(always)]
-fn load<const N: usize, S: Simd>(simd: S, x: &[Lanes<WIDTH>; N]) -> [Four<S>; N] {
-    std::array::from_fn(|i| Four::load(simd, &x[i]))
 }
 
 #[inline(always)]
@@ -141,9 +137,7 @@ impl SpringSeries {
             let (force, line) = (load(simd, &self.force), load(simd, &newest.line));
             std::array::from_fn(|i| (force[i] + line[i] * before) + first[i] * push)
         };
-        let [x, y, z] = force;
-        let [a, b, c] = load(simd, &self.payload_point);
-        let moment = [b * z - c * y, c * x - a * z, a * y - b * x];
+        let moment = cross(&load(simd, &self.payload_point), &force);
         Some([force.map(Four::store), moment.map(Four::store)])
     }
 

@@ -3,8 +3,9 @@ use smallvec::SmallVec;
 use crate::{
     Outcome, RunError, Separation, Settings, Snapshot,
     expansion::{INLINE_SPRINGS, ORDER, TERMS},
-    integrator::{Fate, Integrator},
+    integrator::Integrator,
     state::{self, State},
+    track::Fate,
 };
 
 /// A step of the integration: the motion between two times as a power series, which is the
