@@ -107,7 +107,8 @@ impl<const L: usize> Expansion<L>
 where
     Lanes<L>: Packing<L>,
 {
-    pub(crate) fn new() -> Self {
+    #[inline(always)]
+    pub(crate) fn new(stretch: [f64; STOPS.len()]) -> Self {
         let vector = [Lanes::ZERO; 3];
         let rotor = Rotor { inertia: [vector; 3], inverse: [vector; 3] };
         Self {
@@ -117,7 +118,7 @@ where
             stage: rotor,
             inverse_scale: [Lanes::ZERO; STATE],
             radius: Lanes::ZERO,
-            stretch: [0.0; STOPS.len()],
+            stretch,
             reach: Lanes::ZERO,
             order: [ORDER; L],
             end: [Lanes::ZERO; STATE],

@@ -62,14 +62,13 @@ where
     Lanes<L>: Packing<L>,
 {
     pub(crate) fn new(settings: Settings) -> Self {
-        let mut expansion = Expansion::new();
         // The first term left out, extrapolated geometrically from the last two, is the tolerance
         // (Jorba & Zou 2005, §3.2). Few terms tell less: half of that.
-        for (stretch, order) in expansion.stretch.iter_mut().zip(STOPS) {
+        let stretch = STOPS.map(|order| {
             let root = libm::pow(settings.relative_tolerance(), 1.0 / (order + 1) as f64);
-            *stretch = if order < ORDER { 0.5 * root } else { root };
-        }
-        Self { expansion, settings, machine: vector::Machine::new() }
+            if order < ORDER { 0.5 * root } else { root }
+        });
+        Self { expansion: Expansion::new(stretch), settings, machine: vector::Machine::new() }
     }
 
     /// Puts a run at its start into a lane.

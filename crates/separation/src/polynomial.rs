@@ -16,11 +16,13 @@ pub(crate) fn first_zero(p: &[f64]) -> Option<f64> {
     }
     match direction(p) {
         Some(Direction::Up) => {
-            let end: f64 = p.iter().sum();
-            // A parabola of the same values at both ends and the same slope at the first.
-            let bend = end - p[0] - p[1];
-            let root = (p[1] * p[1] - 4.0 * bend * p[0]).sqrt();
-            (end >= 0.0).then(|| bracketed(p, 0.0, 1.0, -2.0 * p[0] / (p[1] + root)))
+            let (end, slope) = value(p, 1.0);
+            // The inverse function as a cubic of the same values and slopes at both ends.
+            let rise = end - p[0];
+            let t = -p[0] / rise;
+            let u = 1.0 - t;
+            let guess = t * (t * (3.0 - 2.0 * t) + u * rise * (u / p[1] - t / slope));
+            (end >= 0.0).then(|| bracketed(p, 0.0, 1.0, guess))
         }
         Some(Direction::Down) => None,
         None => search(p, 0.0, 1.0),
