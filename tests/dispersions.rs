@@ -275,6 +275,10 @@ fn a_failed_spring_is_none() {
                 assert!((a / b - 1.0).abs() < 1e-11, "{q:?}: {a} {b}");
             }
         }
+        // It lets go at no time and in no order, for a time of zero would be one.
+        assert!(a.values(Quantity::SpringRelease(0)).is_empty());
+        assert_eq!(a.values(Quantity::SpringRelease(1)).len(), 10);
+        assert!(a.rows().iter().all(|row| !row.release_order().unwrap().contains('1')));
     }
 }
 

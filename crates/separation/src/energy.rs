@@ -4,8 +4,9 @@ use crate::{MovingBody, Outcome, Separation};
 ///
 /// Translation is that of a body's mass centre relative to the mass centre of the whole, ½m|v − v_c|²:
 /// what an observer who moves with the whole sees, so that the speed of flight does not drown it.
-/// Rotation is ½ωᵀIω. Each is the change from the start to the last release; the four sum to what the
-/// springs had stored, to rounding. A body that was turning may have lost rotation.
+/// Rotation is ½ωᵀIω. Each is the change from the start to the last release; the four sum, to
+/// rounding, to what the springs had stored, less what friction takes, what late springs give away under
+/// their latches and what failed ones keep. A body that was turning may have lost rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EnergySplit {
@@ -63,7 +64,8 @@ impl EnergySplit {
         self.stage_rotation
     }
 
-    /// The four together, J: the energy stored, to rounding.
+    /// The four together, J: the energy stored, to rounding, where springs have no friction and none is
+    /// late or fails.
     #[must_use]
     pub fn total_j(&self) -> f64 {
         self.payload_translation
@@ -123,6 +125,27 @@ mod tests {
             assert!(split.stage_rotation_j().abs() < 1e-25, "{split:?}");
             assert!((split.stored_j() - 4.0).abs() < 1e-15);
         }
+    }
+
+    /// What friction takes, and what a failed spring keeps: the rest is ½k(δ − f/k)².
+    #[test]
+    fn friction_and_failure_have_their_part() {
+        let points = (Vector3::z() * -0.5, Vector3::z() * 0.5);
+        let spring = Spring::new(800.0, 0.1, points.0, points.1).unwrap();
+        let rubbing = spring.with_friction(20.0).unwrap();
+        let separation = Separation::new(
+            body(30.0, [5.0, 4.0, 3.0]).at(Vector3::z()),
+            body(10.0, [2.0, 2.0, 1.0]).at(-Vector3::z()),
+            &[rubbing, spring.never_pushing()],
+        )
+        .unwrap();
+        let outcome = separation.run(&Settings::default()).unwrap();
+        let split = outcome.energy_split(&separation);
+        assert!((split.stored_j() - 8.0).abs() < 1e-14, "{split:?}");
+        let given = 0.5 * 800.0 * (0.1_f64 - 20.0 / 800.0).powi(2);
+        assert!((split.total_j() - given).abs() < 1e-12, "{split:?}");
+        assert_eq!(outcome.release_order(), [[1]]);
+        assert_eq!(outcome.release_times().nth(1), Some(0.0));
     }
 
     /// Two bodies apart from one another but for a spring on equal arms: by the blow of a short

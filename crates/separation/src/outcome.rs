@@ -73,9 +73,12 @@ impl Outcome {
     }
 
     /// The springs in the order in which they let go, from 1; those that let go at one time together.
+    /// One that never pushes has no place in it.
     #[must_use]
     pub fn release_order(&self) -> Vec<Vec<usize>> {
-        let mut times: Vec<(f64, usize)> = self.release_times().zip(1..).collect();
+        // Zero is the time of one that never pushes.
+        let times = self.release_times().zip(1..).filter(|(time, _)| *time > 0.0);
+        let mut times: Vec<(f64, usize)> = times.collect();
         times.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let groups = times.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq());
         groups.map(|group| group.iter().map(|(_, spring)| *spring).collect()).collect()

@@ -103,8 +103,8 @@ pub(crate) struct Outcome {
     pub(crate) momentum_error_deg: Option<f64>,
     /// Of the springs; into translation and rotation of payload and stage.
     pub(crate) energies_j: [f64; 5],
-    /// Spring by spring.
-    pub(crate) releases_s: Vec<f64>,
+    /// Spring by spring; none of one that never pushes.
+    pub(crate) releases_s: Vec<Option<f64>>,
     /// Springs from 1 in the order of their releases, `+` between those that let go together.
     pub(crate) release_order: String,
     /// Springs from 1 that were pressed again after they had let go.
@@ -133,6 +133,8 @@ impl Outcome {
         let words = |springs: &[usize], between: &str| {
             springs.iter().map(ToString::to_string).collect::<Vec<_>>().join(between)
         };
+        let releases = separated.release_times().zip(separation.springs());
+        let releases = releases.map(|(time, spring)| spring.can_push().then_some(time));
         let order: Vec<_> = separated.release_order().iter().map(|s| words(s, "+")).collect();
         Ok(Self {
             release_time_s: separated.release_time(),
@@ -155,7 +157,7 @@ impl Outcome {
                 energy.stage_translation_j(),
                 energy.stage_rotation_j(),
             ],
-            releases_s: separated.release_times().collect(),
+            releases_s: releases.collect(),
             release_order: order.join(" "),
             recompressed: separated.recompressed().map(|(spring, _)| spring).collect(),
             clearance: clearance
@@ -186,8 +188,8 @@ impl Row {
         self.outcome.as_ref().err()
     }
 
-    /// Springs from 1 in the order of their releases, `+` between those that let go together; none if
-    /// the run failed.
+    /// Springs from 1 in the order of their releases, `+` between those that let go together, without
+    /// those that never push; none if the run failed.
     #[must_use]
     pub fn release_order(&self) -> Option<&str> {
         self.outcome.as_ref().ok().map(|o| o.release_order.as_str())
@@ -247,7 +249,7 @@ impl Row {
             Quantity::Clearance => o.clearance.map(|c| c[0]),
             Quantity::ClearanceTime => o.clearance.map(|c| c[1]),
             Quantity::RecontactTime => o.recontact_s,
-            Quantity::SpringRelease(spring) => o.releases_s.get(spring).copied(),
+            Quantity::SpringRelease(spring) => o.releases_s.get(spring).copied().flatten(),
         }
     }
 }
@@ -377,7 +379,7 @@ pub enum Quantity {
     ClearanceTime,
     /// When outlines first touch, s.
     RecontactTime,
-    /// When a spring let go, s; springs from 0.
+    /// When a spring let go, s, none if it never pushed; springs from 0.
     SpringRelease(usize),
 }
 

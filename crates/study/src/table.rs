@@ -173,7 +173,7 @@ mod tests {
             momentum_kg_m2_per_s: [1e5, 2e5, -3e5],
             momentum_error_deg: Some(5.0),
             energies_j: [1300.0, 0.1, 0.2, 0.3, 0.7],
-            releases_s: vec![0.3, 0.1 + 0.2],
+            releases_s: vec![Some(0.3), Some(0.1 + 0.2)],
             release_order: "1 2".to_owned(),
             recompressed: vec![2],
             clearance: Some([0.125, 0.1 + 0.2]),
