@@ -62,6 +62,41 @@ fn a_run_that_fails_under_way_has_a_history() {
     assert!(page.contains("had not let go after 0.2 s"));
 }
 
+/// Whoever looks for the reason of a failure sees all that was drawn, how far out it is, and from what.
+#[test]
+fn a_replay_tells_what_was_drawn() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("study");
+    let text = paper().replacen(
+        "[payload.dispersion]",
+        "[payload.dispersion]\nmass_percent = 60.0\nmass_centre_m = [0.0, 0.0, 0.01]",
+        1,
+    );
+    let study = study(&text, 60, &out);
+    let table = &study.tables()[0];
+    let mass = table.drawn("payload_mass_kg").unwrap();
+    let centre = table.drawn("payload_mass_centre_3_m").unwrap();
+    let failed = table.rows().iter().position(|row| row.failure().is_some()).unwrap();
+    for run in [failed, failed + 1] {
+        let page = Replay::open(&out, None, run as u64, 0.0).unwrap().to_string();
+        let line = |name: &str| {
+            let line = page.lines().find(|line| line.trim_start().starts_with(name));
+            let words = line.unwrap_or_else(|| panic!("{page}")).split_whitespace();
+            words.skip(1).map(|x| x.parse().unwrap_or(f64::NAN)).collect::<Vec<f64>>()
+        };
+        let [drawn, nominal, sigmas] = line("payload_mass_kg")[..] else { panic!("{page}") };
+        assert!((drawn / mass[run] - 1.0).abs() < 1e-6 && nominal == 1e4, "{page}");
+        assert!((sigmas - (mass[run] - 1e4) / 6e3).abs() < 0.006, "{page}");
+        let [drawn, nominal, sigmas] = line("payload_mass_centre_3_m")[..] else {
+            panic!("{page}")
+        };
+        assert!((drawn / centre[run] - 1.0).abs() < 1e-6 && nominal == 0.0, "{page}");
+        assert!((sigmas - centre[run] / 0.01).abs() < 0.006, "{page}");
+        // What does not vary is no deviation away from anything.
+        assert!(line("payload_mass_centre_1_m")[2].is_nan(), "{page}");
+    }
+}
+
 /// Columns of numbers by name; events are left out.
 fn table(path: &Path) -> HashMap<String, Vec<f64>> {
     let text = fs::read_to_string(path).unwrap();

@@ -1,6 +1,6 @@
 //! The motion of a run, sampled, and as a table.
 
-use gyradius_separation::{MovingBody, Snapshot, SpringState, Step};
+use gyradius_separation::{MovingBody, Snapshot, Spring, SpringState, Step};
 use nalgebra::{Unit, Vector3};
 use std::fmt::Write;
 
@@ -24,20 +24,21 @@ pub(crate) struct History {
     pub(crate) moments: Vec<Moment>,
     /// Spring from 1 and when it let go, s, in the order of time.
     pub(crate) releases: Vec<(usize, f64)>,
+    /// How many springs push at all.
+    pushing: usize,
 }
 
 impl History {
-    /// Of the steps of a run, and of springs (from 1) that are pressed again at times (s).
-    pub(crate) fn new(steps: &[Step], recompressed: &[(usize, f64)]) -> Self {
+    /// Of the steps of a run by springs, of which some (from 1) are pressed again at times (s).
+    pub(crate) fn new(steps: &[Step], springs: &[Spring], recompressed: &[(usize, f64)]) -> Self {
         let end = steps.last().map_or(0.0, Step::end_s);
         let mut releases = Vec::new();
         for step in steps {
             releases.extend(step.released().iter().map(|spring| (*spring, step.end_s())));
         }
-        let pushing = releases.last().map_or(end, |(_, time)| *time);
-        let springs = steps.first().map_or(0, |step| step.at(0.0).springs().len());
-        let most = MOST.min(NUMBERS / columns(springs).len() as f64);
-        let interval = round(f64::max(pushing / PUSHING, end / most));
+        let last = releases.last().map_or(end, |(_, time)| *time);
+        let most = MOST.min(NUMBERS / columns(springs.len()).len() as f64);
+        let interval = round(f64::max(last / PUSHING, end / most));
         let mut moments: Vec<Moment> = Vec::new();
         let mut next = 0_u32;
         for step in steps {
@@ -46,6 +47,14 @@ impl History {
             while f64::from(next) * interval < step.end_s() {
                 due.push((f64::from(next) * interval, String::new()));
                 next += 1;
+            }
+            for (i, spring) in springs.iter().enumerate() {
+                let start = spring.start_s().unwrap_or(0.0);
+                let starts = start > 0.0 && (step.start_s()..step.end_s()).contains(&start);
+                // One that has come to its free length by then does not.
+                if starts && step.at(start).springs()[i].is_pushing() {
+                    due.push((start, format!("spring {} starts", i + 1)));
+                }
             }
             for (spring, time) in recompressed {
                 if (step.start_s()..step.end_s()).contains(time) {
@@ -66,7 +75,8 @@ impl History {
         if let Some(first) = moments.first_mut() {
             first.event.insert_str(0, "clamp opens");
         }
-        Self { moments, releases }
+        let pushing = springs.iter().filter(|spring| spring.can_push()).count();
+        Self { moments, releases, pushing }
     }
 
     /// When it ends, s.
@@ -76,9 +86,8 @@ impl History {
 
     /// When the last spring lets go, s; the end if some do not.
     pub(crate) fn pushing_s(&self) -> f64 {
-        let springs = self.moments.first().map_or(0, |m| m.now.springs().len());
         match self.releases.last() {
-            Some((_, time)) if self.releases.len() == springs => *time,
+            Some((_, time)) if self.releases.len() == self.pushing => *time,
             _ => self.end_s(),
         }
     }
@@ -186,6 +195,7 @@ pub(crate) fn nutation_deg(payload: &MovingBody, spin_axis: &Unit<Vector3<f64>>)
 #[cfg(test)]
 mod tests {
     use super::round;
+    use crate::{Replay, Scenario};
 
     #[test]
     fn intervals_are_round() {
@@ -193,5 +203,34 @@ mod tests {
             assert_eq!(round(x), expected);
         }
         assert!(round(0.0) > 0.0 && round(5e-324) > 0.0);
+    }
+
+    /// A spring that fails is not waited for: the pushing ends with the others'.
+    #[test]
+    fn failed_springs_do_not_push_on() {
+        let text = Scenario::peck_2003().unwrap().to_toml();
+        let second = text.match_indices("[[springs]]").nth(1).unwrap().0;
+        let (head, tail) = text.split_at(second);
+        let text = format!("{head}[springs.dispersion]\nfailure_probability = 1.0\n\n{tail}");
+        let text = text.replace("[springs.dispersion]", "start_s = 0.01\n\n[springs.dispersion]");
+        // The second is late.
+        let third = text.match_indices("[[springs]]").nth(2).unwrap().0;
+        let (head, tail) = text.split_at(third);
+        let scenario = Scenario::from_toml(&format!("{head}start_s = 0.02\n\n{tail}")).unwrap();
+        let replay = Replay::new(&scenario, None, 0, 5.0).unwrap();
+        let pushing = replay.history.pushing_s();
+        assert_eq!(Some(pushing), replay.row().value(crate::Quantity::ReleaseTime));
+        assert!((replay.history.end_s() - pushing - 5.0).abs() < 1e-12);
+        let page = replay.to_string();
+        assert!(page.contains("\n  1 never pushes\n  2 starts at 0.020000000 s\n"), "{page}");
+        assert!(!page.contains("1 lets go"), "{page}");
+        let starts = replay.history.moments.iter().filter(|m| m.event.contains("starts"));
+        let starts: Vec<_> = starts.map(|m| (m.now.time_s(), m.event.as_str())).collect();
+        assert_eq!(starts, [(0.02, "spring 2 starts")]);
+        // Nor does the animation draw what does not push.
+        let animation = crate::replay::page::html(&replay);
+        assert_eq!(animation.matches("\"from\":null").count(), 1);
+        assert_eq!(animation.matches("\"from\":0.02,").count(), 1);
+        assert_eq!(animation.matches("\"from\":0.0,").count(), 2);
     }
 }

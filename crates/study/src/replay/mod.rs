@@ -6,7 +6,7 @@ mod picture;
 mod record;
 mod words;
 
-use gyradius_separation::{RunError, Step};
+use gyradius_separation::{RunError, Separation, Step};
 use parquet::errors::ParquetError;
 use serde_json::Value;
 use std::{
@@ -81,7 +81,7 @@ pub enum ReplayError {
         runs: u64,
     },
     /// The coast is none.
-    #[error("coast = {value} s: it must lie between 0 and {MOST_COAST}")]
+    #[error("coast = {value:?} s: it must lie between 0 and {MOST_COAST}")]
     Coast {
         /// What was asked for, s.
         value: f64,
@@ -214,9 +214,10 @@ impl Replay {
             }
             result = Some(outcome);
         }
+        let springs = case.separation.as_ref().map_or(&[][..], Separation::springs);
         Ok(Self {
             row: case.row(scenario, result),
-            history: History::new(&steps, &recompressed),
+            history: History::new(&steps, springs, &recompressed),
             scenario: scenario.clone(),
             model: spec.name.clone(),
             case,
@@ -263,6 +264,8 @@ impl Replay {
         for (path, content) in &files {
             let same = match fs::symlink_metadata(path) {
                 Err(error) if error.kind() == io::ErrorKind::NotFound => false,
+                // The folder is a file, say.
+                Err(source) => return Err(ReplayError::Write { path: path.clone(), source }),
                 // A folder of that name cannot be replaced.
                 Ok(found) if found.is_dir() => {
                     let source = io::Error::other("it is a folder");

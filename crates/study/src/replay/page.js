@@ -47,6 +47,8 @@ data.springs.forEach((spring) => {
 });
 const most = Math.max(...frames.map((f) => norm(f.slice(21, 24)))) || 1;
 let yaw = 0.9, pitch = 0.32, zoom = 1, time = 0, playing = true, before = null;
+// One that fails has no start.
+const isPushing = (spring) => spring.from !== null && time >= spring.from && (spring.free === null || time < spring.free);
 
 // Inertial 3 up; returns across, up and towards the eye.
 function view(v) {
@@ -124,7 +126,7 @@ function draw() {
   }
   data.springs.forEach((spring) => {
     const a = add(now.x[1], turn(now.q[1], spring.s)), b = add(now.x[0], turn(now.q[0], spring.p));
-    const p = point(a), q = point(b), pushes = spring.free === null || time < spring.free;
+    const p = point(a), q = point(b), pushes = isPushing(spring);
     things.push({ depth: (p[2] + q[2]) / 2, draw() {
       pen.fillStyle = INK;
       [p, q].forEach((o) => { pen.beginPath(); pen.arc(o[0], o[1], 2.2, 0, 7); pen.fill(); });
@@ -157,7 +159,7 @@ function draw() {
   pen.moveTo(right - metres * scale, low - 4); pen.lineTo(right - metres * scale, low); pen.lineTo(right, low); pen.lineTo(right, low - 4); pen.stroke();
   pen.textAlign = "right"; pen.fillText(`${+metres.toPrecision(2)} m`, right, low - 8);
 
-  const pushing = data.springs.filter((s) => s.free === null || time < s.free).length;
+  const pushing = data.springs.filter(isPushing).length;
   el("clock").textContent = `${time.toFixed(end < 1 ? 5 : 3)} of ${end.toFixed(end < 1 ? 5 : 3)} s`;
   el("time").value = end > 0 ? 1000 * time / end : 0;
   const rate = (w) => w.map((x) => x.toFixed(4).replace("-", "−")).join(", ");

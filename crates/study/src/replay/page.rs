@@ -82,6 +82,7 @@ fn data(replay: &Replay) -> Value {
             json!({
                 "p": short(spring.payload_point_m().as_slice()),
                 "s": short(spring.stage_point_m().as_slice()),
+                "from": spring.start_s().filter(|_| spring.can_push()).map(|s| short(&[s])[0].clone()),
                 "free": released.map(|(_, time)| short(&[*time])[0].clone()),
             })
         })

@@ -39,6 +39,7 @@ impl Display for Replay {
         if !row.realizable() {
             writeln!(f, "  no distribution of mass has such inertia")?;
         }
+        self.drawn(f)?;
         if row.failure().is_some() {
             return match self.history.moments.last() {
                 Some(last) => writeln!(
@@ -52,6 +53,20 @@ impl Display for Replay {
         }
 
         write!(f, "\nsprings")?;
+        let springs = self.case.separation.iter().flat_map(|s| s.springs());
+        for (spring, number) in springs.zip(1..) {
+            let start = spring.start_s().filter(|start| *start > 0.0);
+            match row.value(Quantity::SpringRelease(number - 1)) {
+                None => write!(f, "\n  {number} never pushes")?,
+                Some(release) => match start {
+                    Some(start) if start < release => {
+                        write!(f, "\n  {number} starts at {start:.9} s")?;
+                    }
+                    Some(_) => write!(f, "\n  {number} comes to its free length before it starts")?,
+                    None => {}
+                },
+            }
+        }
         for (spring, time) in &self.history.releases {
             write!(f, "\n  {spring} lets go at {time:.9} s")?;
         }
@@ -103,5 +118,26 @@ impl Display for Replay {
         let (translation, rotation) = (Quantity::StageTranslation, Quantity::StageRotation);
         line("  stage: translation and rotation", both(translation, rotation), " J")?;
         writeln!(f)
+    }
+}
+
+impl Replay {
+    /// What else was drawn, beside its nominal value, and how far it is from the mean of its law in
+    /// standard deviations.
+    fn drawn(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let dispersed = &self.scenario.dispersions().all;
+        if dispersed.is_empty() {
+            return Ok(());
+        }
+        let width = dispersed.iter().map(|d| d.column.len()).max().unwrap_or(0);
+        let [value, nominal, sigmas] = ["drawn", "nominal", "σ from mean"];
+        writeln!(f, "\nalso dispersed{:1$}{value:>14}{nominal:>14}{sigmas:>14}", "", width - 12)?;
+        for (d, value) in dispersed.iter().zip(&self.row.drawn) {
+            let sigmas = (value - d.law.mean()) / d.law.deviation();
+            let sigmas = if sigmas.is_finite() { format!("{sigmas:.2}") } else { "–".to_owned() };
+            let (value, nominal) = (significant(*value, 7), significant(d.nominal, 7));
+            writeln!(f, "  {:width$}{value:>14}{nominal:>14}{sigmas:>14}", d.column)?;
+        }
+        Ok(())
     }
 }
