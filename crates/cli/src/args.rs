@@ -198,7 +198,7 @@ pub(crate) struct ReplayArgs {
     pub(crate) study: Option<PathBuf>,
 
     /// Which run, from 0
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) run: u64,
 
     /// Which model [default: the first of the scenario]

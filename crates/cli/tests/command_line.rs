@@ -118,7 +118,7 @@ fn bad_scenarios_name_field_value_and_what_is_allowed() {
         ("0.00002", "-0.00002", "payload.dispersion.axes_covariance: covariance with eigenvalue"),
         ("0.00002", "0.0", "must be positive definite"),
         ("runs = 5", "runs = 0", "runs: 0: it must be between 1"),
-        ("stroke_m = 0.1", "stroke_m = 0.0", "springs[1]: stroke = 0.0 m"),
+        ("stroke_m = 0.1", "stroke_m = 0.0", "springs[1].stroke_m: stroke = 0.0 m"),
     ];
     for (from, to, expected) in cases {
         let file = shell.scenario(from, to);
@@ -279,7 +279,7 @@ fn a_run_is_replayed_into_a_folder() {
     assert!(shell.refused(&["replay"]).contains("--run"));
     let model = shell.refused(&["replay", "--run", "0", "--model", "naif"]);
     assert!(model.contains("model \"naif\": the scenario has proposed"), "{model}");
-    assert!(shell.refused(&["replay", "--run", "0", "--coast", "-1"]).contains("coast = -1 s"));
+    assert!(shell.refused(&["replay", "--run", "0", "--coast", "-1"]).contains("coast = -1.0 s"));
     let taken =
         shell.refused(&["replay", "--run", "1", "--out", "target/replay/peck-2003/naive-7"]);
     assert!(taken.contains("history.csv is there already"), "{taken}");

@@ -24,7 +24,7 @@ pub enum BodyError {
         moments: [f64; 3],
     },
     /// The attitude is not a unit quaternion.
-    #[error("attitude quaternion of norm {norm}: it must have norm 1")]
+    #[error("attitude quaternion of norm {norm:?}: it must have norm 1")]
     Attitude {
         /// The norm.
         norm: f64,

@@ -6,7 +6,7 @@ use crate::{Outcome, Separation, Settings, integrator::Integrator};
 pub enum RunError {
     /// Springs are still in contact at the horizon.
     #[error(
-        "springs {springs:?} had not let go after {horizon} s: spring {} is {compression:e} m short \
+        "springs {springs:?} had not let go after {horizon:?} s: spring {} is {compression:e} m short \
          of its free length and grows by {rate:e} m/s", .springs[0]
     )]
     NotReleased {
@@ -21,7 +21,7 @@ pub enum RunError {
     },
     /// The two points of a spring have come together, and its force has lost its direction.
     #[error(
-        "spring {spring}: its points meet at {time} s, closing at {speed} m/s: the line between them is \
+        "spring {spring}: its points meet at {time:?} s, closing at {speed:?} m/s: the line between them is \
          the direction of the force"
     )]
     PadsMeet {
@@ -33,7 +33,7 @@ pub enum RunError {
         speed: f64,
     },
     /// Steps have become too small to go on.
-    #[error("the step at {time} s would be {step:e} s, too small to go on")]
+    #[error("the step at {time:?} s would be {step:e} s, too small to go on")]
     StepUnderflow {
         /// When, s.
         time: f64,
@@ -42,7 +42,7 @@ pub enum RunError {
     },
     /// So many steps that the motion must be far faster than the springs are.
     #[error(
-        "{steps} steps have led to {time} s only, at a relative tolerance of {relative_tolerance:e}: \
+        "{steps} steps have led to {time:?} s only, at a relative tolerance of {relative_tolerance:e}: \
          the bodies turn too fast for their springs"
     )]
     TooManySteps {
@@ -54,13 +54,13 @@ pub enum RunError {
         relative_tolerance: f64,
     },
     /// The coast asked for is none.
-    #[error("coast = {value} s: it must be zero or positive, and finite")]
+    #[error("coast = {value:?} s: it must be zero or positive, and finite")]
     Coast {
         /// The coast, s.
         value: f64,
     },
     /// A number has overflowed.
-    #[error("the motion at {time} s is beyond the range of numbers")]
+    #[error("the motion at {time:?} s is beyond the range of numbers")]
     NotFinite {
         /// When, s.
         time: f64,

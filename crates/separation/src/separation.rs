@@ -32,7 +32,7 @@ pub enum SeparationError {
     /// The two points of a spring coincide at the start, which leaves its direction undefined.
     #[error(
         "spring {spring}: its points are {distance:e} m apart at the start: they must be apart by \
-         more than a millionth of the stroke ({stroke} m), for the line between them is the \
+         more than a millionth of the stroke ({stroke:?} m), for the line between them is the \
          direction of the force; touching pads have none, and nearly touching ones turn with the \
          slightest motion"
     )]

@@ -9,7 +9,7 @@ pub enum SettingsError {
         value: f64,
     },
     /// The horizon is not positive and finite.
-    #[error("horizon = {value} s: it must be positive and finite")]
+    #[error("horizon = {value:?} s: it must be positive and finite")]
     Horizon {
         /// The horizon, s.
         value: f64,

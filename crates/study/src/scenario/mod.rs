@@ -7,7 +7,7 @@ mod file;
 mod law;
 mod model;
 
-use gyradius_separation::{Separation, Settings, Spring};
+use gyradius_separation::{Separation, Settings, SettingsError, Spring, SpringError};
 use nalgebra::{Unit, Vector3};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -163,7 +163,9 @@ impl Scenario {
                 Spring::new(s.stiffness_n_per_m, s.stroke_m, p, l)
                     .and_then(|spring| spring.with_friction(s.friction_n.unwrap_or(0.0)))
                     .and_then(|spring| spring.starting_at(s.start_s.unwrap_or(0.0)))
-                    .map_err(|e| ScenarioError::field(format!("springs[{}]", i + 1), e))
+                    .map_err(|e| {
+                        ScenarioError::field(format!("springs[{}].{}", i + 1, spring_key(&e)), e)
+                    })
             })
             .collect::<Result<Vec<_>, _>>()?;
         let separation = Separation::new(*payload.moving(), *stage.moving(), &springs)
@@ -181,7 +183,11 @@ impl Scenario {
         let momentum_direction = direction("momentum_direction", intended)?;
         let settings =
             Settings::new(file.integration.relative_tolerance, file.integration.horizon_s)
-                .map_err(|e| ScenarioError::field("integration", e))?;
+                .map_err(|e| {
+                    let horizon = matches!(e, SettingsError::Horizon { .. });
+                    let field = if horizon { "horizon_s" } else { "relative_tolerance" };
+                    ScenarioError::field(format!("integration.{field}"), e)
+                })?;
         let dispersions = Dispersions::new(&file)?;
         let outlines = file.clearance.as_ref().map(Outlines::new).transpose()?;
         let models = model::check_models(&file.models, [&payload, &stage])?;
@@ -313,14 +319,14 @@ fn unit(vector: Vector3<f64>) -> Option<Unit<Vector3<f64>>> {
     Unit::try_new(scaled, 0.0).filter(|u| u.iter().all(|x| x.is_finite()))
 }
 
-/// The direction in which the springs push the payload at the start, if they do not cancel.
+/// The direction in which the springs push the payload at the start, late ones too, if they do not cancel.
 fn push(separation: &Separation) -> Option<Unit<Vector3<f64>>> {
     let (payload, stage) = (separation.payload().state(), separation.stage().state());
-    let forces = separation.springs().iter().map(|spring| {
+    let forces = separation.springs().iter().filter(|s| s.can_push()).map(|spring| {
         let line = (payload.position - stage.position)
             + payload.attitude * spring.payload_point_m()
             - stage.attitude * spring.stage_point_m();
-        line * (spring.stiffness_n_per_m() * spring.stroke_m() / line.norm())
+        line * (spring.stiffness_n_per_m() * spring.travel_m() / line.norm())
     });
     let (sum, size) = forces
         .fold((Vector3::zeros(), 0.0), |(sum, size): (Vector3<f64>, f64), f| {
@@ -328,6 +334,18 @@ fn push(separation: &Separation) -> Option<Unit<Vector3<f64>>> {
         });
     // What is left of forces that cancel is rounding.
     if sum.norm() > 1e-9 * size { unit(sum) } else { None }
+}
+
+/// The key of a spring that is wrong.
+fn spring_key(error: &SpringError) -> &'static str {
+    match error {
+        SpringError::Stiffness { .. } => "stiffness_n_per_m",
+        SpringError::Stroke { .. } => "stroke_m",
+        SpringError::Friction { .. } => "friction_n",
+        SpringError::Start { .. } => "start_s",
+        SpringError::Point { body: "payload", .. } => "payload_point_m",
+        _ => "stage_point_m",
+    }
 }
 
 fn check_runs(runs: u64) -> Result<(), ScenarioError> {
@@ -420,6 +438,31 @@ mod tests {
         assert!(paper.outlines().is_none());
     }
 
+    /// Two springs in a V: alike they push straight up; friction takes from the force of one.
+    #[test]
+    fn springs_push_with_what_friction_leaves() {
+        let at = PECK_2003.find("[[springs]]").unwrap();
+        let models = PECK_2003.find("# The law as derived").unwrap();
+        let spring = |x: f64, friction: f64| {
+            format!(
+                "[[springs]]\nstiffness_n_per_m = 1e4\nstroke_m = 0.1\nfriction_n = {friction:?}\n\
+                 payload_point_m = [{x:?}, 0.0, -0.9]\nstage_point_m = [0.0, 0.0, 0.9]\n\n"
+            )
+        };
+        let direction = |friction: f64| {
+            let springs = spring(0.2, friction) + &spring(-0.2, 0.0);
+            let text = format!("{}{springs}{}", &PECK_2003[..at], &PECK_2003[models..]);
+            *Scenario::from_toml(&text).unwrap().separation_direction().unwrap().as_ref()
+        };
+        assert!((direction(0.0) - Vector3::z()).norm() < 1e-15);
+        // Forces of 600 and 1000 N: (−400, 1600)/√2.
+        let expected = Vector3::new(-1.0, 0.0, 4.0).normalize();
+        assert!((direction(400.0) - expected).norm() < 1e-14, "{}", direction(400.0));
+        // One that cannot overcome its friction does not push.
+        let expected = Vector3::new(-1.0, 0.0, 1.0).normalize();
+        assert!((direction(1e4) - expected).norm() < 1e-14, "{}", direction(1e4));
+    }
+
     #[test]
     fn a_spin_axis_of_any_length_is_a_direction() {
         for length in ["1e300", "1e-300", "7.0"] {
@@ -462,7 +505,18 @@ mod tests {
             (
                 "stiffness_n_per_m = 1e5",
                 "stiffness_n_per_m = 0.0",
-                "springs[1]: stiffness = 0.0 N/m",
+                "springs[1].stiffness_n_per_m: stiffness = 0.0 N/m",
+            ),
+            ("stroke_m = 0.1", "stroke_m = inf", "springs[1].stroke_m: stroke = inf m"),
+            (
+                "stage_point_m = [1.0,",
+                "stage_point_m = [nan,",
+                "springs[1].stage_point_m: stage attachment point has entry NaN",
+            ),
+            (
+                "stroke_m = 0.1",
+                "stroke_m = 0.1\nstart_s = -1.0",
+                "springs[1].start_s: start = -1.0 s",
             ),
             ("spin_axis = [1.0,", "spin_axis = [0.0,", "spin_axis: [0.0, 0.0, 0.0]: it must be"),
             ("name = \"peck-2003\"", "name = \"../peck\"", "name: \"../peck\": it must be 1 to 64"),
@@ -485,6 +539,16 @@ mod tests {
             ),
             ("naive = \"naive\"", "naive = \"proposed\"", "comparisons[1].naive: \"proposed\""),
             ("name = \"published\"", "name = \"Proposed\"", "models: two are named \"Proposed\""),
+            (
+                "[source]",
+                "[integration]\nhorizon_s = -1e300\n[source]",
+                "integration.horizon_s: horizon = -1e300 s: it must be positive and finite",
+            ),
+            (
+                "[source]",
+                "[integration]\nrelative_tolerance = nan\n[source]",
+                "integration.relative_tolerance: relative tolerance = NaN",
+            ),
             ("wobble_deg = 1.144", "wobble_deg = nan", "source.wobble_deg: NaN"),
             ("spin_axis = [1.0,", "spin_axis = [nan,", "spin_axis: [NaN, 0.0, 0.0]"),
         ];
