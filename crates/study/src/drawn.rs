@@ -476,4 +476,47 @@ mod tests {
         assert_eq!(scaled(&scenario, Body::Payload, &[-1.0], inertia), inertia);
         assert_eq!(scaled(&scenario, Body::Stage, &[11_000.0], inertia), inertia);
     }
+
+    /// Position, velocity, attitude and rate of payload and stage.
+    fn numbers(bodies: [&MovingBody; 2]) -> Vec<f64> {
+        let of = |body: &MovingBody| {
+            let s = *body.state();
+            let (q, w) = (s.attitude.coords, s.angular_velocity);
+            [s.position.as_slice(), s.velocity.as_slice(), q.as_slice(), w.as_slice()].concat()
+        };
+        bodies.map(of).concat()
+    }
+
+    /// Everything dispersed at once, against a program that shares nothing with this one
+    /// (`tests/data/dispersed.py`).
+    #[test]
+    fn dispersed_separations_match_the_reference() {
+        let scenario = Scenario::from_toml(include_str!("../tests/data/dispersed.toml")).unwrap();
+        let reference = include_str!("../tests/data/dispersed.json");
+        let reference: serde_json::Value = serde_json::from_str(reference).unwrap();
+        let columns = serde_json::to_value(scenario.dispersions().columns()).unwrap();
+        assert_eq!(reference["columns"], columns);
+        let settings = gyradius_separation::Settings::default();
+        for (i, run) in reference["runs"].as_array().unwrap().iter().enumerate() {
+            let list = |key: &str| -> Vec<f64> {
+                run[key].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+            };
+            let [payload, stage] = ["payload_inertia", "stage_inertia"].map(|key| {
+                let e = list(key);
+                InertiaMatrix::from_entries([e[0], e[1], e[2]], [e[3], e[4], e[5]]).unwrap()
+            });
+            let separation = separation(&scenario, &list("drawn"), payload, stage).unwrap();
+            let outcome = separation.run(&settings).unwrap();
+            let near = |what: &str, found: Vec<f64>, tolerance: f64| {
+                let expected = list(what);
+                assert_eq!(found.len(), expected.len());
+                for (j, (a, b)) in found.iter().zip(&expected).enumerate() {
+                    assert!((a - b).abs() < tolerance, "run {i}, {what} {j}: {a} {b}");
+                }
+            };
+            near("start", numbers([separation.payload(), separation.stage()]), 1e-13);
+            near("release_times_s", outcome.release_times().collect(), 1e-11);
+            near("end", numbers([outcome.payload(), outcome.stage()]), 1e-10);
+        }
+    }
 }
