@@ -70,6 +70,16 @@ impl History {
                 due.push((end, "end".to_owned()));
             }
             due.sort_by(|a, b| a.0.total_cmp(&b.0));
+            // One row a moment, also where something happens on the grid.
+            due.dedup_by(|later, first| {
+                let same = later.0 == first.0;
+                if same {
+                    let between =
+                        if first.1.is_empty() || later.1.is_empty() { "" } else { " and " };
+                    first.1 = format!("{}{between}{}", first.1, later.1);
+                }
+                same
+            });
             moments.extend(due.into_iter().map(|(t, event)| Moment { now: step.at(t), event }));
         }
         if let Some(first) = moments.first_mut() {
@@ -227,6 +237,8 @@ mod tests {
         let starts = replay.history.moments.iter().filter(|m| m.event.contains("starts"));
         let starts: Vec<_> = starts.map(|m| (m.now.time_s(), m.event.as_str())).collect();
         assert_eq!(starts, [(0.02, "spring 2 starts")]);
+        let rows = replay.history.moments.iter().filter(|m| m.now.time_s() == 0.02);
+        assert_eq!(rows.count(), 1, "on the grid too");
         // Nor does the animation draw what does not push.
         let animation = crate::replay::page::html(&replay);
         assert_eq!(animation.matches("\"from\":null").count(), 1);

@@ -1,5 +1,6 @@
 //! A run on a page.
 
+use gyradius_separation::Separation;
 use std::fmt::{self, Display, Formatter};
 
 use super::Replay;
@@ -53,7 +54,7 @@ impl Display for Replay {
         }
 
         write!(f, "\nsprings")?;
-        let springs = self.case.separation.iter().flat_map(|s| s.springs());
+        let springs = self.case.separation.iter().flat_map(Separation::springs);
         for (spring, number) in springs.zip(1..) {
             let start = spring.start_s().filter(|start| *start > 0.0);
             match row.value(Quantity::SpringRelease(number - 1)) {
@@ -134,7 +135,9 @@ impl Replay {
         writeln!(f, "\nalso dispersed{:1$}{value:>14}{nominal:>14}{sigmas:>14}", "", width - 12)?;
         for (d, value) in dispersed.iter().zip(&self.row.drawn) {
             let sigmas = (value - d.law.mean()) / d.law.deviation();
-            let sigmas = if sigmas.is_finite() { format!("{sigmas:.2}") } else { "–".to_owned() };
+            // Nothing of what happens or not, nor of a start that is not late.
+            let tells = sigmas.is_finite() && *value != d.nominal && d.law.name() != "bernoulli";
+            let sigmas = if tells { format!("{sigmas:.2}") } else { "–".to_owned() };
             let (value, nominal) = (significant(*value, 7), significant(d.nominal, 7));
             writeln!(f, "  {:width$}{value:>14}{nominal:>14}{sigmas:>14}", d.column)?;
         }
