@@ -121,4 +121,43 @@ fn recontact_is_an_outcome() {
     let summary = fs::read_to_string(study.folder().join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     assert_eq!(summary["models"][0]["releases"]["recontact"]["count"], 0);
+    // How near they come, in which run, and the picture of it.
+    let told = &summary["models"][0]["releases"]["clearance"];
+    let least = clearance.iter().copied().fold(f64::INFINITY, f64::min);
+    assert_eq!(told["least_m"], least);
+    let nearest =
+        table.rows().iter().find(|r| r.value(Quantity::Clearance) == Some(least)).unwrap();
+    assert_eq!(told["run"], nearest.run());
+    let p01 = told["p01_m"].as_f64().unwrap();
+    assert!(clearance.iter().filter(|c| **c < p01).count() <= clearance.len() / 100 + 1);
+    let report = fs::read_to_string(study.folder().join("report.html")).unwrap();
+    assert!(report.contains("They come as near as") && report.contains("figures/clearance.svg"));
+    let replay = Replay::open(study.folder(), None, nearest.run(), 2.0).unwrap();
+    let words = replay.to_string();
+    assert!(words.contains("payload 1 (points) and stage 1 (hull)"), "{words}");
+    let folder = study.folder().join("replay");
+    replay.write(&folder, false).unwrap();
+    let page = fs::read_to_string(folder.join("animation.html")).unwrap();
+    assert!(page.contains("\"hull\":") && page.contains("\"closest\":{") && page.len() < 200_000);
+}
+
+#[test]
+fn an_outline_that_cannot_be_placed_fails_its_run() {
+    // At the edge of what is allowed: about every other mass centre pushes it over.
+    let clearance = "[clearance]\npayload = [{ points_m = [[0.0, 999999.9, 0.0]] }]\n\
+                     stage = [{ points_m = [[0.0, 0.0, 0.5]] }]\n\n[payload]";
+    let text = paper().replacen("[payload]", clearance, 1).replacen(
+        "[payload.dispersion]",
+        "[payload.dispersion]\nmass_centre_m = [0.0, 1.0, 0.0]",
+        1,
+    );
+    let (study, _scratch) = run(&text);
+    for table in study.tables() {
+        let failed: Vec<_> = table.rows().iter().filter(|r| r.failure().is_some()).collect();
+        assert!((50..250).contains(&failed.len()), "{}", failed.len());
+        for row in failed {
+            let status = row.status();
+            assert!(status.starts_with("payload: outline: points_m has coordinate"), "{status}");
+        }
+    }
 }

@@ -5,7 +5,8 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::{
-    Body, BodyState, Clearance, ClearanceSettings, Coast, MovingBody, Outline, Shape,
+    Body, BodyState, Clearance, ClearanceSettings, Coast, MovingBody, Outline, Separation,
+    Settings, Shape, Spring,
 };
 use nalgebra::Vector3;
 use std::hint::black_box;
@@ -32,7 +33,30 @@ fn ring(z: f64, radius: f64) -> Outline {
     Shape::ring(V::z() * z, V::z(), radius).unwrap().into()
 }
 
+/// After the separation of Peck (2003), Table 1.
+fn paper() -> [MovingBody; 2] {
+    let payload = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0]).unwrap();
+    let stage = InertiaMatrix::from_entries([6.7e3, 6.7e3, 2e3], [0.0, 20.0, -20.0]).unwrap();
+    let springs = [(1e5, 1.0, 1.0), (1e5, -1.0, 1.0), (3e4, 1.0, -1.0), (3e4, -1.0, -1.0)];
+    let springs = springs
+        .map(|(k, x, y)| Spring::new(k, 0.1, V::new(x, y, -0.9), V::new(x, y, 0.9)).unwrap());
+    let separation = Separation::new(
+        Body::new(1e4, payload).unwrap().at(V::z()),
+        Body::new(4e3, stage).unwrap().at(-V::z()),
+        &springs,
+    );
+    let outcome = separation.unwrap().run(&Settings::default()).unwrap();
+    [*outcome.payload(), *outcome.stage()]
+}
+
+fn both(a: &Outline, b: &Outline) -> Outline {
+    Outline::new([a.shapes(), b.shapes()].concat()).unwrap()
+}
+
 fn clearance(c: &mut Criterion) {
+    let parted = paper();
+    let spacecraft = both(&prism(16, 1.2, -0.85, 1.5), &ring(-0.95, 0.6));
+    let nozzle = prism(16, 0.35, -1.6, -0.85);
     // After a separation with tip-off, spinning and at rest.
     let tip_off = [
         moving([5e3, 4e3, 3e3], V::z(), V::z() * 0.3, V::new(0.05, -0.02, 0.01)),
@@ -43,7 +67,16 @@ fn clearance(c: &mut Criterion) {
         moving([5e3, 4e3, 3e3], V::z() * 1.1, V::z() * 0.06, V::new(0.15, 0.05, 0.0)),
         moving([6.7e3, 6.7e3, 2e3], -V::z(), V::zeros(), V::zeros()),
     ];
-    let cases: [(&str, &[MovingBody; 2], Outline, Outline); 7] = [
+    let cases: [(&str, &[MovingBody; 2], Outline, Outline); 11] = [
+        ("paper: spacecraft and adapter ring", &parted, spacecraft.clone(), ring(0.95, 0.6)),
+        (
+            "paper: spacecraft and stage",
+            &parted,
+            spacecraft,
+            both(&prism(16, 1.3, -2.5, 0.7), &ring(0.95, 0.6)),
+        ),
+        ("paper: nozzle leaves the adapter ring", &parted, nozzle.clone(), ring(0.95, 0.6)),
+        ("paper: nozzle strikes its well", &parted, nozzle, ring(0.7, 0.4)),
         ("hulls of 8", &tip_off, prism(4, 1.0, -0.9, 1.5), prism(4, 1.0, -2.0, 0.9)),
         ("hulls of 30", &tip_off, prism(15, 1.0, -0.9, 1.5), prism(15, 1.0, -2.0, 0.9)),
         ("hulls of 8, near again", &tumbling, prism(4, 1.0, -0.9, 1.5), prism(4, 1.0, -2.0, 0.9)),

@@ -84,8 +84,37 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
             3,
         ));
     }
+    plates.extend(clearance(scenario, summary, tables));
     plates.extend(summary.every_model.plate());
     plates
+}
+
+/// How near the bodies come: a comparison a panel, or a model where nothing is compared.
+fn clearance(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Option<Plate> {
+    let samples: Vec<Vec<f64>> = tables.iter().map(|t| t.values(Quantity::Clearance)).collect();
+    let compared = scenario.comparisons().iter().map(|c| vec![c.physical, c.naive]);
+    let mut groups: Vec<Vec<usize>> = compared.collect();
+    if groups.is_empty() {
+        groups = (0..tables.len()).map(|i| vec![i]).collect();
+    }
+    let panels: Vec<Option<Panel<'_>>> = groups
+        .into_iter()
+        .filter(|group| group.iter().any(|i| !samples[*i].is_empty()))
+        .map(|group| {
+            let series = |i: usize| Series { name: tables[i].model(), values: &samples[i] };
+            Some(Panel {
+                label: axis_label(Quantity::Clearance),
+                series: group.into_iter().map(series).collect(),
+                nominal: summary.nominal_value(Quantity::Clearance),
+            })
+        })
+        .collect();
+    let title = "Smallest distance of payload and stage after the last release";
+    (!panels.is_empty()).then(|| Plate {
+        name: "clearance".to_owned(),
+        caption: format!("{title}; runs in which they touch again are at 0"),
+        svg: histogram_grid(title, &panels, if panels.len() > 4 { 3 } else { 2 }),
+    })
 }
 
 /// Figure 1 for every model that draws attitudes.

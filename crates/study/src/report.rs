@@ -9,7 +9,7 @@ use crate::{
     plates::Plate,
     row::{Body, Entry, Quantity},
     scenario::{Comparison, Scenario},
-    summary::{ComparisonSummary, ModelSummary, Summary},
+    summary::{ClearanceSummary, ComparisonSummary, ModelSummary, Summary},
 };
 
 pub(crate) const STYLE: &str = include_str!("report.css");
@@ -128,7 +128,12 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
             (said(scenario.separation_direction())) "; tip-off: change of the angular velocity, body axes; "
             "greatest nutation of the free motion that follows; angle of the payload's angular momentum "
             "to the intended direction " (said(Some(scenario.momentum_direction())))
-            ". Directions are in inertial axes. Mean ± standard deviation, and the range from the 5th to the 95th "
+            ". Directions are in inertial axes. "
+            @if let Some(outlines) = scenario.outlines() {
+                "Clearance: the smallest distance of the outlines in the " (outlines.coast_s())
+                " s after the last release. "
+            }
+            "Mean ± standard deviation, and the range from the 5th to the 95th "
             "percentile."
         }
         div.wide { table.results {
@@ -177,6 +182,7 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                     }
                     @if model.releases.orders.len() > 3 { "; others" }
                     ". " (energy(model))
+                    @if let Some(clearance) = &model.releases.clearance { " " (nearest(clearance)) }
                     @if let Some(touch) = model.releases.recontact {
                         " The bodies touch again in " (significant(100.0 * touch.share, 3)) " % of the runs "
                         (interval_percent(touch.interval.lower(), touch.interval.upper())) "."
@@ -188,6 +194,22 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                     }
                 }
             } }
+        }
+    }
+}
+
+/// How near the bodies come.
+fn nearest(clearance: &ClearanceSummary) -> Markup {
+    html! {
+        "They come as near as " (significant(clearance.least_m, 4)) " m (run " (clearance.run) ")"
+        @if let Some(p01) = clearance.p01_m {
+            "; 99 % of the runs keep " (significant(p01, 4)) " m"
+            @if clearance.p01_interval_m.is_some() { " " (interval(clearance.p01_interval_m, 4)) }
+        }
+        @if let Some(p05) = clearance.p05_m { ", 95 % " (significant(p05, 4)) " m" }
+        "."
+        @if clearance.never_apart > 0 {
+            " Outlines that touch at the start do not part in " (clearance.never_apart) " runs."
         }
     }
 }

@@ -90,6 +90,22 @@ pub(crate) struct Releases {
     pub(crate) recompressed: Option<Share>,
     /// Runs in which outlines touch again; none without outlines or if no run succeeds.
     pub(crate) recontact: Option<Share>,
+    /// Smallest distances of outlines; none without outlines, or if they count in no run.
+    pub(crate) clearance: Option<ClearanceSummary>,
+}
+
+/// The runs in which the bodies come nearest.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct ClearanceSummary {
+    /// Smallest of all runs, m, and in which run.
+    pub(crate) least_m: f64,
+    pub(crate) run: u64,
+    /// Percentiles of the clearance that all but so many runs keep, m.
+    pub(crate) p01_m: Option<f64>,
+    pub(crate) p01_interval_m: Option<Interval>,
+    pub(crate) p05_m: Option<f64>,
+    /// Runs in which mated outlines do not part, so that nothing counts.
+    pub(crate) never_apart: u64,
 }
 
 /// How often springs let go in an order.
@@ -312,6 +328,8 @@ impl Releases {
         let touching = table.values(Quantity::RecontactTime).len() as u64;
         let recontact =
             if of == 0 || !watched { None } else { Some(Share::new(touching, of, confidence)?) };
+        let clearance =
+            if watched { ClearanceSummary::new(table.rows(), confidence) } else { None };
         let mut counts: Vec<_> = counts.into_iter().collect();
         // Stable: equal counts stay in the order of their names.
         counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
@@ -322,6 +340,27 @@ impl Releases {
             orders: orders.collect::<Result<_, StatisticsError>>()?,
             recompressed,
             recontact,
+            clearance,
+        })
+    }
+}
+
+impl ClearanceSummary {
+    fn new(rows: &[Row], confidence: Confidence) -> Option<Self> {
+        let of = |row: &Row| Some((row.value(Quantity::Clearance)?, row.run()));
+        let found: Vec<(f64, u64)> = rows.iter().filter_map(of).collect();
+        let (least_m, run) = found.iter().copied().reduce(|a, b| if b.0 < a.0 { b } else { a })?;
+        let values: Vec<f64> = found.iter().map(|(clearance, _)| *clearance).collect();
+        let sorted = SortedSample::new(&values).ok()?;
+        let interval = sorted.quantile_interval(0.01, confidence).ok();
+        let succeeded = rows.iter().filter(|r| r.failure().is_none()).count();
+        Some(Self {
+            least_m,
+            run,
+            p01_m: sorted.quantile(0.01).ok(),
+            p01_interval_m: interval.filter(|i| i.lower().is_finite() && i.upper().is_finite()),
+            p05_m: sorted.quantile(0.05).ok(),
+            never_apart: (succeeded - found.len()) as u64,
         })
     }
 }

@@ -122,7 +122,7 @@ impl CurveAndRing {
         let (start, step) = (aside(&normal, &start), aside(&normal, &step));
         let across = inner(&start, &step);
         let radial = [inner(&start, &start), across.plus(&across, 1.0), inner(&step, &step)];
-        let above = |p: &Trigonometric, size: f64| p.sign(ROUNDING * size) == Sign::Above;
+        let above = |p: &Trigonometric, size: f64| p.is_above(ROUNDING * size);
         // 2Rρ ≤ R(ρ²/m + m) for any m: the plain polynomial, with m the mean of ρ, has the digits that
         // the squared one lacks, and serves where ρ hardly varies.
         let mean = radial[0].constant + 0.5 * radial[1].constant + radial[2].constant / 3.0;
@@ -256,26 +256,6 @@ fn aside(normal: &Vector3<f64>, x: &Triple) -> Triple {
     x.map(|x| x - normal * normal.dot(&x))
 }
 
-/// An arc of a ring.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Arc {
-    pub(crate) middle: f64,
-    pub(crate) half: f64,
-}
-
-impl Arc {
-    /// The largest x·d over the arc, x from the mass centre in body axes.
-    pub(crate) fn farthest_along(&self, ring: &Ring, direction: &Vector3<f64>) -> f64 {
-        let (sin, cos) = libm::sincos(self.middle);
-        let (u, w) = (ring.across[0].dot(direction), ring.across[1].dot(direction));
-        // u cos θ + w sin θ about the middle: a cos x + b sin x.
-        let (a, b) = (u * cos + w * sin, w * cos - u * sin);
-        let (s, c) = libm::sincos(self.half);
-        let most = if a > 0.0 && b.abs() * c <= a * s { a.hypot(b) } else { a * c + b.abs() * s };
-        ring.centre.dot(direction) + most
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::outline::{Kind, Shape};
@@ -373,24 +353,6 @@ mod tests {
                 prop_assert!(pair.stays_beyond(&frame, &limits, [0.0; 2], found - 1e-9));
             }
             prop_assert!(!pair.stays_beyond(&frame, &limits, [0.0; 2], found + 1e-9));
-        }
-
-        #[test]
-        fn arcs_support(
-            axis in prop::array::uniform3(-1.0..1.0f64),
-            d in prop::array::uniform3(-1.0..1.0f64),
-            middle in -7.0..7.0f64,
-            half in 0.0..1.5f64,
-        ) {
-            prop_assume!(Vector3::from(axis).norm() > 1e-2);
-            let ring = ring([0.3, 0.2, 0.1], axis, 1.3);
-            let d = Vector3::from(d);
-            let most = Arc { middle, half }.farthest_along(&ring, &d);
-            let sampled = (-1000..=1000)
-                .map(|k| (middle + half * f64::from(k) / 1000.0).sin_cos())
-                .map(|(s, c)| ring.point(c, s).dot(&d))
-                .fold(f64::NEG_INFINITY, f64::max);
-            prop_assert!(most >= sampled - 1e-14 && most < sampled + 4e-6);
         }
     }
 }

@@ -55,6 +55,17 @@ impl Motion for Coast {
         (t >= 0.0).then(|| self.offset + self.velocity * t)
     }
 
+    fn least_offset(&mut self, from_s: f64, to_s: f64) -> Option<f64> {
+        let start = self.offset(from_s)?;
+        let square = self.velocity.norm_squared();
+        // Where a straight line passes nearest; at rest anywhere.
+        let nearest = -start.dot(&self.velocity) / square;
+        let nearest = if nearest > 0.0 { nearest.min(to_s - from_s) } else { 0.0 };
+        // Less the rounding of the positions.
+        let scale = start.norm() + self.velocity.norm() * (to_s - self.start);
+        Some((start + self.velocity * nearest).norm() - 1e-14 * scale)
+    }
+
     fn limits(&mut self, _: f64, _: f64) -> MotionLimits {
         let [p, s] = &self.bodies;
         MotionLimits {
@@ -173,6 +184,8 @@ mod tests {
     use gyradius_inertia::InertiaMatrix;
     use proptest::prelude::*;
 
+    type V = Vector3<f64>;
+
     fn body(moments: [f64; 3], products: [f64; 3], w: [f64; 3]) -> MovingBody {
         let inertia = InertiaMatrix::from_entries(moments, products).unwrap();
         let state = BodyState {
@@ -213,6 +226,30 @@ mod tests {
         let [state, _] = coast.states(1e6).unwrap();
         assert_eq!(state.attitude, UnitQuaternion::identity());
         assert_eq!(coast.limits(0.0, 1.0).angular_speed, [0.0; 2]);
+    }
+
+    #[test]
+    fn mass_centres_are_never_nearer_than_the_least_offset() {
+        for (position, velocity) in [
+            (V::new(-5.0, 1.0, 0.0), V::new(1.0, 0.1, 0.2)),
+            (V::new(2.0, 1.0, 0.0), V::new(1.0, 0.1, 0.2)),
+            (V::new(2.0, 1.0, 0.0), V::zeros()),
+            (V::zeros(), V::x()),
+        ] {
+            let state = BodyState { position, velocity, ..BodyState::default() };
+            let inertia = InertiaMatrix::from_entries([1.0; 3], [0.0; 3]).unwrap();
+            let moving = Body::new(1.0, inertia).unwrap().moving(state);
+            let still = Body::new(1.0, inertia).unwrap().moving(BodyState::default());
+            let mut coast = Coast::new(&moving, &still, 0.0);
+            for (from, to) in [(0.0, 10.0), (0.0, 3.0), (6.0, 9.0), (4.0, 4.0)] {
+                let at = |i: u32| from + (to - from) * f64::from(i) / 1000.0;
+                let least = coast.least_offset(from, to).unwrap();
+                let sampled = (0..=1000)
+                    .map(|i| coast.offset(at(i)).unwrap().norm())
+                    .fold(f64::INFINITY, f64::min);
+                assert!(least <= sampled && least > sampled - 1e-4, "{least} {sampled}");
+            }
+        }
     }
 
     proptest! {

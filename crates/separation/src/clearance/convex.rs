@@ -16,11 +16,31 @@ pub(crate) struct Nearest {
     pub(crate) points: [Vector3<f64>; 2],
     /// The hulls are at least so far apart.
     pub(crate) at_least: f64,
+    /// Where they meet, one has to move by this at least for them to part.
+    pub(crate) depth: f64,
+    /// On what the gap stands: corners, and the unit vector along the edge of two.
+    pub(crate) corners: usize,
+    pub(crate) edge: Vector3<f64>,
 }
 
 impl Nearest {
     pub(crate) fn distance(&self) -> f64 {
         self.gap.norm()
+    }
+
+    /// Rate of the unit vector from the other body's point to that of `body`, a single point, as that
+    /// point moves with `velocity` and the gap keeps standing on the corner, edge or face it stands on.
+    pub(crate) fn following(&self, velocity: &Vector3<f64>, body: usize) -> Vector3<f64> {
+        let distance = self.gap.norm();
+        if !(distance > 0.0) || self.corners > 2 {
+            return Vector3::zeros();
+        }
+        let n = if body == 0 { self.gap / distance } else { self.gap / -distance };
+        let aside = velocity - n * n.dot(velocity);
+        let aside = (aside - self.edge * self.edge.dot(&aside)) / distance;
+        // At right angles to the last bit, as far as doubles go.
+        let aside = aside - n * n.dot(&aside);
+        if aside.iter().all(|x| x.abs() < 1e100) { aside } else { Vector3::zeros() }
     }
 }
 
@@ -73,7 +93,26 @@ pub(crate) fn nearest(frame: &Frame, points: [&[Vector3<f64>]; 2], hint: &Vector
         ends[1] += points[1][c.indices.1] * w;
     }
     let turning = turning(frame, points, &simplex[..size], &gap);
-    Nearest { gap, turning, points: ends, at_least }
+    let depth = if size == 4 { depth(&simplex) } else { 0.0 };
+    let edge = match &simplex[..size] {
+        [a, b] => (b.at - a.at).try_normalize(0.0).unwrap_or_default(),
+        _ => Vector3::zeros(),
+    };
+    Nearest { gap, turning, points: ends, at_least, depth, corners: size, edge }
+}
+
+/// Radius of a ball about the origin within a tetrahedron around it.
+fn depth(simplex: &[Corner; 4]) -> f64 {
+    let face = |i: usize, j: usize, k: usize| {
+        let [a, b, c] = [i, j, k].map(|i| simplex[i].at);
+        let normal = (b - a).cross(&(c - a));
+        normal.dot(&a).abs() / normal.norm()
+    };
+    // The minimum passes over a NaN: a face that is none leaves the others.
+    let least = face(0, 1, 2).min(face(0, 1, 3)).min(face(0, 2, 3)).min(face(1, 2, 3));
+    // A hair less, for rounding; a tetrahedron that is flat holds nothing.
+    let size = simplex.iter().map(|c| c.at.norm()).fold(0.0, f64::max);
+    (least * (1.0 - 1e-9) - 1e-12 * size).max(0.0)
 }
 
 /// How the unit vector along the gap has to turn for the corners of an edge or a face on which it
@@ -136,8 +175,8 @@ fn farthest_along(points: &[Vector3<f64>], direction: &Vector3<f64>) -> usize {
 
 /// The point of a simplex nearest to the origin: the corners it needs, how many, weights, point.
 ///
-/// Looks at every face: slower than walking Voronoi regions, and no rounding leads it astray. The
-/// last corner is new, so that the face has it for a corner.
+/// Looks at every face that has the last corner, which is new and nearer, so that the nearest face has
+/// it: slower than walking Voronoi regions, and no rounding leads it astray.
 fn closest_to_origin(
     simplex: &[Corner; 4],
     size: usize,
@@ -150,18 +189,22 @@ fn closest_to_origin(
         }
     };
     let at = |i: usize| &simplex[i].at;
-    for i in 0..size {
-        offer([i, 0, 0], 1, [1.0, 0.0, 0.0], *at(i));
-        for j in 0..i {
-            let edge = at(j) - at(i);
-            let t = -at(i).dot(&edge) / edge.norm_squared();
-            if t > 0.0 && t < 1.0 {
-                offer([i, j, 0], 2, [1.0 - t, t, 0.0], at(i) + edge * t);
-            }
-            for k in 0..j {
-                if let Some((weights, point)) = on_triangle(at(i), at(j), at(k)) {
-                    offer([i, j, k], 3, weights, point);
-                }
+    let i = size - 1;
+    offer([i, 0, 0], 1, [1.0, 0.0, 0.0], *at(i));
+    for j in 0..i {
+        let edge = at(j) - at(i);
+        let square = edge.norm_squared();
+        let t = -at(i).dot(&edge) / square;
+        if t > 0.0 && t < 1.0 {
+            // Once more at right angles: where the point is near the origin, rounding turns it by more
+            // than a bound along its direction can bear.
+            let point = at(i) + edge * t;
+            let point = point - edge * (point.dot(&edge) / square);
+            offer([i, j, 0], 2, [1.0 - t, t, 0.0], point);
+        }
+        for k in 0..j {
+            if let Some((weights, point)) = on_triangle(at(i), at(j), at(k)) {
+                offer([i, j, k], 3, weights, point);
             }
         }
     }
@@ -339,5 +382,31 @@ mod tests {
                 - frame.rotation[1] * found.points[1];
             prop_assert!((between - found.gap).norm() < 1e-13);
         }
+    }
+
+    /// Hulls that meet still meet after any move shorter than the depth.
+    #[test]
+    fn depth_is_no_deeper_than_it_is() {
+        let (a, b) = (cube(1.0), cube(0.5));
+        let mut deepest = 0.0_f64;
+        for k in 0..200 {
+            let angle = f64::from(k);
+            let offset =
+                V::new(0.6 * angle.sin(), 0.5 * (1.7 * angle).cos(), 0.4 * (2.3 * angle).sin());
+            let at = frame(offset, [0.1 * angle, 0.3, 0.0], [0.0, 0.2 * angle, 0.1]);
+            let found = nearest(&at, [&a, &b], &V::new(angle.cos(), angle.sin(), 0.3));
+            if found.distance() > 0.0 {
+                continue;
+            }
+            deepest = deepest.max(found.depth);
+            for i in 0..60 {
+                let (s, c) = (f64::from(i) * 2.4).sin_cos();
+                let z = f64::from(i) / 30.0 - 1.0;
+                let way = V::new(c, s, 0.0) * (1.0 - z * z).sqrt() + V::z() * z;
+                let moved = Frame { offset: offset + way * (found.depth * 0.999_999), ..at };
+                assert_eq!(nearest(&moved, [&a, &b], &moved.offset).distance(), 0.0, "{k} {i}");
+            }
+        }
+        assert!(deepest > 0.2, "{deepest}");
     }
 }

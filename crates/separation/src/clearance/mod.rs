@@ -1,10 +1,12 @@
 //! How near the bodies come to each other, and whether they touch.
 
+mod arc;
 mod circle;
 mod coast;
 mod convex;
 mod motion;
 mod outline;
+mod part;
 mod report;
 mod search;
 mod trigonometric;

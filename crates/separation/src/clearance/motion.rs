@@ -57,6 +57,14 @@ pub trait Motion {
         self.states(time_s).map(|[payload, stage]| payload.position - stage.position)
     }
 
+    /// No distance of the mass centres on [from, to] (s) is below this, m. Override it where more is
+    /// known than a bound on the speed.
+    fn least_offset(&mut self, from_s: f64, to_s: f64) -> Option<f64> {
+        let speed = self.limits(from_s, to_s).speed;
+        let middle = self.offset(0.5 * (from_s + to_s))?;
+        Some(middle.norm() - speed * 0.5 * (to_s - from_s))
+    }
+
     /// Bounds that hold at all times of [from, to], s.
     fn limits(&mut self, from_s: f64, to_s: f64) -> MotionLimits;
 }

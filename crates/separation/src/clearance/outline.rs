@@ -231,6 +231,9 @@ impl Outline {
     /// # Errors
     /// A coordinate is not finite or beyond 1e6 m afterwards.
     pub fn about(&self, offset_m: Vector3<f64>) -> Result<Self, OutlineError> {
+        if offset_m == Vector3::zeros() {
+            return Ok(self.clone());
+        }
         let by = -offset_m;
         self.shapes.iter().map(|s| s.moved(&by)).collect::<Result<Vec<_>, _>>().and_then(Self::new)
     }

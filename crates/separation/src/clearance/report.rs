@@ -2,7 +2,8 @@ use nalgebra::Vector3;
 
 use super::motion::Motion;
 use super::outline::Outline;
-use super::search::{Search, Seen};
+use super::part::Seen;
+use super::search::Search;
 
 /// Why there is no clearance to report.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -280,12 +281,18 @@ impl Clearance {
     /// ones after parting. None if none ever part.
     #[must_use]
     pub fn closest(&self) -> Option<&Approach> {
+        self.closest_shapes().and_then(ShapeClearance::closest)
+    }
+
+    /// The shapes whose approach is the closest.
+    #[must_use]
+    pub fn closest_shapes(&self) -> Option<&ShapeClearance> {
         let least = |mated: bool| {
             let all = self.shapes.iter().filter(move |s| s.mated == mated);
-            all.filter_map(|s| s.closest.as_ref())
-                .reduce(|a, b| if b.distance < a.distance { b } else { a })
+            all.filter_map(|s| Some((s.closest?.distance, s)))
+                .reduce(|a, b| if b.0 < a.0 { b } else { a })
         };
-        least(false).or_else(|| least(true))
+        least(false).or_else(|| least(true)).map(|(_, shapes)| shapes)
     }
 
     /// When any shapes first touch, mated ones after having parted, s.
@@ -310,8 +317,8 @@ fn shape_clearance<M: Motion>(
     to: f64,
     settings: &ClearanceSettings,
 ) -> Result<ShapeClearance, ClearanceError> {
-    let at_start = search.smallest(from, from, settings.touch)?.seen.distance;
-    let mated = at_start <= settings.touch;
+    let mut first = search.begin(from, to)?;
+    let mated = first.distance <= settings.touch;
     let start = if mated { parting(search, from, to, settings)? } else { Some(from) };
     let mut result = ShapeClearance {
         payload_shape: 0,
@@ -324,8 +331,11 @@ fn shape_clearance<M: Motion>(
     let Some(start) = start else {
         return Ok(result);
     };
-    let smallest = search.smallest(start, to, settings.touch)?;
-    let Seen { distance, time, points } = smallest.seen;
+    if mated {
+        first = search.begin(start, to)?;
+    }
+    let smallest = search.finish(first, settings.touch)?;
+    let Seen { distance, time, points, .. } = smallest.seen;
     if distance <= settings.touch {
         let Seen { time, points, .. } =
             search.first_contact(start, smallest.seen, settings.touch)?;
@@ -348,7 +358,8 @@ fn parting<M: Motion>(
     let mut time = from;
     for _ in 0..MOST_STEPS {
         // Half a touch short is parted: the last bit would take for ever.
-        let missing = settings.parted - search.smallest(time, time, 0.0)?.seen.distance;
+        let seen = search.begin(time, time)?;
+        let missing = settings.parted - seen.distance + seen.depth;
         if missing <= 0.5 * settings.touch {
             return Ok(Some(time));
         }

@@ -4,33 +4,20 @@ use nalgebra::Vector3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::circle::{Arc, Curve, CurveAndRing};
-use super::convex::{Nearest, direction, gap_along, nearest};
+use super::arc::Arc;
 use super::motion::{Frame, Motion, MotionLimits};
-use super::outline::{Kind, Ring, Shape, farthest};
+use super::outline::Shape;
+use super::part::{Look, Part, Seen, parts};
 use super::report::ClearanceError;
 
 /// Nodes looked at before a search ends with what it has. Far above any case met.
 const MOST_NODES: usize = 2_000_000;
 /// Arcs that a ring is cut into first.
 const ARCS: usize = 8;
-/// Most that a direction is turned over a span, rad.
-const MOST_TURN: f64 = 0.5;
 /// Halvings of a span after whose start nothing is to come nearer: to a ten-millionth.
 const HALVINGS: usize = 24;
-
-/// What can be compared at once: a convex part of each body, a ring with a point or a ring, a ring
-/// with a hull.
-enum Pair<'a> {
-    Convex([&'a [Vector3<f64>]; 2]),
-    Circular(Box<CurveAndRing>),
-    RingAndHull { ring: &'a Ring, ring_body: usize, hull: &'a [Vector3<f64>] },
-}
-
-struct Part<'a> {
-    pair: Pair<'a>,
-    radii: [f64; 2],
-}
+/// Arcs looked at in the first instant before the rest is left to the search over time.
+const MOST_LEAVES: usize = 20_000;
 
 /// A part over a span of time, and over an arc where the part is a ring and a hull.
 #[derive(Clone, Copy)]
@@ -69,31 +56,12 @@ impl PartialEq for Node {
 
 impl Eq for Node {}
 
-/// A distance that was seen.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen {
-    pub(crate) distance: f64,
-    pub(crate) time: f64,
-    /// Payload and stage, body axes.
-    pub(crate) points: [Vector3<f64>; 2],
-}
-
 /// The smallest distance over a span.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Smallest {
     pub(crate) seen: Seen,
     /// Proven to be a lower bound.
     pub(crate) at_least: f64,
-}
-
-/// What a look at a node gave.
-struct Look {
-    seen: Seen,
-    /// At the instant of the frame no distance is below this.
-    at_least: f64,
-    direction: Vector3<f64>,
-    /// Rate of its unit vector, 1/s.
-    turning: Vector3<f64>,
 }
 
 /// The search for two shapes.
@@ -124,7 +92,7 @@ impl<'a, M: Motion> Search<'a, M> {
     /// Bound on the rate of the distance over a span.
     pub(crate) fn rate(&mut self, from: f64, to: f64) -> Result<f64, ClearanceError> {
         let limits = self.limits(from, to)?;
-        Ok(self.parts.iter().map(|p| limits.rate(p.radii)).fold(0.0, f64::max))
+        Ok(self.parts.iter().map(|p| limits.rate(p.radii())).fold(0.0, f64::max))
     }
 
     fn limits(&mut self, from: f64, to: f64) -> Result<MotionLimits, ClearanceError> {
@@ -144,7 +112,7 @@ impl<'a, M: Motion> Search<'a, M> {
             let hint = Vector3::zeros();
             let whole = Arc { middle: 0.0, half: std::f64::consts::PI };
             let node = Node { part, from, to, bound: 0.0, arc: whole, hint, rank };
-            if matches!(self.parts[part].pair, Pair::RingAndHull { .. }) {
+            if self.parts[part].has_arcs() {
                 let half = std::f64::consts::PI / ARCS as f64;
                 for i in 0..ARCS {
                     let arc = Arc { middle: half * (2 * i + 1) as f64, half };
@@ -156,51 +124,129 @@ impl<'a, M: Motion> Search<'a, M> {
         }
     }
 
-    /// The smallest distance on [from, to], to within the tolerance; or some distance of at most
-    /// `enough`.
-    pub(crate) fn smallest(
-        &mut self,
-        from: f64,
-        to: f64,
-        enough: f64,
-    ) -> Result<Smallest, ClearanceError> {
+    /// The smallest distance at `from` to within the tolerance, where over a span most are smallest. Gets
+    /// the search of [from, to] ready to go on.
+    pub(crate) fn begin(&mut self, from: f64, to: f64) -> Result<Seen, ClearanceError> {
         self.start(from, to, 0.0);
         let frame = self.frame(from)?;
-        // The start of the span, where most distances are smallest. Then what may be skipped after it.
+        let limits = self.limits(from, to)?;
         let first: Vec<Node> = self.heap.drain().collect();
         let mut best: Option<Seen> = None;
-        let mut looks = Vec::with_capacity(first.len());
-        for node in &first {
+        let mut waiting = Vec::with_capacity(2 * first.len());
+        for (group, node) in first.iter().enumerate() {
             let known = best.map_or(f64::INFINITY, |b| b.distance);
-            let look = self.parts[node.part].look(&frame, node, from, known, self.tolerance);
-            self.nodes += 1;
+            let part = &self.parts[node.part];
+            let look = part.look(&frame, &node.arc, &node.hint, from, known, self.tolerance);
             keep(&mut best, &look.seen);
-            looks.push(look);
+            waiting.push((group, node.arc, look));
         }
         let Some(mut best) = best else {
             return Err(ClearanceError::Motion { time: from });
         };
-        let instant = from == to;
-        let limits = self.limits(from, to)?;
-        for (mut node, look) in first.into_iter().zip(&looks) {
-            let part = &self.parts[node.part];
-            if instant && !matches!(part.pair, Pair::RingAndHull { .. }) {
-                // There is nothing but this look.
-                continue;
-            }
+        self.nodes += first.len();
+        // Arcs are halved until none can be nearer than the nearest found; the nearest of all goes first.
+        waiting.sort_unstable_by(|a, b| b.2.seen.distance.total_cmp(&a.2.seen.distance));
+        let mut leaves = Vec::with_capacity(4 * first.len());
+        while let Some((group, arc, look)) = waiting.pop() {
+            let part = &self.parts[first[group].part];
             let target = best.distance - self.slack(part, best.distance);
-            node.hint = look.direction;
-            // Longest span from the start on which nothing comes nearer, by halves.
-            let length = to - from;
-            let halvings = if length > 0.0 { HALVINGS } else { 1 };
-            let proven = std::iter::successors(Some(length), |span| Some(0.5 * span))
-                .take(halvings)
-                .find(|&span| part.proves(&frame, &limits, &node, look, [0.0, span], target));
-            if proven != Some(length) {
-                node.from = from + proven.unwrap_or(0.0);
-                self.heap.push(node);
+            let small = part.arc_length(&arc) < 1e-2 * self.tolerance;
+            let nearer = || part.excess(&frame, &limits, &arc, &look, [0.0; 2], target) < 0.0;
+            if !(part.has_arcs() && leaves.len() < MOST_LEAVES && nearer()) {
+                leaves.push((group, arc, look));
+            } else if small {
+                // Nothing but the search over time could tell more.
+                self.heap.push(Node { arc, hint: look.direction, ..first[group] });
+            } else {
+                let halves = arc.halves().map(|arc| {
+                    let hint = &look.direction;
+                    let look = part.look(&frame, &arc, hint, from, best.distance, self.tolerance);
+                    (group, arc, look)
+                });
+                self.nodes += 2;
+                halves.iter().for_each(|(_, _, look)| keep_seen(&mut best, &look.seen));
+                let [a, b] = halves;
+                let ordered = if a.2.seen.distance < b.2.seen.distance { [b, a] } else { [a, b] };
+                waiting.extend(ordered);
             }
         }
+        if from < to {
+            self.skip(&frame, &limits, &first, &leaves, best.distance)?;
+        }
+        Ok(best)
+    }
+
+    /// Leaves out of the search what is proven from the first instant on: for each node the longest span
+    /// from its start, by halves, on which no leaf of it comes nearer.
+    fn skip(
+        &mut self,
+        frame: &Frame,
+        limits: &MotionLimits,
+        first: &[Node],
+        leaves: &[(usize, Arc, Look)],
+        best: f64,
+    ) -> Result<(), ClearanceError> {
+        let mut end = None;
+        let mut open: Vec<Node> = Vec::with_capacity(first.len());
+        for node in first {
+            // Nodes of a part are next to each other.
+            let to = match end {
+                Some((part, to)) if part == node.part => to,
+                _ => self.clear_after(node, best)?,
+            };
+            end = Some((node.part, to));
+            open.push(Node { to, ..*node });
+        }
+        let mut spans: Vec<f64> = open.iter().map(|n| n.to - n.from).collect();
+        for (group, arc, look) in leaves {
+            let node = &open[*group];
+            let part = &self.parts[node.part];
+            let target = best - self.slack(part, best);
+            let proves = |s: &f64| part.excess(frame, limits, arc, look, [0.0, *s], target) >= 0.0;
+            let span = &mut spans[*group];
+            if *span == 0.0 || proves(span) {
+                continue;
+            }
+            let shortest = *span * 0.5_f64.powi(HALVINGS as i32);
+            *span = if proves(&shortest) {
+                let halves = std::iter::successors(Some(0.5 * *span), |s| Some(0.5 * s));
+                halves.take(HALVINGS).find(proves).unwrap_or(shortest)
+            } else {
+                0.0
+            };
+        }
+        for (node, span) in open.into_iter().zip(spans) {
+            if span < node.to - node.from {
+                self.heap.push(Node { from: node.from + span, ..node });
+            }
+        }
+        Ok(())
+    }
+
+    /// From when on the spheres around the bodies are too far apart to matter, by halves.
+    fn clear_after(&mut self, node: &Node, best: f64) -> Result<f64, ClearanceError> {
+        let part = &self.parts[node.part];
+        let [r0, r1] = part.radii();
+        let reach = r0 + r1 + best - self.slack(part, best);
+        let mut end = node.to;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (node.from + end);
+            let least = self.motion.least_offset(middle, node.to);
+            if !(least.ok_or(ClearanceError::Motion { time: middle })? >= reach) {
+                break;
+            }
+            end = middle;
+        }
+        Ok(end)
+    }
+
+    /// Goes on after [`Search::begin`]: the smallest distance of the span to within the tolerance, or
+    /// some distance of at most `enough`. `best` is the smallest known.
+    pub(crate) fn finish(
+        &mut self,
+        mut best: Seen,
+        enough: f64,
+    ) -> Result<Smallest, ClearanceError> {
         // What could not be decided for lack of digits.
         let mut undecided = f64::INFINITY;
         while let Some(node) = self.heap.pop() {
@@ -282,7 +328,7 @@ impl<'a, M: Motion> Search<'a, M> {
 
     /// Tolerance of a distance: as asked for, and not less than rounding of the positions.
     fn slack(&self, part: &Part<'_>, distance: f64) -> f64 {
-        self.tolerance.max(1e-14 * (distance + part.radii[0] + part.radii[1]))
+        self.tolerance.max(1e-14 * (distance + part.radii()[0] + part.radii()[1]))
     }
 
     /// Looks at the middle of a node: proves that it holds nothing below `target`, or splits it.
@@ -290,57 +336,46 @@ impl<'a, M: Motion> Search<'a, M> {
     fn examine(&mut self, node: &Node, target: f64, known: f64) -> Result<Step, ClearanceError> {
         let (middle, half) = (0.5 * (node.from + node.to), 0.5 * (node.to - node.from));
         let limits = self.limits(node.from, node.to)?;
-        let [r0, r1] = self.parts[node.part].radii;
-        let apart =
-            self.motion.offset(middle).ok_or(ClearanceError::Motion { time: middle })?.norm()
-                - r0
-                - r1;
-        let by_spheres = apart - limits.speed * half;
+        let unknown = ClearanceError::Motion { time: middle };
+        let [r0, r1] = self.parts[node.part].radii();
+        let by_spheres = self.motion.least_offset(node.from, node.to).ok_or(unknown)? - r0 - r1;
         if by_spheres >= target {
             return Ok(Step::Proven);
         }
-        let tiny = !(half > 1e-14 * (1.0 + middle.abs()));
-        if apart > known && !tiny {
+        let tiny = !(half > 1e-15 * node.from.abs().max(node.to.abs()));
+        if !tiny && self.motion.offset(middle).ok_or(unknown)?.norm() - r0 - r1 > known {
             // Nothing of interest in the middle: no need to know the attitudes.
             let node = Node { bound: node.bound.max(by_spheres), ..*node };
             return Ok(Step::Split(halves(&node, middle), None));
         }
         let frame = self.frame(middle)?;
         let part = &self.parts[node.part];
-        let look = part.look(&frame, node, middle, known, self.tolerance);
+        let look = part.look(&frame, &node.arc, &node.hint, middle, known, self.tolerance);
         // The smallest distance may be this one.
-        let target = target.min(if known.is_finite() {
-            look.seen.distance - self.slack(part, look.seen.distance)
-        } else {
-            target
-        });
-        if part.proves(&frame, &limits, node, &look, [-half, half], target) {
+        let seen = look.seen.distance;
+        let target =
+            if known.is_finite() { target.min(seen - self.slack(part, seen)) } else { target };
+        let excess =
+            |arc: &Arc, span: f64| part.excess(&frame, &limits, arc, &look, [-span, span], target);
+        let whole = excess(&node.arc, half);
+        if whole >= 0.0 {
             return Ok(Step::Split([None; 2], Some(look)));
         }
-        let stray = limits.rate(part.radii) * half;
-        let width = part.arc_length(node);
+        let stray = limits.rate(part.radii()) * half;
+        let width = part.arc_length(&node.arc);
         // A hundredth of the tolerance: what is left of the node cannot matter.
         if (tiny || stray < 1e-2 * self.tolerance) && width < 1e-2 * self.tolerance {
-            return Ok(Step::Tiny(Look {
-                at_least: (look.at_least - stray - width).max(0.0),
-                ..look
-            }));
+            let at_least = (look.at_least - stray - width).max(0.0);
+            return Ok(Step::Tiny(Look { at_least, ..look }));
         }
-        let span = [-half, half];
-        let bound = part.bound(&frame, &limits, &node.arc, &look, span);
+        let bound = node.bound.max(target + whole).max(by_spheres);
         let point = Arc { half: 0.0, ..node.arc };
         // The arc is cut where that gains more than cutting the span.
-        let by_arc = width > 0.0
-            && (tiny
-                || part.bound(&frame, &limits, &point, &look, span)
-                    > part.bound(&frame, &limits, &node.arc, &look, [0.0; 2]));
-        let bound = node.bound.max(bound).max(by_spheres);
+        let by_arc = width > 0.0 && (tiny || excess(&point, half) > excess(&node.arc, 0.0));
         let node = Node { bound, hint: look.direction, ..*node };
         let children = if by_arc {
-            let half = 0.5 * node.arc.half;
-            let arc = |sign: f64| Arc { middle: node.arc.middle + sign * half, half };
-            [Some(Node { arc: arc(-1.0), ..node }), Some(Node { arc: arc(1.0), ..node })]
-        } else if part.proves(&frame, &limits, &node, &look, [-0.5 * half, 0.5 * half], target) {
+            node.arc.halves().map(|arc| Some(Node { arc, ..node }))
+        } else if excess(&node.arc, 0.5 * half) >= 0.0 {
             // The middle half is done with.
             let before = Node { to: middle - 0.5 * half, ..node };
             [Some(before), Some(Node { from: middle + 0.5 * half, ..node })]
@@ -370,158 +405,9 @@ fn keep(best: &mut Option<Seen>, seen: &Seen) {
 }
 
 fn keep_seen(best: &mut Seen, seen: &Seen) {
-    if seen.distance < best.distance {
+    // Of two that meet the deeper.
+    if seen.distance < best.distance || (seen.distance == best.distance && seen.depth > best.depth)
+    {
         *best = *seen;
-    }
-}
-
-fn parts<'a>(payload: &'a Shape, stage: &'a Shape) -> Vec<Part<'a>> {
-    let hulls = |kind: &'a Kind| -> Vec<&'a [Vector3<f64>]> {
-        match kind {
-            Kind::Points(p) => p.chunks(1).collect(),
-            Kind::Hull(p) => vec![p],
-            Kind::Ring(_) => Vec::new(),
-        }
-    };
-    let with_ring = |ring: &'a Ring, ring_body: usize, other: &'a Kind| -> Vec<Pair<'a>> {
-        let circular =
-            |curve| Pair::Circular(Box::new(CurveAndRing { curve, ring: *ring, ring_body }));
-        match other {
-            Kind::Ring(r) => vec![circular(Curve::ring(r))],
-            Kind::Points(p) => p.iter().map(|p| circular(Curve::point(p))).collect(),
-            Kind::Hull(p) if p.len() == 1 => vec![circular(Curve::point(&p[0]))],
-            Kind::Hull(hull) => vec![Pair::RingAndHull { ring, ring_body, hull }],
-        }
-    };
-    let pairs = match (payload.kind(), stage.kind()) {
-        (Kind::Ring(ring), other) => with_ring(ring, 0, other),
-        (other, Kind::Ring(ring)) => with_ring(ring, 1, other),
-        (a, b) => {
-            let stage_hulls = hulls(b);
-            let all = hulls(a).into_iter().flat_map(|p| stage_hulls.iter().map(move |q| [p, *q]));
-            all.map(Pair::Convex).collect()
-        }
-    };
-    let whole = [payload.bounding_radius_m(), stage.bounding_radius_m()];
-    let radii = |pair: &Pair<'_>| match pair {
-        Pair::Convex(points) => points.map(farthest),
-        _ => whole,
-    };
-    pairs.into_iter().map(|pair| Part { radii: radii(&pair), pair }).collect()
-}
-
-impl Part<'_> {
-    /// The distance at an instant; on a ring and a hull, that of the middle of the arc from the hull.
-    fn look(&self, frame: &Frame, node: &Node, time: f64, known: f64, tolerance: f64) -> Look {
-        let hint = if node.hint == Vector3::zeros() { frame.offset } else { node.hint };
-        let from_hulls = |n: Nearest| Look {
-            seen: Seen { distance: n.distance(), time, points: n.points },
-            at_least: n.at_least,
-            direction: if n.gap == Vector3::zeros() { hint } else { n.gap },
-            turning: n.turning,
-        };
-        match &self.pair {
-            Pair::Convex(points) => from_hulls(nearest(frame, *points, &hint)),
-            Pair::RingAndHull { ring, ring_body, hull } => {
-                let (sin, cos) = libm::sincos(node.arc.middle);
-                let point = [ring.point(cos, sin)];
-                let points: [&[Vector3<f64>]; 2] =
-                    if *ring_body == 0 { [&point, hull] } else { [hull, &point] };
-                from_hulls(nearest(frame, points, &hint))
-            }
-            Pair::Circular(pair) => {
-                let fine = 0.1 * tolerance;
-                match pair.nearer(frame, known, fine) {
-                    Some((distance, points)) => Look {
-                        seen: Seen { distance, time, points },
-                        at_least: (distance - 2.0 * fine).max(0.0),
-                        direction: hint,
-                        turning: Vector3::zeros(),
-                    },
-                    None => Look {
-                        seen: Seen { distance: known, time, points: [Vector3::zeros(); 2] },
-                        at_least: known - 2.0 * fine,
-                        direction: hint,
-                        turning: Vector3::zeros(),
-                    },
-                }
-            }
-        }
-    }
-
-    /// Half the length of the arc of a node.
-    fn arc_length(&self, node: &Node) -> f64 {
-        match &self.pair {
-            Pair::RingAndHull { ring, .. } => ring.radius * node.arc.half,
-            _ => 0.0,
-        }
-    }
-
-    /// Whether nothing in the node comes nearer than `target` between the two times, from the frame's.
-    fn proves(
-        &self,
-        frame: &Frame,
-        limits: &MotionLimits,
-        node: &Node,
-        look: &Look,
-        times: [f64; 2],
-        target: f64,
-    ) -> bool {
-        match &self.pair {
-            Pair::Circular(pair) => {
-                let span = times[0].abs().max(times[1].abs());
-                target <= 0.0
-                    || look.at_least - limits.rate(self.radii) * span >= target
-                    || pair.stays_beyond(frame, limits, times, target)
-            }
-            _ => self.bound(frame, limits, &node.arc, look, times) >= target,
-        }
-    }
-
-    /// No distance is below this on the arc between the two times, from the frame's: by the bound on
-    /// its rate, and along the direction of the nearest points.
-    fn bound(
-        &self,
-        frame: &Frame,
-        limits: &MotionLimits,
-        arc: &Arc,
-        look: &Look,
-        times: [f64; 2],
-    ) -> f64 {
-        let span = times[0].abs().max(times[1].abs());
-        let by_rate = look.at_least - limits.rate(self.radii) * span;
-        // The direction turns along with the edge or face that it stands on; where it would turn far it
-        // is held back, for any direction gives a bound.
-        let normal = look.direction / look.direction.norm();
-        let turns = look.turning.norm();
-        let turning = look.turning * (MOST_TURN / (turns * span)).min(1.0);
-        let turns = turns.min(MOST_TURN / span);
-        let normals = times.map(|t| normal + turning * t);
-        let (by_rate, along) = match &self.pair {
-            Pair::Convex(points) => (by_rate, gap_along(frame, *points, &normals, times)),
-            Pair::RingAndHull { ring, ring_body, hull } => {
-                // The hull along the normal, and the arc in place of a hull.
-                let centre: [Vector3<f64>; 1] = [Vector3::zeros()];
-                let points: [&[Vector3<f64>]; 2] =
-                    if *ring_body == 0 { [&centre, hull] } else { [hull, &centre] };
-                let mut gaps = gap_along(frame, points, &normals, times);
-                let sign = if *ring_body == 0 { -1.0 } else { 1.0 };
-                for k in 0..2 {
-                    let d = direction(frame, *ring_body, &normals[k], times[k]) * sign;
-                    gaps[k] -= arc.farthest_along(ring, &d);
-                }
-                (by_rate - ring.radius * arc.half, gaps)
-            }
-            Pair::Circular(_) => return by_rate,
-        };
-        // Between the two times it is concave but for the product of turning and velocity; points stray
-        // from uniform motion; and the normals have grown.
-        let width = times[1] - times[0];
-        let stray = 0.25 * turns * limits.rate(self.radii) * width * width;
-        let growth = (1.0 + turns * turns * span * span).sqrt();
-        let least = along[0].min(along[1]) - stray;
-        let least = if least > 0.0 { least / growth } else { least };
-        // The maximum passes over a NaN: a direction that is none.
-        by_rate.max(least - 0.5 * limits.second(self.radii) * span * span)
     }
 }

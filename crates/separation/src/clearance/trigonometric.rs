@@ -1,3 +1,5 @@
+use std::sync::LazyLock;
+
 /// Harmonics of a trigonometric polynomial beyond the constant.
 const HARMONICS: usize = 4;
 /// Cells that a circle is cut into first.
@@ -6,6 +8,15 @@ const CELLS: usize = 16;
 const DEEPEST: u8 = 18;
 /// Cells looked at: four minima, each followed down, take half of them.
 const MOST_CELLS: usize = 256;
+
+/// Middles of the first cells: angle, cosine, sine.
+static MIDDLES: LazyLock<[[f64; 3]; CELLS]> = LazyLock::new(|| {
+    std::array::from_fn(|i| {
+        let angle = std::f64::consts::PI / CELLS as f64 * (2 * i + 1) as f64;
+        let (sin, cos) = libm::sincos(angle);
+        [angle, cos, sin]
+    })
+});
 
 /// c₀ + Σ (cₖ cos kθ + sₖ sin kθ), k up to 4.
 #[derive(Clone, Copy, Debug, Default)]
@@ -95,9 +106,20 @@ impl Trigonometric {
         sums
     }
 
+    /// Whether it is proven to be above `floor` everywhere.
+    pub(crate) fn is_above(&self, floor: f64) -> bool {
+        let least = self.constant - (self.size() - self.constant.abs());
+        least > floor || (self.constant > floor && self.search(floor, true) == Sign::Above)
+    }
+
     /// Whether it is above `floor` everywhere: by cells on which the third-order Taylor bound says
     /// so, halved where it does not.
     pub(crate) fn sign(&self, floor: f64) -> Sign {
+        self.search(floor, false)
+    }
+
+    /// `quick`: the first angle that is below will do.
+    fn search(&self, floor: f64, quick: bool) -> Sign {
         let third = self.third() / 6.0;
         if !third.is_finite() || !self.constant.is_finite() {
             return Sign::Unclear;
@@ -105,19 +127,25 @@ impl Trigonometric {
         let mut best = (floor.min(0.0), None);
         let mut unclear = false;
         let first = std::f64::consts::PI / CELLS as f64;
+        let middles = &*MIDDLES;
         // Depth first: at most one sibling waits on each level.
-        let mut stack = [(0.0, 0u8); CELLS + DEEPEST as usize + 2];
-        let mut waiting = CELLS;
-        for (i, cell) in stack.iter_mut().take(CELLS).enumerate() {
-            *cell = (first * (2 * i + 1) as f64, 0);
-        }
+        let mut stack = [(0.0, 0u8); DEEPEST as usize + 2];
+        let mut waiting = 0;
+        let mut begun = 0;
         let mut looks = 0;
-        while waiting > 0 && looks < MOST_CELLS {
+        while (waiting > 0 || begun < CELLS) && looks < MOST_CELLS {
             looks += 1;
-            waiting -= 1;
-            let (angle, depth) = stack[waiting];
+            let (angle, depth, cos, sin) = if waiting > 0 {
+                waiting -= 1;
+                let (angle, depth) = stack[waiting];
+                let (sin, cos) = libm::sincos(angle);
+                (angle, depth, cos, sin)
+            } else {
+                let [angle, cos, sin] = middles[begun];
+                begun += 1;
+                (angle, 0, cos, sin)
+            };
             let half = first / f64::from(1u32 << depth);
-            let (sin, cos) = libm::sincos(angle);
             let [value, slope, bend] = self.taylor(cos, sin);
             // The lowest point of the parabola on the cell.
             let at = if bend > 0.0 { (-slope / bend).clamp(-half, half) } else { 0.0 };
@@ -137,6 +165,9 @@ impl Trigonometric {
                 let value = self.taylor(cos, sin)[0];
                 if value < best.0 {
                     best = (value, Some((cos, sin)));
+                    if quick {
+                        break;
+                    }
                     if bound >= 1.001 * value {
                         continue;
                     }
@@ -152,7 +183,7 @@ impl Trigonometric {
         }
         match best.1 {
             Some((cos, sin)) => Sign::Below(cos, sin),
-            None if unclear || waiting > 0 => Sign::Unclear,
+            None if unclear || waiting > 0 || begun < CELLS => Sign::Unclear,
             None => Sign::Above,
         }
     }

@@ -1,12 +1,13 @@
 //! One run of a study again, bit for bit, with all that happens in it.
 
 mod history;
+mod outlines;
 mod page;
 mod picture;
 mod record;
 mod words;
 
-use gyradius_separation::{RunError, Separation, Step};
+use gyradius_separation::{Clearance, RunError, Separation, Step};
 use parquet::errors::ParquetError;
 use serde_json::Value;
 use std::{
@@ -17,6 +18,7 @@ use std::{
 use crate::{
     Row, Scenario, ScenarioError,
     column::Column,
+    drawn,
     model::{Case, Model},
 };
 use history::History;
@@ -141,6 +143,8 @@ pub struct Replay {
     case: Case,
     row: Row,
     history: History,
+    /// How near the bodies come, if that is watched and the run ends well.
+    clearance: Option<Clearance>,
     /// The table whose row it was held against.
     table: Option<PathBuf>,
 }
@@ -201,7 +205,7 @@ impl Replay {
         };
         let case = Model::new(spec, scenario)?.draw(scenario, run);
         let (mut steps, mut result) = (Vec::<Step>::new(), None);
-        let mut recompressed = Vec::new();
+        let (mut recompressed, mut clearance) = (Vec::new(), None);
         if let Ok(separation) = &case.separation {
             let settings = scenario.settings();
             let outcome = separation.run(settings);
@@ -211,6 +215,8 @@ impl Replay {
             }
             if let Ok(outcome) = &outcome {
                 recompressed.extend(outcome.recompressed());
+                let centres = drawn::mass_centres(scenario.dispersions(), &case.drawn);
+                clearance = scenario.outlines().and_then(|o| o.clearance(outcome, &centres).ok());
             }
             result = Some(outcome);
         }
@@ -221,6 +227,7 @@ impl Replay {
             scenario: scenario.clone(),
             model: spec.name.clone(),
             case,
+            clearance,
             table: None,
         })
     }

@@ -4,7 +4,7 @@ const canvas = el("scene"), pen = canvas.getContext("2d");
 const frames = data.frames, end = frames[frames.length - 1][0];
 const last = data.releases.length ? data.releases[data.releases.length - 1][1] : end;
 const body = ["#0072b2", "#d55e00"], axes = ["#332288", "#2a9d8f", "#cc6677"];
-const SPRING = "#009e73", MOMENTUM = "#8a2d6b", INK = "#222222";
+const NEAREST = "#c1121f", SPRING = "#009e73", MOMENTUM = "#8a2d6b", INK = "#222222";
 
 // Vectors and quaternions, scalar last.
 const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
@@ -45,6 +45,26 @@ const radius = data.boxes.map((box) => norm(box.sides) / 2);
 data.springs.forEach((spring) => {
   radius[0] = Math.max(radius[0], norm(spring.p)); radius[1] = Math.max(radius[1], norm(spring.s));
 });
+const shapes = data.outlines || [[], []];
+const parts = (shape) => shape.hull || shape.points || shape.ring.slice(1).map((r) => [0, 1, 2].map((k) => Math.abs(shape.ring[0][k]) + Math.abs(r[k])));
+shapes.forEach((list, i) => list.forEach((shape) => parts(shape).forEach((p) => { radius[i] = Math.max(radius[i] || 0, norm(p)); })));
+// The corners of points on the page, in turn.
+function shadow(points) {
+  const sorted = points.slice().sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const half = (list) => {
+    const out = [];
+    list.forEach((p) => {
+      while (out.length > 1) {
+        const [a, b] = out.slice(-2);
+        if ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) > 0) break;
+        out.pop();
+      }
+      out.push(p);
+    });
+    return out.slice(0, -1);
+  };
+  return half(sorted).concat(half(sorted.reverse()));
+}
 const most = Math.max(...frames.map((f) => norm(f.slice(21, 24)))) || 1;
 let yaw = 0.9, pitch = 0.32, zoom = 1, time = 0, playing = true, before = null;
 // One that fails has no start.
@@ -108,8 +128,8 @@ function draw() {
       things.push({ depth: (a[2] + b[2] + c[2] + d[2]) / 4, draw() {
         pen.beginPath(); pen.moveTo(a[0], a[1]); pen.lineTo(b[0], b[1]); pen.lineTo(c[0], c[1]);
         pen.lineTo(d[0], d[1]); pen.closePath();
-        pen.fillStyle = body[i]; pen.globalAlpha = faces < 0 ? 0.13 : 0.2; pen.fill();
-        pen.strokeStyle = body[i]; pen.lineWidth = 1.2; pen.globalAlpha = 0.75; pen.stroke(); pen.globalAlpha = 1;
+        pen.fillStyle = body[i]; pen.globalAlpha = (faces < 0 ? 0.13 : 0.2) * (data.outlines ? 0.4 : 1); pen.fill();
+        pen.strokeStyle = body[i]; pen.lineWidth = data.outlines ? 0.8 : 1.2; pen.globalAlpha = data.outlines ? 0.3 : 0.75; pen.stroke(); pen.globalAlpha = 1;
       } });
     });
     const arm = 0.75 * radius[i];
@@ -118,6 +138,38 @@ function draw() {
       arrow(now.x[i], turn(now.q[i], unit), colour, 1.6);
     });
   });
+  shapes.forEach((list, i) => list.forEach((shape) => {
+    const place = (v) => add(now.x[i], turn(now.q[i], v));
+    const path = (points) => { pen.beginPath(); points.forEach((p) => pen.lineTo(p[0], p[1])); };
+    if (shape.ring) {
+      const [c, u, w] = shape.ring, steps = 72;
+      const at = (k) => place(add(c, add(times(u, Math.cos(2 * Math.PI * k / steps)), times(w, Math.sin(2 * Math.PI * k / steps)))));
+      for (let k = 0; k < steps; k++) line(at(k), at(k + 1), body[i], 2.4, 0.9);
+      return;
+    }
+    const points = (shape.hull || shape.points).map((v) => point(place(v)));
+    if (shape.points) {
+      points.forEach((p) => things.push({ depth: p[2], draw() { pen.fillStyle = body[i]; pen.beginPath(); pen.arc(p[0], p[1], 3, 0, 7); pen.fill(); } }));
+      return;
+    }
+    // The shadow lies behind all its edges.
+    things.push({ depth: Math.min(...points.map((p) => p[2])), draw() {
+      path(shadow(points)); pen.closePath(); pen.fillStyle = pen.strokeStyle = body[i];
+      pen.globalAlpha = 0.16; pen.fill(); pen.globalAlpha = 0.9; pen.lineWidth = 1.4; pen.stroke(); pen.globalAlpha = 1;
+    } });
+    shape.edges.forEach(([a, b]) => {
+      const p = points[a], q = points[b];
+      things.push({ depth: (p[2] + q[2]) / 2, draw() {
+        pen.globalAlpha = 0.45; pen.strokeStyle = body[i]; pen.lineWidth = 1;
+        path([p, q]); pen.stroke(); pen.globalAlpha = 1;
+      } });
+    });
+  }));
+  if (data.closest) {
+    const a = add(now.x[0], turn(now.q[0], data.closest.p)), b = add(now.x[1], turn(now.q[1], data.closest.s));
+    line(a, b, NEAREST, 1.6);
+    [a, b].map(point).forEach((p) => things.push({ depth: p[2] + 1e-3, draw() { pen.fillStyle = NEAREST; pen.beginPath(); pen.arc(p[0], p[1], 3, 0, 7); pen.fill(); } }));
+  }
   if (data.boxes.length) {
     const spin = turn(now.q[0], data.spin), long = 1.3 * radius[0];
     line(add(now.x[0], times(spin, -long)), add(now.x[0], times(spin, long)), INK, 1.1, 0.7);
@@ -169,6 +221,7 @@ function draw() {
     ["distance of the mass centres", `${away.toFixed(4)} m`],
     ["payload rates 1, 2, 3", `${rate(now.w[0])} deg/s`],
     ["stage rates 1, 2, 3", `${rate(now.w[1])} deg/s`],
+    ...(data.closest ? [["clearance", data.closest.d > 0 ? `${data.closest.d} m at ${data.closest.t} s` : `touch at ${data.closest.t} s`]] : []),
     ["nutation", now.nutation === null ? "–" : `${now.nutation.toFixed(4)}°`],
   ];
   const table = el("now");

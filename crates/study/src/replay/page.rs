@@ -1,7 +1,7 @@
 //! The animation of a run: one page of HTML that needs nothing but itself.
 
 use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::MovingBody;
+use gyradius_separation::{Clearance, MovingBody};
 use maud::{DOCTYPE, PreEscaped, html};
 use nalgebra::UnitQuaternion;
 use serde_json::{Value, json};
@@ -9,8 +9,9 @@ use serde_json::{Value, json};
 use super::{
     Replay,
     history::{Moment, nutation_deg},
+    outlines,
 };
-use crate::report;
+use crate::{drawn, report};
 
 const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");
@@ -39,6 +40,7 @@ pub(super) fn html(replay: &Replay) -> String {
                     "Scenario " strong { (name) } ": payload and stage, seen from their common mass centre. Each is "
                     "drawn as the uniform box that has its mass and inertia, which is not its shape; boxes may "
                     "overlap."
+                    @if replay.scenario.outlines().is_some() { " Outlines are drawn over the boxes, as the scenario gives them." }
                     @if !replay.row.realizable() {
                         " No distribution of mass has the inertia drawn: boxes are flat where they would be less."
                     }
@@ -56,6 +58,7 @@ pub(super) fn html(replay: &Replay) -> String {
                     span.spring { "springs that push" } " "
                     span.momentum { "angular momentum of the payload" } " "
                     span.spin { "spin axis" } " "
+                    @if replay.clearance.is_some() { span.nearest { "where they come nearest" } " " }
                     span.one { "1" } " " span.two { "2" } " " span.three { "3" } " body axes"
                 }
                 table.now { tbody #now {} }
@@ -88,7 +91,22 @@ fn data(replay: &Replay) -> Value {
         })
         .collect();
     let bodies = separation.map(|s| [cuboid(s.payload()), cuboid(s.stage())]);
+    let centres = drawn::mass_centres(replay.scenario.dispersions(), &replay.case.drawn);
+    let outlines = replay.scenario.outlines().map(|outlines| {
+        let shapes = outlines.shapes();
+        [0, 1].map(|i| outlines::drawn(&shapes[i], &centres[i]))
+    });
+    let closest = replay.clearance.as_ref().and_then(Clearance::closest).map(|c| {
+        json!({
+            "t": short(&[c.time_s()])[0],
+            "d": short(&[c.distance_m()])[0],
+            "p": short(c.payload_point_m().as_slice()),
+            "s": short(c.stage_point_m().as_slice()),
+        })
+    });
     json!({
+        "outlines": outlines,
+        "closest": closest,
         "frames": frames,
         "springs": springs,
         "boxes": bodies.map_or_else(Vec::new, Vec::from),
@@ -147,7 +165,7 @@ fn cuboid(body: &MovingBody) -> Value {
 }
 
 /// To six digits; what is not finite is zero, which draws.
-fn short(values: &[f64]) -> Vec<Value> {
+pub(super) fn short(values: &[f64]) -> Vec<Value> {
     let number = |x: &f64| {
         let text = if x.is_finite() { format!("{x:.5e}") } else { "0".to_owned() };
         // Back from text, for the shortest form of it.

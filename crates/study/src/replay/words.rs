@@ -3,11 +3,31 @@
 use gyradius_separation::Separation;
 use std::fmt::{self, Display, Formatter};
 
+use gyradius_separation::ShapeClearance;
+
 use super::Replay;
 use crate::{
     format::{optional, significant},
     row::{Axis, Body, Entry, Quantity},
 };
+
+/// Pairs of shapes that are told of.
+const MOST_PAIRS: usize = 24;
+
+/// How near two shapes come, and when.
+fn approach(shapes: &ShapeClearance) -> String {
+    let said = match (shapes.closest(), shapes.contact_s()) {
+        (_, Some(time)) => format!("touch at {} s", significant(time, 6)),
+        (Some(a), None) => {
+            format!("{} m at {} s", significant(a.distance_m(), 6), significant(a.time_s(), 6))
+        }
+        (None, None) => return "mated, and do not part".to_owned(),
+    };
+    match shapes.counts_from_s().filter(|_| shapes.is_mated()) {
+        Some(time) => format!("{said}, mated until {} s", significant(time, 6)),
+        None => said,
+    }
+}
 
 impl Display for Replay {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -105,12 +125,26 @@ impl Display for Replay {
         line("angular momentum, inertial axes", three(Quantity::Momentum), " kg·m²/s")?;
         line("angle to its intended direction", value(Quantity::MomentumError), "°")?;
         line("inertia ratio", value(Quantity::InertiaRatio), "")?;
-        if self.scenario.outlines().is_some() {
-            let when = value(Quantity::ClearanceTime);
-            line("clearance", value(Quantity::Clearance), &format!(" m at {when} s"))?;
+        if let (Some(outlines), Some(clearance)) = (self.scenario.outlines(), &self.clearance) {
+            let [payload, stage] = outlines.shapes();
+            let shapes = |s: &ShapeClearance| {
+                let (i, j) = (s.payload_shape(), s.stage_shape());
+                let (a, b) = (payload[i].name(), stage[j].name());
+                format!("payload {} ({a}) and stage {} ({b})", i + 1, j + 1)
+            };
+            let nearest = match clearance.closest_shapes() {
+                Some(s) => format!("{}, {}", approach(s), shapes(s)),
+                None => "none, for what touches at the start does not part".to_owned(),
+            };
+            line("clearance", nearest, "")?;
+            if clearance.shapes().len() > 1 {
+                for s in clearance.shapes().iter().take(MOST_PAIRS) {
+                    line(&format!("  {}", shapes(s)), approach(s), "")?;
+                }
+            }
             let touch = row.value(Quantity::RecontactTime);
             let touch = touch.map_or("none".to_owned(), |time| format!("at {time:.9} s"));
-            line("recontact", touch, "")?;
+            line(&format!("recontact within {} s", outlines.coast_s()), touch, "")?;
         }
         line("energy of the springs", value(Quantity::SpringEnergy), " J")?;
         let both = |a, b| format!("{} and {}", value(a), value(b));

@@ -18,6 +18,8 @@ pub(crate) struct Outlines {
     payload: Outline,
     stage: Outline,
     coast: f64,
+    /// As written, payload and stage.
+    shapes: [Vec<ShapeFile>; 2],
 }
 
 impl Outlines {
@@ -35,7 +37,19 @@ impl Outlines {
                 .map_err(|e| ScenarioError::field(format!("clearance.{body}"), e))
         };
         let payload = outline("payload", &file.payload)?;
-        Ok(Self { payload, stage: outline("stage", &file.stage)?, coast })
+        let stage = outline("stage", &file.stage)?;
+        let shapes = [file.payload.clone(), file.stage.clone()];
+        Ok(Self { payload, stage, coast, shapes })
+    }
+
+    /// The shapes of payload and stage, from the nominal mass centres.
+    pub(crate) fn shapes(&self) -> &[Vec<ShapeFile>; 2] {
+        &self.shapes
+    }
+
+    /// How long they are watched, s.
+    pub(crate) fn coast_s(&self) -> f64 {
+        self.coast
     }
 
     /// The clearance over the coast after the last release, of outlines about mass centres that lie
@@ -55,6 +69,17 @@ impl Outlines {
         let settings = ClearanceSettings::default();
         let to = from + self.coast;
         Ok(Clearance::new(&payload, &stage, &mut coast, from, to, &settings)?)
+    }
+}
+
+impl ShapeFile {
+    /// What it is, in a word.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::PointsM(_) => "points",
+            Self::HullM(_) => "hull",
+            Self::Ring { .. } => "ring",
+        }
     }
 }
 

@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 pub(crate) use body::UncertainBody;
 use clearance::Outlines;
 pub(crate) use dispersions::{BodyPart, Dispersed, Dispersions, SpringPart, StackPart, Target};
-pub(crate) use file::AxesFile as Axes;
 use file::ScenarioFile;
+pub(crate) use file::{AxesFile as Axes, ShapeFile};
 pub(crate) use model::{Comparison, Law, ModelSpec};
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
@@ -412,6 +412,7 @@ mod tests {
         let resolved = round_trip(&text);
         assert!(resolved.contains("coast_s = 60.0"), "{resolved}");
         assert!(Scenario::from_toml(&text).unwrap().outlines().is_some());
+        let many = format!("{}]", "[0.0, 0.0, 0.3],".repeat(1001));
         let error = |from: &str, to: &str| {
             assert!(text.contains(from), "{from}");
             Scenario::from_toml(&text.replacen(from, to, 1)).unwrap_err().to_string()
@@ -424,7 +425,41 @@ mod tests {
             ),
             ("[1e300, 1e299, 0.0]", "[nan, 1.0, 0.0]", "momentum_direction: [NaN, 1.0, 0.0]"),
             ("radius_m = 0.3", "radius_m = -0.3", "clearance.stage[1]: "),
-            ("points_m = [[0.0, 0.0, 0.3]]", "points_m = []", "clearance.stage[2]: "),
+            (
+                "radius_m = 0.3",
+                "radius_m = nan",
+                "clearance.stage[1]: ring radius = NaN m: it must",
+            ),
+            (
+                "[0.0, 1.0, 7.0]",
+                "[0.0, 0.0, 0.0]",
+                "clearance.stage[1]: ring axis of length 0.0: it",
+            ),
+            (
+                "[0.5, 0.0, -0.5]",
+                "[nan, 0.0, 0.0]",
+                "clearance.payload[1]: hull_m has coordinate NaN m",
+            ),
+            (
+                "[0.5, 0.0, -0.5]",
+                "[0.0, 1e300, 0.0]",
+                "clearance.payload[1]: hull_m has coordinate 1e300",
+            ),
+            (
+                "points_m = [[0.0, 0.0, 0.3]]",
+                "points_m = []",
+                "clearance.stage[2]: points_m is empty",
+            ),
+            (
+                "[0.0, 0.0, 0.3]]",
+                many.as_str(),
+                "clearance.stage[2]: 1001 points in an outline: at most",
+            ),
+            (
+                "payload = [{ hull_m = [[0.0, 0.0, -0.5], [0.5, 0.0, -0.5]] }]",
+                "payload = []",
+                "clearance.payload: outline is empty",
+            ),
             ("[clearance]\n", "[clearance]\ncoast_s = 0.0\n", "clearance.coast_s: 0.0: it must"),
             ("[clearance]\n", "[clearance]\ncoast_s = nan\n", "clearance.coast_s: NaN"),
         ] {
