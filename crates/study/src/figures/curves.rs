@@ -185,25 +185,32 @@ fn draw(svg: &mut Svg, chart: &Chart, scale: &Scale, origin: (f64, f64), marks: 
     }
 }
 
-/// Dashed lines where springs let go, and their numbers where these have room.
+/// Dashed lines where springs let go, and their numbers: together where they have no room apart.
 fn releases(svg: &mut Svg, (left, top): (f64, f64), until: f64, marks: &[(usize, f64)]) {
-    let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
+    const ROOM: f64 = 12.0;
+    let mut groups: Vec<([f64; 2], Vec<usize>)> = Vec::new();
+    let mut d = String::new();
     for (spring, time) in marks.iter().filter(|(_, time)| *time <= until) {
         let across = left + time / until * WIDTH;
         match groups.last_mut() {
-            Some((at, springs)) if across - *at < 3.0 => springs.push(*spring),
-            _ => groups.push((across, vec![*spring])),
+            Some(([_, last], springs)) if across - *last < ROOM => {
+                springs.push(*spring);
+                if across - *last < 1.0 {
+                    continue;
+                }
+                *last = across;
+            }
+            _ => groups.push(([across; 2], vec![*spring])),
         }
+        d += &format!("M{} {}v{}", px(across), px(top), px(HEIGHT));
     }
-    let d: String =
-        groups.iter().map(|(at, _)| format!("M{} {}v{}", px(*at), px(top), px(HEIGHT))).collect();
     let pen = format!("stroke=\"{}\" stroke-width=\"0.8\" stroke-dasharray=\"3 3\"", style::AXIS);
     svg.path(&pen, &d);
     let mut free = f64::NEG_INFINITY;
-    for (at, springs) in groups {
+    for ([first, last], springs) in groups {
         let names: Vec<_> = springs.iter().map(ToString::to_string).collect();
         let name = fit(&names.join(", "), NOTE.size, 60.0);
-        let half = 0.5 * width(&name, NOTE.size);
+        let (at, half) = (0.5 * (first + last), 0.5 * width(&name, NOTE.size));
         if at - half > free {
             svg.text(at, top - 4.0, NOTE.at(Anchor::Middle), &name);
             free = at + half + 3.0;

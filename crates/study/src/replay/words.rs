@@ -101,7 +101,7 @@ impl Display for Replay {
         };
         let mut line = |what: &str, value: String, unit: &str| {
             let unit = if value == "–" { "" } else { unit };
-            write!(f, "\n  {what:40}{value}{unit}")
+            write!(f, "\n  {what:42}{value}{unit}")
         };
         let nutation = |now, least, greatest| {
             format!("{}° in [{}°, {}°]", value(now), value(least), value(greatest))
