@@ -68,6 +68,24 @@ fn separation(c: &mut Criterion) {
             });
         });
     });
+    // Inertias up to 10 % apart, evenly: runs whose releases come at different steps.
+    let apart: Vec<_> = (0..RUNS)
+        .map(|i| {
+            let share = |ratio: f64| 0.9 + 0.2 * (ratio * i as f64).fract();
+            let scaled = |body: &Body, by: f64| InertiaMatrix::new(body.inertia().matrix() * by);
+            let [payload, stage] = [separation.payload(), separation.stage()].map(|b| b.body());
+            let payload = scaled(payload, share(0.754_877_666_246_692_7)).unwrap();
+            let stage = scaled(stage, share(0.569_840_290_998_053_2)).unwrap();
+            separation.with_inertias(payload, stage).unwrap()
+        })
+        .collect();
+    group.bench_function(format!("peck-2003/batch of {RUNS}, apart"), |b| {
+        b.iter(|| {
+            batch.run(black_box(&apart), |_, outcome| {
+                black_box(outcome.unwrap().spin_metrics(&axis));
+            });
+        });
+    });
     group.finish();
 }
 
