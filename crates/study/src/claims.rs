@@ -5,7 +5,7 @@ use gyradius_statistics::Interval;
 use serde::Serialize;
 
 use crate::{
-    row::{Body, Entry, Quantity},
+    quantity::{Body, Entry, Quantity},
     scenario::Scenario,
     summary::{ComparisonSummary, ModelSummary, Summary},
     table::RunTable,

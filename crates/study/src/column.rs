@@ -2,7 +2,10 @@
 
 use std::borrow::Cow;
 
-use crate::row::{Body, Quantity, Row};
+use crate::{
+    quantity::{Body, Quantity},
+    row::Row,
+};
 
 /// A column of the run table.
 #[derive(Clone, Copy, Debug)]
@@ -111,7 +114,7 @@ impl<'a> Column<'a> {
             Self::Number(quantity) => number(row.value(quantity)),
             Self::Realizable => Cell::Flag(row.realizable()),
             Self::Drawn(i, _) => number(row.drawn.get(i).copied()),
-            Self::Axes(body, i) => number(body.axes(row).map(|q| q.coords[i])),
+            Self::Axes(body, i) => number(row.axes(body).map(|q| q.coords[i])),
             Self::ReleaseOrder => {
                 row.release_order().map_or(Cell::Null, |order| Cell::Text(order.to_owned()))
             }

@@ -8,7 +8,8 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::{
-    row::{Body, Failure},
+    quantity::Body,
+    row::Failure,
     scenario::{BodyPart, Dispersions, Scenario, SpringPart, StackPart, Target},
     streams::Streams,
 };

@@ -9,7 +9,8 @@ use std::ops::Range;
 
 use crate::{
     drawn::{self, Draws},
-    row::{Body, Failure, Outcome, Row},
+    quantity::Body,
+    row::{Failure, Outcome, Row},
     scenario::{Law, ModelSpec, Scenario, ScenarioError, UncertainBody},
     streams::Streams,
 };

@@ -4,7 +4,7 @@ use nalgebra::UnitQuaternion;
 
 use crate::{
     figures::{Cloud, Panel, Series, attitude_spheres, histogram_grid},
-    row::{Body, Entry, Quantity},
+    quantity::{Body, Entry, Quantity},
     scenario::Scenario,
     summary::Summary,
     table::RunTable,
@@ -130,7 +130,7 @@ fn attitudes(
                 t,
                 t.rows()
                     .iter()
-                    .filter_map(|r| Body::Payload.axes(r))
+                    .filter_map(|r| r.axes(Body::Payload))
                     .take(ATTITUDES)
                     .collect::<Vec<_>>(),
             )

@@ -7,7 +7,7 @@ use crate::{
     claims::{CONSIDERABLE, Claim, IDENTICAL, LESS, ONE_SIDED, Verdict},
     format::{interval, optional, significant},
     plates::Plate,
-    row::{Body, Entry, Quantity},
+    quantity::{Body, Entry, Quantity},
     scenario::{Comparison, Scenario},
     summary::{ClearanceSummary, ComparisonSummary, ModelSummary, Summary},
 };

@@ -11,7 +11,8 @@ use crate::{
     claims::{self, Claim},
     compare::Section,
     model::{Case, Model},
-    row::{Body, Quantity, Row},
+    quantity::{Body, Quantity},
+    row::Row,
     scenario::{Dispersed, Scenario},
     table::RunTable,
 };
@@ -276,7 +277,7 @@ impl ModelSummary {
         let draws_axes = rows.iter().any(|r| r.payload_axes.is_some());
         let far = |body: Body, law: &RadiallyConstrainedGaussian| {
             let far = |q: &UnitQuaternion<f64>| !law.in_mean_half(q);
-            share(rows.iter().filter_map(|r| body.axes(r)).filter(far).count())
+            share(rows.iter().filter_map(|r| r.axes(body)).filter(far).count())
         };
         let laws = (scenario.payload().gaussian_axes(), scenario.stage().gaussian_axes());
         let far_half = match laws {

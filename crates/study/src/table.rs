@@ -12,7 +12,8 @@ use std::{io::Write, sync::Arc};
 
 use crate::{
     column::{Cell, Column},
-    row::{Quantity, Row},
+    quantity::Quantity,
+    row::Row,
 };
 
 /// Rows of one row group: enough to compress well, little enough to read in part.

@@ -2,7 +2,7 @@ use std::fmt::{self, Display, Formatter};
 
 use crate::{
     format::{optional, significant},
-    row::Quantity,
+    quantity::Quantity,
     summary::{QuantitySummary, Summary},
 };
 

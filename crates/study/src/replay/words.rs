@@ -8,7 +8,7 @@ use gyradius_separation::ShapeClearance;
 use super::Replay;
 use crate::{
     format::{optional, significant},
-    row::{Axis, Body, Entry, Quantity},
+    quantity::{Axis, Body, Entry, Quantity},
 };
 
 /// Pairs of shapes that are told of.

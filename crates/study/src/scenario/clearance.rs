@@ -7,7 +7,7 @@ use super::{
     ScenarioError,
     file::{ClearanceFile, ShapeFile},
 };
-use crate::row::{Body, Failure};
+use crate::{quantity::Body, row::Failure};
 
 /// Longest coast, s.
 const MOST_COAST: f64 = 1e6;

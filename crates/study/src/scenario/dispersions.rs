@@ -7,7 +7,7 @@ use super::{
     file::{BodyFile, ScenarioFile, SpringFile},
     law::{LawFile, VectorLawFile},
 };
-use crate::row::Body;
+use crate::quantity::Body;
 
 /// A number that every run draws.
 #[derive(Clone, Debug, PartialEq)]
