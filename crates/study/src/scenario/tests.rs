@@ -1,4 +1,3 @@
-
 use super::*;
 
 fn error(from: &str, to: &str) -> String {
