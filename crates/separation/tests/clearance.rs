@@ -6,7 +6,7 @@ use gyradius_separation::{
     Approach, Body, BodyState, Clearance, ClearanceError, ClearanceSettings, Coast, Motion,
     MotionLimits, MovingBody, Outline, Shape,
 };
-use nalgebra::Vector3;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 type V = Vector3<f64>;
@@ -207,6 +207,58 @@ fn rings_that_link_touch_on_the_way() {
     assert!((c.contact_s().unwrap() - 4.0).abs() < 1e-5, "{:?}", c.contact_s());
 }
 
+/// A ring that passes one of eight times its size: the polynomial of the larger one's points is too flat to be
+/// told from zero where it matters, and has to be that of the smaller one's.
+#[test]
+fn rings_of_unlike_sizes_pass() {
+    let moving = |moments, products, attitude: [f64; 4], position, velocity, rate| {
+        let inertia = InertiaMatrix::from_entries(moments, products).unwrap();
+        let [i, j, k, w] = attitude;
+        let state = BodyState {
+            position,
+            velocity,
+            attitude: UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k)),
+            angular_velocity: rate,
+        };
+        Body::new(100.0, inertia).unwrap().moving(state)
+    };
+    let small = moving(
+        [1.66039, 2.687226, 1.66114],
+        [0.040199, 0.03, -0.02],
+        [0.797854, 0.432109, 0.407932, -0.101498],
+        V::new(-20.092437, 131.198073, 153.825516),
+        V::new(9.121931, -22.735331, -20.350009),
+        V::new(2.872006, -5.067857, 2.410822),
+    );
+    let large = moving(
+        [2.891959, 2.345368, 2.33712],
+        [0.040199, 0.03, -0.02],
+        [0.5169807, -0.833868665, -0.1933384802, -0.00377295],
+        V::zeros(),
+        V::zeros(),
+        V::new(0.81657, -0.184909, 0.26166),
+    );
+    let rings = [
+        ring(
+            V::new(-17.640495, -6.309033, -3.101250),
+            V::new(0.252853, -0.631976, 0.732579),
+            8.892647,
+        ),
+        ring(V::zeros(), V::new(-0.732844, -0.566861, -0.376309), 72.000941),
+    ];
+    let settings = ClearanceSettings::default();
+    let c = coasting(&rings[0], &rings[1], [small, large], 40.0, &settings);
+    let closest = c.closest().unwrap();
+    assert!(closest.distance_m() > 0.5 && closest.distance_m() < 1.5, "{closest:?}");
+    assert!(closest.distance_m() - closest.at_least_m() < 1.1e-9);
+    assert!(c.looks() < 5000, "{}", c.looks());
+    // The other way round the same.
+    let turned = coasting(&rings[1], &rings[0], [large, small], 40.0, &settings);
+    let other = turned.closest().unwrap();
+    assert!((other.distance_m() - closest.distance_m()).abs() < 2e-9);
+    assert!(turned.looks() < 5000, "{}", turned.looks());
+}
+
 #[test]
 fn a_point_on_the_axis_of_a_ring() {
     // All of the ring is as near: no angle is singled out.
@@ -276,6 +328,50 @@ fn mated_shapes_count_from_parting_and_recontact_is_found() {
         let c = run(&mut Thrown { speed: 0.0, deceleration: 0.0 }, 60.0);
         assert_eq!((c.closest(), c.contact_s()), (None, None));
         assert_eq!(c.shapes()[0].counts_from_s(), None);
+    }
+}
+
+/// Springs that failed: bodies that turn as one, or slide on each other, and never part.
+#[test]
+fn mated_shapes_that_turn_and_stay_never_count() {
+    let deck = cuboid([1.5, 1.5, 1.0]).about(V::z()).unwrap();
+    let corners = points(&[V::x(), V::y(), -V::x(), -V::y()]);
+    let unit = || ring(V::zeros(), V::z(), 1.0);
+    let pairs = [
+        (unit(), unit()),
+        (cuboid([1.0; 3]).about(-V::z()).unwrap(), cuboid([1.0; 3]).about(V::z()).unwrap()),
+        (unit(), deck.clone()),
+        (corners.clone(), deck),
+        (corners, unit()),
+        (cuboid([0.3; 3]), cuboid([1.0; 3])),
+    ];
+    let moments = [1.0, 1.5, 2.0];
+    let turning = |velocity: V, rate: V| body(moments, V::zeros(), velocity, rate);
+    for (payload, stage) in &pairs {
+        for rate in [V::z(), V::new(0.01, 0.02, 1.0), V::x()] {
+            let alike = turning(V::zeros(), rate);
+            let settings = ClearanceSettings::default();
+            let c = coasting(payload, stage, [alike, alike], 300.0, &settings);
+            assert_eq!((c.closest(), c.contact_s()), (None, None));
+            assert_eq!(c.shapes()[0].counts_from_s(), None);
+            // Some thousand steps of eight arcs each at most.
+            assert!(c.looks() < 200_000, "{}", c.looks());
+        }
+    }
+    // Sliding fast: too many steps for all of them to be short.
+    for (payload, stage) in &pairs[..3] {
+        let bodies = [turning(V::zeros(), V::z() * 20.0), at_rest()];
+        let c = coasting(payload, stage, bodies, 60.0, &ClearanceSettings::default());
+        assert_eq!(c.shapes()[0].counts_from_s(), None);
+    }
+    // Turning fast as one, and drifting apart at 1 mm/s: parted after 1 s.
+    for (payload, stage) in &pairs[..3] {
+        let rate = V::z() * 20.0;
+        let bodies = [turning(V::z() * 1e-3, rate), turning(V::zeros(), rate)];
+        let c = coasting(payload, stage, bodies, 5.0, &ClearanceSettings::default());
+        let parted = c.shapes()[0].counts_from_s().unwrap();
+        assert!((parted - 1.0).abs() < 6e-4, "{parted}");
+        assert_eq!(c.contact_s(), None);
     }
 }
 

@@ -58,8 +58,19 @@ const WIDEST: f64 = 0.5;
 
 /// Share of the size of a polynomial that rounding may take.
 const ROUNDING: f64 = 4e-15;
+/// What comes of it in the square of a distance, as a share of the square of the ring's radius.
+const SQUARE_ROUNDING: f64 = 4e-14;
 
 impl CurveAndRing {
+    /// By how much rounding of the polynomials may change a distance: they give its square, to
+    /// within some 1e-14 of the squares of the sizes.
+    pub(crate) fn rounding(&self, distance: f64) -> f64 {
+        let square = SQUARE_ROUNDING * self.ring.radius * self.ring.radius;
+        let left = distance * distance - square;
+        // d − √(d² − e), without cancellation.
+        if left > 0.0 { square / (distance + left.sqrt()) } else { distance }
+    }
+
     fn curve_body(&self) -> usize {
         1 - self.ring_body
     }

@@ -62,6 +62,11 @@ pub(crate) fn parts<'a>(payload: &'a Shape, stage: &'a Shape) -> Vec<Part<'a>> {
         let circular =
             |curve| Pair::Circular(Box::new(CurveAndRing { curve, ring: *ring, ring_body }));
         match other {
+            // The smaller as the curve: the harmonics grow with it, and rounding with them.
+            Kind::Ring(r) if r.radius > ring.radius => {
+                let (curve, ring_body) = (Curve::ring(ring), 1 - ring_body);
+                vec![Pair::Circular(Box::new(CurveAndRing { curve, ring: *r, ring_body }))]
+            }
             Kind::Ring(r) => vec![circular(Curve::ring(r))],
             Kind::Points(p) => p.iter().map(|p| circular(Curve::point(p))).collect(),
             Kind::Hull(p) if p.len() == 1 => vec![circular(Curve::point(&p[0]))],
@@ -89,6 +94,15 @@ impl Part<'_> {
     /// Largest distances from the mass centres.
     pub(crate) fn radii(&self) -> [f64; 2] {
         self.radii
+    }
+
+    /// By how much rounding may change a distance.
+    pub(crate) fn rounding(&self, distance: f64) -> f64 {
+        let by_position = 1e-14 * (distance + self.radii[0] + self.radii[1]);
+        match &self.pair {
+            Pair::Circular(pair) => by_position.max(pair.rounding(distance)),
+            _ => by_position,
+        }
     }
 
     /// Whether it is looked at arc by arc.

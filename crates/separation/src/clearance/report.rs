@@ -31,14 +31,6 @@ pub enum ClearanceError {
         /// From when on, s.
         time: f64,
     },
-    /// Bodies that touch at the start hang on to each other for too long to be followed.
-    #[error(
-        "clearance at {time} s: bodies that touch at the start have not parted after so many steps"
-    )]
-    Undecided {
-        /// When, s.
-        time: f64,
-    },
 }
 
 /// Why clearance settings are refused.
@@ -261,7 +253,7 @@ impl Clearance {
         let mut looks = 0;
         for (i, p) in payload.shapes().iter().enumerate() {
             for (j, s) in stage.shapes().iter().enumerate() {
-                let mut search = Search::new(motion, p, s, settings.tolerance);
+                let mut search = Search::new(motion, p, s, settings.tolerance, settings.touch);
                 let mut found = shape_clearance(&mut search, from_s, to_s, settings)?;
                 (found.payload_shape, found.stage_shape) = (i, j);
                 looks += search.nodes();
@@ -308,8 +300,10 @@ impl Clearance {
     }
 }
 
-/// Steps in which mated shapes have to part.
-const MOST_STEPS: usize = 200_000;
+/// Steps in which no parting of mated shapes can be missed.
+const MOST_STEPS: usize = 20_000;
+/// Even steps in the rest of the span.
+const MOST_EVEN_STEPS: usize = 5000;
 
 fn shape_clearance<M: Motion>(
     search: &mut Search<'_, M>,
@@ -347,7 +341,9 @@ fn shape_clearance<M: Motion>(
     Ok(result)
 }
 
-/// When shapes that touch have parted: steps that they need at least for what is missing.
+/// When shapes that touch have parted. Steps that they need at least for what is missing: all of the
+/// bodies at their rate, or the nearest points as they move. Where there would be too many, even
+/// steps.
 fn parting<M: Motion>(
     search: &mut Search<'_, M>,
     from: f64,
@@ -356,22 +352,24 @@ fn parting<M: Motion>(
 ) -> Result<Option<f64>, ClearanceError> {
     let rate = search.rate(from, to)?;
     let mut time = from;
-    for _ in 0..MOST_STEPS {
+    let mut shortest = 0.0;
+    for step in 0.. {
         // Half a touch short is parted: the last bit would take for ever.
         let seen = search.begin(time, time)?;
         let missing = settings.parted - seen.distance + seen.depth;
         if missing <= 0.5 * settings.touch {
             return Ok(Some(time));
         }
-        let next = time + missing / rate;
-        if !(next > time && next < to) {
-            return if next >= to || rate == 0.0 {
-                Ok(None)
-            } else {
-                Err(ClearanceError::Undecided { time })
-            };
+        if step == MOST_STEPS {
+            shortest = (to - time) / MOST_EVEN_STEPS as f64;
         }
-        time = next;
+        let together = search.together(&seen, time, to, settings.parted)?;
+        let next = time + (missing / rate).max(together).max(shortest);
+        if !(next < to) {
+            break;
+        }
+        // The last bit of a time is less than a motion can tell.
+        time = next.max(time.next_up());
     }
-    Err(ClearanceError::Undecided { time })
+    Ok(None)
 }

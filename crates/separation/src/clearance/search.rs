@@ -69,6 +69,7 @@ pub(crate) struct Search<'a, M> {
     motion: &'a mut M,
     parts: Vec<Part<'a>>,
     tolerance: f64,
+    touch: f64,
     heap: BinaryHeap<Node>,
     nodes: usize,
 }
@@ -79,14 +80,37 @@ impl<'a, M: Motion> Search<'a, M> {
         payload: &'a Shape,
         stage: &'a Shape,
         tolerance: f64,
+        touch: f64,
     ) -> Self {
         let parts = parts(payload, stage);
-        Self { motion, parts, tolerance, heap: BinaryHeap::new(), nodes: 0 }
+        Self { motion, parts, tolerance, touch, heap: BinaryHeap::new(), nodes: 0 }
     }
 
     /// Nodes looked at so far.
     pub(crate) fn nodes(&self) -> usize {
         self.nodes
+    }
+
+    /// For how long from `time` on the points seen there stay nearer to each other than `parted`,
+    /// whatever the motion until `to`: they move uniformly but for their accelerations.
+    pub(crate) fn together(
+        &mut self,
+        seen: &Seen,
+        time: f64,
+        to: f64,
+        parted: f64,
+    ) -> Result<f64, ClearanceError> {
+        let limits = self.limits(time, to)?;
+        let frame = self.frame(time)?;
+        let arms = [0, 1].map(|i| frame.rotation[i] * seen.points[i]);
+        let gap = frame.offset + arms[0] - arms[1];
+        let velocity =
+            frame.velocity + frame.rate[0].cross(&arms[0]) - frame.rate[1].cross(&arms[1]);
+        let (room, speed) = (parted - gap.norm(), velocity.norm());
+        let second = limits.second([arms[0].norm(), arms[1].norm()]);
+        // |gap| + speed s + ½ second s² = parted.
+        let span = 2.0 * room / (speed + (speed * speed + 2.0 * second * room.max(0.0)).sqrt());
+        Ok(span.max(0.0))
     }
 
     /// Bound on the rate of the distance over a span.
@@ -328,7 +352,9 @@ impl<'a, M: Motion> Search<'a, M> {
 
     /// Tolerance of a distance: as asked for, and not less than rounding of the positions.
     fn slack(&self, part: &Part<'_>, distance: f64) -> f64 {
-        self.tolerance.max(1e-14 * (distance + part.radii()[0] + part.radii()[1]))
+        // Above the touch it leaves room for a contact to be found.
+        let room = 0.5 * (distance - self.touch).max(0.0);
+        self.tolerance.max(part.rounding(distance).min(room))
     }
 
     /// Looks at the middle of a node: proves that it holds nothing below `target`, or splits it.

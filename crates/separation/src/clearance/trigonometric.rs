@@ -6,8 +6,8 @@ const HARMONICS: usize = 4;
 const CELLS: usize = 16;
 /// Halvings of a cell at most: 1e-6 rad.
 const DEEPEST: u8 = 18;
-/// Cells looked at: four minima, each followed down, take half of them.
-const MOST_CELLS: usize = 256;
+/// Cells looked at: four minima, each followed down, take a hundred, flat ones many more.
+const MOST_CELLS: usize = 1024;
 
 /// Middles of the first cells: angle, cosine, sine.
 static MIDDLES: LazyLock<[[f64; 3]; CELLS]> = LazyLock::new(|| {
@@ -86,7 +86,7 @@ impl Trigonometric {
         let mut sum = 0.0;
         for (k, (c, s)) in self.cos.iter().zip(&self.sin).enumerate() {
             let n = (k + 1) as f64;
-            sum += n * n * n * (c.abs() + s.abs());
+            sum += n * n * n * (c * c + s * s).sqrt();
         }
         sum
     }
