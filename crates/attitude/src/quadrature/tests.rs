@@ -1,4 +1,3 @@
-
 use super::*;
 use crate::HypersphericalAngles;
 use proptest::prelude::*;

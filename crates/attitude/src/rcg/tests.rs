@@ -1,4 +1,3 @@
-
 use super::*;
 use nalgebra::Quaternion;
 use proptest::prelude::*;
