@@ -7,7 +7,7 @@ mod peer;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{Batch, Body, Separation, Settings, Spring};
+use gyradius_separation::{Batch, Body, MovingBody, Separation, Settings, Spring};
 use nalgebra::Vector3;
 use std::hint::black_box;
 
@@ -73,7 +73,7 @@ fn separation(c: &mut Criterion) {
         .map(|i| {
             let share = |ratio: f64| 0.9 + 0.2 * (ratio * i as f64).fract();
             let scaled = |body: &Body, by: f64| InertiaMatrix::new(body.inertia().matrix() * by);
-            let [payload, stage] = [separation.payload(), separation.stage()].map(|b| b.body());
+            let [payload, stage] = [separation.payload(), separation.stage()].map(MovingBody::body);
             let payload = scaled(payload, share(0.754_877_666_246_692_7)).unwrap();
             let stage = scaled(stage, share(0.569_840_290_998_053_2)).unwrap();
             separation.with_inertias(payload, stage).unwrap()
