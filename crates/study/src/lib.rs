@@ -23,6 +23,7 @@ mod folder;
 mod format;
 mod fragment;
 mod model;
+mod page;
 mod plates;
 mod quantity;
 mod replay;

@@ -2,7 +2,7 @@ use gyradius_dispersion::{
     DispersionModel, EntrywiseGaussian, KnownMoments, ModelDraw, ModelKind, RealizableOnly,
 };
 use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{Batch, RunError, Separation};
+use gyradius_separation::{Batch, Clearance, RunError, Separation};
 use nalgebra::UnitQuaternion;
 use rand_distr::Distribution;
 use std::ops::Range;
@@ -139,16 +139,29 @@ impl Case {
         scenario: &Scenario,
         result: Option<Result<gyradius_separation::Outcome, RunError>>,
     ) -> Row {
+        self.ended(scenario, result).0
+    }
+
+    /// The row, and how near the bodies come if that is watched and the run ends well.
+    pub(crate) fn ended(
+        &self,
+        scenario: &Scenario,
+        result: Option<Result<gyradius_separation::Outcome, RunError>>,
+    ) -> (Row, Option<Clearance>) {
+        let mut near = None;
         let outcome = match (&self.separation, result) {
             (Ok(separation), Some(Ok(outcome))) => {
-                Outcome::new(scenario, separation, &outcome, &self.drawn)
+                self.clearance(scenario, &outcome).map(|clearance| {
+                    near = clearance;
+                    Outcome::new(scenario, separation, &outcome, near.as_ref())
+                })
             }
             (Ok(_), Some(Err(error))) => Err(error.into()),
             (Err(failure), _) => Err(failure.clone()),
             // A batch gives every run a result.
             (Ok(_), None) => Err(RunError::NotFinite { time: 0.0 }.into()),
         };
-        Row {
+        let row = Row {
             run: self.run,
             payload: self.payload.entries(),
             stage: self.stage.entries(),
@@ -157,7 +170,19 @@ impl Case {
             stage_axes: self.stage_axes,
             outcome,
             drawn: self.drawn.clone(),
-        }
+        };
+        (row, near)
+    }
+
+    fn clearance(
+        &self,
+        scenario: &Scenario,
+        outcome: &gyradius_separation::Outcome,
+    ) -> Result<Option<Clearance>, Failure> {
+        let watched = scenario.outlines().map(|outlines| {
+            outlines.clearance(outcome, &drawn::mass_centres(scenario.dispersions(), &self.drawn))
+        });
+        watched.transpose()
     }
 }
 

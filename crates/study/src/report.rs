@@ -1,47 +1,33 @@
 //! The report: one page of HTML that needs nothing but itself.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 use nalgebra::{Unit, Vector3};
 
 use crate::{
     claims::{CONSIDERABLE, Claim, IDENTICAL, LESS, ONE_SIDED, Verdict},
     format::{interval, optional, significant},
+    page::page,
     plates::Plate,
     quantity::{Body, Entry, Quantity},
     scenario::{Comparison, Scenario},
     summary::{ClearanceSummary, ComparisonSummary, ModelSummary, Summary},
 };
 
-pub(crate) const STYLE: &str = include_str!("report.css");
-
 pub(crate) fn html(scenario: &Scenario, summary: &Summary, plates: &[Plate]) -> String {
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "gyradius study: " (summary.scenario) }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                main {
-                    (head(summary))
-                    (results(summary))
-                    (parting(scenario, summary))
-                    (claims(summary))
-                    (ratios(summary))
-                    (deviations(scenario, summary))
-                    (far_lobe(summary))
-                    (dispersed(summary))
-                    (summary.every_model.markup())
-                    (figures(plates))
-                    (inputs(scenario, summary))
-                }
-            }
-        }
-    }
-    .into_string()
+    let content = html! {
+        (head(summary))
+        (results(summary))
+        (parting(scenario, summary))
+        (claims(summary))
+        (ratios(summary))
+        (deviations(scenario, summary))
+        (far_lobe(summary))
+        (dispersed(summary))
+        (summary.every_model.markup())
+        (figures(plates))
+        (inputs(scenario, summary))
+    };
+    page(&format!("gyradius study: {}", summary.scenario), "", &content)
 }
 
 fn head(summary: &Summary) -> Markup {

@@ -6,7 +6,6 @@ use nalgebra::UnitQuaternion;
 use std::borrow::Cow;
 
 use crate::{
-    drawn,
     quantity::{Body, Quantity},
     scenario::Scenario,
 };
@@ -123,12 +122,8 @@ impl Outcome {
         scenario: &Scenario,
         separation: &Separation,
         separated: &Separated,
-        drawn: &[f64],
-    ) -> Result<Self, Failure> {
-        let clearance = scenario.outlines().map(|outlines| {
-            outlines.clearance(separated, &drawn::mass_centres(scenario.dispersions(), drawn))
-        });
-        let clearance = clearance.transpose()?;
+        clearance: Option<&Clearance>,
+    ) -> Self {
         let degrees = |angle: Option<f64>| angle.map(f64::to_degrees);
         let [payload_tip_off, stage_tip_off] =
             separated.tip_off(separation).map(|rate| rate.map(f64::to_degrees).into());
@@ -140,7 +135,7 @@ impl Outcome {
         let releases = separated.release_times().zip(separation.springs());
         let releases = releases.map(|(time, spring)| spring.can_push().then_some(time));
         let order: Vec<_> = separated.release_order().iter().map(|s| words(s, "+")).collect();
-        Ok(Self {
+        Self {
             release_time_s: separated.release_time(),
             relative_speed_m_per_s: separated.relative_speed(),
             payload_rate_rad_per_s: separated.payload().state().angular_velocity.into(),
@@ -165,11 +160,10 @@ impl Outcome {
             release_order: order.join(" "),
             recompressed: separated.recompressed().map(|(spring, _)| spring).collect(),
             clearance: clearance
-                .as_ref()
                 .and_then(Clearance::closest)
                 .map(|closest| [closest.distance_m(), closest.time_s()]),
-            recontact_s: clearance.as_ref().and_then(Clearance::contact_s),
-        })
+            recontact_s: clearance.and_then(Clearance::contact_s),
+        }
     }
 }
 

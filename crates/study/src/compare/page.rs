@@ -1,15 +1,13 @@
 //! The comparison as one page of HTML that needs nothing but itself.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::{
     BodyResult, ModelComparison,
     measure::Measure,
     text::{Block, heading, is_poor, kinds, matched, remarks},
 };
-use crate::{format::optional, plates::Plate};
-
-const STYLE: &str = include_str!("../report.css");
+use crate::{format::optional, page::page, plates::Plate};
 
 const BLOCKS: [Block; 9] = [
     Block::Unrealizable,
@@ -26,41 +24,30 @@ const BLOCKS: [Block; 9] = [
 impl ModelComparison {
     pub(super) fn page(&self, plates: &[Plate]) -> String {
         let s = &self.settings;
-        html! {
-            (DOCTYPE)
-            html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    title { "gyradius: models of inertia uncertainty compared" }
-                    style { (PreEscaped(STYLE)) }
-                }
-                body { main {
-                    h1 { "Models of inertia uncertainty, head to head" }
-                    p.lead {
-                        (s.draws) " draws of each model about each body at each level, "
-                        (s.separations) " of them separated in the scenario " strong { (s.scenario) }
-                        " in place of its payload; seed " (s.seed) ". Intervals have a confidence of "
-                        (100.0 * self.confidence) " %."
-                    }
-                    (reading(s.reference_meaning))
-                    h2 { "Figures" }
-                    @for plate in plates {
-                        figure id=(plate.name) {
-                            (PreEscaped(plate.svg.as_str()))
-                            figcaption { (plate.caption) ". " code { "figures/" (plate.name) ".svg" } }
-                        }
-                    }
-                    @for body in &self.bodies { (body_tables(body)) }
-                    p {
-                        "Every number of this page, and more, is in " code { "compare.json" } " and "
-                        code { "compare.csv" } ". Made by gyradius " (self.gyradius_version)
-                        "; the scenario's SHA-256 is " code.hash { (s.scenario_fingerprint) } "."
-                    }
-                } }
+        let content = html! {
+            h1 { "Models of inertia uncertainty, head to head" }
+            p.lead {
+                (s.draws) " draws of each model about each body at each level, "
+                (s.separations) " of them separated in the scenario " strong { (s.scenario) }
+                " in place of its payload; seed " (s.seed) ". Intervals have a confidence of "
+                (100.0 * self.confidence) " %."
             }
-        }
-        .into_string()
+            (reading(s.reference_meaning))
+            h2 { "Figures" }
+            @for plate in plates {
+                figure id=(plate.name) {
+                    (PreEscaped(plate.svg.as_str()))
+                    figcaption { (plate.caption) ". " code { "figures/" (plate.name) ".svg" } }
+                }
+            }
+            @for body in &self.bodies { (body_tables(body)) }
+            p {
+                "Every number of this page, and more, is in " code { "compare.json" } " and "
+                code { "compare.csv" } ". Made by gyradius " (self.gyradius_version)
+                "; the scenario's SHA-256 is " code.hash { (s.scenario_fingerprint) } "."
+            }
+        };
+        page("gyradius: models of inertia uncertainty compared", "", &content)
     }
 }
 

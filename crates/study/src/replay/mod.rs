@@ -18,7 +18,6 @@ use std::{
 use crate::{
     Row, Scenario, ScenarioError,
     column::Column,
-    drawn,
     model::{Case, Model},
 };
 use history::History;
@@ -205,7 +204,7 @@ impl Replay {
         };
         let case = Model::new(spec, scenario)?.draw(scenario, run);
         let (mut steps, mut result) = (Vec::<Step>::new(), None);
-        let (mut recompressed, mut clearance) = (Vec::new(), None);
+        let mut recompressed = Vec::new();
         if let Ok(separation) = &case.separation {
             let settings = scenario.settings();
             let outcome = separation.run(settings);
@@ -215,14 +214,13 @@ impl Replay {
             }
             if let Ok(outcome) = &outcome {
                 recompressed.extend(outcome.recompressed());
-                let centres = drawn::mass_centres(scenario.dispersions(), &case.drawn);
-                clearance = scenario.outlines().and_then(|o| o.clearance(outcome, &centres).ok());
             }
             result = Some(outcome);
         }
         let springs = case.separation.as_ref().map_or(&[][..], Separation::springs);
+        let (row, clearance) = case.ended(scenario, result);
         Ok(Self {
-            row: case.row(scenario, result),
+            row,
             history: History::new(&steps, springs, &recompressed),
             scenario: scenario.clone(),
             model: spec.name.clone(),

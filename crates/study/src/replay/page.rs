@@ -2,7 +2,7 @@
 
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::{Clearance, MovingBody};
-use maud::{DOCTYPE, PreEscaped, html};
+use maud::{PreEscaped, html};
 use nalgebra::UnitQuaternion;
 use serde_json::{Value, json};
 
@@ -11,7 +11,7 @@ use super::{
     history::{Moment, nutation_deg},
     outlines,
 };
-use crate::{drawn, report};
+use crate::{drawn, page::page};
 
 const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");
@@ -25,49 +25,38 @@ pub(super) fn html(replay: &Replay) -> String {
     let (model, run) = (&replay.model, replay.row.run());
     // JSON in a script must not end it.
     let data = data(replay).to_string().replace('<', "\\u003c");
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (name) ": " (model) ", run " (run) }
-                style { (PreEscaped(report::STYLE)) (PreEscaped(STYLE)) }
+    let content = html! {
+        h1 { "Run " (run) " of " (model) }
+        p.lead {
+            "Scenario " strong { (name) } ": payload and stage, seen from their common mass centre. Each is "
+            "drawn as the uniform box that has its mass and inertia, which is not its shape; boxes may "
+            "overlap."
+            @if replay.scenario.outlines().is_some() { " Outlines are drawn over the boxes, as the scenario gives them." }
+            @if !replay.row.realizable() {
+                " No distribution of mass has the inertia drawn: boxes are flat where they would be less."
             }
-            body { main {
-                h1 { "Run " (run) " of " (model) }
-                p.lead {
-                    "Scenario " strong { (name) } ": payload and stage, seen from their common mass centre. Each is "
-                    "drawn as the uniform box that has its mass and inertia, which is not its shape; boxes may "
-                    "overlap."
-                    @if replay.scenario.outlines().is_some() { " Outlines are drawn over the boxes, as the scenario gives them." }
-                    @if !replay.row.realizable() {
-                        " No distribution of mass has the inertia drawn: boxes are flat where they would be less."
-                    }
-                }
-                @if replay.row.failure().is_some() { p.warning { (replay.row.status()) } }
-                div.scene { canvas #scene tabindex="0" aria-label="Payload, stage and springs in three dimensions" {} }
-                div.controls {
-                    button #play type="button" { "Pause" }
-                    input #time type="range" min="0" max="1000" step="any" value="0" aria-label="time";
-                    output #clock {}
-                    label { "speed " select #speed {} }
-                }
-                p.key {
-                    span.payload { "payload" } " " span.stage { "stage" } " "
-                    span.spring { "springs that push" } " "
-                    span.momentum { "angular momentum of the payload" } " "
-                    span.spin { "spin axis" } " "
-                    @if replay.clearance.is_some() { span.nearest { "where they come nearest" } " " }
-                    span.one { "1" } " " span.two { "2" } " " span.three { "3" } " body axes"
-                }
-                table.now { tbody #now {} }
-                p { small { "Drag to turn, wheel to zoom, space to stop and go." } }
-                script { (PreEscaped("const data = ")) (PreEscaped(data)) (PreEscaped(";\n")) (PreEscaped(SCRIPT)) }
-            } }
         }
-    }
-    .into_string()
+        @if replay.row.failure().is_some() { p.warning { (replay.row.status()) } }
+        div.scene { canvas #scene tabindex="0" aria-label="Payload, stage and springs in three dimensions" {} }
+        div.controls {
+            button #play type="button" { "Pause" }
+            input #time type="range" min="0" max="1000" step="any" value="0" aria-label="time";
+            output #clock {}
+            label { "speed " select #speed {} }
+        }
+        p.key {
+            span.payload { "payload" } " " span.stage { "stage" } " "
+            span.spring { "springs that push" } " "
+            span.momentum { "angular momentum of the payload" } " "
+            span.spin { "spin axis" } " "
+            @if replay.clearance.is_some() { span.nearest { "where they come nearest" } " " }
+            span.one { "1" } " " span.two { "2" } " " span.three { "3" } " body axes"
+        }
+        table.now { tbody #now {} }
+        p { small { "Drag to turn, wheel to zoom, space to stop and go." } }
+        script { (PreEscaped("const data = ")) (PreEscaped(data)) (PreEscaped(";\n")) (PreEscaped(SCRIPT)) }
+    };
+    page(&format!("{name}: {model}, run {run}"), STYLE, &content)
 }
 
 /// What the script draws. Numbers have as many digits as can be seen.
