@@ -5,7 +5,7 @@ use gyradius_dispersion::{
     StatedModel, Statements,
 };
 use gyradius_inertia::Inertia;
-use gyradius_study::{Fragment, FragmentBody};
+use gyradius_study::{Fragment, FragmentBody, FragmentError};
 use serde::{Deserialize, Serialize};
 use std::{error::Error, fmt::Write, fs::File, io::Read, path::Path};
 
@@ -71,8 +71,7 @@ pub(crate) fn model(arguments: &ModelArgs) -> Result<(), Box<dyn Error>> {
         .model(&nominal, stated.nominal.mass_kg)
         .map_err(|error| format!("{file}: {error}"))?;
     let body = FragmentBody::from(arguments.fragment.body);
-    let fragment =
-        Fragment::new(body, &nominal, model.law()).map_err(|error| format!("{file}: {error}"))?;
+    let fragment = fragment(body, &model).map_err(|error| format!("{file}: {error}"))?;
     let json = || json(&model, body, &fragment);
     output::write(
         &arguments.fragment,
@@ -82,6 +81,19 @@ pub(crate) fn model(arguments: &ModelArgs) -> Result<(), Box<dyn Error>> {
         &fragment,
     )?;
     Ok(())
+}
+
+/// The inertia at the nominal mass, the mass that it goes with, and the mass centre.
+fn fragment(body: FragmentBody, model: &StatedModel) -> Result<Fragment, FragmentError> {
+    let mut fragment = Fragment::new(body, model.nominal(), model.law_at_nominal_mass())?;
+    if let Some(mass) = model.mass() {
+        let percent = 100.0 * mass.relative_deviation();
+        fragment = fragment.with_mass(percent, mass.inertia_follows())?;
+    }
+    match model.centre_deviations() {
+        Some(metres) => fragment.with_mass_centre(metres),
+        None => Ok(fragment),
+    }
 }
 
 fn read(path: &Path) -> Result<String, String> {
@@ -144,6 +156,18 @@ fn write_report(out: &mut String, file: &str, model: &StatedModel) -> std::fmt::
         write!(out, "{comma} {} ± {}", short(roots[k]), short(scatter[k]))?;
     }
     out.push('\n');
+    if let Some(mass) = model.mass() {
+        let percent = short(100.0 * mass.relative_deviation());
+        let share = short(mass.inertia_follows());
+        writeln!(out, "mass: ± {percent} %; the inertia takes {share} of its relative change")?;
+    }
+    if let Some(centre) = model.centre_deviations() {
+        let [x, y, z] = centre.map(|x| short(1e3 * x));
+        writeln!(
+            out,
+            "mass centre: ± {x}, {y}, {z} mm along the body axes, independent of the inertia"
+        )?;
+    }
     for warning in model.warnings() {
         for line in wrapped(&format!("warning: {warning}")) {
             writeln!(out, "{line}")?;

@@ -98,8 +98,8 @@ pub use roots::{
 pub use scalar::{ScalarLaw, ScalarLawError};
 pub use semidefinite::CovarianceError;
 pub use statements::{
-    Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, Part,
-    ProductsStatement, StatedModel, StatementError, StatementWarning, Statements,
+    Amount, AxesStatement, CentreStatement, MassStatement, MissedBecause, MomentsStatement, Part,
+    ProductsStatement, StatedMass, StatedModel, StatementError, StatementWarning, Statements,
 };
 pub use wishart::{Wishart, WishartError};
 

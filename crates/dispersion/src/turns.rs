@@ -17,6 +17,23 @@ pub(crate) fn law_of_turns(
     mean: UnitQuaternion<f64>,
     variances: [f64; 3],
 ) -> Result<RadiallyConstrainedGaussian, RcgError> {
+    law_of_turns_about(mean, mean.to_rotation_matrix().matrix(), variances)
+}
+
+/// The same, where the small turns that are independent are about the rows of `axes`, in body axes.
+pub(crate) fn law_of_turns_about(
+    mean: UnitQuaternion<f64>,
+    axes: &Matrix3<f64>,
+    variances: [f64; 3],
+) -> Result<RadiallyConstrainedGaussian, RcgError> {
+    let (local, radial) = chart_variances(variances);
+    let body = axes.tr_mul(&(Matrix3::from_diagonal(&Vector3::from(local)) * axes));
+    let body = (body + body.transpose()) * 0.5;
+    RadiallyConstrainedGaussian::from_rotation_covariance(mean, body, radial)
+}
+
+/// The variances of the rotation vector of such a law along its axes, rad², and its radial variance.
+pub(crate) fn chart_variances(variances: [f64; 3]) -> ([f64; 3], f64) {
     let free = variances.iter().filter(|v| !v.is_finite()).count();
     // Beside a free turn, variances lose what its own size rounds away.
     let least = if free > 0 { 25.0 * FIXED * FIXED } else { FIXED * FIXED };
@@ -24,11 +41,7 @@ pub(crate) fn law_of_turns(
         .map(|v| if free > 1 || !v.is_finite() { 4.0 * FREE } else { v.clamp(least, 4.0 * FREE) });
     // A narrow law is the same for any radial variance; a wide one needs one as wide.
     let widest = local.iter().copied().fold(0.0, f64::max);
-    let radial = if free > 0 { FREE } else { CONCENTRATED.max(0.25 * widest) };
-    let r = mean.to_rotation_matrix();
-    let body = r.matrix().tr_mul(&(Matrix3::from_diagonal(&Vector3::from(local)) * r.matrix()));
-    let body = (body + body.transpose()) * 0.5;
-    RadiallyConstrainedGaussian::from_rotation_covariance(mean, body, radial)
+    (local, if free > 0 { FREE } else { CONCENTRATED.max(0.25 * widest) })
 }
 
 #[cfg(test)]

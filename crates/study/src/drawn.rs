@@ -60,16 +60,19 @@ pub(crate) fn scaled(
     inertia: InertiaMatrix,
 ) -> InertiaMatrix {
     let dispersions = scenario.dispersions();
-    if !dispersions.inertia_follows_mass[body as usize] {
+    let share = dispersions.inertia_follows_mass[body as usize];
+    if share == 0.0 {
         return inertia;
     }
     let mass = Target::Body(body, BodyPart::Mass);
     let mass = dispersions.all.iter().zip(drawn).find(|(d, _)| d.target == mass);
-    let factor = mass.map_or(1.0, |(d, value)| value / d.nominal);
+    let ratio = mass.map_or(1.0, |(d, value)| value / d.nominal);
     // A mass that is none fails the run anyway.
-    if !(factor > 0.0) {
+    if !(ratio > 0.0) {
         return inertia;
     }
+    // Of the whole change the ratio itself, to the bit.
+    let factor = if share < 1.0 { 1.0 + share * (ratio - 1.0) } else { ratio };
     InertiaMatrix::new(inertia.matrix() * factor).unwrap_or(inertia)
 }
 

@@ -39,6 +39,14 @@ pub enum FragmentError {
     /// The covariance of the axes does not read back.
     #[error("axes: {0}")]
     Axes(#[from] RcgError),
+    /// The mass or the mass centre do not read back.
+    #[error("{field} = {value:?}: it must be finite and not negative, and a share at most one")]
+    Beside {
+        /// The key in the scenario.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// The law is about other axes than those of the nominal inertia.
     #[error(
         "the mean of the axes lies {degrees:.1e}° from the principal axes of the nominal inertia, \
@@ -51,7 +59,8 @@ pub enum FragmentError {
 }
 
 /// The part of a scenario file that says how uncertain the inertia of a body is: nominal inertia,
-/// variances or covariance of the roots, covariance of the axes. Written by `Display` as TOML, every number so that
+/// variances or covariance of the roots, covariance of the axes, and where they are known, mass and mass
+/// centre. Written by `Display` as TOML, every number so that
 /// it reads back bit for bit.
 ///
 /// A scenario takes the mean roots and the mean axes from the nominal inertia; the fragment is
@@ -82,6 +91,15 @@ pub struct Fragment {
     inertia: [[f64; 3]; 3],
     roots: Roots,
     covariance: [[f64; 4]; 4],
+    mass: Option<Mass>,
+    mass_centre: Option<[f64; 3]>,
+}
+
+/// A normal mass, and how far the inertia goes with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mass {
+    percent: f64,
+    follows: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -112,7 +130,7 @@ impl Fragment {
         };
         let covariance = law.axes().covariance();
         let covariance = std::array::from_fn(|i| std::array::from_fn(|j| covariance[(i, j)]));
-        let fragment = Self { body, inertia, roots, covariance };
+        let fragment = Self { body, inertia, roots, covariance, mass: None, mass_centre: None };
 
         // As a scenario reads it.
         let read = Inertia::try_from(inertia)?;
@@ -130,6 +148,44 @@ impl Fragment {
             return Err(FragmentError::Mean { degrees: off.to_degrees() });
         }
         Ok(fragment)
+    }
+
+    /// With a normal mass of this standard deviation, in percent of the nominal mass, of whose relative change the
+    /// inertia takes the share `follows`, from 0 to 1. The law of the fragment is then that of the
+    /// inertia at the nominal mass.
+    ///
+    /// # Errors
+    /// The percentage is negative, or one of them not finite or out of range.
+    pub fn with_mass(self, percent: f64, follows: f64) -> Result<Self, FragmentError> {
+        let refused = |field, value| Err(FragmentError::Beside { field, value });
+        match (percent, follows) {
+            (p, _) if !(0.0..=1e30).contains(&p) => refused("mass_percent", p),
+            (_, f) if !(0.0..=1.0).contains(&f) => refused("inertia_follows_mass", f),
+            (percent, follows) => Ok(Self { mass: Some(Mass { percent, follows }), ..self }),
+        }
+    }
+
+    /// With a normal mass centre of these standard deviations along body axes 1, 2, 3, m, about the nominal one.
+    ///
+    /// # Errors
+    /// A deviation is negative or not finite.
+    pub fn with_mass_centre(self, metres: [f64; 3]) -> Result<Self, FragmentError> {
+        match metres.iter().find(|m| !(0.0..=1e30).contains(*m)) {
+            Some(&value) => Err(FragmentError::Beside { field: "mass_centre_m", value }),
+            None => Ok(Self { mass_centre: Some(metres), ..self }),
+        }
+    }
+
+    /// Standard deviation of the mass in percent, and the share of its relative change that the inertia takes.
+    #[must_use]
+    pub fn mass(&self) -> Option<(f64, f64)> {
+        self.mass.map(|mass| (mass.percent, mass.follows))
+    }
+
+    /// Standard deviations of the mass centre along body axes 1, 2, 3, m.
+    #[must_use]
+    pub fn mass_centre(&self) -> Option<[f64; 3]> {
+        self.mass_centre
     }
 
     /// Nominal inertia by rows, kg·m².
@@ -195,7 +251,19 @@ impl fmt::Display for Fragment {
         for row in self.covariance {
             writeln!(f, "    {row:?},")?;
         }
-        writeln!(f, "]")
+        writeln!(f, "]")?;
+        if let Some(Mass { percent, follows }) = self.mass {
+            writeln!(f, "mass_percent = {percent:?}")?;
+            if follows == 1.0 {
+                writeln!(f, "inertia_follows_mass = true")?;
+            } else if follows > 0.0 {
+                writeln!(f, "inertia_follows_mass = {follows:?}")?;
+            }
+        }
+        match self.mass_centre {
+            Some(metres) => writeln!(f, "mass_centre_m = {metres:?}"),
+            None => Ok(()),
+        }
     }
 }
 

@@ -82,6 +82,12 @@ pub(crate) struct FragmentJson {
     #[serde(skip_serializing_if = "Option::is_none")]
     root_second_moment_covariance_kg_m2: Option<[[f64; 3]; 3]>,
     axes_covariance: [[f64; 4]; 4],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mass_percent: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    inertia_follows_mass: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mass_centre_m: Option<[f64; 3]>,
     toml: String,
 }
 
@@ -93,6 +99,9 @@ impl FragmentJson {
             root_second_moment_variance_kg_m2: fragment.root_variances(),
             root_second_moment_covariance_kg_m2: fragment.root_covariance(),
             axes_covariance: fragment.axes_covariance(),
+            mass_percent: fragment.mass().map(|(percent, _)| percent),
+            inertia_follows_mass: fragment.mass().map(|(_, share)| share),
+            mass_centre_m: fragment.mass_centre(),
             toml: fragment.to_string(),
         }
     }

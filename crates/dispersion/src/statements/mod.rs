@@ -1,44 +1,49 @@
-mod nonnegative;
+//! A model of inertia made of plain statements: "moments ± 10 %", "axes within 2°", "mass ± 1 %".
+
+mod body;
+mod law;
+mod least_squares;
 mod parts;
+mod solve;
+mod stated_model;
 mod warnings;
 
-use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_inertia::Inertia;
-use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 
-use crate::{
-    CorrelatedRoots, EntryMoments, GaussianRoots, PrincipalDispersion, RootLaw, turns::law_of_turns,
-};
-use nonnegative::{UNKNOWNS, least_squares};
+use body::{Body, mixing_of};
+use solve::{Asked, Solution, Task};
 
 pub use parts::{
     Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, Part,
     ProductsStatement, StatementError,
 };
-pub use warnings::StatementWarning;
+pub use stated_model::{StatedMass, StatedModel};
+pub use warnings::{MissedBecause, StatementWarning};
 
-/// The entries in the order I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.
-const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
-/// Rounds in which the scatter of the moments settles what turns do to the products.
-const ROUNDS: usize = 30;
-/// A deviation stated as zero counts as this share of the trace.
-const ZERO: f64 = 1e-9;
 /// Traces whose squares, which variances are, do not overflow.
 const TRACES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
+/// A model that misses by no more than this, in squared relative errors of variances, meets the statements.
+const MET: f64 = 1e-4;
+/// Halvings of the share of the mass that the inertia follows, where it cannot follow wholly.
+const HALVINGS: usize = 8;
 
-/// What engineers say of an inertia, and nothing they do not: every part may be left out.
+/// What engineers say of an inertia, and nothing that they do not say: every part may be left out.
 ///
 /// [`model`](Self::model) makes the model of Peck (2003) of them.
 ///
 /// # Rules
 /// * *Moments* and *products* are the diagonal and the other entries of the matrix in body axes, with
 ///   everything that moves them, mass and mass centre included.
-/// * *Axes* are turns about the principal axes.
-/// * *Mass* and *centre* speak for those entries of which nothing else is said: the whole inertia
-///   grows with the mass, all its entries together, and the mass centre adds what parallel axes add.
-///   Of entries that are stated they are part, and are only compared with them.
+/// * *Axes* are rotations about the principal axes.
+/// * What nothing is said of does not scatter, but for what the stated parts force: moments alone leave
+///   the axes still, and products or axes alone leave the principal moments still.
+/// * *Mass*: the inertia grows with the mass, all its entries together. Where the moments are stated as
+///   well, this is a part of what is stated of them, and the inertia follows the mass as far as the
+///   statements allow.
+/// * *Centre*: the mass centre adds what parallel axes add to those entries of which nothing is stated.
+///   Of entries that are stated it is a part, and is only compared with them.
 /// * *Products* and *axes* both limit the axes: about each axis the tighter one holds.
-/// * Of what nothing is said does not scatter, with a warning.
+/// * *Moments* come before *products*: where both cannot be had, the moments are as stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -63,39 +68,30 @@ pub struct Statements {
     pub centre: Option<CentreStatement>,
 }
 
-/// The model that statements make, and what they come to.
-#[derive(Clone, Debug)]
-pub struct StatedModel {
-    nominal: Inertia,
-    law: PrincipalDispersion<RootLaw, RadiallyConstrainedGaussian>,
-    root_deviations: [f64; 3],
-    turns: [f64; 3],
-    stated: [Option<f64>; 6],
-    implied: EntryMoments,
-    warnings: Vec<StatementWarning>,
-}
-
 impl Statements {
     /// The model of a nominal inertia and, if it is known, its mass.
     ///
     /// # Algorithm
-    /// The variance of an entry is linear in the variances w_k of the second moments K_k and, for
-    /// small turns φ_j about the principal axes, in u_j = E[sin² 2φ_j]/4:
+    /// To first order the variance of an entry is linear in the covariance C of the second moments
+    /// K_k and in that of small rotations φ_j about the principal axes, U = Cov(sin 2φ)/4:
     ///
-    /// Var I_ab = Σ_k (δ_ab − r_ka r_kb)² w_k + Σ_j D_ab,j² E[(ΔI_j)²] u_j,
+    /// Var I_ab = gᵀC g + Σ_jl d_j d_l E[ΔI_j ΔI_l] U_jl,
     ///
-    /// with R(q) = (r_ka) of the nominal body, D_j the symmetric product of the two axes that turn j
-    /// mixes, ΔI_j the difference of their moments, E[(ΔI_j)²] = ΔI_j² + w_a + w_b. The stated variances
-    /// give up to six equations, of which the non-negative least squares solution is taken, each in
-    /// units of what is stated, and repeated until E[(ΔI)²] has settled. What a mass moves by the share
-    /// ρ is left out there and added as ρ²K_i K_j to the covariance of the second moments. Then the
-    /// covariance C of the roots from Cov(K_i, K_j) = 4k̄_i k̄_j C_ij + 2C_ij², and the variance of φ from u = (1 − e^{−8 Var φ})/8; u ≥ 1/8 is a turn of
-    /// which nothing is known. What comes out is computed back by quadrature, not by this
-    /// approximation: [`StatedModel::implied`].
+    /// with R(q) = (r_ka) of the nominal body, g_k = δ_ab − r_ka r_kb, d_j the entry ab of the symmetric product of
+    /// the two axes that rotation j mixes, and ΔI_j the difference of their moments, which scatters:
+    /// E[ΔI_j ΔI_l] follows from C. Statements on the moments open C, those on the products open U,
+    /// and the least squares solution with both positive semidefinite is taken, each variance in
+    /// units of what is stated. Second moments and rotations are independent of each other wherever
+    /// they can be: covariances have a small cost. What the law that this makes gives beyond the linear equations is
+    /// found by quadrature and taken off what is stated, until what is stated comes out.
+    ///
+    /// A mass of relative standard deviation ρ multiplies the whole inertia by 1 + αρz, with a normal
+    /// score z: Var I = (1 + α²ρ²) Var I′ + α²ρ² Ī², where I′ is the inertia at the nominal mass and
+    /// 0 ≤ α ≤ 1 is as large as the stated moments and products allow.
     ///
     /// # Limits
-    /// Three K_k that are independent but for the mass cannot have any three variances of the
-    /// moments. What cannot be had is said in a warning.
+    /// No body can have some combinations of deviations, and no principal axes independent of the
+    /// moments others. What cannot be had is said in a warning, with the reason.
     ///
     /// # Errors
     /// The mass is needed and not given or not positive, or the nominal body is a point or out of
@@ -130,309 +126,153 @@ impl Statements {
         if let Some(value) = mass_kg.filter(|m| !(*m > 0.0 && *m <= 1e30)) {
             return Err(StatementError::Mass { value });
         }
-        let body = Body::of(nominal);
-        let beside = self.beside(nominal, mass_kg)?;
-        let mut warnings = Vec::new();
-
+        let body = Body::new(nominal);
         let entries = nominal.entries();
         let [i11, i22, i33, ..] = entries;
-        let moments = self.moments.map(|m| m.deviations([i11, i22, i33]));
-        let products = self.products.map(|p| p.deviations());
-        let stated: [Option<f64>; 6] = std::array::from_fn(|e| match e {
-            0..3 => moments.map(|m| m[e]),
-            _ => products.map(|p| p[e - 3]),
-        });
-        // What mass and centre alone do may not exceed what is stated of the whole.
-        if let Some((mass, centre)) = beside {
-            for (e, stated) in stated.iter().enumerate() {
-                for (part, alone) in [(Part::Mass, mass[e]), (Part::Centre, centre[e])] {
-                    let alone = alone.sqrt();
-                    if let Some(stated) = stated.filter(|s| alone > *s * (1.0 + 1e-9)) {
-                        warnings.push(StatementWarning::Alone { part, entry: e, alone, stated });
-                    }
-                }
+        let stated = Stated {
+            moments: self.moments.map(|m| m.deviations([i11, i22, i33])),
+            products: self.products.map(|p| p.deviations()),
+            axes: self.axes.map(|axes| axes.deviations()),
+            centre: match self.centre {
+                Some(centre) => Some(centre.entry_variances(
+                    mass_kg.ok_or(StatementError::NoMass { part: Part::Centre })?,
+                )),
+                None => None,
+            },
+        };
+        let mass = self.mass.map(|mass| mass.relative(mass_kg)).transpose()?;
+        let solved = match mass {
+            Some(relative) => stated.following(&body, nominal, relative)?,
+            None => Solved { solution: stated.solve(&body, nominal, 0.0)?, follows: 0.0 },
+        };
+        // What the products alone would allow.
+        let unlimited = match (stated.products, stated.axes) {
+            (Some(_), Some(_)) => {
+                let products = Stated { axes: None, ..stated };
+                let factor = mass.unwrap_or(0.0) * solved.follows;
+                let solution = products.solve(&body, nominal, factor)?;
+                Some(solution.scattered.rotations.map(f64::sqrt))
             }
-        }
-        let common = match self.mass {
-            Some(mass) if moments.is_none() => mass.relative(mass_kg)?,
-            _ => 0.0,
+            _ => None,
         };
-        let target: [Option<Target>; 6] = std::array::from_fn(|e| {
-            let whole = stated[e].map(|s| s * s).or_else(|| {
-                let (mass, centre) = beside?;
-                // Of products beside stated axes nothing else need be said.
-                (e < 3 || self.axes.is_none()).then(|| mass[e] + centre[e])
-            });
-            let mass = (common * entries[e]).powi(2);
-            whole.map(|whole| Target { rest: (whole - mass).max(0.0), whole })
-        });
-        if target[..3].iter().all(Option::is_none) {
-            warnings.push(StatementWarning::FixedMoments);
-        }
-
-        let (mut variances, mut mixing) = body.solve(&target, common, None);
-        if let Some(axes) = self.axes {
-            let allowed = axes.deviations().map(|s| mixing_of(s * s));
-            let both = if self.products.is_some() {
-                let tighter = std::array::from_fn(|j| mixing[j].min(allowed[j]));
-                let said = axes.deviations();
-                let by_products = mixing.map(|u| variance_of(u).sqrt());
-                if (0..3).any(|j| {
-                    let (a, b) = (said[j], by_products[j]);
-                    !((a - b).abs() <= 0.1 * a.max(b)) && body.turns[j].gap > 0.0
-                }) {
-                    warnings.push(StatementWarning::AxesAndProducts {
-                        axes: said,
-                        products: by_products,
-                    });
-                }
-                tighter
-            } else {
-                allowed
-            };
-            (variances, mixing) = body.solve(&target, common, Some(both));
-        } else if target[3..].iter().all(Option::is_none) {
-            warnings.push(StatementWarning::FixedAxes);
-        }
-
-        let turns = mixing.map(variance_of);
-        for (j, variance) in turns.iter().enumerate() {
-            if !variance.is_finite() {
-                warnings.push(StatementWarning::Free { axis: j + 1 });
-            }
-        }
-        let law =
-            |problem: &dyn std::fmt::Display| StatementError::Law { problem: problem.to_string() };
-        let (roots, root_deviations) = roots(nominal, variances, common).map_err(|e| law(&e))?;
-        let axes = law_of_turns(body.attitude, turns).map_err(|e| law(&e))?;
-        let law = PrincipalDispersion::new(roots, axes);
-        let implied = EntryMoments::of(&law);
-        // “Within” is a limit: products that stated axes keep smaller are within it.
-        let limited = self.axes.is_some();
-        let model = StatedModel {
-            nominal: *nominal,
-            law,
-            root_deviations,
-            turns,
-            stated,
-            implied,
-            warnings,
-        };
-        Ok(StatedModel { warnings: StatementWarning::of_outcome(&model, limited), ..model })
-    }
-
-    /// Variances of the six entries from mass and from mass centre, if either is stated.
-    #[allow(clippy::type_complexity, reason = "two lists of six")]
-    fn beside(
-        &self,
-        nominal: &Inertia,
-        mass_kg: Option<f64>,
-    ) -> Result<Option<([f64; 6], [f64; 6])>, StatementError> {
-        if self.mass.is_none() && self.centre.is_none() {
-            return Ok(None);
-        }
-        let mass = match self.mass {
-            Some(mass) => {
-                let relative = mass.relative(mass_kg)?;
-                nominal.entries().map(|x| (relative * x).powi(2))
-            }
-            None => [0.0; 6],
-        };
-        let centre = match self.centre {
-            Some(centre) => centre
-                .entry_variances(mass_kg.ok_or(StatementError::NoMass { part: Part::Centre })?),
-            None => [0.0; 6],
-        };
-        Ok(Some((mass, centre)))
+        let mass = mass.map(|relative| StatedMass::new(relative, solved.follows));
+        let centre = self.centre.map(|centre| centre.deviations());
+        let model = StatedModel::new(nominal, &body, &stated, mass, centre, solved.solution)?;
+        let warnings = StatementWarning::of(&model, &body, &stated, unlimited);
+        Ok(model.with_warnings(warnings))
     }
 }
 
-impl StatedModel {
-    /// The nominal inertia.
-    #[must_use]
-    pub fn nominal(&self) -> &Inertia {
-        &self.nominal
-    }
-
-    /// The law.
-    #[must_use]
-    pub fn law(&self) -> &PrincipalDispersion<RootLaw, RadiallyConstrainedGaussian> {
-        &self.law
-    }
-
-    /// Deviations of the roots of the second moments, √kg·m. Their means are those of the nominal
-    /// inertia.
-    #[must_use]
-    pub fn root_deviations(&self) -> [f64; 3] {
-        self.root_deviations
-    }
-
-    /// Standard deviations of the turns about principal axes 1, 2, 3, rad; infinite where nothing
-    /// is known of one.
-    #[must_use]
-    pub fn turns(&self) -> [f64; 3] {
-        self.turns.map(f64::sqrt)
-    }
-
-    /// Deviations of the six entries as stated, kg·m², in the order 11, 22, 33, 12, 13, 23.
-    #[must_use]
-    pub fn stated(&self) -> [Option<f64>; 6] {
-        self.stated
-    }
-
-    /// Mean and covariance of the six entries under the law, by quadrature.
-    #[must_use]
-    pub fn implied(&self) -> &EntryMoments {
-        &self.implied
-    }
-
-    /// Contradictions, and what has been left open.
-    #[must_use]
-    pub fn warnings(&self) -> &[StatementWarning] {
-        &self.warnings
-    }
-}
-
-/// The variance of an entry.
+/// What is stated, as standard deviations in kg·m² and rad, and the variances that the mass centre adds.
 #[derive(Clone, Copy, Debug)]
-struct Target {
-    /// Without what a mass contributes to all.
-    rest: f64,
-    whole: f64,
+struct Stated {
+    moments: Option<[f64; 3]>,
+    products: Option<[f64; 3]>,
+    axes: Option<[f64; 3]>,
+    centre: Option<[f64; 6]>,
 }
 
-/// Gaussian roots about a nominal body and their deviations, such that the second moments have the variances
-/// `independent` and the relative deviation `common` beside.
-fn roots(
-    nominal: &Inertia,
-    independent: [f64; 3],
-    common: f64,
-) -> Result<(RootLaw, [f64; 3]), Box<dyn std::error::Error>> {
-    let mean = nominal.second_moments().roots();
-    let k = mean.values();
-    // The variance v of a root: 4k²v + 2v² is that of its square.
-    let of_root = |square: f64, variance: f64| {
-        let half = 0.5 * variance;
-        if half > 0.0 { half / (square + (square * square + half).sqrt()) } else { 0.0 }
-    };
-    let shared = of_root(1.0, common * common);
-    let rest: [f64; 3] = std::array::from_fn(|i| {
-        if !(independent[i] > 0.0) {
-            return 0.0;
-        }
-        let square = k[i] * k[i];
-        let whole = of_root(square, independent[i] + (common * square).powi(2));
-        (whole - shared * square).max(0.0)
-    });
-    if common == 0.0 {
-        return Ok((GaussianRoots::new(mean, rest)?.into(), rest.map(f64::sqrt)));
-    }
-    let k = Vector3::from(k);
-    let covariance = k * k.transpose() * shared + Matrix3::from_diagonal(&Vector3::from(rest));
-    let deviations = covariance.diagonal().map(f64::sqrt).into();
-    Ok((CorrelatedRoots::new(mean, covariance)?.into(), deviations))
+/// A solution, and the share of the mass's relative change that the inertia takes.
+struct Solved {
+    solution: Solution,
+    follows: f64,
 }
 
-/// What a turn about a principal axis mixes.
-#[derive(Clone, Copy, Debug)]
-struct Turn {
-    /// Difference of the two moments, zero if it is rounding.
-    gap: f64,
-    /// Squares of the entries of a_a a_bᵀ + a_b a_aᵀ.
-    squares: [f64; 6],
-}
-
-/// The nominal body as the equations see it.
-struct Body {
-    attitude: UnitQuaternion<f64>,
-    /// (δ_ab − r_ka r_kb)² of each entry and k.
-    shares: [[f64; 3]; 6],
-    turns: [Turn; 3],
-    zero: f64,
-}
-
-impl Body {
-    fn of(nominal: &Inertia) -> Self {
-        let axes = nominal.principal_axes();
-        let attitude = axes.attitude();
-        let r: Matrix3<f64> = *attitude.to_rotation_matrix().matrix();
-        let moments = axes.moments();
-        let trace = nominal.matrix().trace();
-        let shares = ENTRIES.map(|(a, b)| {
-            let delta = if a == b { 1.0 } else { 0.0 };
-            [0, 1, 2].map(|k| (delta - r[(k, a)] * r[(k, b)]).powi(2))
-        });
-        let turns = [0, 1, 2].map(|j| {
-            let (m, n) = ((j + 1) % 3, (j + 2) % 3);
-            let (p, q): (Vector3<f64>, Vector3<f64>) = (r.row(m).transpose(), r.row(n).transpose());
-            let gap = (moments[m] - moments[n]).abs();
-            Turn {
-                gap: if gap > ZERO * trace { gap } else { 0.0 },
-                squares: ENTRIES.map(|(a, b)| (p[a] * q[b] + q[a] * p[b]).powi(2)),
+impl Stated {
+    /// What is asked of the inertia at the nominal mass, if the mass moves it all by a factor of this
+    /// relative standard deviation.
+    fn task(&self, nominal: &Inertia, factor: f64) -> Task {
+        let nominal = nominal.entries();
+        let square = factor * factor;
+        let asked = |stated: Option<[f64; 3]>, first: usize, spoken: bool| match stated {
+            Some(deviations) => {
+                let units = deviations.map(|deviation| deviation * deviation / (1.0 + square));
+                let by_mass = |i: usize| square * nominal[first + i].powi(2) / (1.0 + square);
+                let variances = std::array::from_fn(|i| (units[i] - by_mass(i)).max(0.0));
+                Asked::Stated { variances, units }
             }
-        });
-        Self { attitude, shares, turns, zero: ZERO * trace }
+            None => match self.centre {
+                Some(centre) if !spoken => {
+                    Asked::Added(std::array::from_fn(|i| centre[first + i] / (1.0 + square)))
+                }
+                _ => Asked::Nothing,
+            },
+        };
+        Task {
+            moments: asked(self.moments, 0, false),
+            // Of the products beside stated axes nothing else need be said.
+            products: asked(self.products, 3, self.axes.is_some()),
+            axes: self.axes.map(|axes| axes.map(|deviation| mixing_of(deviation * deviation))),
+        }
     }
 
-    /// Variances of the second moments beside their common relative deviation, and the mixing u of the
-    /// three turns, which may be given.
+    /// The law of the inertia at the nominal mass.
     fn solve(
         &self,
-        target: &[Option<Target>; 6],
-        common: f64,
-        given: Option<[f64; 3]>,
-    ) -> ([f64; 3], [f64; 3]) {
-        let (mut variances, mut mixing) = ([0.0; 3], given.unwrap_or([0.0; 3]));
-        for _ in 0..ROUNDS {
-            let squares: [f64; 3] = std::array::from_fn(|j| {
-                let scatter = variances[(j + 1) % 3] + variances[(j + 2) % 3];
-                self.turns[j].gap.powi(2) * (1.0 + common * common) + scatter
-            });
-            let mut a = SMatrix::<f64, 6, UNKNOWNS>::zeros();
-            let mut b = SVector::<f64, 6>::zeros();
-            for (e, target) in target.iter().enumerate() {
-                let Some(target) = target else { continue };
-                let unit = target.whole.max(self.zero * self.zero);
-                b[e] = target.rest / unit;
-                for k in 0..3 {
-                    a[(e, k)] = self.shares[e][k] / unit;
-                    let turned = self.turns[k].squares[e] * squares[k] / unit;
-                    match given {
-                        Some(mixing) => b[e] -= turned * mixing[k],
-                        None => a[(e, 3 + k)] = turned,
-                    }
-                }
-            }
-            // With the turns given, only the moments are left to be solved for.
-            if given.is_some() {
-                for e in 3..6 {
-                    a.row_mut(e).fill(0.0);
-                    b[e] = 0.0;
-                }
-            }
-            let x = least_squares(&a, &b);
-            let next = [x[0], x[1], x[2]];
-            let moved = (0..3).any(|k| (next[k] - variances[k]).abs() > 1e-9 * next[k]);
-            variances = next;
-            if given.is_none() {
-                mixing = [x[3], x[4], x[5]];
-            }
-            if !moved {
-                break;
+        body: &Body,
+        nominal: &Inertia,
+        factor: f64,
+    ) -> Result<Solution, StatementError> {
+        let task = self.task(nominal, factor);
+        let whole = task.solve(body, nominal)?;
+        let (Asked::Stated { .. }, Asked::Added(products)) = (task.moments, task.products) else {
+            return Ok(whole);
+        };
+        if whole.cost <= MET {
+            return Ok(whole);
+        }
+        // What the mass centre does to the products turns the axes, which may move the moments more than
+        // is stated of them: then it does so in part only.
+        let without = Task { products: Asked::Nothing, ..task }.solve(body, nominal)?;
+        for share in [1.0, 0.5, 0.25, 0.125] {
+            let products = Asked::Added(products.map(|variance| share * variance));
+            let part = Task { products, ..task }.solve(body, nominal)?;
+            if part.cost <= without.cost + MET {
+                return Ok(part);
             }
         }
-        (variances, mixing)
+        Ok(without)
     }
-}
 
-/// E[sin² 2φ]/4 of a Gaussian angle.
-fn mixing_of(variance: f64) -> f64 {
-    -0.125 * libm::expm1(-8.0 * variance)
-}
-
-/// The variance of a Gaussian angle with E[sin² 2φ]/4 = u; infinite from 1/8 on.
-fn variance_of(mixing: f64) -> f64 {
-    if mixing < 0.125 { -0.125 * libm::log1p(-8.0 * mixing) } else { f64::INFINITY }
+    /// The inertia follows a mass of this relative deviation as far as it can without what is stated
+    /// being missed by more than it would be anyway.
+    fn following(
+        &self,
+        body: &Body,
+        nominal: &Inertia,
+        relative: f64,
+    ) -> Result<Solved, StatementError> {
+        let entries = nominal.entries();
+        let solve = |follows: f64| {
+            let solution = self.solve(body, nominal, follows * relative)?;
+            Ok::<_, StatementError>(Solved { solution, follows })
+        };
+        let Some(moments) = self.moments else { return solve(1.0) };
+        // Beyond this share the mass alone would move a moment by more than is stated of it.
+        let most = (0..3).fold(1.0, |most: f64, i| {
+            let by_mass = relative * entries[i].abs();
+            if moments[i] < by_mass { most.min(moments[i] / by_mass) } else { most }
+        });
+        let wholly = solve(most)?;
+        if wholly.solution.cost <= MET || most == 0.0 {
+            return Ok(wholly);
+        }
+        let mut best = solve(0.0)?;
+        let allowed = best.solution.cost + MET;
+        if wholly.solution.cost <= allowed {
+            return Ok(wholly);
+        }
+        let mut too_much = most;
+        for _ in 0..HALVINGS {
+            let half = solve(0.5 * (best.follows + too_much))?;
+            if half.solution.cost <= allowed {
+                best = half;
+            } else {
+                too_much = half.follows;
+            }
+        }
+        Ok(best)
+    }
 }
 
 #[cfg(test)]

@@ -64,8 +64,8 @@ pub(crate) enum SpringPart {
 pub(crate) struct Dispersions {
     pub(crate) all: Vec<Dispersed>,
     pub(crate) correlation: Correlation,
-    /// Whether the drawn inertia of payload and stage goes with its mass.
-    pub(crate) inertia_follows_mass: [bool; 2],
+    /// The share of its mass's relative change that the drawn inertia of payload and stage takes.
+    pub(crate) inertia_follows_mass: [f64; 2],
 }
 
 impl Dispersions {
@@ -88,7 +88,7 @@ impl Dispersions {
             list.spring(i, spring)?;
         }
         let correlation = list.correlate(file)?;
-        let follows = |body: &BodyFile| body.dispersion.inertia_follows_mass;
+        let follows = |body: &BodyFile| body.dispersion.inertia_follows_mass.share();
         let inertia_follows_mass = [follows(&file.payload), follows(&file.stage)];
         Ok(Self { all: list.all, correlation, inertia_follows_mass })
     }
@@ -202,7 +202,7 @@ impl List {
         let percent = at("mass_percent");
         let percent = (percent.as_str(), d.mass_percent.as_ref());
         self.either(&place, d.mass_kg.as_ref(), percent, file.mass_kg, of(BodyPart::Mass))?;
-        if d.inertia_follows_mass && d.mass_kg.is_none() && d.mass_percent.is_none() {
+        if !d.inertia_follows_mass.not_at_all() && d.mass_kg.is_none() && d.mass_percent.is_none() {
             let problem = "the mass is not dispersed: it needs mass_kg or mass_percent";
             return Err(ScenarioError::field(at("inertia_follows_mass"), problem));
         }

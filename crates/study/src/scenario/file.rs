@@ -1,7 +1,10 @@
 use gyradius_dispersion::{BasiliskDispersion, ModelKind};
 use serde::{Deserialize, Serialize};
 
-use super::law::{LawFile, VectorLawFile};
+use super::{
+    follows::Follows,
+    law::{LawFile, VectorLawFile},
+};
 
 /// A scenario as it stands in a TOML file, defaults filled in. Units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -77,8 +80,8 @@ pub(crate) struct DispersionFile {
     pub(crate) mass_kg: Option<LawFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) mass_percent: Option<LawFile>,
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub(crate) inertia_follows_mass: bool,
+    #[serde(default, skip_serializing_if = "Follows::not_at_all")]
+    pub(crate) inertia_follows_mass: Follows,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) mass_centre_m: Option<VectorLawFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]

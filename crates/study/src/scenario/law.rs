@@ -33,6 +33,9 @@ pub(crate) struct LawTable {
     law: LawName,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sigma: Option<f64>,
+    /// How many standard deviations `sigma` stands for, one if it is not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    sigmas: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     mean: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -65,12 +68,15 @@ impl LawName {
 
     fn takes(self) -> &'static [&'static str] {
         match self {
-            Self::Normal | Self::Lognormal => &["sigma", "mean"],
+            Self::Normal | Self::Lognormal => &["sigma", "sigmas", "mean"],
             Self::Uniform => &["low", "high"],
-            Self::TruncatedNormal => &["sigma", "mean", "low", "high"],
+            Self::TruncatedNormal => &["sigma", "sigmas", "mean", "low", "high"],
         }
     }
 }
+
+/// What `sigmas` may be, as in statements.
+const SIGMAS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
 struct LawVisitor;
 
@@ -79,7 +85,7 @@ impl<'de> Visitor<'de> for LawVisitor {
     type Value = LawFile;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a standard deviation, or a table with law, sigma, mean, low, high")
+        f.write_str("a standard deviation, or a table with law, sigma, sigmas, mean, low, high")
     }
 
     fn visit_f64<E>(self, sigma: f64) -> Result<LawFile, E> {
@@ -108,7 +114,7 @@ impl<'de> Visitor<'de> for VectorLawVisitor {
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(
-            "a standard deviation, a table with law, sigma, mean, low, high or covariance, or a list of \
+            "a standard deviation, a table with law, sigma, sigmas, mean, low, high or covariance, or a list of \
              them, one for each component",
         )
     }
@@ -159,6 +165,7 @@ impl LawFile {
         let law = table.law;
         let given = [
             ("sigma", table.sigma.is_some()),
+            ("sigmas", table.sigmas.is_some()),
             ("mean", table.mean.is_some()),
             ("low", table.low.is_some()),
             ("high", table.high.is_some()),
@@ -176,17 +183,27 @@ impl LawFile {
             let problem = || format!("{} needs {name}", law.text());
             value.map(|x| x * unit).ok_or_else(|| ScenarioError::field(field, problem()))
         };
+        if let Some(sigmas) = table.sigmas.filter(|s| !SIGMAS.contains(s)) {
+            let problem = format!(
+                "sigmas = {sigmas:?}: it must be between {:?} and {:?}: how many standard deviations sigma \
+                 stands for",
+                SIGMAS.start(),
+                SIGMAS.end()
+            );
+            return Err(ScenarioError::field(field, problem));
+        }
+        let sigma = || needed("sigma", table.sigma.map(|s| s / table.sigmas.unwrap_or(1.0)));
         let mean = nominal + table.mean.unwrap_or(0.0) * unit;
         match law {
-            LawName::Normal => ScalarLaw::normal(mean, needed("sigma", table.sigma)?),
-            LawName::Lognormal => ScalarLaw::lognormal(mean, needed("sigma", table.sigma)?),
+            LawName::Normal => ScalarLaw::normal(mean, sigma()?),
+            LawName::Lognormal => ScalarLaw::lognormal(mean, sigma()?),
             LawName::Uniform => ScalarLaw::uniform(
                 nominal + needed("low", table.low)?,
                 nominal + needed("high", table.high)?,
             ),
             LawName::TruncatedNormal => ScalarLaw::truncated_normal(
                 mean,
-                needed("sigma", table.sigma)?,
+                sigma()?,
                 nominal + table.low.unwrap_or(f64::NEG_INFINITY) * unit,
                 nominal + table.high.unwrap_or(f64::INFINITY) * unit,
             ),
@@ -199,6 +216,7 @@ impl LawFile {
             Self::Table(LawTable {
                 law: LawName::Normal,
                 sigma: None,
+                sigmas: None,
                 mean: None,
                 low: None,
                 high: None,

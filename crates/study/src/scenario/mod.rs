@@ -4,6 +4,7 @@ mod body;
 mod clearance;
 mod dispersions;
 mod file;
+mod follows;
 mod law;
 mod model;
 

@@ -1,3 +1,5 @@
+//! The parts of a statement, each checked by itself.
+
 #[cfg(feature = "serde")]
 mod file;
 
@@ -289,6 +291,12 @@ impl CentreStatement {
             return Err(StatementError::Amount { part: Part::Centre, value });
         }
         Ok(Self { deviations: checked(Part::Centre, metres, sigmas)?, arm: arm_m })
+    }
+
+    /// Standard deviations along body axes 1, 2, 3, m.
+    #[must_use]
+    pub fn deviations(&self) -> [f64; 3] {
+        self.deviations
     }
 
     /// Variances of the six entries, (kg·m²)², in the order 11, 22, 33, 12, 13, 23.

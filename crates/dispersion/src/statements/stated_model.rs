@@ -1,0 +1,192 @@
+//! The model that statements make, and what they come to.
+
+use gyradius_inertia::Inertia;
+use nalgebra::{Matrix3, SVector, Vector3};
+
+use super::{
+    Stated, StatementError, StatementWarning,
+    body::{Body, Scatter},
+    law::{Law, Scattered},
+    solve::Solution,
+};
+use crate::{EntryMoments, RootMoments};
+
+/// The model that statements make, and what they come to.
+///
+/// The inertia at the nominal mass has the law [`law_at_nominal_mass`](Self::law_at_nominal_mass); a
+/// stated mass multiplies it by [`StatedMass::factor`]. [`law`](Self::law) is the law of the inertia alone, the
+/// mass's part included.
+#[derive(Clone, Debug)]
+pub struct StatedModel {
+    nominal: Inertia,
+    scatter: Scatter,
+    at_nominal_mass: Law,
+    law: Law,
+    mass: Option<StatedMass>,
+    centre: Option<[f64; 3]>,
+    root_deviations: [f64; 3],
+    rotations: [f64; 3],
+    stated: [Option<f64>; 6],
+    implied: EntryMoments,
+    warnings: Vec<StatementWarning>,
+}
+
+/// A normal mass, and how the inertia goes with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StatedMass {
+    relative: f64,
+    follows: f64,
+}
+
+impl StatedMass {
+    pub(super) fn new(relative: f64, follows: f64) -> Self {
+        Self { relative, follows }
+    }
+
+    /// The standard deviation of the mass over the nominal mass.
+    #[must_use]
+    pub fn relative_deviation(&self) -> f64 {
+        self.relative
+    }
+
+    /// The share α of the mass's relative change that the inertia takes, from 0 to 1: one, unless the moments are
+    /// stated to vary by less than the mass makes them vary.
+    #[must_use]
+    pub fn inertia_follows(&self) -> f64 {
+        self.follows
+    }
+
+    /// What the inertia is multiplied by where the mass is `ratio` times the nominal one:
+    /// 1 + α(ratio − 1).
+    #[must_use]
+    pub fn factor(&self, ratio: f64) -> f64 {
+        1.0 + self.follows * (ratio - 1.0)
+    }
+
+    /// The standard deviation of that factor.
+    pub(super) fn factor_deviation(&self) -> f64 {
+        self.follows * self.relative
+    }
+}
+
+impl StatedModel {
+    pub(super) fn new(
+        nominal: &Inertia,
+        body: &Body,
+        stated: &Stated,
+        mass: Option<StatedMass>,
+        centre: Option<[f64; 3]>,
+        solution: Solution,
+    ) -> Result<Self, StatementError> {
+        let Solution { scatter, scattered, .. } = solution;
+        let implied = scattered.moments();
+        let square = mass.map_or(0.0, |mass| mass.factor_deviation().powi(2));
+        let whole = if square > 0.0 {
+            // Of a product of independent factors.
+            let k = scattered.law.roots().second_moment_statistics();
+            let mean = Vector3::from(k.mean());
+            let moments: Matrix3<f64> =
+                k.covariance() * (1.0 + square) + mean * mean.transpose() * square;
+            let roots = nominal.second_moments().roots();
+            Some(Scattered::new(body, roots, &Scatter { moments, ..scatter })?)
+        } else {
+            None
+        };
+        let mean = SVector::<f64, 6>::from(implied.mean());
+        let covariance = implied.covariance() * (1.0 + square) + mean * mean.transpose() * square;
+        let Scattered { law: at_nominal_mass, root_deviations, rotations, .. } = scattered;
+        let (law, root_deviations) = match whole {
+            Some(whole) => (whole.law, whole.root_deviations),
+            None => (at_nominal_mass.clone(), root_deviations),
+        };
+        Ok(Self {
+            nominal: *nominal,
+            scatter,
+            at_nominal_mass,
+            law,
+            mass,
+            centre,
+            root_deviations,
+            rotations,
+            stated: std::array::from_fn(|e| match e {
+                0..3 => stated.moments.map(|m| m[e]),
+                _ => stated.products.map(|p| p[e - 3]),
+            }),
+            implied: EntryMoments::unchecked(implied.mean(), covariance),
+            warnings: Vec::new(),
+        })
+    }
+
+    pub(super) fn with_warnings(self, warnings: Vec<StatementWarning>) -> Self {
+        Self { warnings, ..self }
+    }
+
+    /// The scatter of the inertia at the nominal mass.
+    pub(super) fn scatter(&self) -> &Scatter {
+        &self.scatter
+    }
+
+    /// The nominal inertia.
+    #[must_use]
+    pub fn nominal(&self) -> &Inertia {
+        &self.nominal
+    }
+
+    /// The law of the inertia, with all that a stated mass does to it.
+    #[must_use]
+    pub fn law(&self) -> &Law {
+        &self.law
+    }
+
+    /// The law of the inertia at the nominal mass. Where no mass is stated it is that of
+    /// [`law`](Self::law).
+    #[must_use]
+    pub fn law_at_nominal_mass(&self) -> &Law {
+        &self.at_nominal_mass
+    }
+
+    /// The mass, if it is stated.
+    #[must_use]
+    pub fn mass(&self) -> Option<StatedMass> {
+        self.mass
+    }
+
+    /// Standard deviations of the mass centre along body axes 1, 2, 3, m, if they are stated. The mass centre is
+    /// independent of the inertia about it.
+    #[must_use]
+    pub fn centre_deviations(&self) -> Option<[f64; 3]> {
+        self.centre
+    }
+
+    /// Standard deviations of the roots of the second moments, √kg·m. Their means are those of the nominal
+    /// inertia.
+    #[must_use]
+    pub fn root_deviations(&self) -> [f64; 3] {
+        self.root_deviations
+    }
+
+    /// Standard deviations of the rotations about principal axes 1, 2, 3, rad; infinite where nothing
+    /// is known of one.
+    #[must_use]
+    pub fn turns(&self) -> [f64; 3] {
+        self.rotations.map(f64::sqrt)
+    }
+
+    /// Standard deviations of the six entries as stated, kg·m², in the order 11, 22, 33, 12, 13, 23.
+    #[must_use]
+    pub fn stated(&self) -> [Option<f64>; 6] {
+        self.stated
+    }
+
+    /// Mean and covariance of the six entries under the law, by quadrature.
+    #[must_use]
+    pub fn implied(&self) -> &EntryMoments {
+        &self.implied
+    }
+
+    /// Contradictions, and what has been left open.
+    #[must_use]
+    pub fn warnings(&self) -> &[StatementWarning] {
+        &self.warnings
+    }
+}
