@@ -89,6 +89,12 @@ impl Deviation {
         Ok(Self { n, standard_deviation, kurtosis: n as f64 * fourth / (second * second) })
     }
 
+    /// Of samples that nobody drew.
+    #[cfg(test)]
+    pub(crate) fn of(n: usize, standard_deviation: f64, kurtosis: f64) -> Self {
+        Self { n, standard_deviation, kurtosis }
+    }
+
     /// Number of values.
     pub fn n(&self) -> usize {
         self.n

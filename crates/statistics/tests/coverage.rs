@@ -168,6 +168,17 @@ fn ratio_intervals() {
     let (separate, pooled) = ratio(Law::Exponential, 10, Law::Exponential, 10);
     assert_share("separate, 10", separate, 0.92, r, 0.0);
     assert_share("pooled, 10", pooled, 0.95, r, 0.01);
+    // Same shape, unlike sizes, either way round. Of five values against thousands it falls short.
+    for (what, law, n, m, expected) in [
+        ("normal, 1000 and 10", Law::Normal, 1000, 10, 0.96),
+        ("normal, 10 and 1000", Law::Normal, 10, 1000, 0.96),
+        ("exponential, 100 and 10", Law::Exponential, 100, 10, 0.965),
+        ("Laplace, 300 and 20", Law::Laplace, 300, 20, 0.955),
+        ("uniform, 2000 and 5", Law::Uniform, 2000, 5, 0.92),
+    ] {
+        let (_, pooled) = ratio(law, n, law, m);
+        assert_share(what, pooled, expected, r, 0.0);
+    }
     // Different shapes: pooling is what breaks it.
     let (separate, pooled) = ratio(Law::Uniform, 1000, Law::Laplace, 100);
     assert_share("separate, unlike", separate, 0.93, r, 0.0);
