@@ -45,7 +45,8 @@ impl Deviation {
     /// better when both laws have the same shape and samples are small, and fails at any size when
     /// they do not and sizes differ: 0.68 instead of 0.95 for 1000 uniform draws against 100 of a
     /// Laplace law, where this one covers 0.92. Its own shortfall is small and vanishes with `n`:
-    /// 0.92 for two exponential samples of 10 or 50, 0.95 of 1000.
+    /// 0.92 for two exponential samples of 10 or 50, 0.95 of 1000. Both need samples that show the
+    /// kurtosis of their law, see [the limits](Self#limits).
     ///
     /// # Errors
     ///
