@@ -76,6 +76,14 @@ pub enum StatisticsError {
         /// The edge found there, NaN where it is missing.
         value: f64,
     },
+    /// A bin is so narrow that its density is beyond the largest `f64`.
+    #[error("bin {bin} is {width:e} wide: its density is beyond f64::MAX; widen it")]
+    Density {
+        /// Position among the bins, from 0.
+        bin: usize,
+        /// Its width.
+        width: f64,
+    },
     /// A distribution function returned something that is no probability.
     #[error("the distribution function is {value} at {at}; it must lie between 0 and 1")]
     DistributionFunction {

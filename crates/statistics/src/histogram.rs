@@ -1,6 +1,6 @@
 //! Counts per bin.
 
-use crate::{BinEdges, SortedSample};
+use crate::{BinEdges, SortedSample, StatisticsError};
 
 /// How many values of a sample fall into each bin, and how many outside all of them.
 ///
@@ -67,10 +67,27 @@ impl Histogram {
 
     /// Density in each bin, `count/(total·width)`: its integral over the bins is the share of the
     /// sample that they hold.
-    pub fn density(&self) -> Vec<f64> {
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::Density`] if a bin is so narrow that its density is beyond `f64::MAX`.
+    pub fn density(&self) -> Result<Vec<f64>, StatisticsError> {
         let total = self.total() as f64;
-        let widths = self.edges.values().windows(2).map(|pair| pair[1] - pair[0]);
-        self.counts.iter().zip(widths).map(|(&count, width)| count as f64 / total / width).collect()
+        let bins = self.edges.values().windows(2).zip(&self.counts);
+        bins.enumerate()
+            .map(|(bin, (pair, &count))| {
+                let (share, width) = (count as f64 / total, pair[1] - pair[0]);
+                let density = if width.is_finite() {
+                    share / width
+                } else {
+                    0.5 * share / (0.5 * pair[1] - 0.5 * pair[0])
+                };
+                if density.is_infinite() {
+                    return Err(StatisticsError::Density { bin, width });
+                }
+                Ok(density)
+            })
+            .collect()
     }
 }
 
@@ -87,7 +104,7 @@ mod tests {
         let histogram = Histogram::new(&sample, &edges);
         assert_eq!(histogram.counts(), [2, 3]);
         assert_eq!((histogram.underflow(), histogram.overflow(), histogram.total()), (1, 1, 7));
-        assert_eq!(histogram.density(), [2.0 / 7.0, 3.0 / 7.0]);
+        assert_eq!(histogram.density().unwrap(), [2.0 / 7.0, 3.0 / 7.0]);
     }
 
     proptest! {
@@ -111,6 +128,45 @@ mod tests {
             prop_assert_eq!((histogram.underflow(), histogram.overflow()), (0, 0));
         }
 
+        /// Of widths from the smallest number to the whole range: what each bin holds is its share,
+        /// and no density is infinite.
+        #[test]
+        fn densities_hold_over_the_range_of_floats(
+            exponents in prop::collection::vec(-1075..1024i32, 2..6),
+            signs in prop::collection::vec(any::<bool>(), 6),
+            per_bin in 1..40usize,
+        ) {
+            let magnitude = |exponent: i32| 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2);
+            let signed = |(&e, &plus): (&i32, &bool)| if plus { magnitude(e) } else { -magnitude(e) };
+            let mut edges: Vec<f64> = exponents.iter().zip(&signs).map(signed).collect();
+            edges.sort_by(f64::total_cmp);
+            edges.dedup();
+            let Ok(bins) = BinEdges::new(edges.clone()) else { return Ok(()) };
+            let sample: Vec<f64> = edges[..edges.len() - 1].repeat(per_bin);
+            let histogram = Histogram::new(&SortedSample::new(&sample).unwrap(), &bins);
+            let share = 1.0 / bins.bins() as f64;
+            // Halves of numbers scaled to be normal are exact.
+            let half = |pair: &[f64]| {
+                let scale = if pair[0].abs().max(pair[1].abs()) < 1.0 { 2f64.powi(600) } else { 1.0 };
+                (0.5 * scale * pair[1] - 0.5 * scale * pair[0], scale)
+            };
+            match histogram.density() {
+                Ok(density) => for (d, pair) in density.iter().zip(edges.windows(2)) {
+                    let (half, scale) = half(pair);
+                    // A density below 2⁻¹⁰²² has fewer digits.
+                    prop_assert!(
+                        (2.0 * d * half / scale / share - 1.0).abs() < 1e-14,
+                        "{} {:?}", d, pair,
+                    );
+                },
+                Err(StatisticsError::Density { bin, width }) => {
+                    prop_assert_eq!(width, edges[bin + 1] - edges[bin]);
+                    prop_assert!(share / f64::MAX >= width, "{}", width);
+                }
+                Err(error) => return Err(TestCaseError::fail(error.to_string())),
+            }
+        }
+
         #[test]
         fn the_density_integrates_to_the_share_inside(
             sample in prop::collection::vec(-10.0..10.0f64, 1..100),
@@ -120,7 +176,7 @@ mod tests {
             let edges = BinEdges::uniform(-3.0, 5.0, bins).unwrap();
             let histogram = Histogram::new(&sorted, &edges);
             let width = 8.0 / bins as f64;
-            let integral: f64 = histogram.density().iter().map(|d| d * width).sum();
+            let integral: f64 = histogram.density().unwrap().iter().map(|d| d * width).sum();
             let outside = histogram.underflow() + histogram.overflow();
             let share = 1.0 - outside as f64 / sample.len() as f64;
             prop_assert!((integral - share).abs() < 1e-12);
