@@ -31,6 +31,7 @@
 //! ```
 
 mod assembly;
+mod double;
 mod eigen;
 mod equivalents;
 mod inertia;

@@ -241,6 +241,16 @@ pub(crate) mod tests {
     /// A body of revolution about axis 3: a point at the bottom, rings (radius, height), and a
     /// point at the top, each ring of `n` vertices.
     pub(crate) fn revolved(bottom: f64, rings: &[[f64; 2]], top: f64, n: usize) -> TriangleMesh {
+        let (vertices, triangles) = revolution(bottom, rings, top, n);
+        TriangleMesh::new(&vertices, &triangles).unwrap()
+    }
+
+    fn revolution(
+        bottom: f64,
+        rings: &[[f64; 2]],
+        top: f64,
+        n: usize,
+    ) -> (Vec<[f64; 3]>, Vec<[usize; 3]>) {
         let mut vertices = vec![[0.0, 0.0, bottom]];
         for [r, z] in rings {
             for k in 0..n {
@@ -263,7 +273,7 @@ pub(crate) mod tests {
                 at(rings.len() - 1, k + 1),
             ]);
         }
-        TriangleMesh::new(&vertices, &triangles).unwrap()
+        (vertices, triangles)
     }
 
     const FACES: [[usize; 3]; 12] = [
@@ -437,7 +447,87 @@ pub(crate) mod tests {
         assert!(matches!(tiny, Err(MeshError::NoVolume { .. })));
     }
 
+    /// A tether of 20 km and 1 mm, along an axis and turned.
+    #[test]
+    fn a_tether_is_a_body() {
+        let (radius, length) = (5e-4, 2e4);
+        let (vertices, faces) = rope(radius, length, 8);
+        let straight = TriangleMesh::new(&vertices, &faces).unwrap();
+        let area = 4.0 * radius * radius * std::f64::consts::FRAC_PI_4.sin();
+        assert!((straight.volume_m3() / (area * length) - 1.0).abs() < 1e-14);
+        let q = nalgebra::UnitQuaternion::from_euler_angles(0.3, 0.7, 2.0);
+        let turned: Vec<[f64; 3]> =
+            vertices.iter().map(|x| (q * Vector3::from(*x)).into()).collect();
+        let turned = TriangleMesh::new(&turned, &faces).unwrap();
+        // An ulp of 20 km beside a millimetre.
+        assert!((turned.volume_m3() / (area * length) - 1.0).abs() < 1e-8);
+    }
+
+    /// A prism along axis 3 over a regular polygon, of two rings and two hubs, from 0 up.
+    fn rope(radius: f64, length: f64, sides: usize) -> (Vec<[f64; 3]>, Vec<[usize; 3]>) {
+        revolution(0.0, &[[radius, 0.0], [radius, length]], length, sides)
+    }
+
     proptest! {
+        /// Straight and bent ropes from stout to 1e-8 of their length thick, in any pose and at any
+        /// distance: wrong by no more than the rounding of their vertices makes them. Plain sums are
+        /// wrong by the square of the slenderness.
+        #[test]
+        fn slender_bodies_are_as_good_as_their_vertices(
+            (slenderness, size, far) in (-8.0..0.0f64, -9.0..9.0f64, -3.0..3.0f64),
+            (sides, rings) in (3..9usize, 2..6usize),
+            v in prop::array::uniform3(-3.0..3.0f64),
+            t in prop::array::uniform3(-1.0..1.0f64),
+            (bent, turned) in (any::<bool>(), any::<bool>()),
+        ) {
+            let [slenderness, length, far] = [slenderness, size, far].map(|x| 10f64.powf(x));
+            let radius = slenderness * length;
+            let rings: Vec<[f64; 2]> = (0..rings)
+                .map(|i| [radius, length * i as f64 / (rings - 1) as f64])
+                .collect();
+            let (mut vertices, mut faces) = revolution(0.0, &rings, length, sides);
+            // Area and second moment of the regular polygon.
+            let angle = std::f64::consts::TAU / sides as f64;
+            let area = 0.5 * sides as f64 * radius * radius * angle.sin();
+            let across = radius * radius * (2.0 + angle.cos()) / 12.0;
+            let k = crate::SecondMoments::new([across, across, length * length / 12.0]).unwrap();
+            let own = crate::Inertia::from_second_moments(k, &Default::default()).unwrap();
+            let mut body = MassProperties::new(1.0, [0.0, 0.0, 0.5 * length], own).unwrap();
+            let mut volume = area * length;
+            if bent {
+                // The same again from the other end, along axis 1: (x, y, z) to (z, x, y).
+                let n = vertices.len();
+                vertices.extend(vertices.clone().iter().map(|[x, y, z]| [*z + 2.0 * radius, *x, *y]));
+                faces.extend(faces.clone().iter().map(|face| face.map(|i| i + n)));
+                let k = crate::SecondMoments::new([length * length / 12.0, across, across]).unwrap();
+                let other = crate::Inertia::from_second_moments(k, &Default::default()).unwrap();
+                let center = [0.5 * length + 2.0 * radius, 0.0, 0.0];
+                let other = MassProperties::new(1.0, center, other).unwrap();
+                body = MassProperties::combined([body, other]).unwrap().with_mass(1.0).unwrap();
+                volume *= 2.0;
+            }
+            let pose = nalgebra::Isometry3::new(
+                Vector3::from(t) * if turned { length * far } else { 0.0 },
+                Vector3::from(v) * f64::from(u8::from(turned)),
+            );
+            let place = |x: &[f64; 3]| (pose * nalgebra::Point3::from(*x)).coords.into();
+            let vertices: Vec<[f64; 3]> = vertices.iter().map(place).collect();
+            let expected = body.transformed(&pose).unwrap();
+            // The rounding of a vertex beside the thickness, and that of the polygon's sides.
+            let reach = if turned { length * (1.0 + 2.0 * far) } else { radius };
+            let bound = 4.0 * f64::EPSILON * (4.0 + reach / radius);
+            let found = TriangleMesh::new(&vertices, &faces);
+            // Refused only where the vertices do not tell.
+            prop_assert!(found.is_ok() || bound > 0.01, "{found:?} {bound:e}");
+            let Ok(found) = found else { return Ok(()) };
+            prop_assert!((found.volume_m3() / volume - 1.0).abs() < bound, "{} {bound:e}", found.volume_m3() / volume - 1.0);
+            let found = found.of_mass(1.0).unwrap();
+            let center = (found.mass_center_m() - expected.mass_center_m()).amax();
+            prop_assert!(center < bound * length + 4.0 * f64::EPSILON * reach, "{center:e}");
+            let inertia = (found.inertia().matrix() - expected.inertia().matrix()).amax();
+            prop_assert!(inertia < bound * length * length, "{inertia:e}");
+        }
+
         #[test]
         fn turns_with_its_vertices(
             points in prop::array::uniform4(prop::array::uniform3(-1.0..1.0f64)),
