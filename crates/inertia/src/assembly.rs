@@ -2,7 +2,7 @@ use std::borrow::Borrow;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::mass_properties::{check_mass, check_vector};
+use crate::mass_properties::{INERTIA, check_lost, check_mass, check_vector};
 use crate::second_moment_matrix::{inertia_of, nearest, outer, point_inertia, remainder};
 use crate::{MassProperties, MassPropertiesError, RELATIVE_TOLERANCE};
 
@@ -103,7 +103,11 @@ fn assembled(
     check_mass(mass)?;
     let offset: Vector3<f64> = points.iter().map(|(m, x)| (x - origin) * (m / mass)).sum();
     let sigma: Matrix3<f64> = points.iter().map(|(m, x)| outer(*m, &(x - origin - offset))).sum();
-    MassProperties::new(mass, origin + offset, nearest(own + inertia_of(&sigma))?)
+    let inertia = nearest(own + inertia_of(&sigma))?;
+    if points.iter().any(|(_, x)| *x != origin) {
+        check_lost(INERTIA, inertia.matrix().amax())?;
+    }
+    MassProperties::new(mass, origin + offset, inertia)
 }
 
 #[cfg(test)]
@@ -271,6 +275,26 @@ mod tests {
             let heavy = Inertia::new(part.inertia().matrix() * excess).unwrap();
             let heavy = MassProperties::new(p, part.mass_center_m(), heavy).unwrap();
             prop_assert!(whole.without(&heavy).is_err(), "{excess}");
+        }
+
+        /// Two points, by powers of two: the inertia is right to the bit, or refused.
+        #[test]
+        fn pairs_keep_their_digits_over_the_range_of_floats(
+            (mass, distance) in (-1074..1023i32, -600..330i32),
+        ) {
+            let power = |e: i32| 2f64.powi(e / 2) * 2f64.powi(e - e / 2);
+            let (m, x) = (power(mass), power(distance));
+            // ½ m x², the last step alone leaves the range.
+            let moment = if distance < 0 { m * x * (0.5 * x) } else { 0.5 * m * x * x };
+            match MassProperties::from_points([(m, [0.0; 3]), (m, [x, 0.0, 0.0])]) {
+                Ok(pair) => {
+                    prop_assert!(moment >= f64::MIN_POSITIVE);
+                    prop_assert_eq!(pair.inertia().entries(), [0.0, moment, moment, 0.0, 0.0, 0.0]);
+                    prop_assert_eq!(pair.mass_center_m().x, 0.5 * x);
+                }
+                Err(MassPropertiesError::Lost { .. }) => prop_assert!(moment < f64::MIN_POSITIVE),
+                Err(error) => prop_assert!(moment > 1e306 || mass > 1021, "{}", error),
+            }
         }
 
         #[test]

@@ -21,7 +21,7 @@ impl EquivalentSolid {
     ) -> Result<Self, ShapeError> {
         let axes = body.inertia().principal_axes();
         // Rooting first keeps K/m from overflowing or underflowing.
-        let root = (square / body.mass_kg()).sqrt();
+        let root = square.sqrt() / body.mass_kg().sqrt();
         let sizes = axes.second_moments().map(|k| root * k.max(0.0).sqrt());
         let (center, attitude) = (body.mass_center_m(), axes.attitude());
         Ok(Self { shape: shape(sizes)?, sizes, center, attitude })

@@ -1,5 +1,6 @@
 use nalgebra::Matrix3;
 
+use crate::mass_properties::{INERTIA, check_lost};
 use crate::second_moment_matrix::{inertia_of, nearest};
 use crate::{MassProperties, MassPropertiesError, RELATIVE_TOLERANCE};
 
@@ -129,8 +130,8 @@ impl LogCholesky {
     /// The body with these coordinates.
     ///
     /// # Errors
-    /// The mass over- or underflows (|α| above some 350), the inertia overflows, or the mass centre
-    /// is too far.
+    /// The mass over- or underflows (|α| above some 350), so does the inertia
+    /// ([`Lost`](MassPropertiesError::Lost)), or the mass centre is too far.
     pub fn mass_properties(&self) -> Result<MassProperties, LogCholeskyError> {
         let [alpha, d1, d2, d3, s12, s23, s13, t1, t2, t3] = self.0;
         let point = MassProperties::point(libm::exp(2.0 * alpha), [t1, t2, t3])?;
@@ -142,6 +143,9 @@ impl LogCholesky {
         let s11 = v11 * v11 + v12 * v12 + v13 * v13;
         let s22 = v22 * v22 + v23 * v23;
         let sigma = Matrix3::new(s11, s12, s13, s12, s22, s23, s13, s23, v33 * v33);
+        check_lost("mass, kg", point.mass_kg())?;
+        // No coordinates are those of a point.
+        check_lost(INERTIA, inertia_of(&sigma).amax())?;
         let inertia = nearest(inertia_of(&sigma)).map_err(MassPropertiesError::from)?;
         Ok(MassProperties::new(point.mass_kg(), point.mass_center_m(), inertia)?)
     }
@@ -238,6 +242,32 @@ mod tests {
             let body = LogCholesky::new(x).unwrap().mass_properties().unwrap();
             let pseudo = PseudoInertia::of(&body).unwrap();
             prop_assert!((u * u.transpose() - pseudo.matrix()).amax() < 1e-13 * pseudo.matrix().amax());
+        }
+
+        /// To the ends of the exponential: what comes out has the coordinates that went in.
+        #[test]
+        fn coordinates_come_back_or_are_refused(
+            (alpha, length) in (-400.0..400.0f64, -400.0..400.0f64),
+            free in prop::array::uniform3(-1.0..1.0f64),
+        ) {
+            let d = free.map(|x| length + x);
+            let values = [alpha, d[0], d[1], d[2], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            // ln of the mass and of the largest second moment, which the range of floats bounds.
+            let mass = 2.0 * alpha;
+            let largest = mass + 2.0 * d.into_iter().fold(f64::MIN, f64::max);
+            match LogCholesky::new(values).unwrap().mass_properties() {
+                Ok(body) => {
+                    prop_assert!(mass > -708.5 && largest > -709.5 && largest < 708.0);
+                    let back = LogCholesky::of(&body).unwrap().values();
+                    for (i, (a, b)) in values.iter().zip(back).enumerate().take(4) {
+                        prop_assert!((a - b).abs() < 1e-11, "{} {} {}", NAMES[i], a, b);
+                    }
+                }
+                Err(error) => prop_assert!(
+                    mass.abs() > 707.0 || largest < -707.0 || largest > 704.0,
+                    "{} {} {}", error, mass, largest
+                ),
+            }
         }
 
         #[test]

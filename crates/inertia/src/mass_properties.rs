@@ -29,6 +29,18 @@ pub enum MassPropertiesError {
         /// The value, m.
         value: f64,
     },
+    /// A mass or an inertia that is not zero falls below the range in which floats keep their digits.
+    #[error(
+        "{field} = {value:e}: below {:e} floats lose their digits, and a body becomes a point; a \
+         smaller unit keeps them",
+        f64::MIN_POSITIVE
+    )]
+    Lost {
+        /// What falls, with its unit.
+        field: &'static str,
+        /// What is left of it.
+        value: f64,
+    },
     /// A density factor is not positive and finite.
     #[error("density factor = {value:?}: it must be positive and finite")]
     Factor {
@@ -224,7 +236,10 @@ impl MassProperties {
         if !(factor > 0.0 && factor.is_finite()) {
             return Err(MassPropertiesError::Factor { value: factor });
         }
-        Self::new(self.mass * factor, self.center, nearest(self.inertia.matrix() * factor)?)
+        let mass = self.mass * factor;
+        check_mass(mass).and_then(|()| check_lost("mass, kg", mass))?;
+        let inertia = nearest(self.inertia.matrix() * factor)?;
+        Self::new(mass, self.center, self.kept(inertia)?)
     }
 
     /// The same shape of another mass (kg).
@@ -233,14 +248,36 @@ impl MassProperties {
     /// The mass is not positive and finite, or the inertia leaves its range.
     pub fn with_mass(&self, mass_kg: f64) -> Result<Self, MassPropertiesError> {
         check_mass(mass_kg)?;
-        let inertia = nearest(self.inertia.matrix() * (mass_kg / self.mass))?;
-        Self::new(mass_kg, self.center, inertia)
+        let (factor, own) = (mass_kg / self.mass, self.inertia.matrix());
+        let scaled = if factor.is_normal() {
+            own * factor
+        } else {
+            // Masses at opposite ends of the range: I/m is not, being squares of lengths.
+            own.map(|x| x / self.mass * mass_kg)
+        };
+        Self::new(mass_kg, self.center, self.kept(nearest(scaled)?)?)
+    }
+
+    /// A scaled inertia, unless one that was not zero has lost its digits.
+    fn kept(&self, inertia: Inertia) -> Result<Inertia, MassPropertiesError> {
+        if self.inertia.matrix().amax() > 0.0 {
+            check_lost(INERTIA, inertia.matrix().amax())?;
+        }
+        Ok(inertia)
     }
 }
 
 /// The mass must be positive and finite.
 pub(crate) fn check_mass(value: f64) -> Result<(), MassPropertiesError> {
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(MassPropertiesError::Mass { value }) }
+}
+
+/// The inertia as [`MassPropertiesError::Lost`] names it.
+pub(crate) const INERTIA: &str = "largest moment of inertia, kg·m²";
+
+/// Of a result that is not zero: it must be a normal float.
+pub(crate) fn check_lost(field: &'static str, value: f64) -> Result<(), MassPropertiesError> {
+    if value < f64::MIN_POSITIVE { Err(MassPropertiesError::Lost { field, value }) } else { Ok(()) }
 }
 
 /// Coordinates must be finite and in range.
@@ -412,6 +449,59 @@ pub(crate) mod tests {
             let b = dense.radii_of_gyration().unwrap().values();
             prop_assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6));
             prop_assert!(distance(&dense.with_mass(body.mass).unwrap(), &body) < 1e-12);
+        }
+
+        /// Powers of two in place of mass and size: every result is right to the bit, or refused.
+        #[test]
+        fn bodies_keep_their_digits_over_the_range_of_floats(
+            (mass, other, size) in (-1074..1024i32, -1074..1024i32, -600..330i32),
+            sides in prop::array::uniform3(1..9u8),
+        ) {
+            let power = |e: i32| 2f64.powi(e / 2) * 2f64.powi(e - e / 2);
+            let exact = |unit: f64, e: i32| {
+                // In two steps, so that only the last can leave the range.
+                unit * power(e / 2) * power(e - e / 2)
+            };
+            let sides = sides.map(f64::from);
+            let own = crate::Shape::solid_box(sides).unwrap().of_mass(1.0).unwrap();
+            let check = |found: Result<MassProperties, MassPropertiesError>, mass: i32| {
+                let largest = exact(own.inertia().matrix().amax(), mass + 2 * size);
+                match found {
+                    Ok(body) => {
+                        prop_assert_eq!(body.mass_kg(), power(mass));
+                        let expected = own.inertia().matrix().map(|x| exact(x, mass + 2 * size));
+                        let off = (body.inertia().matrix() - expected).amax();
+                        prop_assert!(largest >= f64::MIN_POSITIVE && off <= 5e-324, "{}", off);
+                        let sides_m = body.equivalent_box().unwrap().sizes_m();
+                        // The order of the axes does not matter here, and near equal ones turn.
+                        let mut found = sides_m.map(|x| x / power(size));
+                        let mut sides = sides;
+                        found.sort_by(f64::total_cmp);
+                        sides.sort_by(f64::total_cmp);
+                        for (a, b) in found.iter().zip(sides) {
+                            prop_assert!((a - b).abs() < 1e-6, "{:?} {:?}", found, sides);
+                        }
+                    }
+                    Err(MassPropertiesError::Lost { value, .. }) => {
+                        prop_assert!(value < f64::MIN_POSITIVE && largest < 2e-307, "{:e}", largest);
+                    }
+                    Err(error) => prop_assert!(largest > 1e305, "{} {:e}", error, largest),
+                }
+                Ok(())
+            };
+            let shape = crate::Shape::solid_box(sides.map(|x| x * power(size))).unwrap();
+            let body = shape.of_mass(power(mass));
+            check(body, mass)?;
+            if let Ok(body) = body {
+                check(body.with_mass(power(other)), other)?;
+                let dense = body.scaled_density(power(other));
+                let total = mass + other;
+                if (-1022..1024).contains(&total) {
+                    check(dense, total)?;
+                } else {
+                    prop_assert!(dense.is_err());
+                }
+            }
         }
 
         #[test]

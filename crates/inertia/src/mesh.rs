@@ -129,7 +129,8 @@ impl TriangleMesh {
         check_edges(triangles)?;
         let polyhedron = Polyhedron::of(vertices, triangles);
         let volume = polyhedron.volume;
-        if polyhedron.is_flat {
+        // Below the range of floats it has no digits.
+        if polyhedron.is_flat || volume.abs() < f64::MIN_POSITIVE {
             return Err(MeshError::NoVolume { volume });
         }
         if volume < 0.0 {

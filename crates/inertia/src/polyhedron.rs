@@ -45,11 +45,8 @@ impl Polyhedron {
         let rounding = (place + (high - low) * (4.0 * f64::EPSILON)) / unit;
         // Negated because of infinity times zero.
         let is_flat = !(sums.volume.value().abs() > 3.0 * rounding.dot(&sums.area));
-        let (center, sigma) = if is_flat {
-            (Vector3::zeros(), Matrix3::zeros())
-        } else {
-            sums.center_and_sigma()
-        };
+        let (center, sigma) =
+            if is_flat { (Vector3::zeros(), Matrix3::zeros()) } else { sums.center_and_sigma() };
         Self {
             volume: sums.volume.value() / 6.0 * unit * unit * unit,
             is_flat,

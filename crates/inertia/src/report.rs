@@ -149,9 +149,7 @@ impl RealizabilityReport {
         let symmetric = InertiaMatrix::symmetrized(matrix);
         let axes = symmetric.principal_axes();
         let (k, moments) = (axes.second_moments(), axes.moments());
-        let trace = moments[0] + moments[1] + moments[2];
-        let least = k.into_iter().fold(f64::INFINITY, f64::min);
-        let margin = if size == 0.0 { 0.0 } else { least / trace.abs() };
+        let margin = margin_of(&symmetric);
         if !symmetric.is_realizable_within(tolerance) {
             let given: [f64; 3] = symmetric.matrix().diagonal().into();
             let slack = tolerance * size;
@@ -196,8 +194,9 @@ impl RealizabilityReport {
         self.principal_moments
     }
 
-    /// min K_k / |tr I|: ⅙ for a ball, 0 for a plate, a rod and a point, negative beyond, −∞ where the
-    /// trace is zero and the matrix not.
+    /// min K_k / Σ|I_k| with the principal moments I_k, whose sum is the trace of every body: ⅙ for a
+    /// ball, 0 for a plate, a rod and a point, negative beyond, and never below −½. None where an
+    /// entry is not finite.
     #[must_use]
     pub fn margin(&self) -> Option<f64> {
         self.margin
@@ -216,6 +215,21 @@ impl RealizabilityReport {
     pub fn faults(&self) -> &[Fault] {
         &self.faults
     }
+}
+
+/// min K_k / Σ|I_k|, of numbers far from either end of the range.
+fn margin_of(matrix: &InertiaMatrix) -> f64 {
+    let size = matrix.matrix().amax();
+    if size == 0.0 {
+        return 0.0;
+    }
+    // Two steps, because no float takes the smallest number to 1.
+    let step = if size < 1e-150 { 2f64.powi(500) } else { 1.0 };
+    let enlarged = matrix.matrix() * step;
+    let scaled = enlarged * (if enlarged.amax() < 1e-150 { step } else { 1.0 });
+    let axes = InertiaMatrix::symmetrized(&(scaled / scaled.amax())).principal_axes();
+    let least = axes.second_moments().into_iter().fold(f64::INFINITY, f64::min);
+    least / axes.moments().into_iter().map(f64::abs).sum::<f64>()
 }
 
 /// The axis of the largest moment, and the sum of the others.
@@ -436,6 +450,37 @@ mod tests {
             ball.to_string(),
             "realizable: second moments 0.5, 0.5, 0.5 kg·m², margin 16.67 % of the trace"
         );
+    }
+
+    #[test]
+    fn without_a_trace_there_is_a_margin_all_the_same() {
+        // K₁ = ½ (1 − 2 − 1), of moments that add up to zero.
+        let report = RealizabilityReport::of(&diagonal([1.0, 1.0, -2.0]));
+        assert_eq!(report.margin(), Some(-0.25));
+        assert_eq!(RealizabilityReport::of(&diagonal([0.0, 0.0, -5e-324])).margin(), Some(-0.5));
+    }
+
+    proptest::proptest! {
+        /// Whole numbers times powers of two, down to the smallest float: margin and verdicts are
+        /// those at 1 kg·m².
+        #[test]
+        fn the_margin_does_not_depend_on_the_unit(
+            m in proptest::array::uniform3(-3..60i32),
+            p in proptest::array::uniform3(-9..9i32),
+            exponent in -1074..1000i32,
+        ) {
+            let of = |unit: f64| {
+                let [a, b, c] = m.map(|x| f64::from(x) * unit);
+                let [d, e, f] = p.map(|x| f64::from(x) * unit);
+                RealizabilityReport::of(&Matrix3::new(a, d, e, d, b, f, e, f, c))
+            };
+            let unit = 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2);
+            let (one, other) = (of(1.0), of(unit));
+            let (a, b) = (one.margin().unwrap(), other.margin().unwrap());
+            proptest::prop_assert!((a - b).abs() < 1e-14 && a >= -0.5 - 1e-14, "{a} {b}");
+            proptest::prop_assert_eq!(one.is_realizable(), other.is_realizable());
+            proptest::prop_assert_eq!(one.is_strict(), other.is_strict());
+        }
     }
 
     #[test]

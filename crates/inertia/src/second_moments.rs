@@ -28,6 +28,15 @@ pub enum SecondMomentsError {
         /// The value, √kg·m.
         value: f64,
     },
+    /// Mass times radius squared is not zero and falls below the range in which floats keep digits.
+    #[error(
+        "largest second moment = {value:e} kg·m²: below {:e} floats lose their digits",
+        f64::MIN_POSITIVE
+    )]
+    Lost {
+        /// What is left of it, kg·m².
+        value: f64,
+    },
     /// A radius of gyration is negative, NaN or too large.
     #[error("radius of gyration {axis} = {value:e} m: it must be finite and not negative")]
     Radius {
@@ -173,10 +182,16 @@ impl RadiiOfGyration {
     /// K_k = m r_k².
     ///
     /// # Errors
-    /// The mass is not positive and finite, or a second moment overflows.
+    /// The mass is not positive and finite, or a second moment overflows, or all that are not zero
+    /// underflow.
     pub fn second_moments(&self, mass_kg: f64) -> Result<SecondMoments, SecondMomentsError> {
         check_mass(mass_kg)?;
-        SecondMoments::new(self.0.map(|r| (mass_kg * r) * r))
+        let moments = SecondMoments::new(self.0.map(|r| (mass_kg * r) * r))?;
+        let largest = moments.0.into_iter().fold(0.0, f64::max);
+        if largest < f64::MIN_POSITIVE && self.0.iter().any(|r| *r > 0.0) {
+            return Err(SecondMomentsError::Lost { value: largest });
+        }
+        Ok(moments)
     }
 }
 
@@ -245,6 +260,21 @@ mod tests {
             let back = k.radii_of_gyration(mass).unwrap().second_moments(mass).unwrap();
             for (a, b) in k.values().iter().zip(back.values()) {
                 prop_assert!((a - b).abs() <= 4.0 * f64::EPSILON * a);
+            }
+        }
+
+        #[test]
+        fn radii_of_a_body_never_become_those_of_a_point(
+            (mass, radius) in (-1074..1024i32, -1074..1024i32),
+        ) {
+            let power = |e: i32| 2f64.powi(e / 2) * 2f64.powi(e - e / 2);
+            let radii = RadiiOfGyration::new([0.0, power(radius), 0.0]).unwrap();
+            let exponent = mass + 2 * radius;
+            match radii.second_moments(power(mass)) {
+                Ok(k) => prop_assert_eq!(k.values(), [0.0, power(exponent), 0.0]),
+                Err(SecondMomentsError::Lost { .. }) => prop_assert!(exponent < -1022),
+                // m r overflows before r² brings it back only where both do.
+                Err(error) => prop_assert!(exponent > 1015, "{}", error),
             }
         }
 

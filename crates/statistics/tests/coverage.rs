@@ -10,7 +10,9 @@
 use gyradius_statistics::{Confidence, Deviation, GoodnessOfFit, Moments, SortedSample};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, Exp1, LogNormal, Normal, StandardNormal, StandardUniform, StudentT};
+use rand_distr::{
+    Distribution, Exp1, LogNormal, Normal, StandardNormal, StandardUniform, StudentT,
+};
 
 /// A law with its standard deviation.
 #[derive(Clone, Copy)]

@@ -6,7 +6,7 @@ use kind::Kind;
 
 use crate::{
     Inertia, MAX_LENGTH, MassProperties, MassPropertiesError, RealizabilityError, SecondMoments,
-    mass_properties::check_mass,
+    mass_properties::{INERTIA, check_lost, check_mass},
 };
 
 /// Why sizes or a density do not make a body.
@@ -194,7 +194,8 @@ impl Shape {
     /// Mass properties for a mass in kg, in the frame of the shape.
     ///
     /// # Errors
-    /// The mass is not positive and finite, or the inertia too large.
+    /// The mass is not positive and finite, or the inertia too large, or so small that it would
+    /// lose digits.
     pub fn of_mass(&self, mass_kg: f64) -> Result<MassProperties, MassPropertiesError> {
         check_mass(mass_kg)?;
         let (height, squares) = self.0.distribution();
@@ -202,6 +203,9 @@ impl Shape {
             squares.map(|(factor, length)| (mass_kg * length) * length * factor),
         )
         .map_err(RealizabilityError::from)?;
+        if squares.iter().any(|(factor, length)| factor * length > 0.0) {
+            check_lost(INERTIA, moments.principal_moments().into_iter().fold(0.0, f64::max))?;
+        }
         let inertia = Inertia::from_second_moments(moments, &nalgebra::UnitQuaternion::identity())?;
         MassProperties::new(mass_kg, [0.0, 0.0, height], inertia)
     }

@@ -284,7 +284,11 @@ proptest! {
             ];
             for shape in shapes.into_iter().flatten() {
                 prop_assert!(shape.measure().value() >= 0.0);
-                prop_assert!(shape.of_mass(1.0).is_ok(), "{shape:?}");
+                // Of sizes that have squares, there is a body of 1 kg.
+                let body = shape.of_mass(1.0);
+                let lost = matches!(body, Err(MassPropertiesError::Lost { .. }));
+                let tiny = [a, b, c].into_iter().any(|x| 0.0 < x && x < 1e-150);
+                prop_assert!(body.is_ok() || (lost && tiny), "{shape:?}");
                 let _ = (shape.of_density(c), shape.of_density(1.0), shape.of_mass(c));
             }
         }
