@@ -264,7 +264,7 @@ mod tests {
                     }
                 }
                 Err(error) => prop_assert!(
-                    mass.abs() > 707.0 || largest < -707.0 || largest > 704.0,
+                    mass.abs() > 707.0 || !(-707.0..704.0).contains(&largest),
                     "{} {} {}", error, mass, largest
                 ),
             }
