@@ -281,8 +281,9 @@ fn ratios(summary: &Summary) -> Markup {
         @if !summary.comparisons.is_empty() {
             h2 { "Variation under the naive models" }
             p {
-                "Deviation under the naive model over deviation under the physical one; the interval "
-                "is robust to the shape of the distributions."
+                "Deviation under the naive model over deviation under the physical one. The interval "
+                "holds for distributions of any shape whose kurtosis the runs show; where the kurtosis "
+                "is above 10 it covers the true ratio less often than it says."
             }
             div.wide { table {
                 thead {
