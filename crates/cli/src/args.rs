@@ -142,14 +142,18 @@ Examples:
       All files below a folder, and a table
   gyradius check --repair robot.urdf
       Write robot.repaired.urdf beside it: the nearest possible inertias, all else as it was
+  xacro robot.urdf.xacro | gyradius check -
+      What another program writes
   gyradius check --format json --all robots/ > inertias.json
       Every body, for another program
 
-Folders are searched for .urdf .xacro .mjcf .sdf .world .xml .csv .toml .json; files of other
-kinds, hidden ones, *.repaired.* and caches are passed over.
+Folders are searched for .urdf .xacro .mjcf .sdf .world .xml .csv .toml .json. What may hold bodies and
+is not read (macros of xacro, included files, USD, .mjb) is passed over and named. Hidden files,
+*.repaired.* and caches are not looked at.
 
-Exit code: 0 if all bodies are possible, 1 if some are not, 2 if something could not be read
-or written.";
+Exit code: 1 if some bodies are impossible, whatever else could not be read; otherwise 2 if something
+could not be read, or no body was found; 0 if all bodies that were read are possible. 2 also if a copy
+could not be written.";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -220,17 +224,19 @@ pub(crate) struct ReplayArgs {
 
 #[derive(Args, Debug)]
 pub(crate) struct CheckArgs {
-    /// Files, and folders to be searched
-    #[arg(required = true, value_name = "FILE|FOLDER")]
+    /// Files, and folders to be searched; - is standard input
+    #[arg(required = true, value_name = "FILE|FOLDER|-")]
     pub(crate) paths: Vec<PathBuf>,
 
     /// List the good bodies too
     #[arg(long)]
     pub(crate) all: bool,
 
-    /// Write a copy with possible inertias beside each file that needs one, as NAME.repaired.EXT
-    #[arg(long)]
-    pub(crate) repair: bool,
+    /// Write a copy with possible inertias beside each file that needs one, as NAME.repaired.EXT, and
+    /// show what changes in it
+    #[arg(long, value_enum, value_name = "HOW", num_args = 0..=1, require_equals = true,
+          default_missing_value = "nearest")]
+    pub(crate) repair: Option<RepairArg>,
 
     /// Replace repaired copies that are there already; never an original
     #[arg(long, requires = "repair")]
@@ -249,6 +255,15 @@ pub(crate) struct CheckArgs {
     /// Form of the output
     #[arg(long, value_enum, default_value_t = Form::Text)]
     pub(crate) format: Form,
+}
+
+/// What becomes of an inertia that no body has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum RepairArg {
+    /// The nearest that a body has
+    Nearest,
+    /// The signs of its products flipped where a body has that, the nearest elsewhere
+    Flip,
 }
 
 #[derive(Args, Debug)]

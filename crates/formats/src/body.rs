@@ -73,7 +73,7 @@ impl Number {
                 Ok(Self { value, place })
             }
             Ok(_) => Err(BodyError::NotFinite { field, value: shortened(digits) }),
-            Err(_) if digits.contains("${") || digits.contains("$(") => {
+            Err(_) if is_expression(digits) => {
                 Err(BodyError::Expression { field, value: shortened(digits) })
             }
             Err(_) => Err(BodyError::NotANumber { field, value: shortened(digits) }),
@@ -89,7 +89,7 @@ impl Number {
     ) -> Result<Vec<Self>, BodyError> {
         let found = raw.split_ascii_whitespace().count();
         if found != allowed {
-            if raw.contains("${") {
+            if is_expression(raw) {
                 return Err(BodyError::Expression { field, value: shortened(raw) });
             }
             return Err(BodyError::Count { field, found, allowed });
@@ -101,6 +101,11 @@ impl Number {
             })
             .collect()
     }
+}
+
+/// Whether xacro would make something else of a text.
+fn is_expression(text: &str) -> bool {
+    text.contains("${") || text.contains("$(")
 }
 
 /// At most 40 characters of what a file holds, for a message.

@@ -128,20 +128,50 @@ fn inertia_unit(unit: &str) -> Option<f64> {
     })
 }
 
-/// A heading without its unit, and the unit.
-fn heading(text: &str) -> (String, String) {
-    let text = text.trim().to_lowercase();
-    let (name, unit) = match text.find(['[', '(']) {
-        Some(i) => (&text[..i], text[i..].trim_matches(['[', ']', '(', ')', ' '])),
-        None => text
-            .strip_suffix("_kg_m2")
-            .map(|name| (name, "kg m2"))
-            .or(text.strip_suffix("_kg").map(|name| (name, "kg")))
-            .unwrap_or((&text, "")),
+/// What may stand between the letters of a name or a unit. The question mark is a square in an
+/// encoding other than UTF-8.
+fn is_between(c: char) -> bool {
+    c.is_whitespace() || "_-*·⋅×^.()[]{}\"".contains(c)
+}
+
+/// A text without them: `Ixx [kg·m²]` becomes `ixxkgm2`.
+fn squeezed(text: &str) -> String {
+    let plain = text.to_lowercase().replace(['²', '?'], "2");
+    plain.chars().filter(|c| !is_between(*c)).collect()
+}
+
+/// The column of a heading, and the unit that follows its name, after a bracket, a slash or nothing.
+/// What is marked by nothing and is no unit makes another column of it: `ixx_sigma`.
+fn heading(text: &str) -> Option<(usize, String)> {
+    // Longer texts are none, and would be searched for names for long.
+    if text.len() > 200 {
+        return None;
+    }
+    if let Some(column) = column_of(&squeezed(text)) {
+        return Some((column, String::new()));
+    }
+    // The longest name that may stand before a unit, which ends with its last letter.
+    let ends = text.char_indices().rev().map(|(at, _)| at);
+    let (column, rest) = ends.map(|at| text.split_at(at)).find_map(|(name, rest)| {
+        let column = column_of(&squeezed(name)).filter(|column| *column != NAME)?;
+        name.ends_with(char::is_alphanumeric).then_some(())?;
+        // A letter that a word begins with is not the mass.
+        let is_word =
+            column == MASS && squeezed(name).len() == 1 && rest.starts_with(char::is_alphabetic);
+        (!is_word).then_some((column, rest))
+    })?;
+    const MARKS: [char; 8] = ['[', '(', '{', '/', ',', ':', ';', '='];
+    let rest = rest.trim_start_matches(|c| is_between(c) && !MARKS.contains(&c));
+    let unit = squeezed(rest.trim_start_matches(MARKS));
+    let unit = match unit.strip_prefix("in").filter(|unit| is_unit(column, unit)) {
+        Some(unit) => unit.to_owned(),
+        None => unit,
     };
-    // The question mark is a square in an encoding other than UTF-8.
-    let unit = unit.replace(['²', '?'], "2").replace([' ', '*', '·', '^', '.', '-', '_'], "");
-    (name.replace(['_', ' '], ""), unit)
+    (rest.starts_with(MARKS) || is_unit(column, &unit)).then_some((column, unit))
+}
+
+fn is_unit(column: usize, unit: &str) -> bool {
+    if column == MASS { mass_unit(unit).is_some() } else { inertia_unit(unit).is_some() }
 }
 
 /// The column of a heading.
@@ -175,18 +205,25 @@ fn unknown(message: &str) -> Refusal {
 struct Header {
     /// The column of each of the fields, and of the name.
     columns: [Option<usize>; 8],
+    width: usize,
     mass_kg: f64,
     inertia_kg_m2: f64,
 }
 
-fn header(text: &Text, header: &[Field]) -> Result<Header, Refusal> {
+/// Reads a row as a header: nothing if it has not the columns of the three moments.
+fn header(text: &Text, row: &[Field]) -> Result<Option<Header>, Refusal> {
+    let written = |field: &Field| text.as_str().get(field.start..field.end).unwrap_or_default();
+    let headings: Vec<_> = row.iter().map(|field| heading(written(field))).collect();
+    let is_there = |column: usize| headings.iter().flatten().any(|(c, _)| *c == column);
+    if !(0..3).all(is_there) {
+        return Ok(None);
+    }
     let mut columns = [None; 8];
-    let mut unit: Option<(String, String)> = None;
+    let mut unit: Option<(&str, String)> = None;
     let (mut mass_kg, mut inertia_kg_m2) = (1.0, 1.0);
-    for (index, field) in header.iter().enumerate() {
-        let written = text.as_str().get(field.start..field.end).unwrap_or_default();
-        let (name, its_unit) = heading(written);
-        let Some(column) = column_of(&name) else { continue };
+    for (index, (field, found)) in row.iter().zip(headings).enumerate() {
+        let Some((column, its_unit)) = found else { continue };
+        let name = FIELDS.get(column).copied().unwrap_or("name");
         if columns[column].replace(index).is_some() && column != NAME {
             return Err(text.malformed(field.start, format!("two columns for {name}")));
         }
@@ -217,45 +254,61 @@ fn header(text: &Text, header: &[Field]) -> Result<Header, Refusal> {
             }
         }
     }
-    if columns[..3].iter().any(Option::is_none) {
-        return Err(unknown("a table must have the columns ixx, iyy and izz"));
-    }
     let products = columns[3..6].iter().flatten().count();
     if products != 0 && products != 3 {
-        let at = header.first().map_or(0, |field| field.start);
+        let at = row.first().map_or(0, |field| field.start);
         return Err(text.malformed(at, "columns ixy, ixz, iyz: there must be all three or none"));
     }
-    Ok(Header { columns, mass_kg, inertia_kg_m2 })
+    Ok(Some(Header { columns, width: row.len(), mass_kg, inertia_kg_m2 }))
 }
 
-fn is_comment(line: &&str) -> bool {
+fn is_comment(line: &str) -> bool {
     line.starts_with('#') || line.trim().is_empty()
 }
 
-/// What a comment above the header says of the products: `# products = integrals`.
-fn stated_products(source: &str) -> Option<Products> {
-    let comments = source.lines().take_while(is_comment).filter_map(|line| line.strip_prefix('#'));
+/// What a comment above the header, which ends at `end`, says of the products: `# products = integrals`.
+fn stated_products(source: &str, end: usize) -> Option<Products> {
+    let comments = source.get(..end)?.lines().filter_map(|line| line.strip_prefix('#'));
     let stated = comments.filter_map(|comment| comment.trim_start().strip_prefix("products"));
     stated
         .filter_map(|rest| rest.split(['=', ' ', ',', '"', '\'']).find_map(Products::parse))
         .last()
 }
 
-/// What there is most of in the header; a comma where nothing is.
-fn separator(source: &str) -> char {
-    let header = source.lines().find(|line| !is_comment(line)).unwrap_or_default();
+/// What there is most of in a header; a comma where nothing is.
+fn separator(header: &str) -> char {
     let count = |separator: char| header.matches(separator).count();
     [',', ';', '\t'].into_iter().max_by_key(|s| (count(*s), *s == ',')).unwrap_or(',')
 }
 
+/// Most lines above a header, titles and the like, that are looked through for it.
+const TITLES: usize = 100;
+
+/// Finds the header, below any titles: where it starts, what it says, and the rows below it.
+fn find_header(text: &Text) -> Result<(usize, Header, Rows<'_>), Refusal> {
+    let source = text.as_str();
+    let mut at = 0;
+    let lines = source.split_inclusive('\n').map(|line| {
+        at += line.len();
+        (at - line.len(), line)
+    });
+    for (at, line) in lines.filter(|(_, line)| !is_comment(line)).take(TITLES) {
+        let mut rows = Rows { text: source, at, separator: separator(line) as u8 };
+        // In a title, a quotation mark is no more than that.
+        if let Ok(row) = rows.row()
+            && let Some(header) = header(text, &row)?
+        {
+            return Ok((at, header, rows));
+        }
+    }
+    Err(unknown("a table must have the columns ixx, iyy and izz"))
+}
+
 pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal> {
     let source = text.as_str();
-    let products = stated_products(source).unwrap_or(default);
-    let separator = separator(source);
-    let mut rows = Rows { text: source, at: 0, separator: separator as u8 };
     let unclosed = |at| text.malformed(at, "a quotation mark is not closed");
-    let titles = rows.next().ok_or(unknown("a table must have a header"))?.map_err(unclosed)?;
-    let header = header(text, &titles)?;
+    let (start, header, mut rows) = find_header(text)?;
+    let products = stated_products(source, start).unwrap_or(default);
 
     let mut bodies = Vec::new();
     while let Some(row) = rows.next() {
@@ -270,11 +323,11 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal>
         };
         let name =
             cell(NAME).map_or_else(String::new, |(name, _)| name.trim().replace("\"\"", "\""));
-        let reading = if row.len() == titles.len() {
+        let reading = if row.len() == header.width {
             reading(cell, products)
                 .map(|reading| reading.in_units(header.mass_kg, header.inertia_kg_m2))
         } else {
-            let (found, allowed) = (row.len(), titles.len());
+            let (found, allowed) = (row.len(), header.width);
             Err(BodyError::Count { field: "the row", found, allowed })
         };
         bodies.push(Body::new(name, line, reading));

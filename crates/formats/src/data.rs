@@ -4,13 +4,14 @@
 
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
-use std::{borrow::Cow, fmt};
+use std::{borrow::Cow, collections::HashSet, fmt, ops::Range};
 use toml::de::{DeTable, DeValue};
 
 use crate::{
-    Body, BodyError, FileProblem, MAX_BODIES, MAX_DEPTH, Products,
+    Body, BodyError, FileProblem, GapKind, MAX_BODIES, MAX_DEPTH, Products,
     body::{Number, Reading, shortened},
     csv,
+    gap::Gaps,
     text::{Refusal, Text},
 };
 
@@ -67,18 +68,20 @@ impl<'a> Item<'a> {
 }
 
 /// Reads a TOML file.
-pub(crate) fn toml(text: &Text, products: Products) -> Result<Vec<Body>, Refusal> {
+pub(crate) fn toml(text: &Text, products: Products) -> Result<(Vec<Body>, Gaps), Refusal> {
     let source = text.as_str();
     let table = DeTable::parse(source).map_err(|error| {
         let at = error.span().map_or(0, |span| span.start);
         text.malformed(at, error.message())
     })?;
     let span = table.span();
-    let value = DeValue::Table(table.into_inner());
-    bodies(text, &from_toml(&value, &span, DEPTH), products)
+    let table = table.into_inner();
+    let all = all_in_toml(&table);
+    let value = DeValue::Table(table);
+    bodies(text, &from_toml(&value, &span, DEPTH), &all, products)
 }
 
-fn from_toml<'a>(value: &DeValue<'a>, span: &std::ops::Range<usize>, depth: usize) -> Item<'a> {
+fn from_toml<'a>(value: &DeValue<'a>, span: &Range<usize>, depth: usize) -> Item<'a> {
     let value = match value {
         DeValue::Float(float) => Value::Number(float.as_str().to_owned().into(), span.end),
         DeValue::Integer(integer) => {
@@ -99,9 +102,7 @@ fn from_toml<'a>(value: &DeValue<'a>, span: &std::ops::Range<usize>, depth: usiz
                 .iter()
                 .map(|(key, item)| {
                     let mut entry = from_toml(item.get_ref(), &item.span(), depth - 1);
-                    if matches!(entry.value, Value::Table(_)) {
-                        entry.start = entry.start.min(key.span().start);
-                    }
+                    entry.start = start_of(item.get_ref(), &key.span(), &item.span());
                     (key.get_ref().to_string(), entry)
                 })
                 .collect();
@@ -115,7 +116,7 @@ fn from_toml<'a>(value: &DeValue<'a>, span: &std::ops::Range<usize>, depth: usiz
 }
 
 /// Reads a JSON file.
-pub(crate) fn json(text: &Text, products: Products) -> Result<Vec<Body>, Refusal> {
+pub(crate) fn json(text: &Text, products: Products) -> Result<(Vec<Body>, Gaps), Refusal> {
     let source = text.as_str();
     if let Some(at) = too_deep(source.as_bytes()) {
         return Err(text.refuse(at, FileProblem::TooDeep));
@@ -125,7 +126,7 @@ pub(crate) fn json(text: &Text, products: Products) -> Result<Vec<Body>, Refusal
         Refusal { line: Some(error.line().max(1)), problem }
     })?;
     let item = from_json(text, root, DEPTH)?;
-    bodies(text, &item, products)
+    bodies(text, &item, &all_in_json(source), products)
 }
 
 /// The message without its line and column, which may be those of a part.
@@ -187,7 +188,7 @@ fn from_json<'a>(text: &'a Text, raw: &'a RawValue, depth: usize) -> Result<Item
     let value = match source.as_bytes().first() {
         Some(b'{') if depth > 0 => {
             let Entries(raw) = serde_json::from_str(source).map_err(refuse)?;
-            let mut seen = std::collections::HashSet::new();
+            let mut seen = HashSet::new();
             let mut entries = Vec::with_capacity(raw.len());
             for (key, item) in raw {
                 if !seen.insert(key.clone()) {
@@ -218,7 +219,12 @@ fn from_json<'a>(text: &'a Text, raw: &'a RawValue, depth: usize) -> Result<Item
 
 /// The bodies of a document: itself if it has an inertia, its list `bodies` or `body`, itself if it is
 /// a list, and every table in it that has an inertia.
-fn bodies(text: &Text, root: &Item<'_>, default: Products) -> Result<Vec<Body>, Refusal> {
+fn bodies(
+    text: &Text,
+    root: &Item<'_>,
+    all: &[usize],
+    default: Products,
+) -> Result<(Vec<Body>, Gaps), Refusal> {
     let products = match root.get("products") {
         None => default,
         Some(item) => match &item.value {
@@ -255,7 +261,66 @@ fn bodies(text: &Text, root: &Item<'_>, default: Products) -> Result<Vec<Body>, 
         return Err(FileProblem::TooManyBodies.into());
     }
     found.sort_by_key(|(_, item)| item.start);
-    Ok(found.into_iter().map(|(key, item)| body(text, key, item, products)).collect())
+    let read = found.iter().filter_map(|(_, item)| Some(item.get(INERTIA)?.start));
+    let gaps = elsewhere(text, all, &read.collect());
+    Ok((found.into_iter().map(|(key, item)| body(text, key, item, products)).collect(), gaps))
+}
+
+/// The inertias that stand where the schema has none: those at `all` places that were not `read`.
+fn elsewhere(text: &Text, all: &[usize], read: &HashSet<usize>) -> Gaps {
+    let mut gaps = Gaps::default();
+    for start in all.iter().filter(|start| !read.contains(start)) {
+        gaps.add(GapKind::Misplaced, text.line(*start));
+    }
+    gaps
+}
+
+/// Where the values of the key of an inertia start, however deep they stand.
+fn all_in_toml(root: &DeTable<'_>) -> Vec<usize> {
+    let mut found = Vec::new();
+    // A stack of our own: tables may be nested deeper than calls may.
+    let mut open: Vec<&DeValue<'_>> = Vec::new();
+    let look = |table: &DeTable<'_>, found: &mut Vec<usize>| {
+        for (key, item) in table {
+            if key.get_ref() == INERTIA {
+                found.push(start_of(item.get_ref(), &key.span(), &item.span()));
+            }
+        }
+    };
+    look(root, &mut found);
+    open.extend(root.values().map(|item| item.get_ref()));
+    while let Some(value) = open.pop() {
+        match value {
+            DeValue::Table(table) => {
+                look(table, &mut found);
+                open.extend(table.values().map(|item| item.get_ref()));
+            }
+            DeValue::Array(items) => open.extend(items.iter().map(|item| item.get_ref())),
+            DeValue::String(_)
+            | DeValue::Integer(_)
+            | DeValue::Float(_)
+            | DeValue::Boolean(_)
+            | DeValue::Datetime(_) => {}
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+/// Where a value starts: tables with their heading, of which the value has no place.
+fn start_of(value: &DeValue<'_>, key: &Range<usize>, item: &Range<usize>) -> usize {
+    if matches!(value, DeValue::Table(_)) { item.start.min(key.start) } else { item.start }
+}
+
+/// As [`all_in_toml`].
+fn all_in_json(source: &str) -> Vec<usize> {
+    let key = format!("\"{INERTIA}\"");
+    let keys = source.match_indices(&key).filter(|(at, _)| !source[..*at].ends_with('\\'));
+    keys.filter_map(|(at, key)| {
+        let value = source[at + key.len()..].trim_start().strip_prefix(':')?.trim_start();
+        Some(source.len() - value.len())
+    })
+    .collect()
 }
 
 fn body(text: &Text, key: &str, item: &Item<'_>, products: Products) -> Body {
@@ -317,6 +382,7 @@ mod tests {
         } else {
             toml(&text, Products::TensorEntries)
         }
+        .map(|(bodies, _)| bodies)
     }
 
     fn six(body: &Body) -> [f64; 6] {

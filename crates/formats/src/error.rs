@@ -11,14 +11,24 @@ pub struct FileError {
     path: PathBuf,
     line: Option<usize>,
     problem: FileProblem,
-    foreign: bool,
+    bearing: Bearing,
+}
+
+/// What a file that was not read has to do with inertias, as far as can be told without reading it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bearing {
+    /// It is there to hold them, or speaks of them where it breaks off.
+    Holds,
+    /// It speaks of them, or is of a kind that may hold them and is not read here.
+    MayHold,
+    /// Nothing in it speaks of them.
+    Nothing,
 }
 
 impl FileError {
-    pub(crate) fn new(path: &Path, refusal: Refusal, foreign: bool) -> Self {
+    pub(crate) fn new(path: &Path, refusal: Refusal, bearing: Bearing) -> Self {
         let Refusal { line, problem } = refusal;
-        let foreign = foreign || matches!(problem, FileProblem::Unknown { .. });
-        Self { path: path.to_owned(), line, problem, foreign }
+        Self { path: path.to_owned(), line, problem, bearing }
     }
 
     /// The file.
@@ -39,11 +49,11 @@ impl FileError {
         &self.problem
     }
 
-    /// Whether the file does not look like one that holds inertias at all: a configuration, a
-    /// table of something else. To be passed over where nobody asked for this file by name.
+    /// What the file has to do with inertias. All but [`Bearing::Holds`] are to be passed over where
+    /// nobody asked for this file by name: a configuration, a table of something else.
     #[must_use]
-    pub fn is_foreign(&self) -> bool {
-        self.foreign
+    pub fn bearing(&self) -> Bearing {
+        self.bearing
     }
 }
 
@@ -98,6 +108,27 @@ pub enum FileProblem {
         "it is not UTF-8, and declares no other encoding that is read (ISO-8859, Windows-125x)"
     )]
     NotUtf8,
+    /// A format that may hold inertias and is not read.
+    #[error("{format} files are not read here: convert it to URDF, MJCF or SDF")]
+    NotRead {
+        /// Its name.
+        format: &'static str,
+    },
+    /// A file from which a program makes one that could be read.
+    #[error("it is a template: expand it first")]
+    Template,
+    /// Inertias in an XML file of which neither root nor form tells what they mean.
+    #[error(
+        "its root element is <{root}>, and its inertias are written as in none or several of URDF, \
+         MJCF and SDF"
+    )]
+    Unclear {
+        /// The root element.
+        root: String,
+    },
+    /// A folder without any file that would be read.
+    #[error("no file in it has an extension that is read")]
+    EmptyFolder,
     /// Its grammar is broken.
     #[error("malformed: {message}")]
     Malformed {
@@ -166,6 +197,15 @@ pub enum BodyError {
         field: &'static str,
         /// What there must be.
         allowed: &'static str,
+    },
+    /// An attribute that stands for a number where readers look for an element.
+    #[error(
+        "{field} is an attribute, which SDFormat 1.0 has: readers of the version of this file take \
+         no notice of it"
+    )]
+    Attribute {
+        /// The field.
+        field: &'static str,
     },
     /// Two fields that exclude each other.
     #[error("both {first} and {second} are given: there must be one of them")]

@@ -1,56 +1,20 @@
+//! A file as its bodies, and as what of it was not read.
+
 use std::{
-    fmt,
     fs::File,
     io::Read,
     path::{Path, PathBuf},
 };
 
 use crate::{
-    Body, FileError, FileProblem, MAX_BYTES, MAX_TOML_BYTES, Products, csv, data, robots,
+    Bearing, Body, FileError, FileProblem, Format, Gap, MAX_BYTES, MAX_TOML_BYTES, Products, csv,
+    data,
+    gap::Gaps,
+    kind::{all_extensions, is_generic, known_extension, not_read, sniffed},
+    robots,
     text::{Refusal, Text},
     xml::Tree,
 };
-
-/// The formats that are read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// The Unified Robot Description Format, and xacro files as far as they hold numbers.
-    Urdf,
-    /// MuJoCo's XML.
-    Mjcf,
-    /// SDFormat, of Gazebo and Drake.
-    Sdf,
-    /// A table with a header.
-    Csv,
-    /// The schema of this crate in TOML.
-    Toml,
-    /// The schema of this crate in JSON.
-    Json,
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Urdf => "URDF",
-            Self::Mjcf => "MJCF",
-            Self::Sdf => "SDF",
-            Self::Csv => "CSV",
-            Self::Toml => "TOML",
-            Self::Json => "JSON",
-        })
-    }
-}
-
-/// Extensions of files that hold inertias and little else.
-const ROBOTS: [&str; 5] = ["urdf", "xacro", "mjcf", "sdf", "world"];
-/// Extensions of files that may hold anything.
-const GENERIC: [&str; 4] = ["xml", "csv", "toml", "json"];
-
-/// The extension of a file in lower case, if it is one of those that are read.
-pub(crate) fn known_extension(path: &Path) -> Option<&'static str> {
-    let extension = path.extension()?.to_str()?;
-    ROBOTS.iter().chain(&GENERIC).find(|known| known.eq_ignore_ascii_case(extension)).copied()
-}
 
 /// A file and the bodies in it.
 #[derive(Clone, Debug)]
@@ -61,6 +25,7 @@ pub struct InertiaFile {
     pub(crate) base: usize,
     default: Products,
     bodies: Vec<Body>,
+    gaps: Vec<Gap>,
 }
 
 impl InertiaFile {
@@ -70,17 +35,35 @@ impl InertiaFile {
     /// # Errors
     /// The file as a whole cannot be read. A body that cannot be is an error of that body alone.
     pub fn read(path: &Path, products: Products) -> Result<Self, FileError> {
-        let fail = |problem: FileProblem| FileError::new(path, problem.into(), false);
+        let fail = |problem: FileProblem| FileError::new(path, problem.into(), Bearing::Holds);
+        if let Some(problem) = not_read(path) {
+            return Err(FileError::new(path, problem.into(), Bearing::MayHold));
+        }
         // Asked before opening, which would wait for the other end of a pipe.
         let metadata = std::fs::metadata(path).map_err(|e| fail(e.into()))?;
         if !metadata.is_file() {
             return Err(fail(FileProblem::NotAFile));
         }
+        let file = File::open(path).map_err(|e| fail(e.into()))?;
+        Self::read_from(path, file, products)
+    }
+
+    /// Reads what a source hands out, up to [`MAX_BYTES`]: standard input, say. `name` is what the
+    /// file is called in messages; without an extension, the format is told by how it begins.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_from(
+        name: &Path,
+        source: impl Read,
+        products: Products,
+    ) -> Result<Self, FileError> {
         let mut bytes = Vec::new();
-        File::open(path)
-            .and_then(|file| file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
-            .map_err(|e| fail(e.into()))?;
-        Self::parse(path, bytes, products)
+        source
+            .take(MAX_BYTES as u64 + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|e| FileError::new(name, FileProblem::from(e).into(), Bearing::Holds))?;
+        Self::parse(name, bytes, products)
     }
 
     /// Reads what a file of this name holds.
@@ -89,14 +72,15 @@ impl InertiaFile {
     /// As [`read`](Self::read).
     pub fn parse(path: &Path, bytes: Vec<u8>, products: Products) -> Result<Self, FileError> {
         let extension = known_extension(path);
-        match parse(extension, &bytes, products) {
-            Ok((format, base, bodies)) => {
-                let path = path.to_owned();
-                Ok(Self { path, format, bytes, base, default: products, bodies })
+        let has_none = path.extension().is_none();
+        match parse(extension, has_none, &bytes, products) {
+            Ok(Parsed { format, base, bodies, gaps }) => {
+                let (path, gaps) = (path.to_owned(), gaps.into_vec());
+                Ok(Self { path, format, bytes, base, default: products, bodies, gaps })
             }
             Err(refusal) => {
-                let foreign = extension.is_none_or(|e| GENERIC.contains(&e)) && !mentions(&bytes);
-                Err(FileError::new(path, refusal, foreign))
+                let bearing = bearing(extension, &refusal.problem, &bytes);
+                Err(FileError::new(path, refusal, bearing))
             }
         }
     }
@@ -119,60 +103,97 @@ impl InertiaFile {
         &self.bodies
     }
 
+    /// What of the file was not read though the rest was, in the order of the file.
+    #[must_use]
+    pub fn gaps(&self) -> &[Gap] {
+        &self.gaps
+    }
+
     /// The same file with other bytes.
     pub(crate) fn reread(&self, bytes: Vec<u8>) -> Result<Self, FileError> {
         Self::parse(&self.path, bytes, self.default)
     }
 }
 
-/// Whether a file that cannot be read speaks of inertias at all.
+/// What a file that is refused has to do with inertias.
+fn bearing(extension: Option<&str>, problem: &FileProblem, bytes: &[u8]) -> Bearing {
+    if !is_generic(extension) || matches!(problem, FileProblem::Unclear { .. }) {
+        return Bearing::Holds;
+    }
+    match problem {
+        FileProblem::Unknown { .. } if mentions(bytes) => Bearing::MayHold,
+        FileProblem::TooLarge { .. } if !mentions(bytes) => Bearing::MayHold,
+        _ if mentions(bytes) => Bearing::Holds,
+        _ => Bearing::Nothing,
+    }
+}
+
+/// Whether a file that cannot be read speaks of inertias at all: a word that begins so, or one of the
+/// entries by itself. Sixteen bits a character make no difference.
 fn mentions(bytes: &[u8]) -> bool {
-    ["inerti", "ixx", "i11"]
+    let plain: Vec<u8> = bytes.iter().filter(|b| **b != 0).map(u8::to_ascii_lowercase).collect();
+    let bounded = |at: Option<&u8>| at.is_none_or(|b| !b.is_ascii_alphanumeric());
+    let starts = |word: &[u8], whole: bool| {
+        (0..plain.len()).any(|i| {
+            plain[i..].starts_with(word)
+                && bounded(i.checked_sub(1).and_then(|before| plain.get(before)))
+                && (!whole || bounded(plain.get(i + word.len())))
+        })
+    };
+    starts(b"inerti", false)
+        || [
+            &b"ixx"[..],
+            b"i11",
+            b"i_xx",
+            b"ixxkgm2",
+            b"fullinertia",
+            b"diaginertia",
+            b"diagonalinertia",
+        ]
         .iter()
-        .any(|word| bytes.windows(word.len()).any(|w| w.eq_ignore_ascii_case(word.as_bytes())))
+        .any(|word| starts(word, true))
+}
+
+/// What a file holds.
+struct Parsed {
+    format: Format,
+    base: usize,
+    bodies: Vec<Body>,
+    gaps: Gaps,
 }
 
 fn parse(
-    extension: Option<&str>,
+    extension: Option<&'static str>,
+    has_none: bool,
     bytes: &[u8],
     products: Products,
-) -> Result<(Format, usize, Vec<Body>), Refusal> {
+) -> Result<Parsed, Refusal> {
     let limit = if extension == Some("toml") { MAX_TOML_BYTES } else { MAX_BYTES };
     if bytes.len() > limit {
         return Err(FileProblem::TooLarge { limit }.into());
     }
     let text = Text::new(bytes, extension == Some("csv"))?;
-    let (format, bodies) = match extension {
-        Some("csv") => (Format::Csv, csv::read(&text, products)?),
-        Some("toml") => (Format::Toml, data::toml(&text, products)?),
-        Some("json") => (Format::Json, data::json(&text, products)?),
-        None if !text.as_str().trim_start().starts_with('<') => {
+    let is_xml = || text.as_str().trim_start().starts_with('<');
+    let like = match extension {
+        Some(extension) => extension,
+        None if has_none => sniffed(text.as_str()),
+        None if is_xml() => "xml",
+        None => {
             let message = format!("its extension is none of {}", all_extensions());
             return Err(FileProblem::Unknown { message }.into());
         }
+    };
+    let (format, (bodies, gaps)) = match like {
+        "csv" => (Format::Csv, (csv::read(&text, products)?, Gaps::default())),
+        "toml" => (Format::Toml, data::toml(&text, products)?),
+        "json" => (Format::Json, data::json(&text, products)?),
         _ => {
             let tree = Tree::parse(&text)?;
-            let format = match robots::format_of(tree.root()) {
-                Some(format) => format,
-                // Parts of a robot that another file includes.
-                None if extension == Some("xacro") => Format::Urdf,
-                None => {
-                    let root = crate::body::shortened(tree.root());
-                    let message = format!(
-                        "its root element is <{root}>, and those of URDF, MJCF and SDF are \
-                         <robot>, <mujoco> and <sdf>"
-                    );
-                    return Err(FileProblem::Unknown { message }.into());
-                }
-            };
-            (format, robots::read(&tree, format, products)?)
+            let format = robots::format_of(&tree, extension)?;
+            (format, robots::read(&tree, format, extension, products)?)
         }
     };
-    Ok((format, text.base(), bodies))
-}
-
-fn all_extensions() -> String {
-    ROBOTS.iter().chain(&GENERIC).map(|e| format!(".{e}")).collect::<Vec<_>>().join(", ")
+    Ok(Parsed { format, base: text.base(), bodies, gaps })
 }
 
 #[cfg(test)]
@@ -190,6 +211,7 @@ mod tests {
         assert_eq!(format("a.xml", "<mujoco/>"), Format::Mjcf);
         assert_eq!(format("a.URDF", "<sdf/>"), Format::Sdf);
         assert_eq!(format("a.xacro", "<part/>"), Format::Urdf);
+        assert_eq!(format("a.world", "<part/>"), Format::Sdf);
         assert_eq!(format("robot", "<robot/>"), Format::Urdf);
         assert_eq!(format("a.Csv", "ixx,iyy,izz"), Format::Csv);
     }
@@ -206,7 +228,7 @@ mod tests {
             ("broken.xml", "<a"),
             ("empty.json", ""),
         ] {
-            assert!(parse(name, text).unwrap_err().is_foreign(), "{name}");
+            assert_eq!(parse(name, text).unwrap_err().bearing(), Bearing::Nothing, "{name}");
         }
         for (name, text) in [
             ("broken.urdf", "<a"),
@@ -214,7 +236,24 @@ mod tests {
             ("broken.xml", "<robot><inertial>"),
             ("broken.json", "{\"inertia_kg_m2\": "),
         ] {
-            assert!(!parse(name, text).unwrap_err().is_foreign(), "{name}");
+            assert_eq!(parse(name, text).unwrap_err().bearing(), Bearing::Holds, "{name}");
+        }
+        for (name, text) in [
+            ("other.json", "{\"links\": [{\"inertia\": [1, 1, 3]}]}"),
+            ("other.csv", "part,Ixx about base,Iyy,Izz\na,1,1,3"),
+            ("other.toml", "[arm]\ninertia = 3"),
+            ("other.xml", "<OpenSimDocument><!-- inertia --></OpenSimDocument>"),
+        ] {
+            assert_eq!(parse(name, text).unwrap_err().bearing(), Bearing::MayHold, "{name}");
+        }
+        // Words that only look like it: a hash, a library.
+        for text in ["{\"hash\": \"Ki11xqixxP==\"}", "{\"a\": \"i110 9ixx\"}"] {
+            let error = parse("package-lock.json", text).unwrap_err();
+            assert_eq!(error.bearing(), Bearing::Nothing, "{text}");
+        }
+        for name in ["a.usd", "a.USDA", "a.usdc", "a.mjb", "rover.sdf.jinja"] {
+            let error = InertiaFile::read(Path::new(name), Products::default()).unwrap_err();
+            assert_eq!(error.bearing(), Bearing::MayHold, "{name}");
         }
     }
 

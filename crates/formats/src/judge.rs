@@ -26,7 +26,10 @@ pub enum Note {
     #[error("no inertia: a point mass, which resists no rotation")]
     PointMass,
     /// The other sign convention would do.
-    #[error("it is realizable with the signs of its products flipped: see --flip-products")]
+    #[error(
+        "a body can have it with the signs of its products flipped, the commonest slip: \
+         --repair=flip writes that"
+    )]
     FlippedProducts,
 }
 
@@ -64,6 +67,11 @@ impl Judgement {
     }
 }
 
+/// The same matrix in the other convention of the signs of products.
+pub(crate) fn with_flipped_products(matrix: &Matrix3<f64>) -> Matrix3<f64> {
+    matrix.map_with_location(|i, j, x| if i == j || x == 0.0 { x } else { -x })
+}
+
 /// Judges an inertia about the mass centre, products as tensor entries, at a tolerance as a share of
 /// its trace (see [`RealizabilityReport::within`]), and the mass beside it, if there is one.
 #[must_use]
@@ -78,8 +86,7 @@ pub fn judge(matrix: &Matrix3<f64>, mass_kg: Option<f64>, tolerance: f64) -> Jud
     };
     let note = match mass_kg {
         _ if !report.is_realizable() => {
-            let flipped = matrix.map_with_location(|i, j, x| if i == j { x } else { -x });
-            RealizabilityReport::within(&flipped, tolerance)
+            RealizabilityReport::within(&with_flipped_products(matrix), tolerance)
                 .is_realizable()
                 .then_some(Note::FlippedProducts)
         }

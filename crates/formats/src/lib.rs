@@ -6,7 +6,7 @@
 //! gives a copy of the file in which only the offending numbers differ.
 //!
 //! ```
-//! use gyradius_formats::{InertiaFile, Products, judge};
+//! use gyradius_formats::{InertiaFile, Products, Remedy, judge};
 //! use std::path::Path;
 //!
 //! let urdf = r#"<robot name="cart"><link name="wheel"><inertial>
@@ -19,7 +19,7 @@
 //! let judgement = judge(wheel.inertia()?, wheel.mass_kg(), gyradius_formats::TOLERANCE);
 //! assert!((judgement.report().excess_percent().unwrap() - 50.0).abs() < 1e-9);
 //!
-//! let copy = String::from_utf8(file.repaired(&[0])?)?;
+//! let copy = String::from_utf8(file.repaired(&[(0, Remedy::Nearest)])?)?;
 //! assert!(copy.contains("<!-- from CAD -->") && copy.contains("iyz=\"0\""));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -29,7 +29,9 @@ mod csv;
 mod data;
 mod error;
 mod file;
+mod gap;
 mod judge;
+mod kind;
 mod repair;
 mod robots;
 mod text;
@@ -40,10 +42,12 @@ mod xml;
 pub use gyradius_inertia::{Fault, RELATIVE_TOLERANCE, RealizabilityReport};
 
 pub use body::{Body, Products};
-pub use error::{BodyError, FileError, FileProblem};
-pub use file::{Format, InertiaFile};
+pub use error::{Bearing, BodyError, FileError, FileProblem};
+pub use file::InertiaFile;
+pub use gap::{Gap, GapKind};
 pub use judge::{Judgement, MassFault, Note, judge};
-pub use repair::{RepairError, copy_path, is_copy, write_copy};
+pub use kind::Format;
+pub use repair::{Change, Remedy, RepairError, copy_path, is_copy, write_copy, write_copy_of};
 pub use walk::{Found, find};
 
 /// Tolerance that suits files: they carry about six digits, and a plate or a rod written with six

@@ -1,13 +1,20 @@
+//! Copies of files in which impossible inertias are possible: what changes, and how they are written.
+
 use gyradius_inertia::{InertiaMatrix, Repair, RepairMethod};
 use nalgebra::Matrix3;
 use std::{
+    collections::HashSet,
     ffi::OsString,
-    fs::{self, OpenOptions},
+    fs::{self, OpenOptions, Permissions},
     io::{self, Write},
     path::{Path, PathBuf},
 };
 
-use crate::{Body, InertiaFile, body::Place};
+use crate::{
+    Body, InertiaFile,
+    body::{Place, Reading},
+    judge::with_flipped_products,
+};
 
 /// How far inside the boundary a repaired inertia lies, as a part of its trace: enough that
 /// programs which compare exactly, or read fewer digits, accept it too.
@@ -15,6 +22,78 @@ const INSET: f64 = 1e-9;
 
 /// Digits of a repaired number, which move it by less than [`INSET`].
 const DIGITS: usize = 11;
+
+/// What becomes of an inertia that no body has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Remedy {
+    /// The nearest that a body has: the least change of the entries in the Frobenius norm.
+    #[default]
+    Nearest,
+    /// The same with the signs of its products flipped, or the nearest to that: right where the file
+    /// holds positive integrals in place of tensor entries.
+    FlipProducts,
+}
+
+/// What a copy changes of one body.
+#[derive(Clone, Debug)]
+pub struct Change {
+    name: String,
+    line: usize,
+    remedy: Remedy,
+    before: Matrix3<f64>,
+    after: Matrix3<f64>,
+    edits: Vec<(Place, String)>,
+}
+
+impl Change {
+    /// Name of the body.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its line, from 1.
+    #[must_use]
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
+    /// How its inertia was changed.
+    #[must_use]
+    pub fn remedy(&self) -> Remedy {
+        self.remedy
+    }
+
+    /// The inertia in the file, in kg·m², products as tensor entries.
+    #[must_use]
+    pub fn before(&self) -> &Matrix3<f64> {
+        &self.before
+    }
+
+    /// The inertia in the copy, in kg·m², products as tensor entries.
+    #[must_use]
+    pub fn after(&self) -> &Matrix3<f64> {
+        &self.after
+    }
+
+    /// The Frobenius norm of the difference, in kg·m².
+    #[must_use]
+    pub fn distance_kg_m2(&self) -> f64 {
+        norm(&(self.after - self.before))
+    }
+
+    /// The same in percent of the norm of the inertia in the file.
+    #[must_use]
+    pub fn distance_percent(&self) -> f64 {
+        100.0 * (self.distance_kg_m2() / norm(&self.before))
+    }
+}
+
+/// The Frobenius norm, without squares that overflow or vanish.
+fn norm(matrix: &Matrix3<f64>) -> f64 {
+    let size = matrix.amax();
+    if size > 0.0 { size * matrix.map(|x| x / size).norm() } else { size }
+}
 
 /// Why a file could not be repaired.
 #[derive(Debug, thiserror::Error)]
@@ -34,6 +113,16 @@ pub enum RepairError {
     /// The inertia is beyond computing with.
     #[error("line {line}: \"{name}\": its inertia is too large or too small to be computed with")]
     OutOfRange {
+        /// The body.
+        name: String,
+        /// Its line.
+        line: usize,
+    },
+    /// The nearest inertia is that of a point.
+    #[error(
+        "line {line}: \"{name}\": the nearest inertia that a body can have is 0, 0, 0, which is none"
+    )]
+    NothingLeft {
         /// The body.
         name: String,
         /// Its line.
@@ -73,23 +162,25 @@ fn is_realizable(matrix: &Matrix3<f64>) -> bool {
 }
 
 impl InertiaFile {
-    /// Whether the inertia of the body of this index can be replaced in a copy.
+    /// What a copy would change of the body of this index: nothing if it can have its inertia, or
+    /// if that could not be read.
     ///
     /// # Errors
-    /// A number that must change is not in the file, or out of range.
-    pub fn repairable(&self, index: usize) -> Result<(), RepairError> {
-        self.bodies().get(index).map_or(Ok(()), |body| edits_of(body).map(drop))
+    /// A number that must change is not in the file, or out of range, or nothing would be left.
+    pub fn change(&self, index: usize, remedy: Remedy) -> Result<Option<Change>, RepairError> {
+        let Some(body) = self.bodies().get(index) else { return Ok(None) };
+        body.reading().map(|reading| change(body, reading, remedy)).transpose()
     }
 
-    /// The bytes of a copy in which the bodies of these indices have the nearest realizable
-    /// inertia, and everything else is as it was.
+    /// The bytes of a copy in which the bodies of these indices have a realizable inertia, and
+    /// everything else is as it was.
     ///
     /// # Errors
-    /// A number that must change is not in the file, or the copy does not read back.
-    pub fn repaired(&self, indices: &[usize]) -> Result<Vec<u8>, RepairError> {
+    /// As [`change`](Self::change), or the copy does not read back.
+    pub fn repaired(&self, bodies: &[(usize, Remedy)]) -> Result<Vec<u8>, RepairError> {
         let mut edits: Vec<(Place, String)> = Vec::new();
-        for body in indices.iter().filter_map(|i| self.bodies().get(*i)) {
-            edits.extend(edits_of(body)?);
+        for (index, remedy) in bodies {
+            edits.extend(self.change(*index, *remedy)?.into_iter().flat_map(|change| change.edits));
         }
         edits.sort_by_key(|(place, _)| place.start);
         let mut copy = Vec::with_capacity(self.bytes.len() + 8 * edits.len());
@@ -101,12 +192,13 @@ impl InertiaFile {
             done = end;
         }
         copy.extend_from_slice(self.bytes.get(done..).ok_or(RepairError::ReadsBackWrong)?);
-        self.reads_back(&copy, indices)?;
+        self.reads_back(&copy, bodies)?;
         Ok(copy)
     }
 
     /// Whether a copy holds the same bodies, those of these indices realizable.
-    fn reads_back(&self, copy: &[u8], indices: &[usize]) -> Result<(), RepairError> {
+    fn reads_back(&self, copy: &[u8], bodies: &[(usize, Remedy)]) -> Result<(), RepairError> {
+        let indices: HashSet<usize> = bodies.iter().map(|(index, _)| *index).collect();
         let again = self.reread(copy.to_vec()).map_err(|_| RepairError::ReadsBackWrong)?;
         let same = again.bodies().len() == self.bodies().len()
             && self.bodies().iter().zip(again.bodies()).enumerate().all(|(i, (before, after))| {
@@ -121,18 +213,29 @@ impl InertiaFile {
 }
 
 /// The numbers of a body that must change, and what they become.
-fn edits_of(body: &Body) -> Result<Vec<(Place, String)>, RepairError> {
+fn change(body: &Body, reading: &Reading, remedy: Remedy) -> Result<Change, RepairError> {
     let (name, line) = (body.name().to_owned(), body.line());
-    let Some(reading) = body.reading() else { return Ok(Vec::new()) };
     // In the units of the file, so that what is written has few digits.
     let old = &reading.matrix.map(|x| x / reading.unit);
-    let Some(new) = repaired(old) else {
-        return Err(RepairError::OutOfRange { name, line });
+    let start = match remedy {
+        Remedy::Nearest => *old,
+        Remedy::FlipProducts => with_flipped_products(old),
     };
-    // Entries that are right to rounding stay as they are written, if the whole then is right.
-    let rounding = 0.1 * INSET * new.amax();
-    let kept = new.zip_map(old, |new, old| if (new - old).abs() <= rounding { old } else { new });
-    let target = if is_realizable(&kept) { kept } else { new };
+    let target = if is_realizable(&start) {
+        start
+    } else {
+        let Some(new) = repaired(&start) else {
+            return Err(RepairError::OutOfRange { name, line });
+        };
+        // Entries that are right to rounding stay as they are written, if the whole then is right.
+        let rounding = 0.1 * INSET * new.amax();
+        let kept =
+            new.zip_map(&start, |new, old| if (new - old).abs() <= rounding { old } else { new });
+        if is_realizable(&kept) { kept } else { new }
+    };
+    if target == Matrix3::zeros() && *old != target {
+        return Err(RepairError::NothingLeft { name, line });
+    }
     let mut edits: Vec<(Place, String)> = Vec::new();
     for i in 0..3 {
         for j in 0..3 {
@@ -150,7 +253,8 @@ fn edits_of(body: &Body) -> Result<Vec<(Place, String)>, RepairError> {
             }
         }
     }
-    Ok(edits)
+    let after = target * reading.unit;
+    Ok(Change { name, line, remedy, before: reading.matrix, after, edits })
 }
 
 /// Where the repaired copy of a file goes: `robot.urdf` becomes `robot.repaired.urdf`.
@@ -184,6 +288,32 @@ pub fn write_copy(
     originals: &[PathBuf],
     force: bool,
 ) -> Result<bool, RepairError> {
+    write(copy, bytes, originals, force, None)
+}
+
+/// As [`write_copy`], of the file `original`: who may read and write it may the copy.
+///
+/// # Errors
+/// As there, and the original is gone.
+pub fn write_copy_of(
+    original: &Path,
+    copy: &Path,
+    bytes: &[u8],
+    originals: &[PathBuf],
+    force: bool,
+) -> Result<bool, RepairError> {
+    let metadata =
+        fs::metadata(original).map_err(|error| RepairError::Io { path: copy.to_owned(), error })?;
+    write(copy, bytes, originals, force, Some(metadata.permissions()))
+}
+
+fn write(
+    copy: &Path,
+    bytes: &[u8],
+    originals: &[PathBuf],
+    force: bool,
+    permissions: Option<Permissions>,
+) -> Result<bool, RepairError> {
     let fail = |error| RepairError::Io { path: copy.to_owned(), error };
     let here = fs::symlink_metadata(copy);
     if here.is_ok() {
@@ -203,11 +333,20 @@ pub fn write_copy(
     let mut draft = copy.as_os_str().to_owned();
     draft.push(format!(".{}.draft", std::process::id()));
     let draft = PathBuf::from(draft);
-    let written = OpenOptions::new()
-        .write(true)
-        .create_new(true)
+    let mut options = OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    if permissions.is_some() {
+        // Nobody else reads it before it has the permissions of the original.
+        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    }
+    let written = options
         .open(&draft)
-        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+        .and_then(|mut file| {
+            file.write_all(bytes)?;
+            permissions.map_or(Ok(()), |permissions| file.set_permissions(permissions))?;
+            file.sync_all()
+        })
         .and_then(|()| {
             if force {
                 fs::rename(&draft, copy)

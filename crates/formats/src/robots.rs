@@ -1,46 +1,160 @@
 //! URDF, MJCF and SDF: where each keeps its inertias, and what its numbers mean.
 
 use crate::{
-    Body, BodyError, FileProblem, Format, MAX_BODIES, Products,
-    body::{ENTRIES, NAMES, Number, Reading},
+    Body, BodyError, FileProblem, Format, GapKind, MAX_BODIES, Products,
+    body::{ENTRIES, NAMES, Number, Reading, shortened},
+    gap::Gaps,
     text::Refusal,
-    xml::{Node, Tree},
+    xml::{MACROS, Node, Tree},
 };
 
-/// The format of a root element.
-pub(crate) fn format_of(root: &str) -> Option<Format> {
+/// The format of a file: that of its root element; otherwise that of the form in which its inertias
+/// are written, for MuJoCo includes files of any root, and parts of models have others; and if it has
+/// none, that of its extension.
+///
+/// # Errors
+/// Nothing tells.
+pub(crate) fn format_of(tree: &Tree<'_>, extension: Option<&str>) -> Result<Format, FileProblem> {
+    let root = tree.root().name();
     match root {
-        "robot" => Some(Format::Urdf),
-        "mujoco" | "mujocoinclude" => Some(Format::Mjcf),
-        "sdf" | "gazebo" => Some(Format::Sdf),
+        "robot" => return Ok(Format::Urdf),
+        "mujoco" | "mujocoinclude" => return Ok(Format::Mjcf),
+        "sdf" | "gazebo" => return Ok(Format::Sdf),
+        _ => {}
+    }
+    let mut forms = tree.all(INERTIAL).map(form_of);
+    let root = shortened(root);
+    match (forms.next(), extension) {
+        (Some(Some(first)), _) if forms.all(|form| form == Some(first)) => Ok(first),
+        (Some(_), Some("xacro")) => Ok(Format::Urdf),
+        (Some(_), _) => Err(FileProblem::Unclear { root }),
+        (None, Some("urdf" | "xacro")) => Ok(Format::Urdf),
+        (None, Some("mjcf")) => Ok(Format::Mjcf),
+        (None, Some("sdf" | "world")) => Ok(Format::Sdf),
+        (None, _) => Err(FileProblem::Unknown {
+            message: format!(
+                "its root element is <{root}>, and those of URDF, MJCF and SDF are <robot>, \
+                 <mujoco> and <sdf>"
+            ),
+        }),
+    }
+}
+
+/// The format that writes an inertia in this way.
+fn form_of(inertial: Node<'_, '_>) -> Option<Format> {
+    let (mass, inertia) = (inertial.child("mass"), inertial.child("inertia"));
+    let is_mjcf = inertial.attribute("mass").is_some() && mass.is_none() && inertia.is_none();
+    let is_urdf = inertial.attribute("mass").is_none()
+        && mass.is_some_and(|mass| mass.attribute("value").is_some() && !mass.has_text());
+    let is_sdf = mass.is_some_and(|mass| mass.has_text() && mass.attribute("value").is_none())
+        || inertia.is_some_and(|inertia| inertia.children().any(|entry| entry.has_text()))
+        || (inertial.attribute("mass").is_some() && inertia.is_some());
+    match (is_mjcf, is_urdf, is_sdf) {
+        (true, false, false) => Some(Format::Mjcf),
+        (false, true, false) => Some(Format::Urdf),
+        (false, false, true) => Some(Format::Sdf),
         _ => None,
     }
 }
 
+/// The element around the inertia of a body, in every format.
+const INERTIAL: &str = "inertial";
+
+/// The bodies of a file, and what of it was not read.
 pub(crate) fn read(
     tree: &Tree<'_>,
     format: Format,
+    extension: Option<&str>,
     products: Products,
-) -> Result<Vec<Body>, Refusal> {
+) -> Result<(Vec<Body>, Gaps), Refusal> {
+    let declared = tree.macro_prefixes();
+    let is_macro = |node: Node<'_, '_>| {
+        let prefix = node.prefix();
+        prefix == MACROS || declared.contains(&prefix)
+    };
+    let has_macros =
+        extension == Some(MACROS) || !declared.is_empty() || tree.nodes().any(is_macro);
     let mut bodies = Vec::new();
-    for node in tree.all("inertial") {
-        if bodies.len() == MAX_BODIES {
-            return Err(Refusal { line: Some(node.line()), problem: FileProblem::TooManyBodies });
-        }
-        let reading = match format {
-            Format::Mjcf => mjcf(node, products),
-            // Computed by the simulator from the shapes: what stands there is not used.
-            Format::Sdf if node.attribute("auto").is_some_and(|a| a == "true" || a == "1") => {
-                continue;
+    let mut gaps = Gaps::default();
+    tree.entities().for_each(|line| gaps.add(GapKind::Entities, line));
+    for node in tree.nodes() {
+        if is_macro(node) {
+            gaps.add(GapKind::Macros, node.line());
+        } else if node.name() == INERTIAL {
+            // The line of the numbers, not of the element around them.
+            let line = node.child("inertia").unwrap_or(node).line();
+            let reading = match read_one(node, format, products) {
+                Ok(reading) => Ok(reading),
+                Err(Trouble::Gap(kind)) => {
+                    gaps.add(kind, line);
+                    continue;
+                }
+                Err(Trouble::Body(BodyError::Expression { .. })) if has_macros => {
+                    gaps.add(GapKind::Macros, line);
+                    continue;
+                }
+                // What is missing is made by the macros in it, which are counted themselves.
+                Err(Trouble::Body(BodyError::Missing { .. })) if node.children().any(is_macro) => {
+                    continue;
+                }
+                Err(Trouble::Body(error)) => Err(error),
+            };
+            if bodies.len() == MAX_BODIES {
+                return Err(Refusal { line: Some(line), problem: FileProblem::TooManyBodies });
             }
-            Format::Sdf => sdf(node, products),
-            _ => urdf(node, products),
-        };
-        // The line of the numbers, not of the element around them.
-        let line = node.child("inertia").unwrap_or(node).line();
-        bodies.push(Body::new(node.name_above(), line, reading));
+            bodies.push(Body::new(node.name_above(), line, reading));
+        } else if includes(node, format) {
+            gaps.add(GapKind::Included, node.line());
+        } else if is_stray(node) {
+            gaps.add(GapKind::Misplaced, node.line());
+        }
     }
-    Ok(bodies)
+    Ok((bodies, gaps))
+}
+
+/// Why an inertia is not that of a body with numbers.
+enum Trouble {
+    Gap(GapKind),
+    Body(BodyError),
+}
+
+fn read_one(
+    inertial: Node<'_, '_>,
+    format: Format,
+    products: Products,
+) -> Result<Reading, Trouble> {
+    let is_gazebo = |node: Node<'_, '_>| node.name() == "gazebo";
+    let reading = match format {
+        Format::Mjcf => mjcf(inertial, products),
+        // Gazebo puts what stands in such a block of a URDF file into the model or link that it makes
+        // of it as it stands: it is SDF. Other elements in it are for plugins, and may hold anything.
+        Format::Urdf if inertial.ancestors().any(is_gazebo) => {
+            if !inertial.parent().is_some_and(|above| is_gazebo(above) || above.name() == "link") {
+                return Err(Trouble::Gap(GapKind::Misplaced));
+            }
+            return sdf_or_computed(inertial, products);
+        }
+        Format::Sdf => return sdf_or_computed(inertial, products),
+        Format::Urdf | Format::Csv | Format::Toml | Format::Json => urdf(inertial, products),
+    };
+    reading.map_err(Trouble::Body)
+}
+
+/// Whether an element includes another file.
+fn includes(node: Node<'_, '_>, format: Format) -> bool {
+    node.name() == "include"
+        || (format == Format::Mjcf && node.name() == "model" && node.attribute("file").is_some())
+}
+
+/// Whether an element outside all inertias looks like a part of one.
+fn is_stray(node: Node<'_, '_>) -> bool {
+    let looks = |node: Node<'_, '_>| {
+        let is = |name: &str, known: &[&str]| known.iter().any(|k| k.eq_ignore_ascii_case(name));
+        is(node.name(), &[INERTIAL, "inertia", "ixx"])
+            || node.attribute_names().any(|name| is(name, &["ixx", "diaginertia", "fullinertia"]))
+    };
+    // Of nested ones the outermost is counted.
+    looks(node) && !node.ancestors().skip(1).any(|above| above.name() == INERTIAL || looks(above))
 }
 
 /// `<mass value=""/>`, `<inertia ixx="" ixy="" ixz="" iyy="" iyz="" izz=""/>`, all required:
@@ -71,28 +185,69 @@ fn mjcf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError
         }
         (Some(three), None) => six[..3].copy_from_slice(&three?),
         (None, Some(all)) => six.copy_from_slice(&all?),
-        (None, None) => {}
+        (None, None) => {
+            // Zeros stand for what is not stated, never for what is spelled in another way.
+            let near = |name: &str| name.to_ascii_lowercase().contains("inertia");
+            if names_in(inertial).any(near) {
+                return Err(BodyError::Missing { field: "diaginertia" });
+            }
+        }
     }
     Ok(Reading::of_six(Some(mass), &six, products))
 }
 
 /// `<mass>`, `<inertia><ixx>…`: entries of the inertia matrix ("the product of inertia convention
 /// -m x y (not +m x y) is used", says SDFormat 1.10), absent ones being those of the unit matrix,
-/// an absent mass 1 kg.
+/// an absent mass 1 kg. In SDFormat 1.0 they are attributes: `<inertial mass=""><inertia ixx=""/>`.
 fn sdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError> {
-    let mass = match inertial.child("mass") {
-        Some(mass) => mass.number_inside("mass")?,
-        None => Number::default_of(1.0),
+    const SHAPE: BodyError =
+        BodyError::Shape { field: "inertia", allowed: "ixx, iyy, izz, ixy, ixz and iyz in it" };
+    let version = inertial.ancestors().find_map(|node| match node.name() {
+        "sdf" | "gazebo" => node.attribute("version"),
+        _ => None,
+    });
+    let allowed = version.is_none_or(|version| version.trim() == "1.0");
+    let entry = |node: Node<'_, '_>, name| match (node.number(name, name), node.child(name)) {
+        (Some(_), Some(_)) => Err(BodyError::Both { first: "an attribute", second: "an element" }),
+        (Some(number), None) if allowed => number.map(Some),
+        (Some(_), None) => Err(BodyError::Attribute { field: name }),
+        (None, Some(element)) => element.number_inside(name).map(Some),
+        (None, None) => Ok(None),
     };
+    // Defaults stand for what is not stated, never for what is spelled in another way.
+    for (name, near) in names_in(inertial).flat_map(|name| ["mass", "inertia"].map(|n| (name, n))) {
+        if name != near && name.eq_ignore_ascii_case(near) {
+            return Err(BodyError::Missing { field: near });
+        }
+    }
     let inertia = inertial.child("inertia");
+    if inertia.is_some_and(|inertia| {
+        inertia.has_text() || names_in(inertia).any(|name| !NAMES.contains(&name))
+    }) {
+        return Err(SHAPE);
+    }
+    let mass = entry(inertial, "mass")?.unwrap_or(Number::default_of(1.0));
     let mut six = [Number::default(); 6];
     for ((number, name), (row, column)) in six.iter_mut().zip(NAMES).zip(ENTRIES) {
-        *number = match inertia.and_then(|inertia| inertia.child(name)) {
-            Some(entry) => entry.number_inside(name)?,
-            None => Number::default_of(if row == column { 1.0 } else { 0.0 }),
-        };
+        let default = Number::default_of(if row == column { 1.0 } else { 0.0 });
+        let stated = inertia.map(|inertia| entry(inertia, name)).transpose()?.flatten();
+        *number = stated.unwrap_or(default);
     }
     Ok(Reading::of_six(Some(mass), &six, products))
+}
+
+/// What stands there is not used where the simulator computes the inertia from the shapes.
+fn sdf_or_computed(inertial: Node<'_, '_>, products: Products) -> Result<Reading, Trouble> {
+    if inertial.attribute("auto").is_some_and(|a| a == "true" || a == "1") {
+        return Err(Trouble::Gap(GapKind::Computed));
+    }
+    sdf(inertial, products).map_err(Trouble::Body)
+}
+
+/// Names of attributes and children.
+fn names_in<'a>(node: Node<'_, 'a>) -> impl Iterator<Item = &'a str> {
+    let attributes = node.attribute_names().filter(|name| !name.contains(':') && *name != "xmlns");
+    attributes.chain(node.children().map(Node::name))
 }
 
 #[cfg(test)]
@@ -103,8 +258,8 @@ mod tests {
     fn bodies(xml: &str) -> Vec<Body> {
         let text = Text::new(xml.as_bytes(), false).unwrap();
         let tree = Tree::parse(&text).unwrap();
-        let format = format_of(tree.root()).unwrap();
-        read(&tree, format, Products::TensorEntries).unwrap()
+        let format = format_of(&tree, None).unwrap();
+        read(&tree, format, None, Products::TensorEntries).unwrap().0
     }
 
     fn six(body: &Body) -> [f64; 6] {

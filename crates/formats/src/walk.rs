@@ -4,7 +4,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{FileError, FileProblem, file::known_extension, repair::is_copy};
+use crate::{
+    Bearing, FileError, FileProblem,
+    kind::{known_extension, not_read},
+    repair::is_copy,
+};
 
 /// A file to be checked.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,7 +23,9 @@ pub struct Found {
 /// has an extension that is read, in the order of their names. Each file once.
 ///
 /// In folders, hidden names, repaired copies, links to folders and folders that call themselves
-/// caches (`CACHEDIR.TAG`, like Cargo's `target`) are passed over.
+/// caches (`CACHEDIR.TAG`, like Cargo's `target`) are passed over. Files of formats that may hold
+/// inertias and are not read are found as well, so that they can be named. A folder without any
+/// file is an error.
 #[must_use]
 pub fn find(paths: &[PathBuf]) -> (Vec<Found>, Vec<FileError>) {
     let mut found = Vec::new();
@@ -29,7 +35,9 @@ pub fn find(paths: &[PathBuf]) -> (Vec<Found>, Vec<FileError>) {
         match fs::metadata(path) {
             Ok(metadata) if metadata.is_dir() => walk(path, &mut found, &mut errors, &mut seen),
             Ok(_) => add(path.clone(), true, &mut found, &mut seen),
-            Err(error) => errors.push(FileError::new(path, FileProblem::from(error).into(), false)),
+            Err(error) => {
+                errors.push(FileError::new(path, FileProblem::from(error).into(), Bearing::Holds))
+            }
         }
     }
     (found, errors)
@@ -49,7 +57,13 @@ fn add(path: PathBuf, named: bool, found: &mut Vec<Found>, seen: &mut Seen) {
     }
 }
 
+/// Whether the name of a file in a folder says that it may hold inertias.
+fn is_wanted(path: &Path) -> bool {
+    (known_extension(path).is_some() || not_read(path).is_some()) && !is_copy(path)
+}
+
 fn walk(folder: &Path, found: &mut Vec<Found>, errors: &mut Vec<FileError>, seen: &mut Seen) {
+    let mut is_empty = true;
     // A stack of our own: folders may be nested deeper than calls may.
     let mut open = vec![folder.to_owned()];
     while let Some(path) = open.pop() {
@@ -60,25 +74,32 @@ fn walk(folder: &Path, found: &mut Vec<Found>, errors: &mut Vec<FileError>, seen
             continue;
         }
         if !is_folder {
+            is_empty = false;
             add(path, false, found, seen);
             continue;
         }
-        let mut entries: Vec<PathBuf> = match fs::read_dir(&path) {
-            Ok(entries) => entries.flatten().map(|entry| entry.path()).collect(),
+        let listed = fs::read_dir(&path)
+            .and_then(|entries| entries.map(|entry| entry.map(|entry| entry.path())).collect());
+        let mut entries: Vec<PathBuf> = match listed {
+            Ok(entries) => entries,
             Err(error) => {
-                errors.push(FileError::new(&path, FileProblem::from(error).into(), false));
+                is_empty = false;
+                errors.push(FileError::new(&path, FileProblem::from(error).into(), Bearing::Holds));
                 continue;
             }
         };
         entries.retain(|entry| {
             let hidden =
                 entry.file_name().is_none_or(|name| name.to_string_lossy().starts_with('.'));
-            let wanted = known_extension(entry).is_some() && !is_copy(entry);
+            let wanted = is_wanted(entry);
             !hidden && (wanted || fs::metadata(entry).is_ok_and(|m| m.is_dir()))
         });
         // The stack hands out the last first.
         entries.sort_by(|a, b| b.cmp(a));
         open.extend(entries);
+    }
+    if is_empty {
+        errors.push(FileError::new(folder, FileProblem::EmptyFolder.into(), Bearing::Holds));
     }
 }
 

@@ -1,6 +1,7 @@
 //! The elements of an XML file in the order they stand, with byte positions.
 //!
-//! Namespaces are not resolved: files expanded from xacro keep prefixes that nobody declares.
+//! Namespaces are not resolved, for files expanded from xacro keep prefixes that nobody declares: an
+//! element is known by the name after its prefix, but for the prefix of xacro's macros.
 
 use quick_xml::{
     Reader,
@@ -41,13 +42,28 @@ pub(crate) struct Element<'a> {
 pub(crate) struct Tree<'a> {
     source: &'a Text,
     elements: Vec<Element<'a>>,
+    /// Where references to entities stand that the file declares itself.
+    entities: Vec<usize>,
+}
+
+/// The usual prefix of macros, and a part of what any other is declared as.
+pub(crate) const MACROS: &str = "xacro";
+
+/// The prefix of a name, empty if there is none, and the name after it.
+fn parts(name: &str) -> (&str, &str) {
+    name.split_once(':').unwrap_or(("", name))
+}
+
+/// Whether a reference is one that every reader knows: a character by its number, or one of five.
+fn is_character(reference: &str) -> bool {
+    reference.starts_with('#') || matches!(reference, "lt" | "gt" | "amp" | "quot" | "apos")
 }
 
 impl<'a> Tree<'a> {
     pub(crate) fn parse(source: &'a Text) -> Result<Self, Refusal> {
         let text = source.as_str();
         let mut reader = Reader::from_str(text);
-        let mut tree = Self { source, elements: Vec::new() };
+        let mut tree = Self { source, elements: Vec::new(), entities: Vec::new() };
         let mut open: Vec<usize> = Vec::new();
         loop {
             let before = usize::try_from(reader.buffer_position()).unwrap_or(text.len());
@@ -74,8 +90,13 @@ impl<'a> Tree<'a> {
                 }
                 Event::Text(part) => tree.add_text(&part, &open, before)?,
                 Event::CData(part) => tree.add_text(&part, &open, before)?,
-                Event::GeneralRef(_) => match open.last() {
-                    Some(index) => tree.elements[*index].broken = true,
+                Event::GeneralRef(reference) => match open.last() {
+                    Some(index) => {
+                        tree.elements[*index].broken = true;
+                        if !is_character(&reference) {
+                            tree.entities.push(before);
+                        }
+                    }
                     None => return Err(source.malformed(before, "a reference outside the root")),
                 },
                 Event::Eof => break,
@@ -157,16 +178,37 @@ impl<'a> Tree<'a> {
         Ok(())
     }
 
-    /// Name of the root element.
-    pub(crate) fn root(&self) -> &'a str {
-        self.elements[0].name
+    /// The root element.
+    pub(crate) fn root(&self) -> Node<'_, 'a> {
+        Node { tree: self, index: 0 }
+    }
+
+    /// All elements.
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = Node<'_, 'a>> {
+        (0..self.elements.len()).map(|index| Node { tree: self, index })
     }
 
     /// All elements of this name.
     pub(crate) fn all(&self, name: &str) -> impl Iterator<Item = Node<'_, 'a>> {
-        (0..self.elements.len())
-            .filter(move |index| self.elements[*index].name == name)
-            .map(|index| Node { tree: self, index })
+        self.nodes().filter(move |node| node.name() == name)
+    }
+
+    /// Lines of the references to entities that the file declares itself, which are not expanded.
+    pub(crate) fn entities(&self) -> impl Iterator<Item = usize> {
+        self.entities.iter().map(|at| self.source.line(*at))
+    }
+
+    /// The prefixes that are declared for macros.
+    pub(crate) fn macro_prefixes(&self) -> Vec<&'a str> {
+        let attributes = self.elements.iter().flat_map(|element| &element.attributes);
+        let declared = attributes.filter_map(|attribute| {
+            let prefix = attribute.name.strip_prefix("xmlns:")?;
+            attribute.value.contains(MACROS).then_some(prefix)
+        });
+        let mut prefixes: Vec<&str> = declared.collect();
+        prefixes.sort_unstable();
+        prefixes.dedup();
+        prefixes
     }
 }
 
@@ -182,8 +224,14 @@ impl<'t, 'a> Node<'t, 'a> {
         &self.tree.elements[self.index]
     }
 
+    /// Its name after the prefix.
     pub(crate) fn name(self) -> &'a str {
-        self.element().name
+        parts(self.element().name).1
+    }
+
+    /// The prefix of its name, empty if it has none.
+    pub(crate) fn prefix(self) -> &'a str {
+        parts(self.element().name).0
     }
 
     pub(crate) fn line(self) -> usize {
@@ -194,11 +242,30 @@ impl<'t, 'a> Node<'t, 'a> {
         Some(Self { tree: self.tree, index: self.element().parent? })
     }
 
-    /// The first child of this name.
-    pub(crate) fn child(self, name: &str) -> Option<Self> {
+    pub(crate) fn children(self) -> impl Iterator<Item = Self> {
         (self.index + 1..self.element().end)
-            .map(|index| Self { tree: self.tree, index })
-            .find(|node| node.element().parent == Some(self.index) && node.name() == name)
+            .map(move |index| Self { tree: self.tree, index })
+            .filter(move |node| node.element().parent == Some(self.index))
+    }
+
+    /// The first child of this name with the prefix of this element, or of any prefix.
+    pub(crate) fn child(self, name: &str) -> Option<Self> {
+        let named = || self.children().filter(|node| node.name() == name);
+        named().find(|node| node.prefix() == self.prefix()).or_else(|| named().next())
+    }
+
+    /// This element and those around it, from the inside.
+    pub(crate) fn ancestors(self) -> impl Iterator<Item = Self> {
+        std::iter::successors(Some(self), |node| node.parent())
+    }
+
+    pub(crate) fn attribute_names(self) -> impl Iterator<Item = &'a str> {
+        self.element().attributes.iter().map(|attribute| attribute.name)
+    }
+
+    /// Whether there is text in it, or what may be some.
+    pub(crate) fn has_text(self) -> bool {
+        !self.element().text.is_empty() || self.element().broken
     }
 
     fn find(self, name: &str) -> Option<&'t Attribute<'a>> {
@@ -209,16 +276,16 @@ impl<'t, 'a> Node<'t, 'a> {
         self.find(name).map(|a| &*a.value)
     }
 
-    /// The name of the body around: of a link, a body or a macro, empty if it has none.
+    /// The name of the body around: of a link, a body, a macro, or the link that a block for Gazebo
+    /// refers to; empty if there is none.
     pub(crate) fn name_above(self) -> String {
-        let mut node = self.parent();
-        while let Some(above) = node {
-            if matches!(above.name(), "link" | "body" | "xacro:macro") {
-                return above.attribute("name").unwrap_or_default().to_owned();
-            }
-            node = above.parent();
-        }
-        String::new()
+        let key = |node: &Self| match node.name() {
+            "link" | "body" | "macro" => Some("name"),
+            "gazebo" => Some("reference"),
+            _ => None,
+        };
+        let found = self.ancestors().skip(1).find_map(|node| Some((node, key(&node)?)));
+        found.and_then(|(node, key)| node.attribute(key)).unwrap_or_default().to_owned()
     }
 
     /// The number in an attribute, if the attribute is there.
@@ -264,7 +331,7 @@ mod tests {
         let xml = "<a>\n <b c='1 &amp; 2' d=\"3\"> 4 <!-- five --></b><b/></a>";
         let text = Text::new(xml.as_bytes(), false).unwrap();
         let tree = Tree::parse(&text).unwrap();
-        assert_eq!(tree.root(), "a");
+        assert_eq!(tree.root().name(), "a");
         let b = tree.all("b").next().unwrap();
         assert_eq!((b.line(), b.attribute("c"), tree.all("b").count()), (2, Some("1 & 2"), 2));
         let place = b.number("d", "d").unwrap().unwrap().place.unwrap();

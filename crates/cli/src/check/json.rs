@@ -1,8 +1,11 @@
-use gyradius_formats::{Judgement, RealizabilityReport};
+//! The report as one JSON object.
+
+use gyradius_formats::{Change, Judgement, RealizabilityReport, Remedy};
+use nalgebra::Matrix3;
 use serde::Serialize;
 use std::io::{self, Write};
 
-use super::{Finding, Report, Status};
+use super::{Finding, Report, Status, report::Repaired};
 use crate::args::CheckArgs;
 
 /// Grows when a field changes its meaning or goes; new fields may come without it.
@@ -16,7 +19,8 @@ struct Document<'a> {
     summary: Summary,
     bodies: Vec<BodyJson<'a>>,
     errors: Vec<ErrorJson>,
-    repairs: Vec<RepairJson>,
+    passed_over: Vec<PassedJson<'a>>,
+    repairs: Vec<RepairJson<'a>>,
 }
 
 #[derive(Serialize)]
@@ -24,9 +28,12 @@ struct Summary {
     files: usize,
     bodies: usize,
     impossible: usize,
+    possible_with_flipped_products: usize,
     no_mass: usize,
     unread: usize,
     errors: usize,
+    passed_over: usize,
+    without_inertia: usize,
 }
 
 #[derive(Serialize)]
@@ -44,6 +51,7 @@ struct BodyJson<'a> {
     shortfall_percent: Option<f64>,
     reasons: Vec<String>,
     note: Option<String>,
+    possible_with_flipped_products: bool,
 }
 
 #[derive(Serialize)]
@@ -54,11 +62,59 @@ struct ErrorJson {
 }
 
 #[derive(Serialize)]
-struct RepairJson {
+struct PassedJson<'a> {
+    file: String,
+    line: Option<usize>,
+    reason: &'a str,
+    may_hold_bodies: bool,
+}
+
+#[derive(Serialize)]
+struct RepairJson<'a> {
     file: String,
     copy: String,
     bodies: usize,
     written: bool,
+    changes: Vec<ChangeJson<'a>>,
+}
+
+#[derive(Serialize)]
+struct ChangeJson<'a> {
+    name: &'a str,
+    line: usize,
+    remedy: &'static str,
+    before_kg_m2: [[f64; 3]; 3],
+    after_kg_m2: [[f64; 3]; 3],
+    distance_kg_m2: Option<f64>,
+    distance_percent: Option<f64>,
+    /// What else would do, and comes first: the signs of the products flipped.
+    proposal: Option<Box<ChangeJson<'a>>>,
+}
+
+fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    std::array::from_fn(|i| std::array::from_fn(|j| matrix[(i, j)]))
+}
+
+fn change(change: &Change) -> ChangeJson<'_> {
+    let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+    ChangeJson {
+        name: change.name(),
+        line: change.line(),
+        remedy: match change.remedy() {
+            Remedy::Nearest => "nearest",
+            Remedy::FlipProducts => "flip",
+        },
+        before_kg_m2: rows(change.before()),
+        after_kg_m2: rows(change.after()),
+        distance_kg_m2: finite(change.distance_kg_m2()),
+        distance_percent: finite(change.distance_percent()),
+        proposal: None,
+    }
+}
+
+fn repaired(body: &Repaired) -> ChangeJson<'_> {
+    let proposal = body.proposal.as_ref().map(|proposal| Box::new(change(proposal)));
+    ChangeJson { proposal, ..change(&body.change) }
 }
 
 fn body(finding: &Finding) -> BodyJson<'_> {
@@ -77,10 +133,7 @@ fn body(finding: &Finding) -> BodyJson<'_> {
             Status::Possible => "possible",
         },
         mass_kg: finding.body.mass_kg(),
-        inertia_kg_m2: inertia
-            .as_ref()
-            .ok()
-            .map(|m| std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))),
+        inertia_kg_m2: inertia.as_ref().ok().map(|matrix| rows(matrix)),
         principal_moments_kg_m2: report.and_then(RealizabilityReport::principal_moments),
         second_moments_kg_m2: report.and_then(RealizabilityReport::second_moments),
         margin: report.and_then(RealizabilityReport::margin).filter(|m| m.is_finite()),
@@ -93,6 +146,7 @@ fn body(finding: &Finding) -> BodyJson<'_> {
             (None, Ok(_)) => Vec::new(),
         },
         note: judgement.and_then(Judgement::note).map(|note| note.to_string()),
+        possible_with_flipped_products: finding.is_flipped(),
     }
 }
 
@@ -102,10 +156,10 @@ pub(super) fn write(
     report: &Report,
     arguments: &CheckArgs,
 ) -> io::Result<()> {
-    let files = report.file_errors.iter().map(|error| ErrorJson {
-        file: error.path().display().to_string(),
-        line: error.line(),
-        message: error.problem().to_string(),
+    let files = report.refused.iter().map(|refused| ErrorJson {
+        file: refused.path.display().to_string(),
+        line: refused.line,
+        message: refused.message.clone(),
     });
     let repairs = report.repair_errors.iter().map(|(path, error)| ErrorJson {
         file: path.display().to_string(),
@@ -121,20 +175,34 @@ pub(super) fn write(
             files: report.files,
             bodies: report.bodies,
             impossible: report.impossible,
+            possible_with_flipped_products: report.flipped,
             no_mass: report.no_mass,
             unread: report.unread,
             errors: errors.len(),
+            passed_over: report.files_passed(true),
+            without_inertia: report.files_passed(false),
         },
         bodies: report.findings.iter().map(body).collect(),
         errors,
+        passed_over: report
+            .passed
+            .iter()
+            .map(|passed| PassedJson {
+                file: passed.path.display().to_string(),
+                line: passed.line,
+                reason: &passed.reason,
+                may_hold_bodies: passed.may_hold,
+            })
+            .collect(),
         repairs: report
             .repairs
             .iter()
             .map(|repair| RepairJson {
                 file: repair.original.display().to_string(),
                 copy: repair.copy.display().to_string(),
-                bodies: repair.bodies,
+                bodies: repair.bodies.len(),
                 written: repair.written,
+                changes: repair.bodies.iter().map(repaired).collect(),
             })
             .collect(),
     };

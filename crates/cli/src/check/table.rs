@@ -1,7 +1,18 @@
-use gyradius_formats::{Fault, Judgement, Note, RELATIVE_TOLERANCE, RealizabilityReport};
-use std::io::{self, Write};
+//! The report as a table, a list of what was passed over, what was repaired, and a summary.
 
-use super::{Finding, Report, Status, harmless, place};
+use gyradius_formats::{
+    Change, Fault, Judgement, Note, RELATIVE_TOLERANCE, RealizabilityReport, Remedy,
+};
+use nalgebra::Matrix3;
+use std::{
+    collections::HashSet,
+    io::{self, Write},
+};
+
+use super::{
+    Finding, Report, Status, harmless, place,
+    report::{Repair, Repaired},
+};
 use crate::{args::CheckArgs, number::short};
 
 /// Widest name, and widest reason, that are not shortened or moved.
@@ -124,7 +135,89 @@ pub(super) fn write(
         }
         writeln!(out)?;
     }
+    passed_over(out, report, arguments)?;
+    for repair in &report.repairs {
+        repairs(out, repair)?;
+    }
     summary(out, report, arguments)
+}
+
+/// Most lines of files that were passed over.
+const PASSED: usize = 20;
+
+/// What may hold bodies and was not read, each with its reason; what has nothing to do with
+/// inertias is only counted, but with `--all`.
+fn passed_over(out: &mut impl Write, report: &Report, arguments: &CheckArgs) -> io::Result<()> {
+    let named: Vec<_> =
+        report.passed.iter().filter(|passed| passed.may_hold || arguments.all).collect();
+    if named.is_empty() {
+        return Ok(());
+    }
+    let most = if arguments.all { named.len() } else { PASSED };
+    writeln!(out, "passed over:")?;
+    for passed in named.iter().take(most) {
+        let at = match passed.line {
+            Some(line) => place(&passed.path, line),
+            None => passed.path.display().to_string(),
+        };
+        writeln!(out, "  {}: {}", harmless(&at), harmless(&passed.reason))?;
+    }
+    if named.len() > most {
+        writeln!(out, "  and {} more, which --all lists", named.len() - most)?;
+    }
+    writeln!(out)
+}
+
+/// A copy, and what is changed in it: of each body the entries that are others, and how far it is moved.
+fn repairs(out: &mut impl Write, repair: &Repair) -> io::Result<()> {
+    let verb = if repair.written { "wrote" } else { "unchanged:" };
+    let copy = harmless(&repair.copy.display().to_string());
+    let bodies = count(repair.bodies.len(), "body repaired", "bodies repaired");
+    writeln!(out, "{verb} {copy} ({bodies})")?;
+    for Repaired { change, proposal } in &repair.bodies {
+        writeln!(out, "  {}, line {}:", fit(change.name()), change.line())?;
+        if let Some(proposal) = proposal {
+            writeln!(
+                out,
+                "    first see whether the signs of its products are those of the other convention; \
+                 --repair=flip writes"
+            )?;
+            writeln!(out, "      {} ({})", entries(proposal), distance(proposal))?;
+            writeln!(out, "    written, the nearest:")?;
+        }
+        let indent = if proposal.is_some() { "      " } else { "    " };
+        writeln!(out, "{indent}{} ({})", entries(change), distance(change))?;
+    }
+    writeln!(out)
+}
+
+/// The entries that change: `ixx 1 -> 1.333`.
+fn entries(change: &Change) -> String {
+    const AXES: [char; 3] = ['x', 'y', 'z'];
+    let (before, after) = (change.before(), change.after());
+    let is_symmetric = |m: &Matrix3<f64>| *m == m.transpose();
+    let both = is_symmetric(before) && is_symmetric(after);
+    let places = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
+    let changed = places.filter(|(i, j)| before[(*i, *j)] != after[(*i, *j)] && (!both || i <= j));
+    let words = changed.map(|(i, j)| {
+        let (old, new) = (before[(i, j)], after[(i, j)]);
+        let (mut old_text, mut new_text) = (short(old), short(new));
+        if old_text == new_text {
+            (old_text, new_text) = (format!("{old:.10e}"), format!("{new:.10e}"));
+        }
+        format!("i{}{} {old_text} -> {new_text}", AXES[i], AXES[j])
+    });
+    words.collect::<Vec<_>>().join(", ")
+}
+
+/// How far an inertia is moved: the Frobenius norm, and its share of the inertia.
+fn distance(change: &Change) -> String {
+    let (far, percent) = (short(change.distance_kg_m2()), short(change.distance_percent()));
+    let how = match change.remedy() {
+        Remedy::Nearest => "moved by",
+        Remedy::FlipProducts => "products flipped, moved by",
+    };
+    format!("{how} {far} kg·m², {percent} %")
 }
 
 fn count(n: usize, one: &str, many: &str) -> String {
@@ -132,29 +225,31 @@ fn count(n: usize, one: &str, many: &str) -> String {
 }
 
 fn summary(out: &mut impl Write, report: &Report, arguments: &CheckArgs) -> io::Result<()> {
-    for repair in &report.repairs {
-        let verb = if repair.written { "wrote" } else { "unchanged:" };
-        let copy = harmless(&repair.copy.display().to_string());
-        writeln!(
-            out,
-            "{verb} {copy} ({})",
-            count(repair.bodies, "body repaired", "bodies repaired")
-        )?;
-    }
     let mut words = vec![format!(
         "{}, {}: {} impossible",
         count(report.files, "file", "files"),
         count(report.bodies, "body", "bodies"),
         report.impossible
     )];
+    if report.flipped > 0 {
+        words.push(format!("{} of them possible with flipped products", report.flipped));
+    }
     if report.no_mass > 0 {
         words.push(format!("{} with no mass or a negative one", report.no_mass));
     }
     if report.unread > 0 {
         words.push(format!("{} unread", report.unread));
     }
-    if !report.file_errors.is_empty() {
-        words.push(count(report.file_errors.len(), "file unreadable", "files unreadable"));
+    let unreadable = report.refused.iter().map(|refused| &refused.path).collect::<HashSet<_>>();
+    if !unreadable.is_empty() {
+        words.push(count(unreadable.len(), "file unreadable", "files unreadable"));
+    }
+    let (may_hold, others) = (report.files_passed(true), report.files_passed(false));
+    if may_hold > 0 {
+        words.push(count(may_hold, "file passed over", "files passed over"));
+    }
+    if others > 0 {
+        words.push(count(others, "file without inertias", "files without inertias"));
     }
     writeln!(out, "{} (tolerance {:e})", words.join(", "), arguments.tolerance)
 }

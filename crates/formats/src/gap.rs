@@ -1,0 +1,110 @@
+//! Parts of a file that were not read though the rest of it was, and why.
+
+use std::fmt;
+
+/// Why a part of a file was not read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum GapKind {
+    /// Entities that the file declares itself: they may stand for bodies, and are not expanded.
+    Entities,
+    /// Macros of xacro, and inertias that are written with its expressions.
+    Macros,
+    /// Other files that this one includes.
+    Included,
+    /// Inertias that the simulator computes from shapes (`auto="true"` in SDF).
+    Computed,
+    /// Inertias where the format has none.
+    Misplaced,
+}
+
+/// Parts of one kind that were not read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gap {
+    kind: GapKind,
+    line: usize,
+    count: usize,
+}
+
+impl Gap {
+    /// Why they were not read.
+    #[must_use]
+    pub fn kind(&self) -> GapKind {
+        self.kind
+    }
+
+    /// Line of the first, from 1.
+    #[must_use]
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Whether the file is broken for every reader that is like this one, and not only left out in
+    /// part: that what it holds is not known is an error then.
+    #[must_use]
+    pub fn is_error(&self) -> bool {
+        match self.kind {
+            GapKind::Entities => true,
+            GapKind::Macros | GapKind::Included | GapKind::Computed | GapKind::Misplaced => false,
+        }
+    }
+}
+
+impl fmt::Display for Gap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let n = self.count;
+        let count = |one: &str, many: &str| {
+            if n == 1 { format!("1 {one}") } else { format!("{n} {many}") }
+        };
+        match self.kind {
+            GapKind::Entities => write!(
+                f,
+                "{} not expanded: what it stands for may hold bodies",
+                count("reference to an entity of the file is", "references to entities are")
+            ),
+            GapKind::Macros => write!(
+                f,
+                "{}: expand the file first, with `xacro file.xacro | gyradius check -`",
+                count("macro or expression", "macros and expressions")
+            ),
+            GapKind::Included => {
+                write!(f, "{} not followed", count("included file is", "included files are"))
+            }
+            GapKind::Computed => write!(
+                f,
+                "{} computed from shapes by the simulator",
+                count("inertia is", "inertias are")
+            ),
+            GapKind::Misplaced => write!(
+                f,
+                "{} where this format has none",
+                count("inertia stands", "inertias stand")
+            ),
+        }
+    }
+}
+
+/// The gaps of a file as they are found, those of one kind together.
+#[derive(Debug, Default)]
+pub(crate) struct Gaps(Vec<Gap>);
+
+impl Gaps {
+    pub(crate) fn add(&mut self, kind: GapKind, line: usize) {
+        match self.0.iter_mut().find(|gap| gap.kind == kind) {
+            Some(gap) => gap.count += 1,
+            None => self.0.push(Gap { kind, line, count: 1 }),
+        }
+    }
+
+    /// In the order of their first lines.
+    pub(crate) fn into_vec(mut self) -> Vec<Gap> {
+        self.0.sort_by_key(|gap| gap.line);
+        self.0
+    }
+}
