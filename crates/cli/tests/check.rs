@@ -4,8 +4,9 @@
 use serde_json::Value;
 use std::{
     fs,
+    io::Write,
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::{Command, Output, Stdio},
 };
 use tempfile::TempDir;
 
@@ -107,14 +108,15 @@ fn exit_codes_tell_findings_from_failures() {
     assert_eq!((code, out.lines().count()), (0, 1), "{out}");
     assert_eq!(shell.check(&["good.urdf", "bad.urdf"]).0, 1);
     let (code, out, messages) = shell.check(&["broken.urdf", "bad.urdf"]);
-    assert_eq!(code, 2, "{messages}");
+    assert_eq!(code, 1, "what is found is not hidden by what is not read: {messages}");
+    assert_eq!(shell.check(&["broken.urdf", "good.urdf"]).0, 2);
     assert!(messages.starts_with("error: broken.urdf:3: malformed"), "{messages}");
     assert!(
         out.contains("50.0 %") && out.contains("1 file unreadable"),
         "the others are done: {out}"
     );
     let (code, out, _) = shell.check(&["half.urdf"]);
-    assert_eq!(code, 2);
+    assert_eq!(code, 1);
     assert!(out.contains("iyy = \"${m}\" is not a number but an expression"), "{out}");
     assert!(out.contains("1 impossible, 1 unread"), "{out}");
     assert_eq!(shell.check(&["nowhere.urdf"]).0, 2);
@@ -237,11 +239,12 @@ fn json_is_complete_and_alone_on_standard_output() {
     shell.write("r.urdf", robot(&[good(), bad(), link("x", "1", ["", "1", "1"], NONE)]));
     shell.write("broken.urdf", "<robot>");
     let (code, json) = shell.json(&["."]);
-    assert_eq!(code, 2);
+    assert_eq!(code, 1);
     assert_eq!(json["schema"], 1);
     assert_eq!(json["tolerance"], 1e-6);
     let summary = serde_json::json!(
-        {"files": 1, "bodies": 3, "impossible": 1, "no_mass": 0, "unread": 1, "errors": 1}
+        {"files": 1, "bodies": 3, "impossible": 1, "possible_with_flipped_products": 0,
+         "no_mass": 0, "unread": 1, "errors": 1, "passed_over": 0, "without_inertia": 0}
     );
     assert_eq!(json["summary"], summary);
     let body = &json["bodies"][0];
@@ -275,7 +278,8 @@ fn the_sign_of_products_can_be_flipped_and_is_guessed() {
     shell.write("r.urdf", robot(&[link("strut", "1", ["2", "2", "2"], ["1", "1", "1"])]));
     let (code, out, _) = shell.check(&["r.urdf"]);
     assert_eq!(code, 1);
-    assert!(out.contains("signs of its products flipped: see --flip-products"), "{out}");
+    assert!(out.contains("with the signs of its products flipped, the commonest slip"), "{out}");
+    assert!(out.contains("1 impossible, 1 of them possible with flipped products"), "{out}");
     assert_eq!(shell.check(&["r.urdf", "--flip-products"]).0, 0);
 }
 
@@ -311,6 +315,199 @@ fn names_from_files_do_not_command_the_terminal() {
     assert!(!out.contains('\u{1b}'), "{out:?}");
 }
 
+/// What a file in a folder makes of the exit code and where it is named: every kind, in every
+/// company.
+#[test]
+fn every_file_of_every_mixture_is_accounted_for() {
+    const IMPOSSIBLE: u8 = 1;
+    const REFUSED: u8 = 2;
+    let macros = "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:arm m='1'/>\
+                  <link name='a'><inertial><mass value='${m}'/></inertial></link></robot>";
+    let entity = "<!DOCTYPE robot [<!ENTITY arm \"<link/>\">]><robot>&arm;</robot>";
+    // Name, content, what it does to the exit code, bodies, and the list that names it.
+    let kinds: [(&str, String, u8, usize, &str); 8] = [
+        ("good.urdf", robot(&[good()]), 0, 1, "bodies"),
+        ("bad.urdf", robot(&[bad()]), IMPOSSIBLE, 1, "bodies"),
+        ("dummy.urdf", robot(&[link("d", "0", ["1", "1", "1"], NONE)]), IMPOSSIBLE, 1, "bodies"),
+        ("unread.urdf", robot(&[link("u", "1", ["x", "1", "1"], NONE)]), REFUSED, 1, "bodies"),
+        ("broken.urdf", "<robot>".to_owned(), REFUSED, 0, "errors"),
+        ("entity.urdf", entity.to_owned(), REFUSED, 0, "errors"),
+        ("macros.xacro", macros.to_owned(), 0, 0, "passed_over"),
+        ("arm.usd", "PXR-USDC".to_owned(), 0, 0, "passed_over"),
+    ];
+    for mixture in 0_usize..1 << kinds.len() {
+        let shell = Shell::new();
+        let there: Vec<_> = kinds
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| mixture >> i & 1 == 1)
+            .map(|(_, k)| k)
+            .collect();
+        for (name, text, ..) in &there {
+            shell.write(&format!("in/{name}"), text);
+        }
+        shell.write("in/package.xml", "<package/>");
+        let (code, json) = shell.json(&["in", "--all"]);
+        let has = |effect| there.iter().any(|kind| kind.2 == effect);
+        let bodies: usize = there.iter().map(|kind| kind.3).sum();
+        let expected = match (has(IMPOSSIBLE), has(REFUSED) || bodies == 0) {
+            (true, _) => 1,
+            (false, true) => 2,
+            (false, false) => 0,
+        };
+        assert_eq!(code, expected, "{json:#}");
+        assert_eq!(json["summary"]["bodies"], bodies, "{json:#}");
+        for (name, _, _, _, list) in there {
+            let named = json[*list].as_array().unwrap().iter().any(|entry| {
+                entry["file"].as_str().unwrap().ends_with(name) && entry["may_hold_bodies"] != false
+            });
+            assert!(named, "{name} in {list}: {json:#}");
+        }
+        assert_eq!(json["summary"]["without_inertia"], 1, "{json:#}");
+    }
+}
+
+#[test]
+fn an_empty_folder_and_a_file_without_bodies_are_errors() {
+    let shell = Shell::new();
+    fs::create_dir(shell.path("empty")).unwrap();
+    shell.write("good.urdf", robot(&[good()]));
+    shell.write("frames.urdf", "<robot><link name='a'/></robot>");
+    for (arguments, words) in [
+        (&["empty"][..], "empty: no file in it has an extension that is read"),
+        (&["empty", "good.urdf"], "empty: no file in it has"),
+        (&["frames.urdf"], "frames.urdf: no inertia of a body was found"),
+    ] {
+        let (code, _, messages) = shell.check(arguments);
+        assert!(code == 2 && messages.contains(words), "{arguments:?}: {messages}");
+    }
+    assert_eq!(shell.check(&["frames.urdf", "good.urdf"]).0, 0);
+}
+
+#[test]
+fn what_is_passed_over_is_named_and_what_is_included_and_checked_is_not() {
+    let shell = Shell::new();
+    let body = "<body name='b'><inertial mass='1' diaginertia='1 1 3'/></body>";
+    shell.write("m/scene.xml", "<mujoco>\n<include file='parts/arm.xml'/></mujoco>");
+    shell.write("m/parts/arm.xml", format!("<arm>{body}</arm>"));
+    shell.write("m/arm.mjb", "x");
+    shell.write("m/notes.json", "{\"inertia\": 3}");
+    let (code, out, _) = shell.check(&["m"]);
+    assert_eq!(code, 1, "a root of any name is read: {out}");
+    assert!(out.contains("passed over:\n") && out.contains("arm.mjb: MuJoCo's binary"), "{out}");
+    assert!(out.contains("notes.json: not a format") && !out.contains("scene.xml"), "{out}");
+    assert!(out.contains("1 impossible, 2 files passed over, 1 file without inertias"), "{out}");
+    assert!(shell.check(&["m", "--all"]).1.contains("scene.xml: there is no inertia in it"));
+    let (code, out, messages) = shell.check(&["m/scene.xml"]);
+    assert_eq!(code, 2, "{messages}");
+    assert!(out.contains("scene.xml:2: 1 included file is not followed: parts/arm.xml"), "{out}");
+}
+
+impl Shell {
+    fn pipe(&self, input: &[u8], arguments: &[&str]) -> (i32, String, String) {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_gyradius"))
+            .current_dir(self.0.path())
+            .arg("check")
+            .args(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // It may stop reading before all is written.
+        let _ = child.stdin.take().unwrap().write_all(input);
+        let output = child.wait_with_output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    }
+}
+
+#[test]
+fn standard_input_is_read_in_every_format_and_limited() {
+    let shell = Shell::new();
+    let inertia = "inertia_kg_m2 = [[1, 0, 0], [0, 1, 0], [0, 0, 3]]";
+    let json = "{\"name\": \"bad\", \"inertia_kg_m2\": [[1, 0, 0], [0, 1, 0], [0, 0, 3]]}";
+    for text in [
+        robot(&[bad()]),
+        "<mujoco><body name='bad'><inertial mass='1' diaginertia='1 1 3'/></body></mujoco>".into(),
+        "name,ixx,iyy,izz\nbad,1,1,3\n".into(),
+        format!("[bad]\n{inertia}\n"),
+        format!("[[bodies]]\nname = 'bad'\n{inertia}\n"),
+        json.into(),
+        format!("[{json}]"),
+    ] {
+        let (code, out, messages) = shell.pipe(text.as_bytes(), &["-"]);
+        assert_eq!(code, 1, "{text}: {messages}");
+        assert!(out.contains("50.0 %  bad") && out.contains("-:"), "{text}: {out}");
+    }
+    for (input, words) in [
+        (&b""[..], "-: it is empty"),
+        (b"words", "a table must have the columns"),
+        (b"<robot/>", "no inertia of a body was found"),
+        (b"{\"a\": ", "-:1: malformed"),
+        (&vec![b' '; (64 << 20) + 1], "larger than 64 MiB"),
+    ] {
+        let (code, _, messages) = shell.pipe(input, &["-", "-"]);
+        assert!(code == 2 && messages.contains(words), "{words}: {messages}");
+    }
+    let (code, _, messages) = shell.pipe(robot(&[bad()]).as_bytes(), &["-", "--repair"]);
+    assert!(code == 2 && messages.contains("--repair writes beside a file"), "{messages}");
+    assert_eq!(fs::read_dir(shell.path(".")).unwrap().count(), 0);
+}
+
+#[test]
+fn a_repair_says_what_it_changes_and_by_how_much() {
+    let shell = Shell::new();
+    let strut = link("strut", "1", ["2", "2", "2"], ["1", "1", "1"]);
+    shell.write("r.urdf", robot(&[bad(), good(), strut]));
+    let (code, out, _) = shell.check(&["r.urdf", "--repair"]);
+    assert_eq!(code, 1);
+    // A third of what is missing for each moment: 1/√3 in all, of √11.
+    assert!(out.contains("ixx 1 -> 1.333, iyy 1 -> 1.333, izz 3 -> 2.667 (moved by 0.5774 kg·m²"));
+    assert!(out.contains("17.41 %)"), "{out}");
+    let first = out.find("ixy 1 -> -1, ixz 1 -> -1, iyz 1 -> -1 (products flipped, moved by 4.899");
+    let then = out.find("written, the nearest:");
+    assert!(first.is_some() && first < then, "{out}");
+    let (_, json) = shell.json(&["r.urdf", "--repair"]);
+    let changes = json["repairs"][0]["changes"].as_array().unwrap();
+    assert_eq!(changes.len(), 2);
+    assert_eq!(changes[0]["name"], "bad");
+    assert_eq!(changes[0]["before_kg_m2"][2][2], 3.0);
+    assert!((changes[0]["after_kg_m2"][2][2].as_f64().unwrap() - 8.0 / 3.0).abs() < 1e-7);
+    assert!(changes[0]["proposal"].is_null());
+    assert_eq!(changes[1]["remedy"], "nearest");
+    assert_eq!(changes[1]["proposal"]["remedy"], "flip");
+    assert_eq!(changes[1]["proposal"]["after_kg_m2"][0], serde_json::json!([2.0, -1.0, -1.0]));
+    // And so it is written where it is asked for, the others as before.
+    assert_eq!(shell.check(&["r.urdf", "--repair=flip", "--force"]).0, 1);
+    let copy = shell.read("r.repaired.urdf");
+    assert!(copy.contains("izz=\"2\" ixy=\"-1.0\" ixz=\"-1.0\" iyz=\"-1.0\""), "{copy}");
+    assert!(copy.contains("ixx=\"1.33333"), "{copy}");
+    assert_eq!(shell.check(&["r.repaired.urdf", "--tolerance", "0"]).0, 0);
+    // Nothing is no repair.
+    shell.write("n.urdf", robot(&[link("less", "1", ["-1", "-1", "-1"], NONE)]));
+    let (code, _, messages) = shell.check(&["n.urdf", "--repair"]);
+    assert!(code == 2 && messages.contains("0, 0, 0, which is none"), "{messages}");
+    assert!(!shell.path("n.repaired.urdf").exists());
+}
+
+/// What nobody else may read is not copied for all to read.
+#[cfg(unix)]
+#[test]
+fn a_copy_may_be_read_by_whom_the_original_may() {
+    use std::os::unix::fs::PermissionsExt;
+    for mode in [0o600, 0o640, 0o644, 0o444, 0o400, 0o664, 0o755] {
+        let shell = Shell::new();
+        shell.write("r.urdf", robot(&[bad()]));
+        fs::set_permissions(shell.path("r.urdf"), fs::Permissions::from_mode(mode)).unwrap();
+        for arguments in [&["r.urdf", "--repair"][..], &["r.urdf", "--repair", "--force"]] {
+            assert_eq!(shell.check(arguments).0, 1);
+            let copied = fs::metadata(shell.path("r.repaired.urdf")).unwrap().permissions().mode();
+            assert_eq!(copied & 0o777, mode, "{copied:o}");
+        }
+    }
+}
+
 #[test]
 fn help_has_examples() {
     let shell = Shell::new();
@@ -330,7 +527,7 @@ fn pipes_and_loops_do_not_hang_it() {
     std::os::unix::fs::symlink(shell.path("."), shell.path("a/loop")).unwrap();
     std::os::unix::fs::symlink("itself.urdf", shell.path("itself.urdf")).unwrap();
     let (code, out, messages) = shell.check(&["."]);
-    assert_eq!(code, 2, "a link to itself cannot be read");
+    assert_eq!(code, 1, "a link to itself cannot be read, which hides nothing");
     assert!(out.contains("1 file, 1 body: 1 impossible"), "{out}");
     assert_eq!(messages.lines().count(), 1, "{messages}");
     assert!(shell.check(&["/dev/zero"]).2.contains("not a regular file"));

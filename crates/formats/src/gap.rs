@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::body::shortened;
+
 /// Why a part of a file was not read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -19,11 +21,12 @@ pub enum GapKind {
 }
 
 /// Parts of one kind that were not read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Gap {
     kind: GapKind,
     line: usize,
     count: usize,
+    files: Vec<String>,
 }
 
 impl Gap {
@@ -43,6 +46,12 @@ impl Gap {
     #[must_use]
     pub fn count(&self) -> usize {
         self.count
+    }
+
+    /// The included files, as they are written.
+    #[must_use]
+    pub fn files(&self) -> &[String] {
+        &self.files
     }
 
     /// Whether the file is broken for every reader that is like this one, and not only left out in
@@ -74,7 +83,10 @@ impl fmt::Display for Gap {
                 count("macro or expression", "macros and expressions")
             ),
             GapKind::Included => {
-                write!(f, "{} not followed", count("included file is", "included files are"))
+                write!(f, "{} not followed", count("included file is", "included files are"))?;
+                let first = self.files.first().map(|file| shortened(file));
+                first.map_or(Ok(()), |first| write!(f, ": {first}"))?;
+                f.write_str(if self.files.len() > 1 { " and others" } else { "" })
             }
             GapKind::Computed => write!(
                 f,
@@ -96,9 +108,18 @@ pub(crate) struct Gaps(Vec<Gap>);
 
 impl Gaps {
     pub(crate) fn add(&mut self, kind: GapKind, line: usize) {
+        self.add_file(kind, line, None);
+    }
+
+    /// As [`add`](Self::add), of a part that is in another file, if it says which.
+    pub(crate) fn add_file(&mut self, kind: GapKind, line: usize, file: Option<&str>) {
+        let files = file.map(str::to_owned).into_iter();
         match self.0.iter_mut().find(|gap| gap.kind == kind) {
-            Some(gap) => gap.count += 1,
-            None => self.0.push(Gap { kind, line, count: 1 }),
+            Some(gap) => {
+                gap.count += 1;
+                gap.files.extend(files);
+            }
+            None => self.0.push(Gap { kind, line, count: 1, files: files.collect() }),
         }
     }
 

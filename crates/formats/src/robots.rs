@@ -104,7 +104,9 @@ pub(crate) fn read(
             }
             bodies.push(Body::new(node.name_above(), line, reading));
         } else if includes(node, format) {
-            gaps.add(GapKind::Included, node.line());
+            let file = ["file", "href"].iter().find_map(|name| node.attribute(name));
+            let file = file.or_else(|| Some(node.child("uri")?.text()));
+            gaps.add_file(GapKind::Included, node.line(), file);
         } else if is_stray(node) {
             gaps.add(GapKind::Misplaced, node.line());
         }

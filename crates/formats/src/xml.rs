@@ -263,6 +263,11 @@ impl<'t, 'a> Node<'t, 'a> {
         self.element().attributes.iter().map(|attribute| attribute.name)
     }
 
+    /// The text in it, up to its first child.
+    pub(crate) fn text(self) -> &'a str {
+        self.element().text.trim()
+    }
+
     /// Whether there is text in it, or what may be some.
     pub(crate) fn has_text(self) -> bool {
         !self.element().text.is_empty() || self.element().broken

@@ -7,6 +7,7 @@ use gyradius_formats::{
 use std::{
     cmp::Ordering,
     collections::HashSet,
+    fs,
     path::{Path, PathBuf},
 };
 
@@ -164,7 +165,7 @@ impl Report {
 
     fn add_file(&mut self, file: &InertiaFile, arguments: &CheckArgs, originals: &[PathBuf]) {
         self.files += 1;
-        self.add_gaps(file);
+        self.add_gaps(file, originals);
         let mut impossible = Vec::new();
         for (index, body) in file.bodies().iter().enumerate() {
             let judgement = body
@@ -197,16 +198,24 @@ impl Report {
         }
     }
 
-    fn add_gaps(&mut self, file: &InertiaFile) {
+    fn add_gaps(&mut self, file: &InertiaFile, originals: &[PathBuf]) {
         let path = || file.path().to_owned();
-        if file.bodies().is_empty() && file.gaps().is_empty() {
+        // Included files that are checked themselves are not passed over.
+        let folder = file.path().parent().unwrap_or(Path::new(""));
+        let is_checked = |name: &String| {
+            fs::canonicalize(folder.join(name)).is_ok_and(|path| originals.contains(&path))
+        };
+        let is_open =
+            |gap: &&Gap| gap.files().len() < gap.count() || !gap.files().iter().all(is_checked);
+        let open: Vec<&Gap> = file.gaps().iter().filter(is_open).collect();
+        if file.bodies().is_empty() && open.is_empty() {
             let reason = "there is no inertia in it".to_owned();
             self.passed.push(Passed { path: path(), line: None, reason, may_hold: false });
         }
-        for gap in file.gaps() {
+        for gap in open {
             let line = Some(gap.line());
             if gap.is_error() {
-                self.refused.push(Refused { path: path(), line, message: Gap::to_string(gap) });
+                self.refused.push(Refused { path: path(), line, message: gap.to_string() });
             } else {
                 let reason = gap.to_string();
                 self.passed.push(Passed { path: path(), line, reason, may_hold: true });
