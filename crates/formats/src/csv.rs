@@ -272,7 +272,7 @@ fn stated_products(source: &str, end: usize) -> Option<Products> {
     let stated = comments.filter_map(|comment| comment.trim_start().strip_prefix("products"));
     stated
         .filter_map(|rest| rest.split(['=', ' ', ',', '"', '\'']).find_map(Products::parse))
-        .last()
+        .next_back()
 }
 
 /// What there is most of in a header; a comma where nothing is.

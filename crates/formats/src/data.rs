@@ -5,7 +5,10 @@
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 use std::{borrow::Cow, collections::HashSet, fmt, ops::Range};
-use toml::de::{DeTable, DeValue};
+use toml::{
+    Spanned,
+    de::{DeTable, DeValue},
+};
 
 use crate::{
     Body, BodyError, FileProblem, GapKind, MAX_BODIES, MAX_DEPTH, Products,
@@ -288,14 +291,14 @@ fn all_in_toml(root: &DeTable<'_>) -> Vec<usize> {
         }
     };
     look(root, &mut found);
-    open.extend(root.values().map(|item| item.get_ref()));
+    open.extend(root.values().map(Spanned::get_ref));
     while let Some(value) = open.pop() {
         match value {
             DeValue::Table(table) => {
                 look(table, &mut found);
-                open.extend(table.values().map(|item| item.get_ref()));
+                open.extend(table.values().map(Spanned::get_ref));
             }
-            DeValue::Array(items) => open.extend(items.iter().map(|item| item.get_ref())),
+            DeValue::Array(items) => open.extend(items.iter().map(Spanned::get_ref)),
             DeValue::String(_)
             | DeValue::Integer(_)
             | DeValue::Float(_)

@@ -47,7 +47,7 @@ fn form_of(inertial: Node<'_, '_>) -> Option<Format> {
     let is_urdf = inertial.attribute("mass").is_none()
         && mass.is_some_and(|mass| mass.attribute("value").is_some() && !mass.has_text());
     let is_sdf = mass.is_some_and(|mass| mass.has_text() && mass.attribute("value").is_none())
-        || inertia.is_some_and(|inertia| inertia.children().any(|entry| entry.has_text()))
+        || inertia.is_some_and(|inertia| inertia.children().any(Node::has_text))
         || (inertial.attribute("mass").is_some() && inertia.is_some());
     match (is_mjcf, is_urdf, is_sdf) {
         (true, false, false) => Some(Format::Mjcf),

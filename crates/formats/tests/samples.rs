@@ -3,7 +3,6 @@
 
 use gyradius_formats::{
     Body, InertiaFile, Products, Remedy, RepairError, TOLERANCE, copy_path, judge, write_copy,
-    write_copy_of,
 };
 use gyradius_inertia::InertiaMatrix;
 use proptest::prelude::*;
@@ -264,5 +263,94 @@ proptest! {
             }
         }
         exercise(name, bytes);
+    }
+}
+
+/// Six numbers in each format, with products as the file has them.
+fn written(format: usize, six: &[f64; 6]) -> (&'static str, String) {
+    let [xx, yy, zz, xy, xz, yz] = six;
+    match format {
+        0 => (
+            "a.urdf",
+            format!(
+                "<robot><link name='b'><inertial><mass value='1'/><inertia ixx='{xx}' iyy='{yy}' \
+                 izz='{zz}' ixy='{xy}' ixz='{xz}' iyz='{yz}'/></inertial></link></robot>"
+            ),
+        ),
+        1 => (
+            "a.xml",
+            format!(
+                "<mujoco><body name='b'><inertial mass='1' fullinertia='{xx} {yy} {zz} {xy} {xz} \
+                 {yz}'/></body></mujoco>"
+            ),
+        ),
+        2 => (
+            "a.csv",
+            format!(
+                "name,ixx [g mm2],iyy,izz,ixy,ixz,iyz\nb,{xx:e},{yy:e},{zz:e},{xy:e},{xz:e},{yz:e}\n"
+            ),
+        ),
+        _ => (
+            "a.toml",
+            format!(
+                "[b]\ninertia_kg_m2 = [[{xx:?}, {xy:?}, {xz:?}], [{xy:?}, {yy:?}, {yz:?}], \
+                 [{xz:?}, {yz:?}, {zz:?}]]"
+            ),
+        ),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1500))]
+
+    /// What a change says is what the copy has, and how far that is; flipped products are flipped and
+    /// nothing else where that is enough; and nothing but a body without inertia is left unrepaired.
+    #[test]
+    fn changes_are_those_of_the_copy(
+        moments in prop::array::uniform3(-0.5..3.0_f64),
+        products in prop::array::uniform3(-1.5..1.5_f64),
+        format in 0_usize..4,
+        integrals in any::<bool>(),
+        flip in any::<bool>(),
+    ) {
+        let [xx, yy, zz] = moments;
+        let [xy, xz, yz] = products;
+        let (name, text) = written(format, &[xx, yy, zz, xy, xz, yz]);
+        let products = if integrals { Products::Integrals } else { Products::TensorEntries };
+        let file = parse(name, text.as_bytes(), products);
+        let remedy = if flip { Remedy::FlipProducts } else { Remedy::Nearest };
+        let before = *file.bodies()[0].inertia().unwrap();
+        let flipped = before.map_with_location(|i, j, x| if i == j { x } else { -x });
+        if InertiaMatrix::new(before).unwrap().is_realizable() {
+            return Ok(());
+        }
+        let change = match file.change(0, remedy) {
+            // The polar cone of the second moments: no eigenvalue of the inertia is above zero.
+            Err(RepairError::NothingLeft { .. }) => {
+                let eigenvalues = before.symmetric_eigenvalues();
+                prop_assert!(eigenvalues.max() < 1e-6 * before.amax(), "{before}");
+                return Ok(());
+            }
+            change => change.unwrap().unwrap(),
+        };
+        let copy = parse(name, &file.repaired(&[(0, remedy)]).unwrap(), products);
+        let after = *copy.bodies()[0].inertia().unwrap();
+        prop_assert_eq!(change.before(), &before);
+        prop_assert!((change.after() - after).amax() <= 1e-15 * after.amax());
+        prop_assert!(InertiaMatrix::new(after).unwrap().is_realizable());
+        let distance = (after - before).norm();
+        prop_assert!((change.distance_kg_m2() - distance).abs() <= 1e-12 * distance);
+        let percent = 100.0 * distance / before.norm();
+        prop_assert!((change.distance_percent() - percent).abs() <= 1e-10 * percent);
+        if flip && InertiaMatrix::new(flipped).unwrap().is_realizable() {
+            prop_assert!((after - flipped).amax() <= 1e-15 * flipped.amax(), "{after} {flipped}");
+        } else if !flip {
+            // No realizable matrix that is found along the way to a ball is nearer.
+            for share in [0.01, 0.1, 0.3] {
+                let ball = nalgebra::Matrix3::from_diagonal_element(after.trace() / 3.0);
+                let other = after + share * (ball - after);
+                prop_assert!((other - before).norm() >= distance * (1.0 - 1e-6));
+            }
+        }
     }
 }

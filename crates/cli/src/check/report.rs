@@ -1,8 +1,8 @@
 //! What is said of all files: bodies, what was not read, what was repaired, and the exit code.
 
 use gyradius_formats::{
-    Bearing, Body, Change, FileError, Format, Found, Gap, InertiaFile, Judgement, Note,
-    RealizabilityReport, Remedy, RepairError, copy_path, judge, write_copy_of,
+    Bearing, Body, Change, FileError, FileProblem, Format, Found, Gap, InertiaFile, Judgement,
+    Note, RealizabilityReport, Remedy, RepairError, copy_path, judge, write_copy_of,
 };
 use std::{
     cmp::Ordering,
@@ -90,6 +90,8 @@ pub(super) struct Refused {
     pub(super) path: PathBuf,
     pub(super) line: Option<usize>,
     pub(super) message: String,
+    /// False where there was nothing to read.
+    pub(super) is_file: bool,
 }
 
 /// A file that was not read, as a whole or in a part, and is no error.
@@ -148,6 +150,7 @@ impl Report {
             path: error.path().to_owned(),
             line: error.line(),
             message: error.problem().to_string(),
+            is_file: !matches!(error.problem(), FileProblem::EmptyFolder),
         });
     }
 
@@ -158,6 +161,7 @@ impl Report {
                 path: path.clone(),
                 line: None,
                 message: "no inertia of a body was found".to_owned(),
+                is_file: false,
             }));
         }
         self.findings.sort_by(Finding::order);
@@ -215,7 +219,8 @@ impl Report {
         for gap in open {
             let line = Some(gap.line());
             if gap.is_error() {
-                self.refused.push(Refused { path: path(), line, message: gap.to_string() });
+                let message = gap.to_string();
+                self.refused.push(Refused { path: path(), line, message, is_file: true });
             } else {
                 let reason = gap.to_string();
                 self.passed.push(Passed { path: path(), line, reason, may_hold: true });

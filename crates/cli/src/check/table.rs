@@ -240,7 +240,8 @@ fn summary(out: &mut impl Write, report: &Report, arguments: &CheckArgs) -> io::
     if report.unread > 0 {
         words.push(format!("{} unread", report.unread));
     }
-    let unreadable = report.refused.iter().map(|refused| &refused.path).collect::<HashSet<_>>();
+    let refused = report.refused.iter().filter(|refused| refused.is_file);
+    let unreadable: HashSet<_> = refused.map(|refused| &refused.path).collect();
     if !unreadable.is_empty() {
         words.push(count(unreadable.len(), "file unreadable", "files unreadable"));
     }
