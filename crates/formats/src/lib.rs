@@ -2,6 +2,7 @@
 //!
 //! [`InertiaFile::read`] gives every body of a file with its line and its inertia as a matrix about
 //! the mass centre, products as tensor entries (I₁₂ = −∫ x₁x₂ dm) whatever the file's convention.
+//! [`InertiaFile::gaps`] says what of the file was not read.
 //! [`judge`] says whether any body can have it, and by how much not. [`InertiaFile::repaired`]
 //! gives a copy of the file in which only the offending numbers differ.
 //!
