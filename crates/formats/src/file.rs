@@ -183,6 +183,9 @@ fn parse(
             return Err(FileProblem::Unknown { message }.into());
         }
     };
+    if like == "toml" && bytes.len() > MAX_TOML_BYTES {
+        return Err(FileProblem::TooLarge { limit: MAX_TOML_BYTES }.into());
+    }
     let (format, (bodies, gaps)) = match like {
         "csv" => (Format::Csv, (csv::read(&text, products)?, Gaps::default())),
         "toml" => (Format::Toml, data::toml(&text, products)?),

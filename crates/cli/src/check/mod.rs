@@ -34,8 +34,9 @@ pub(crate) fn check(arguments: &CheckArgs) -> ExitCode {
     let (mut found, errors) = find(&paths);
     let mut report = Report::default();
     errors.iter().for_each(|error| report.refuse(error));
-    let originals: Vec<PathBuf> =
+    let mut originals: Vec<PathBuf> =
         found.iter().filter_map(|found| fs::canonicalize(&found.path).ok()).collect();
+    originals.sort_unstable();
     // Once, however often it is named.
     found.extend(inputs.into_iter().take(1).map(|path| Found { path, named: true }));
     let products =

@@ -123,7 +123,7 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// Adds what became of a file.
+    /// Adds what became of a file. `originals` are the canonical paths of all files, sorted.
     pub(super) fn add(
         &mut self,
         found: &Found,
@@ -207,7 +207,8 @@ impl Report {
         // Included files that are checked themselves are not passed over.
         let folder = file.path().parent().unwrap_or(Path::new(""));
         let is_checked = |name: &String| {
-            fs::canonicalize(folder.join(name)).is_ok_and(|path| originals.contains(&path))
+            fs::canonicalize(folder.join(name))
+                .is_ok_and(|path| originals.binary_search(&path).is_ok())
         };
         let is_open =
             |gap: &&Gap| gap.files().len() < gap.count() || !gap.files().iter().all(is_checked);
