@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let numbers: Vec<_> = x.iter().map(|x| format!("{x:e}")).collect();
         format!("[{}]", numbers.join(", "))
     };
-    let times: Vec<_> = outcome.release_times().collect();
+    let times: Vec<_> = outcome.release_times().flatten().collect();
     let (p, l) = (outcome.payload().state(), outcome.stage().state());
     let mut best = f64::INFINITY;
     for _ in 0..2000 {

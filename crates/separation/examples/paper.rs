@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let metrics = outcome.spin_metrics(&Vector3::x_axis());
     let degrees = |angle: Option<f64>| angle.map_or(f64::NAN, f64::to_degrees);
 
-    println!("springs let go at   {:.6?} s", outcome.release_times().collect::<Vec<_>>());
+    println!("springs let go at   {:.6?} s", outcome.release_times().flatten().collect::<Vec<_>>());
     println!("relative speed      {:.6} m/s", outcome.relative_speed());
     println!("spin rate           {:.4} °/s", metrics.spin_rate().to_degrees());
     println!("wobble              {:.4}°", metrics.wobble().to_degrees());

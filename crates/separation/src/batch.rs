@@ -11,6 +11,7 @@ use crate::{
 /// allocate for up to eight springs but when it is made.
 #[derive(Debug)]
 pub struct Batch {
+    settings: Settings,
     integrator: Box<Integrator<WIDTH>>,
 }
 
@@ -18,7 +19,7 @@ impl Batch {
     /// For runs with the given settings.
     #[must_use]
     pub fn new(settings: Settings) -> Self {
-        Self { integrator: Box::new(Integrator::new(settings)) }
+        Self { settings, integrator: Box::new(Integrator::new(settings)) }
     }
 
     /// Runs the separations to their last releases. Each result is given with its place in the
@@ -49,7 +50,7 @@ impl Batch {
                 let over = stepped.is_err() || track.all_released();
                 if over && let Some((i, track)) = slot.take() {
                     let state = self.integrator.state(lane);
-                    result(i, stepped.map(|()| track.outcome(&state)));
+                    result(i, stepped.map(|()| track.outcome(&state, &self.settings)));
                 }
             }
         }

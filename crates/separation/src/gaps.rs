@@ -90,7 +90,7 @@ where
         }
         let run = track.separation.borrow();
         for (i, fate) in track.springs.iter_mut().enumerate() {
-            let lost = fate.released.is_some() && run.springs()[i].can_push();
+            let lost = fate.let_go().is_some();
             if lost && fate.recompressed.is_none() {
                 let slack =
                     2.0 * run.free_lengths()[i] * RECOMPRESSED * run.springs()[i].stroke_m();

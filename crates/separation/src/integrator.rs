@@ -237,6 +237,7 @@ where
                 };
                 if fate.released.is_none() && (i == spring || free()) {
                     fate.released = Some(track.time);
+                    fate.pushed = !fate.waiting;
                     fate.waiting = false;
                     let (block, lane) = slot::<L>(lane, i);
                     self.expansion.springs[block].stiffness.0[lane] = 0.0;

@@ -55,6 +55,7 @@ mod outcome;
 mod polynomial;
 mod products;
 mod root;
+mod rounding;
 mod run;
 mod separation;
 mod settings;

@@ -1,13 +1,18 @@
+//! Measures of a body's spin about an intended axis.
+
 use gyradius_inertia::InertiaMatrix;
 use nalgebra::{Unit, Vector3};
 
-use crate::nutation;
+use crate::nutation::Range;
 
 /// What became of the spin: the measures of Peck (2003, Eq. 32-37), in rad.
 ///
 /// The spin axis s is a direction fixed in the body. a₁ is the principal axis nearest to it,
-/// pointing along it (a₁·s ≥ 0), with moment I₁; I₂ and I₃ belong to the next two principal axes in
-/// cyclic order, H = Iω and E are angular momentum and rotational energy.
+/// pointing along it (a₁·s ≥ 0), with moment I₁. I₂ and I₃ belong to the next two principal axes in
+/// cyclic order (1 → 2 → 3 → 1), each principal axis having the number of the body axis that it is
+/// matched to (`InertiaMatrix::principal_axes`): for a spin about body axis 1 they are the moments about
+/// the principal axes near body axes 2 and 3, for one about axis 3 those near axes 1 and 2. Neither is
+/// the larger by definition. H = Iω and E are angular momentum and rotational energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SpinMetrics {
@@ -30,6 +35,16 @@ impl SpinMetrics {
         angular_velocity: &Vector3<f64>,
         spin_axis: &Unit<Vector3<f64>>,
     ) -> Self {
+        Self::above(inertia, angular_velocity, spin_axis, 0.0)
+    }
+
+    /// The same; an angular momentum of at most `rounding` (kg·m²/s) is none.
+    pub(crate) fn above(
+        inertia: &InertiaMatrix,
+        angular_velocity: &Vector3<f64>,
+        spin_axis: &Unit<Vector3<f64>>,
+        rounding: f64,
+    ) -> Self {
         let principal = inertia.principal_axes();
         let axes = *principal.axes().matrix();
         let along = axes.tr_mul(spin_axis.as_ref());
@@ -40,31 +55,20 @@ impl SpinMetrics {
         let (i1, i2, i3) = (moments[first], moments[second], moments[third]);
 
         let momentum = inertia.matrix() * angular_velocity;
-        let turns = momentum.norm_squared() > 0.0;
-        let w = axes.tr_mul(angular_velocity);
-        let (w2, w3) = (w[second], w[third]);
-        let square = momentum.norm_squared();
+        let turns = momentum.norm() > rounding;
         let h = axes.tr_mul(&momentum);
         // H along a₁ and the two other axes.
         let along_a1 = [h[first].copysign(a1.dot(&momentum)), h[second], h[third]];
-        // Eq. 35 as sin², free of cancellation:
-        // 1 − cos²θ₂ = I₂[I₂ω₂² + I₃ω₃²(I₃ − I₁)/(I₂ − I₁)]/H².
-        let extreme = |ia: f64, wa: f64, ib: f64, wb: f64| {
-            let steady = (ia > i1 && ib > i1) || (ia < i1 && ib < i1);
-            if !(turns && steady) {
-                return None;
-            }
-            let sine = ia * (ia * wa * wa + ib * (wb * wb) * ((ib - i1) / (ia - i1))) / square;
-            (0.0..=1.0).contains(&sine).then(|| libm::asin(sine.sqrt()))
-        };
-
+        let nutation = turns.then(|| angle(&a1, &momentum));
+        let range = nutation.and_then(|now| Range::new([i1, i2, i3], along_a1, now));
+        let crossing = |i: usize| range.and_then(|range| Some(range.crossings?[i]));
         Self {
             spin_rate: angular_velocity.norm(),
             wobble: angle(spin_axis, &a1),
-            nutation: turns.then(|| angle(&a1, &momentum)),
-            nutation_2: extreme(i2, w2, i3, w3),
-            nutation_3: extreme(i3, w3, i2, w2),
-            nutation_bounds: nutation::bounds([i1, i2, i3], along_a1),
+            nutation,
+            nutation_2: crossing(0),
+            nutation_3: crossing(1),
+            nutation_bounds: range.map(|range| range.bounds),
             cone: turns.then(|| angle(spin_axis, &momentum)),
             inertia_ratio: inertia_ratio(i1, i2, i3),
         }
@@ -82,21 +86,24 @@ impl SpinMetrics {
         self.wobble
     }
 
-    /// Angle between a₁ and H (Eq. 34), rad; none if the body does not turn.
+    /// Angle between a₁ and H (Eq. 34), rad, in 0 to π; above π/2 where the body spins backward about a₁.
+    /// None if the body does not turn.
     #[must_use]
     pub fn nutation(&self) -> Option<f64> {
         self.nutation
     }
 
-    /// Nutation where the free motion passes the 1-2 plane (Eq. 35, θ₂), rad; one of the two
-    /// extremes. None where it means nothing: s belongs to the intermediate axis, or H circles
-    /// another one.
+    /// Nutation where the free motion passes the plane of the principal axes 1 and 2 (Eq. 35, θ₂), rad;
+    /// one of its two extremes. It lies in 0 to π/2 where H circles a₁, and in π/2 to π where H circles
+    /// −a₁, which is a backward spin. None where the extremes mean nothing: the body does not turn, a₁
+    /// is the intermediate axis, or H circles another axis than a₁.
     #[must_use]
     pub fn nutation_2(&self) -> Option<f64> {
         self.nutation_2
     }
 
-    /// Nutation where the free motion passes the 1-3 plane (Eq. 35, θ₃), rad; the other extreme.
+    /// Nutation where the free motion passes the plane of the principal axes 1 and 3 (Eq. 35, θ₃), rad;
+    /// the other extreme.
     #[must_use]
     pub fn nutation_3(&self) -> Option<f64> {
         self.nutation_3
@@ -117,8 +124,8 @@ impl SpinMetrics {
         self.cone
     }
 
-    /// Inertia ratio σ (Eq. 37), roll to pitch: above 1 for spin about the axis of largest moment,
-    /// 1 for the intermediate.
+    /// Inertia ratio σ = 1 + Re √((1 − I₁/I₂)(1 − I₁/I₃)) · sgn(I₁ − I₂) (Eq. 37), roll to pitch: above
+    /// 1 for spin about the axis of largest moment, 1 for the intermediate. I₂ and I₃ may change places.
     #[must_use]
     pub fn inertia_ratio(&self) -> f64 {
         self.inertia_ratio

@@ -1,54 +1,83 @@
 //! Between which angles a body that turns freely nutates.
 
-/// Least and greatest angle, rad, between the first principal axis and the angular momentum, over the
-/// free motion of a body with the given principal moments and components of momentum along their axes.
-///
-/// # Algorithm
-/// Energy and momentum leave the squares of the components a straight line, with the direction
-/// (I₁(I₃ − I₂), I₂(I₁ − I₃), I₃(I₂ − I₁)), of which the motion covers all that has no negative square
-/// (Landau & Lifshitz, Mechanics, §37). The ends are where a square is zero. They are found from where
-/// the body is, so that a small nutation is no difference of large numbers. If the first square reaches
-/// zero its component changes sign, and the axis is met from both sides.
-pub(crate) fn bounds(moments: [f64; 3], momentum: [f64; 3]) -> Option<[f64; 2]> {
-    let largest = momentum.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    if !(largest > 0.0 && momentum.iter().all(|x| x.is_finite())) {
-        return None;
-    }
-    let h = momentum.map(|x| x / largest);
-    let squares = h.map(|x| x * x);
-    let scale = moments.iter().fold(0.0_f64, |m, x| m.max(*x));
-    let [a, b, c] = moments.map(|x| x / scale);
-    let line = [a * (c - b), b * (a - c), c * (b - a)];
+/// The angles between the first principal axis a₁ and the angular momentum H that the free motion goes
+/// through, rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Range {
+    /// The least and the greatest.
+    pub(crate) bounds: [f64; 2],
+    /// Where H passes the planes of axes 1 and 2, and of axes 1 and 3: the same two, in this order.
+    /// None where H does not circle a₁ or −a₁, or does so for no reason but equal moments.
+    pub(crate) crossings: Option<[f64; 2]>,
+}
 
-    // Squares along the axis and across it at one of the ends, and whether the first vanishes there.
-    let end = |sign: f64| {
-        let falling = (0..3).filter(|&i| sign * line[i] < 0.0);
-        let room = |i: usize| squares[i] / line[i].abs();
-        // A body of three equal moments stays where it is.
-        let Some(zero) = falling.min_by(|&i, &j| room(i).total_cmp(&room(j))) else {
-            return (squares[0], squares[1] + squares[2], false);
-        };
-        let step = sign * room(zero);
-        let at = |i: usize| if i == zero { 0.0 } else { (squares[i] + step * line[i]).max(0.0) };
-        (at(0), at(1) + at(2), zero == 0)
-    };
-    let ends = [end(1.0), end(-1.0)];
-    let turns_over = ends.iter().any(|end| end.2);
-    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (along, across, _) in ends {
-        let along = along.sqrt().copysign(h[0]);
-        for along in if turns_over { [along, -along] } else { [along, along] } {
-            let angle = libm::atan2(across.sqrt(), along);
-            (least, greatest) = (least.min(angle), greatest.max(angle));
+impl Range {
+    /// Of a body with the given principal moments and components of momentum along their axes, at
+    /// `now` (rad) from the first. None if it does not turn.
+    ///
+    /// # Algorithm
+    /// Energy and momentum leave the squares of the components a straight line, with the direction
+    /// (I₁(I₃ − I₂), I₂(I₁ − I₃), I₃(I₂ − I₁)), of which the motion covers all that has no negative
+    /// square (Landau & Lifshitz, Mechanics, §37). The ends are where a square is zero. They are found
+    /// from where the body is, so that a small nutation is no difference of large numbers. If the first
+    /// square reaches zero its component changes sign, and the axis is met from both sides: H circles
+    /// another axis. Else the ends are where the third and the second square are zero, the crossings
+    /// of the two planes, which is Eq. 35 of Peck (2003).
+    pub(crate) fn new(moments: [f64; 3], momentum: [f64; 3], now: f64) -> Option<Self> {
+        let largest = momentum.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        if !(largest > 0.0 && momentum.iter().all(|x| x.is_finite())) {
+            return None;
         }
+        let h = momentum.map(|x| x / largest);
+        let squares = h.map(|x| x * x);
+        let scale = moments.iter().fold(0.0_f64, |m, x| m.max(*x));
+        let [a, b, c] = moments.map(|x| x / scale);
+        let line = [a * (c - b), b * (a - c), c * (b - a)];
+
+        // The end of the line on which the sign is taken: the angle there, and whose square vanishes.
+        let end = |sign: f64| {
+            let falling = (0..3).filter(|&i| sign * line[i] < 0.0);
+            let room = |i: usize| squares[i] / line[i].abs();
+            let zero = falling.min_by(|&i, &j| room(i).total_cmp(&room(j)));
+            let at = |i: usize| match zero {
+                Some(zero) if i == zero => 0.0,
+                Some(zero) => (squares[i] + sign * room(zero) * line[i]).max(0.0),
+                // A body of three equal moments stays where it is.
+                None => squares[i],
+            };
+            let along = at(0).sqrt().copysign(h[0]);
+            (libm::atan2((at(1) + at(2)).sqrt(), along), zero)
+        };
+        let ends = [end(1.0), end(-1.0)];
+        let turns_over = ends.iter().any(|(_, zero)| *zero == Some(0));
+        let angles = ends.iter().flat_map(|(angle, _)| {
+            let other = if turns_over { std::f64::consts::PI - angle } else { *angle };
+            [*angle, other]
+        });
+        // Rounding of the ends must not leave out where the body is.
+        let bounds =
+            angles.fold([now, now], |[least, greatest], x| [least.min(x), greatest.max(x)]);
+        let steady = (a > b && a > c) || (a < b && a < c);
+        let where_zero =
+            |i: usize| ends.iter().find(|(_, z)| *z == Some(i)).map(|(angle, _)| *angle);
+        let crossings = match (where_zero(2), where_zero(1)) {
+            (Some(second), Some(third)) if steady && !turns_over => Some([second, third]),
+            _ => None,
+        };
+        Some(Self { bounds, crossings })
     }
-    Some([least, greatest])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, PI};
+
+    /// The bounds of the motion, seen from where it is.
+    fn bounds(moments: [f64; 3], h: [f64; 3]) -> Option<[f64; 2]> {
+        let now = h[1].hypot(h[2]).atan2(h[0]);
+        Range::new(moments, h, now).map(|range| range.bounds)
+    }
 
     /// Euler's equations by many small steps of Runge-Kutta: the range that the nutation has.
     fn watched(moments: [f64; 3], momentum: [f64; 3]) -> [f64; 2] {

@@ -1,6 +1,13 @@
+//! What a separation leaves: the bodies after the last release, and what is told of them.
+
 use nalgebra::{Unit, Vector3};
 
-use crate::{EnergySplit, MovingBody, Separation, SpinMetrics, metrics::angle_of, track::Fates};
+use crate::{
+    EnergySplit, MovingBody, Separation, SpinMetrics,
+    metrics::angle_of,
+    rounding::Rounding,
+    track::{Fate, Fates},
+};
 
 /// The two bodies at the release of the last spring, from where they move freely.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,20 +16,22 @@ pub struct Outcome {
     pub(crate) payload: MovingBody,
     pub(crate) stage: MovingBody,
     pub(crate) steps: u32,
+    pub(crate) rounding: Rounding,
 }
 
 impl Outcome {
-    /// When each spring let go, s, in the order of the springs: when it came to its free length, whether
-    /// it had started by then or not; zero for one that never pushes.
-    pub fn release_times(&self) -> impl ExactSizeIterator<Item = f64> {
-        // All have, or there would be no outcome.
-        self.springs.iter().map(|fate| fate.released.unwrap_or(f64::NAN))
+    /// When each spring let go, s, in the order of the springs. None for a spring that never pushed:
+    /// it failed, could not overcome its friction, or was late and came to its free length before its
+    /// start.
+    pub fn release_times(&self) -> impl ExactSizeIterator<Item = Option<f64>> {
+        self.springs.iter().map(Fate::let_go)
     }
 
-    /// When the last spring let go, s.
+    /// From when on no spring can push, s: when the last one let go, or, where a late one never pushed,
+    /// came to its free length. The bodies are told as they are then.
     #[must_use]
     pub fn release_time(&self) -> f64 {
-        self.release_times().fold(0.0, f64::max)
+        self.springs.iter().filter_map(|fate| fate.released).fold(0.0, f64::max)
     }
 
     /// The springs that were pressed below their free length again after they had let go, and while
@@ -56,10 +65,28 @@ impl Outcome {
     }
 
     /// Angle between the relative velocity and the intended direction of separation (inertial axes),
-    /// rad; none if the mass centres do not part.
+    /// rad; none if the mass centres do not part, or by no more than the rounding of the run.
     #[must_use]
     pub fn direction_error(&self, intended: &Unit<Vector3<f64>>) -> Option<f64> {
-        angle_of(&self.relative_velocity(), intended)
+        let velocity = self.relative_velocity();
+        angle_of(&velocity, intended).filter(|_| velocity.norm() > self.rounding.velocity)
+    }
+
+    /// Angle between the payload's angular momentum about its mass centre and a direction in inertial
+    /// axes, rad; none if the payload does not turn, or by no more than
+    /// [the rounding of the run](Self::momentum_rounding).
+    #[must_use]
+    pub fn momentum_error(&self, intended: &Unit<Vector3<f64>>) -> Option<f64> {
+        let momentum = self.payload.spin_angular_momentum().norm();
+        self.payload.momentum_error(intended).filter(|_| momentum > self.rounding.momentum)
+    }
+
+    /// An angular momentum of the payload up to this, kg·m²/s, is nothing but rounding of the run, and
+    /// has no direction: what its springs exchanged, times the tolerance and the rounding of doubles
+    /// (`docs/models/separation.md`).
+    #[must_use]
+    pub fn momentum_rounding(&self) -> f64 {
+        self.rounding.momentum
     }
 
     /// Tip-off rates: angular velocities of payload and stage after the last release less those at the
@@ -73,11 +100,11 @@ impl Outcome {
     }
 
     /// The springs in the order in which they let go, from 1; those that let go at one time together.
-    /// One that never pushes has no place in it.
+    /// One that never pushed has no place in it.
     #[must_use]
     pub fn release_order(&self) -> Vec<Vec<usize>> {
-        // Zero is the time of one that never pushes.
-        let times = self.release_times().zip(1..).filter(|(time, _)| *time > 0.0);
+        let times =
+            self.release_times().zip(1..).filter_map(|(time, spring)| Some((time?, spring)));
         let mut times: Vec<(f64, usize)> = times.collect();
         times.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let groups = times.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq());
@@ -90,10 +117,13 @@ impl Outcome {
         EnergySplit::new(separation, self)
     }
 
-    /// Wobble, nutation, coning and the rest, of the payload about the given body axis.
+    /// Wobble, nutation, coning and the rest, of the payload about the given body axis. A payload whose
+    /// angular momentum is [rounding](Self::momentum_rounding) does not turn.
     #[must_use]
     pub fn spin_metrics(&self, spin_axis: &Unit<Vector3<f64>>) -> SpinMetrics {
-        self.payload.spin_metrics(spin_axis)
+        let (body, state) = (self.payload.body(), self.payload.state());
+        let rounding = self.rounding.momentum;
+        SpinMetrics::above(body.inertia(), &state.angular_velocity, spin_axis, rounding)
     }
 
     /// Integration steps taken, each an expansion of the motion, to order 14 at most.

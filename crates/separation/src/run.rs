@@ -75,5 +75,5 @@ pub(crate) fn run(separation: &Separation, settings: &Settings) -> Result<Outcom
         integrator.step(0, &mut track)?;
     }
     let state = integrator.state(0);
-    Ok(track.outcome(&state))
+    Ok(track.outcome(&state, settings))
 }

@@ -6,14 +6,16 @@ use std::borrow::Borrow;
 use crate::{
     Outcome, RunError, Separation, Settings, Spring,
     expansion::INLINE_SPRINGS,
+    rounding::Rounding,
     state::{self, State},
 };
 
-/// What becomes of one spring: when it lets go, and when it is first shorter than its free length
-/// after that; and whether it is yet to start.
+/// What becomes of one spring: when it comes to its free length, whether it pushed until then, and when
+/// it is first shorter than its free length after that; and whether it is yet to start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Fate {
     pub(crate) released: Option<f64>,
+    pub(crate) pushed: bool,
     pub(crate) recompressed: Option<f64>,
     pub(crate) waiting: bool,
 }
@@ -22,6 +24,7 @@ impl Fate {
     pub(crate) fn of(spring: &Spring) -> Self {
         Self {
             released: (!spring.can_push()).then_some(0.0),
+            pushed: false,
             recompressed: None,
             waiting: spring.can_push() && spring.start_s() != Some(0.0),
         }
@@ -29,6 +32,11 @@ impl Fate {
 
     pub(crate) fn pushes(&self) -> bool {
         self.released.is_none() && !self.waiting
+    }
+
+    /// When it let go, s; none of one that never pushed.
+    pub(crate) fn let_go(&self) -> Option<f64> {
+        self.released.filter(|_| self.pushed)
     }
 }
 
@@ -80,8 +88,10 @@ impl<S: Borrow<Separation>> Track<S> {
         }
     }
 
-    pub(crate) fn outcome(self, state: &State) -> Outcome {
-        let (payload, stage) = state::bodies(self.separation.borrow(), state, self.time);
-        Outcome { springs: self.springs, payload, stage, steps: self.steps }
+    pub(crate) fn outcome(self, state: &State, settings: &Settings) -> Outcome {
+        let separation = self.separation.borrow();
+        let (payload, stage) = state::bodies(separation, state, self.time);
+        let rounding = Rounding::new(separation, &self.springs, settings, self.steps);
+        Outcome { springs: self.springs, payload, stage, steps: self.steps, rounding }
     }
 }

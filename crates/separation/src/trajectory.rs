@@ -35,7 +35,7 @@ impl Step {
         self.start + self.duration
     }
 
-    /// The springs that let go at its end, from 1.
+    /// The springs that let go at its end, from 1; none that never pushed.
     #[must_use]
     pub fn released(&self) -> &[usize] {
         &self.released
@@ -120,14 +120,14 @@ impl Separation {
             let before = track.springs.clone();
             let duration = integrator.advance(0, &mut track, end)?;
             let released = track.springs.iter().zip(&before).enumerate();
-            let released = released.filter(|(_, (fate, was))| fate.released != was.released);
+            let released = released.filter(|(_, (fate, was))| fate.let_go() != was.let_go());
             let released = released.map(|(i, _)| i + 1).collect();
             let separation = self.clone();
             observer(&Step { separation, start, duration, series, pushing, released });
             let state = integrator.state(0);
             track.check(&state, settings)?;
             if outcome.is_none() && track.all_released() {
-                outcome = Some(track.clone().outcome(&state));
+                outcome = Some(track.clone().outcome(&state, settings));
                 end = track.time + coast_s;
             }
         }

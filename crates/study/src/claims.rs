@@ -143,12 +143,11 @@ fn naive_unphysical(summary: &Summary) -> Claim {
 fn unrealizable(model: &ModelSummary) -> String {
     let share = &model.unrealizable;
     format!(
-        "{}: {} of {} runs drew an unrealizable payload or stage, a share in [{:.2}, {:.2}] %.",
+        "{}: {} of {} runs drew an unrealizable payload or stage: {}.",
         model.name,
         share.count,
         share.of,
-        100.0 * share.interval.lower(),
-        100.0 * share.interval.upper()
+        share.percent()
     )
 }
 

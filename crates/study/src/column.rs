@@ -21,6 +21,7 @@ pub(crate) enum Column<'a> {
     Recompressed,
     /// What else was drawn, by its place and its name.
     Drawn(usize, &'a str),
+    ClearanceNote,
 }
 
 /// What stands in a column for a run.
@@ -70,6 +71,7 @@ impl<'a> Column<'a> {
         columns.extend(numbers);
         columns.extend([Self::ReleaseOrder, Self::Recompressed]);
         columns.extend(drawn.iter().enumerate().map(|(i, name)| Self::Drawn(i, name)));
+        columns.push(Self::ClearanceNote);
         columns
     }
 
@@ -84,6 +86,7 @@ impl<'a> Column<'a> {
             Self::ReleaseOrder => "release_order".into(),
             Self::Recompressed => "recompressed".into(),
             Self::Drawn(_, name) => name.into(),
+            Self::ClearanceNote => "clearance_note".into(),
         }
     }
 
@@ -97,7 +100,11 @@ impl<'a> Column<'a> {
             Self::Run => "int64",
             Self::Realizable => "boolean",
             Self::Number(_) | Self::Axes(..) | Self::Drawn(..) => "double",
-            Self::Model | Self::Status | Self::ReleaseOrder | Self::Recompressed => "binary",
+            Self::Model
+            | Self::Status
+            | Self::ReleaseOrder
+            | Self::Recompressed
+            | Self::ClearanceNote => "binary",
         };
         let needed = if self.is_optional() { "optional" } else { "required" };
         let text = if kind == "binary" { " (string)" } else { "" };
@@ -121,6 +128,9 @@ impl<'a> Column<'a> {
             Self::Recompressed => {
                 let springs: Vec<_> = row.recompressed().iter().map(ToString::to_string).collect();
                 if springs.is_empty() { Cell::Null } else { Cell::Text(springs.join(" ")) }
+            }
+            Self::ClearanceNote => {
+                row.clearance_note().map_or(Cell::Null, |note| Cell::Text(note.to_string()))
             }
         }
     }

@@ -28,6 +28,13 @@ pub(crate) fn interval(interval: Option<Interval>, digits: usize) -> String {
     })
 }
 
+/// A percentage with two digits of what is missing to a hundred.
+pub(crate) fn below_hundred(percent: f64) -> String {
+    let missing = significant(100.0 - percent, 2);
+    let decimals = missing.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    if missing.contains('e') { format!("{percent}") } else { format!("{percent:.decimals$}") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::significant;

@@ -1,8 +1,10 @@
+//! Inertia models ready to draw, and the runs that their draws make.
+
 use gyradius_dispersion::{
     DispersionModel, EntrywiseGaussian, KnownMoments, ModelDraw, ModelKind, RealizableOnly,
 };
 use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{Batch, Clearance, RunError, Separation};
+use gyradius_separation::{Batch, Clearance, ClearanceError, RunError, Separation};
 use nalgebra::UnitQuaternion;
 use rand_distr::Distribution;
 use std::ops::Range;
@@ -151,9 +153,10 @@ impl Case {
         let mut near = None;
         let outcome = match (&self.separation, result) {
             (Ok(separation), Some(Ok(outcome))) => {
-                self.clearance(scenario, &outcome).map(|clearance| {
-                    near = clearance;
-                    Outcome::new(scenario, separation, &outcome, near.as_ref())
+                self.clearance(scenario, &outcome).map(|watched| {
+                    let outcome = Outcome::new(scenario, separation, &outcome, watched.as_ref());
+                    near = watched.and_then(Result::ok);
+                    outcome
                 })
             }
             (Ok(_), Some(Err(error))) => Err(error.into()),
@@ -178,7 +181,7 @@ impl Case {
         &self,
         scenario: &Scenario,
         outcome: &gyradius_separation::Outcome,
-    ) -> Result<Option<Clearance>, Failure> {
+    ) -> Result<Option<Result<Clearance, ClearanceError>>, Failure> {
         let watched = scenario.outlines().map(|outlines| {
             outlines.clearance(outcome, &drawn::mass_centres(scenario.dispersions(), &self.drawn))
         });

@@ -20,3 +20,7 @@ pub(crate) fn page(title: &str, style: &str, content: &Markup) -> String {
     }
     .into_string()
 }
+
+#[cfg(test)]
+mod tests;
+

@@ -10,9 +10,6 @@ use crate::{
     table::RunTable,
 };
 
-/// Attitudes shown on a sphere: as many as in the paper; more would only hide each other.
-const ATTITUDES: usize = 2000;
-
 /// A figure with what it shows.
 #[derive(Clone, Debug)]
 pub(crate) struct Plate {
@@ -46,8 +43,12 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
                     Some(Panel {
                         label: axis_label(quantity),
                         series: vec![
-                            Series { name: physical.model(), values: a },
-                            Series { name: naive.model(), values: b },
+                            Series {
+                                name: physical.model(),
+                                values: a,
+                                runs: physical.rows().len(),
+                            },
+                            Series { name: naive.model(), values: b, runs: naive.rows().len() },
                         ],
                         nominal: summary.nominal_value(quantity),
                     })
@@ -101,7 +102,11 @@ fn clearance(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Opt
         .into_iter()
         .filter(|group| group.iter().any(|i| !samples[*i].is_empty()))
         .map(|group| {
-            let series = |i: usize| Series { name: tables[i].model(), values: &samples[i] };
+            let series = |i: usize| Series {
+                name: tables[i].model(),
+                values: &samples[i],
+                runs: tables[i].rows().len(),
+            };
             Some(Panel {
                 label: axis_label(Quantity::Clearance),
                 series: group.into_iter().map(series).collect(),
@@ -125,16 +130,7 @@ fn attitudes(
 ) -> Option<Plate> {
     let drawn: Vec<(&RunTable, Vec<UnitQuaternion<f64>>)> = tables
         .iter()
-        .map(|t| {
-            (
-                t,
-                t.rows()
-                    .iter()
-                    .filter_map(|r| r.axes(Body::Payload))
-                    .take(ATTITUDES)
-                    .collect::<Vec<_>>(),
-            )
-        })
+        .map(|t| (t, t.rows().iter().filter_map(|r| r.axes(Body::Payload)).collect::<Vec<_>>()))
         .filter(|(_, attitudes)| !attitudes.is_empty())
         .collect();
     let mean = scenario.payload().mean_axes();
@@ -142,12 +138,15 @@ fn attitudes(
         .iter()
         .map(|(table, attitudes)| Cloud { name: table.model(), attitudes, mean })
         .collect();
-    let most = drawn.iter().map(|(_, a)| a.len()).max()?;
+    if drawn.is_empty() {
+        return None;
+    }
     let title = numbered("Principal axes of the payload", "Figure 1");
     Some(Plate {
         name: "figure-1-attitudes".to_owned(),
         caption: format!(
-            "{title}. {most} random attitudes a model, as the tips of the unit axes on the sphere"
+            "{title}. Random attitudes of each model, as the tips of the unit axes on the sphere; of many, \
+             some that are evenly spaced in run order"
         ),
         svg: attitude_spheres(&title, &clouds),
     })

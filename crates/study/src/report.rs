@@ -1,5 +1,6 @@
 //! The report: one page of HTML that needs nothing but itself.
 
+use gyradius_statistics::Interval;
 use maud::{Markup, PreEscaped, html};
 use nalgebra::{Unit, Vector3};
 
@@ -60,14 +61,14 @@ fn results(summary: &Summary) -> Markup {
                 @for model in &summary.models {
                     tr {
                         th scope="row" { (model.name) }
-                        td { (share(model)) }
+                        td { (model.unrealizable.percent()) }
                         @for q in Quantity::BEHAVIOUR {
                             @let s = model.quantity(q);
                             td.group { (optional(s.and_then(|s| s.mean), 4)) }
-                            td title=(interval(s.and_then(|s| s.deviation_interval), 4)) {
+                            td title=[tip(s.and_then(|s| s.deviation_interval), 4)] {
                                 (optional(s.and_then(|s| s.deviation), 3))
                             }
-                            td title=(interval(s.and_then(|s| s.p95_interval), 4)) {
+                            td title=[tip(s.and_then(|s| s.p95_interval), 4)] {
                                 (optional(s.and_then(|s| s.p95), 4))
                             }
                         }
@@ -114,10 +115,16 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
             (said(scenario.separation_direction())) "; tip-off: change of the angular velocity, body axes; "
             "greatest nutation of the free motion that follows; angle of the payload's angular momentum "
             "to the intended direction " (said(Some(scenario.momentum_direction())))
-            ". Directions are in inertial axes. "
+            ". Directions are in inertial axes, and the same for all runs; where the scenario does not "
+            "state them they are those of the undispersed bodies. Inertia ratio and nutation: I₁ is the "
+            "moment about the principal axis nearest to the spin axis, I₂ and I₃ those about the next two "
+            "in cyclic order, each principal axis having the number of the body axis that it is matched to; "
+            "a nutation above 90° is of a backward spin. Angles of a payload whose angular momentum is no more "
+            "than rounding are not told. "
             @if let Some(outlines) = scenario.outlines() {
                 "Clearance: the smallest distance of the outlines in the " (outlines.coast_s())
-                " s after the last release. "
+                " s after the last release, 0 where any two of them touch. Outlines that touch at the last "
+                "release are mated: they count only if they touch again after they have parted. "
             }
             "Mean ± standard deviation, and the range from the 5th to the 95th "
             "percentile."
@@ -137,15 +144,15 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                         @for model in &summary.models {
                             @let s = model.quantity(q);
                             td {
-                                span title=(interval(s.and_then(|s| s.mean_interval), 4)) {
+                                span title=[tip(s.and_then(|s| s.mean_interval), 4)] {
                                     (optional(s.and_then(|s| s.mean), 4))
                                 }
                                 " ± "
-                                span title=(interval(s.and_then(|s| s.deviation_interval), 4)) {
+                                span title=[tip(s.and_then(|s| s.deviation_interval), 4)] {
                                     (optional(s.and_then(|s| s.deviation), 3))
                                 }
                                 br;
-                                small title=(interval(s.and_then(|s| s.p95_interval), 4)) {
+                                small title=[tip(s.and_then(|s| s.p95_interval), 4)] {
                                     (optional(s.and_then(|s| s.p05), 4)) " … "
                                     (optional(s.and_then(|s| s.p95), 4))
                                 }
@@ -163,20 +170,17 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                     strong { (model.name) } ": let go in the order "
                     @for (i, order) in model.releases.orders.iter().take(3).enumerate() {
                         @if i > 0 { "; " }
-                        code { (order.order) } " in " (significant(100.0 * order.share.share, 3)) " % of the runs "
-                        (interval_percent(order.share.interval.lower(), order.share.interval.upper()))
+                        code { (order.order) } " in " (order.share.percent()) " of the runs"
                     }
                     @if model.releases.orders.len() > 3 { "; others" }
                     ". " (energy(model))
                     @if let Some(clearance) = &model.releases.clearance { " " (nearest(clearance)) }
                     @if let Some(touch) = model.releases.recontact {
-                        " The bodies touch again in " (significant(100.0 * touch.share, 3)) " % of the runs "
-                        (interval_percent(touch.interval.lower(), touch.interval.upper())) "."
+                        " The bodies touch again in " (touch.percent()) " of the runs."
                     }
                     @if pressed.count > 0 {
                         " A spring was pressed again after its release in "
-                        (significant(100.0 * pressed.share, 3)) " % of the runs "
-                        (interval_percent(pressed.interval.lower(), pressed.interval.upper())) "."
+                        (pressed.percent()) " of the runs."
                     }
                 }
             } }
@@ -187,15 +191,19 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
 /// How near the bodies come.
 fn nearest(clearance: &ClearanceSummary) -> Markup {
     html! {
-        "They come as near as " (significant(clearance.least_m, 4)) " m (run " (clearance.run) ")"
-        @if let Some(p01) = clearance.p01_m {
-            "; 99 % of the runs keep " (significant(p01, 4)) " m"
-            @if clearance.p01_interval_m.is_some() { " " (interval(clearance.p01_interval_m, 4)) }
+        @if let (Some(least), Some(run)) = (clearance.least_m, clearance.run) {
+            "They come as near as " (significant(least, 4)) " m (run " (run) ")"
+            @if let Some(p01) = clearance.p01_m {
+                "; 99 % of the runs keep " (significant(p01, 4)) " m"
+                @if clearance.p01_interval_m.is_some() { " " (interval(clearance.p01_interval_m, 4)) }
+            }
+            @if let Some(p05) = clearance.p05_m { ", 95 % " (significant(p05, 4)) " m" }
+            "."
+        } @else {
+            "No run has a clearance."
         }
-        @if let Some(p05) = clearance.p05_m { ", 95 % " (significant(p05, 4)) " m" }
-        "."
-        @if clearance.never_apart > 0 {
-            " Outlines that touch at the start do not part in " (clearance.never_apart) " runs."
+        @for (note, count) in &clearance.notes {
+            " In " (count) @if *count == 1 { " run " } @else { " runs " } (note) "."
         }
     }
 }
@@ -218,19 +226,9 @@ fn energy(model: &ModelSummary) -> String {
     )
 }
 
-fn share(model: &ModelSummary) -> String {
-    let s = &model.unrealizable;
-    let bound = significant(100.0 * s.interval.upper(), 2);
-    if s.count == 0 {
-        format!("none (under {bound} %)")
-    } else {
-        let range = interval_percent(s.interval.lower(), s.interval.upper());
-        format!("{} % {range}", significant(100.0 * s.share, 3))
-    }
-}
-
-fn interval_percent(lower: f64, upper: f64) -> String {
-    format!("[{}, {}]", significant(100.0 * lower, 3), significant(100.0 * upper, 3))
+/// What is told of a number where the pointer rests on it.
+fn tip(of: Option<Interval>, digits: usize) -> Option<String> {
+    of.is_some().then(|| interval(of, digits))
 }
 
 fn unit(quantity: Quantity) -> String {
@@ -395,10 +393,7 @@ fn far_lobe(summary: &Summary) -> Markup {
                 @for (name, [payload, stage]) in &lobes {
                     li {
                         strong { (name) } ": "
-                        (significant(100.0 * payload.share, 3)) " % of the payload's draws "
-                        (interval_percent(payload.interval.lower(), payload.interval.upper())) ", "
-                        (significant(100.0 * stage.share, 3)) " % of the stage's "
-                        (interval_percent(stage.interval.lower(), stage.interval.upper())) "."
+                        (payload.percent()) " of the payload's draws, " (stage.percent()) " of the stage's."
                     }
                 }
             }

@@ -1,3 +1,5 @@
+//! What one run of one model leaves.
+
 use gyradius_separation::{
     BodyError, Clearance, ClearanceError, Outcome as Separated, OutlineError, RunError, Separation,
     SeparationError, SpinMetrics, SpringError,
@@ -52,9 +54,6 @@ pub enum Failure {
         /// Why.
         source: OutlineError,
     },
-    /// How near the bodies come to each other afterwards cannot be told.
-    #[error(transparent)]
-    Unclear(#[from] ClearanceError),
 }
 
 impl Failure {
@@ -82,9 +81,57 @@ impl Failure {
             Self::Broken(RunError::NotFinite { .. }) => "numbers out of range",
             Self::Broken(_) => "integration failed",
             Self::Outline { body, .. } => return format!("{body}: outline beyond bounds").into(),
-            Self::Unclear(_) => "clearance not found",
         };
         plain.into()
+    }
+}
+
+/// Why a run has no clearance, or not one of its whole coast.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum ClearanceNote {
+    /// All outlines touch at the start, part, and do not touch again.
+    #[error("all outlines are mated: they touch at the start and do not touch again after parting")]
+    Mated,
+    /// All outlines touch at the start, and some of them do not part.
+    #[error("all outlines are mated, and some do not part")]
+    Together,
+    /// The bodies turn so far that they are not followed to the end of the coast, in which they could
+    /// still come nearer.
+    #[error("followed to {until:?} s only: a body turns by more than 7,000 rad in the coast")]
+    Partial {
+        /// Until when they are followed, s.
+        until: f64,
+    },
+    /// The search has failed.
+    #[error("clearance not found: {0}")]
+    NotFound(ClearanceError),
+}
+
+impl ClearanceNote {
+    /// What there is to say of a clearance.
+    pub(crate) fn new(found: &Result<Clearance, ClearanceError>) -> Option<Self> {
+        let clearance = match found {
+            Ok(clearance) => clearance,
+            Err(error) => return Some(Self::NotFound(*error)),
+        };
+        if let Some(until) = clearance.undecided_from_s() {
+            return Some(Self::Partial { until });
+        }
+        if clearance.closest().is_some() {
+            return None;
+        }
+        let parted = clearance.shapes().iter().all(|s| s.counts_from_s().is_some());
+        Some(if parted { Self::Mated } else { Self::Together })
+    }
+
+    /// What kind it is, without numbers, so that those of a kind can be counted.
+    pub(crate) fn kind(self) -> &'static str {
+        match self {
+            Self::Mated => "all outlines are mated and do not touch again after parting",
+            Self::Together => "all outlines are mated, and some do not part",
+            Self::Partial { .. } => "a body turns too far to be followed to the end of the coast",
+            Self::NotFound(_) => "the clearance was not found",
+        }
     }
 }
 
@@ -115,6 +162,7 @@ pub(crate) struct Outcome {
     /// Smallest distance of the outlines, m, and when, s.
     pub(crate) clearance: Option<[f64; 2]>,
     pub(crate) recontact_s: Option<f64>,
+    pub(crate) clearance_note: Option<ClearanceNote>,
 }
 
 impl Outcome {
@@ -122,8 +170,9 @@ impl Outcome {
         scenario: &Scenario,
         separation: &Separation,
         separated: &Separated,
-        clearance: Option<&Clearance>,
+        watched: Option<&Result<Clearance, ClearanceError>>,
     ) -> Self {
+        let clearance = watched.and_then(|found| found.as_ref().ok());
         let degrees = |angle: Option<f64>| angle.map(f64::to_degrees);
         let [payload_tip_off, stage_tip_off] =
             separated.tip_off(separation).map(|rate| rate.map(f64::to_degrees).into());
@@ -132,8 +181,6 @@ impl Outcome {
         let words = |springs: &[usize], between: &str| {
             springs.iter().map(ToString::to_string).collect::<Vec<_>>().join(between)
         };
-        let releases = separated.release_times().zip(separation.springs());
-        let releases = releases.map(|(time, spring)| spring.can_push().then_some(time));
         let order: Vec<_> = separated.release_order().iter().map(|s| words(s, "+")).collect();
         Self {
             release_time_s: separated.release_time(),
@@ -146,9 +193,7 @@ impl Outcome {
             payload_tip_off_deg_per_s: payload_tip_off,
             stage_tip_off_deg_per_s: stage_tip_off,
             momentum_kg_m2_per_s: separated.payload().inertial_spin_angular_momentum().into(),
-            momentum_error_deg: degrees(
-                separated.payload().momentum_error(scenario.momentum_direction()),
-            ),
+            momentum_error_deg: degrees(separated.momentum_error(scenario.momentum_direction())),
             energies_j: [
                 energy.stored_j(),
                 energy.payload_translation_j(),
@@ -156,13 +201,14 @@ impl Outcome {
                 energy.stage_translation_j(),
                 energy.stage_rotation_j(),
             ],
-            releases_s: releases.collect(),
+            releases_s: separated.release_times().collect(),
             release_order: order.join(" "),
             recompressed: separated.recompressed().map(|(spring, _)| spring).collect(),
             clearance: clearance
                 .and_then(Clearance::closest)
                 .map(|closest| [closest.distance_m(), closest.time_s()]),
             recontact_s: clearance.and_then(Clearance::contact_s),
+            clearance_note: watched.and_then(ClearanceNote::new),
         }
     }
 }
@@ -205,6 +251,11 @@ impl Row {
     #[must_use]
     pub fn recompressed(&self) -> &[usize] {
         self.outcome.as_ref().map_or(&[], |o| &o.recompressed)
+    }
+
+    /// Why the run has no clearance, or not one of its whole coast; none if there is nothing to say.
+    pub(crate) fn clearance_note(&self) -> Option<ClearanceNote> {
+        self.outcome.as_ref().ok().and_then(|o| o.clearance_note)
     }
 
     /// Whether both drawn inertias are realizable.

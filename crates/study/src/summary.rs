@@ -1,3 +1,5 @@
+//! Every number that the report shows.
+
 use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_dispersion::ModelKind;
 use gyradius_statistics::{
@@ -10,9 +12,10 @@ use std::collections::BTreeMap;
 use crate::{
     claims::{self, Claim},
     compare::Section,
+    format::{below_hundred, significant},
     model::{Case, Model},
     quantity::{Body, Quantity},
-    row::Row,
+    row::{ClearanceNote, Row},
     scenario::{Dispersed, Scenario},
     table::RunTable,
 };
@@ -91,22 +94,24 @@ pub(crate) struct Releases {
     pub(crate) recompressed: Option<Share>,
     /// Runs in which outlines touch again; none without outlines or if no run succeeds.
     pub(crate) recontact: Option<Share>,
-    /// Smallest distances of outlines; none without outlines, or if they count in no run.
+    /// Smallest distances of outlines; none without outlines, or if no run succeeds.
     pub(crate) clearance: Option<ClearanceSummary>,
 }
 
-/// The runs in which the bodies come nearest.
+/// How near the bodies come.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct ClearanceSummary {
+    /// Runs that have a clearance.
+    pub(crate) n: u64,
     /// Smallest of all runs, m, and in which run.
-    pub(crate) least_m: f64,
-    pub(crate) run: u64,
+    pub(crate) least_m: Option<f64>,
+    pub(crate) run: Option<u64>,
     /// Percentiles of the clearance that all but so many runs keep, m.
     pub(crate) p01_m: Option<f64>,
     pub(crate) p01_interval_m: Option<Interval>,
     pub(crate) p05_m: Option<f64>,
-    /// Runs in which mated outlines do not part, so that nothing counts.
-    pub(crate) never_apart: u64,
+    /// Why runs have no clearance, or not one of their whole coast, with how often.
+    pub(crate) notes: Vec<(&'static str, u64)>,
 }
 
 /// How often springs let go in an order.
@@ -350,18 +355,29 @@ impl ClearanceSummary {
     fn new(rows: &[Row], confidence: Confidence) -> Option<Self> {
         let of = |row: &Row| Some((row.value(Quantity::Clearance)?, row.run()));
         let found: Vec<(f64, u64)> = rows.iter().filter_map(of).collect();
-        let (least_m, run) = found.iter().copied().reduce(|a, b| if b.0 < a.0 { b } else { a })?;
+        let mut notes: Vec<(&'static str, u64)> = Vec::new();
+        for kind in rows.iter().filter_map(Row::clearance_note).map(ClearanceNote::kind) {
+            match notes.iter_mut().find(|(other, _)| *other == kind) {
+                Some((_, count)) => *count += 1,
+                None => notes.push((kind, 1)),
+            }
+        }
+        if found.is_empty() && notes.is_empty() {
+            return None;
+        }
+        let least = found.iter().copied().reduce(|a, b| if b.0 < a.0 { b } else { a });
         let values: Vec<f64> = found.iter().map(|(clearance, _)| *clearance).collect();
-        let sorted = SortedSample::new(&values).ok()?;
-        let interval = sorted.quantile_interval(0.01, confidence).ok();
-        let succeeded = rows.iter().filter(|r| r.failure().is_none()).count();
+        let sorted = SortedSample::new(&values).ok();
+        let quantile = |p| sorted.as_ref().and_then(|s| s.quantile(p).ok());
+        let interval = sorted.as_ref().and_then(|s| s.quantile_interval(0.01, confidence).ok());
         Some(Self {
-            least_m,
-            run,
-            p01_m: sorted.quantile(0.01).ok(),
+            n: found.len() as u64,
+            least_m: least.map(|(clearance, _)| clearance),
+            run: least.map(|(_, run)| run),
+            p01_m: quantile(0.01),
             p01_interval_m: interval.filter(|i| i.lower().is_finite() && i.upper().is_finite()),
-            p05_m: sorted.quantile(0.05).ok(),
-            never_apart: (succeeded - found.len()) as u64,
+            p05_m: quantile(0.05),
+            notes,
         })
     }
 }
@@ -375,6 +391,20 @@ impl Share {
         let proportion = Proportion::new(count, of)?;
         let interval = proportion.interval(confidence);
         Ok(Self { count, of, share: proportion.value(), interval })
+    }
+
+    /// The share in percent with its interval; of none or all the bound on the other side.
+    pub(crate) fn percent(&self) -> String {
+        let [lower, upper] = [self.interval.lower(), self.interval.upper()].map(|x| 100.0 * x);
+        if self.count == 0 {
+            return format!("none (under {} %)", significant(upper, 2));
+        }
+        if self.count == self.of {
+            return format!("all (over {} %)", below_hundred(lower));
+        }
+        // Digits that tell shares near all from all.
+        let number = |x: f64| if x > 99.0 { below_hundred(x) } else { significant(x, 3) };
+        format!("{} % [{}, {}]", number(100.0 * self.share), number(lower), number(upper))
     }
 }
 
@@ -433,5 +463,41 @@ impl Ratio {
 impl ComparisonSummary {
     pub(crate) fn ratio(&self, quantity: Quantity) -> Option<&Ratio> {
         self.ratios.iter().find(|r| r.quantity == quantity)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers in a text, in order.
+    fn numbers(text: &str) -> Vec<f64> {
+        let parts = text.split(|c: char| !(c.is_ascii_digit() || ".e-".contains(c)));
+        parts.filter_map(|part| part.parse().ok()).collect()
+    }
+
+    /// Every count of samples of many sizes: none and all are bounds, and no interval is of zeros or of
+    /// hundreds, nor without its share.
+    #[test]
+    fn shares_of_none_and_of_all_are_bounds() {
+        let share = |count, of| Share::new(count, of, Confidence::default()).unwrap();
+        assert_eq!(share(0, 100_000).percent(), "none (under 0.0037 %)");
+        assert_eq!(share(100_000, 100_000).percent(), "all (over 99.9963 %)");
+        for of in [1_u64, 2, 3, 10, 100, 3000, 100_000, 10_000_000] {
+            let some = [0, 1, 2, of / 3, of / 2, of - of / 50, of.saturating_sub(2), of - 1, of];
+            for count in some.into_iter().filter(|count| *count <= of) {
+                let text = share(count, of).percent();
+                let found = numbers(&text);
+                if count == 0 || count == of {
+                    let word = if count == 0 { "none (under " } else { "all (over " };
+                    assert!(text.starts_with(word) && found.len() == 1, "{text}");
+                    assert!(found[0] > 0.0 && found[0] < 100.0, "{count} of {of}: {text}");
+                } else {
+                    let [value, lower, upper] = found[..] else { panic!("{text}") };
+                    assert!(lower > 0.0 && upper < 100.0, "{count} of {of}: {text}");
+                    assert!(lower <= value && value <= upper, "{count} of {of}: {text}");
+                }
+            }
+        }
     }
 }

@@ -74,8 +74,8 @@ impl RunTable {
     /// Columns: `model`, `run`, `status`, the first numbers of [`Quantity::ALL`] to `inertia_ratio` (null
     /// where a run has none), `realizable`, the attitudes of the principal axes as drawn, scalar last
     /// (null for entrywise models), the other numbers of [`Quantity::ALL`], releases spring by spring,
-    /// `release_order` and `recompressed`, and what else was drawn. Floats are stored as they are, bit
-    /// for bit.
+    /// `release_order` and `recompressed`, what else was drawn, and `clearance_note`. Floats are stored as
+    /// they are, bit for bit.
     ///
     /// # Errors
     /// Writing fails.
@@ -125,9 +125,11 @@ impl RunTable {
             Column::Number(_) | Column::Axes(..) | Column::Drawn(..) => {
                 write::<DoubleType, _>(group, &numbers, levels)
             }
-            Column::Model | Column::Status | Column::ReleaseOrder | Column::Recompressed => {
-                write::<ByteArrayType, _>(group, &texts, levels)
-            }
+            Column::Model
+            | Column::Status
+            | Column::ReleaseOrder
+            | Column::Recompressed
+            | Column::ClearanceNote => write::<ByteArrayType, _>(group, &texts, levels),
         }
     }
 }
@@ -147,7 +149,7 @@ fn write<T: parquet::data_type::DataType, W: Write + Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row::{Failure, Outcome};
+    use crate::row::{ClearanceNote, Failure, Outcome};
     use gyradius_inertia::InertiaMatrix;
     use gyradius_separation::{RunError, SpinMetrics};
     use nalgebra::Vector3;
@@ -179,6 +181,7 @@ mod tests {
             recompressed: vec![2],
             clearance: Some([0.125, 0.1 + 0.2]),
             recontact_s: None,
+            clearance_note: Some(ClearanceNote::Partial { until: 0.1 + 0.2 }),
         };
         let good = Row {
             run: 0,
@@ -224,7 +227,8 @@ mod tests {
                 "release_order",
                 "recompressed",
                 "payload_mass_kg",
-                "spring_1_friction_n"
+                "spring_1_friction_n",
+                "clearance_note"
             ]
         );
 
@@ -253,6 +257,9 @@ mod tests {
             assert_eq!(field("release_order"), text(order));
             assert_eq!(field("recompressed"), text(order.map(|_| "2")));
             assert_eq!(field("payload_mass_kg"), Field::Double(9_999.5));
+            let note = "followed to 0.30000000000000004 s only: a body turns by more than 7,000 rad in \
+                        the coast";
+            assert_eq!(field("clearance_note"), text(order.map(|_| note)));
         }
     }
 

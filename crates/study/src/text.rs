@@ -1,7 +1,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use crate::{
-    format::{optional, significant},
+    format::optional,
     quantity::Quantity,
     summary::{QuantitySummary, Summary},
 };
@@ -15,22 +15,24 @@ impl Display for Summary {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let names = self.models.iter().map(|m| m.name.chars().count());
         let width = names.max().unwrap_or(0).max("model".len());
-        write!(f, "{:width$}  {:>12}  {:4}", "model", "unrealizable", "")?;
+        let shares: Vec<String> = self.models.iter().map(|m| m.unrealizable.percent()).collect();
+        let wide =
+            shares.iter().map(|s| s.chars().count()).max().unwrap_or(0).max("unrealizable".len());
+        write!(f, "{:width$}  {:>wide$}  {:4}", "model", "unrealizable", "")?;
         for quantity in Quantity::BEHAVIOUR {
             write!(f, " {:>13}", quantity.label())?;
         }
-        write!(f, "\n{:width$}  {:>12}  {:4}", "", "draws", "")?;
+        write!(f, "\n{:width$}  {:>wide$}  {:4}", "", "draws", "")?;
         for quantity in Quantity::BEHAVIOUR {
             write!(f, " {:>13}", quantity.unit())?;
         }
         writeln!(f)?;
-        for model in &self.models {
+        for (model, share) in self.models.iter().zip(&shares) {
             for (line, (told, value)) in TOLD.into_iter().enumerate() {
                 if line == 0 {
-                    let share = format!("{} %", significant(100.0 * model.unrealizable.share, 3));
-                    write!(f, "\n{:width$}  {share:>12}", model.name)?;
+                    write!(f, "\n{:width$}  {share:>wide$}", model.name)?;
                 } else {
-                    write!(f, "{:width$}  {:12}", "", "")?;
+                    write!(f, "{:width$}  {:wide$}", "", "")?;
                 }
                 write!(f, "  {told:4}")?;
                 for quantity in Quantity::BEHAVIOUR {

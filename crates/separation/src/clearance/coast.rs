@@ -66,6 +66,10 @@ impl Motion for Coast {
         Some((start + self.velocity * nearest).norm() - 1e-14 * scale)
     }
 
+    fn known_until_s(&mut self) -> f64 {
+        self.bodies.iter().map(|body| self.start + body.ends()).fold(f64::INFINITY, f64::min)
+    }
+
     fn limits(&mut self, _: f64, _: f64) -> MotionLimits {
         let [p, s] = &self.bodies;
         MotionLimits {
@@ -105,6 +109,11 @@ impl FreeBody {
         let step = (TURN / fastest).min(SHARE / (growth * fastest)).min(1e9);
         let inverse = *body.body().inverse_inertia();
         Self { state, inverse, fastest, hardest, step, series: Vec::new() }
+    }
+
+    /// Until when it is followed, s; the last step is left out for the rounding of times.
+    fn ends(&self) -> f64 {
+        self.step * (MOST_STEPS - 1) as f64
     }
 
     fn at(&mut self, t: f64) -> Option<BodyState> {

@@ -65,6 +65,12 @@ pub trait Motion {
         Some(middle.norm() - speed * 0.5 * (to_s - from_s))
     }
 
+    /// Until when the states are known, s. Mass centres and their bounds are to be known beyond.
+    /// Override it where a motion ends.
+    fn known_until_s(&mut self) -> f64 {
+        f64::INFINITY
+    }
+
     /// Bounds that hold at all times of [from, to], s.
     fn limits(&mut self, from_s: f64, to_s: f64) -> MotionLimits;
 }

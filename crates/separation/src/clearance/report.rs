@@ -1,3 +1,5 @@
+//! What is told of the distance of two outlines over a span of time.
+
 use nalgebra::Vector3;
 
 use super::motion::Motion;
@@ -217,6 +219,7 @@ impl ShapeClearance {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clearance {
     shapes: Vec<ShapeClearance>,
+    undecided: Option<f64>,
     looks: usize,
 }
 
@@ -231,13 +234,17 @@ impl Clearance {
     ///
     /// Shapes that touch when the span begins are mated: rings on each other, pads on springs. They
     /// count from when they have parted, and a later contact is a recontact. Their smallest distance
-    /// is often that of parting: [`Clearance::closest`] looks at them only where there are no others.
+    /// is that of parting, which says nothing of the bodies: [`Clearance::closest`] takes none but
+    /// their contacts.
+    ///
+    /// A motion that ends before the span does ([`Motion::known_until_s`]) is followed to its end;
+    /// [`Clearance::undecided_from_s`] says so if the rest of the span could tell something else.
     ///
     /// # Algorithm
     /// Branch and bound over time; see `docs/models/clearance.md`.
     ///
     /// # Errors
-    /// The span is none, or the motion not known or not finite on it.
+    /// The span is none, or the motion not known at its start or not finite on it.
     pub fn new<M: Motion>(
         payload: &Outline,
         stage: &Outline,
@@ -249,18 +256,43 @@ impl Clearance {
         if !(from_s.is_finite() && to_s.is_finite() && from_s <= to_s) {
             return Err(ClearanceError::Span { from: from_s, to: to_s });
         }
+        // The start itself has to be known.
+        let until = motion.known_until_s().min(to_s).max(from_s);
         let mut shapes = Vec::with_capacity(payload.shapes().len() * stage.shapes().len());
         let mut looks = 0;
         for (i, p) in payload.shapes().iter().enumerate() {
             for (j, s) in stage.shapes().iter().enumerate() {
                 let mut search = Search::new(motion, p, s, settings.tolerance, settings.touch);
-                let mut found = shape_clearance(&mut search, from_s, to_s, settings)?;
+                let mut found = shape_clearance(&mut search, from_s, until, settings)?;
                 (found.payload_shape, found.stage_shape) = (i, j);
                 looks += search.nodes();
                 shapes.push(found);
             }
         }
-        Ok(Self { shapes, looks })
+        let mut found = Self { shapes, undecided: None, looks };
+        if until < to_s && !found.is_final(payload, stage, motion, [until, to_s]) {
+            found.undecided = Some(until);
+        }
+        Ok(found)
+    }
+
+    /// Whether the rest of the span cannot tell something else than what was found: the bodies have
+    /// touched already, or the spheres around them stay farther apart than they have come.
+    fn is_final<M: Motion>(
+        &self,
+        payload: &Outline,
+        stage: &Outline,
+        motion: &mut M,
+        [from, to]: [f64; 2],
+    ) -> bool {
+        if self.contact_s().is_some() {
+            return true;
+        }
+        let Some(least) = motion.least_offset(from, to) else { return false };
+        let reach = payload.bounding_radius_m() + stage.bounding_radius_m();
+        let nearest = self.closest().map_or(0.0, Approach::distance_m);
+        let parted = self.shapes.iter().all(|s| s.counts_from.is_some());
+        parted && least - reach > nearest
     }
 
     /// Every shape of the payload with every shape of the stage, the payload's in the outer order.
@@ -269,8 +301,10 @@ impl Clearance {
         &self.shapes
     }
 
-    /// The closest approach: of shapes that are apart at the start; where there are none, of mated
-    /// ones after parting. None if none ever part.
+    /// The closest approach of all shapes: the first contact in time of any two, mated ones after
+    /// having parted, with distance 0; where there is none, the smallest distance of two that are not
+    /// mated. None where all are mated and do not touch again: their distance as they part is no
+    /// clearance.
     #[must_use]
     pub fn closest(&self) -> Option<&Approach> {
         self.closest_shapes().and_then(ShapeClearance::closest)
@@ -279,12 +313,19 @@ impl Clearance {
     /// The shapes whose approach is the closest.
     #[must_use]
     pub fn closest_shapes(&self) -> Option<&ShapeClearance> {
-        let least = |mated: bool| {
-            let all = self.shapes.iter().filter(move |s| s.mated == mated);
-            all.filter_map(|s| Some((s.closest?.distance, s)))
-                .reduce(|a, b| if b.0 < a.0 { b } else { a })
+        let first = |of: fn(&ShapeClearance) -> Option<f64>| {
+            let all = self.shapes.iter().filter_map(|s| Some((of(s)?, s)));
+            all.reduce(|a, b| if b.0 < a.0 { b } else { a }).map(|(_, shapes)| shapes)
         };
-        least(false).or_else(|| least(true)).map(|(_, shapes)| shapes)
+        let apart = |s: &ShapeClearance| s.closest.filter(|_| !s.mated).map(|a| a.distance);
+        first(|s| s.contact).or_else(|| first(apart))
+    }
+
+    /// From when on the bodies could come nearer, or touch, and this is not known, s: where the motion
+    /// ends before the span does. None if the whole span is decided.
+    #[must_use]
+    pub fn undecided_from_s(&self) -> Option<f64> {
+        self.undecided
     }
 
     /// When any shapes first touch, mated ones after having parted, s.

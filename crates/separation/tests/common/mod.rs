@@ -99,7 +99,8 @@ pub(crate) fn differences(a: &Outcome, b: &Outcome) -> (f64, f64) {
         relative(&a.angular_velocity, &b.angular_velocity).max(a.attitude.angle_to(&b.attitude))
     });
     let velocity = relative(&a.relative_velocity(), &b.relative_velocity());
-    let times = a.release_times().zip(b.release_times()).map(|(a, b)| (a - b).abs());
+    let times =
+        a.release_times().flatten().zip(b.release_times().flatten()).map(|(a, b)| (a - b).abs());
     (bodies[0].max(bodies[1]).max(velocity), times.fold(0.0, f64::max))
 }
 

@@ -75,6 +75,12 @@ impl CompareError {
     }
 }
 
+/// The page of a comparison.
+#[cfg(test)]
+pub(crate) fn page_of(comparison: &ModelComparison) -> String {
+    comparison.page(&comparison.plates())
+}
+
 /// Models of inertia uncertainty compared.
 ///
 /// Every draw depends on (seed, model, body, level, number of the draw) alone: results are the same

@@ -21,6 +21,9 @@ const BLOCKS: [Block; 9] = [
     Block::CovarianceOff,
 ];
 
+/// The heading of a block stands apart from the block before.
+const STYLE: &str = ".block th { padding-top: 1.2em; border-bottom: 1px solid var(--ink); }\n";
+
 impl ModelComparison {
     pub(super) fn page(&self, plates: &[Plate]) -> String {
         let s = &self.settings;
@@ -47,7 +50,7 @@ impl ModelComparison {
                 "; the scenario's SHA-256 is " code.hash { (s.scenario_fingerprint) } "."
             }
         };
-        page("gyradius: models of inertia uncertainty compared", "", &content)
+        page("gyradius: models of inertia uncertainty compared", STYLE, &content)
     }
 }
 
@@ -65,7 +68,7 @@ fn reading(meaning: &str) -> Markup {
         p {
             "Spreads are given by quantiles: a matrix that no body has can have an inertia ratio as "
             "large as one likes, and a single such draw would make the standard deviation, which is in "
-            "the files. “<” is an upper bound where none of the draws was unrealizable."
+            "the files. Where none of the draws was unrealizable an upper bound is given; 0 is by construction."
         }
     }
 }
@@ -82,6 +85,10 @@ fn body_tables(body: &BodyResult) -> Markup {
             (optional(body.nominal(Measure::Nutation), 3)) "°."
         }
         div.wide { table {
+            thead { tr {
+                th { "model" }
+                @for level in &body.levels { th { (heading(level)) } }
+            } }
             @for block in BLOCKS { (block_rows(body, block)) }
         } }
         @let remarks = remarks(body);
@@ -99,22 +106,19 @@ fn body_tables(body: &BodyResult) -> Markup {
     }
 }
 
-/// A table of models by levels, as part of a larger one.
+/// Models by levels, as part of a larger table.
 fn block_rows(body: &BodyResult, block: Block) -> Markup {
     html! {
-        thead { tr {
-            th { (block.title()) }
-            @for level in &body.levels { th { (heading(level)) } }
-        } }
         tbody {
+            tr.block { th colspan=(body.levels.len() + 1) scope="rowgroup" { (block.title()) } }
             @for kind in kinds(body) {
                 tr {
                     th scope="row" { (kind) }
                     @for level in &body.levels {
                         @let cell = level.cell(kind);
-                        td title=(interval(cell)) {
-                            @if is_poor(cell) { "(" (block.cell(cell)) ")" }
-                            @else { (block.cell(cell)) }
+                        td title=[interval(cell)] {
+                            @if is_poor(cell) { "(" (block.full(cell)) ")" }
+                            @else { (block.full(cell)) }
                         }
                     }
                 }
@@ -123,11 +127,8 @@ fn block_rows(body: &BodyResult, block: Block) -> Markup {
     }
 }
 
-fn interval(cell: Option<&super::contest::Cell>) -> String {
+/// The share of unrealizable draws with its interval; nothing if there is no such model.
+fn interval(cell: Option<&super::contest::Cell>) -> Option<String> {
     let results = cell.and_then(|cell| cell.results.as_ref());
-    results.map_or_else(String::new, |r| {
-        let i = r.unrealizable.interval;
-        let percent = |x: f64| crate::format::significant(100.0 * x, 3);
-        format!("unrealizable: {} to {} %", percent(i.lower()), percent(i.upper()))
-    })
+    results.map(|r| format!("unrealizable: {}", r.unrealizable.percent()))
 }

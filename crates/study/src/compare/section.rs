@@ -145,6 +145,6 @@ fn unit(measure: Measure) -> String {
 
 fn td(block: Block, cell: Option<&Cell>) -> Markup {
     html! {
-        td { @if is_poor(cell) { "(" (block.cell(cell)) ")" } @else { (block.cell(cell)) } }
+        td { @if is_poor(cell) { "(" (block.full(cell)) ")" } @else { (block.full(cell)) } }
     }
 }

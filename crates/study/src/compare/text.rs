@@ -4,7 +4,7 @@ use gyradius_dispersion::ModelKind;
 use std::fmt::{self, Display, Formatter};
 
 use super::{BodyResult, LevelResult, ModelComparison, contest::Cell, measure::Measure};
-use crate::format::{optional, significant};
+use crate::format::{below_hundred, optional, significant};
 
 /// Levels side by side in 100 columns.
 const LEVELS: usize = 6;
@@ -30,7 +30,19 @@ impl Block {
         }
     }
 
-    /// What a cell has to say; a dash if there is no such model.
+    /// What a cell has to say where there is room: shares of none and of all in words.
+    pub(crate) fn full(self, cell: Option<&Cell>) -> String {
+        let short = self.cell(cell);
+        let results = cell.and_then(|cell| cell.results.as_ref());
+        match (self, results) {
+            (Self::Unrealizable, Some(r)) if short.starts_with(['<', '>']) => {
+                r.unrealizable.percent()
+            }
+            _ => short,
+        }
+    }
+
+    /// What a cell has to say in a narrow column; a dash if there is no such model.
     pub(crate) fn cell(self, cell: Option<&Cell>) -> String {
         let Some(r) = cell.and_then(|cell| cell.results.as_ref()) else { return "–".to_owned() };
         let by_construction = cell.is_some_and(|cell| cell.realizable_by_construction);
@@ -41,7 +53,10 @@ impl Block {
         match self {
             Self::Unrealizable if by_construction && r.unrealizable.count == 0 => "0".to_owned(),
             Self::Unrealizable if r.unrealizable.count == 0 => {
-                format!("<{}", significant(100.0 * r.unrealizable.interval.upper(), 1))
+                format!("<{}", significant(100.0 * r.unrealizable.interval.upper(), 2))
+            }
+            Self::Unrealizable if r.unrealizable.count == r.unrealizable.of => {
+                format!(">{}", below_hundred(100.0 * r.unrealizable.interval.lower()))
             }
             Self::Unrealizable => significant(100.0 * r.unrealizable.share, 3),
             Self::Spread(measure) => {
@@ -175,7 +190,7 @@ impl Display for ModelComparison {
         )?;
         wrapped(
             f,
-            "–: no such model, see below; <: upper bound, none was drawn; *: covariance further off the \
+            "–: no such model, see below; < and >: bounds, none or all were drawn; *: covariance further off the \
              reference than that of a body known exactly (100 %), so no like for like.",
             "",
         )?;

@@ -16,13 +16,26 @@ pub(super) struct Binned {
     /// Finite values per series.
     pub(super) finite: Vec<usize>,
     /// Values per series below and above the edges.
-    pub(super) below: Vec<usize>,
-    pub(super) above: Vec<usize>,
+    pub(super) below: Vec<Beyond>,
+    pub(super) above: Vec<Beyond>,
     /// The nominal value in these units, if it is near enough to be shown.
     pub(super) nominal: Option<f64>,
-    /// The range of the axis: the edges and the nominal value, with a margin.
+    /// The range of the axis: the edges and the nominal value, with a margin, in which what lies beyond
+    /// the edges has its place.
     pub(super) range: (f64, f64),
 }
+
+/// The values of a series beyond an edge.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Beyond {
+    pub(super) count: usize,
+    /// The farthest of them, in the unit of the panel's label.
+    pub(super) extreme: f64,
+}
+
+/// Share of the axis that is left free beyond its ends, and for what lies beyond an edge.
+const MARGIN: f64 = 0.03;
+const EDGE: f64 = 0.07;
 
 impl Binned {
     /// Counts on shared Freedman-Diaconis bins, `most` at most; `None` without a finite value.
@@ -54,37 +67,57 @@ impl Binned {
         let nominal = panel.nominal.map(|x| units.of(x)).filter(|x| x.is_finite());
         let edges = edges(&kept.iter().flatten().collect::<Vec<_>>(), nominal, most)?;
         let bounds = (edges.values()[0], edges.values()[edges.bins()]);
-        let beyond = |outside: fn(f64, f64, f64) -> bool| {
-            let count = |sample: &Option<SortedSample>| {
-                let values = sample.iter().flat_map(SortedSample::values);
-                values.filter(|&&x| outside(x, lower, upper)).count()
+        // Values are sorted: the farthest is the first or the last.
+        let side = |outside: &dyn Fn(f64) -> bool, farthest: fn(&SortedSample) -> f64| {
+            let of = |sample: &Option<SortedSample>| {
+                let Some(sample) = sample else { return Beyond::default() };
+                let count = sample.values().iter().filter(|&&x| outside(x)).count();
+                Beyond { count, extreme: farthest(sample) }
             };
-            samples.iter().map(count).collect()
+            samples.iter().map(of).collect::<Vec<_>>()
         };
+        let below = side(&|x| x < lower, SortedSample::minimum);
+        let above = side(&|x| x > upper, SortedSample::maximum);
         let span = bounds.1 - bounds.0;
         let nominal = nominal.filter(|x| (bounds.0 - span..=bounds.1 + span).contains(x));
         let ends = nominal.map_or(bounds, |x| (bounds.0.min(x), bounds.1.max(x)));
-        let margin = 0.03 * (ends.1 - ends.0);
+        let margin = |beyond: &[Beyond]| {
+            let share = if beyond.iter().any(|b| b.count > 0) { EDGE } else { MARGIN };
+            share * (ends.1 - ends.0)
+        };
+        let range = (ends.0 - margin(&below), ends.1 + margin(&above));
         Some(Self {
             units,
             counts: kept.iter().map(|sample| counts(sample.as_ref(), &edges)).collect(),
             finite: samples.iter().map(|s| s.as_ref().map_or(0, SortedSample::n)).collect(),
-            below: beyond(|x, lower, _| x < lower),
-            above: beyond(|x, _, upper| x > upper),
+            below,
+            above,
             nominal,
-            range: (ends.0 - margin, ends.1 + margin),
+            range,
             edges: edges.values().to_vec(),
         })
     }
 
     /// The height of each bin of a series: counts, or density in the units of the axis.
     pub(super) fn heights(&self, series: usize, density: bool) -> Vec<f64> {
-        let n = self.finite[series] as f64;
         let widths = self.edges.windows(2).map(|pair| pair[1] - pair[0]);
-        let height = |(&count, width): (&u64, f64)| {
-            if density { count as f64 / n / width } else { count as f64 }
+        let heights = self.counts[series].iter().zip(widths);
+        heights.map(|(&count, width)| self.height(series, count, width, density)).collect()
+    }
+
+    /// The heights of what lies below and above the edges: as if it were in the nearest bin.
+    pub(super) fn edge_heights(&self, series: usize, density: bool) -> [f64; 2] {
+        let widths: Vec<f64> = self.edges.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let at = |beyond: &[Beyond], width: Option<&f64>| {
+            let count = beyond[series].count as u64;
+            width.map_or(0.0, |width| self.height(series, count, *width, density))
         };
-        self.counts[series].iter().zip(widths).map(height).collect()
+        [at(&self.below, widths.first()), at(&self.above, widths.last())]
+    }
+
+    fn height(&self, series: usize, count: u64, width: f64, density: bool) -> f64 {
+        let n = self.finite[series] as f64;
+        if density && count > 0 { count as f64 / n / width } else { count as f64 }
     }
 }
 
@@ -135,7 +168,8 @@ mod tests {
     use super::*;
 
     fn binned(samples: &[&[f64]], nominal: Option<f64>) -> Option<Binned> {
-        let series = samples.iter().map(|values| Series { name: "", values }).collect();
+        let series =
+            samples.iter().map(|values| Series { name: "", values, runs: values.len() }).collect();
         Binned::new(&Panel { label: String::new(), series, nominal }, 50)
     }
 
@@ -151,7 +185,8 @@ mod tests {
         assert_eq!(binned.finite, [1999, 3, 0]);
         for i in 0..3 {
             let inside = binned.counts[i].iter().sum::<u64>() as usize;
-            assert_eq!(inside + binned.below[i] + binned.above[i], binned.finite[i]);
+            let beyond = binned.below[i].count + binned.above[i].count;
+            assert_eq!(inside + beyond, binned.finite[i]);
         }
         assert_eq!(binned.edges.len(), 51);
     }
@@ -160,13 +195,14 @@ mod tests {
     fn few_extremes_are_left_out_and_the_rest_is_not() {
         let values = heavy();
         let tails = binned(&[&values], None).unwrap();
-        assert_eq!(tails.below, tails.above);
-        assert!((1..40).contains(&tails.below[0]), "{:?}", tails.below);
+        assert_eq!(tails.below[0].count, tails.above[0].count);
+        assert!((1..40).contains(&tails.below[0].count), "{:?}", tails.below);
+        assert_eq!((tails.below[0].extreme, tails.above[0].extreme), (values[0], values[1998]));
         // A second mode of 3 % is no outlier, however far.
         let modes: Vec<f64> =
             (0..2000).map(|i| f64::from(i % 7) + if i % 33 == 0 { 1e4 } else { 0.0 }).collect();
         let modes = binned(&[&modes], None).unwrap();
-        assert_eq!((modes.below[0], modes.above[0]), (0, 0));
+        assert_eq!((modes.below[0].count, modes.above[0].count), (0, 0));
     }
 
     #[test]
@@ -175,7 +211,7 @@ mod tests {
         let binned = binned(&[&values], None).unwrap();
         let width = binned.edges[1] - binned.edges[0];
         let share = binned.heights(0, true).iter().sum::<f64>() * width;
-        let outside = (binned.below[0] + binned.above[0]) as f64 / 1999.0;
+        let outside = (binned.below[0].count + binned.above[0].count) as f64 / 1999.0;
         assert!((share + outside - 1.0).abs() < 1e-9);
     }
 

@@ -13,9 +13,11 @@ use super::text::{count, significant};
 pub(crate) struct Series<'a> {
     /// Name of the model, as in the legend; a name has the same colour in all panels.
     pub(crate) name: &'a str,
-    /// One value per run, in the unit that the label of the panel names; values that are not
-    /// finite are left out, and counted in a note.
+    /// The values of the runs that have one, in the unit that the label of the panel names; values
+    /// that are not finite cannot be drawn, and are counted in a note.
     pub(crate) values: &'a [f64],
+    /// How many runs there are; those without a value are counted in a note.
+    pub(crate) runs: usize,
 }
 
 /// Histograms of the same quantity under several models, on the same axes and bins.
@@ -33,8 +35,9 @@ pub(crate) struct Panel<'a> {
 ///
 /// Bins are those of Freedman and Diaconis, shared by the series of a panel, and no more than are
 /// wide enough to be seen. The vertical axis counts runs if in every panel all series have as many
-/// values, and is a density otherwise. An axis leaves out extreme values that would squeeze the
-/// rest, and says how many. The colours of the models follow their first appearance.
+/// values, and is a density otherwise. Extreme values that would squeeze the rest are drawn at the
+/// edges of the axis, in the colours of their models, and a note says how many they are and how far they
+/// go. The colours of the models follow their first appearance.
 pub(crate) fn histogram_grid(title: &str, panels: &[Option<Panel<'_>>], columns: usize) -> String {
     let columns = columns.clamp(1, panels.len().max(1));
     let (width, height) = match columns {
@@ -148,7 +151,11 @@ mod tests {
 
     fn panel<'a>(values: &[&'a [f64]], nominal: Option<f64>) -> Option<Panel<'a>> {
         let names = ["one", "two", "two"];
-        let series = values.iter().zip(names).map(|(values, name)| Series { name, values });
+        let series = values.iter().zip(names).map(|(values, name)| Series {
+            name,
+            values,
+            runs: values.len(),
+        });
         Some(Panel { label: "wobble (deg)".to_owned(), series: series.collect(), nominal })
     }
 
@@ -206,7 +213,7 @@ mod tests {
         let mut values = bell(2000, 1.0);
         values.extend([1e6, f64::NAN, f64::NAN]);
         let text = read(&histogram_grid("", &[panel(&[&values], Some(-7.5))], 1));
-        for note in ["runs right of the axis: 1", "runs not finite: 2", "off the axis: −7.5"] {
+        for note in ["at the right edge: 1, to ", "not finite: 2", "off the axis: −7.5"] {
             assert!(text.contains(note), "{text}");
         }
     }

@@ -238,7 +238,15 @@ impl Axes {
             svg.text(left - 6.0, y, TICK.at(Anchor::End), &tick.label);
         }
         if self.zeros {
-            svg.text(left - 6.0, base + 4.0, TICK.at(Anchor::End), "0");
+            // Small values stand there too.
+            let below = |p: &LinePoint| p.y > 0.0 && p.y.log10() < self.y[0];
+            let small = panel.lines.iter().flat_map(|l| &l.points).any(below);
+            let foot = if small {
+                format!("<{}", significant(10_f64.powf(self.y[0]), 1))
+            } else {
+                "0".to_owned()
+            };
+            svg.text(left - 6.0, base + 4.0, TICK.at(Anchor::End), &foot);
         }
         let marks: String = self
             .levels

@@ -1,8 +1,8 @@
 //! One panel of histograms: axes, bars, notes.
 
 use super::axis::{Spacing, Tick, Units, ticks, times};
-use super::bins::Binned;
-use super::histogram::Panel;
+use super::bins::{Beyond, Binned};
+use super::histogram::{Panel, Series};
 use super::style;
 use super::svg::{Anchor, Look, Svg, px};
 use super::text::{count, fit, significant, width};
@@ -124,44 +124,93 @@ impl<'a> Cell<'a> {
             let d = steps(&binned.edges, heights, x, |height| px(vertical.y(height, frame)));
             svg.path(&outline_pen(model), &d);
         }
+        self.edges(svg, frame, binned, vertical);
         if let Some(nominal) = binned.nominal {
             let d = format!("M{} {}V{}", x(nominal), px(frame.top), px(base));
             svg.path(&nominal_pen(), &d);
         }
     }
 
-    /// Draws what the panel leaves out, a line each; returns where the last ends.
+    /// What lies beyond the bins: at the ends of the axis a bar for each series, side by side and never too
+    /// low to be seen, with arrows that point outwards.
+    fn edges(&self, svg: &mut Svg, frame: &Frame, binned: &Binned, vertical: &Vertical) {
+        let base = frame.bottom();
+        let (lower, upper) = binned.range;
+        let scale = frame.width / (upper - lower);
+        let first = binned.edges.first().copied().into_iter().chain(binned.nominal);
+        let last = binned.edges.last().copied().into_iter().chain(binned.nominal);
+        let rooms = [first.fold(upper, f64::min) - lower, upper - last.fold(lower, f64::max)];
+        for (side, beyond) in [&binned.below, &binned.above].into_iter().enumerate() {
+            let there: Vec<usize> = (0..beyond.len()).filter(|&i| beyond[i].count > 0).collect();
+            // A gap between them and the bins.
+            let wide = (0.7 * rooms[side] * scale / there.len().max(1) as f64).min(5.0);
+            for (place, &series) in there.iter().enumerate() {
+                let colour = style::model(self.models[series]);
+                let high = (vertical.edges[series][side] / vertical.top * frame.height).max(2.5);
+                let along = wide * place as f64;
+                let x = if side == 0 {
+                    frame.left + along
+                } else {
+                    frame.left + frame.width - along - wide
+                };
+                svg.path(
+                    &format!("fill=\"{colour}\""),
+                    &format!("M{} {}v-{}h{}v{}z", px(x), px(base), px(high), px(wide), px(high)),
+                );
+            }
+            if !there.is_empty() {
+                let (tip, back) = if side == 0 {
+                    (frame.left - 5.0, 5.0)
+                } else {
+                    (frame.left + frame.width + 5.0, -5.0)
+                };
+                let arrow = format!("M{} {}l{back} -3.5v7z", px(tip), px(base));
+                svg.path(&format!("fill=\"{}\"", style::model(self.models[there[0]])), &arrow);
+            }
+        }
+    }
+
+    /// Says what lies beyond the axis and what cannot be drawn, a line each; returns where the last ends.
     fn notes(&self, svg: &mut Svg, frame: &Frame) -> f64 {
         let mut y = frame.bottom() + 37.0;
         let mut line = |runs: &[(&str, &str)]| {
             y += 14.0;
             svg.runs(frame.middle(), y - 3.0, NOTE.at(Anchor::Middle), runs);
         };
-        let mut tell = |what: &str, of: &[usize]| {
-            if of.iter().all(|&n| n == 0) {
-                return;
-            }
-            let numbers: Vec<String> = of.iter().map(|&n| count(n)).collect();
-            let mut runs = vec![(style::MUTED, what)];
-            for (i, number) in numbers.iter().enumerate() {
-                if i > 0 {
-                    runs.push((style::MUTED, " · "));
+        // Texts in the colours of their series, on one line if they have room.
+        let mut tell = |what: &str, of: Vec<Option<String>>| {
+            let said: Vec<(usize, String)> =
+                of.into_iter().enumerate().filter_map(|(i, text)| Some((i, text?))).collect();
+            let whole: String = said.iter().map(|(_, text)| format!("{text} · ")).collect();
+            let room = frame.width + GUTTER;
+            let together = width(what, NOTE.size) + width(&whole, NOTE.size) <= room;
+            for group in said.chunks(if together { said.len().max(1) } else { 1 }) {
+                let mut runs = vec![(style::MUTED, what)];
+                for (place, (i, text)) in group.iter().enumerate() {
+                    if place > 0 {
+                        runs.push((style::MUTED, " · "));
+                    }
+                    runs.push((style::model(self.models[*i]), text));
                 }
-                runs.push((style::model(self.models[i]), number));
+                line(&runs);
             }
-            line(&runs);
         };
         let binned = self.plot.as_ref().map(|(binned, _)| binned);
         if let Some(binned) = binned {
-            tell("runs left of the axis: ", &binned.below);
-            tell("runs right of the axis: ", &binned.above);
+            let beyond = |all: &[Beyond]| {
+                let text =
+                    |b: &Beyond| format!("{}, to {}", count(b.count), significant(b.extreme, 4));
+                all.iter().map(|b| (b.count > 0).then(|| text(b))).collect::<Vec<_>>()
+            };
+            tell("at the left edge: ", beyond(&binned.below));
+            tell("at the right edge: ", beyond(&binned.above));
         }
-        let finite = |i: usize| binned.map_or(0, |b| b.finite[i]);
-        let sizes = self.panel.series.iter().map(|s| s.values.len());
-        tell(
-            "runs not finite: ",
-            &sizes.enumerate().map(|(i, n)| n - finite(i)).collect::<Vec<_>>(),
-        );
+        let series = || self.panel.series.iter();
+        let told = |n: usize| (n > 0).then(|| count(n));
+        let finite = |s: &Series<'_>| s.values.iter().filter(|x| x.is_finite()).count();
+        tell("not finite: ", series().map(|s| told(s.values.len() - finite(s))).collect());
+        let without = |s: &Series<'_>| told(s.runs.saturating_sub(s.values.len()));
+        tell("runs without a value: ", series().map(without).collect());
         if let Some(nominal) = self.panel.nominal.filter(|x| x.is_finite() && !self.marks_nominal())
         {
             let off = if binned.is_some() { ", off the axis" } else { "" };
@@ -175,6 +224,8 @@ impl<'a> Cell<'a> {
 struct Vertical {
     /// Height of each bin of each series, in the units of the axis.
     heights: Vec<Vec<f64>>,
+    /// Heights below and above the bins, of each series.
+    edges: Vec<[f64; 2]>,
     /// The value at the top of the plot.
     top: f64,
     ticks: Vec<Tick>,
@@ -185,19 +236,23 @@ impl Vertical {
     fn new(binned: &Binned, density: bool, length: f64) -> Self {
         let mut heights: Vec<Vec<f64>> =
             (0..binned.counts.len()).map(|i| binned.heights(i, density)).collect();
-        let highest = heights.iter().flatten().copied().fold(0.0, f64::max);
+        let mut edges: Vec<[f64; 2]> =
+            (0..binned.counts.len()).map(|i| binned.edge_heights(i, density)).collect();
+        let all = heights.iter().flatten().chain(edges.iter().flatten());
+        let highest = all.copied().fold(0.0, f64::max);
         // A density is per unit of the horizontal axis, whose factor its own then has to undo.
         let factor = if density { -binned.units.exponent } else { 0 };
         let units =
             if factor == 0 { Units::for_range(0.0, highest) } else { Units::with_factor(highest) };
-        heights.iter_mut().flatten().for_each(|height| *height = units.of(*height));
+        let all = heights.iter_mut().flatten().chain(edges.iter_mut().flatten());
+        all.for_each(|height| *height = units.of(*height));
         let top = if highest > 0.0 { 1.06 * units.of(highest) } else { 1.0 };
         let most = if length > 200.0 { 6 } else { 5 };
         let whole = !density && units.exponent == 0;
         let ticks = ticks(0.0, top, Spacing { length, most, side_by_side: None, whole });
         let what = if density { "density" } else { "runs per bin" };
         let label = format!("{what} {}", times(units.exponent + factor));
-        Self { heights, top, ticks, label }
+        Self { heights, edges, top, ticks, label }
     }
 
     fn y(&self, height: f64, frame: &Frame) -> f64 {
@@ -240,4 +295,104 @@ fn steps(
         d.push_str(&format!("H{}V{}", x(last), y(0.0)));
     }
     d
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::svg::tests::read;
+    use super::*;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    use rand_distr::{Cauchy, Distribution, Normal, Uniform};
+
+    /// Runs of some law: heavy tails, ties, a constant, a far clump, nothing, one.
+    fn sample(kind: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
+        let n = [0, 1, 2, 7, 100, 3000][Uniform::new(0, 6).unwrap().sample(random)];
+        let normal = Normal::new(4.364, 0.01).unwrap();
+        let cauchy = Cauchy::new(0.0, 1.0).unwrap();
+        let share = Uniform::new(0.0, 1.0).unwrap();
+        let rare = 0.03 * share.sample(random);
+        (0..n)
+            .map(|_| match kind {
+                0 => normal.sample(random),
+                1 => cauchy.sample(random),
+                2 => (3.0 * share.sample(random)).floor(),
+                3 => -7.25,
+                4 if share.sample(random) < rare => 0.0,
+                4 => normal.sample(random),
+                5 if share.sample(random) < rare => f64::NAN,
+                5 => 1e9 * cauchy.sample(random).exp(),
+                _ => normal.sample(random) * 1e-9,
+            })
+            .collect()
+    }
+
+    /// Numbers of a note of a series: counts, and how far values go.
+    fn notes(text: &str, what: &str) -> usize {
+        let lines = text.lines().filter_map(|line| line.strip_prefix(what));
+        let counts = lines.flat_map(|line| line.split(" · "));
+        let number = |part: &str| -> usize {
+            let digits = part.split(',').next().unwrap().replace('\u{2009}', "");
+            digits.trim().parse().unwrap()
+        };
+        counts.map(number).sum()
+    }
+
+    /// Whatever the data: bins, edges, and what is said not to be drawn are all the runs; what is at an
+    /// edge is drawn there in the colour of its series.
+    #[test]
+    fn no_run_is_left_out() {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let mut at_edges = 0;
+        for round in 0..300 {
+            let series = 1 + round % 3;
+            let samples: Vec<Vec<f64>> =
+                (0..series).map(|i| sample((round / 3 + i * (round % 2)) % 7, &mut random)).collect();
+            let failed: Vec<usize> = (0..series).map(|i| [0, 5, 12][(round + i) % 3]).collect();
+            let panel = Panel {
+                label: "clearance (m)".to_owned(),
+                series: samples
+                    .iter()
+                    .zip(&failed)
+                    .map(|(values, failed)| Series { name: "", values, runs: values.len() + failed })
+                    .collect(),
+                nominal: [None, Some(4.3), Some(1e12)][round % 3],
+            };
+            let density = round % 2 == 0;
+            let size = [(500.0, 220.0), (350.0, 160.0), (232.0, 122.0)][round % 3];
+            let cell = Cell::new(&panel, (0..series).collect(), density, size);
+            let mut svg = Svg::new();
+            let frame = Frame { left: 50.0, top: 20.0, width: size.0, height: size.1 };
+            let end = cell.draw(&mut svg, &frame);
+            let svg = svg.finish((600.0, end), "", "figure");
+            let text = read(&svg);
+            let binned = cell.plot.as_ref().map(|(binned, _)| binned);
+            let inside: u64 = binned.iter().flat_map(|b| &b.counts).flatten().sum();
+            let [left, right] =
+                ["at the left edge: ", "at the right edge: "].map(|what| notes(&text, what));
+            let told = left + right + notes(&text, "not finite: ") + notes(&text, "runs without a value: ");
+            let runs: usize = panel.series.iter().map(|s| s.runs).sum();
+            assert_eq!(inside as usize + told, runs, "{text}");
+            // A bar for each series at each edge that has something.
+            let beyond = binned.iter().flat_map(|b| [&b.below, &b.above]).enumerate();
+            for (side, beyond) in beyond {
+                for (i, beyond) in beyond.iter().enumerate().filter(|(_, b)| b.count > 0) {
+                    at_edges += 1;
+                    let worst = samples[i].iter().copied().filter(|x| x.is_finite());
+                    let worst = worst.fold(f64::NAN, if side == 0 { f64::min } else { f64::max });
+                    assert_eq!(beyond.extreme, worst);
+                    assert!(text.contains(&format!(", to {}", significant(worst, 4))), "{text}");
+                    let bar = format!("<path fill=\"{}\" d=\"M", style::model(i));
+                    assert!(svg.contains(&bar), "{svg}");
+                }
+            }
+            // Bins and edges do not overlap, and nothing reaches out of the frame but arrows.
+            for (binned, vertical) in cell.plot.iter() {
+                assert!(binned.range.0 < binned.edges[0]);
+                assert!(binned.range.1 > *binned.edges.last().unwrap());
+                let heights = vertical.heights.iter().flatten().chain(vertical.edges.iter().flatten());
+                assert!(heights.into_iter().all(|h| (0.0..=vertical.top).contains(h)));
+            }
+        }
+        assert!(at_edges > 40, "{at_edges}");
+    }
 }

@@ -94,8 +94,11 @@ fn draw(svg: &mut Svg, rows: &[Label], panel: &RangePanel, (left, top, height): 
         svg.path(&nominal_pen(), &format!("M{} {}V{}", px(x(nominal)), px(base), px(top)));
     }
     for (i, (row, range)) in rows.iter().zip(&panel.ranges).enumerate() {
-        let Some([a, b, c]) = range.filter(|r| r.iter().all(|x| x.is_finite())) else { continue };
         let y = top + ROW * (i as f64 + 0.5);
+        let Some([a, b, c]) = range.filter(|r| r.iter().all(|x| x.is_finite())) else {
+            svg.text(left + WIDTH / 2.0, y + 4.0, TICK.at(Anchor::Middle), "no value");
+            continue;
+        };
         let colour = style::model(row.colour);
         let bar = format!("stroke=\"{colour}\" stroke-width=\"3\" stroke-opacity=\"0.55\"");
         svg.path(&bar, &format!("M{} {}H{}", px(x(a)), px(y), px(x(c))));

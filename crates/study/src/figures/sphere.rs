@@ -24,7 +24,7 @@ pub(crate) struct Cloud<'a> {
 
 /// The most attitudes drawn in one figure and on one sphere: what a page can carry.
 const MOST: usize = 9000;
-const MOST_ON_ONE: usize = 4000;
+const MOST_ON_ONE: usize = 2000;
 /// Dots of one colour are spread over so many translucent layers, so that crowds look darker.
 const LAYERS: usize = 6;
 const NAME: Look = Look::new(13.0, style::INK).at(Anchor::Middle).bold();
@@ -359,12 +359,12 @@ mod tests {
 
     #[test]
     fn numbers_drawn_and_left_out_are_told() {
-        let mut attitudes = spread(2500);
-        assert!(read(&attitude_spheres("", &[cloud(&attitudes)])).contains("2500 attitudes"));
-        attitudes.extend(spread(7500));
+        let mut attitudes = spread(1500);
+        assert!(read(&attitude_spheres("", &[cloud(&attitudes)])).contains("1500 attitudes"));
+        attitudes.extend(spread(8500));
         attitudes.push(UnitQuaternion::new_unchecked(Quaternion::new(f64::NAN, 0.0, 0.0, 0.0)));
         let text = read(&attitude_spheres("", &[cloud(&attitudes)]));
-        assert!(text.contains("4000 of 10\u{2009}000 attitudes drawn; 1 not finite"), "{text}");
+        assert!(text.contains("2000 of 10\u{2009}000 attitudes drawn; 1 not finite"), "{text}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The motion of a run, sampled, and as a table.
 
-use gyradius_separation::{MovingBody, Snapshot, Spring, SpringState, Step};
+use gyradius_separation::{MovingBody, Outcome, Snapshot, Spring, SpringState, Step};
 use nalgebra::{Unit, Vector3};
 use std::fmt::Write;
 
@@ -24,13 +24,16 @@ pub(crate) struct History {
     pub(crate) moments: Vec<Moment>,
     /// Spring from 1 and when it let go, s, in the order of time.
     pub(crate) releases: Vec<(usize, f64)>,
-    /// How many springs push at all.
-    pushing: usize,
+    /// From when on no spring can push, s; none if the run fails before.
+    free: Option<f64>,
+    /// An angular momentum of the payload up to this is rounding, kg·m²/s.
+    rounding: f64,
 }
 
 impl History {
-    /// Of the steps of a run by springs, of which some (from 1) are pressed again at times (s).
-    pub(crate) fn new(steps: &[Step], springs: &[Spring], recompressed: &[(usize, f64)]) -> Self {
+    /// Of the steps of a run by springs, and its outcome if it ends well.
+    pub(crate) fn new(steps: &[Step], springs: &[Spring], outcome: Option<&Outcome>) -> Self {
+        let recompressed: Vec<_> = outcome.into_iter().flat_map(Outcome::recompressed).collect();
         let end = steps.last().map_or(0.0, Step::end_s);
         let mut releases = Vec::new();
         for step in steps {
@@ -56,7 +59,7 @@ impl History {
                     due.push((start, format!("spring {} starts", i + 1)));
                 }
             }
-            for (spring, time) in recompressed {
+            for (spring, time) in &recompressed {
                 if (step.start_s()..step.end_s()).contains(time) {
                     due.push((*time, format!("spring {spring} pressed again")));
                 }
@@ -85,8 +88,12 @@ impl History {
         if let Some(first) = moments.first_mut() {
             first.event.insert_str(0, "clamp opens");
         }
-        let pushing = springs.iter().filter(|spring| spring.can_push()).count();
-        Self { moments, releases, pushing }
+        Self {
+            moments,
+            releases,
+            free: outcome.map(Outcome::release_time),
+            rounding: outcome.map_or(0.0, Outcome::momentum_rounding),
+        }
     }
 
     /// When it ends, s.
@@ -94,12 +101,9 @@ impl History {
         self.moments.last().map_or(0.0, |m| m.now.time_s())
     }
 
-    /// When the last spring lets go, s; the end if some do not.
+    /// From when on no spring can push, s; the end if some still do.
     pub(crate) fn pushing_s(&self) -> f64 {
-        match self.releases.last() {
-            Some((_, time)) if self.releases.len() == self.pushing => *time,
-            _ => self.end_s(),
-        }
+        self.free.unwrap_or_else(|| self.end_s())
     }
 
     /// The table: a row a moment, columns with units in their names.
@@ -110,7 +114,7 @@ impl History {
         for moment in &self.moments {
             // Writing to a string does not fail.
             let _ = write!(out, "{:?},{}", moment.now.time_s(), moment.event);
-            for value in values(&moment.now, spin_axis) {
+            for value in self.values(&moment.now, spin_axis) {
                 match value {
                     // As many digits as read back bit for bit.
                     Some(value) => {
@@ -122,6 +126,36 @@ impl History {
             out.push('\n');
         }
         out
+    }
+
+    fn values(&self, now: &Snapshot, spin_axis: &Unit<Vector3<f64>>) -> Vec<Option<f64>> {
+        let mut values = Vec::new();
+        for body in [now.payload(), now.stage()] {
+            let state = body.state();
+            values.extend(state.position.iter().chain(state.velocity.iter()));
+            values.extend(state.attitude.coords.iter().chain(state.angular_velocity.iter()));
+        }
+        for spring in now.springs() {
+            values.extend([spring.compression_m(), spring.force_n().norm()]);
+            values.extend(spring.force_n().iter());
+        }
+        values.extend(now.momentum().iter().chain(now.angular_momentum().iter()));
+        values.extend(energies(now));
+        values.push(energies(now).iter().sum());
+        let mut values: Vec<_> = values.into_iter().map(Some).collect();
+        values.push(self.nutation_deg(now.payload(), spin_axis));
+        values
+    }
+
+    /// The payload's nutation, deg; none if it does not turn by more than rounding.
+    pub(crate) fn nutation_deg(
+        &self,
+        payload: &MovingBody,
+        spin_axis: &Unit<Vector3<f64>>,
+    ) -> Option<f64> {
+        let turns = payload.spin_angular_momentum().norm() > self.rounding;
+        let nutation = payload.spin_metrics(spin_axis).nutation().filter(|_| turns);
+        nutation.map(f64::to_degrees)
     }
 }
 
@@ -170,25 +204,6 @@ fn columns(springs: usize) -> Vec<String> {
     names
 }
 
-fn values(now: &Snapshot, spin_axis: &Unit<Vector3<f64>>) -> Vec<Option<f64>> {
-    let mut values = Vec::new();
-    for body in [now.payload(), now.stage()] {
-        let state = body.state();
-        values.extend(state.position.iter().chain(state.velocity.iter()));
-        values.extend(state.attitude.coords.iter().chain(state.angular_velocity.iter()));
-    }
-    for spring in now.springs() {
-        values.extend([spring.compression_m(), spring.force_n().norm()]);
-        values.extend(spring.force_n().iter());
-    }
-    values.extend(now.momentum().iter().chain(now.angular_momentum().iter()));
-    values.extend(energies(now));
-    values.push(energies(now).iter().sum());
-    let mut values: Vec<_> = values.into_iter().map(Some).collect();
-    values.push(nutation_deg(now.payload(), spin_axis));
-    values
-}
-
 /// Of the springs; of translation (relative to the common mass centre) and rotation of payload and
 /// stage, J.
 pub(crate) fn energies(now: &Snapshot) -> [f64; 5] {
@@ -196,10 +211,6 @@ pub(crate) fn energies(now: &Snapshot) -> [f64; 5] {
     let [payload, stage] = now.translational_energies_j();
     let rotation = MovingBody::rotational_energy;
     [stored, payload, rotation(now.payload()), stage, rotation(now.stage())]
-}
-
-pub(crate) fn nutation_deg(payload: &MovingBody, spin_axis: &Unit<Vector3<f64>>) -> Option<f64> {
-    payload.spin_metrics(spin_axis).nutation().map(f64::to_degrees)
 }
 
 #[cfg(test)]

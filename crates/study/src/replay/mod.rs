@@ -2,7 +2,7 @@
 
 mod history;
 mod outlines;
-mod page;
+pub(crate) mod page;
 mod picture;
 mod record;
 mod words;
@@ -204,7 +204,6 @@ impl Replay {
         };
         let case = Model::new(spec, scenario)?.draw(scenario, run);
         let (mut steps, mut result) = (Vec::<Step>::new(), None);
-        let mut recompressed = Vec::new();
         if let Ok(separation) = &case.separation {
             let settings = scenario.settings();
             let outcome = separation.run(settings);
@@ -212,16 +211,15 @@ impl Replay {
             if let (Ok(_), Err(error)) = (&outcome, followed) {
                 return Err(ReplayError::Coasting(error));
             }
-            if let Ok(outcome) = &outcome {
-                recompressed.extend(outcome.recompressed());
-            }
             result = Some(outcome);
         }
         let springs = case.separation.as_ref().map_or(&[][..], Separation::springs);
+        let ended = result.as_ref().and_then(|result| result.as_ref().ok());
+        let history = History::new(&steps, springs, ended);
         let (row, clearance) = case.ended(scenario, result);
         Ok(Self {
             row,
-            history: History::new(&steps, springs, &recompressed),
+            history,
             scenario: scenario.clone(),
             model: spec.name.clone(),
             case,

@@ -6,11 +6,7 @@ use maud::{PreEscaped, html};
 use nalgebra::UnitQuaternion;
 use serde_json::{Value, json};
 
-use super::{
-    Replay,
-    history::{Moment, nutation_deg},
-    outlines,
-};
+use super::{Replay, history::Moment, outlines};
 use crate::{drawn, page::page};
 
 const SCRIPT: &str = include_str!("page.js");
@@ -20,7 +16,7 @@ const FRAMES: usize = 260;
 /// Springs drawn at most.
 const SPRINGS: usize = 200;
 
-pub(super) fn html(replay: &Replay) -> String {
+pub(crate) fn html(replay: &Replay) -> String {
     let name = replay.scenario.name();
     let (model, run) = (&replay.model, replay.row.run());
     // JSON in a script must not end it.
@@ -71,10 +67,13 @@ fn data(replay: &Replay) -> Value {
         .enumerate()
         .map(|(i, spring)| {
             let released = history.releases.iter().find(|(number, _)| *number == i + 1);
+            // Of a run that fails some still push at its end.
+            let pushes =
+                released.is_some() || (spring.can_push() && replay.row.failure().is_some());
             json!({
                 "p": short(spring.payload_point_m().as_slice()),
                 "s": short(spring.stage_point_m().as_slice()),
-                "from": spring.start_s().filter(|_| spring.can_push()).map(|s| short(&[s])[0].clone()),
+                "from": spring.start_s().filter(|_| pushes).map(|s| short(&[s])[0].clone()),
                 "free": released.map(|(_, time)| short(&[*time])[0].clone()),
             })
         })
@@ -137,7 +136,7 @@ fn frame(replay: &Replay, moment: &Moment) -> Value {
         values.extend(state.angular_velocity.iter().map(|w| w.to_degrees()));
     }
     values.extend(payload.inertial_spin_angular_momentum().iter());
-    values.extend(nutation_deg(payload, replay.scenario.spin_axis()));
+    values.extend(replay.history.nutation_deg(payload, replay.scenario.spin_axis()));
     Value::Array(short(&values))
 }
 

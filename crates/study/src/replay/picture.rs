@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::{
     Replay,
-    history::{Moment, energies, nutation_deg},
+    history::{Moment, energies},
 };
 use crate::figures::{Chart, Colours, Curve, time_charts};
 
@@ -28,7 +28,8 @@ pub(super) fn svg(replay: &Replay) -> String {
         (0..3).map(|i| curve(name(i), &move |m| rate(m, i))).collect()
     };
     let axis = replay.scenario.spin_axis();
-    let nutation = || vec![curve("payload".to_owned(), &|m| nutation_deg(m.now.payload(), axis))];
+    let nutation =
+        || vec![curve("payload".to_owned(), &|m| history.nutation_deg(m.now.payload(), axis))];
     let springs = history.moments.first().map_or(0, |m| m.now.springs().len());
     let forces = (0..springs)
         .map(|i| curve(format!("{}", i + 1), &move |m| Some(m.now.springs()[i].force_n().norm())))

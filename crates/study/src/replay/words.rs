@@ -78,14 +78,18 @@ impl Display for Replay {
         for (spring, number) in springs.zip(1..) {
             let start = spring.start_s().filter(|start| *start > 0.0);
             match row.value(Quantity::SpringRelease(number - 1)) {
+                None if spring.can_push() => {
+                    write!(
+                        f,
+                        "\n  {number} comes to its free length before it starts, and never pushes"
+                    )?;
+                }
                 None => write!(f, "\n  {number} never pushes")?,
-                Some(release) => match start {
-                    Some(start) if start < release => {
+                Some(_) => {
+                    if let Some(start) = start {
                         write!(f, "\n  {number} starts at {start:.9} s")?;
                     }
-                    Some(_) => write!(f, "\n  {number} comes to its free length before it starts")?,
-                    None => {}
-                },
+                }
             }
         }
         for (spring, time) in &self.history.releases {
@@ -125,6 +129,9 @@ impl Display for Replay {
         line("angular momentum, inertial axes", three(Quantity::Momentum), " kg·m²/s")?;
         line("angle to its intended direction", value(Quantity::MomentumError), "°")?;
         line("inertia ratio", value(Quantity::InertiaRatio), "")?;
+        if let (None, Some(note)) = (&self.clearance, row.clearance_note()) {
+            line("clearance", note.to_string(), "")?;
+        }
         if let (Some(outlines), Some(clearance)) = (self.scenario.outlines(), &self.clearance) {
             let [payload, stage] = outlines.shapes();
             let shapes = |s: &ShapeClearance| {
@@ -134,9 +141,12 @@ impl Display for Replay {
             };
             let nearest = match clearance.closest_shapes() {
                 Some(s) => format!("{}, {}", approach(s), shapes(s)),
-                None => "none, for what touches at the start does not part".to_owned(),
+                None => "none".to_owned(),
             };
             line("clearance", nearest, "")?;
+            if let Some(note) = row.clearance_note() {
+                line("", note.to_string(), "")?;
+            }
             if clearance.shapes().len() > 1 {
                 for s in clearance.shapes().iter().take(MOST_PAIRS) {
                     line(&format!("  {}", shapes(s)), approach(s), "")?;

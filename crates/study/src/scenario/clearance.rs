@@ -1,5 +1,7 @@
+//! What of the bodies may touch after the separation.
+
 use gyradius_separation::{
-    Clearance, ClearanceSettings, Coast, Outcome, Outline, OutlineError, Shape,
+    Clearance, ClearanceError, ClearanceSettings, Coast, Outcome, Outline, OutlineError, Shape,
 };
 use nalgebra::Vector3;
 
@@ -53,12 +55,12 @@ impl Outlines {
     }
 
     /// The clearance over the coast after the last release, of outlines about mass centres that lie
-    /// so far off the nominal ones, body axes, m.
+    /// so far off the nominal ones, body axes, m. That it cannot be found fails no run.
     pub(crate) fn clearance(
         &self,
         outcome: &Outcome,
         [payload, stage]: &[Vector3<f64>; 2],
-    ) -> Result<Clearance, Failure> {
+    ) -> Result<Result<Clearance, ClearanceError>, Failure> {
         let about = |body: Body, outline: &Outline, centre: &Vector3<f64>| {
             outline.about(*centre).map_err(|source| Failure::Outline { body: body.name(), source })
         };
@@ -68,7 +70,7 @@ impl Outlines {
         let mut coast = Coast::new(outcome.payload(), outcome.stage(), from);
         let settings = ClearanceSettings::default();
         let to = from + self.coast;
-        Ok(Clearance::new(&payload, &stage, &mut coast, from, to, &settings)?)
+        Ok(Clearance::new(&payload, &stage, &mut coast, from, to, &settings))
     }
 }
 

@@ -7,6 +7,7 @@ mod file;
 mod follows;
 mod law;
 mod model;
+mod sides;
 
 use gyradius_separation::{Separation, Settings, SettingsError, Spring, SpringError};
 use nalgebra::{Unit, Vector3};
@@ -171,6 +172,7 @@ impl Scenario {
             .collect::<Result<Vec<_>, _>>()?;
         let separation = Separation::new(*payload.moving(), *stage.moving(), &springs)
             .map_err(|e| ScenarioError::field("springs", e))?;
+        sides::check(&separation, file.separation_direction)?;
         // Defaults go by way of the file, so that the resolved scenario gives the same bits.
         if file.separation_direction.is_none() {
             file.separation_direction = push(&separation).map(|d| d.into_inner().into());
@@ -322,11 +324,8 @@ fn unit(vector: Vector3<f64>) -> Option<Unit<Vector3<f64>>> {
 
 /// The direction in which the springs push the payload at the start, late ones too, if they do not cancel.
 fn push(separation: &Separation) -> Option<Unit<Vector3<f64>>> {
-    let (payload, stage) = (separation.payload().state(), separation.stage().state());
     let forces = separation.springs().iter().filter(|s| s.can_push()).map(|spring| {
-        let line = (payload.position - stage.position)
-            + payload.attitude * spring.payload_point_m()
-            - stage.attitude * spring.stage_point_m();
+        let line = sides::line(separation, spring);
         line * (spring.stiffness_n_per_m() * spring.travel_m() / line.norm())
     });
     let (sum, size) = forces

@@ -1,0 +1,56 @@
+//! What the arithmetic of a run leaves of quantities whose parts cancel.
+
+use crate::{Separation, Settings, track::Fate};
+
+/// The size below which the payload's angular momentum and the relative velocity after a run are
+/// nothing but rounding, so that their directions mean nothing.
+///
+/// # Derivation
+/// The final momentum is a sum of what there was and of what the springs have given. Spring i gives an
+/// impulse of at most J = k x T, with its travel x and the time T from its start to its release, and an
+/// angular impulse of at most |r| J, with its point r on the payload. The solution of a step is right to
+/// its relative tolerance. Besides, the line s of a spring is a difference of coordinates, as large as
+/// the reach R = |s| + |r_P| + |r_L|, so that rounding turns the force by ε R/|s| and changes it by
+/// ε R/x; the sums of each step round once more. With n steps the directions are lost below
+///
+/// > Σ |r| J (tol + ε (4 + n) (1 + R/|s| + R/x)) + ε (4 + n) |I| |ω₀|,
+///
+/// and likewise for the velocity, with 1/μ in the place of |r|.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rounding {
+    /// Of the payload's angular momentum about its mass centre, kg·m²/s.
+    pub(crate) momentum: f64,
+    /// Of the velocity of the mass centres from each other, m/s.
+    pub(crate) velocity: f64,
+}
+
+impl Rounding {
+    pub(crate) fn new(
+        separation: &Separation,
+        springs: &[Fate],
+        settings: &Settings,
+        steps: u32,
+    ) -> Self {
+        let epsilon = f64::EPSILON * (4.0 + f64::from(steps));
+        let (payload, stage) = (separation.payload(), separation.stage());
+        // Not |I ω|, which may cancel itself.
+        let inertia = payload.body().inertia().matrix();
+        let spin = inertia.norm() * payload.state().angular_velocity.norm();
+        let speed = (payload.state().velocity - stage.state().velocity).norm();
+        let mut rounding = Self { momentum: epsilon * spin, velocity: epsilon * speed };
+        let all = separation.springs().iter().zip(separation.free_lengths()).zip(springs);
+        for ((spring, free), fate) in all {
+            let (Some(release), Some(start)) = (fate.let_go(), spring.start_s()) else { continue };
+            let travel = spring.travel_m();
+            let distance = free - travel;
+            let arm = spring.payload_point_m().norm();
+            let reach = distance + arm + spring.stage_point_m().norm();
+            let impulse = spring.stiffness_n_per_m() * travel * (release - start);
+            let relative =
+                settings.relative_tolerance() + epsilon * (1.0 + reach / distance + reach / travel);
+            rounding.momentum += arm * impulse * relative;
+            rounding.velocity += impulse * separation.inverse_reduced_mass() * relative;
+        }
+        rounding
+    }
+}
