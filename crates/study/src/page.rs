@@ -23,4 +23,3 @@ pub(crate) fn page(title: &str, style: &str, content: &Markup) -> String {
 
 #[cfg(test)]
 mod tests;
-

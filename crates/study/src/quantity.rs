@@ -59,7 +59,7 @@ pub enum Quantity {
     Payload(Entry),
     /// Entry of the stage's inertia matrix, kg·m².
     Stage(Entry),
-    /// When the last spring let go, s.
+    /// From when on no spring can push, s: when the last one let go, or, late, came to its free length.
     ReleaseTime,
     /// Speed at which the mass centres part, m/s.
     RelativeSpeed,
@@ -71,9 +71,10 @@ pub enum Quantity {
     Wobble,
     /// Angle between that principal axis and angular momentum, deg.
     Nutation,
-    /// Extreme of the nutation in the 1-2 plane, deg.
+    /// Extreme of the nutation in the 1-2 plane, deg, above 90 for a backward spin; none where the
+    /// momentum circles another axis.
     Nutation2,
-    /// Extreme of the nutation in the 1-3 plane, deg.
+    /// Extreme of the nutation in the 1-3 plane, deg, likewise.
     Nutation3,
     /// Angle between spin axis and angular momentum, deg.
     Cone,
@@ -111,7 +112,8 @@ pub enum Quantity {
     StageTranslation,
     /// Into the stage's rotation, J.
     StageRotation,
-    /// Smallest distance of the outlines over the coast, m; 0 if they touch.
+    /// Smallest distance of the outlines over the coast, m; 0 if any two of them touch. Outlines that
+    /// touch at the start count only if they touch again.
     Clearance,
     /// When that is, s.
     ClearanceTime,

@@ -163,27 +163,29 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                 }
             }
         } }
-        h3 { "Springs and contact" }
-        ul {
-            @for model in &summary.models { @if let Some(pressed) = model.releases.recompressed {
-                li {
-                    strong { (model.name) } ": let go in the order "
-                    @for (i, order) in model.releases.orders.iter().take(3).enumerate() {
-                        @if i > 0 { "; " }
-                        code { (order.order) } " in " (order.share.percent()) " of the runs"
+        @if summary.models.iter().any(|m| m.releases.recompressed.is_some()) {
+            h3 { "Springs and contact" }
+            ul {
+                @for model in &summary.models { @if let Some(pressed) = model.releases.recompressed {
+                    li {
+                        strong { (model.name) } ": let go in the order "
+                        @for (i, order) in model.releases.orders.iter().take(3).enumerate() {
+                            @if i > 0 { "; " }
+                            code { (order.order) } " in " (order.share.percent()) " of the runs"
+                        }
+                        @if model.releases.orders.len() > 3 { "; others" }
+                        ". " (energy(model))
+                        @if let Some(clearance) = &model.releases.clearance { " " (nearest(clearance)) }
+                        @if let Some(touch) = model.releases.recontact {
+                            " The bodies touch again in " (touch.percent()) " of the runs."
+                        }
+                        @if pressed.count > 0 {
+                            " A spring was pressed again after its release in "
+                            (pressed.percent()) " of the runs."
+                        }
                     }
-                    @if model.releases.orders.len() > 3 { "; others" }
-                    ". " (energy(model))
-                    @if let Some(clearance) = &model.releases.clearance { " " (nearest(clearance)) }
-                    @if let Some(touch) = model.releases.recontact {
-                        " The bodies touch again in " (touch.percent()) " of the runs."
-                    }
-                    @if pressed.count > 0 {
-                        " A spring was pressed again after its release in "
-                        (pressed.percent()) " of the runs."
-                    }
-                }
-            } }
+                } }
+            }
         }
     }
 }

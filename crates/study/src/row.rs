@@ -310,3 +310,6 @@ impl Row {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

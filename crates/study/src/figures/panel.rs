@@ -159,12 +159,10 @@ impl<'a> Cell<'a> {
                 );
             }
             if !there.is_empty() {
-                let (tip, back) = if side == 0 {
-                    (frame.left - 5.0, 5.0)
-                } else {
-                    (frame.left + frame.width + 5.0, -5.0)
-                };
-                let arrow = format!("M{} {}l{back} -3.5v7z", px(tip), px(base));
+                // Below the axis, clear of its labels.
+                let (tip, back) =
+                    if side == 0 { (frame.left, 6.0) } else { (frame.left + frame.width, -6.0) };
+                let arrow = format!("M{} {}l{back} -3v6z", px(tip), px(base + 5.0));
                 svg.path(&format!("fill=\"{}\"", style::model(self.models[there[0]])), &arrow);
             }
         }
@@ -307,9 +305,9 @@ mod tests {
     /// Runs of some law: heavy tails, ties, a constant, a far clump, nothing, one.
     fn sample(kind: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
         let n = [0, 1, 2, 7, 100, 3000][Uniform::new(0, 6).unwrap().sample(random)];
-        let normal = Normal::new(4.364, 0.01).unwrap();
-        let cauchy = Cauchy::new(0.0, 1.0).unwrap();
-        let share = Uniform::new(0.0, 1.0).unwrap();
+        let normal = Normal::new(4.364_f64, 0.01).unwrap();
+        let cauchy = Cauchy::new(0.0_f64, 1.0).unwrap();
+        let share = Uniform::new(0.0_f64, 1.0).unwrap();
         let rare = 0.03 * share.sample(random);
         (0..n)
             .map(|_| match kind {
@@ -337,6 +335,14 @@ mod tests {
         counts.map(number).sum()
     }
 
+    /// A number as it is read in a figure, where raised digits are digits.
+    fn plain(x: f64) -> String {
+        let raised = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻";
+        let flat: Vec<char> = "0123456789−".chars().collect();
+        let lower = |c: char| raised.chars().position(|r| r == c).map_or(c, |i| flat[i]);
+        significant(x, 4).chars().map(lower).collect()
+    }
+
     /// Whatever the data: bins, edges, and what is said not to be drawn are all the runs; what is at an
     /// edge is drawn there in the colour of its series.
     #[test]
@@ -345,15 +351,20 @@ mod tests {
         let mut at_edges = 0;
         for round in 0..300 {
             let series = 1 + round % 3;
-            let samples: Vec<Vec<f64>> =
-                (0..series).map(|i| sample((round / 3 + i * (round % 2)) % 7, &mut random)).collect();
+            let samples: Vec<Vec<f64>> = (0..series)
+                .map(|i| sample((round / 3 + i * (round % 2)) % 7, &mut random))
+                .collect();
             let failed: Vec<usize> = (0..series).map(|i| [0, 5, 12][(round + i) % 3]).collect();
             let panel = Panel {
                 label: "clearance (m)".to_owned(),
                 series: samples
                     .iter()
                     .zip(&failed)
-                    .map(|(values, failed)| Series { name: "", values, runs: values.len() + failed })
+                    .map(|(values, failed)| Series {
+                        name: "",
+                        values,
+                        runs: values.len() + failed,
+                    })
                     .collect(),
                 nominal: [None, Some(4.3), Some(1e12)][round % 3],
             };
@@ -369,7 +380,10 @@ mod tests {
             let inside: u64 = binned.iter().flat_map(|b| &b.counts).flatten().sum();
             let [left, right] =
                 ["at the left edge: ", "at the right edge: "].map(|what| notes(&text, what));
-            let told = left + right + notes(&text, "not finite: ") + notes(&text, "runs without a value: ");
+            let told = left
+                + right
+                + notes(&text, "not finite: ")
+                + notes(&text, "runs without a value: ");
             let runs: usize = panel.series.iter().map(|s| s.runs).sum();
             assert_eq!(inside as usize + told, runs, "{text}");
             // A bar for each series at each edge that has something.
@@ -380,7 +394,7 @@ mod tests {
                     let worst = samples[i].iter().copied().filter(|x| x.is_finite());
                     let worst = worst.fold(f64::NAN, if side == 0 { f64::min } else { f64::max });
                     assert_eq!(beyond.extreme, worst);
-                    assert!(text.contains(&format!(", to {}", significant(worst, 4))), "{text}");
+                    assert!(text.contains(&format!(", to {}", plain(worst))), "{text}");
                     let bar = format!("<path fill=\"{}\" d=\"M", style::model(i));
                     assert!(svg.contains(&bar), "{svg}");
                 }
@@ -389,7 +403,8 @@ mod tests {
             for (binned, vertical) in cell.plot.iter() {
                 assert!(binned.range.0 < binned.edges[0]);
                 assert!(binned.range.1 > *binned.edges.last().unwrap());
-                let heights = vertical.heights.iter().flatten().chain(vertical.edges.iter().flatten());
+                let heights =
+                    vertical.heights.iter().flatten().chain(vertical.edges.iter().flatten());
                 assert!(heights.into_iter().all(|h| (0.0..=vertical.top).contains(h)));
             }
         }

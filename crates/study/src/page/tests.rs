@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::{
-    CompareOptions, ModelComparison, Replay, Scenario, Summary, compare, plates, replay, report, runner,
+    CompareOptions, ModelComparison, Replay, Scenario, Summary, compare, plates, replay, report,
+    runner,
 };
 
 /// Elements without content.
@@ -15,8 +16,8 @@ const PHRASING: [&str; 21] = [
 ];
 /// Elements whose content is phrasing.
 const LINES: [&str; 15] = [
-    "p", "h1", "h2", "h3", "span", "strong", "em", "small", "code", "summary", "button", "label", "pre",
-    "title", "output",
+    "p", "h1", "h2", "h3", "span", "strong", "em", "small", "code", "summary", "button", "label",
+    "pre", "title", "output",
 ];
 
 /// An open element.
@@ -38,7 +39,8 @@ fn check(page: &str) {
     let mut cells = 0_usize;
     while !rest.is_empty() {
         let (text, after) = rest.split_at(rest.find('<').unwrap_or(rest.len()));
-        let plain = text.replace("&amp;", "").replace("&lt;", "").replace("&gt;", "").replace("&quot;", "");
+        let plain =
+            text.replace("&amp;", "").replace("&lt;", "").replace("&gt;", "").replace("&quot;", "");
         assert!(!plain.contains(['&', '>']), "not escaped: {text:?}");
         let parent = open.last().map_or("", |o| o.name.as_str());
         let structural = ["html", "table", "thead", "tbody", "tr", "ul", "select", ""];
@@ -76,7 +78,8 @@ fn check(page: &str) {
             cells = 0;
         }
         if name == "td" || name == "th" {
-            let table = open.iter_mut().rev().find(|o| o.name == "table").expect("a cell in a table");
+            let table =
+                open.iter_mut().rev().find(|o| o.name == "table").expect("a cell in a table");
             for _ in 0..number("colspan") {
                 // Columns that a cell above takes are not its own.
                 while table.spans.get(cells).is_some_and(|rows| *rows > 0) {
@@ -105,7 +108,8 @@ fn close(closed: &Open, table: Option<&mut Open>, cells: usize) {
         "tr" => {
             let table = table.expect("a row in a table");
             // What cells above still take on the right counts.
-            let width = table.spans.iter().rposition(|rows| *rows > 0).map_or(0, |i| i + 1).max(cells);
+            let width =
+                table.spans.iter().rposition(|rows| *rows > 0).map_or(0, |i| i + 1).max(cells);
             let expected = *table.width.get_or_insert(width);
             assert_eq!(width, expected, "rows of different width");
             table.spans.iter_mut().for_each(|rows| *rows = rows.saturating_sub(1));
@@ -120,7 +124,9 @@ fn close(closed: &Open, table: Option<&mut Open>, cells: usize) {
         "body" => assert_eq!(closed.children, ["main"]),
         "main" => assert_eq!(count("h1"), 1),
         "details" => assert_eq!((closed.children[0].as_str(), count("summary")), ("summary", 1)),
-        "figure" => assert!(count("figcaption") == 1 && closed.children.last().unwrap() == "figcaption"),
+        "figure" => {
+            assert!(count("figcaption") == 1 && closed.children.last().unwrap() == "figcaption")
+        }
         "ul" => assert!(count("li") > 0),
         _ => {}
     }
@@ -140,7 +146,8 @@ fn allowed(parent: &str, name: &str, before: &[String]) {
         "head" => only(&["meta", "title", "style"]),
         line if LINES.contains(&line) => only(&PHRASING),
         _ => {
-            let inner = ["li", "td", "th", "tr", "thead", "tbody", "option", "summary", "figcaption"];
+            let inner =
+                ["li", "td", "th", "tr", "thead", "tbody", "option", "summary", "figcaption"];
             let fits = matches!((parent, name), ("details", "summary") | ("figure", "figcaption"));
             assert!(!inner.contains(&name) || fits, "{name} in {parent}");
         }
@@ -224,7 +231,9 @@ fn bad_pages_are_refused() {
              </head><body><main><h1>t</h1>{body}</main></body></html>"
         )
     };
-    check(&page("<table><thead><tr><th>a</th></tr></thead><tbody><tr><td>b</td></tr></tbody></table>"));
+    check(&page(
+        "<table><thead><tr><th>a</th></tr></thead><tbody><tr><td>b</td></tr></tbody></table>",
+    ));
     let row = "<tr><td>b</td></tr>";
     for bad in [
         format!("<table><tbody>{row}</tbody><thead>{row}</thead></table>"),
