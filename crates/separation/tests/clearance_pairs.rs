@@ -2,7 +2,9 @@
 //! also of mated shapes, are clearance zero at the first of them in time.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use gyradius_separation::{Clearance, ClearanceSettings, Coast, Motion, Outline, Shape};
+use gyradius_separation::{
+    Clearance, ClearanceSettings, Coast, Motion, Outline, Shape, ShapeClearance,
+};
 use proptest::prelude::*;
 
 #[path = "common/forms.rs"]
@@ -164,7 +166,7 @@ proptest! {
         match (c.closest(), c.contact_s()) {
             (Some(closest), Some(contact)) => {
                 prop_assert_eq!((closest.distance_m(), closest.time_s()), (0.0, contact));
-                let times = c.shapes().iter().filter_map(|pair| pair.contact_s());
+                let times = c.shapes().iter().filter_map(ShapeClearance::contact_s);
                 prop_assert_eq!(contact, times.fold(f64::INFINITY, f64::min));
                 // No sampled contact is earlier, and the points do meet.
                 prop_assert!(contact <= first + 1e-6, "{} {}", contact, first);
