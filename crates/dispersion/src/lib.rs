@@ -65,6 +65,7 @@ mod scalar;
 mod second_moment_matrix;
 mod semidefinite;
 mod statements;
+mod truncated_normal;
 mod turns;
 mod wishart;
 

@@ -1,15 +1,11 @@
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
-use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use std::f64::consts::FRAC_1_SQRT_2;
 
-use crate::roots::share;
+use crate::truncated_normal::{MAX_DISTANCE, TruncatedNormal, WindowError};
 
 /// Largest magnitude of what a law may be given.
 const MAX: f64 = 1e100;
-/// Least share of the Gaussian that bounds must hold.
-const MIN_SHARE: f64 = 1e-9;
-/// Deviations beyond which a Gaussian has nothing left in double precision.
-const END: f64 = 38.0;
 
 /// Why numbers do not make a law.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -30,25 +26,28 @@ pub enum ScalarLawError {
         value: f64,
     },
     /// The bounds are in the wrong order.
-    #[error("bounds from {low:?} to {high:?}: the second must not be below the first")]
+    #[error(
+        "bounds from {low:?} to {high:?}: the second must not be below the first, and must be above it \
+         in a truncated normal law with a deviation"
+    )]
     Bounds {
         /// The smaller bound.
         low: f64,
         /// The larger bound.
         high: f64,
     },
-    /// Next to nothing of the Gaussian lies between the bounds.
+    /// The mean lies far outside the bounds.
     #[error(
-        "bounds from {low:?} to {high:?} hold a share {share:.1e} of the Gaussian: they must hold at \
-         least {MIN_SHARE:e}"
+        "bounds from {low:?} to {high:?}: the mean of the Gaussian is {distance:.3e} standard \
+         deviations outside; at most {MAX_DISTANCE} are allowed"
     )]
-    Share {
+    Distance {
         /// The smaller bound.
         low: f64,
         /// The larger bound.
         high: f64,
-        /// The share.
-        share: f64,
+        /// From the mean to the nearer bound, in standard deviations.
+        distance: f64,
     },
     /// The mean of a lognormal law is not positive.
     #[error("a lognormal law about {value:?}: its mean must be positive")]
@@ -80,7 +79,7 @@ pub enum ScalarLawError {
 /// | Bernoulli | 1 if Φ(−z) < p, else 0 |
 ///
 /// # Limits
-/// Bounds that hold less than 1e-9 of the Gaussian are refused.
+/// The mean of a truncated normal law may be at most 6σ outside of its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScalarLaw(Kind);
 
@@ -88,7 +87,7 @@ pub struct ScalarLaw(Kind);
 enum Kind {
     Normal { mean: f64, deviation: f64 },
     Uniform { low: f64, high: f64 },
-    Truncated { mean: f64, deviation: f64, low: f64, high: f64 },
+    Truncated(TruncatedNormal),
     Lognormal { mean: f64, deviation: f64, log_deviation: f64 },
     Bernoulli { probability: f64 },
 }
@@ -132,8 +131,8 @@ impl ScalarLaw {
     /// before.
     ///
     /// # Errors
-    /// Those of [`normal`](Self::normal), or the bounds are not numbers, in the wrong order, or hold
-    /// next to nothing of the Gaussian.
+    /// Those of [`normal`](Self::normal), or the bounds are not numbers or in the wrong order, or
+    /// the mean is more than 6σ outside of them.
     pub fn truncated_normal(
         mean: f64,
         sigma: f64,
@@ -146,18 +145,13 @@ impl ScalarLaw {
                 return Err(ScalarLawError::Number { field, value });
             }
         }
-        if low > high {
-            return Err(ScalarLawError::Bounds { low, high });
+        match TruncatedNormal::new(mean, deviation, [low, high]) {
+            Ok(window) => Ok(Self(Kind::Truncated(window))),
+            Err(WindowError::Bounds) => Err(ScalarLawError::Bounds { low, high }),
+            Err(WindowError::Distance(distance)) => {
+                Err(ScalarLawError::Distance { low, high, distance })
+            }
         }
-        let share = if deviation == 0.0 {
-            if (low..=high).contains(&mean) { 1.0 } else { 0.0 }
-        } else {
-            share((low - mean) / deviation, (high - mean) / deviation)
-        };
-        if !(share >= MIN_SHARE) {
-            return Err(ScalarLawError::Share { low, high, share });
-        }
-        Ok(Self(Kind::Truncated { mean, deviation, low, high }))
     }
 
     /// Lognormal, with its own mean and standard deviation. Always positive.
@@ -194,13 +188,7 @@ impl ScalarLaw {
         match self.0 {
             Kind::Normal { mean, deviation } => mean + deviation * z,
             Kind::Uniform { low, high } => (low + (high - low) * below(z)).clamp(low, high),
-            Kind::Truncated { mean, deviation, low, high } => {
-                if deviation == 0.0 {
-                    return mean;
-                }
-                let (alpha, beta) = ((low - mean) / deviation, (high - mean) / deviation);
-                (mean + deviation * truncated(alpha, beta, z)).clamp(low, high)
-            }
+            Kind::Truncated(window) => window.at_score(z),
             Kind::Lognormal { mean, log_deviation: s, .. } => mean * libm::exp(s * (z - 0.5 * s)),
             Kind::Bernoulli { probability } => f64::from(u8::from(below(-z) < probability)),
         }
@@ -211,18 +199,11 @@ impl ScalarLaw {
     pub fn cdf(&self, x: f64) -> f64 {
         let step = |at: f64| f64::from(u8::from(x >= at));
         match self.0 {
-            Kind::Normal { mean, deviation } | Kind::Truncated { mean, deviation, .. }
-                if deviation == 0.0 =>
-            {
-                step(mean)
-            }
+            Kind::Normal { mean, deviation: 0.0 } => step(mean),
             Kind::Normal { mean, deviation } => below((x - mean) / deviation),
             Kind::Uniform { low, high } if low == high => step(low),
             Kind::Uniform { low, high } => ((x - low) / (high - low)).clamp(0.0, 1.0),
-            Kind::Truncated { mean, deviation, low, high } => {
-                let [a, b, x] = [low, high, x.clamp(low, high)].map(|x| (x - mean) / deviation);
-                share(a, x) / share(a, b)
-            }
+            Kind::Truncated(window) => window.cdf(x),
             Kind::Lognormal { mean, log_deviation: 0.0, .. } => step(mean),
             Kind::Lognormal { mean, log_deviation: s, .. } => {
                 if x > 0.0 {
@@ -247,23 +228,18 @@ impl ScalarLaw {
         match self.0 {
             Kind::Normal { mean, .. } | Kind::Lognormal { mean, .. } => mean,
             Kind::Uniform { low, high } => 0.5 * low + 0.5 * high,
-            Kind::Truncated { mean, deviation, .. } => {
-                mean + deviation * self.truncated_moments().0
-            }
+            Kind::Truncated(window) => window.moments().mean,
             Kind::Bernoulli { probability } => probability,
         }
     }
 
-    /// The standard deviation. That of a truncated normal law loses digits where its interval is
-    /// much shorter than σ: two for every factor of ten.
+    /// The standard deviation.
     #[must_use]
     pub fn deviation(&self) -> f64 {
         match self.0 {
             Kind::Normal { deviation, .. } | Kind::Lognormal { deviation, .. } => deviation,
             Kind::Uniform { low, high } => (0.5 * high - 0.5 * low) / 3.0_f64.sqrt(),
-            Kind::Truncated { deviation, .. } => {
-                deviation * self.truncated_moments().1.max(0.0).sqrt()
-            }
+            Kind::Truncated(window) => window.moments().variance.sqrt(),
             Kind::Bernoulli { probability: p } => (p * (1.0 - p)).sqrt(),
         }
     }
@@ -274,28 +250,10 @@ impl ScalarLaw {
         match self.0 {
             Kind::Normal { .. } => "normal",
             Kind::Uniform { .. } => "uniform",
-            Kind::Truncated { .. } => "truncated-normal",
+            Kind::Truncated(_) => "truncated-normal",
             Kind::Lognormal { .. } => "lognormal",
             Kind::Bernoulli { .. } => "bernoulli",
         }
-    }
-
-    /// Mean and variance of a standard normal kept to [α, β].
-    fn truncated_moments(&self) -> (f64, f64) {
-        let Kind::Truncated { mean, deviation, low, high } = self.0 else { return (0.0, 1.0) };
-        if deviation == 0.0 {
-            return (0.0, 0.0);
-        }
-        let [alpha, beta] = [low, high].map(|x| (x - mean) / deviation);
-        let edge = |t: f64, power: i32| {
-            if t.abs() > END {
-                return 0.0;
-            }
-            t.powi(power) * libm::exp(-0.5 * t * t) / (2.0 * PI).sqrt()
-        };
-        let edges = |n| (edge(alpha, n) - edge(beta, n)) / share(alpha, beta);
-        let m1 = edges(0);
-        (m1, 1.0 + edges(1) - m1 * m1)
     }
 }
 
@@ -304,33 +262,6 @@ impl Distribution<f64> for ScalarLaw {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
         self.at_score(StandardNormal.sample(rng))
     }
-}
-
-/// The t in [α, β] below which a share Φ(z) of what a standard normal has there lies: bisection,
-/// by Newton's iteration where that stays inside.
-fn truncated(alpha: f64, beta: f64, z: f64) -> f64 {
-    let whole = share(alpha, beta);
-    let (mut low, mut high) = (alpha.max(-END), beta.min(END));
-    // From the end that is nearer, so that small shares keep their digits.
-    let (rising, target) = (z < 0.0, whole * below(-z.abs()));
-    let mut t = z.clamp(low, high);
-    for _ in 0..200 {
-        let excess = if rising { share(alpha, t) - target } else { target - share(t, beta) };
-        if excess < 0.0 {
-            low = t;
-        } else {
-            high = t;
-        }
-        let density = libm::exp(-0.5 * t * t) / (2.0 * PI).sqrt();
-        let newton = t - excess / density;
-        let next = if newton > low && newton < high { newton } else { 0.5 * low + 0.5 * high };
-        let done = (next - t).abs() <= 1e-15 * (1.0 + t.abs());
-        t = next;
-        if done {
-            break;
-        }
-    }
-    t
 }
 
 #[cfg(test)]
@@ -442,8 +373,9 @@ mod tests {
             (L::uniform(1.0, 0.0), "bounds from 1.0 to 0.0"),
             (L::uniform(-INF, 0.0), "low = -inf"),
             (L::truncated_normal(0.0, 1.0, f64::NAN, 1.0), "low = NaN"),
-            (L::truncated_normal(0.0, 1.0, 7.0, 8.0), "bounds from 7.0 to 8.0 hold"),
-            (L::truncated_normal(0.0, 0.0, 1.0, 2.0), "bounds from 1.0 to 2.0 hold"),
+            (L::truncated_normal(0.0, 1.0, 7.0, 8.0), "bounds from 7.0 to 8.0: the mean"),
+            (L::truncated_normal(0.0, 0.0, 1.0, 2.0), "bounds from 1.0 to 2.0: the mean"),
+            (L::truncated_normal(0.0, 1.0, 1.0, 1.0), "bounds from 1.0 to 1.0: the second"),
             (L::lognormal(0.0, 1.0), "a lognormal law about 0.0"),
             (L::lognormal(1e-100, 1e100), "sigma = 1e100"),
             (L::bernoulli(1.5), "probability = 1.5"),

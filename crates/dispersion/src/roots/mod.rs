@@ -15,7 +15,6 @@ pub use gaussian::{GaussianRoots, GaussianRootsError};
 pub use independent::{IndependentRoots, IndependentRootsError};
 pub use law::RootLaw;
 pub use lognormal::{LognormalRoots, LognormalRootsError};
-pub(crate) use truncated::share;
 pub use truncated::{TruncatedRoots, TruncatedRootsError};
 pub use uniform::{UniformRoots, UniformRootsError};
 

@@ -1,13 +1,10 @@
 use gyradius_inertia::RootSecondMoments;
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
-use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use super::{FAR, MAX_ROOT};
+use crate::truncated_normal::{MAX_DISTANCE, TruncatedNormal, WindowError, WindowMoments};
 use crate::{RootMoments, SecondMomentStatistics};
-
-/// Least share of the Gaussian that an interval must hold.
-const MIN_SHARE: f64 = 1e-9;
 
 /// Why a mean, a variance and bounds are refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -26,8 +23,8 @@ pub enum TruncatedRootsError {
     },
     /// A bound is NaN, or the second is not above the first.
     #[error(
-        "k_{axis} from {low:?} to {high:?} √kg·m: bounds must be numbers, the second not below the \
-         first; infinite ones are allowed"
+        "k_{axis} from {low:?} to {high:?} √kg·m: bounds must be numbers, the second above the first, \
+         or equal to it where the variance is zero; infinite ones are allowed"
     )]
     Bounds {
         /// Axis, from 1.
@@ -37,20 +34,20 @@ pub enum TruncatedRootsError {
         /// The larger bound, √kg·m.
         high: f64,
     },
-    /// Next to nothing of the Gaussian lies between the bounds.
+    /// The mean lies far outside the bounds.
     #[error(
-        "k_{axis} from {low:?} to {high:?} √kg·m holds a share {share:.1e} of the Gaussian: it must \
-         hold at least {MIN_SHARE:e}"
+        "k_{axis} from {low:?} to {high:?} √kg·m: the mean of the Gaussian is {distance:.3e} standard \
+         deviations outside; at most {MAX_DISTANCE} are allowed"
     )]
-    Share {
+    Distance {
         /// Axis, from 1.
         axis: usize,
         /// The smaller bound, √kg·m.
         low: f64,
         /// The larger bound, √kg·m.
         high: f64,
-        /// Φ((b − k̄)/σ) − Φ((a − k̄)/σ).
-        share: f64,
+        /// From the mean to the nearer bound, in standard deviations.
+        distance: f64,
     },
 }
 
@@ -58,17 +55,15 @@ pub enum TruncatedRootsError {
 ///
 /// # Definition
 /// The density of N(k̄_k, σ_k²) on [a_k, b_k] over its share of it. k̄ and σ² are those of the Gaussian
-/// *before* it is truncated. With α = (a − k̄)/σ, β = (b − k̄)/σ and Z that share, t = (k − k̄)/σ has the
-/// moments m₀ = 1, m₁ = (φ(α) − φ(β))/Z, mₙ = (n − 1)mₙ₋₂ + (αⁿ⁻¹φ(α) − βⁿ⁻¹φ(β))/Z, and
-/// E K = k̄² + 2k̄σm₁ + σ²m₂, Var K = 4k̄²σ² Var t + 4k̄σ³ Cov(t, t²) + σ⁴ Var t².
+/// *before* it is truncated.
 ///
 /// # Algorithm
-/// Rejection, from the Gaussian where the bounds hold a quarter of it, else from the uniform law on
-/// the interval or from an exponential at its near end (Robert 1995, doi:10.1007/BF00143942).
+/// Draws by rejection, from the Gaussian where the bounds hold a quarter of it, else from the uniform law
+/// on the interval or from an exponential at its near end (Robert 1995, doi:10.1007/BF00143942).
+/// Mean and variance of K by Gauss and Legendre's rule, to 1e-12 for an interval of any length.
 ///
 /// # Limits
-/// Bounds that hold less than 1e-9 of the Gaussian are refused. Var K loses digits where the interval
-/// is much shorter than σ: 16 less two for every factor of ten.
+/// The mean may be at most 6σ outside of the bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -82,13 +77,10 @@ pub struct TruncatedRoots {
     axes: [Truncated; 3],
 }
 
-/// A standard normal kept to [α, β].
+/// One root, and how it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Truncated {
-    deviation: f64,
-    alpha: f64,
-    beta: f64,
-    share: f64,
+    window: TruncatedNormal,
     proposal: Proposal,
 }
 
@@ -97,10 +89,8 @@ enum Proposal {
     Fixed,
     Gaussian,
     Uniform,
-    /// From the end nearer to zero, which is `sign` times a positive number.
+    /// From the end nearer to the mean.
     Exponential {
-        sign: f64,
-        near: f64,
         rate: f64,
     },
 }
@@ -112,7 +102,7 @@ impl TruncatedRoots {
     ///
     /// # Errors
     /// A variance is negative or NaN, roots could come out beyond 1e75 √kg·m, a bound is NaN, the
-    /// second is below the first, or they hold less than 1e-9 of the Gaussian.
+    /// second is not above the first, or the mean is more than 6σ outside of them.
     pub fn new(
         mean: RootSecondMoments,
         variances: [f64; 3],
@@ -124,19 +114,21 @@ impl TruncatedRoots {
                 return Err(TruncatedRootsError::Variance { axis: i + 1, value });
             }
         }
-        if let Some(i) = bounds.iter().position(|[low, high]| !(low <= high)) {
-            let [low, high] = bounds[i];
-            return Err(TruncatedRootsError::Bounds { axis: i + 1, low, high });
-        }
+        let given = bounds;
         let bounds = bounds.map(|b| b.map(|x| x.clamp(-MAX_ROOT, MAX_ROOT)));
-        let axes = std::array::from_fn(|i| Truncated::new(k[i], variances[i].sqrt(), bounds[i]));
-        match axes.iter().position(|axis| !(axis.share >= MIN_SHARE)) {
-            Some(i) => {
-                let ([low, high], share) = (bounds[i], axes[i].share);
-                Err(TruncatedRootsError::Share { axis: i + 1, low, high, share })
-            }
-            None => Ok(Self { mean, variances, bounds, axes }),
-        }
+        let window = |i: usize| {
+            TruncatedNormal::new(k[i], variances[i].sqrt(), bounds[i]).map_err(|error| {
+                let (axis, [low, high]) = (i + 1, given[i]);
+                match error {
+                    WindowError::Bounds => TruncatedRootsError::Bounds { axis, low, high },
+                    WindowError::Distance(distance) => {
+                        TruncatedRootsError::Distance { axis, low, high, distance }
+                    }
+                }
+            })
+        };
+        let axes = [window(0)?, window(1)?, window(2)?].map(Truncated::new);
+        Ok(Self { mean, variances, bounds, axes })
     }
 
     /// Means of the Gaussians before truncation, √kg·m.
@@ -160,98 +152,58 @@ impl TruncatedRoots {
     /// The shares of the Gaussians that lie within the bounds.
     #[must_use]
     pub fn shares(&self) -> [f64; 3] {
-        self.axes.map(|axis| axis.share)
+        self.axes.map(|axis| axis.window.share())
     }
 }
 
 impl Truncated {
-    fn new(mean: f64, deviation: f64, [low, high]: [f64; 2]) -> Self {
-        if deviation == 0.0 {
-            let share = if low <= mean && mean <= high { 1.0 } else { 0.0 };
-            let proposal = Proposal::Fixed;
-            return Self { deviation, alpha: 0.0, beta: 0.0, share, proposal };
-        }
-        let (alpha, beta) = ((low - mean) / deviation, (high - mean) / deviation);
-        let share = share(alpha, beta);
-        // Mirrored where the interval lies below zero.
-        let (sign, near) = if beta < 0.0 { (-1.0, -beta) } else { (1.0, alpha) };
+    fn new(window: TruncatedNormal) -> Self {
+        let (near, [from, to]) = (window.offset(), window.ends());
         let rate = 0.5 * (near + (near * near + 4.0).sqrt());
-        let proposal = if share >= 0.25 {
+        let proposal = if window.deviation() == 0.0 {
+            Proposal::Fixed
+        } else if window.share() >= 0.25 {
             Proposal::Gaussian
-        } else if near > 0.0 && (beta - alpha) * rate > 2.0 {
-            Proposal::Exponential { sign, near, rate }
+        } else if near > 0.0 && (to - from) * rate > 2.0 {
+            Proposal::Exponential { rate }
         } else {
             Proposal::Uniform
         };
-        Self { deviation, alpha, beta, share, proposal }
+        Self { window, proposal }
     }
 
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
-        let inside = |t: f64| self.alpha <= t && t <= self.beta;
-        let nearest = if inside(0.0) { 0.0 } else { self.alpha.abs().min(self.beta.abs()) };
+        let (near, [from, to]) = (self.window.offset(), self.window.ends());
         loop {
-            let (t, ln_accept) = match self.proposal {
-                Proposal::Fixed => return 0.0,
-                Proposal::Gaussian => (StandardNormal.sample(rng), 0.0),
-                Proposal::Uniform => {
-                    let t = self.alpha + rng.random::<f64>() * (self.beta - self.alpha);
-                    (t, 0.5 * (nearest - t) * (nearest + t))
+            let (v, ln_accept) = match self.proposal {
+                Proposal::Fixed => return self.window.value(0.0),
+                Proposal::Gaussian => {
+                    let t: f64 = StandardNormal.sample(rng);
+                    (self.window.sign() * t - near, 0.0)
                 }
-                Proposal::Exponential { sign, near, rate } => {
-                    let t = near - libm::log1p(-rng.random::<f64>()) / rate;
-                    (sign * t, -0.5 * (t - rate) * (t - rate))
+                Proposal::Uniform => {
+                    let v = from + rng.random::<f64>() * (to - from);
+                    (v, self.window.ln_density(v))
+                }
+                Proposal::Exponential { rate } => {
+                    let v = -libm::log1p(-rng.random::<f64>()) / rate;
+                    (v, -0.5 * (near + v - rate) * (near + v - rate))
                 }
             };
-            if inside(t) && (ln_accept == 0.0 || rng.random::<f64>() < libm::exp(ln_accept)) {
-                return t;
+            let inside = from <= v && v <= to;
+            if inside && (ln_accept == 0.0 || rng.random::<f64>() < libm::exp(ln_accept)) {
+                return self.window.value(v);
             }
         }
-    }
-
-    /// E t, …, E t⁴.
-    fn moments(&self) -> [f64; 4] {
-        if self.deviation == 0.0 {
-            return [0.0; 4];
-        }
-        let edge = |t: f64, power: i32| {
-            if t.abs() > FAR {
-                return 0.0;
-            }
-            t.powi(power) * libm::exp(-0.5 * t * t) / (2.0 * PI).sqrt()
-        };
-        let edges = |n| (edge(self.alpha, n) - edge(self.beta, n)) / self.share;
-        let m1 = edges(0);
-        let m2 = 1.0 + edges(1);
-        [m1, m2, 2.0 * m1 + edges(2), 3.0 * m2 + edges(3)]
-    }
-}
-
-/// Φ(β) − Φ(α), without cancellation in the tails.
-pub(crate) fn share(alpha: f64, beta: f64) -> f64 {
-    let tail = |t: f64| 0.5 * libm::erfc(t * FRAC_1_SQRT_2);
-    if alpha > 0.0 {
-        tail(alpha) - tail(beta)
-    } else if beta < 0.0 {
-        tail(-beta) - tail(-alpha)
-    } else {
-        0.5 * (libm::erf(beta * FRAC_1_SQRT_2) - libm::erf(alpha * FRAC_1_SQRT_2))
     }
 }
 
 impl RootMoments for TruncatedRoots {
     fn second_moment_statistics(&self) -> SecondMomentStatistics {
-        let k = self.mean.values();
-        let of = |i: usize| {
-            let (k, s, [m1, m2, m3, m4]) = (k[i], self.axes[i].deviation, self.axes[i].moments());
-            let mean = k * k + 2.0 * k * s * m1 + s * s * m2;
-            let (linear, mixed, square) = (m2 - m1 * m1, m3 - m1 * m2, m4 - m2 * m2);
-            let variance = s * s * (4.0 * k * (k * linear + s * mixed) + s * s * square);
-            // Rounding may leave them a hair below zero.
-            (mean.max(0.0), variance.max(0.0))
-        };
+        let moments: [WindowMoments; 3] = self.axes.map(|axis| axis.window.moments());
         SecondMomentStatistics::independent(
-            std::array::from_fn(|i| of(i).0),
-            std::array::from_fn(|i| of(i).1),
+            moments.map(|m| m.square_mean),
+            moments.map(|m| m.square_variance),
         )
     }
 }
@@ -259,13 +211,8 @@ impl RootMoments for TruncatedRoots {
 impl Distribution<RootSecondMoments> for TruncatedRoots {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> RootSecondMoments {
-        let mean = self.mean.values();
         loop {
-            let draw = std::array::from_fn(|i| {
-                let axis = &self.axes[i];
-                let [low, high] = self.bounds[i];
-                (mean[i] + axis.deviation * axis.sample(rng)).clamp(low, high)
-            });
+            let draw = std::array::from_fn(|i| self.axes[i].sample(rng));
             // Never refused within 40 deviations.
             if let Ok(roots) = RootSecondMoments::new(draw) {
                 return roots;
@@ -308,6 +255,7 @@ impl From<TruncatedRoots> for Parameters {
 mod tests {
     use super::*;
     use crate::root_moments::tests::check_moments;
+    use crate::truncated_normal::share;
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
     const INF: f64 = f64::INFINITY;
@@ -326,8 +274,8 @@ mod tests {
         let wide = law([30.0, 1.0, 0.0], [9.0, 4.0, 2.0], [[27.0, 33.0], [0.0, INF], [-INF, 1.0]]);
         check_moments(&wide.unwrap(), 31);
         let tails = law([0.0, 1.0, 0.0], [1.0; 3], [[3.0, INF], [-INF, -2.5], [4.0, 4.2]]).unwrap();
-        assert!(matches!(tails.axes[0].proposal, Proposal::Exponential { sign: 1.0, .. }));
-        assert!(matches!(tails.axes[1].proposal, Proposal::Exponential { sign: -1.0, .. }));
+        assert!(matches!(tails.axes[0].proposal, Proposal::Exponential { .. }));
+        assert!(matches!(tails.axes[1].proposal, Proposal::Exponential { .. }));
         assert!(matches!(tails.axes[2].proposal, Proposal::Uniform));
         check_moments(&tails, 32);
         let narrow = law([2.0, 5.0, 1.0], [1.0, 0.0, 4.0], [[1.9, 2.3], [4.0, 6.0], [-0.5, 0.2]]);
@@ -380,8 +328,8 @@ mod tests {
         ] {
             assert!(message.contains("k_2"), "{message}");
         }
-        assert!(with(1.0, 0.01, [5.0, 6.0]).contains("share"));
-        assert!(with(1.0, 0.1, [1.0, 1.0]).contains("share"));
+        assert!(with(1.0, 0.01, [5.0, 6.0]).contains("4.000e1 standard deviations outside"));
+        assert!(with(1.0, 0.1, [1.0, 1.0]).contains("the second above the first"));
     }
 
     #[cfg(feature = "serde")]

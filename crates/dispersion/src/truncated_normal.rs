@@ -1,0 +1,472 @@
+//! A normal law kept to a window, in the window's own coordinate: right however narrow the window is.
+
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+/// The nearer bound may be this many standard deviations from the mean: beyond, the Gaussian holds
+/// 1e-9.
+pub(crate) const MAX_DISTANCE: f64 = 6.0;
+/// Deviations from the near end beyond which nothing is left in double precision.
+const END: f64 = 38.0;
+/// A window with a smaller width, in deviations, is a point.
+const MIN_WIDTH: f64 = 1e-290;
+/// The density relative to its largest value where quadrature ends is e to minus this.
+const NEGLIGIBLE: f64 = 60.0;
+/// Up to this width one panel of the rule is exact to rounding, and differences of Φ are not.
+const NARROW: f64 = 0.5;
+
+/// Nodes and weights of Gauss and Legendre's rule of 16 points on [−1, 1], the positive half.
+const RULE: [[f64; 2]; 8] = [
+    [0.09501250983763744, 0.1894506104550685],
+    [0.2816035507792589, 0.18260341504492358],
+    [0.45801677765722737, 0.16915651939500254],
+    [0.6178762444026438, 0.14959598881657674],
+    [0.755404408355003, 0.12462897125553388],
+    [0.8656312023878318, 0.09515851168249279],
+    [0.9445750230732326, 0.062253523938647894],
+    [0.9894009349916499, 0.027152459411754096],
+];
+
+/// N(k̄, σ²) kept to [low, high].
+///
+/// # Definition
+/// k = anchor + sign · σ · v. The anchor is k̄ where the window holds it, else the bound nearer to it,
+/// from which v points away from k̄. With `offset` = |anchor − k̄|/σ the density of v is proportional
+/// to exp(−v (offset + v/2)) on `ends`. The width (high − low)/σ is thus never the difference of
+/// two rounded numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TruncatedNormal {
+    bounds: [f64; 2],
+    anchor: f64,
+    sign: f64,
+    deviation: f64,
+    offset: f64,
+    ends: [f64; 2],
+    /// ∫ exp(−v (offset + v/2)) dv over the window.
+    whole: f64,
+}
+
+/// Why bounds are refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum WindowError {
+    /// A bound is NaN, or the second is not above the first.
+    Bounds,
+    /// The nearer bound is this many deviations from the mean, which is too many.
+    Distance(f64),
+}
+
+/// The moments of a window.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WindowMoments {
+    /// E k.
+    pub(crate) mean: f64,
+    /// Var k.
+    pub(crate) variance: f64,
+    /// E k².
+    pub(crate) square_mean: f64,
+    /// Var k².
+    pub(crate) square_variance: f64,
+}
+
+impl TruncatedNormal {
+    /// A finite mean and a deviation that is not negative. Without a deviation the bounds may be equal.
+    pub(crate) fn new(
+        mean: f64,
+        deviation: f64,
+        [low, high]: [f64; 2],
+    ) -> Result<Self, WindowError> {
+        let bounds = [low, high];
+        if !(low <= high) {
+            return Err(WindowError::Bounds);
+        }
+        if deviation == 0.0 {
+            if !(low..=high).contains(&mean) {
+                return Err(WindowError::Distance(f64::INFINITY));
+            }
+            let ends = [0.0; 2];
+            let (sign, offset, whole) = (1.0, 0.0, 1.0);
+            return Ok(Self { bounds, anchor: mean, sign, deviation, offset, ends, whole });
+        }
+        let width = (high - low) / deviation;
+        if !(width >= MIN_WIDTH) {
+            return Err(WindowError::Bounds);
+        }
+        let (anchor, sign, offset, ends) = if mean < low {
+            (low, 1.0, (low - mean) / deviation, [0.0, width])
+        } else if mean > high {
+            (high, -1.0, (mean - high) / deviation, [0.0, width])
+        } else {
+            (mean, 1.0, 0.0, [(low - mean) / deviation, (high - mean) / deviation])
+        };
+        if !(offset <= MAX_DISTANCE) {
+            return Err(WindowError::Distance(offset));
+        }
+        let ends = ends.map(|v| v.clamp(-END, END));
+        let mut window = Self { bounds, anchor, sign, deviation, offset, ends, whole: 1.0 };
+        window.whole = window.mass(ends[0], ends[1]);
+        Ok(window)
+    }
+
+    /// Before truncation.
+    pub(crate) fn deviation(&self) -> f64 {
+        self.deviation
+    }
+
+    /// |anchor − k̄|/σ: zero where the window holds the mean.
+    pub(crate) fn offset(&self) -> f64 {
+        self.offset
+    }
+
+    /// 1, or −1 where the window lies below the mean.
+    pub(crate) fn sign(&self) -> f64 {
+        self.sign
+    }
+
+    /// The window in v.
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        self.ends
+    }
+
+    /// ln of the density of v over its value at the anchor.
+    pub(crate) fn ln_density(&self, v: f64) -> f64 {
+        -v * (self.offset + 0.5 * v)
+    }
+
+    /// k at v.
+    pub(crate) fn value(&self, v: f64) -> f64 {
+        (self.anchor + self.sign * self.deviation * v).clamp(self.bounds[0], self.bounds[1])
+    }
+
+    /// The share of the Gaussian that the window holds.
+    pub(crate) fn share(&self) -> f64 {
+        if self.deviation == 0.0 {
+            return 1.0;
+        }
+        libm::exp(-0.5 * self.offset * self.offset) / (2.0 * PI).sqrt() * self.whole
+    }
+
+    /// The probability of a value of at most x.
+    pub(crate) fn cdf(&self, x: f64) -> f64 {
+        if self.deviation == 0.0 {
+            return f64::from(u8::from(x >= self.anchor));
+        }
+        let [low, high] = self.bounds;
+        let [from, to] = self.ends;
+        let v = (self.sign * (x.clamp(low, high) - self.anchor) / self.deviation).clamp(from, to);
+        let below = if self.sign > 0.0 { self.mass(from, v) } else { self.mass(v, to) };
+        (below / self.whole).min(1.0)
+    }
+
+    /// The value below which a share Φ(z) of the window lies: bisection, by Newton's iteration where
+    /// that stays inside.
+    pub(crate) fn at_score(&self, z: f64) -> f64 {
+        if self.deviation == 0.0 {
+            return self.anchor;
+        }
+        let [from, to] = self.ends;
+        let z = self.sign * z;
+        let (mut low, mut high) = (from, to);
+        let width = to - from;
+        // From the end that is nearer, so that small shares keep their digits.
+        let rising = z < 0.0;
+        let share = 0.5 * libm::erfc(z.abs() * FRAC_1_SQRT_2);
+        let target = self.whole * share;
+        let mut v = if width > NARROW {
+            (z - self.offset).clamp(from, to)
+        } else if rising {
+            from + share * width
+        } else {
+            to - share * width
+        };
+        for _ in 0..200 {
+            let excess =
+                if rising { self.mass(from, v) - target } else { target - self.mass(v, to) };
+            if excess < 0.0 {
+                low = v;
+            } else {
+                high = v;
+            }
+            let newton = v - excess / libm::exp(self.ln_density(v));
+            let next = if newton > low && newton < high { newton } else { 0.5 * low + 0.5 * high };
+            let done = (next - v).abs() <= 1e-15 * (width.min(1.0) + v.abs());
+            v = next;
+            if done {
+                break;
+            }
+        }
+        self.value(v)
+    }
+
+    /// ∫ exp(−v (offset + v/2)) dv.
+    fn mass(&self, from: f64, to: f64) -> f64 {
+        if to - from <= NARROW {
+            let mut sum = 0.0;
+            panel(from, to, |v, weight| sum += weight * libm::exp(self.ln_density(v)));
+            return sum;
+        }
+        let scale = (2.0 * PI).sqrt() * libm::exp(0.5 * self.offset * self.offset);
+        scale * share(self.offset + from, self.offset + to)
+    }
+
+    /// Mean and variance of k and of k², to rounding: sums of terms that are not negative.
+    pub(crate) fn moments(&self) -> WindowMoments {
+        let (s, sign) = (self.deviation, self.sign);
+        if s == 0.0 {
+            let square_mean = self.anchor * self.anchor;
+            let mean = self.anchor;
+            return WindowMoments { mean, variance: 0.0, square_mean, square_variance: 0.0 };
+        }
+        // Where offset · v + v²/2 = NEGLIGIBLE.
+        let reach = 2.0 * NEGLIGIBLE / (self.offset + self.offset.hypot((2.0 * NEGLIGIBLE).sqrt()));
+        let [from, to] = self.ends.map(|v| v.clamp(-reach, reach));
+        let panels = (to - from).ceil().max(1.0);
+        let at = |i: f64| from + (to - from) * (i / panels);
+        let sum = |term: &dyn Fn(f64) -> f64| {
+            let mut sum = 0.0;
+            for i in 0..panels as u32 {
+                let i = f64::from(i);
+                panel(at(i), at(i + 1.0), |v, weight| {
+                    sum += weight * libm::exp(self.ln_density(v)) * term(v);
+                });
+            }
+            sum
+        };
+        let whole = sum(&|_| 1.0);
+        let mean_v = sum(&|v| v) / whole;
+        let variance = sum(&|v| (v - mean_v) * (v - mean_v)) / whole;
+        let mean = self.anchor + sign * s * mean_v;
+        // k² − E k² = σ (2 E k y + σ (y² − Var v)) with k = E k + σ y.
+        let square = sum(&|v| {
+            let y = sign * (v - mean_v);
+            let gap = 2.0 * mean * y + s * (y * y - variance);
+            gap * gap
+        }) / whole;
+        WindowMoments {
+            mean,
+            variance: s * s * variance,
+            square_mean: mean * mean + s * s * variance,
+            square_variance: s * s * square,
+        }
+    }
+}
+
+/// The nodes and weights of the rule on [from, to].
+fn panel(from: f64, to: f64, mut at: impl FnMut(f64, f64)) {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    for [node, weight] in RULE {
+        at(middle - half * node, half * weight);
+        at(middle + half * node, half * weight);
+    }
+}
+
+/// Φ(β) − Φ(α), without cancellation in the tails.
+pub(crate) fn share(alpha: f64, beta: f64) -> f64 {
+    let tail = |t: f64| 0.5 * libm::erfc(t * FRAC_1_SQRT_2);
+    if alpha > 0.0 {
+        tail(alpha) - tail(beta)
+    } else if beta < 0.0 {
+        tail(-beta) - tail(-alpha)
+    } else {
+        0.5 * (libm::erf(beta * FRAC_1_SQRT_2) - libm::erf(alpha * FRAC_1_SQRT_2))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use rand::RngExt;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    use rand_distr::{Distribution, StandardNormal};
+
+    use crate::{RootMoments, ScalarLaw, TruncatedRoots};
+    use gyradius_inertia::RootSecondMoments;
+
+    const INF: f64 = f64::INFINITY;
+
+    fn roots([mean, deviation, low, high]: [f64; 4]) -> TruncatedRoots {
+        let mean = RootSecondMoments::new([mean; 3]).unwrap();
+        TruncatedRoots::new(mean, [deviation * deviation; 3], [[low, high]; 3]).unwrap()
+    }
+
+    /// Mean and variance of k and of k², as the two laws that have windows tell them.
+    fn told(case: [f64; 4]) -> [f64; 4] {
+        let [mean, deviation, low, high] = case;
+        let scalar = ScalarLaw::truncated_normal(mean, deviation, low, high).unwrap();
+        let squares = roots(case).second_moment_statistics();
+        let variance = scalar.deviation() * scalar.deviation();
+        [scalar.mean(), variance, squares.mean()[0], squares.variances()[0]]
+    }
+
+    /// The mean relative to the larger of itself and the deviation, the others to themselves.
+    fn assert_agree(found: [f64; 4], expected: [f64; 4], tolerance: f64, what: &str) {
+        for (i, name) in ["E k", "Var k", "E K", "Var K"].into_iter().enumerate() {
+            let unit = if i == 0 { expected[0].abs().max(expected[1].sqrt()) } else { expected[i] };
+            let error = (found[i] - expected[i]).abs() / unit;
+            assert!(error <= tolerance, "{what}: {name} off by {error:e}: {found:?} {expected:?}");
+        }
+    }
+
+    /// mpmath 1.3 with 60 digits: `quad` of exp(−t²/2) over the window, in (k − low)/(high − low), infinite
+    /// ends at 40σ; mean, then the central second moment, and the same of k².
+    #[test]
+    fn moments_agree_with_mpmath() {
+        #[rustfmt::skip]
+        let cases = [
+            ([0.0, 1.0, -5e-13, 5e-13], [0.0, 8.333333333333333e-26, 8.333333333333333e-26, 5.555555555555555e-51]),
+            ([30.0, 3.0, 29.0, 29.000000000003], [29.0000000000015, 7.492453623753529e-25, 841.000000000087, 2.5204613990309475e-21]),
+            ([30.0, 3.0, 47.9, 47.90000001], [47.900000004999995, 8.333334712339574e-18, 2294.410000479, 7.648034600532282e-14]),
+            ([1.0, 0.5, -2.0, -1.99999], [-1.9999949999000002, 8.333333327331429e-12, 3.999979999633335, 1.3333266656619225e-10]),
+            ([0.0, 1.0, 5.9, 5.9000000000059], [5.90000000000295, 2.900126422326551e-24, 34.81000000003481, 4.038136030451528e-22]),
+            ([2.0, 1.0, -0.001, 0.002], [0.000501499623650789, 7.49998425678023e-07, 1.001500298199906e-06, 1.2017982613010033e-12]),
+            ([0.0, 1.0, -0.25, 0.249], [-0.000489710815221023, 0.020578369515909856, 0.020578609332592403, 0.00034241832977520144]),
+            ([1.0, 2.0, -3.0, 0.5], [-0.7576691347462567, 0.7910367047872227, 1.365099222534364, 3.9207303565150915]),
+            ([0.0, 1.0, 6.0, INF], [6.158482604544599, 0.02398763678916677, 37.95089562726759, 3.8144505516775973]),
+            ([5.0, 1.0, -INF, 0.0], [-0.1865039671258421, 0.032696434617112226, 0.06748016437078942, 0.019851358540173898]),
+            ([3.0, 0.1, 0.0, INF], [3.0, 0.010000000000000002, 9.01, 0.3602]),
+            ([-4.0, 1.0, -1.0, 1.0], [-0.7173056200577016, 0.06979756607044493, 0.5843249186368086, 0.0835077226578718]),
+            ([0.1, 10.0, -0.03, 0.0300001], [3.5000048997997065e-07, 0.0003000006399445875, 0.0003000006400670878, 7.200041830981316e-08]),
+            ([1000.0, 0.001, 1000.0005, 1000.000500000001], [1000.0005000000004, 8.724170523020214e-26, 1000001.000000251, 3.4896716988771705e-19]),
+        ];
+        for (case, expected) in cases {
+            assert_agree(told(case), expected, 1e-12, &format!("{case:?}"));
+        }
+    }
+
+    /// The same by tanh-sinh quadrature in x = (k − low)/(high − low).
+    fn by_quadrature([mean, deviation, low, high]: [f64; 4]) -> [f64; 4] {
+        let low = low.max(mean - 14.0 * deviation);
+        let high = high.min(mean + 14.0 * deviation);
+        let (start, length) = ((low - mean) / deviation, (high - low) / deviation);
+        let (mut nodes, mut whole) = (Vec::new(), 0.0);
+        for i in -260..=260 {
+            let tau = f64::from(i) / 80.0;
+            let u = 0.5 * PI * tau.sinh();
+            let x = 1.0 / (1.0 + (-2.0 * u).exp());
+            let exponent = -length * x * (start + 0.5 * length * x);
+            let weight = tau.cosh() / u.cosh().powi(2) * exponent.exp();
+            nodes.push((x, weight));
+            whole += weight;
+        }
+        let average = |f: &dyn Fn(f64) -> f64| {
+            nodes.iter().map(|(x, weight)| weight * f(*x)).sum::<f64>() / whole
+        };
+        let x = average(&|x| x);
+        let spread = average(&|y| (y - x) * (y - x));
+        let (size, k) = (high - low, low + (high - low) * x);
+        let gap = |y: f64| 2.0 * k * (y - x) + size * ((y - x) * (y - x) - spread);
+        let square_variance = size * size * average(&|y| gap(y) * gap(y));
+        [k, size * size * spread, k * k + size * size * spread, square_variance]
+    }
+
+    /// A mean, a deviation, and a window of any width anywhere up to 6σ outside.
+    fn any_window() -> impl Strategy<Value = [f64; 4]> {
+        let scale = (-6.0..6.0f64, -6.0..3.0f64, any::<bool>());
+        (scale, -5.9..5.9f64, -12.0..1.2f64, 0..6u8).prop_map(
+            |((size, ratio, negative), place, width, kind)| {
+                let mean = 10f64.powf(size) * if negative { -1.0 } else { 1.0 };
+                let deviation = mean.abs() * 10f64.powf(ratio);
+                let width = 10f64.powf(width) * deviation;
+                // About zero and about the mean one time in six each, one-sided as often.
+                let start = match kind {
+                    0 => mean + place.min(0.0) * 1e-2 * width - 0.3 * width,
+                    1 if mean.abs() < 5.0 * deviation => -0.4 * width,
+                    _ => mean + place * deviation,
+                };
+                let [low, high] = if place < 0.0 && kind > 1 {
+                    [start - width, start]
+                } else {
+                    [start, start + width]
+                };
+                match kind {
+                    2 => [mean, deviation, low, INF],
+                    3 => [mean, deviation, -INF, high],
+                    _ => [mean, deviation, low, high],
+                }
+            },
+        )
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(1500))]
+
+        #[test]
+        fn moments_agree_with_quadrature(case in any_window()) {
+            let [mean, deviation, low, high] = case;
+            // Rounding may have closed it, or moved it farther out.
+            prop_assume!(low < high && low - mean <= 6.0 * deviation && mean - high <= 6.0 * deviation);
+            assert_agree(told(case), by_quadrature(case), 1e-12, &format!("{case:?}"));
+        }
+
+        /// F(F⁻¹(Φ(z))) is Φ(z), as far as there are numbers in the window, and what it draws lies in it.
+        #[test]
+        fn scores_are_quantiles_of_any_window(case in any_window(), z in -6.0..6.0f64) {
+            let [mean, deviation, low, high] = case;
+            prop_assume!(low < high && low - mean <= 6.0 * deviation && mean - high <= 6.0 * deviation);
+            let law = ScalarLaw::truncated_normal(mean, deviation, low, high).unwrap();
+            let k = law.at_score(z);
+            prop_assert!((low..=high).contains(&k));
+            let target = 0.5 * libm::erfc(-z * FRAC_1_SQRT_2);
+            // The mass between neighbours of k.
+            let step = law.cdf(k.next_up().next_up()) - law.cdf(k.next_down().next_down());
+            let error = (law.cdf(k) - target).abs();
+            prop_assert!(error < 1e-12 + step, "{:?} {} {:e} {:e}", case, z, error, step);
+            prop_assert!(law.at_score(z + 0.01) >= k);
+        }
+    }
+
+    /// Kolmogorov and Smirnov's distance below its 1e-4 point: against the law where density falls
+    /// exponentially along the window, which is uniform where it is narrow.
+    #[test]
+    fn draws_of_narrow_windows_and_far_tails_have_their_law() {
+        const N: usize = 20_000;
+        let mut rng = ChaCha8Rng::seed_from_u64(35);
+        for width in [1e-12, 1e-9, 1e-4, 1e-2] {
+            for place in [0.0, 0.7, -0.7, 3.0, -3.0, 5.9, -5.9] {
+                for mean in [0.0, 30.0] {
+                    let deviation = if mean == 0.0 { 1.0 } else { 3.0 };
+                    let low = mean + (place - 0.5 * width) * deviation;
+                    let case = [mean, deviation, low, low + width * deviation];
+                    let [.., low, high] = case;
+                    let slope = (0.5 * (low + high) - mean) / deviation * (high - low) / deviation;
+                    let cdf = |k: f64| {
+                        let x = (k - low) / (high - low);
+                        if slope == 0.0 { x } else { (-slope * x).exp_m1() / (-slope).exp_m1() }
+                    };
+                    // Half a step between neighbouring numbers.
+                    let grain = 0.5 * (high.next_up() - high) / (high - low);
+                    let law = roots(case);
+                    let scalar = ScalarLaw::truncated_normal(mean, deviation, low, high).unwrap();
+                    let mut both = [Vec::new(), Vec::new()];
+                    for _ in 0..N {
+                        both[0].push(law.sample(&mut rng).values()[0]);
+                        both[1].push(scalar.sample(&mut rng));
+                    }
+                    for mut draws in both {
+                        draws.sort_by(f64::total_cmp);
+                        let gap = draws.iter().enumerate().fold(0.0, |gap: f64, (j, k)| {
+                            gap.max((cdf(*k) - (j as f64 + 0.5) / N as f64).abs() - grain)
+                        });
+                        assert!(gap * (N as f64).sqrt() < 2.23, "{case:?}: {gap}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// Any window has draws, and they lie in it.
+    #[test]
+    fn draws_lie_in_the_window() {
+        let mut rng = ChaCha8Rng::seed_from_u64(36);
+        for _ in 0..3000 {
+            let z: f64 = StandardNormal.sample(&mut rng);
+            let (mean, deviation) = (z, 10f64.powf(rng.random_range(-9.0..3.0)));
+            let place = rng.random_range(-5.9..5.9) * deviation;
+            let width = 10f64.powf(rng.random_range(-12.0..2.0)) * deviation;
+            let (low, high) = (mean + place, mean + place + width);
+            if low < high {
+                let k = roots([mean, deviation, low, high]).sample(&mut rng).values()[0];
+                assert!((low..=high).contains(&k), "{low:?} {high:?} {k:?}");
+            }
+        }
+    }
+}
