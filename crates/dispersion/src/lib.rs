@@ -57,6 +57,8 @@ mod known_moments;
 mod log_cholesky;
 mod matched;
 mod model;
+#[cfg(test)]
+mod pinned_values;
 mod principal;
 mod realizable_only;
 mod root_moments;

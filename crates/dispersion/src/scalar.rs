@@ -81,10 +81,10 @@ pub enum ScalarLawError {
 /// # Limits
 /// The mean of a truncated normal law may be at most 6σ outside of its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScalarLaw(Kind);
+pub struct ScalarLaw(pub(crate) Kind);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+pub(crate) enum Kind {
     Normal { mean: f64, deviation: f64 },
     Uniform { low: f64, high: f64 },
     Truncated(TruncatedNormal),
