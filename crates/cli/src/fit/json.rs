@@ -183,6 +183,7 @@ pub(super) fn text(
                     Aspect::Root { axis } => format!("root-{axis}"),
                     Aspect::Roots => "roots-independent".to_owned(),
                     Aspect::Axes => "axes".to_owned(),
+                    Aspect::Turn => "turn".to_owned(),
                     Aspect::Tilt => "tilt".to_owned(),
                     Aspect::RootsAndAxes => "roots-and-axes-independent".to_owned(),
                     _ => "other".to_owned(),

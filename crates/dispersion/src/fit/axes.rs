@@ -17,6 +17,8 @@ const APART: f64 = 3.0;
 const CONCENTRATED: f64 = 0.01;
 /// Turns narrower than this, rad², say nothing of the radial variance unless there are two groups.
 const NARROW: f64 = 0.1;
+/// A second lobe that holds fewer samples than this holds none: rounded, less than one.
+const LEAST_LOBE: f64 = 0.5;
 
 /// What the samples say of the principal axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +49,7 @@ pub struct AxesFit {
     radial: Option<RadialVariance>,
     converged: bool,
     isotropy: Option<f64>,
+    second_lobe: Option<f64>,
 }
 
 impl AxesFit {
@@ -94,6 +97,7 @@ impl AxesFit {
             radial: None,
             converged: true,
             isotropy: None,
+            second_lobe: None,
         }
     }
 
@@ -173,16 +177,21 @@ impl AxesFit {
             let family = Family::AlignedWith { radial_variance };
             fit = RadiallyConstrainedGaussian::fit_family(&attitudes, family)?;
         }
+        let turn_covariance = fit.turn_covariance();
+        let lobes =
+            matches!(radial, RadialVariance::Determined { .. }) && turn_covariance.trace() < NARROW;
+        let share = lobes.then(|| fit.law().far_half_share());
         // q and −q are one attitude: the mean on the side of the samples' mean.
         Ok(Self {
             law: fit.law().clone(),
             finding: AxesFinding::Determined,
-            turn_covariance: fit.turn_covariance(),
+            turn_covariance,
             turn_errors: fit.turn_covariance_errors(),
             mean_covariance: fit.mean_covariance(),
             radial: Some(radial),
             converged: fit.convergence().converged,
             isotropy: None,
+            second_lobe: share.filter(|share| share * samples.len() as f64 >= LEAST_LOBE),
         })
     }
 
@@ -250,11 +259,11 @@ impl AxesFit {
 
     /// The share of the law beyond a right angle of the mean quaternion, where the attitudes determine
     /// the radial variance: narrow axes that fall into two groups or have outliers are held by a
-    /// second lobe, about the inverse of the mean.
+    /// second lobe, about the inverse of the mean. None if that would hold less than one sample, to
+    /// rounding.
     #[must_use]
     pub fn second_lobe(&self) -> Option<f64> {
-        let determined = matches!(self.radial, Some(RadialVariance::Determined { .. }));
-        (determined && self.turn_covariance.trace() < NARROW).then(|| self.law.far_half_share())
+        self.second_lobe
     }
 
     /// p-value of equal tilt in all directions, which is all that the law can hold where one turn

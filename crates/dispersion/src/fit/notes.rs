@@ -38,6 +38,8 @@ pub enum FitNote {
     SecondLobe {
         /// Its share.
         share: f64,
+        /// How many samples that is, rounded.
+        samples: usize,
     },
     /// Mean and deviation of a root cannot be told apart.
     Unidentified {
@@ -104,12 +106,18 @@ impl fmt::Display for FitNote {
                 "the principal axes turn about fewer than three directions: the law has the others \
                  fixed to 1e-4°",
             ),
-            Self::SecondLobe { share } => write!(
-                f,
-                "the axes lie in two groups or have outliers: the law holds them by a second lobe of \
-                 {:.1} % about the inverse of the mean",
-                100.0 * share
-            ),
+            Self::SecondLobe { share, samples } => {
+                let percent = 100.0 * share;
+                write!(
+                    f,
+                    "the axes lie in two groups or have outliers: the law holds them by a second lobe \
+                     about the inverse of the mean, of {percent:.2} %, "
+                )?;
+                match samples {
+                    0 | 1 => f.write_str("which is one sample and may as well be an outlier"),
+                    _ => write!(f, "which is {samples} samples"),
+                }
+            }
             Self::Unidentified { axis } => write!(
                 f,
                 "k{axis} is nearer to zero than its deviation: samples of its square do not tell mean \
@@ -162,7 +170,8 @@ impl PrincipalFit {
             _ => {}
         }
         if let Some(share) = self.axes.second_lobe() {
-            notes.push(FitNote::SecondLobe { share });
+            let samples = (share * self.count() as f64).round() as usize;
+            notes.push(FitNote::SecondLobe { share, samples });
         }
         for (axis, root) in (1..).zip(&self.roots) {
             if !root.is_identified() {

@@ -1,9 +1,9 @@
 use super::*;
 use gyradius_inertia::InertiaMatrix;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use rand::{Rng, RngExt};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use rand_distr::{Distribution, StandardNormal, StudentT};
+use rand_distr::{ChiSquared, Distribution, StandardNormal, StudentT};
 
 type Law = PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>;
 
@@ -111,8 +111,8 @@ fn three(rng: &mut impl Rng) -> [f64; 3] {
     [0; 3].map(|_| StandardNormal.sample(rng))
 }
 
-/// What the model assumes away is noticed in 500 samples, nine times in ten and more. Outliers of the
-/// axes are either no law of the family, or make a second lobe, which is said.
+/// What the model assumes away is noticed in 500 samples, nine times in ten and more. Two groups of
+/// axes may be held by a second lobe, which is said.
 #[test]
 fn departures_are_noticed_and_named() {
     const REPEATS: u64 = 20;
@@ -153,13 +153,106 @@ fn departures_are_noticed_and_named() {
             let samples: Vec<Inertia> = (0..500).map(|_| make(&mut rng)).collect();
             let fit = PrincipalFit::new(&samples).unwrap();
             let assessment = fit.assess(&mut rng);
+            let objects = |of| assessment.objections().any(|t| t.aspect() == of);
+            let held = what == "two attachments" && fit.axes().second_lobe().is_some();
             noticed += u32::from(
-                assessment.objections().any(|t| t.aspect() == aspect)
-                    || (aspect == Aspect::Axes && fit.axes().second_lobe().is_some()),
+                objects(aspect) || (aspect == Aspect::Axes && (objects(Aspect::Turn) || held)),
             );
         }
         assert!(noticed >= 18, "{what}: {noticed} of {REPEATS}");
     }
+}
+
+/// A random attitude.
+fn any_attitude(rng: &mut ChaCha8Rng) -> UnitQuaternion<f64> {
+    gyradius_attitude::UniformAttitude.sample(rng)
+}
+
+/// Tails of the turns heavier than any law of the model has, at any width from 0.1° to 10° and any
+/// anisotropy up to 30 : 1, whichever way it points: refused, though such tables often have a fit that
+/// takes their farthest samples for a second lobe. What is called one holds a sample.
+#[test]
+fn heavy_tails_are_refused() {
+    const REPEATS: u64 = 6;
+    type Stretch = fn(&mut ChaCha8Rng) -> f64;
+    let tails: [(&str, Stretch); 3] = [
+        ("lognormal", |rng| libm::exp(StandardNormal.sample(rng))),
+        ("Student's t", |rng| {
+            let square: f64 = ChiSquared::new(4.0).unwrap().sample(rng);
+            (4.0 / square).sqrt()
+        }),
+        ("outliers", |rng| if rng.random::<f64>() < 0.05 { 8.0 } else { 1.0 }),
+    ];
+    let mut passed = Vec::new();
+    for (what, stretch) in tails {
+        for seed in 0..REPEATS {
+            let mut rng = ChaCha8Rng::seed_from_u64(100 + seed);
+            let width = 0.1_f64.to_radians() * libm::pow(100.0, rng.random());
+            let each = [1.0, rng.random(), rng.random()].map(|x: f64| width * x.max(1.0 / 30.0));
+            let (mean, frame) = (any_attitude(&mut rng), any_attitude(&mut rng));
+            let samples: Vec<Inertia> = (0..500)
+                .map(|_| {
+                    let [a, b, c] = three(&mut rng);
+                    let turn = Vector3::from(three(&mut rng)).component_mul(&Vector3::from(each));
+                    let turn = frame * turn * stretch(&mut rng);
+                    let k = RootSecondMoments::new([40.0 + a, 30.0 + b, 20.0 + c]).unwrap();
+                    let q = mean * UnitQuaternion::from_scaled_axis(turn);
+                    Inertia::from_second_moments(k.squared(), &q).unwrap()
+                })
+                .collect();
+            let fit = PrincipalFit::new(&samples).unwrap();
+            if fit.assess(&mut rng).fits() {
+                passed.push((what, seed));
+            }
+            if let Some(share) = fit.axes().second_lobe() {
+                assert!(share * 500.0 > 0.5, "{what} {seed}: a lobe of {share}");
+            }
+        }
+    }
+    // All of 18; at 95 %, five would be far out.
+    assert!(passed.len() <= 1, "{passed:?}");
+}
+
+/// Narrow and wide axes, alike in all directions or not, and real second lobes: one table in twenty of
+/// the model itself is refused, whatever its law and its size.
+#[test]
+fn the_verdict_has_its_size_for_any_law() {
+    const REPEATS: u64 = 80;
+    let mut refused = Vec::new();
+    for seed in 0..REPEATS {
+        let mut rng = ChaCha8Rng::seed_from_u64(500 + seed);
+        let (mean, frame) = (any_attitude(&mut rng), any_attitude(&mut rng));
+        let axes = if seed % 2 == 0 {
+            // Up to 20°.
+            let width = 0.1_f64.to_radians() * libm::pow(200.0, rng.random());
+            let each = [0; 3].map(|_| width * width * libm::pow(0.001, rng.random()));
+            let r = frame.to_rotation_matrix();
+            let turns =
+                r.matrix() * Matrix3::from_diagonal(&Vector3::from(each)) * r.matrix().transpose();
+            RadiallyConstrainedGaussian::from_rotation_covariance(mean, turns, 0.01).unwrap()
+        } else {
+            // From a lobe of nothing to one of a third, some degrees apart.
+            let width = libm::pow(10.0, rng.random_range(-5.0..-3.0));
+            let each = [0; 4].map(|_| width * libm::pow(0.1, rng.random()));
+            let tilt = Vector4::from([0; 4].map(|_| StandardNormal.sample(&mut rng))) * 0.05;
+            let long: Vector4<f64> = mean.coords + tilt;
+            let radial = 0.1 + 4.0 * rng.random::<f64>();
+            let covariance =
+                Matrix4::from_diagonal(&Vector4::from(each)) + radial * long * long.transpose();
+            RadiallyConstrainedGaussian::new(mean, covariance).unwrap()
+        };
+        let mean = RootSecondMoments::new([40.0, 30.0, 20.0]).unwrap();
+        let law = PrincipalDispersion::new(GaussianRoots::new(mean, [1.0; 3]).unwrap(), axes);
+        let n = [50, 200, 500][seed as usize % 3];
+        let fit = PrincipalFit::new(&draws(&law, n, seed)).unwrap();
+        let assessment = fit.assess(&mut rng);
+        if !assessment.fits() {
+            let found: Vec<_> = assessment.objections().map(FitTest::aspect).collect();
+            refused.push((seed, found));
+        }
+    }
+    // 4 and 3 deviations of 2.
+    assert!(refused.len() <= 10, "{refused:?}");
 }
 
 /// Noise on the six entries of an axisymmetric body: the turn about its axis is anything.
@@ -322,7 +415,6 @@ fn objections_name_what_is_wrong() {
 #[test]
 fn the_papers_law_comes_back_with_its_second_lobe() {
     use crate::EntryMoments;
-    use nalgebra::{Matrix4, Vector4};
     let nominal = Inertia::try_from(
         InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0]).unwrap(),
     )
