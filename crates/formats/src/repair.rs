@@ -5,15 +5,15 @@ use nalgebra::Matrix3;
 use std::{
     collections::HashSet,
     ffi::OsString,
-    fs::{self, OpenOptions, Permissions},
-    io::{self, Write},
+    fs::{self, Permissions},
     path::{Path, PathBuf},
 };
 
 use crate::{
-    Body, InertiaFile,
+    Body, InertiaFile, WriteError,
     body::{Place, Reading},
     judge::with_flipped_products,
+    plain::write_file_as,
 };
 
 /// How far inside the boundary a repaired inertia lies, as a part of its trace: enough that
@@ -288,80 +288,14 @@ pub fn write_copy(
     originals: &[PathBuf],
     force: bool,
 ) -> Result<bool, RepairError> {
-    write(copy, bytes, originals, force, None)
-}
+    fs::{self, Permissions},
+    path::{Path, PathBuf},
+};
 
-/// As [`write_copy`], of the file `original`: who may read and write it may the copy.
-///
-/// # Errors
-/// As there, and the original is gone.
-pub fn write_copy_of(
-    original: &Path,
-    copy: &Path,
-    bytes: &[u8],
-    originals: &[PathBuf],
-    force: bool,
-) -> Result<bool, RepairError> {
-    let metadata =
-        fs::metadata(original).map_err(|error| RepairError::Io { path: copy.to_owned(), error })?;
-    write(copy, bytes, originals, force, Some(metadata.permissions()))
-}
-
-fn write(
-    copy: &Path,
-    bytes: &[u8],
-    originals: &[PathBuf],
-    force: bool,
-    permissions: Option<Permissions>,
-) -> Result<bool, RepairError> {
-    let fail = |error| RepairError::Io { path: copy.to_owned(), error };
-    let here = fs::symlink_metadata(copy);
-    if here.is_ok() {
-        if let Ok(canonical) = fs::canonicalize(copy)
-            && originals.contains(&canonical)
-        {
-            return Err(RepairError::Original(copy.to_owned()));
-        }
-        let regular = here.is_ok_and(|metadata| metadata.is_file());
-        if regular && fs::read(copy).is_ok_and(|there| there == bytes) {
-            return Ok(false);
-        }
-        if !force || !regular {
-            return Err(RepairError::Exists(copy.to_owned()));
-        }
-    }
-    let mut draft = copy.as_os_str().to_owned();
-    draft.push(format!(".{}.draft", std::process::id()));
-    let draft = PathBuf::from(draft);
-    let mut options = OpenOptions::new();
-    options.write(true).create_new(true);
-    #[cfg(unix)]
-    if permissions.is_some() {
-        // Nobody else reads it before it has the permissions of the original.
-        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    }
-    let written = options
-        .open(&draft)
-        .and_then(|mut file| {
-            file.write_all(bytes)?;
-            permissions.map_or(Ok(()), |permissions| file.set_permissions(permissions))?;
-            file.sync_all()
-        })
-        .and_then(|()| {
-            if force {
-                fs::rename(&draft, copy)
-            } else {
-                // Fails if something has appeared meanwhile, which renaming would replace; but not
-                // every file system has links.
-                match fs::hard_link(&draft, copy) {
-                    Ok(()) => fs::remove_file(&draft),
-                    Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(error),
-                    Err(_) => fs::rename(&draft, copy),
-                }
-            }
-        });
-    if written.is_err() {
-        let _ = fs::remove_file(&draft);
-    }
-    written.map(|()| true).map_err(fail)
+use crate::{
+    Body, InertiaFile, WriteError,
+    body::{Place, Reading},
+    judge::with_flipped_products,
+    plain::write_file_as,
+};
 }

@@ -20,6 +20,7 @@ mod compare;
 mod drawn;
 mod figures;
 mod folder;
+mod forecast;
 mod format;
 mod fragment;
 mod model;
@@ -36,18 +37,21 @@ mod study;
 mod summary;
 mod table;
 mod text;
+mod visible;
 
 pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
+pub use forecast::Forecast;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_dispersion::ModelKind;
 pub use quantity::{Axis, Entry, Quantity};
 pub use replay::{Replay, ReplayError};
 pub use row::{Failure, Row};
 pub use runner::Progress;
-pub use scenario::{Scenario, ScenarioError};
+pub use scenario::{Scenario, ScenarioError, whole_number};
 pub use study::{Options, Study, StudyError};
 pub use summary::Summary;
 pub use table::RunTable;
+pub use visible::{visible, visible_json};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

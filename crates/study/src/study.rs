@@ -3,8 +3,8 @@ use parquet::errors::ParquetError;
 use std::path::{Path, PathBuf};
 
 use crate::{
-    Progress, RunTable, Scenario, ScenarioError, Summary,
-    folder::{Contents, Folder},
+    Forecast, Progress, RunTable, Scenario, ScenarioError, Summary,
+    folder::{Contents, Folder, FolderError},
     plates, report, runner,
 };
 
@@ -26,14 +26,6 @@ pub enum StudyError {
         /// What is wrong with it.
         problem: String,
     },
-    /// A file cannot be written.
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
     /// A run table cannot be written.
     #[error("cannot write the run table of {model}: {source}")]
     RunTable {
@@ -54,6 +46,12 @@ pub enum StudyError {
     /// The summary cannot be put into JSON.
     #[error("cannot write the summary: {0}")]
     Json(#[from] serde_json::Error),
+}
+
+impl From<FolderError> for StudyError {
+    fn from(FolderError { path, problem }: FolderError) -> Self {
+        Self::Folder { path, problem: problem.to_string() }
+    }
 }
 
 /// How to carry out a study.
@@ -87,13 +85,27 @@ impl Study {
         options: &Options,
         progress: Progress<'_>,
     ) -> Result<Self, StudyError> {
+        Self::run_with_forecast(scenario, options, progress, &|_| {})
+    }
+
+    /// As [`run`](Self::run), and says how long it will take before it begins.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_with_forecast(
+        scenario: &Scenario,
+        options: &Options,
+        progress: Progress<'_>,
+        say: &dyn Fn(Forecast),
+    ) -> Result<Self, StudyError> {
         let threads = threads(options.threads)?;
         let default = || Path::new("target/study").join(scenario.name());
         let place = options.out.clone().unwrap_or_else(default);
         let models = runner::models(scenario)?;
-        let contents = Contents::of_study(scenario);
-        let folder = Folder::prepare(&place, &contents, options.force)?;
+        let contents = contents(scenario);
+        let mut folder = Folder::prepare(&place, &contents, options.force)?;
 
+        say(Forecast::of(scenario, &models, threads.current_num_threads()));
         let tables = runner::run(scenario, &models, &threads, progress);
         let summary = threads.install(|| Summary::new(scenario, &models, &tables))?;
         let figures = plates::of_study(scenario, &summary, &tables);
@@ -131,6 +143,14 @@ impl Study {
     pub fn summary(&self) -> &Summary {
         &self.summary
     }
+}
+
+/// What a study writes besides its figures.
+fn contents(scenario: &Scenario) -> Contents<'_> {
+    let tables = scenario.model_names().map(|model| format!("runs/{model}/runs.parquet"));
+    let others = ["scenario.toml", "summary.json", "report.html", "figures/"].map(str::to_owned);
+    let same = |text: &str| text == scenario.to_toml();
+    Contents::new("study", "scenario.toml", tables.chain(others), same)
 }
 
 pub(crate) fn threads(number: Option<usize>) -> Result<rayon::ThreadPool, StudyError> {

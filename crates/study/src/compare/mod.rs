@@ -31,7 +31,7 @@ pub(crate) use section::Section;
 
 use crate::{
     Progress, StudyError,
-    folder::{Contents, Folder},
+    folder::{Contents, Folder, FolderError},
     scenario::{Scenario, ScenarioError},
     streams::Streams,
     study::threads,
@@ -66,6 +66,12 @@ pub enum CompareError {
     /// The result cannot be put into JSON.
     #[error("cannot write the comparison: {0}")]
     Json(#[from] serde_json::Error),
+}
+
+impl From<FolderError> for CompareError {
+    fn from(error: FolderError) -> Self {
+        Self::Write(error.into())
+    }
 }
 
 impl CompareError {
@@ -162,7 +168,9 @@ impl ModelComparison {
         let threads = threads(options.threads)?;
         let settings = Settings::new(&plan);
         let wanted = serde_json::to_value(&settings)?;
-        let contents = Contents::of_comparison(|text| {
+        let certain = ["compare.html", "compare.csv", "compare.json", "figures/"];
+        let certain = certain.map(str::to_owned);
+        let contents = Contents::new("comparison", "compare.json", certain, |text: &str| {
             serde_json::from_str::<serde_json::Value>(text)
                 .is_ok_and(|found| found.get("settings") == Some(&wanted))
         });
@@ -184,7 +192,7 @@ impl ModelComparison {
         Ok(comparison)
     }
 
-    fn write(&self, folder: Folder<'_>) -> Result<PathBuf, CompareError> {
+    fn write(&self, mut folder: Folder<'_>) -> Result<PathBuf, CompareError> {
         let plates = self.plates();
         for plate in &plates {
             folder.write(&format!("figures/{}.svg", plate.name), &plate.svg)?;

@@ -7,6 +7,7 @@ mod picture;
 mod record;
 mod words;
 
+use gyradius_formats::{WriteError, must_write, write_file};
 use gyradius_separation::{Clearance, RunError, Separation, Step};
 use parquet::errors::ParquetError;
 use serde_json::Value;
@@ -18,6 +19,7 @@ use std::{
 use crate::{
     Row, Scenario, ScenarioError,
     column::Column,
+    folder::{self, FolderError},
     model::{Case, Model},
 };
 use history::History;
@@ -132,6 +134,20 @@ pub enum ReplayError {
     },
 }
 
+impl From<WriteError> for ReplayError {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Exists(path) => Self::Exists { path },
+            WriteError::Io { path, error } => Self::Write { path, source: error },
+            WriteError::NoFile(path) => {
+                let source = io::Error::other("it is not a regular file");
+                Self::Write { path, source }
+            }
+            other => Self::Write { path: PathBuf::new(), source: io::Error::other(other) },
+        }
+    }
+}
+
 /// A run of a study, done again and followed through.
 ///
 /// Its row is that of the study, bit for bit. Printed, it is a page of what happened.
@@ -172,6 +188,11 @@ impl Replay {
             }
             return Self::new(&Scenario::read(path)?, model, run, coast_s);
         }
+        // A study that was killed while it replaced this one is put right first.
+        folder::restore(path).map_err(|FolderError { path, problem }| {
+            let problem = problem.to_string();
+            ReplayError::Study { path, problem }
+        })?;
         let scenario = scenario_of(path)?;
         let mut replay = Self::new(&scenario, model, run, coast_s)?;
         let table = path.join(format!("runs/{}/runs.parquet", replay.model));
@@ -249,7 +270,7 @@ impl Replay {
 
     /// Writes the history as a table and as a figure, and the animation: `history.csv`, `history.svg`,
     /// `animation.html`; returns what it wrote, nothing if the run never began. A file that is there
-    /// with the same content is left alone.
+    /// with the same content is left alone; a link is neither followed nor replaced.
     ///
     /// # Errors
     /// A file is there with other content and `force` is not set, or cannot be written.
@@ -263,41 +284,14 @@ impl Replay {
             ("animation.html", page::html(self)),
         ]
         .map(|(name, content)| (folder.join(name), content));
-        let mut different = Vec::new();
+        // All are looked at before the first is written.
         for (path, content) in &files {
-            let same = match fs::symlink_metadata(path) {
-                Err(error) if error.kind() == io::ErrorKind::NotFound => false,
-                // The folder is a file, say.
-                Err(source) => return Err(ReplayError::Write { path: path.clone(), source }),
-                // A folder of that name cannot be replaced.
-                Ok(found) if found.is_dir() => {
-                    let source = io::Error::other("it is a folder");
-                    return Err(ReplayError::Write { path: path.clone(), source });
-                }
-                _ if fs::read(path).is_ok_and(|found| found == content.as_bytes()) => true,
-                _ if force => false,
-                _ => return Err(ReplayError::Exists { path: path.clone() }),
-            };
-            if !same {
-                different.push((path, content));
-            }
+            must_write(path, content.as_bytes(), force)?;
         }
-        let failed = |path: &Path| {
-            let path = path.to_owned();
-            |source| ReplayError::Write { path, source }
-        };
-        fs::create_dir_all(folder).map_err(failed(folder))?;
-        for (path, content) in different {
-            // Half a file is never in place, and a link is replaced, not followed.
-            let mut draft = path.clone().into_os_string();
-            draft.push(format!(".draft-{}", std::process::id()));
-            let draft = PathBuf::from(draft);
-            let written = fs::write(&draft, content).and_then(|()| fs::rename(&draft, path));
-            written.map_err(|source| {
-                // Nothing better can be done about a draft that stays.
-                let _ = fs::remove_file(&draft);
-                ReplayError::Write { path: path.clone(), source }
-            })?;
+        fs::create_dir_all(folder)
+            .map_err(|source| ReplayError::Write { path: folder.to_owned(), source })?;
+        for (path, content) in &files {
+            write_file(path, content.as_bytes(), force)?;
         }
         Ok(files.map(|(path, _)| path).into())
     }

@@ -6,9 +6,12 @@ mod dispersions;
 mod file;
 mod follows;
 mod law;
+mod limits;
 mod model;
+mod parse;
 mod sides;
 
+use gyradius_formats::read_text;
 use gyradius_separation::{Separation, Settings, SettingsError, Spring, SpringError};
 use nalgebra::{Unit, Vector3};
 use sha2::{Digest, Sha256};
@@ -20,11 +23,11 @@ pub(crate) use dispersions::{BodyPart, Dispersed, Dispersions, SpringPart, Stack
 use file::ScenarioFile;
 pub(crate) use file::{AxesFile as Axes, ShapeFile};
 pub(crate) use model::{Comparison, Law, ModelSpec};
+pub use parse::whole_number;
+
+use crate::folder;
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
-
-/// Most runs of a model in one study: what fits into memory.
-const MAX_RUNS: u64 = 10_000_000;
 
 /// Why a scenario is refused.
 #[derive(Debug, thiserror::Error)]
@@ -95,8 +98,11 @@ impl Scenario {
     /// # Errors
     /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| ScenarioError::Read { path: path.to_owned(), source })?;
+        let unread = |source| ScenarioError::Read { path: path.to_owned(), source };
+        // One in the folder of a study may have been put aside by a command that was killed.
+        let folder = path.parent().unwrap_or(path);
+        folder::restore(folder).map_err(|error| unread(std::io::Error::other(error)))?;
+        let text = read_text(path, limits::BYTES).map_err(unread)?;
         Self::from_toml(&text).map_err(|error| match error {
             ScenarioError::Parse { message, .. } => {
                 ScenarioError::Parse { path: Some(path.to_owned()), message }
@@ -113,10 +119,9 @@ impl Scenario {
     /// # Errors
     /// It is not TOML, has an unknown key, or a value that is not allowed.
     pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
-        let file: ScenarioFile = toml::from_str(text).map_err(|error| ScenarioError::Parse {
-            path: None,
-            message: error.to_string().trim_end().to_owned(),
-        })?;
+        let file = parse::scenario(text)
+            .map_err(|message| ScenarioError::Parse { path: None, message })?;
+        limits::check(&file)?;
         Self::check(file)
     }
 
@@ -349,10 +354,13 @@ fn spring_key(error: &SpringError) -> &'static str {
 }
 
 fn check_runs(runs: u64) -> Result<(), ScenarioError> {
-    if (1..=MAX_RUNS).contains(&runs) {
+    if (1..=limits::RUNS).contains(&runs) {
         Ok(())
     } else {
-        Err(ScenarioError::field("runs", format!("{runs}: it must be between 1 and {MAX_RUNS}")))
+        Err(ScenarioError::field(
+            "runs",
+            format!("{runs}: it must be between 1 and {}", limits::RUNS),
+        ))
     }
 }
 

@@ -1,0 +1,212 @@
+//! Single files read and written with care: no pipe is waited for, nothing is read without a limit, and
+//! nothing is written through a link, by halves, or over another file unasked.
+
+use std::{
+    fs::{self, File, Metadata, Permissions},
+    io::{self, Read, Write},
+    path::{Path, PathBuf},
+};
+
+/// The text of a regular file of at most so many bytes.
+///
+/// # Errors
+/// It is no regular file, or larger, or not UTF-8, or the system refuses.
+pub fn read_text(path: &Path, most_bytes: u64) -> io::Result<String> {
+    // Asked before opening, which would wait for the other end of a pipe.
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::other("it is not a regular file"));
+    }
+    let mut text = String::new();
+    File::open(path)?.take(most_bytes + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > most_bytes {
+        let problem = format!("it is larger than {} MiB", most_bytes >> 20);
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, problem));
+    }
+    Ok(text)
+}
+
+/// Whether a file has to be written to have this content; one that has it already is left alone. What is
+/// there is replaced with `force` only, and only if it is a regular file.
+///
+/// # Errors
+/// Something else is there, or the system refuses.
+pub fn must_write(path: &Path, bytes: &[u8], force: bool) -> Result<bool, WriteError> {
+    let fail = |error| WriteError::Io { path: path.to_owned(), error };
+    match fs::symlink_metadata(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(true),
+        Err(error) => Err(fail(error)),
+        Ok(there) if there.is_file() => {
+            if there.len() == bytes.len() as u64 && fs::read(path).map_err(fail)? == bytes {
+                Ok(false)
+            } else if force {
+                Ok(true)
+            } else {
+                Err(WriteError::Exists(path.to_owned()))
+            }
+        }
+        Ok(_) => Err(WriteError::NoFile(path.to_owned())),
+    }
+}
+
+/// Writes a file, whole or not at all, and brings it to the disk; see [`must_write`] for what is
+/// replaced. Returns whether anything had to be written.
+///
+/// # Errors
+/// As [`must_write`].
+pub fn write_file(path: &Path, bytes: &[u8], force: bool) -> Result<bool, WriteError> {
+    write_file_as(path, bytes, force, None)
+}
+
+/// The same with these permissions, from before the first byte on; without any it has those of the file that it
+/// replaces, or of a new one.
+///
+/// # Errors
+/// As [`must_write`].
+pub fn write_file_as(
+    path: &Path,
+    bytes: &[u8],
+    force: bool,
+    permissions: Option<Permissions>,
+) -> Result<bool, WriteError> {
+    if !must_write(path, bytes, force)? {
+        return Ok(false);
+    }
+    let replaced = fs::symlink_metadata(path).ok().filter(|_| force);
+    match write(path, bytes, replaced.as_ref(), permissions) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+            Err(WriteError::Exists(path.to_owned()))
+        }
+        Err(error) => Err(WriteError::Io { path: path.to_owned(), error }),
+    }
+}
+
+/// Writes a temporary file beside it and moves it to its place, over what is to be replaced only.
+fn write(
+    path: &Path,
+    bytes: &[u8],
+    replaced: Option<&Metadata>,
+    permissions: Option<Permissions>,
+) -> io::Result<()> {
+    // The folder of a name without one is the current folder.
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    let permissions = permissions.or_else(|| replaced.map(Metadata::permissions));
+    let mut file = temporary(folder, permissions.is_some())?;
+    if let Some(permissions) = permissions {
+        file.as_file().set_permissions(permissions)?;
+    }
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    if replaced.is_some() {
+        file.persist(path)?;
+    } else {
+        file.persist_noclobber(path)?;
+    }
+    // Elsewhere than on Unix, folders cannot be opened, and their changes are in the system's journal.
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}
+
+/// A file that is removed unless it is moved: that nobody else may read, or with the permissions of any
+/// new file.
+fn temporary(folder: &Path, private: bool) -> io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".gyradius-");
+    #[cfg(unix)]
+    if !private {
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    }
+    #[cfg(not(unix))]
+    let _ = private;
+    builder.tempfile_in(folder)
+}
+
+/// Why a file is not written. What was there is as it was.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// Another file is there.
+    #[error("{} exists: --force replaces it", .0.display())]
+    Exists(PathBuf),
+    /// A folder, a link, a pipe or a device is there.
+    #[error("{} is not a regular file, and is neither followed nor replaced", .0.display())]
+    NoFile(PathBuf),
+    /// The system refuses.
+    #[error("cannot write {}: {error}", .path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        error: io::Error,
+    },
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    /// Every kind of thing that may be at a path, with and without force.
+    #[test]
+    fn what_is_there_is_replaced_only_if_it_is_a_file_and_by_force() {
+        for (kind, force) in (0..8).flat_map(|kind| [(kind, false), (kind, true)]) {
+            let scratch = tempfile::tempdir().unwrap();
+            let path = scratch.path().join("fragment.toml");
+            let elsewhere = scratch.path().join("elsewhere");
+            fs::write(&elsewhere, "dear").unwrap();
+            match kind {
+                0 => {}
+                1 => fs::write(&path, "mine").unwrap(),
+                2 => fs::write(&path, "new").unwrap(),
+                3 => fs::create_dir(&path).unwrap(),
+                4 => symlink(&elsewhere, &path).unwrap(),
+                5 => symlink(scratch.path().join("nowhere"), &path).unwrap(),
+                6 => {
+                    fs::write(&path, "mine").unwrap();
+                    fs::set_permissions(&path, fs::Permissions::from_mode(0o400)).unwrap();
+                }
+                _ => assert!(
+                    std::process::Command::new("mkfifo").arg(&path).status().unwrap().success()
+                ),
+            }
+            let kind_before = fs::symlink_metadata(&path).ok().map(|m| m.file_type());
+            let mode = fs::symlink_metadata(&path).ok().map(|m| m.permissions().mode());
+            let result = write_file(&path, b"new", force);
+            let expected = match (kind, force) {
+                (0, _) | (1 | 6, true) => Some(true),
+                (2, _) => Some(false),
+                _ => None,
+            };
+            assert_eq!(result.as_ref().ok().copied(), expected, "{kind} {force}: {result:?}");
+            if let Some(before) = kind_before {
+                let after = fs::symlink_metadata(&path).unwrap();
+                assert_eq!(after.file_type(), before);
+                assert_eq!(Some(after.permissions().mode()), mode);
+            }
+            if kind <= 2 || kind == 6 {
+                let text = if expected.is_some() { "new" } else { "mine" };
+                assert_eq!(fs::read_to_string(&path).unwrap(), text, "{kind} {force}");
+            }
+            assert_eq!(fs::read_to_string(&elsewhere).unwrap(), "dear");
+            assert!(!scratch.path().join("nowhere").exists());
+            let count = fs::read_dir(scratch.path()).unwrap().count();
+            assert_eq!(count, 1 + usize::from(kind != 0 || expected.is_some()), "no drafts");
+        }
+    }
+
+    #[test]
+    fn only_regular_files_within_the_limit_are_read() {
+        let scratch = tempfile::tempdir().unwrap();
+        let path = scratch.path().join("file");
+        for (length, allowed) in [(0, true), (1 << 20, true), ((1 << 20) + 1, false)] {
+            fs::write(&path, vec![b'a'; length]).unwrap();
+            assert_eq!(read_text(&path, 1 << 20).is_ok(), allowed, "{length}");
+        }
+        let pipe = scratch.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        for path in [pipe.as_path(), scratch.path(), Path::new("/dev/zero")] {
+            let message = read_text(path, 1 << 20).unwrap_err().to_string();
+            assert!(message.contains("not a regular file"), "{message}");
+        }
+    }
+}

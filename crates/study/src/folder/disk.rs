@@ -1,0 +1,97 @@
+//! Every change that is made on the disk. None of them writes through a link, nor replaces anything.
+//! Tests see every step, and do not wait for the disk.
+
+use std::{
+    fs::{self, File, OpenOptions},
+    io,
+    path::Path,
+};
+use tempfile::TempPath;
+
+/// Makes a folder; fails if anything of that name is there.
+pub(super) fn create_folder(path: &Path) -> io::Result<()> {
+    step("create folder", path)?;
+    fs::create_dir(path)
+}
+
+/// Makes a file, open for reading and writing; fails if anything of that name is there.
+pub(super) fn create_file(path: &Path) -> io::Result<File> {
+    step("create file", path)?;
+    OpenOptions::new().read(true).write(true).create_new(true).open(path)
+}
+
+/// Moves a file; fails if anything is there.
+pub(super) fn move_file(from: &Path, to: &Path) -> io::Result<()> {
+    step("move", to)?;
+    let moved = TempPath::try_from_path(from)?.persist_noclobber(to).map_err(|failed| {
+        // Else the file would be removed, as temporary ones are.
+        let _ = failed.path.keep();
+        failed.error
+    });
+    match moved {
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists && is_free(to) => {
+            // Not every file system can move a file without the chance to replace another.
+            fs::rename(from, to)
+        }
+        other => other,
+    }
+}
+
+fn is_free(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
+}
+
+/// Removes a file that may be gone already.
+pub(super) fn remove_file(path: &Path) -> io::Result<()> {
+    step("remove", path)?;
+    match fs::remove_file(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        other => other,
+    }
+}
+
+/// Removes a folder that is empty; one that is not, or is gone already, stays so.
+pub(super) fn remove_folder(path: &Path) -> io::Result<()> {
+    use io::ErrorKind::{DirectoryNotEmpty, NotADirectory, NotFound};
+    step("remove folder", path)?;
+    match fs::remove_dir(path) {
+        Err(error) if matches!(error.kind(), DirectoryNotEmpty | NotADirectory | NotFound) => {
+            Ok(())
+        }
+        other => other,
+    }
+}
+
+/// Appends to an open file and brings it to the disk.
+pub(super) fn append(mut file: &File, path: &Path, line: &str) -> io::Result<()> {
+    use io::Write;
+    step("append", path)?;
+    file.write_all(line.as_bytes())?;
+    if cfg!(test) { Ok(()) } else { file.sync_all() }
+}
+
+/// Brings the content of a file to the disk.
+pub(super) fn sync_file(path: &Path) -> io::Result<()> {
+    step("sync", path)?;
+    let file = OpenOptions::new().read(true).write(true).open(path)?;
+    if cfg!(test) { Ok(()) } else { file.sync_all() }
+}
+
+/// Brings the names in a folder to the disk.
+pub(super) fn sync_folder(path: &Path) -> io::Result<()> {
+    step("sync folder", path)?;
+    // Elsewhere than on Unix, folders cannot be opened, and their changes are in the system's journal.
+    if cfg!(unix) && !cfg!(test) { File::open(path)?.sync_all() } else { Ok(()) }
+}
+
+/// A test may stop the program here.
+#[cfg(test)]
+fn step(what: &str, path: &Path) -> io::Result<()> {
+    super::tests::fuse::step(what, path)
+}
+
+#[cfg(not(test))]
+#[allow(clippy::unnecessary_wraps, reason = "what tests put in its place can fail")]
+fn step(_what: &str, _path: &Path) -> io::Result<()> {
+    Ok(())
+}

@@ -1,0 +1,149 @@
+//! The hidden folder `.gyradius` in a folder: lock, records, journal, draft, and what is put aside.
+
+use std::{
+    fs::{self, File, OpenOptions, TryLockError},
+    io,
+    path::{Path, PathBuf},
+};
+
+use super::{
+    Problem, disk,
+    name::{Name, hash_of, said},
+    record::Record,
+};
+
+/// Its name.
+pub(super) const NAME: &str = ".gyradius";
+
+/// The hidden folder, held by a lock until it is dropped; the system gives the lock back if the program
+/// dies.
+#[derive(Debug)]
+pub(super) struct Hidden {
+    /// The folder that it is in.
+    place: PathBuf,
+    /// Held, never written.
+    lock: File,
+    /// Whether it did not exist before.
+    made: bool,
+    /// Whether its lock did not.
+    made_lock: bool,
+}
+
+impl Hidden {
+    /// Whether a folder has something of that name, whatever it is.
+    pub(super) fn is_in(place: &Path) -> bool {
+        fs::symlink_metadata(place.join(NAME)).is_ok()
+    }
+
+    /// Makes it if need be and locks it. The lock is a file that is empty for ever: it is made if there
+    /// is none, and else opened without a change.
+    pub(super) fn lock(place: &Path) -> Result<Self, Problem> {
+        // The folder that is meant now stays meant, whatever becomes of links on the way to it.
+        let place = fs::canonicalize(place)?;
+        let made = match disk::create_folder(&place.join(NAME)) {
+            Ok(()) => true,
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => false,
+            Err(error) => return Err(error.into()),
+        };
+        let kind = fs::symlink_metadata(place.join(NAME))?.file_type();
+        if !kind.is_dir() {
+            let (name, is) = (NAME.to_owned(), said(kind));
+            return Err(Problem::Kind { name, is, should: "folder" });
+        }
+        let path = place.join(NAME).join("lock");
+        let (lock, made_lock) = match disk::create_file(&path) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                (open_lock(&path)?, false)
+            }
+            other => (other?, true),
+        };
+        match lock.try_lock() {
+            Ok(()) if is_at(&lock, &path)? => Ok(Self { place, lock, made, made_lock }),
+            // Who held it has just removed it with the folder.
+            Ok(()) | Err(TryLockError::WouldBlock) => Err(Problem::Busy),
+            Err(TryLockError::Error(error)) => Err(error.into()),
+        }
+    }
+
+    /// The folder that it is in.
+    pub(super) fn place(&self) -> &Path {
+        &self.place
+    }
+
+    /// A file or folder in it.
+    pub(super) fn join(&self, name: &str) -> PathBuf {
+        self.place.join(NAME).join(name)
+    }
+
+    /// The name of a record from the folder that the hidden one is in.
+    pub(super) fn record_name(what: &str) -> Name {
+        Name::record(NAME, what)
+    }
+
+    /// What was written of this kind and the hash of its record, which is none if nothing was.
+    pub(super) fn record(&self, what: &str) -> Result<(Record, Option<String>), Problem> {
+        let name = Self::record_name(what);
+        let path = name.below(&self.place);
+        let unknown = |problem: String| Problem::Unknown { name: name.to_string(), problem };
+        match fs::symlink_metadata(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                return Ok((Record::default(), None));
+            }
+            Err(error) => return Err(error.into()),
+            Ok(metadata) if metadata.is_file() => {}
+            Ok(metadata) => return Err(unknown(format!("a {}", said(metadata.file_type())))),
+        }
+        let text = fs::read_to_string(&path).map_err(|error| unknown(error.to_string()))?;
+        let record = serde_json::from_str(&text).map_err(|error| unknown(error.to_string()))?;
+        Ok((record, Some(hash_of(&text))))
+    }
+
+    /// Takes it away again if it was made for nothing.
+    pub(super) fn remove_if_new(&self) {
+        // What stays is hidden and harms nothing.
+        if self.made_lock {
+            let _ = disk::remove_file(&self.join("lock"));
+        }
+        if self.made {
+            // Goes only if it is empty.
+            let _ = disk::remove_folder(&self.place.join(NAME));
+        }
+    }
+}
+
+impl Drop for Hidden {
+    fn drop(&mut self) {
+        // Closing is not enough while a child process that has just been started holds the same file.
+        let _ = self.lock.unlock();
+    }
+}
+
+/// Opens a lock that is there.
+fn open_lock(path: &Path) -> Result<File, Problem> {
+    let metadata = fs::symlink_metadata(path)?;
+    if !metadata.is_file() || metadata.len() > 0 {
+        let name = format!("{NAME}/lock");
+        let problem = "it should be an empty file".to_owned();
+        return Err(Problem::Unknown { name, problem });
+    }
+    // Some network file systems lock only what is open for writing. Nothing is written.
+    Ok(OpenOptions::new().read(true).write(true).open(path)?)
+}
+
+/// Whether a file is still the one at its path.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let file = file.metadata()?;
+    match fs::symlink_metadata(path) {
+        Ok(there) => Ok((file.dev(), file.ino()) == (there.dev(), there.ino())),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// Whether a file is still the one at its path: elsewhere than on Unix, an open file stays.
+#[cfg(not(unix))]
+fn is_at(_file: &File, path: &Path) -> io::Result<bool> {
+    path.try_exists()
+}

@@ -1,0 +1,398 @@
+//! The journal of a folder: what is being drafted, and which files are to replace which.
+//!
+//! A line is appended and synced before what it tells of is done, so that the next command knows what a
+//! killed one was about. Before the line `replace`, the old files are in place and whole; after it, the
+//! new ones are put in place, or the old ones back, however often that is broken off; after the line
+//! `settled`, all that remains is to be removed.
+
+use serde::{Deserialize, Serialize};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs::{self, File, OpenOptions},
+    io,
+    path::{Path, PathBuf},
+};
+
+use super::{
+    Problem, disk,
+    hidden::{self, Hidden},
+    name::{Found, Name, hash, hash_of, look, said},
+    record::Record,
+};
+
+const JOURNAL: &str = "journal";
+const DRAFT: &str = "draft";
+const ASIDE: &str = "aside";
+/// How every journal begins: what does not is not this program's.
+const BEGINNING: &str = "\n{\"draft\":\"";
+
+/// The journal, open for appending.
+#[derive(Debug)]
+pub(super) struct Journal {
+    path: PathBuf,
+    file: File,
+    /// Files of the draft.
+    drafts: Vec<Name>,
+    replacement: Option<Replacement>,
+    settled: bool,
+}
+
+/// A line of the journal.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Line {
+    Draft(Name),
+    Replace(Replacement),
+    Settled,
+}
+
+/// Files with their hashes, and folders that are made with them, before and after.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Replacement {
+    /// The file without which a folder is not whole.
+    mark: Name,
+    old: Record,
+    new: Record,
+}
+
+impl Replacement {
+    /// The records themselves are files that are replaced with the others.
+    pub(super) fn new(
+        mark: Name,
+        record: Name,
+        (old, old_hash): (&Record, Option<String>),
+        (new, new_text): (&Record, &str),
+    ) -> Self {
+        let with = |known: &Record, hash: Option<String>| {
+            let mut files = known.files().clone();
+            files.extend(hash.map(|hash| (record.clone(), hash)));
+            Record::new(files, known.folders().clone())
+        };
+        Self { mark, old: with(old, old_hash), new: with(new, Some(hash_of(new_text))) }
+    }
+
+    /// The old files, the mark first: a folder without one is not whole.
+    fn old(&self) -> impl Iterator<Item = &Name> {
+        let mark = self.old.names().filter(|name| **name == self.mark);
+        mark.chain(self.old.names().filter(|name| **name != self.mark))
+    }
+
+    /// The new files, the mark last: a folder with one is whole.
+    fn new_files(&self) -> impl Iterator<Item = &Name> {
+        let mark = self.new.names().filter(|name| **name == self.mark);
+        self.new.names().filter(|name| **name != self.mark).chain(mark)
+    }
+}
+
+impl Journal {
+    /// Begins a draft.
+    pub(super) fn start(hidden: &Hidden) -> Result<Self, Problem> {
+        for name in [DRAFT, ASIDE] {
+            if fs::symlink_metadata(hidden.join(name)).is_ok() {
+                let name = format!("{}/{name}", hidden::NAME);
+                let problem = "no journal tells of it".to_owned();
+                return Err(Problem::Unknown { name, problem });
+            }
+        }
+        let path = hidden.join(JOURNAL);
+        let file = disk::create_file(&path)?;
+        let journal = Self { path, file, drafts: Vec::new(), replacement: None, settled: false };
+        disk::sync_folder(&hidden.join(""))?;
+        disk::sync_folder(hidden.place())?;
+        disk::create_folder(&hidden.join(DRAFT))?;
+        Ok(journal)
+    }
+
+    /// The journal that a killed command left, if there is one.
+    fn left(hidden: &Hidden) -> Result<Option<Self>, Problem> {
+        let Some(lines) = read(hidden.place())? else { return Ok(None) };
+        let path = hidden.join(JOURNAL);
+        let file = OpenOptions::new().append(true).open(&path)?;
+        let mut journal =
+            Self { path, file, drafts: Vec::new(), replacement: None, settled: false };
+        for line in lines {
+            match line {
+                Line::Draft(name) => journal.drafts.push(name),
+                Line::Replace(replacement) => journal.replacement = Some(replacement),
+                Line::Settled => journal.settled = true,
+            }
+        }
+        Ok(Some(journal))
+    }
+
+    fn append(&self, line: &Line) -> Result<(), Problem> {
+        // The line break is in front as well: what was broken off is a line of its own.
+        let text = format!("\n{}\n", serde_json::to_string(line)?);
+        Ok(disk::append(&self.file, &self.path, &text)?)
+    }
+
+    /// Makes a file in the draft.
+    pub(super) fn create(&mut self, hidden: &Hidden, name: Name) -> Result<File, Problem> {
+        self.append(&Line::Draft(name.clone()))?;
+        let draft = hidden.join(DRAFT);
+        make_folders(&draft, &name)?;
+        let path = name.below(&draft);
+        self.drafts.push(name);
+        Ok(disk::create_file(&path)?)
+    }
+
+    /// The files of the draft, and the folders that have to be made for them.
+    pub(super) fn written(&self, hidden: &Hidden, old: &Record) -> Result<Record, Problem> {
+        let (mut files, mut folders) = (BTreeMap::new(), BTreeSet::new());
+        for name in &self.drafts {
+            files.insert(name.clone(), hash(&name.below(&hidden.join(DRAFT)))?);
+            for above in name.folders() {
+                let there = fs::symlink_metadata(above.below(hidden.place())).is_ok();
+                if !there || old.folders().contains(&above) {
+                    folders.insert(above);
+                }
+            }
+        }
+        Ok(Record::new(files, folders))
+    }
+
+    /// Puts the draft, synced, in place of the old files.
+    pub(super) fn replace(
+        &mut self,
+        hidden: &Hidden,
+        replacement: Replacement,
+    ) -> Result<(), Problem> {
+        let draft = hidden.join(DRAFT);
+        for name in &self.drafts {
+            disk::sync_file(&name.below(&draft))?;
+        }
+        sync_folders(&draft, self.drafts.iter())?;
+        disk::sync_folder(&hidden.join(""))?;
+        let begun = self.append(&Line::Replace(replacement.clone()));
+        // Whatever the disk has of that line, the draft stays until the next one is there.
+        self.replacement = Some(replacement);
+        if let Err(problem) = begun {
+            self.append(&Line::Settled)?;
+            self.settled = true;
+            return Err(problem);
+        }
+        match self.settle(hidden)? {
+            None => self.tidy(hidden),
+            Some(problem) => {
+                self.tidy(hidden)?;
+                Err(problem)
+            }
+        }
+    }
+
+    /// Puts the new files in place, or the old ones back and says why.
+    fn settle(&mut self, hidden: &Hidden) -> Result<Option<Problem>, Problem> {
+        let Some(replacement) = self.replacement.as_ref().filter(|_| !self.settled) else {
+            return Ok(None);
+        };
+        let result = match forward(hidden, replacement) {
+            Ok(()) => None,
+            Err(problem) => match backward(hidden, replacement) {
+                Ok(()) => Some(problem),
+                Err(_) => return Err(Problem::Stuck { problem: Box::new(problem) }),
+            },
+        };
+        self.append(&Line::Settled)?;
+        self.settled = true;
+        Ok(result)
+    }
+
+    /// Removes what is left of the draft and of the old files, and the journal.
+    fn tidy(&self, hidden: &Hidden) -> Result<(), Problem> {
+        let old = self.replacement.iter().flat_map(|r| r.old.names());
+        empty(&hidden.join(DRAFT), self.drafts.iter())?;
+        empty(&hidden.join(ASIDE), old)?;
+        disk::sync_folder(&hidden.join(""))?;
+        disk::remove_file(&self.path)?;
+        Ok(disk::sync_folder(&hidden.join(""))?)
+    }
+
+    /// Removes the draft if nothing was to be replaced by it yet.
+    pub(super) fn abandon(&self, hidden: &Hidden) {
+        if self.replacement.is_none() || self.settled {
+            // The next command removes what stays.
+            let _ = self.tidy(hidden);
+        }
+    }
+}
+
+/// Finishes what a killed command left. The folder is whole then.
+pub(super) fn settle_left(hidden: &Hidden) -> Result<(), Problem> {
+    match Journal::left(hidden)? {
+        None => Ok(()),
+        Some(mut journal) => {
+            // Whether the new files or the old ones are in place, they are whole.
+            journal.settle(hidden)?;
+            journal.tidy(hidden)
+        }
+    }
+}
+
+/// Whether a folder is not whole until its journal is settled.
+pub(super) fn is_pending(place: &Path) -> Result<bool, Problem> {
+    let lines = read(place)?.unwrap_or_default();
+    let replaces = lines.iter().any(|line| matches!(line, Line::Replace(_)));
+    Ok(replaces && !lines.iter().any(|line| matches!(line, Line::Settled)))
+}
+
+/// The lines of a journal; the last one is not there if it was broken off.
+fn read(place: &Path) -> Result<Option<Vec<Line>>, Problem> {
+    let name = format!("{}/{JOURNAL}", hidden::NAME);
+    let unknown = |problem: String| Problem::Unknown { name: name.clone(), problem };
+    let path = place.join(&name);
+    match fs::symlink_metadata(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(error.into()),
+        Ok(metadata) if metadata.is_file() => {}
+        Ok(metadata) => return Err(unknown(format!("a {}", said(metadata.file_type())))),
+    }
+    let bytes = fs::read(&path).map_err(|error| unknown(error.to_string()))?;
+    let shared = bytes.len().min(BEGINNING.len());
+    if bytes[..shared] != BEGINNING.as_bytes()[..shared] {
+        return Err(unknown("it is no journal".to_owned()));
+    }
+    let mut lines = Vec::new();
+    let mut texts = bytes.split(|byte| *byte == b'\n').filter(|line| !line.is_empty()).peekable();
+    while let Some(text) = texts.next() {
+        match serde_json::from_slice(text) {
+            Ok(line) => lines.push(line),
+            // Broken off in the middle of a line, after which a power failure leaves anything.
+            Err(error) if error.is_eof() || texts.peek().is_none() => {}
+            Err(error) => return Err(unknown(error.to_string())),
+        }
+    }
+    Ok(Some(lines))
+}
+
+/// Puts old files aside and new ones in place. May be done again after it was broken off.
+fn forward(hidden: &Hidden, replacement: &Replacement) -> Result<(), Problem> {
+    let (place, draft, aside) = (hidden.place(), hidden.join(DRAFT), hidden.join(ASIDE));
+    make_folder(&aside)?;
+    for name in replacement.old() {
+        let installed = replacement.new.has(name) && !is_there(&name.below(&draft))?;
+        if installed || is_there(&name.below(&aside))? {
+            continue;
+        }
+        match look(place, name)? {
+            Found::File { hash } if Some(hash.as_str()) == replacement.old.hash(name) => {
+                make_folders(&aside, name)?;
+                disk::move_file(&name.below(place), &name.below(&aside))?;
+            }
+            // Gone, or the user's by now: it is left alone unless a new file is to stand there.
+            Found::Nothing | Found::File { .. } | Found::Other { .. } => {}
+        }
+    }
+    for name in replacement.new_files() {
+        if is_there(&name.below(&draft))? {
+            install(&draft, place, name)?;
+        }
+    }
+    remove_folders(place, replacement.old.folders(), replacement.new.folders())?;
+    sync_replaced(hidden, replacement)
+}
+
+/// Puts new files back into the draft and old ones in place. May be done again after it was broken
+/// off, also half-way forward.
+fn backward(hidden: &Hidden, replacement: &Replacement) -> Result<(), Problem> {
+    let (place, draft, aside) = (hidden.place(), hidden.join(DRAFT), hidden.join(ASIDE));
+    for name in replacement.new_files() {
+        if is_there(&name.below(&draft))? {
+            continue;
+        }
+        match look(place, name)? {
+            Found::File { hash } if Some(hash.as_str()) == replacement.new.hash(name) => {
+                disk::move_file(&name.below(place), &name.below(&draft))?;
+            }
+            Found::Nothing | Found::File { .. } | Found::Other { .. } => {}
+        }
+    }
+    for name in replacement.old() {
+        if is_there(&name.below(&aside))? {
+            install(&aside, place, name)?;
+        }
+    }
+    remove_folders(place, replacement.new.folders(), replacement.old.folders())?;
+    sync_replaced(hidden, replacement)
+}
+
+/// Moves a file into place, where nothing may be.
+fn install(from: &Path, place: &Path, name: &Name) -> Result<(), Problem> {
+    match look(place, name)? {
+        Found::Nothing => {
+            make_folders(place, name)?;
+            Ok(disk::move_file(&name.below(from), &name.below(place))?)
+        }
+        Found::File { .. } => Err(Problem::Foreign { name: name.clone() }),
+        Found::Other { name, is, should } => Err(Problem::Kind { name, is, should }),
+    }
+}
+
+fn sync_replaced(hidden: &Hidden, replacement: &Replacement) -> Result<(), Problem> {
+    let names = replacement.old.names().chain(replacement.new.names());
+    sync_folders(hidden.place(), names)?;
+    Ok(disk::sync_folder(&hidden.join(ASIDE))?)
+}
+
+/// Removes these files, the folders above them and the folder itself, where all that empties it.
+fn empty<'n>(folder: &Path, names: impl Iterator<Item = &'n Name>) -> Result<(), Problem> {
+    match fs::symlink_metadata(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(error.into()),
+        Ok(_) => {}
+    }
+    let mut folders = BTreeSet::new();
+    for name in names {
+        // Never through a link, nor what is no file.
+        if let Found::File { .. } = look(folder, name)? {
+            disk::remove_file(&name.below(folder))?;
+        }
+        folders.extend(name.folders());
+    }
+    remove_folders(folder, &folders, &BTreeSet::new())?;
+    disk::remove_folder(folder)?;
+    if fs::symlink_metadata(folder).is_err() {
+        return Ok(());
+    }
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let name = format!("{}/{name}", hidden::NAME);
+    Err(Problem::Unknown { name, problem: "it holds files that no journal tells of".to_owned() })
+}
+
+/// Removes folders that are empty and not to be kept, the innermost first.
+fn remove_folders(
+    place: &Path,
+    names: &BTreeSet<Name>,
+    kept: &BTreeSet<Name>,
+) -> Result<(), Problem> {
+    for name in names.iter().rev().filter(|name| !kept.contains(name)) {
+        if fs::symlink_metadata(name.below(place)).is_ok_and(|metadata| metadata.is_dir()) {
+            disk::remove_folder(&name.below(place))?;
+        }
+    }
+    Ok(())
+}
+
+fn make_folders(root: &Path, name: &Name) -> io::Result<()> {
+    name.folders().try_for_each(|above| make_folder(&above.below(root)))
+}
+
+fn make_folder(path: &Path) -> io::Result<()> {
+    if is_there(path)? { Ok(()) } else { disk::create_folder(path) }
+}
+
+fn is_there(path: &Path) -> io::Result<bool> {
+    match fs::symlink_metadata(path) {
+        Ok(_) => Ok(true),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// The folder and those in it that these files are in.
+fn sync_folders<'n>(root: &Path, names: impl Iterator<Item = &'n Name>) -> Result<(), Problem> {
+    let folders: BTreeSet<Name> = names.flat_map(Name::folders).collect();
+    for folder in folders.iter().rev().map(|name| name.below(root)).filter(|f| f.is_dir()) {
+        disk::sync_folder(&folder)?;
+    }
+    Ok(disk::sync_folder(root)?)
+}

@@ -1,0 +1,305 @@
+//! The folder of a study or a comparison: written in full beside what is there, then put in its place.
+//!
+//! Three promises hold at every moment, also if the program is killed or the machine loses power:
+//!
+//! * Nothing is replaced or removed but files that this program wrote and that still have the content
+//!   that it wrote: [`record`] lists them. Nothing is followed through a link below the folder.
+//! * One whole study is in place, or the next command that uses the folder puts it there: [`journal`].
+//! * What is called done is on the disk: every file and folder is synced before.
+//!
+//! The record, the journal, the lock and the draft are in the hidden folder `.gyradius`.
+
+mod disk;
+mod hidden;
+mod journal;
+mod name;
+mod record;
+#[cfg(test)]
+mod tests;
+
+use std::{
+    fmt, fs,
+    fs::File,
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+use hidden::Hidden;
+use journal::{Journal, Replacement};
+use name::{Found, Name, look};
+use record::Record;
+
+/// What goes into a folder.
+pub(crate) struct Contents<'a> {
+    /// What it is called, and its record after it.
+    what: &'static str,
+    /// The file that tells one from another, without which a folder is not whole.
+    mark: &'static str,
+    /// Files that are certain to be written, and folders, which end in `/`.
+    certain: Vec<String>,
+    /// Whether this text of the mark is that of the very same.
+    same: Box<dyn Fn(&str) -> bool + 'a>,
+}
+
+impl<'a> Contents<'a> {
+    /// `certain` are files that will be written, and folders, which end in `/`, so that what is in their way is found before the work
+    /// begins; `same` tells whether a text of the file `mark` is that of what will be written.
+    pub(crate) fn new(
+        what: &'static str,
+        mark: &'static str,
+        certain: impl IntoIterator<Item = String>,
+        same: impl Fn(&str) -> bool + 'a,
+    ) -> Self {
+        Self { what, mark, certain: certain.into_iter().collect(), same: Box::new(same) }
+    }
+}
+
+impl fmt::Debug for Contents<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Contents").field("what", &self.what).finish_non_exhaustive()
+    }
+}
+
+/// A folder being prepared. Dropped before it is published, it leaves no trace.
+#[derive(Debug)]
+pub(crate) struct Folder<'a> {
+    contents: &'a Contents<'a>,
+    /// As it was given.
+    place: PathBuf,
+    hidden: Hidden,
+    journal: Journal,
+    /// Whether the folder did not exist before.
+    made: bool,
+    published: bool,
+}
+
+impl<'a> Folder<'a> {
+    /// Checks that it may go to `place` and can be written there, before anything is
+    /// computed, keeps others out, and first settles what a command before it left unfinished.
+    pub(crate) fn prepare(
+        place: &Path,
+        contents: &'a Contents<'a>,
+        force: bool,
+    ) -> Result<Self, FolderError> {
+        let refused = |problem: Problem| FolderError { path: place.to_owned(), problem };
+        let unwritable = |error: io::Error| refused(error.into());
+        let made = !place.exists();
+        if !made && !place.is_dir() {
+            return Err(refused(Problem::NoFolder));
+        }
+        if !made && !Hidden::is_in(place) {
+            // Before the first file is made in a folder that is not this program's.
+            check(place, contents, &Record::default(), force).map_err(refused)?;
+        }
+        make_folder(place).map_err(unwritable)?;
+        let hidden = Hidden::lock(place).map_err(|problem| {
+            if made {
+                // Goes only if empty.
+                let _ = fs::remove_dir(place);
+            }
+            refused(problem)
+        })?;
+        let journal = journal::settle_left(&hidden).and_then(|()| {
+            let (record, _) = hidden.record(contents.what)?;
+            check(hidden.place(), contents, &record, force)?;
+            Journal::start(&hidden)
+        });
+        match journal {
+            Ok(journal) => {
+                let place = place.to_owned();
+                Ok(Self { contents, place, hidden, journal, made, published: false })
+            }
+            Err(problem) => {
+                abandon(&hidden, made);
+                Err(refused(problem))
+            }
+        }
+    }
+
+    /// Writes a file, making the folders above it. It is in the draft until it is published.
+    pub(crate) fn write(&mut self, name: &str, content: &str) -> Result<(), FolderError> {
+        let mut file = self.create(name)?;
+        file.write_all(content.as_bytes()).map_err(|error| self.failed(error.into()))
+    }
+
+    /// Opens a new file for writing, making the folders above it. It is in the draft until it is
+    /// published.
+    pub(crate) fn create(&mut self, name: &str) -> Result<File, FolderError> {
+        let name = Name::new(name).map_err(|error| self.failed(Problem::Name(error)))?;
+        self.journal.create(&self.hidden, name).map_err(|problem| self.failed(problem))
+    }
+
+    fn failed(&self, problem: Problem) -> FolderError {
+        FolderError { path: self.place.clone(), problem }
+    }
+
+    /// Puts the draft in place of the files of the one that was there, and of nothing else. If
+    /// that fails half-way, what was there is put back.
+    pub(crate) fn publish(mut self) -> Result<PathBuf, FolderError> {
+        self.put().map_err(|problem| self.failed(problem))?;
+        self.published = true;
+        Ok(self.place.clone())
+    }
+
+    fn put(&mut self) -> Result<(), Problem> {
+        let Contents { what, mark, .. } = self.contents;
+        let (old, old_hash) = self.hidden.record(what)?;
+        let new = self.journal.written(&self.hidden, &old)?;
+        // Asked again, for hours may have passed.
+        unobstructed(self.hidden.place(), &old, new.names())?;
+        let text = new.to_json()?;
+        let name = Hidden::record_name(what);
+        self.journal.create(&self.hidden, name.clone())?.write_all(text.as_bytes())?;
+        let replacement = Replacement::new(Name::new(mark)?, name, (&old, old_hash), (&new, &text));
+        self.journal.replace(&self.hidden, replacement)
+    }
+}
+
+impl Drop for Folder<'_> {
+    fn drop(&mut self) {
+        // What fails here leaves hidden files behind, which the next command removes.
+        if !self.published {
+            self.journal.abandon(&self.hidden);
+            abandon(&self.hidden, self.made);
+        }
+    }
+}
+
+/// Makes a folder and those above it, and brings their names to the disk.
+fn make_folder(place: &Path) -> io::Result<()> {
+    let missing: Vec<_> = place.ancestors().take_while(|above| !above.exists()).collect();
+    fs::create_dir_all(place)?;
+    for made in missing {
+        // The folder of a name without one is the current folder.
+        let above = made.parent().filter(|above| !above.as_os_str().is_empty());
+        disk::sync_folder(above.unwrap_or(Path::new(".")))?;
+    }
+    Ok(())
+}
+
+/// Leaves no trace in a folder in which nothing was published.
+fn abandon(hidden: &Hidden, made: bool) {
+    hidden.remove_if_new();
+    if made {
+        // Goes only if empty.
+        let _ = disk::remove_folder(hidden.place());
+    }
+}
+
+/// Puts one whole study in place if a command was killed while it replaced one by another, and touches
+/// nothing else. For commands that read a folder.
+pub(crate) fn restore(place: &Path) -> Result<(), FolderError> {
+    let refused = |problem: Problem| FolderError { path: place.to_owned(), problem };
+    if !Hidden::is_in(place) || !journal::is_pending(place).map_err(refused)? {
+        return Ok(());
+    }
+    match Hidden::lock(place) {
+        Ok(hidden) => journal::settle_left(&hidden).map_err(refused),
+        // The one who holds the lock settles it.
+        Err(Problem::Busy) => Ok(()),
+        Err(problem) => Err(refused(problem)),
+    }
+}
+
+/// What is in the way, if anything is.
+fn check(
+    place: &Path,
+    contents: &Contents<'_>,
+    record: &Record,
+    force: bool,
+) -> Result<(), Problem> {
+    let mut occupied = false;
+    for entry in fs::read_dir(place)? {
+        occupied |= entry?.file_name() != hidden::NAME;
+    }
+    let (folders, files): (Vec<_>, Vec<_>) =
+        contents.certain.iter().partition(|name| name.ends_with('/'));
+    for name in folders.iter().map(|name| name.trim_end_matches('/')) {
+        if let Ok(found) = fs::symlink_metadata(place.join(name))
+            && !found.is_dir()
+        {
+            let is = name::said(found.file_type());
+            return Err(Problem::Kind { name: name.to_owned(), is, should: "folder" });
+        }
+    }
+    let files = files.iter().map(|name| Name::new(name)).collect::<Result<Vec<_>, _>>()?;
+    let mark = Name::new(contents.mark)?;
+    // Read only if it is the file that was written, and not a pipe, say.
+    let known = unobstructed(place, record, [&mark]).is_ok() && record.has(&mark);
+    let text = || fs::read_to_string(mark.below(place));
+    let same = known && text().is_ok_and(|text| (contents.same)(&text));
+    if occupied && !same && !force {
+        return Err(Problem::Occupied { what: contents.what });
+    }
+    unobstructed(place, record, files.iter().chain(record.names()))
+}
+
+/// That nothing is in the way of these files but what the record knows.
+fn unobstructed<'n>(
+    place: &Path,
+    record: &Record,
+    names: impl IntoIterator<Item = &'n Name>,
+) -> Result<(), Problem> {
+    for name in names {
+        match (look(place, name)?, record.hash(name)) {
+            (Found::Nothing, _) => {}
+            (Found::File { hash }, Some(recorded)) if hash == recorded => {}
+            (Found::File { .. }, Some(_)) => return Err(Problem::Changed { name: name.clone() }),
+            (Found::File { .. }, None) => return Err(Problem::Foreign { name: name.clone() }),
+            (Found::Other { name, is, should }, _) => {
+                return Err(Problem::Kind { name, is, should });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Why a folder cannot be used. Nothing of the user's has been touched.
+#[derive(Debug, thiserror::Error)]
+#[error("output folder {}: {problem}", path.display())]
+pub(crate) struct FolderError {
+    /// As it was given.
+    pub(crate) path: PathBuf,
+    /// What is wrong with it.
+    pub(crate) problem: Problem,
+}
+
+/// What is wrong with a folder.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Problem {
+    #[error("it cannot be written: {0}")]
+    Io(#[from] io::Error),
+    #[error("it is not a folder")]
+    NoFolder,
+    #[error("something else is being written there")]
+    Busy,
+    #[error(
+        "it already holds another {what} or other files; choose another folder with --out, or pass \
+         --force to replace what a {what} wrote there"
+    )]
+    Occupied { what: &'static str },
+    #[error(
+        "{name} in it was changed after it was written, and is not replaced; move it elsewhere or \
+         choose another folder with --out"
+    )]
+    Changed { name: Name },
+    #[error(
+        "{name} in it was not written by this program, and is not replaced; move it elsewhere or \
+         choose another folder with --out"
+    )]
+    Foreign { name: Name },
+    #[error("{name} in it is a {is} where this program has a {should}; move it elsewhere")]
+    Kind { name: String, is: &'static str, should: &'static str },
+    #[error("{name} in it is not as this program left it: {problem}; move it elsewhere")]
+    Unknown { name: String, problem: String },
+    #[error(
+        "a command was killed while it replaced the files there, and neither the old nor the new ones \
+         can be put in place: {problem}. All of them are kept in .gyradius; once the cause is mended, \
+         the next command goes on"
+    )]
+    Stuck { problem: Box<Problem> },
+    #[error(transparent)]
+    Name(#[from] name::NameError),
+    #[error("its record cannot be written: {0}")]
+    Json(#[from] serde_json::Error),
+}

@@ -1,0 +1,152 @@
+//! Names of files in a folder, and what is found under them.
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::{
+    fmt,
+    fs::{self, File, FileType},
+    io::{self, Read},
+    path::{Path, PathBuf},
+};
+
+use super::hidden;
+
+/// A file below a folder: plain parts with `/` between them, none of which leads out of it.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub(crate) struct Name(String);
+
+impl Name {
+    /// # Errors
+    /// A part is empty, leads elsewhere, or is a name that only this module may use.
+    pub(crate) fn new(text: &str) -> Result<Self, NameError> {
+        let plain = |part: &str| {
+            !matches!(part, "" | "." | "..") && !part.contains(['\\', ':', '\0', '\n'])
+        };
+        let mut parts = text.split('/');
+        let own = parts.next() == Some(hidden::NAME)
+            && !(parts.next().is_some_and(|part| part.ends_with(".json"))
+                && parts.next().is_none());
+        if text.split('/').all(plain) && !own {
+            Ok(Self(text.to_owned()))
+        } else {
+            Err(NameError { name: text.to_owned() })
+        }
+    }
+
+    /// The name of a record.
+    pub(super) fn record(hidden: &str, what: &str) -> Self {
+        Self(format!("{hidden}/{what}.json"))
+    }
+
+    /// Where it is below a folder.
+    pub(super) fn below(&self, folder: &Path) -> PathBuf {
+        folder.join(&self.0)
+    }
+
+    /// The folders above it, the outermost first.
+    pub(super) fn folders(&self) -> impl DoubleEndedIterator<Item = Self> {
+        self.0.match_indices('/').map(|(end, _)| Self(self.0[..end].to_owned()))
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl TryFrom<String> for Name {
+    type Error = NameError;
+
+    fn try_from(text: String) -> Result<Self, NameError> {
+        Self::new(&text)
+    }
+}
+
+impl From<Name> for String {
+    fn from(name: Name) -> Self {
+        name.0
+    }
+}
+
+/// What is found under a name.
+#[derive(Debug)]
+pub(super) enum Found {
+    Nothing,
+    /// SHA-256 in hexadecimal.
+    File {
+        hash: String,
+    },
+    /// Something that this program does not make, there or in its way.
+    Other {
+        name: String,
+        is: &'static str,
+        should: &'static str,
+    },
+}
+
+/// Looks without following any link below the folder.
+pub(super) fn look(folder: &Path, name: &Name) -> io::Result<Found> {
+    let kind = |name: &Name| match fs::symlink_metadata(name.below(folder)) {
+        Ok(metadata) => Ok(Some(metadata.file_type())),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error),
+    };
+    let other = |name: &Name, kind: FileType, should| {
+        Ok(Found::Other { name: name.to_string(), is: said(kind), should })
+    };
+    for above in name.folders() {
+        match kind(&above)? {
+            None => return Ok(Found::Nothing),
+            Some(kind) if kind.is_dir() => {}
+            Some(kind) => return other(&above, kind, "folder"),
+        }
+    }
+    match kind(name)? {
+        None => Ok(Found::Nothing),
+        Some(kind) if kind.is_file() => Ok(Found::File { hash: hash(&name.below(folder))? }),
+        Some(kind) => other(name, kind, "file"),
+    }
+}
+
+/// What it is, in a word.
+pub(super) fn said(kind: FileType) -> &'static str {
+    if kind.is_dir() {
+        "folder"
+    } else if kind.is_file() {
+        "file"
+    } else if kind.is_symlink() {
+        "link"
+    } else {
+        "device or pipe"
+    }
+}
+
+/// SHA-256 of a file, in hexadecimal.
+pub(super) fn hash(path: &Path) -> io::Result<String> {
+    let (mut file, mut sha) = (File::open(path)?, Sha256::new());
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut buffer)? {
+            0 => return Ok(hex(sha)),
+            n => sha.update(&buffer[..n]),
+        }
+    }
+}
+
+/// SHA-256 of a text, in hexadecimal.
+pub(super) fn hash_of(text: &str) -> String {
+    hex(Sha256::new_with_prefix(text))
+}
+
+fn hex(sha: Sha256) -> String {
+    sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// A name that no file of this program has.
+#[derive(Debug, thiserror::Error)]
+#[error("{name:?} is no name of a file in it")]
+pub(crate) struct NameError {
+    name: String,
+}
