@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// Uncertain rigid-body inertia: Monte Carlo studies of spacecraft separation.
 #[derive(Debug, Parser)]
-#[command(name = "gyradius", version, arg_required_else_help = true)]
+#[command(name = "gyradius", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -59,6 +59,11 @@ pub(crate) enum Command {
     #[command(after_help = COMPARE_EXAMPLES)]
     Compare(CompareArgs),
 }
+
+const EXIT_CODES: &str = "\
+Exit code: 0 if all went well, 1 if something was found (check, fit, study), 2 if what was asked cannot
+be done, with a message on standard error. A reader of the output that stops reading, as head does, is no
+error; a full disk behind it is.";
 
 const REPLAY_EXAMPLES: &str = "\
 Examples:
@@ -132,7 +137,9 @@ Examples:
   gyradius compare --models principal,entrywise --format csv > comparison.csv
       Two models, for another program
 
-The same options and seed give the same numbers on any number of threads.";
+The same options and seed give the same numbers on any number of threads.
+
+Exit code: 0; 2 if something could not be read, done or written.";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:
@@ -166,7 +173,10 @@ Examples:
   gyradius study --seed 8 --force
       Replace the study in the folder by another one
 
-The same scenario, runs and seed give the same numbers on any number of threads.";
+The same scenario, runs and seed give the same numbers on any number of threads.
+
+Exit code: 0; 1 if more runs of a model failed than --max-failed allows (the folder is written all the
+same); 2 if something could not be read, done or written.";
 
 #[derive(Args, Debug)]
 pub(crate) struct StudyArgs {
@@ -175,11 +185,11 @@ pub(crate) struct StudyArgs {
     pub(crate) scenario: Option<PathBuf>,
 
     /// Runs of each model [default: as in the scenario]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole)]
     pub(crate) runs: Option<u64>,
 
     /// Seed of all random numbers [default: as in the scenario]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = whole)]
     pub(crate) seed: Option<u64>,
 
     /// Folder to write [default: target/study/<scenario name>]
@@ -190,9 +200,13 @@ pub(crate) struct StudyArgs {
     #[arg(long, value_name = "T")]
     pub(crate) threads: Option<usize>,
 
-    /// Replace another study in the folder
+    /// Replace another study in the folder: the files that it wrote, and nothing else
     #[arg(long)]
     pub(crate) force: bool,
+
+    /// Largest share of the runs of a model that may fail, as 0.05 or 5%, for exit code 0
+    #[arg(long, value_name = "SHARE", default_value = "50%", value_parser = share)]
+    pub(crate) max_failed: f64,
 }
 
 #[derive(Args, Debug)]
@@ -202,7 +216,7 @@ pub(crate) struct ReplayArgs {
     pub(crate) study: Option<PathBuf>,
 
     /// Which run, from 0
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) run: u64,
 
     /// Which model [default: the first of the scenario]
@@ -354,15 +368,15 @@ pub(crate) struct CompareArgs {
     pub(crate) models: Vec<ModelKind>,
 
     /// Draws of each model about each body at each level
-    #[arg(long, value_name = "N", default_value_t = CompareOptions::default().draws)]
+    #[arg(long, value_name = "N", default_value_t = CompareOptions::default().draws, value_parser = whole)]
     pub(crate) draws: u64,
 
     /// How many of the draws are separated [default: 150, or all draws if they are fewer]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole)]
     pub(crate) separations: Option<u64>,
 
     /// Seed of all random numbers
-    #[arg(long, value_name = "S", default_value_t = CompareOptions::default().seed)]
+    #[arg(long, value_name = "S", default_value_t = CompareOptions::default().seed, value_parser = whole)]
     pub(crate) seed: u64,
 
     /// Number of threads [default: one for each core]
@@ -406,6 +420,31 @@ pub(crate) enum Form {
     Text,
     /// One JSON object, described in the documentation of the command
     Json,
+}
+
+/// A whole number: 1000000, 1_000_000 or 1e6.
+fn whole(text: &str) -> Result<u64, String> {
+    let digits = text.replace('_', "");
+    let grouped = text.split('_').all(|part| !part.is_empty());
+    let float = || digits.parse().ok().and_then(gyradius_study::whole_number);
+    digits
+        .parse()
+        .ok()
+        .or_else(float)
+        .filter(|_| grouped)
+        .ok_or_else(|| "it must be a whole number, as 1000000, 1_000_000 or 1e6".to_owned())
+}
+
+/// A share: 0.05 or 5%.
+fn share(text: &str) -> Result<f64, String> {
+    let value = match text.strip_suffix('%') {
+        Some(percent) => percent.trim_end().parse::<f64>().map(|x| x / 100.0),
+        None => text.parse(),
+    };
+    match value {
+        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
+        _ => Err("it must lie between 0 and 1, or between 0% and 100%".to_owned()),
+    }
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

@@ -1,10 +1,10 @@
 //! `gyradius compare`: options in, tables out.
 
 use gyradius_study::{CompareError, CompareOptions, ModelComparison, Reference, Scenario};
-use std::io::{self, Write};
 
 use crate::{
     args::{CompareArgs, CompareForm, ReferenceName},
+    output::{print, print_json},
     progress,
 };
 
@@ -15,23 +15,15 @@ pub(crate) fn compare(arguments: &CompareArgs) -> Result<(), String> {
     let comparison =
         progress::show(total, "models and levels", |report| ModelComparison::run(&options, report))
             .map_err(|e| e.to_string())?;
-    let text = match arguments.format {
+    match arguments.format {
         CompareForm::Text => {
             let page = comparison.folder().map_or_else(String::new, |folder| {
                 format!("\npage: {}\n", folder.join("compare.html").display())
             });
-            format!("{comparison}{page}")
+            print(&format!("{comparison}{page}"))
         }
-        CompareForm::Json => comparison.to_json().map_err(|e| e.to_string())?,
-        CompareForm::Csv => comparison.to_csv(),
-    };
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        // Who reads no further, as `head` does, has what they wanted.
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(format!("standard output: {error}"))
-        }
-        _ => Ok(()),
+        CompareForm::Json => print_json(&comparison.to_json().map_err(|e| e.to_string())?),
+        CompareForm::Csv => print(&comparison.to_csv()),
     }
 }
 

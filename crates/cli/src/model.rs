@@ -4,10 +4,11 @@ use gyradius_dispersion::{
     AxesStatement, CentreStatement, MassStatement, MomentsStatement, ProductsStatement,
     StatedModel, Statements,
 };
+use gyradius_formats::read_text;
 use gyradius_inertia::Inertia;
 use gyradius_study::{Fragment, FragmentBody, FragmentError};
 use serde::{Deserialize, Serialize};
-use std::{error::Error, fmt::Write, fs::File, io::Read, path::Path};
+use std::{error::Error, fmt::Write};
 
 use crate::{
     args::ModelArgs,
@@ -61,7 +62,9 @@ struct Document {
 /// Runs the verb.
 pub(crate) fn model(arguments: &ModelArgs) -> Result<(), Box<dyn Error>> {
     let file = arguments.file.display();
-    let stated: Stated = toml::from_str(&read(&arguments.file)?)
+    let text = read_text(&arguments.file, MAX_BYTES)
+        .map_err(|error| format!("cannot read {file}: {error}"))?;
+    let stated: Stated = toml::from_str(&text)
         .map_err(|error| format!("{file}: {}", error.to_string().trim_end()))?;
     let nominal = Inertia::try_from(stated.nominal.inertia_kg_m2)
         .map_err(|error| format!("{file}: nominal.inertia_kg_m2: {error}"))?;
@@ -94,22 +97,6 @@ fn fragment(body: FragmentBody, model: &StatedModel) -> Result<Fragment, Fragmen
         Some(metres) => fragment.with_mass_centre(metres),
         None => Ok(fragment),
     }
-}
-
-fn read(path: &Path) -> Result<String, String> {
-    let fail = |error: &dyn std::fmt::Display| format!("cannot read {}: {error}", path.display());
-    // Asked before opening, which would wait for the other end of a pipe.
-    if !path.metadata().map_err(|e| fail(&e))?.is_file() {
-        return Err(fail(&"it is not a regular file"));
-    }
-    let mut text = String::new();
-    File::open(path)
-        .and_then(|file| file.take(MAX_BYTES + 1).read_to_string(&mut text))
-        .map_err(|e| fail(&e))?;
-    if text.len() as u64 > MAX_BYTES {
-        return Err(fail(&"it is larger than 1 MiB"));
-    }
-    Ok(text)
 }
 
 fn report(arguments: &ModelArgs, model: &StatedModel) -> String {

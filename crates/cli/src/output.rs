@@ -1,7 +1,7 @@
-//! Where reports and fragments go.
+//! Where reports, fragments and messages go: the only way to the terminal.
 
 use gyradius_formats::write_copy;
-use gyradius_study::{Fragment, FragmentBody};
+use gyradius_study::{Fragment, FragmentBody, visible, visible_json};
 use std::{
     fmt::Display,
     fs,
@@ -20,15 +20,9 @@ impl From<BodyArg> for FragmentBody {
     }
 }
 
-/// The text without control characters, which a file could use to command the terminal.
-pub(crate) fn harmless(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect()
-}
-
 /// As TOML comments.
 fn commented(text: &str) -> String {
-    let lines = harmless(text);
-    lines.lines().map(|line| format!("# {line}").trim_end().to_owned() + "\n").collect()
+    text.lines().map(|line| format!("# {line}").trim_end().to_owned() + "\n").collect()
 }
 
 /// Writes fragment and report: both to standard output, the report as comments, so that the whole
@@ -57,16 +51,29 @@ pub(crate) fn write(
                 }
             })?;
         let verb = if written { "wrote" } else { "unchanged:" };
-        said = format!("\n{verb} {}\n", harmless(&path.display().to_string()));
+        said = format!("\n{verb} {}\n", path.display());
     }
-    let text = match (arguments.format, &arguments.output) {
-        (Form::Json, _) => json().map_err(|error| error.to_string())? + "\n",
-        (Form::Text, Some(_)) => harmless(report) + &said,
-        (Form::Text, None) => pasted,
-    };
+    match (arguments.format, &arguments.output) {
+        (Form::Json, _) => print_json(&json().map_err(|error| error.to_string())?),
+        (Form::Text, Some(_)) => print(&format!("{report}{said}")),
+        (Form::Text, None) => print(&pasted),
+    }
+}
+
+/// Text on standard output, whatever it holds. A reader that reads no further, as `head` does, has what
+/// it wanted: that is no error.
+pub(crate) fn print(text: &str) -> Result<(), String> {
+    to_standard_output(&visible(text))
+}
+
+/// A JSON document on standard output.
+pub(crate) fn print_json(text: &str) -> Result<(), String> {
+    to_standard_output(&(visible_json(text.trim_end()) + "\n"))
+}
+
+fn to_standard_output(text: &str) -> Result<(), String> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        // Who reads no further, as `head` does, has what they wanted.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(format!("standard output: {error}"))
         }
@@ -76,6 +83,11 @@ pub(crate) fn write(
 
 /// A message on standard error.
 pub(crate) fn complain(error: impl Display) {
+    say(&format!("error: {error}"));
+}
+
+/// A line on standard error.
+pub(crate) fn say(line: &str) {
     // Standard error may be closed, which is no reason to stop.
-    let _ = writeln!(io::stderr(), "error: {}", harmless(&error.to_string()));
+    let _ = writeln!(io::stderr(), "{}", visible(line));
 }

@@ -6,6 +6,7 @@ use std::{
     collections::HashSet,
     ffi::OsString,
     fs::{self, Permissions},
+    io,
     path::{Path, PathBuf},
 };
 
@@ -289,6 +290,7 @@ pub fn write_copy(
     force: bool,
 ) -> Result<bool, RepairError> {
     fs::{self, Permissions},
+    io,
     path::{Path, PathBuf},
 };
 

@@ -2,11 +2,13 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use crate::visible;
+
 const STYLE: &str = include_str!("report.css");
 
-/// A page in the style that all have, and in its own.
+/// A page in the style that all have, and in its own, without characters that command how it is shown.
 pub(crate) fn page(title: &str, style: &str, content: &Markup) -> String {
-    html! {
+    let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
@@ -17,8 +19,8 @@ pub(crate) fn page(title: &str, style: &str, content: &Markup) -> String {
             }
             body { main { (content) } }
         }
-    }
-    .into_string()
+    };
+    visible(&page.into_string())
 }
 
 #[cfg(test)]

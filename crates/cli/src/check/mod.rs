@@ -85,9 +85,9 @@ fn complain(error: impl Display) {
     let _ = writeln!(io::stderr(), "error: {}", harmless(&error.to_string()));
 }
 
-/// The text without control characters, which a file could use to command the terminal.
+/// The text without characters by which a file could command the terminal, in one line.
 fn harmless(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+    gyradius_study::visible(text).replace(['\n', '\t'], "\u{fffd}")
 }
 
 fn place(path: &Path, line: usize) -> String {

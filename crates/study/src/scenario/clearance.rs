@@ -8,11 +8,9 @@ use nalgebra::Vector3;
 use super::{
     ScenarioError,
     file::{ClearanceFile, ShapeFile},
+    limits,
 };
 use crate::{quantity::Body, row::Failure};
-
-/// Longest coast, s.
-const MOST_COAST: f64 = 1e6;
 
 /// What of the bodies may touch, and how long it is watched.
 #[derive(Clone, Debug)]
@@ -27,8 +25,8 @@ pub(crate) struct Outlines {
 impl Outlines {
     pub(crate) fn new(file: &ClearanceFile) -> Result<Self, ScenarioError> {
         let coast = file.coast_s;
-        if !(coast > 0.0 && coast <= MOST_COAST) {
-            let problem = format!("{coast:?}: it must be positive and at most {MOST_COAST:e}");
+        if !(coast > 0.0 && coast <= limits::COAST) {
+            let problem = format!("{coast:?}: it must be positive and at most {:e}", limits::COAST);
             return Err(ScenarioError::field("clearance.coast_s", problem));
         }
         let outline = |body: &str, shapes: &[ShapeFile]| {

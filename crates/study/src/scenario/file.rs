@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     follows::Follows,
     law::{LawFile, VectorLawFile},
+    parse,
 };
 
 /// A scenario as it stands in a TOML file, defaults filled in. Units are in the names.
@@ -11,9 +12,9 @@ use super::{
 #[serde(deny_unknown_fields)]
 pub(crate) struct ScenarioFile {
     pub(crate) name: String,
-    #[serde(default = "default_runs")]
+    #[serde(default = "default_runs", deserialize_with = "parse::whole")]
     pub(crate) runs: u64,
-    #[serde(default = "default_seed")]
+    #[serde(default = "default_seed", deserialize_with = "parse::whole")]
     pub(crate) seed: u64,
     #[serde(default = "default_spin_axis")]
     pub(crate) spin_axis: [f64; 3],

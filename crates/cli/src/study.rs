@@ -1,0 +1,68 @@
+//! `gyradius study`: a scenario run, its table, and the exit code.
+
+use gyradius_study::{Forecast, Options, Scenario, Study};
+use std::{error::Error, fmt::Write, process::ExitCode, time::Duration};
+
+use crate::{
+    args::StudyArgs,
+    output::{complain, print, say},
+    progress,
+};
+
+/// What the program returns when too many runs failed.
+const FAILED: u8 = 1;
+/// A study that takes less is begun without a word.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Runs the verb.
+pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
+    let mut scenario = match &arguments.scenario {
+        Some(path) => Scenario::read(path)?,
+        None => Scenario::peck_2003()?,
+    };
+    if let Some(runs) = arguments.runs {
+        scenario = scenario.with_runs(runs)?;
+    }
+    if let Some(seed) = arguments.seed {
+        scenario = scenario.with_seed(seed)?;
+    }
+    let options =
+        Options { out: arguments.out.clone(), threads: arguments.threads, force: arguments.force };
+    let total = scenario.runs() * scenario.model_names().count() as u64;
+    let forecast = |forecast: Forecast| {
+        if forecast.time() > PATIENCE {
+            say(&forecast.to_string());
+        }
+    };
+    let study = progress::show(total, "runs", |report| {
+        Study::run_with_forecast(&scenario, &options, report, &forecast)
+    })?;
+
+    let mut text = String::new();
+    // Writing to a string does not fail.
+    let _ = writeln!(
+        text,
+        "{}: {} runs a model, seed {}\n",
+        scenario.name(),
+        scenario.runs(),
+        scenario.seed()
+    );
+    let _ = writeln!(text, "{}", study.summary());
+    let _ = writeln!(text, "report: {}", study.folder().join("report.html").display());
+    print(&text)?;
+
+    let mut code = ExitCode::SUCCESS;
+    for table in study.tables() {
+        let failed = table.rows().iter().filter(|row| row.failure().is_some()).count();
+        if failed as f64 > arguments.max_failed * table.rows().len() as f64 {
+            complain(format_args!(
+                "{}: {failed} of {} runs failed, and --max-failed allows {} %",
+                table.model(),
+                table.rows().len(),
+                100.0 * arguments.max_failed
+            ));
+            code = ExitCode::from(FAILED);
+        }
+    }
+    Ok(code)
+}

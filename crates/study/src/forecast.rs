@@ -1,0 +1,96 @@
+//! How long a study will take, from the time of a few of its runs. No result depends on it.
+
+use gyradius_separation::Batch;
+use std::{
+    fmt,
+    time::{Duration, Instant},
+};
+
+use crate::{model::Model, scenario::Scenario};
+
+/// Runs that are timed, of every model: one, and more while they are quick.
+const RUNS: [u64; 3] = [1, 8, 64];
+/// Long enough to be measured.
+const ENOUGH: Duration = Duration::from_millis(20);
+
+/// The time that a study will take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forecast {
+    runs: u64,
+    threads: usize,
+    time: Duration,
+}
+
+impl Forecast {
+    pub(crate) fn of(scenario: &Scenario, models: &[Model], threads: usize) -> Self {
+        let each = models.iter().map(|model| seconds_a_run(scenario, model)).sum::<f64>();
+        let seconds = each * scenario.runs() as f64 / threads.max(1) as f64;
+        Self {
+            runs: scenario.runs() * models.len() as u64,
+            threads,
+            time: Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX),
+        }
+    }
+
+    /// The time from the first run to the last, to a factor of two or so.
+    #[must_use]
+    pub fn time(&self) -> Duration {
+        self.time
+    }
+}
+
+fn seconds_a_run(scenario: &Scenario, model: &Model) -> f64 {
+    let mut batch = Batch::new(*scenario.settings());
+    let mut seconds = 0.0;
+    for runs in RUNS.into_iter().filter(|runs| *runs == 1 || *runs <= scenario.runs()) {
+        let start = Instant::now();
+        model.run(scenario, 0..runs, &mut batch);
+        let time = start.elapsed();
+        seconds = time.as_secs_f64() / runs as f64;
+        if time > ENOUGH {
+            break;
+        }
+    }
+    seconds
+}
+
+/// In one line.
+impl fmt::Display for Forecast {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { runs, threads, .. } = self;
+        let s = if *threads == 1 { "" } else { "s" };
+        write!(f, "about {} for {runs} runs on {threads} thread{s}", rough(self.time))
+    }
+}
+
+/// One or two digits, for nobody knows more.
+fn rough(time: Duration) -> String {
+    let seconds = time.as_secs_f64();
+    let units =
+        [(1.0, "s"), (60.0, "min"), (3600.0, "h"), (86_400.0, "days"), (31_557_600.0, "years")];
+    let unit = units.into_iter().rev().find(|(unit, _)| seconds >= 1.5 * unit);
+    let (unit, name) = unit.unwrap_or(units[0]);
+    let count = seconds / unit;
+    if count < 100.0 { format!("{count:.0} {name}") } else { format!("{count:.0e} {name}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_short() {
+        for (seconds, text) in [
+            (0.0, "0 s"),
+            (1.4, "1 s"),
+            (59.0, "59 s"),
+            (200.0, "3 min"),
+            (5000.0, "83 min"),
+            (6000.0, "2 h"),
+            (1e6, "12 days"),
+            (1e19, "3e11 years"),
+        ] {
+            assert_eq!(rough(Duration::from_secs_f64(seconds)), text, "{seconds}");
+        }
+    }
+}
