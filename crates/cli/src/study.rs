@@ -5,6 +5,7 @@ use std::{error::Error, fmt::Write, process::ExitCode, time::Duration};
 
 use crate::{
     args::StudyArgs,
+    number::short,
     output::{complain, print, say},
     progress,
 };
@@ -59,7 +60,7 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
                 "{}: {failed} of {} runs failed, and --max-failed allows {} %",
                 table.model(),
                 table.rows().len(),
-                100.0 * arguments.max_failed
+                short(100.0 * arguments.max_failed)
             ));
             code = ExitCode::from(FAILED);
         }

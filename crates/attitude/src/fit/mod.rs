@@ -39,7 +39,7 @@ pub enum FitError {
         needed: usize,
     },
     /// An attitude is not a unit quaternion.
-    #[error("attitude {index} is a quaternion of norm {norm}: it must have norm 1")]
+    #[error("attitude {} is a quaternion of norm {norm:?}: it must have norm 1", index + 1)]
     Norm {
         /// Its place, from 0.
         index: usize,

@@ -39,7 +39,7 @@ pub enum PrincipalFitError {
         count: usize,
     },
     /// All moments are zero: there are no axes.
-    #[error("sample {index} is a point: all its moments of inertia are zero")]
+    #[error("sample {} is a point: all its moments of inertia are zero", index + 1)]
     Point {
         /// Its place, from 0.
         index: usize,

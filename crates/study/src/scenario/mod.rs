@@ -12,7 +12,9 @@ mod parse;
 mod sides;
 
 use gyradius_formats::read_text;
-use gyradius_separation::{Separation, Settings, SettingsError, Spring, SpringError};
+use gyradius_separation::{
+    Separation, SeparationError, Settings, SettingsError, Spring, SpringError,
+};
 use nalgebra::{Unit, Vector3};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -176,7 +178,7 @@ impl Scenario {
             })
             .collect::<Result<Vec<_>, _>>()?;
         let separation = Separation::new(*payload.moving(), *stage.moving(), &springs)
-            .map_err(|e| ScenarioError::field("springs", e))?;
+            .map_err(|e| ScenarioError::field(separation_key(&e), e))?;
         sides::check(&separation, file.separation_direction)?;
         // Defaults go by way of the file, so that the resolved scenario gives the same bits.
         if file.separation_direction.is_none() {
@@ -341,6 +343,16 @@ fn push(separation: &Separation) -> Option<Unit<Vector3<f64>>> {
     if sum.norm() > 1e-9 * size { unit(sum) } else { None }
 }
 
+/// The key of what does not go together.
+fn separation_key(error: &SeparationError) -> String {
+    match error {
+        SeparationError::Body { body, .. } => (*body).to_owned(),
+        SeparationError::TouchingPads { spring, .. } => format!("springs[{spring}]"),
+        SeparationError::ShortStroke { spring, .. } => format!("springs[{spring}].stroke_m"),
+        _ => "springs".to_owned(),
+    }
+}
+
 /// The key of a spring that is wrong.
 fn spring_key(error: &SpringError) -> &'static str {
     match error {
@@ -387,5 +399,7 @@ fn check_name(field: &str, name: &str) -> Result<(), ScenarioError> {
     Err(ScenarioError::field(field, problem))
 }
 
+#[cfg(test)]
+mod mutations;
 #[cfg(test)]
 mod tests;

@@ -254,7 +254,7 @@ fn entries(field: &str, m: &[[f64; 3]; 3]) -> Result<[f64; 6], ScenarioError> {
         let (upper, lower) = (m[i][j], m[j][i]);
         if upper != lower && !(upper.is_nan() && lower.is_nan()) {
             let problem = format!(
-                "entries ({}, {}) = {upper} and ({}, {}) = {lower}: the matrix must be symmetric",
+                "entries ({}, {}) = {upper:?} and ({}, {}) = {lower:?}: the matrix must be symmetric",
                 i + 1,
                 j + 1,
                 j + 1,
@@ -266,7 +266,7 @@ fn entries(field: &str, m: &[[f64; 3]; 3]) -> Result<[f64; 6], ScenarioError> {
     let entries = [m[0][0], m[1][1], m[2][2], m[0][1], m[0][2], m[1][2]];
     match entries.iter().find(|d| !(**d >= 0.0 && d.is_finite())) {
         Some(bad) => {
-            let problem = format!("{bad} kg·m²: deviations must be finite and not negative");
+            let problem = format!("{bad:?} kg·m²: deviations must be finite and not negative");
             Err(ScenarioError::field(field, problem))
         }
         None => Ok(entries),

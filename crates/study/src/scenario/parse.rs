@@ -5,10 +5,12 @@ use serde_path_to_error::{Path, Segment};
 
 use super::file::ScenarioFile;
 
-/// A scenario as it stands in the text, or what is wrong with it: key, line and reason.
+/// Longest reason that is told.
+const MOST_CHARACTERS: usize = 400;
+
+/// A scenario as it stands in the text, or what is wrong with it: key, reason and line.
 pub(super) fn scenario(text: &str) -> Result<ScenarioFile, String> {
-    let plain = |error: &toml::de::Error| error.to_string().trim_end().to_owned();
-    let toml = toml::Deserializer::parse(text).map_err(|error| plain(&error))?;
+    let toml = toml::Deserializer::parse(text).map_err(|error| told(&error, text))?;
     serde_path_to_error::deserialize(toml).map_err(|error| {
         let path = said(error.path());
         let missing = error.inner().message().strip_prefix("missing field `");
@@ -18,9 +20,52 @@ pub(super) fn scenario(text: &str) -> Result<ScenarioFile, String> {
             (false, Some(missing)) => format!("{path}.{missing}"),
             (_, None) => path,
         };
-        let message = plain(error.inner());
+        let message = told(error.inner(), text);
         if path.is_empty() { message } else { format!("{path}: {message}") }
     })
+}
+
+/// The reason in our words, and the line. Not the line itself, which may be of any length.
+fn told(error: &toml::de::Error, text: &str) -> String {
+    let mut message = error.message().trim_end().to_owned();
+    if let Some((reason, _)) = message.split_once("expected struct ") {
+        message = format!("{reason}expected a table");
+    }
+    if let Some(reason) = message.strip_suffix("expected f64") {
+        message = format!("{reason}expected a number");
+    }
+    let mut message = short_numbers(&message);
+    if let Some((end, _)) = message.char_indices().nth(MOST_CHARACTERS) {
+        message.truncate(end);
+        message.push('…');
+    }
+    let before = error.span().and_then(|span| text.get(..span.start));
+    match before {
+        Some(before) => {
+            let line = before.matches('\n').count() + 1;
+            let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+            format!("{message} (line {line}, column {column})")
+        }
+        None => message,
+    }
+}
+
+/// Numbers that are written out in hundreds of digits, in a few.
+fn short_numbers(text: &str) -> String {
+    let number = |c: char| c.is_ascii_digit() || c == '.';
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(start) = rest.find(number) {
+        let length = rest[start..].find(|c| !number(c)).unwrap_or(rest.len() - start);
+        let digits = &rest[start..start + length];
+        out.push_str(&rest[..start]);
+        match digits.parse::<f64>() {
+            Ok(value) if length > 25 => out.push_str(&format!("{value:?}")),
+            _ => out.push_str(digits),
+        }
+        rest = &rest[start + length..];
+    }
+    out + rest
 }
 
 /// As all messages write it: entries of lists are counted from 1.

@@ -48,7 +48,7 @@ fn directions_and_outlines_are_read_resolved_and_checked() {
         (
             "[0.5, 0.0, -0.5]",
             "[0.0, 1e300, 0.0]",
-            "clearance.payload[1]: hull_m has coordinate 1e300",
+            "clearance.payload[1].hull_m: 1e300 m from the mass centre: it must be at most 10000.0 m",
         ),
         ("points_m = [[0.0, 0.0, 0.3]]", "points_m = []", "clearance.stage[2]: points_m is empty"),
         (
@@ -416,7 +416,7 @@ fn bad_dispersions_are_named() {
 fn touching_pads_are_refused_and_explained() {
     let text = PECK_2003.replace("-0.9]", "-1.0]").replace(", 0.9]", ", 1.0]");
     let message = Scenario::from_toml(&text).unwrap_err().to_string();
-    assert!(message.starts_with("springs: spring 1: its points are"), "{message}");
+    assert!(message.starts_with("springs[1]: spring 1: its points are"), "{message}");
     assert!(message.contains("apart"), "{message}");
 }
 

@@ -1,0 +1,209 @@
+//! A scenario with every key, each made wrong in every way: what is refused is named.
+
+use std::fmt::Write;
+use toml::{Table, Value};
+
+use super::*;
+
+/// A scenario that says something under every key.
+fn complete() -> Table {
+    let mut text = PECK_2003.to_owned();
+    for (before, more) in [
+        (
+            "[payload]",
+            "[integration]\nrelative_tolerance = 1e-10\nhorizon_s = 60.0\n\
+             [clearance]\ncoast_s = 30.0\n\
+             payload = [{ hull_m = [[0.5, 0.0, -0.5], [0.0, 0.5, -0.5]] }, { points_m = [[0.0, 0.0, -0.6]] }]\n\
+             stage = [{ ring = { centre_m = [0.0, 0.0, 0.4], axis = [0.0, 0.0, 1.0], radius_m = 0.3 } }]\n\
+             [stack.dispersion]\nattitude_deg = 0.1\n\
+             angular_velocity_rad_per_s = { covariance = [[1e-6, 0.0, 0.0], [0.0, 1e-6, 0.0], [0.0, 0.0, 4e-6]] }\n",
+        ),
+        (
+            "[payload.dispersion]",
+            "velocity_m_per_s = [0.0, 0.0, 0.0]\nbody_to_inertial = [0.0, 0.0, 0.0, 1.0]\n",
+        ),
+        (
+            "spin_axis",
+            "separation_direction = [0.0, 0.0, 1.0]\nmomentum_direction = [1.0, 0.0, 0.0]\n",
+        ),
+        (
+            "root_second_moment_variance_kg_m2",
+            "roots = \"gaussian\"\naxes = \"radially-constrained-gaussian\"\n\
+             mass_percent = { sigma = 1.0, mean = 0.1 }\ninertia_follows_mass = true\n\
+             mass_centre_m = [0.005, 0.005, 0.02]\n\
+             position_m = { law = \"uniform\", low = -0.01, high = 0.01 }\n\
+             velocity_m_per_s = { law = \"truncated-normal\", sigma = 0.1, low = -0.2, high = 0.2 }\n\
+             attitude_deg = 0.5\nangular_velocity_rad_per_s = 0.001\n",
+        ),
+        (
+            "[[models]]",
+            "friction_n = 10.0\nstart_s = 0.01\n[springs.dispersion]\nstiffness_percent = 1.0\nstroke_m = 0.001\n\
+             friction_n = { law = \"uniform\", low = 0.0, high = 5.0 }\nline_of_action_deg = 0.1\n\
+             payload_point_m = 0.001\nstage_point_m = [0.001, 0.001, { sigma = 0.001 }]\n\
+             start_s = { law = \"lognormal\", mean = 0.01, sigma = 0.005 }\n\
+             late_probability = 0.02\nfailure_probability = 0.001\n\
+             [[correlations]]\nbetween = [\"payload_mass_kg\", \"spring_4_stroke_m\"]\ncoefficient = 0.5\n",
+        ),
+        (
+            "[[comparisons]]",
+            "[[models]]\nname = \"basilisk\"\nlaw = \"basilisk\"\n\
+             payload_diagonal_deviation_kg_m2 = 50.0\npayload_angle_deviation_rad = 0.01\n\
+             payload_diagonal_bounds_kg_m2 = [-100.0, 100.0]\nstage_diagonal_deviation_kg_m2 = 50.0\n\
+             stage_angle_deviation_rad = 0.01\n[[models]]\nname = \"w\"\nlaw = \"wishart\"\n\
+             payload_delta = 0.01\nstage_delta = 0.02\n",
+        ),
+    ] {
+        let at = text.find(before).unwrap();
+        text.insert_str(at, more);
+    }
+    Scenario::from_toml(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    toml::from_str(&text).unwrap()
+}
+
+#[derive(Clone, Debug)]
+enum Step {
+    Key(String),
+    Index(usize),
+}
+
+/// Every place in a scenario.
+fn places(value: &Value, here: &[Step], out: &mut Vec<Vec<Step>>) {
+    let mut below = |step: Step, value: &Value| {
+        let mut path = here.to_vec();
+        path.push(step);
+        out.push(path.clone());
+        places(value, &path, out);
+    };
+    match value {
+        Value::Table(table) => table.iter().for_each(|(k, v)| below(Step::Key(k.clone()), v)),
+        Value::Array(all) => all.iter().enumerate().for_each(|(i, v)| below(Step::Index(i), v)),
+        _ => {}
+    }
+}
+
+fn at<'v>(value: &'v mut Value, path: &[Step]) -> &'v mut Value {
+    path.iter().fold(value, |value, step| match step {
+        Step::Key(key) => &mut value[key.as_str()],
+        Step::Index(i) => &mut value[*i],
+    })
+}
+
+/// As messages write it; models go by name, and numbers in lists by their list.
+fn said(base: &Table, path: &[Step]) -> String {
+    let mut out = String::new();
+    for (i, step) in path.iter().enumerate() {
+        match (step, &path[..i]) {
+            (Step::Index(k), [Step::Key(models)]) if models == "models" => {
+                let _ = write!(out, ".{}", base["models"][*k]["name"].as_str().unwrap());
+            }
+            (Step::Index(k), _) => {
+                let _ = write!(out, "[{}]", k + 1);
+            }
+            (Step::Key(key), []) => out.push_str(key),
+            (Step::Key(key), _) => {
+                let _ = write!(out, ".{key}");
+            }
+        }
+    }
+    out
+}
+
+/// What a place may become; none for it to go.
+fn wrong(value: &Value) -> Vec<Option<Value>> {
+    let mut all = vec![
+        None,
+        Some(Value::Boolean(true)),
+        Some(Value::String("ten".to_owned())),
+        Some(Value::String(String::new())),
+        Some(Value::Array(Vec::new())),
+        Some(Value::Array(vec![Value::Float(1.0); 7])),
+        Some(Value::Table(Table::new())),
+        Some(Value::Table([("wrong".to_owned(), Value::Integer(1))].into_iter().collect())),
+        Some(Value::Integer(-1)),
+        Some(Value::Integer(i64::MAX)),
+    ];
+    let floats = [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e300, -1e300, 1e-300, 0.0, -0.5, 1e9];
+    all.extend(floats.map(|x| Some(Value::Float(x))));
+    if let Some(x) = value.as_float() {
+        all.extend([-x, 1e3 * x, x + 0.123].map(|x| Some(Value::Float(x))));
+    }
+    if let Value::Array(items) = value {
+        all.push(Some(Value::Array([&items[..], &items[..1]].concat())));
+    }
+    all
+}
+
+#[test]
+fn every_refusal_names_its_key() {
+    let base = complete();
+    let whole = Value::Table(base.clone());
+    let (mut paths, mut refused) = (Vec::new(), 0);
+    let (mut elsewhere, mut unnamed) = (Vec::new(), Vec::new());
+    places(&whole, &[], &mut paths);
+    let known: Vec<String> = paths.iter().map(|path| said(&base, path)).collect();
+    for path in &paths {
+        let (last, above) = path.split_last().unwrap();
+        let value = at(&mut whole.clone(), path).clone();
+        let key = said(&base, path);
+        // The same by number, as where the list cannot be read.
+        let numbered = numbered(path);
+        for change in wrong(&value) {
+            let mut changed = whole.clone();
+            match (&change, last, at(&mut changed, above)) {
+                (Some(new), ..) => *at(&mut changed, path) = new.clone(),
+                (None, Step::Key(key), Value::Table(table)) => drop(table.remove(key)),
+                (None, Step::Index(i), Value::Array(items)) => drop(items.remove(*i)),
+                _ => unreachable!(),
+            }
+            let text = toml::to_string(&changed).unwrap();
+            let Err(error) = Scenario::from_toml(&text) else { continue };
+            refused += 1;
+            let message = error.to_string();
+            let told = format!("{key} = {change:?}: {message}");
+            // No number is told digit by digit.
+            let digits = message.split(|c: char| !c.is_ascii_digit()).map(str::len).max();
+            assert!(digits < Some(25) && message.len() < 1500, "{told}");
+            let (named, reason) = message.split_once(": ").unwrap_or(("", &message));
+            let related = |key: &str| {
+                named.starts_with(key)
+                    || key.starts_with(named) && reason_names(reason, &key[named.len()..])
+            };
+            if related(&key) || related(&numbered) {
+                continue;
+            }
+            // What one key says may make another wrong, which is a key too.
+            let exists = known.iter().any(|known| known.starts_with(named))
+                || named
+                    .rsplit_once('.')
+                    .is_some_and(|(above, _)| known.iter().any(|k| k == above));
+            if exists && !named.is_empty() {
+                elsewhere.push(format!("{key} -> {named}"));
+            } else {
+                unnamed.push(told);
+            }
+        }
+    }
+    assert!(refused > 2000, "{refused}");
+    let share = elsewhere.len() as f64 / refused as f64;
+    assert!(unnamed.is_empty(), "{} of {refused}:\n{}", unnamed.len(), unnamed.join("\n"));
+    assert!(share < 0.05, "{share}: {elsewhere:#?}");
+}
+
+fn numbered(path: &[Step]) -> String {
+    let mut out = String::new();
+    for step in path {
+        match step {
+            Step::Index(k) => drop(write!(out, "[{}]", k + 1)),
+            Step::Key(key) if out.is_empty() => out.push_str(key),
+            Step::Key(key) => drop(write!(out, ".{key}")),
+        }
+    }
+    out
+}
+
+/// Whether a reason names what is left of a path: its last key, or an entry of a list of numbers, for which
+/// the list is enough.
+fn reason_names(reason: &str, rest: &str) -> bool {
+    let key = rest.rsplit('.').next().unwrap_or(rest).split('[').next().unwrap_or("");
+    key.is_empty() || reason.contains(key)
+}
