@@ -163,7 +163,7 @@ mod tests {
                 5 => symlink(scratch.path().join("nowhere"), &path).unwrap(),
                 6 => {
                     fs::write(&path, "mine").unwrap();
-                    fs::set_permissions(&path, fs::Permissions::from_mode(0o400)).unwrap();
+                    fs::set_permissions(&path, Permissions::from_mode(0o400)).unwrap();
                 }
                 _ => assert!(
                     std::process::Command::new("mkfifo").arg(&path).status().unwrap().success()

@@ -289,15 +289,39 @@ pub fn write_copy(
     originals: &[PathBuf],
     force: bool,
 ) -> Result<bool, RepairError> {
-    fs::{self, Permissions},
-    io,
-    path::{Path, PathBuf},
-};
+    write(copy, bytes, originals, force, None)
+}
 
-use crate::{
-    Body, InertiaFile, WriteError,
-    body::{Place, Reading},
-    judge::with_flipped_products,
-    plain::write_file_as,
-};
+/// As [`write_copy`], of the file `original`: who may read and write it may the copy.
+///
+/// # Errors
+/// As there, and the original is gone.
+pub fn write_copy_of(
+    original: &Path,
+    copy: &Path,
+    bytes: &[u8],
+    originals: &[PathBuf],
+    force: bool,
+) -> Result<bool, RepairError> {
+    let metadata =
+        fs::metadata(original).map_err(|error| RepairError::Io { path: copy.to_owned(), error })?;
+    write(copy, bytes, originals, force, Some(metadata.permissions()))
+}
+
+fn write(
+    copy: &Path,
+    bytes: &[u8],
+    originals: &[PathBuf],
+    force: bool,
+    permissions: Option<Permissions>,
+) -> Result<bool, RepairError> {
+    if let Ok(canonical) = fs::canonicalize(copy)
+        && originals.contains(&canonical)
+    {
+        return Err(RepairError::Original(copy.to_owned()));
+    }
+    write_file_as(copy, bytes, force, permissions).map_err(|error| match error {
+        WriteError::Exists(path) | WriteError::NoFile(path) => RepairError::Exists(path),
+        WriteError::Io { path, error } => RepairError::Io { path, error },
+    })
 }
