@@ -106,7 +106,7 @@ fn roots(law: &RootLaw, rng: &mut ChaCha8Rng, found: &mut Vec<f64>) {
         found.extend(law.sample(rng).values());
     }
     let mut columns = [[0.0; 5]; 3];
-    law.squares_into(rng, columns.each_mut().map(|c| c.as_mut_slice()));
+    law.squares_into(rng, columns.each_mut().map(AsMut::as_mut));
     found.extend(columns.iter().flat_map(|c| &c[..2]));
 }
 
@@ -341,7 +341,7 @@ fn the_rest_is_pinned() {
     let law =
         PrincipalDispersion::new(GaussianRoots::new(mean(), [1.0, 2.0, 3.0]).unwrap(), paper());
     let mut columns = [[0.0; 130]; 6];
-    law.sample_columns(&mut rng(), columns.each_mut().map(|c| c.as_mut_slice())).unwrap();
+    law.sample_columns(&mut rng(), columns.each_mut().map(AsMut::as_mut)).unwrap();
     let rows: Vec<f64> = [0, 129].iter().flat_map(|i| columns.map(|c| c[*i])).collect();
     pinned.check(
         "sample_columns",
