@@ -400,7 +400,7 @@ mod tests {
                 }
             }
             // Bins and edges do not overlap, and nothing reaches out of the frame but arrows.
-            for (binned, vertical) in &cell.plot {
+            if let Some((binned, vertical)) = &cell.plot {
                 assert!(binned.range.0 < binned.edges[0]);
                 assert!(binned.range.1 > *binned.edges.last().unwrap());
                 let heights =
