@@ -155,32 +155,30 @@ impl Task {
             (Nothing, Nothing | Added(_)) => *last,
             (Added(moments), Nothing) => Scatter {
                 mixing: last.mixing,
-                ..system.solve(Open::Moments, &none, added(0, moments).collect())
+                ..system.solve(Open::Moments, &none, added(0, moments))
             },
             (Added(moments), Added(products)) => {
                 let rows = added(0, moments).chain(added(3, products));
                 let largest = moments.iter().chain(&products).copied().fold(zero, f64::max);
                 let least = SMALL_BESIDE * SMALL_BESIDE * largest;
                 let rows = rows.map(|w| Wanted { weight: w.weight.min(1.0 / least), ..w });
-                system.solve(Open::Both, &none, rows.collect())
+                system.solve(Open::Both, &none, rows)
             }
             (Added(moments), Stated { .. }) => {
-                let given = system.solve(Open::Moments, &none, added(0, moments).collect());
-                system.solve(Open::Mixing, &given, products.collect())
+                let given = system.solve(Open::Moments, &none, added(0, moments));
+                system.solve(Open::Mixing, &given, products)
             }
-            (Nothing, Stated { .. }) => system.solve(Open::Mixing, &none, products.collect()),
-            (Stated { .. }, Nothing) => system.solve(Open::Moments, last, moments.collect()),
+            (Nothing, Stated { .. }) => system.solve(Open::Mixing, &none, products),
+            (Stated { .. }, Nothing) => system.solve(Open::Moments, last, moments),
             (Stated { .. }, Added(these)) => {
-                let given = system.solve(Open::Mixing, &none, added(3, these).collect());
-                system.solve(Open::Moments, &given, moments.collect())
+                let given = system.solve(Open::Mixing, &none, added(3, these));
+                system.solve(Open::Moments, &given, moments)
             }
             // The scatter of the moments first, which the products are then weighed against.
-            (Stated { .. }, Stated { .. }) if first => {
-                system.solve(Open::Moments, &none, moments.collect())
-            }
+            (Stated { .. }, Stated { .. }) if first => system.solve(Open::Moments, &none, moments),
             (Stated { .. }, Stated { .. }) => {
                 let moments = moments.map(|w| Wanted { weight: MOMENTS_FIRST * w.weight, ..w });
-                system.solve(Open::Both, &none, moments.chain(products).collect())
+                system.solve(Open::Both, &none, moments.chain(products))
             }
         }
     }
@@ -238,7 +236,13 @@ struct System<'a> {
 
 impl System<'_> {
     /// The open unknowns, with the others as given.
-    fn solve(&self, open: Open, given: &Scatter, rows: Vec<Wanted>) -> Scatter {
+    fn solve(
+        &self,
+        open: Open,
+        given: &Scatter,
+        rows: impl IntoIterator<Item = Wanted>,
+    ) -> Scatter {
+        let rows: Vec<_> = rows.into_iter().collect();
         let opens = |which| open == which || open == Open::Both;
         let right = |row: &Wanted| {
             let mut right = row.variance;

@@ -59,7 +59,7 @@ impl Replacement {
     /// The records themselves are files that are replaced with the others.
     pub(super) fn new(
         mark: Name,
-        record: Name,
+        record: &Name,
         (old, old_hash): (&Record, Option<String>),
         (new, new_text): (&Record, &str),
     ) -> Self {
