@@ -34,9 +34,21 @@ pub(crate) struct Climb<P> {
 /// Climbs from `place` along the coordinates that are `free`; `n` is the size of the sample.
 pub(crate) fn climb<H: Hill>(
     hill: &H,
+    place: H::Place,
+    free: [bool; PARAMETERS],
+    n: f64,
+) -> Climb<H::Place> {
+    climb_above(hill, place, free, n, f64::NEG_INFINITY)
+}
+
+/// The same, but given up where it is about to end lower than `known`: near a maximum every further
+/// step gains less than the one before it.
+pub(crate) fn climb_above<H: Hill>(
+    hill: &H,
     mut place: H::Place,
     free: [bool; PARAMETERS],
     n: f64,
+    known: f64,
 ) -> Climb<H::Place> {
     let mut damping = 1e-3;
     let mut survey = restrict(hill.survey(&place), free);
@@ -47,7 +59,9 @@ pub(crate) fn climb<H: Hill>(
             continue;
         };
         iterations += 1;
-        let last = n * promised < GAIN && damping < 0.1;
+        let left = (ITERATIONS - iterations) as f64 * promised;
+        let hopeless = damping < 0.1 && survey.value + left < known;
+        let last = hopeless || n * promised < GAIN && damping < 0.1;
         let noise = 1e-14 * (1.0 + survey.value.abs());
         let next = hill.walk(&place, &step).map(|p| (restrict(hill.survey(&p), free), p));
         let rise = next.as_ref().map_or(f64::NEG_INFINITY, |(s, _)| s.value - survey.value);

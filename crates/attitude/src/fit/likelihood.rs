@@ -33,6 +33,19 @@ pub(crate) struct Centered {
     pub(crate) center: [f64; 4],
 }
 
+impl Centered {
+    /// ln of the density of ±u, not normalised, and tanh bᵀu; `turn` takes u to v, `linear` is bᵀu.
+    fn exponent(&self, turn: &Matrix4<f64>, u: &Vector4<f64>, linear: f64) -> (f64, f64) {
+        // The sign that the law prefers, and by how much.
+        let sign = 1.0_f64.copysign(linear);
+        let other = libm::exp(-2.0 * linear.abs());
+        // Centred, as the plain exponent is a difference of large terms.
+        let v = turn * u * sign;
+        let square: f64 = (0..4).map(|j| self.lambda[j] * (v[j] - self.center[j]).powi(2)).sum();
+        (libm::log1p(other) - 0.5 * square, sign * (1.0 - other) / (1.0 + other))
+    }
+}
+
 impl Form {
     /// Eigenvectors, and eigenvalues less the smallest, in the order of the columns.
     pub(crate) fn eigen(&self) -> ([f64; 4], Matrix4<f64>) {
@@ -111,6 +124,10 @@ impl Sample {
 
     pub(crate) fn len(&self) -> f64 {
         self.points.len() as f64
+    }
+
+    pub(crate) fn points(&self) -> &[Vector4<f64>] {
+        &self.points
     }
 
     /// P and b from the parameters.
@@ -200,6 +217,16 @@ impl Sample {
         thinnest
     }
 
+    /// Mean ln-likelihood alone.
+    pub(crate) fn height(&self, form: &Form) -> f64 {
+        let law = form.centered();
+        let slack = 1.0 - law.center.iter().map(|c| c * c).sum::<f64>();
+        let turn = Matrix4::from_fn(|i, j| law.axes[(j, i)] * self.scale[j]);
+        let b = form.b.component_mul(&Vector4::from(self.scale));
+        let sum: f64 = self.points.iter().map(|u| law.exponent(&turn, u, b.dot(u)).0).sum();
+        sum / self.len() - Contour::new(law.lambda, law.center, slack).ln_integral() + LN_PI_SQUARED
+    }
+
     pub(crate) fn evaluate(&self, eta: &Vector) -> Evaluation {
         let law = self.form(eta).centered();
         let slack = 1.0 - law.center.iter().map(|c| c * c).sum::<f64>();
@@ -211,15 +238,8 @@ impl Sample {
         let mut sum = 0.0;
         let (mut first, mut bend) = (Vector4::zeros(), Matrix4::zeros());
         for u in &self.points {
-            // The sign that the law prefers, and by how much.
-            let linear = b.dot(u);
-            let sign = 1.0_f64.copysign(linear);
-            let other = libm::exp(-2.0 * linear.abs());
-            // Centred, as the plain exponent is a difference of large terms.
-            let v = turn * u * sign;
-            let square: f64 = (0..4).map(|j| law.lambda[j] * (v[j] - law.center[j]).powi(2)).sum();
-            sum += libm::log1p(other) - 0.5 * square;
-            let tanh = sign * (1.0 - other) / (1.0 + other);
+            let (exponent, tanh) = law.exponent(&turn, u, b.dot(u));
+            sum += exponent;
             first += u * tanh;
             bend += u * (u * (1.0 - tanh * tanh)).transpose();
         }

@@ -1,5 +1,6 @@
 mod climb;
 mod likelihood;
+mod lobes;
 mod point;
 mod search;
 #[cfg(test)]

@@ -260,7 +260,7 @@ impl Hill for Natural<'_> {
 }
 
 /// The rotation in the plane of e₄ and m that takes e₄ to m, for m₄ > −1.
-fn turn_of_last_axis(m: &Vector4<f64>) -> Matrix4<f64> {
+pub(crate) fn turn_of_last_axis(m: &Vector4<f64>) -> Matrix4<f64> {
     let mut sum = *m;
     sum[3] += 1.0;
     let mut turn = Matrix4::identity() - sum * sum.transpose() / sum[3];

@@ -4,8 +4,9 @@ use nalgebra::{Matrix3, Matrix4, Vector3};
 
 use super::{
     Family, FitError, RadialVariance,
-    climb::{Climb, Hill, climb, restrict},
+    climb::{Climb, Hill, climb, climb_above, restrict},
     likelihood::{Form, PAIRS, PARAMETERS, Sample, Square, Vector},
+    lobes,
     point::{Natural, Point, SLOPE, TAU},
 };
 use crate::jacobi;
@@ -18,6 +19,8 @@ const TAU_RANGE: std::ops::RangeInclusive<f64> = 1e-14..=1e14;
 /// The attitudes lie on a small sphere if they are no farther from it than this share of how far
 /// they spread. Rounding stops a search that has no end at 1e-7 or so.
 const THINNEST: f64 = 1e-5;
+/// How many laws of two lobes are climbed from.
+const LOBES: usize = 3;
 /// A pivot of the scaled information below this is rounding.
 const FLAT: f64 = 1e-10;
 
@@ -140,12 +143,24 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// Where to look for the most likely law of all.
+    /// Where to look for the most likely law of all, laws of two lobes apart.
     pub(super) fn starts(&self, bingham: &Climb<Point>, aligned: &Climb<Point>) -> Vec<Form> {
         let narrow = Point { tau: 1.0 / self.sample.scale[2].powi(2), ..bingham.place };
-        let mut starts = vec![aligned.place.form(), narrow.form()];
+        let mut starts = vec![aligned.place.form()];
         starts.extend(self.sample.halves().iter().map(|mean| self.sample.gaussian(mean)));
+        starts.push(narrow.form());
         starts
+    }
+
+    /// The likeliest of the laws of two lobes.
+    fn lobes(&self) -> Vec<Form> {
+        let mut laws: Vec<(f64, Form)> = lobes::starts(self.sample)
+            .iter()
+            .map(|law| (self.sample.height(&law.form()), law.form()))
+            .filter(|(height, _)| height.is_finite())
+            .collect();
+        laws.sort_by(|a, b| b.0.total_cmp(&a.0));
+        laws.into_iter().take(LOBES).map(|(_, form)| form).collect()
     }
 
     /// The most likely law of all.
@@ -154,14 +169,26 @@ impl<'a> Search<'a> {
         bingham: &Climb<Point>,
         aligned: &Climb<Point>,
     ) -> Result<Climb<Point>, FitError> {
-        let top = self
-            .starts(bingham, aligned)
-            .iter()
-            .map(|form| climb(&Natural(self.sample), self.sample.parameters(form), ALL, self.n))
-            .filter(|top| top.height.is_finite())
-            .reduce(|best, top| if top.height > best.height { top } else { best });
+        let mut best: Option<Climb<Vector>> = None;
+        let mut try_from = |form: &Form, accepted: &dyn Fn(&Climb<Vector>) -> bool| {
+            let known = best.as_ref().map_or(f64::NEG_INFINITY, |best| best.height);
+            let start = self.sample.parameters(form);
+            let top = climb_above(&Natural(self.sample), start, ALL, self.n, known);
+            if top.height.is_finite() && top.height > known && accepted(&top) {
+                best = Some(top);
+            }
+        };
+        for form in self.lobes() {
+            // Lobes that were none may run away; whether the sample is to blame the others tell.
+            try_from(&form, &|top| {
+                self.sample.thickness(&self.sample.form(&top.place)).1 > THINNEST
+            });
+        }
+        for form in self.starts(bingham, aligned) {
+            try_from(&form, &|_| true);
+        }
         // Uniform attitudes have no better law than the uniform one, which is of every family.
-        let Some(top) = top.filter(|top| self.n * (top.height - aligned.height) > 1e-9) else {
+        let Some(top) = best.filter(|top| self.n * (top.height - aligned.height) > 1e-9) else {
             return Ok(aligned.clone());
         };
         let form = self.sample.form(&top.place);
