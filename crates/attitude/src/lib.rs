@@ -51,7 +51,7 @@ mod vector;
 mod ways_in;
 
 pub use fisher_bingham::{FisherBingham, FisherBinghamError, Method};
-pub use fit::{Convergence, Family, Fit, FitError, RadialVariance};
+pub use fit::{Convergence, Family, Fit, FitError, NoIntervals, RadialVariance};
 pub use hyperspherical::{HypersphericalAngles, HypersphericalError};
 pub use mean_half::MeanHalf;
 pub use quadrature::AngularQuadrature;

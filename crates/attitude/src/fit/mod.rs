@@ -1,4 +1,5 @@
 mod climb;
+mod intervals;
 mod likelihood;
 mod lobes;
 mod point;
@@ -11,6 +12,7 @@ use std::fmt;
 
 use crate::{RadiallyConstrainedGaussian, fisher_bingham::left_multiplication, jacobi};
 use climb::Climb;
+pub use intervals::NoIntervals;
 use likelihood::{PARAMETERS, Sample, Square};
 use point::{PRECISION, Point, SLOPE, TRIANGLE};
 use search::Search;
@@ -112,6 +114,11 @@ pub enum RadialVariance {
         /// Lower end of the 95 % interval.
         low: f64,
     },
+    /// It has an estimate, infinite perhaps, but no interval: [`Fit::no_intervals`] says why.
+    Estimated {
+        /// The most likely value.
+        value: f64,
+    },
     /// It was given.
     Given(f64),
 }
@@ -129,6 +136,12 @@ impl fmt::Display for RadialVariance {
                 "the attitudes do not determine the radial variance: every value from {low:.1e} \
                  up, infinity included, fits them (95 %)"
             ),
+            Self::Estimated { value } => {
+                write!(
+                    f,
+                    "the radial variance is about {value:.3e}, without an interval that holds"
+                )
+            }
             Self::Given(value) => write!(f, "the radial variance was given as {value:e}"),
         }
     }
@@ -154,7 +167,7 @@ pub struct Fit {
     ln_likelihood: f64,
     bingham_ln_likelihood: f64,
     turn_covariance: Matrix3<f64>,
-    errors: Option<Errors>,
+    errors: Result<Errors, NoIntervals>,
     convergence: Convergence,
 }
 
@@ -340,9 +353,20 @@ impl Fit {
             .ok_or(FitError::Degenerate { spread: sample.scale[0] })?
             .inverse();
         let turn_covariance = body * across * body.transpose() * 4.0;
-        let errors = search::covariance(sample, &place, family)
-            .filter(|_| converged)
+        let bingham = bingham_ln_likelihood / sample.len();
+        let errors = intervals::covariance(sample, best, family, bingham)
             .map(|covariance| Errors::new(&covariance, &body, &across, &turn_covariance));
+        let radial = match radial {
+            RadialVariance::Determined { .. } | RadialVariance::Undetermined { .. }
+                if family == Family::General && errors.is_err() =>
+            {
+                RadialVariance::Estimated { value: 1.0 / place.tau }
+            }
+            RadialVariance::Determined { .. }
+            | RadialVariance::Undetermined { .. }
+            | RadialVariance::Estimated { .. }
+            | RadialVariance::Given(_) => radial,
+        };
         Ok(Self {
             law,
             family,
@@ -407,18 +431,24 @@ impl Fit {
     }
 
     /// Standard errors of the entries of [`turn_covariance`](Self::turn_covariance), in rad²; none
-    /// where the likelihood is too flat to have them or the search has not converged.
+    /// where [`no_intervals`](Self::no_intervals) says why.
     #[must_use]
     pub fn turn_covariance_errors(&self) -> Option<Matrix3<f64>> {
-        self.errors.map(|e| e.turns)
+        self.errors.ok().map(|e| e.turns)
     }
 
     /// Covariance of the error of the mean attitude, as a rotation vector in body axes, in rad²;
-    /// none where the likelihood is too flat to have it or the search has not converged. From the
-    /// observed information, as all errors here.
+    /// none where [`no_intervals`](Self::no_intervals) says why. From the observed information, as
+    /// all errors here.
     #[must_use]
     pub fn mean_covariance(&self) -> Option<Matrix3<f64>> {
-        self.errors.map(|e| e.mean)
+        self.errors.ok().map(|e| e.mean)
+    }
+
+    /// Why the estimates have no standard errors, where they have none.
+    #[must_use]
+    pub fn no_intervals(&self) -> Option<NoIntervals> {
+        self.errors.err()
     }
 
     /// How the search has ended.

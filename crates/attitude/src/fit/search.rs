@@ -3,9 +3,9 @@
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
 use super::{
-    Family, FitError, RadialVariance,
-    climb::{Climb, Hill, climb, climb_above, restrict},
-    likelihood::{Form, PAIRS, PARAMETERS, Sample, Square, Vector},
+    FitError, RadialVariance,
+    climb::{Climb, climb, climb_above},
+    likelihood::{Form, PAIRS, PARAMETERS, Sample, Vector, root_lines},
     lobes,
     point::{Natural, Point, SLOPE, TAU},
 };
@@ -19,12 +19,13 @@ const TAU_RANGE: std::ops::RangeInclusive<f64> = 1e-14..=1e14;
 /// The attitudes lie on a small sphere if they are no farther from it than this share of how far
 /// they spread. Rounding stops a search that has no end at 1e-7 or so.
 const THINNEST: f64 = 1e-5;
-/// How many laws of two lobes are climbed from.
+/// How many laws of two lobes, and of lobes that overlap, are climbed from.
 const LOBES: usize = 3;
-/// A pivot of the scaled information below this is rounding.
-const FLAT: f64 = 1e-10;
+const OVERLAPPING: usize = 3;
+/// Length of the mean of the latter in coordinates of unit variance: |u| of a half has 0.8.
+const OVERLAPPING_MEAN: f64 = 0.7;
 
-const ALL: [bool; PARAMETERS] = [true; PARAMETERS];
+pub(super) const ALL: [bool; PARAMETERS] = [true; PARAMETERS];
 
 /// Coordinates of [`Point`] that each family has for a given radial variance.
 pub(super) const ALIGNED: [bool; PARAMETERS] = free(false);
@@ -148,19 +149,30 @@ impl<'a> Search<'a> {
         let narrow = Point { tau: 1.0 / self.sample.scale[2].powi(2), ..bingham.place };
         let mut starts = vec![aligned.place.form()];
         starts.extend(self.sample.halves().iter().map(|mean| self.sample.gaussian(mean)));
+        starts.extend(self.overlapping());
         starts.push(narrow.form());
         starts
     }
 
-    /// The likeliest of the laws of two lobes.
+    /// The likeliest laws of two lobes, in the light and heavy parts of the sample.
     fn lobes(&self) -> Vec<Form> {
-        let mut laws: Vec<(f64, Form)> = lobes::starts(self.sample)
-            .iter()
-            .map(|law| (self.sample.height(&law.form()), law.form()))
+        self.likeliest(lobes::starts(self.sample).iter().map(Point::form), LOBES)
+    }
+
+    /// The likeliest Gaussians whose mean is on one of 24 lines that cover all directions: lobes that
+    /// overlap are not parted by any division of the sample.
+    fn overlapping(&self) -> Vec<Form> {
+        let means = root_lines().into_iter().map(|line| line.normalize() * OVERLAPPING_MEAN);
+        self.likeliest(means.map(|mean| self.sample.gaussian(&mean)), OVERLAPPING)
+    }
+
+    fn likeliest(&self, forms: impl Iterator<Item = Form>, count: usize) -> Vec<Form> {
+        let mut ranked: Vec<(f64, Form)> = forms
+            .map(|form| (self.sample.height(&form), form))
             .filter(|(height, _)| height.is_finite())
             .collect();
-        laws.sort_by(|a, b| b.0.total_cmp(&a.0));
-        laws.into_iter().take(LOBES).map(|(_, form)| form).collect()
+        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+        ranked.into_iter().take(count).map(|(_, form)| form).collect()
     }
 
     /// The most likely law of all.
@@ -269,24 +281,6 @@ impl<'a> Search<'a> {
         }
         libm::exp(inside.0)
     }
-}
-
-/// Covariance of the estimates in the coordinates of the point, zero for those that are held: the
-/// inverse of the observed information.
-pub(super) fn covariance(sample: &Sample, place: &Point, family: Family) -> Option<Square> {
-    let mut free = if family == Family::General { ALL } else { ALIGNED };
-    free[TAU] |= family == Family::Aligned && place.tau > 0.0;
-    let survey = restrict(sample.survey(place), free);
-    let scale = survey.information.diagonal().map(|d| 1.0 / d.abs().sqrt());
-    let information = Square::from_fn(|i, j| -survey.hessian[(i, j)] * scale[i] * scale[j]);
-    let factor = information.cholesky()?;
-    if !factor.l_dirty().diagonal().iter().all(|pivot| pivot * pivot > FLAT) {
-        return None;
-    }
-    let inverse = factor.inverse();
-    Some(Square::from_fn(|i, j| {
-        if free[i] && free[j] { inverse[(i, j)] * scale[i] * scale[j] / sample.len() } else { 0.0 }
-    }))
 }
 
 /// The same climb in the coordinates of a point.

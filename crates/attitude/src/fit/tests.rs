@@ -237,8 +237,10 @@ fn nearly(a: &Fit, b: &Fit, what: &str) {
     let scale = a.turn_covariance().amax();
     let error = (a.turn_covariance() - b.turn_covariance()).amax();
     assert!(error < 1e-5 * scale, "{what}: turns off by {error:e} of {scale:e}");
-    let (x, y) = (a.mean_covariance().unwrap(), b.mean_covariance().unwrap());
-    assert!((x - y).amax() < 1e-4 * x.amax(), "{what}");
+    match (a.mean_covariance(), b.mean_covariance()) {
+        (Some(x), Some(y)) => assert!((x - y).amax() < 1e-4 * x.amax(), "{what}"),
+        (x, y) => assert!(x.is_none() && y.is_none(), "{what}"),
+    }
     match (a.radial(), b.radial()) {
         (
             RadialVariance::Determined { value: v, low: l, high: h },
@@ -250,6 +252,9 @@ fn nearly(a: &Fit, b: &Fit, what: &str) {
         }
         (RadialVariance::Undetermined { low: x }, RadialVariance::Undetermined { low: y }) => {
             assert!((x / y - 1.0).abs() < 2e-2, "{what}: {x} {y}")
+        }
+        (RadialVariance::Estimated { value: x }, RadialVariance::Estimated { value: y }) => {
+            assert!((x / y - 1.0).abs() < 2e-3, "{what}: {x} {y}")
         }
         (x, y) => panic!("{what}: {x} {y}"),
     }
@@ -305,23 +310,30 @@ struct Repeats {
     z: Vec<[f64; 9]>,
     /// How many intervals of the radial variance hold the true one.
     covered: usize,
+    /// How many samples gave no intervals.
+    none: usize,
 }
 
 impl Repeats {
     fn of(truth: &RadiallyConstrainedGaussian, family: Family, n: usize, count: u64) -> Self {
         let mean = truth.mean().coords;
         let radial = mean.dot(&(truth.covariance() * mean));
-        let mut repeats = Self { z: Vec::new(), covered: 0 };
+        let mut repeats = Self { z: Vec::new(), covered: 0, none: 0 };
         for seed in 0..count {
             let fit =
                 RadiallyConstrainedGaussian::fit_family(&draw(truth, n, seed), family).unwrap();
             assert!(fit.convergence().converged, "{:?}", fit.convergence());
-            repeats.z.push(standardised(&fit, truth));
             repeats.covered += usize::from(match fit.radial() {
                 RadialVariance::Determined { low, high, .. } => (low..=high).contains(&radial),
                 RadialVariance::Undetermined { low } => low <= radial,
+                RadialVariance::Estimated { .. } => {
+                    assert!(fit.no_intervals().is_some() && fit.mean_covariance().is_none());
+                    repeats.none += 1;
+                    continue;
+                }
                 RadialVariance::Given(_) => true,
             });
+            repeats.z.push(standardised(&fit, truth));
         }
         repeats
     }
@@ -362,8 +374,36 @@ fn errors_are_right_for_two_lobes() {
 
 #[test]
 fn errors_are_right_for_a_diffuse_law() {
-    // With 500 attitudes its radial variance is often undetermined, and errors are not normal.
-    Repeats::of(&diffuse(), Family::General, 3000, 200).check("diffuse");
+    // With 500 attitudes most samples give no intervals.
+    let repeats = Repeats::of(&diffuse(), Family::General, 3000, 200);
+    assert!(repeats.none <= 10, "{}", repeats.none);
+    repeats.check("diffuse");
+}
+
+/// Errors from the information hold the truth of these laws in six to eight of ten where they are
+/// given regardless: near b = 0, in girdles, and where a turn is free.
+#[test]
+fn diffuse_general_laws_have_intervals_that_hold_or_none() {
+    let (mut given, mut none, mut held, mut radial) = (0, 0, 0, 0);
+    for (mean, variances) in [
+        ([0.3, 0.5, -0.4, 0.7], [0.01, 0.02, 1.0, 1.0]),
+        ([0.5, -0.6, 0.2, 0.6], [0.05, 1.0, 1.0, 1.0]),
+        ([1.0, 2.0, 3.0, 4.0], [0.1, 0.2, 0.3, 0.4]),
+        ([0.2, 0.1, 0.6, 0.8], [0.02, 0.05, 0.1, 0.5]),
+        ([0.0, 0.0, 0.0, 1.0], [0.02, 0.02, 1e14, 1e14]),
+    ] {
+        for n in [100, 400, 1600] {
+            let repeats = Repeats::of(&law(mean, variances), Family::General, n, 8);
+            given += repeats.z.len();
+            none += repeats.none;
+            radial += repeats.covered;
+            held += repeats.z.iter().flatten().filter(|z| z.abs() < 1.96).count();
+        }
+    }
+    // Nine numbers a fit, which depend on each other: 0.90 ± 0.02 of them, and 0.84 ± 0.06 radial.
+    assert!(given >= 15 && none >= 20, "{given} {none}");
+    assert!(held as f64 >= 0.87 * 9.0 * given as f64, "{held} of {}", 9 * given);
+    assert!(radial as f64 >= 0.8 * given as f64, "{radial} of {given}");
 }
 
 #[test]
@@ -376,7 +416,7 @@ fn errors_are_right_for_a_concentrated_law() {
 #[test]
 fn errors_in_the_wrong_frame_are_caught() {
     let truth = turned(1e-3);
-    let mut wrong = Repeats { z: Vec::new(), covered: 200 };
+    let mut wrong = Repeats { z: Vec::new(), covered: 200, none: 0 };
     for seed in 0..200 {
         let data = draw(&truth, 500, seed);
         let family = Family::AlignedWith { radial_variance: 0.05 };
@@ -415,7 +455,7 @@ fn averages_of_signed_quaternions_are_caught() {
         }
         z.push(all);
     }
-    let (_, spread, coverage) = Repeats { z, covered: 200 }.worst();
+    let (_, spread, coverage) = Repeats { z, covered: 200, none: 0 }.worst();
     assert!(spread > 10.0 && coverage < 100, "{spread} {coverage}");
 }
 

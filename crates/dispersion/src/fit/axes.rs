@@ -179,7 +179,8 @@ impl AxesFit {
         }
         let turn_covariance = fit.turn_covariance();
         let lobes =
-            matches!(radial, RadialVariance::Determined { .. }) && turn_covariance.trace() < NARROW;
+            matches!(radial, RadialVariance::Determined { .. } | RadialVariance::Estimated { .. })
+                && turn_covariance.trace() < NARROW;
         let share = lobes.then(|| fit.law().far_half_share());
         // q and −q are one attitude: the mean on the side of the samples' mean.
         Ok(Self {

@@ -150,7 +150,8 @@ impl<'a> Folder<'a> {
         let text = new.to_json()?;
         let name = Hidden::record_name(what);
         self.journal.create(&self.hidden, name.clone())?.write_all(text.as_bytes())?;
-        let replacement = Replacement::new(Name::new(mark)?, &name, (&old, old_hash), (&new, &text));
+        let replacement =
+            Replacement::new(Name::new(mark)?, &name, (&old, old_hash), (&new, &text));
         self.journal.replace(&self.hidden, replacement)
     }
 }
