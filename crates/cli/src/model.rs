@@ -116,13 +116,14 @@ fn write_report(out: &mut String, file: &str, model: &StatedModel) -> std::fmt::
     for (e, name) in ENTRIES.iter().enumerate() {
         let stated = model.stated()[e].map_or_else(|| "-".to_owned(), short);
         let [nominal, implied] = [nominal[e], deviations[e]].map(short);
-        write!(out, "  {name}{nominal:>17}{stated:>21}{implied:>11}   ")?;
+        write!(out, "  {name}{nominal:>17}{stated:>21}{implied:>11}")?;
         for f in 0..e {
+            let space = if f == 0 { "    " } else { " " };
             let scale = deviations[e] * deviations[f];
             let r = if scale > 0.0 { covariance[(e, f)] / scale } else { 0.0 };
             // No sign before what rounds to zero.
             let r = if r.abs() < 0.005 { 0.0 } else { r };
-            write!(out, " {r:>5.2}")?;
+            write!(out, "{space}{r:>5.2}")?;
         }
         writeln!(out)?;
     }
