@@ -1,6 +1,7 @@
 //! A model of inertia made of plain statements: "moments ± 10 %", "axes within 2°", "mass ± 1 %".
 
 mod body;
+mod diagnosis;
 mod law;
 mod least_squares;
 mod parts;
@@ -158,7 +159,7 @@ impl Statements {
         let mass = mass.map(|relative| StatedMass::new(relative, solved.follows));
         let centre = self.centre.map(|centre| centre.deviations());
         let model = StatedModel::new(nominal, &body, &stated, mass, centre, solved.solution)?;
-        let warnings = StatementWarning::of(&model, &body, &stated, unlimited);
+        let warnings = diagnosis::warnings(&model, &body, &stated, unlimited);
         Ok(model.with_warnings(warnings))
     }
 }

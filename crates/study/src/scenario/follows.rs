@@ -60,6 +60,10 @@ impl Visitor<'_> for FollowsVisitor {
     fn visit_i64<E: Error>(self, share: i64) -> Result<Follows, E> {
         self.visit_f64(share as f64)
     }
+
+    fn visit_u64<E: Error>(self, share: u64) -> Result<Follows, E> {
+        self.visit_f64(share as f64)
+    }
 }
 
 #[cfg(test)]

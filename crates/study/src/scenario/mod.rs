@@ -121,7 +121,7 @@ impl Scenario {
     /// # Errors
     /// It is not TOML, has an unknown key, or a value that is not allowed.
     pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
-        let file = parse::scenario(text)
+        let file = parse::toml::<ScenarioFile>(text)
             .map_err(|message| ScenarioError::Parse { path: None, message })?;
         limits::check(&file)?;
         Self::check(file)

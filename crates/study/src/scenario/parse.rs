@@ -1,15 +1,16 @@
 //! TOML to a scenario file, with the path of the key that is wrong.
 
-use serde::{Deserializer, de};
+use serde::{
+    Deserializer,
+    de::{self, DeserializeOwned},
+};
 use serde_path_to_error::{Path, Segment};
-
-use super::file::ScenarioFile;
 
 /// Longest reason that is told.
 const MOST_CHARACTERS: usize = 400;
 
-/// A scenario as it stands in the text, or what is wrong with it: key, reason and line.
-pub(super) fn scenario(text: &str) -> Result<ScenarioFile, String> {
+/// What stands in the text, or what is wrong with it: key, reason and line.
+pub(super) fn toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     let toml = toml::Deserializer::parse(text).map_err(|error| told(&error, text))?;
     serde_path_to_error::deserialize(toml).map_err(|error| {
         let path = said(error.path());

@@ -1,0 +1,182 @@
+//! What a model of statements gives rise to: contradictions, and what has been left open.
+
+use nalgebra::Matrix3;
+
+use super::{
+    MissedBecause, Stated, StatedModel, StatementWarning,
+    body::{Body, Scatter},
+    law::Scattered,
+};
+use crate::{RootLaw, RootMoments, fit::tail};
+
+/// Stated and implied deviations that differ by no more than this share are the same.
+const AGREE: f64 = 0.03;
+/// And by no more than this share of the largest one stated.
+const SMALL: f64 = 2e-3;
+/// A share of impossible bodies that is worth a word.
+const IMPOSSIBLE: f64 = 1e-3;
+/// Roots nearer to zero than this many deviations.
+const FLAT: f64 = 2.0;
+/// A shift of a moment, as a share of it, that is worth a word.
+const SHIFT: f64 = 0.01;
+
+/// The warnings of a model. `unlimited`: the rotations that the products alone would allow, if the axes
+/// are stated as well.
+pub(super) fn warnings(
+    model: &StatedModel,
+    body: &Body,
+    stated: &Stated,
+    unlimited: Option<[f64; 3]>,
+) -> Vec<StatementWarning> {
+    let mut warnings = said_nothing_of(model, stated);
+    warnings.extend(follows_in_part(model, stated));
+    if matches!(model.law_at_nominal_mass().roots(), RootLaw::CorrelatedGaussian(_)) {
+        warnings.push(StatementWarning::Correlated);
+    }
+    warnings.extend(centre_alone(model, stated));
+    if let (Some(axes), Some(products)) = (stated.axes, unlimited) {
+        let gaps = body.gaps(&Matrix3::zeros());
+        let differ = |a: f64, b: f64| !((a - b).abs() <= 0.1 * a.max(b));
+        if (0..3).any(|j| gaps[(j, j)] > 0.0 && differ(axes[j], products[j])) {
+            warnings.push(StatementWarning::AxesAndProducts { axes, products });
+        }
+    }
+    for (axis, turn) in (1..).zip(model.turns()) {
+        if !turn.is_finite() {
+            warnings.push(StatementWarning::Free { axis });
+        }
+    }
+    warnings.extend(missed(model, body, stated));
+    warnings.extend(of_outcome(model));
+    warnings
+}
+
+/// What the statements leave open.
+fn said_nothing_of(model: &StatedModel, stated: &Stated) -> Vec<StatementWarning> {
+    let mut warnings = Vec::new();
+    if stated.moments.is_none() && stated.centre.is_none() && model.mass().is_none() {
+        warnings.push(StatementWarning::FixedMoments);
+    }
+    if stated.products.is_none() && stated.axes.is_none() && stated.centre.is_none() {
+        warnings.push(StatementWarning::FixedAxes);
+    }
+    warnings
+}
+
+/// Where the inertia cannot wholly follow the mass, the moment that would be moved most beyond what is
+/// stated of it.
+fn follows_in_part(model: &StatedModel, stated: &Stated) -> Option<StatementWarning> {
+    let mass = model.mass().filter(|mass| mass.inertia_follows() < 1.0)?;
+    let (moments, entries) = (stated.moments?, model.nominal().entries());
+    let alone = |e: usize| mass.relative_deviation() * entries[e].abs();
+    let entry =
+        (0..3).max_by(|&a, &b| (alone(a) * moments[b]).total_cmp(&(alone(b) * moments[a])))?;
+    Some(StatementWarning::FollowsInPart {
+        share: mass.inertia_follows(),
+        entry,
+        alone: alone(entry),
+        stated: moments[entry],
+    })
+}
+
+/// What the mass centre alone does may not exceed what is stated of the whole.
+fn centre_alone(model: &StatedModel, stated: &Stated) -> Vec<StatementWarning> {
+    let Some(centre) = stated.centre else { return Vec::new() };
+    let entries = model.stated().into_iter().zip(centre).enumerate();
+    entries
+        .filter_map(|(entry, (stated, variance))| {
+            let (stated, alone) = (stated?, variance.sqrt());
+            let more = alone > stated * (1.0 + 1e-9);
+            more.then_some(StatementWarning::Alone { entry, alone, stated })
+        })
+        .collect()
+}
+
+/// The entries that do not have the stated deviation, and why.
+fn missed(model: &StatedModel, body: &Body, stated: &Stated) -> Vec<StatementWarning> {
+    let trace = model.nominal().matrix().trace();
+    let deviations_of = |scatter: Scatter| {
+        let roots = model.nominal().second_moments().roots();
+        let alone = Scattered::new(body, roots, &scatter).map(|alone| alone.moments());
+        alone.map_or([0.0; 6], |moments| moments.deviations())
+    };
+    let still = Matrix3::zeros();
+    let scatter = *model.scatter();
+    let by_moments = deviations_of(Scatter { mixing: still, ..scatter });
+    let by_axes = deviations_of(Scatter { moments: still, ..scatter });
+    let by_mass = model.mass().map_or(0.0, |mass| mass.factor_deviation());
+    let deviations = model.implied().deviations();
+    let mut warnings = Vec::new();
+    for (first, three) in [(0, stated.moments), (3, stated.products)] {
+        let Some(three) = three else { continue };
+        let small = SMALL * three.into_iter().fold(0.0, f64::max) + 1e-8 * trace;
+        for (entry, stated_here) in (first..).zip(three) {
+            let implied = deviations[entry];
+            if (implied - stated_here).abs() <= AGREE * stated_here + small {
+                continue;
+            }
+            let because = if implied > stated_here {
+                let nearly = 0.9 * stated_here;
+                let mass = by_mass * model.nominal().entries()[entry].abs();
+                if by_axes[entry] > nearly {
+                    MissedBecause::Axes { alone: by_axes[entry] }
+                } else if by_moments[entry] > nearly {
+                    MissedBecause::Moments { alone: by_moments[entry] }
+                } else if mass > nearly {
+                    MissedBecause::Mass { alone: mass }
+                } else {
+                    MissedBecause::Together
+                }
+            } else if entry < 3 {
+                MissedBecause::Tied
+            } else if stated.axes.is_some() {
+                // “Within” is a limit: products that stated axes keep smaller are within it.
+                continue;
+            } else {
+                MissedBecause::Rotations
+            };
+            let stated = stated_here;
+            warnings.push(StatementWarning::Missed { entry, stated, implied, because });
+        }
+    }
+    warnings
+}
+
+/// What the law itself has of note.
+fn of_outcome(model: &StatedModel) -> Vec<StatementWarning> {
+    let (nominal, implied) = (model.nominal(), model.implied());
+    let mut warnings = Vec::new();
+    if let [Some(a), Some(b), Some(c), ..] = model.stated() {
+        // K = (I_a + I_b − I_c)/2 in the principal axes, whose moments scatter about alike.
+        let scatter = 0.5 * (a * a + b * b + c * c).sqrt();
+        for (axis, k) in (1..).zip(nominal.second_moments().values()) {
+            let share = if scatter > 0.0 { tail::normal(k / scatter) } else { 0.0 };
+            if share > IMPOSSIBLE {
+                warnings.push(StatementWarning::Impossible { axis, share });
+            }
+        }
+    }
+    let roots = nominal.second_moments().roots().values();
+    for (axis, (root, deviation)) in (1..).zip(roots.into_iter().zip(model.root_deviations())) {
+        let ratio = root / deviation;
+        if ratio < FLAT {
+            warnings.push(StatementWarning::Flat { axis, ratio });
+        }
+    }
+    let k = nominal.second_moments().values();
+    let moments = model.law().roots().second_moment_statistics();
+    let (scatter, c) = (moments.variances(), moments.covariance());
+    for [m, n] in [[0, 1], [0, 2], [1, 2]] {
+        if (k[m] - k[n]).abs() < (scatter[m] + scatter[n] - 2.0 * c[(m, n)]).max(0.0).sqrt() {
+            warnings.push(StatementWarning::EqualMoments { axes: [m + 1, n + 1] });
+        }
+    }
+    for entry in 0..3 {
+        let x = nominal.entries()[entry];
+        let shift = (implied.mean()[entry] - x) / x;
+        if shift.abs() > SHIFT {
+            warnings.push(StatementWarning::Shifted { entry, percent: 100.0 * shift });
+        }
+    }
+    warnings
+}
