@@ -92,7 +92,7 @@ impl Lobes {
             let next = self.next(sample)?;
             let change = next.share - self.share;
             self = next;
-            if change.abs() < 1e-3 * self.share {
+            if change.abs() < 0.01 * self.share {
                 break;
             }
         }

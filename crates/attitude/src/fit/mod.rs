@@ -197,10 +197,12 @@ impl RadiallyConstrainedGaussian {
     /// Newton's method with exact derivatives and damping, each step uphill, in coordinates scaled
     /// by the sample; Hessian from the fourth moments of the law (Isserlis at each node of the
     /// contour integral). The likelihood can have several maxima, and the highest that is found is
-    /// taken. Starts are the best aligned law, one with little radial variance, and a Gaussian for
-    /// every way to divide the attitudes' quaternions in two opposite halves whose mean is locally
-    /// the longest, in coordinates of unit variance (the L1 principal components of Kwak 2008,
-    /// doi:10.1109/TPAMI.2008.114, from 24 directions). The mean of Bingham's law is the principal axis of the second moment of the
+    /// taken. Starts are the best aligned law, one with little radial variance, a Gaussian for every
+    /// way to divide the attitudes' quaternions in two opposite halves whose mean is locally the
+    /// longest, in coordinates of unit variance (the L1 principal components of Kwak 2008,
+    /// doi:10.1109/TPAMI.2008.114, from 24 directions), the likeliest of 24 Gaussians whose means
+    /// cover all directions, and the likeliest laws of two lobes, found as two clusters of one
+    /// covariance of which the light one may hold a single attitude. The mean of Bingham's law is the principal axis of the second moment of the
     /// sample (Markley et al. 2007, doi:10.2514/1.28949).
     ///
     /// # Limits
@@ -208,7 +210,9 @@ impl RadiallyConstrainedGaussian {
     /// great sphere above 1e-7 (turns of 2e-7 rad), and from every small one above 1e-5 of their
     /// extent. Order and signs matter to rounding only. Standard errors and intervals are those of
     /// many attitudes: a few hundred where there are lobes to see or nothing radial to estimate,
-    /// a few thousand for a diffuse general law. Some 15 to 30 ms for 1,000 attitudes.
+    /// a few thousand for a diffuse general law; [`Fit::no_intervals`] says where there are none.
+    /// The law of a smaller family can be less likely than the one that the attitudes were drawn from,
+    /// by as much as the likelihood ratio tolerates. Some 15 to 40 ms for 1,000 attitudes.
     ///
     /// # Errors
     /// Too few attitudes, one that is not a unit quaternion, or a likelihood without maximum.

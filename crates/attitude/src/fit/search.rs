@@ -21,7 +21,7 @@ const TAU_RANGE: std::ops::RangeInclusive<f64> = 1e-14..=1e14;
 const THINNEST: f64 = 1e-5;
 /// How many laws of two lobes, and of lobes that overlap, are climbed from.
 const LOBES: usize = 3;
-const OVERLAPPING: usize = 3;
+const OVERLAPPING: usize = 2;
 /// Length of the mean of the latter in coordinates of unit variance: |u| of a half has 0.8.
 const OVERLAPPING_MEAN: f64 = 0.7;
 
