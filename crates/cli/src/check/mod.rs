@@ -6,9 +6,7 @@ mod table;
 
 use gyradius_formats::{Found, InertiaFile, Products, find};
 use std::{
-    fmt::Display,
-    fs,
-    io::{self, Write},
+    fs, io,
     path::{Path, PathBuf},
     process::ExitCode,
 };
@@ -16,6 +14,7 @@ use std::{
 use crate::{
     REFUSED,
     args::{CheckArgs, Form},
+    output::{complain, print, print_json},
     progress,
 };
 use report::{Finding, Report, Status};
@@ -54,35 +53,39 @@ pub(crate) fn check(arguments: &CheckArgs) -> ExitCode {
         }
     });
     report.finish(&arguments.paths);
-    let mut out = io::BufWriter::new(io::stdout().lock());
-    let written = match arguments.format {
-        Form::Text => table::write(&mut out, &report, arguments),
-        Form::Json => json::write(&mut out, &report, arguments),
-    };
+    let printed = text(&report, arguments).and_then(|text| match arguments.format {
+        Form::Text => print(&text),
+        Form::Json => print_json(&text),
+    });
     if arguments.format == Form::Text {
         for refused in &report.refused {
             let at = refused
                 .line
                 .map_or(refused.path.display().to_string(), |line| place(&refused.path, line));
-            complain(format_args!("{at}: {}", refused.message));
+            complain(harmless(&format!("{at}: {}", refused.message)));
         }
         for (path, error) in &report.repair_errors {
-            complain(format_args!("{}: not repaired: {error}", path.display()));
+            complain(harmless(&format!("{}: not repaired: {error}", path.display())));
         }
     }
-    match written.and_then(|()| out.flush()) {
-        // Who reads no further, as `head` does, has what they wanted.
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            eprintln!("error: standard output: {error}");
+    match printed {
+        Err(error) => {
+            complain(error);
             ExitCode::from(REFUSED)
         }
-        _ => ExitCode::from(report.exit_code()),
+        Ok(()) => ExitCode::from(report.exit_code()),
     }
 }
 
-fn complain(error: impl Display) {
-    // Standard error may be closed, which is no reason to stop.
-    let _ = writeln!(io::stderr(), "error: {}", harmless(&error.to_string()));
+/// The report in the form that was asked for.
+fn text(report: &Report, arguments: &CheckArgs) -> Result<String, String> {
+    let mut out = Vec::new();
+    match arguments.format {
+        Form::Text => table::write(&mut out, report, arguments),
+        Form::Json => json::write(&mut out, report, arguments),
+    }
+    .and_then(|()| String::from_utf8(out).map_err(io::Error::other))
+    .map_err(|error| error.to_string())
 }
 
 /// The text without characters by which a file could command the terminal, in one line.
