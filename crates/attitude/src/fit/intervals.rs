@@ -4,7 +4,7 @@ use nalgebra::SMatrix;
 use std::{f64::consts::PI, fmt};
 
 use super::{
-    Family,
+    Family, GENERAL_TO_BINGHAM,
     climb::{Climb, Hill, restrict},
     likelihood::{Sample, Square},
     point::{PRECISION, Point, SLOPE, TAU, TRIANGLE},
@@ -26,8 +26,8 @@ pub enum NoIntervals {
     NotConverged,
     /// The observed information is singular: some direction is not determined at all.
     Flat,
-    /// The joint region of the general law holds Bingham's law, b = 0, where b and −b are the same
-    /// and neither the mean nor the radial variance is defined.
+    /// Bingham's law, b = 0, is not rejected at 1 %: there b and −b are the same, the information is
+    /// singular, and neither the mean nor the radial variance is defined.
     NearBingham {
         /// Twice the ln-likelihood that the law is ahead of Bingham's.
         ratio: f64,
@@ -49,7 +49,7 @@ impl fmt::Display for NoIntervals {
             Self::NearBingham { ratio } => write!(
                 f,
                 "the attitudes hardly tell this law from Bingham's: the likelihood ratio is \
-                 {ratio:.1}, and intervals need more than {JOINT:.1}"
+                 {ratio:.1}, and intervals need more than {GENERAL_TO_BINGHAM:.1}"
             ),
             Self::UnboundedTurns => write!(
                 f,
@@ -81,7 +81,7 @@ pub(super) fn covariance(
         return Ok(covariance);
     }
     let ratio = 2.0 * sample.len() * (best.height - bingham);
-    if !(ratio > JOINT) {
+    if !(ratio > GENERAL_TO_BINGHAM) {
         return Err(NoIntervals::NearBingham { ratio });
     }
     let deviation_rad =
