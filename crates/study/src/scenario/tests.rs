@@ -438,3 +438,51 @@ fn seeds_and_runs_are_checked_by_every_way_in() {
     assert!(s.clone().with_runs(u64::MAX).is_err());
     assert!(s.with_seed(u64::MAX).is_err());
 }
+
+/// Just what is allowed is read, and a little more is refused, with the key and the limit.
+#[test]
+fn scenarios_have_limits() {
+    let check = |text: &str, allowed: bool, expected: &str| match Scenario::from_toml(text) {
+        Ok(_) => assert!(allowed, "{expected}"),
+        Err(error) => {
+            let message = error.to_string();
+            assert!(!allowed && message.starts_with(expected), "{message}\n{expected}");
+        }
+    };
+    let springs = PECK_2003.find("[[springs]]").unwrap();
+    let models = PECK_2003.find("[[models]]").unwrap();
+    let first = PECK_2003[springs..models].split("[[springs]]").nth(1).unwrap();
+    for (count, allowed) in [(1, true), (99, true), (100, true), (101, false), (5000, false)] {
+        let all = format!("[[springs]]{first}\n").repeat(count);
+        let text = format!("{}{all}{}", &PECK_2003[..springs], &PECK_2003[models..]);
+        check(&text, allowed, &format!("springs: {count} of them: at most 100"));
+    }
+    for (count, allowed) in [(1, true), (100, true), (101, false)] {
+        let model = |i: usize| {
+            format!("[[models]]\nname = \"m{i}\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n")
+        };
+        let text = PECK_2003[..models].to_owned() + &(0..count).map(model).collect::<String>();
+        check(&text, allowed, &format!("models: {count} of them: at most 100"));
+    }
+    for axis in 0..3 {
+        for (reach, allowed) in [(1e4, true), (-1e4, true), (10_000.5, false), (-1e6, false)] {
+            let (mut point, mut centre) = ([0.0; 3], [0.0; 3]);
+            point[axis] = reach;
+            // A ring reaches farther than its centre.
+            centre[axis] = reach - 0.25 * f64::signum(reach);
+            let ring =
+                format!("{{ centre_m = {centre:?}, axis = [0.0, 0.0, 1.0], radius_m = 0.25 }}");
+            for (key, shape) in [
+                ("points_m", format!("points_m = [{point:?}]")),
+                ("hull_m", format!("hull_m = [[0.0, 0.0, 0.1], {point:?}]")),
+                ("ring", format!("ring = {ring}")),
+            ] {
+                let outlines = format!(
+                    "[clearance]\npayload = [{{ points_m = [[0.0, 0.0, -0.1]] }}]\nstage = [{{ {shape} }}]\n"
+                );
+                let text = PECK_2003.replacen("[payload]", &format!("{outlines}\n[payload]"), 1);
+                check(&text, allowed, &format!("clearance.stage[1].{key}: "));
+            }
+        }
+    }
+}
