@@ -12,7 +12,7 @@ pub(super) const BYTES: u64 = 16 << 20;
 pub(super) const RUNS: u64 = 10_000_000;
 
 /// Most springs: each is a release in every run and a column of the run table.
-const SPRINGS: usize = 1_000;
+const SPRINGS: usize = 300;
 
 /// Most models.
 const MODELS: usize = 100;
