@@ -153,8 +153,6 @@ fn an_outline_that_cannot_be_placed_fails_its_run() {
         "[payload.dispersion]\nmass_centre_m = [0.0, { law = \"uniform\", low = -1.5e6, high = 1.5e6 }, 0.0]",
         1,
     );
-    // So far from the mass centre, springs need a longer stroke.
-    let text = text.replace("stroke_m = 0.1", "stroke_m = 0.2");
     let (study, _scratch) = run(&text);
     for table in study.tables() {
         let failed: Vec<_> = table.rows().iter().filter(|r| r.failure().is_some()).collect();
