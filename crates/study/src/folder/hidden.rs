@@ -8,12 +8,9 @@ use std::{
 
 use super::{
     Problem, disk,
-    name::{Name, hash_of, said},
+    name::{HIDDEN, Name, hash_of, said},
     record::Record,
 };
-
-/// Its name.
-pub(super) const NAME: &str = ".gyradius";
 
 /// The hidden folder, held by a lock until it is dropped; the system gives the lock back if the program
 /// dies.
@@ -32,7 +29,7 @@ pub(super) struct Hidden {
 impl Hidden {
     /// Whether a folder has something of that name, whatever it is.
     pub(super) fn is_in(place: &Path) -> bool {
-        fs::symlink_metadata(place.join(NAME)).is_ok()
+        fs::symlink_metadata(place.join(HIDDEN)).is_ok()
     }
 
     /// Makes it if need be and locks it. The lock is a file that is empty for ever: it is made if there
@@ -40,17 +37,17 @@ impl Hidden {
     pub(super) fn lock(place: &Path) -> Result<Self, Problem> {
         // The folder that is meant now stays meant, whatever becomes of links on the way to it.
         let place = fs::canonicalize(place)?;
-        let made = match disk::create_folder(&place.join(NAME)) {
+        let made = match disk::create_folder(&place.join(HIDDEN)) {
             Ok(()) => true,
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => false,
             Err(error) => return Err(error.into()),
         };
-        let kind = fs::symlink_metadata(place.join(NAME))?.file_type();
+        let kind = fs::symlink_metadata(place.join(HIDDEN))?.file_type();
         if !kind.is_dir() {
-            let (name, is) = (NAME.to_owned(), said(kind));
+            let (name, is) = (HIDDEN.to_owned(), said(kind));
             return Err(Problem::Kind { name, is, should: "folder" });
         }
-        let path = place.join(NAME).join("lock");
+        let path = place.join(HIDDEN).join("lock");
         let (lock, made_lock) = match disk::create_file(&path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                 (open_lock(&path)?, false)
@@ -72,12 +69,12 @@ impl Hidden {
 
     /// A file or folder in it.
     pub(super) fn join(&self, name: &str) -> PathBuf {
-        self.place.join(NAME).join(name)
+        self.place.join(HIDDEN).join(name)
     }
 
     /// The name of a record from the folder that the hidden one is in.
     pub(super) fn record_name(what: &str) -> Name {
-        Name::record(NAME, what)
+        Name::record(what)
     }
 
     /// What was written of this kind and the hash of its record, which is none if nothing was.
@@ -106,7 +103,7 @@ impl Hidden {
         }
         if self.made {
             // Goes only if it is empty.
-            let _ = disk::remove_folder(&self.place.join(NAME));
+            let _ = disk::remove_folder(&self.place.join(HIDDEN));
         }
     }
 }
@@ -122,7 +119,7 @@ impl Drop for Hidden {
 fn open_lock(path: &Path) -> Result<File, Problem> {
     let metadata = fs::symlink_metadata(path)?;
     if !metadata.is_file() || metadata.len() > 0 {
-        let name = format!("{NAME}/lock");
+        let name = format!("{HIDDEN}/lock");
         let problem = "it should be an empty file".to_owned();
         return Err(Problem::Unknown { name, problem });
     }

@@ -15,8 +15,8 @@ use std::{
 
 use super::{
     Problem, disk,
-    hidden::{self, Hidden},
-    name::{Found, Name, hash, hash_of, look, said},
+    hidden::Hidden,
+    name::{Found, HIDDEN, Name, hash, hash_of, look, said},
     record::Record,
 };
 
@@ -89,7 +89,7 @@ impl Journal {
     pub(super) fn start(hidden: &Hidden) -> Result<Self, Problem> {
         for name in [DRAFT, ASIDE] {
             if fs::symlink_metadata(hidden.join(name)).is_ok() {
-                let name = format!("{}/{name}", hidden::NAME);
+                let name = format!("{HIDDEN}/{name}");
                 let problem = "no journal tells of it".to_owned();
                 return Err(Problem::Unknown { name, problem });
             }
@@ -237,7 +237,7 @@ pub(super) fn is_pending(place: &Path) -> Result<bool, Problem> {
 
 /// The lines of a journal; the last one is not there if it was broken off.
 fn read(place: &Path) -> Result<Option<Vec<Line>>, Problem> {
-    let name = format!("{}/{JOURNAL}", hidden::NAME);
+    let name = format!("{HIDDEN}/{JOURNAL}");
     let unknown = |problem: String| Problem::Unknown { name: name.clone(), problem };
     let path = place.join(&name);
     match fs::symlink_metadata(&path) {
@@ -354,7 +354,7 @@ fn empty<'n>(folder: &Path, names: impl Iterator<Item = &'n Name>) -> Result<(),
         return Ok(());
     }
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    let name = format!("{}/{name}", hidden::NAME);
+    let name = format!("{HIDDEN}/{name}");
     Err(Problem::Unknown { name, problem: "it holds files that no journal tells of".to_owned() })
 }
 

@@ -211,7 +211,7 @@ fn check(
 ) -> Result<(), Problem> {
     let mut occupied = false;
     for entry in fs::read_dir(place)? {
-        occupied |= entry?.file_name() != hidden::NAME;
+        occupied |= entry?.file_name() != name::HIDDEN;
     }
     let (folders, files): (Vec<_>, Vec<_>) =
         contents.certain.iter().partition(|name| name.ends_with('/'));

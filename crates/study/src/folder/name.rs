@@ -9,7 +9,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::hidden;
+/// The folder in which this module keeps what it knows of the one above it.
+pub(super) const HIDDEN: &str = ".gyradius";
 
 /// A file below a folder: plain parts with `/` between them, none of which leads out of it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -24,7 +25,7 @@ impl Name {
             !matches!(part, "" | "." | "..") && !part.contains(['\\', ':', '\0', '\n'])
         };
         let mut parts = text.split('/');
-        let own = parts.next() == Some(hidden::NAME)
+        let own = parts.next() == Some(HIDDEN)
             && !(parts.next().is_some_and(|part| part.ends_with(".json"))
                 && parts.next().is_none());
         if text.split('/').all(plain) && !own {
@@ -35,8 +36,8 @@ impl Name {
     }
 
     /// The name of a record.
-    pub(super) fn record(hidden: &str, what: &str) -> Self {
-        Self(format!("{hidden}/{what}.json"))
+    pub(super) fn record(what: &str) -> Self {
+        Self(format!("{HIDDEN}/{what}.json"))
     }
 
     /// Where it is below a folder.
