@@ -61,9 +61,9 @@ pub(crate) enum Command {
 }
 
 const EXIT_CODES: &str = "\
-Exit code: 0 if all went well, 1 if something was found (check, fit, study), 2 if what was asked cannot
-be done, with a message on standard error. A reader of the output that stops reading, as head does, is no
-error; a full disk behind it is.";
+Exit code: 0 if all went well, 1 if something was found (check, fit, study), 2 if what was asked
+cannot be done, with a message on standard error. A reader of the output that stops reading, as
+head does, is no error; a full disk behind it is.";
 
 const REPLAY_EXAMPLES: &str = "\
 Examples:

@@ -214,6 +214,11 @@ fn check(seed: u64) {
             assert!(told || nothing || miss(implied[e], stated) < 1.1 * NEAR, "not told: {what}");
         }
 
+        // Numbers in messages can be read, whatever the size of the body.
+        for warning in model.warnings() {
+            assert!(!warning.to_string().contains(" 0.0000 "), "{warning}");
+        }
+
         // What nothing is said of scatters as the first order forces it, and by squares of rotations.
         if by_oracle && !says(MASS | CENTRE) {
             let rotation = model.turns().into_iter().fold(0.0, f64::max);

@@ -118,22 +118,23 @@ impl fmt::Display for StatementWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Missed { entry, stated, implied, because } => {
-                let name = NAMES[entry];
+                let (name, stated, implied) = (NAMES[entry], Short(stated), Short(implied));
                 write!(
                     f,
-                    "{name}: a deviation of {stated:.4} kg·m² is stated, and {implied:.4} comes out: \
+                    "{name}: a deviation of {stated} kg·m² is stated, and {implied} comes out: \
                      {because}"
                 )
             }
             Self::FollowsInPart { share, entry, alone, stated } => {
-                let name = NAMES[entry];
+                let more = alone > stated;
+                let (name, alone, stated) = (NAMES[entry], Short(alone), Short(stated));
                 write!(
                     f,
                     "the inertia follows the mass only in part, by {share:.3} of its relative change: if it \
-                     followed wholly, the mass alone would move {name} by {alone:.4} kg·m², and \
-                     {stated:.4} are stated of it in all"
+                     followed wholly, the mass alone would move {name} by {alone} kg·m², and \
+                     {stated} are stated of it in all"
                 )?;
-                if alone <= stated {
+                if !more {
                     f.write_str(", which the other moments could not have beside it")?;
                 }
                 Ok(())
@@ -161,11 +162,11 @@ impl fmt::Display for StatementWarning {
                 NAMES[entry]
             ),
             Self::Alone { entry, alone, stated } => {
-                let name = NAMES[entry];
+                let (name, alone, stated) = (NAMES[entry], Short(alone), Short(stated));
                 write!(
                     f,
-                    "the mass centre alone would move {name} by {alone:.4} kg·m², which is more than the \
-                     {stated:.4} stated of it: the statement on {name} is taken"
+                    "the mass centre alone would move {name} by {alone} kg·m², which is more than the \
+                     {stated} stated of it: the statement on {name} is taken"
                 )
             }
             Self::AxesAndProducts { axes, products } => {
@@ -202,16 +203,19 @@ impl fmt::Display for MissedBecause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Axes { alone } => {
-                write!(f, "the scatter of the axes alone moves it by {alone:.4} kg·m²")
+                write!(f, "the scatter of the axes alone moves it by {} kg·m²", Short(*alone))
             }
             Self::Moments { alone } => write!(
                 f,
-                "the scatter of the moments, about axes that are tilted, alone moves it by {alone:.4} \
-                 kg·m²"
+                "the scatter of the moments, about axes that are tilted, alone moves it by {} \
+                 kg·m²",
+                Short(*alone)
             ),
-            Self::Mass { alone } => {
-                write!(f, "the mass, with which the inertia grows, alone moves it by {alone:.4} kg·m²")
-            }
+            Self::Mass { alone } => write!(
+                f,
+                "the mass, with which the inertia grows, alone moves it by {} kg·m²",
+                Short(*alone)
+            ),
             Self::Together => f.write_str("what else is stated moves it more"),
             Self::Tied => f.write_str(
                 "the moments of a body are tied together, each being the sum of two second moments, \
@@ -221,6 +225,21 @@ impl fmt::Display for MissedBecause {
                 "rotations of the principal axes cannot move this product so much: the moments that \
                  they mix are too near to each other",
             ),
+        }
+    }
+}
+
+/// A number for people: four decimals, or three digits and a power of ten where decimals would hide it or
+/// say too much.
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size == 0.0 || (0.01..1e7).contains(&size) {
+            write!(f, "{:.4}", self.0)
+        } else {
+            write!(f, "{:.2e}", self.0)
         }
     }
 }
