@@ -17,6 +17,16 @@ pub(super) struct Scatter {
     pub(super) mixing: Matrix3<f64>,
 }
 
+impl Scatter {
+    /// A share of the way to another, on which every covariance is one.
+    pub(super) fn towards(&self, other: &Self, share: f64) -> Self {
+        Self {
+            moments: self.moments + (other.moments - self.moments) * share,
+            mixing: self.mixing + (other.mixing - self.mixing) * share,
+        }
+    }
+}
+
 /// What moves the entries of a nominal body.
 pub(super) struct Body {
     pub(super) attitude: UnitQuaternion<f64>,

@@ -197,31 +197,40 @@ struct Axes {
 }
 
 impl Axes {
-    /// With this mixing of the rotations about the principal axes.
+    /// With this mixing of the rotations about the principal axes. Each keeps its own variance; wide
+    /// ones, whose mixing is not linear, are independent of the others.
     fn with(body: &Body, mixing: &Matrix3<f64>) -> Self {
         let largest = mixing.diagonal().max();
-        let independent = (0..3).all(|i| {
-            (0..i).all(|j| {
-                let scale = (mixing[(i, i)] * mixing[(j, j)]).sqrt();
-                mixing[(i, j)].abs() <= INDEPENDENT * scale.max(STILL * largest)
-            })
-        });
-        // The principal axes, unless the rotations about them are correlated.
-        let (directions, mixing) = if independent {
-            (Matrix3::identity(), mixing.diagonal())
-        } else {
-            let eigen = SymmetricEigen::new(*mixing);
-            (eigen.eigenvectors, eigen.eigenvalues)
+        let rotations: Vector3<f64> = mixing.diagonal().map(|u| variance_of(u.max(0.0)));
+        let covaries = |i: usize, j: usize| {
+            let scale = (mixing[(i, i)] * mixing[(j, j)]).sqrt();
+            rotations[i].max(rotations[j]) < NARROW
+                && mixing[(i, j)].abs() > INDEPENDENT * scale.max(STILL * largest)
         };
-        let variances: Vector3<f64> = mixing.map(|u| variance_of(u.max(0.0)));
-        let rotations = std::array::from_fn(|j| {
-            (0..3)
-                .filter(|i| directions[(j, *i)].abs() > STILL)
-                .map(|i| directions[(j, i)].powi(2) * variances[i])
-                .sum()
-        });
+        // The principal axes, unless the rotations about them are correlated.
+        let (directions, variances) = if covaries(0, 1) || covaries(0, 2) || covaries(1, 2) {
+            let eigen = SymmetricEigen::new(Matrix3::from_fn(|i, j| {
+                if i == j {
+                    // Wide ones beside have their place in the law's own variances below.
+                    rotations[i].min(2.0 * NARROW)
+                } else if covaries(i, j) {
+                    let size = rotations[i] * rotations[j] / (mixing[(i, i)] * mixing[(j, j)]);
+                    mixing[(i, j)] * size.sqrt()
+                } else {
+                    0.0
+                }
+            }));
+            let own = |i: usize| {
+                let wide = (0..3)
+                    .find(|&j| rotations[j] >= NARROW && eigen.eigenvectors[(j, i)].abs() > 0.5);
+                wide.map_or(eigen.eigenvalues[i].max(0.0), |j| rotations[j])
+            };
+            (eigen.eigenvectors, [own(0), own(1), own(2)])
+        } else {
+            (Matrix3::identity(), rotations.into())
+        };
         let about = directions.transpose() * body.attitude.to_rotation_matrix().matrix();
-        Self { about, variances: variances.into(), rotations }
+        Self { about, variances, rotations: rotations.into() }
     }
 
     fn law(&self, body: &Body) -> Result<RadiallyConstrainedGaussian, RcgError> {

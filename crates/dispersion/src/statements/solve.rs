@@ -11,12 +11,16 @@ use super::{
     least_squares::{Equation, Unknown, least_squares},
 };
 
-/// Rounds in which the linear equations are corrected by what the law really gives.
+/// Rounds at most in which the linear equations are corrected by what the law really gives.
 const ROUNDS: usize = 16;
 /// Relative errors of variances that need no other round.
 const SETTLED: f64 = 1e-5;
-/// Rounds without a better law after which there is none.
+/// A round is worth another one if it takes this share off the cost.
+const WORTH: f64 = 0.01;
+/// Whole rounds without a better law after which they lead nowhere.
 const PATIENCE: usize = 4;
+/// Shares of the way from the best law to the solution of the equations.
+const STEPS: [f64; 5] = [0.5, 0.25, 0.1, 0.03, 0.01];
 /// How much more an error of a stated moment counts than one of a stated product: the products may
 /// not make the moments more certain than they are stated.
 const MOMENTS_FIRST: f64 = 30.0;
@@ -68,6 +72,17 @@ pub(super) struct Solution {
     pub(super) cost: f64,
 }
 
+/// A law, and where the linear equations are corrected.
+#[derive(Clone, Copy)]
+struct Point {
+    scatter: Scatter,
+    /// What the law gives of each variance beyond the linear equations, and in all.
+    beyond: [f64; 6],
+    found: [f64; 6],
+    /// Whether what is stated comes out.
+    settled: bool,
+}
+
 /// Which unknowns the equations are solved for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Open {
@@ -93,50 +108,67 @@ impl Task {
             Asked::Nothing => self.axes.unwrap_or([0.0; 3]),
             Asked::Stated { .. } | Asked::Added(_) => [0.0; 3],
         };
-        let mut scatter =
+        let scatter =
             Scatter { moments: Matrix3::zeros(), mixing: Matrix3::from_diagonal(&given.into()) };
-        // What the law gives beyond the linear equations, and all that it gives.
-        let (mut beyond, mut found) = ([0.0; 6], [0.0; 6]);
-        let mut best: Option<Solution> = None;
-        let mut since = 0;
-        for round in 0..ROUNDS {
-            scatter = self.round(body, &scatter, &beyond, &found, zero, round == 0);
+        let evaluate = |scatter: Scatter, units: Option<[f64; 6]>| {
             let scattered = Scattered::new(body, roots, &scatter)?;
             let implied = scattered.rough_moments();
+            let found = std::array::from_fn(|e| implied.covariance()[(e, e)].max(0.0));
             let linear = body.variances(&scatter);
-            found = std::array::from_fn(|e| implied.covariance()[(e, e)].max(0.0));
-            beyond = std::array::from_fn(|e| found[e] - linear[e]);
-            let errors = self.errors(&found, zero);
+            let beyond = std::array::from_fn(|e| found[e] - linear[e]);
+            let errors = self.errors(&found, &units.unwrap_or(found), zero);
             let cost = errors.iter().map(|e| e * e).sum();
+            let settled = errors.iter().all(|e| e.abs() < SETTLED);
+            let solution = Solution { scatter, scattered, cost };
+            Ok::<_, StatementError>((Point { scatter, beyond, found, settled }, solution))
+        };
+        let start = Point { scatter, beyond: [0.0; 6], found: [0.0; 6], settled: false };
+        let (mut point, mut best) = evaluate(self.round(body, &start, zero, true), None)?;
+        let (units, mut at_best) = (Some(point.found), point);
+
+        // Whole steps, which mostly lead straight there. The first ones open what later ones need.
+        let mut since = 0;
+        for round in 1..ROUNDS {
+            let solution;
+            (point, solution) = evaluate(self.round(body, &point, zero, false), units)?;
             since += 1;
-            let least = best.as_ref().map_or(f64::INFINITY, |best| best.cost);
-            if cost < least {
-                // A round is worth its while if it does better by a hundredth.
-                if cost < 0.99 * least {
+            if solution.cost <= best.cost {
+                if solution.cost < (1.0 - WORTH) * best.cost {
                     since = 0;
                 }
-                best = Some(Solution { scatter, scattered, cost });
+                (best, at_best) = (solution, point);
             }
-            let settled = errors.iter().all(|e| e.abs() < SETTLED);
-            // The first rounds open what the later ones need.
-            if round >= 2 && (settled || since >= PATIENCE) {
+            if round >= 2 && (at_best.settled || since >= PATIENCE) {
                 break;
             }
         }
-        best.ok_or_else(|| StatementError::Law { problem: "no law was found".to_owned() })
+        // From the best law on, steps that are shortened until they do better: where the law is far from
+        // linear, whole ones go to and fro.
+        for _ in 0..ROUNDS {
+            if at_best.settled {
+                break;
+            }
+            let next = self.round(body, &at_best, zero, false);
+            let mut worth = false;
+            for step in STEPS {
+                let (point, solution) = evaluate(at_best.scatter.towards(&next, step), units)?;
+                if solution.cost < best.cost {
+                    worth = solution.cost < (1.0 - WORTH) * best.cost;
+                    (best, at_best) = (solution, point);
+                    break;
+                }
+            }
+            if !worth {
+                break;
+            }
+        }
+        Ok(best)
     }
 
     /// One solution of the linear equations.
-    fn round(
-        &self,
-        body: &Body,
-        last: &Scatter,
-        beyond: &[f64; 6],
-        found: &[f64; 6],
-        zero: f64,
-        first: bool,
-    ) -> Scatter {
+    fn round(&self, body: &Body, at: &Point, zero: f64, first: bool) -> Scatter {
         use Asked::{Added, Nothing, Stated};
+        let Point { scatter: last, beyond, found, .. } = at;
         let system = System { body, gaps: body.gaps(&last.moments), axes: self.axes, zero };
         let none = Scatter { moments: Matrix3::zeros(), mixing: Matrix3::zeros() };
         let moments = self
@@ -184,14 +216,14 @@ impl Task {
     }
 
     /// Relative errors of the stated variances.
-    fn errors(&self, found: &[f64; 6], zero: f64) -> Vec<f64> {
+    fn errors(&self, found: &[f64; 6], first_found: &[f64; 6], zero: f64) -> Vec<f64> {
         let (moments, products) = (self.moments.stated(0, zero), self.products.stated(3, zero));
         let first = if products.is_empty() { 1.0 } else { MOMENTS_FIRST };
         let moments = moments.into_iter().map(|w| Wanted { weight: first * w.weight, ..w });
-        // Of products, in units of what they are if they are larger.
+        // Of products, in units of what they were at first if that is larger.
         let products = products
             .into_iter()
-            .map(|w| Wanted { weight: w.weight.min(1.0 / found[w.entry].max(zero)), ..w });
+            .map(|w| Wanted { weight: w.weight.min(1.0 / first_found[w.entry].max(zero)), ..w });
         moments.chain(products).map(|w| w.weight * (found[w.entry] - w.variance)).collect()
     }
 }
