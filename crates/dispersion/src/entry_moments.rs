@@ -230,7 +230,7 @@ fn forms(q: &[C64; 4]) -> [C64; FORMS] {
 }
 
 /// The same at a unit quaternion.
-fn real_forms(q: &UnitQuaternion<f64>) -> [[f64; 6]; 3] {
+pub(crate) fn real_forms(q: &UnitQuaternion<f64>) -> [[f64; 6]; 3] {
     let r = q.to_rotation_matrix();
     let r = r.matrix();
     std::array::from_fn(|k| {

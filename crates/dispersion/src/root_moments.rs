@@ -1,3 +1,4 @@
+use gyradius_inertia::RootSecondMoments;
 use nalgebra::Matrix3;
 
 use crate::semidefinite::{Covariance, CovarianceError};
@@ -59,6 +60,16 @@ impl SecondMomentStatistics {
     /// Of second moments that covary, likewise.
     pub(crate) fn joint(mean: [f64; 3], covariance: Matrix3<f64>) -> Self {
         Self { mean, covariance }
+    }
+
+    /// Of the squares of jointly Gaussian roots with the mean k̄ and the covariance c:
+    /// E K_i = k̄_i² + c_ii and Cov(K_i, K_j) = 4 k̄_i k̄_j c_ij + 2 c_ij².
+    pub(crate) fn of_gaussian_roots(mean: RootSecondMoments, covariance: &Matrix3<f64>) -> Self {
+        let (k, c) = (mean.values(), covariance);
+        Self::joint(
+            std::array::from_fn(|i| k[i] * k[i] + c[(i, i)]),
+            c.map_with_location(|i, j, c| 2.0 * c * (2.0 * k[i] * k[j] + c)),
+        )
     }
 
     /// E K₁, E K₂, E K₃, kg·m².

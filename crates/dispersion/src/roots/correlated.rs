@@ -91,11 +91,7 @@ impl CorrelatedRoots {
 
 impl RootMoments for CorrelatedRoots {
     fn second_moment_statistics(&self) -> SecondMomentStatistics {
-        let (k, c) = (self.mean.values(), self.covariance.matrix());
-        SecondMomentStatistics::joint(
-            std::array::from_fn(|i| k[i] * k[i] + c[(i, i)]),
-            c.map_with_location(|i, j, c| 2.0 * c * (2.0 * k[i] * k[j] + c)),
-        )
+        SecondMomentStatistics::of_gaussian_roots(self.mean, self.covariance.matrix())
     }
 }
 

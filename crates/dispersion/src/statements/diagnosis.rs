@@ -3,9 +3,10 @@
 use nalgebra::Matrix3;
 
 use super::{
-    MissedBecause, Stated, StatedModel, StatementWarning,
-    body::{Body, Scatter},
-    law::Scattered,
+    MissedBecause, Stated, StatedModel, StatementError, StatementWarning,
+    entries::Forms,
+    scatter::{Body, Scatter},
+    solve::Solution,
 };
 use crate::{RootLaw, RootMoments, fit::tail};
 
@@ -20,35 +21,138 @@ const FLAT: f64 = 2.0;
 /// A shift of a moment, as a share of it, that is worth a word.
 const SHIFT: f64 = 0.01;
 
-/// The warnings of a model. `unlimited`: the rotations that the products alone would allow, if the axes
-/// are stated as well.
-pub(super) fn warnings(
-    model: &StatedModel,
-    body: &Body,
-    stated: &Stated,
-    unlimited: Option<[f64; 3]>,
-) -> Vec<StatementWarning> {
-    let mut warnings = said_nothing_of(model, stated);
-    warnings.extend(follows_in_part(model, stated));
-    if matches!(model.law_at_nominal_mass().roots(), RootLaw::CorrelatedGaussian(_)) {
-        warnings.push(StatementWarning::Correlated);
+/// What a model was made of.
+pub(super) struct Context {
+    pub(super) body: Body,
+    pub(super) stated: Stated,
+    /// What the products alone would allow, where axes are stated as well.
+    pub(super) unlimited: Option<Unlimited>,
+    /// Deviations that a mass centre would give entries beside everything else, kg·m².
+    pub(super) with_centre: [Option<f64>; 6],
+}
+
+/// A solution without a limit of the axes.
+pub(super) struct Unlimited {
+    /// Deviations of the rotations, rad; infinite where a turn may be any.
+    turns: [f64; 3],
+    /// Deviations of the entries, kg·m².
+    entries: [f64; 6],
+}
+
+impl Unlimited {
+    pub(super) fn new(body: &Body, solution: &Solution) -> Result<Self, StatementError> {
+        let scatter = &solution.scatter;
+        Ok(Self {
+            turns: scatter.rotation_variances().map(f64::sqrt),
+            entries: body.moments(scatter, &body.law(scatter)?).deviations(),
+        })
     }
-    warnings.extend(centre_alone(model, stated));
-    if let (Some(axes), Some(products)) = (stated.axes, unlimited) {
-        let gaps = body.gaps(&Matrix3::zeros());
-        let differ = |a: f64, b: f64| !((a - b).abs() <= 0.1 * a.max(b));
-        if (0..3).any(|j| gaps[(j, j)] > 0.0 && differ(axes[j], products[j])) {
-            warnings.push(StatementWarning::AxesAndProducts { axes, products });
+}
+
+impl Context {
+    /// The warnings of a model.
+    pub(super) fn warnings(&self, model: &StatedModel) -> Vec<StatementWarning> {
+        let stated = &self.stated;
+        let mut warnings = said_nothing_of(model, stated);
+        warnings.extend(follows_in_part(model, stated));
+        if matches!(model.law_at_nominal_mass().roots(), RootLaw::CorrelatedGaussian(_)) {
+            warnings.push(StatementWarning::Correlated);
+        }
+        warnings.extend(centre_alone(model, stated));
+        warnings.extend(self.centre_missed(model));
+        if let (Some(axes), Some(unlimited)) = (stated.axes, &self.unlimited) {
+            let differ = |a: f64, b: f64| !((a - b).abs() <= 0.1 * a.max(b));
+            if (0..3).any(|j| differ(axes[j], unlimited.turns[j])) {
+                let products = unlimited.turns;
+                warnings.push(StatementWarning::AxesAndProducts { axes, products });
+            }
+        }
+        for (axis, turn) in (1..).zip(model.turns()) {
+            if !turn.is_finite() {
+                warnings.push(StatementWarning::Free { axis });
+            }
+        }
+        warnings.extend(self.missed(model));
+        warnings.extend(of_outcome(model));
+        warnings
+    }
+
+    /// The entries that do not have what the mass centre would give them.
+    fn centre_missed(&self, model: &StatedModel) -> Vec<StatementWarning> {
+        let implied = model.implied().deviations();
+        let mut warnings = Vec::new();
+        for three in [0..3, 3..6] {
+            let wanted = &self.with_centre[three.clone()];
+            let largest = wanted.iter().flatten().copied().fold(0.0, f64::max);
+            for (entry, wanted) in three.zip(wanted) {
+                let Some(wanted) = *wanted else { continue };
+                let off = (implied[entry] - wanted).abs();
+                if off > AGREE * wanted + SMALL * largest {
+                    let implied = implied[entry];
+                    warnings.push(StatementWarning::CentreMissed { entry, wanted, implied });
+                }
+            }
+        }
+        warnings
+    }
+
+    /// The entries that do not have the stated deviation, and why.
+    fn missed(&self, model: &StatedModel) -> Vec<StatementWarning> {
+        let trace = model.nominal().matrix().trace();
+        let deviations = model.implied().deviations();
+        let mut warnings = Vec::new();
+        for (first, three) in [(0, self.stated.moments), (3, self.stated.products)] {
+            let Some(three) = three else { continue };
+            let small = SMALL * three.into_iter().fold(0.0, f64::max) + 1e-8 * trace;
+            for (entry, stated) in (first..).zip(three) {
+                let implied = deviations[entry];
+                if (implied - stated).abs() > AGREE * stated + small {
+                    let because = if implied > stated {
+                        self.why_more(model, entry, stated)
+                    } else {
+                        self.why_less(entry, stated)
+                    };
+                    warnings.push(StatementWarning::Missed { entry, stated, implied, because });
+                }
+            }
+        }
+        warnings
+    }
+
+    fn why_more(&self, model: &StatedModel, entry: usize, stated: f64) -> MissedBecause {
+        let scatter = *model.scatter();
+        let nearly = 0.9 * stated;
+        let resting = Scatter { roots: Matrix3::zeros(), ..scatter };
+        let resting = self.body.second_moments(&resting);
+        let by_axes = self.body.forms(&scatter).variances(&resting)[entry].sqrt();
+        let still = Forms::still(&self.body.attitude);
+        let by_moments = still.variances(&self.body.second_moments(&scatter))[entry].sqrt();
+        let mass = model.mass().map_or(0.0, |mass| mass.factor_deviation());
+        let by_mass = mass * model.nominal().entries()[entry].abs();
+        if by_axes > nearly {
+            MissedBecause::Axes { alone: by_axes }
+        } else if by_mass > nearly {
+            MissedBecause::Mass { alone: by_mass }
+        } else if entry < 3 {
+            MissedBecause::Tied
+        } else if by_moments > nearly {
+            MissedBecause::Moments { alone: by_moments }
+        } else {
+            MissedBecause::Together
         }
     }
-    for (axis, turn) in (1..).zip(model.turns()) {
-        if !turn.is_finite() {
-            warnings.push(StatementWarning::Free { axis });
+
+    fn why_less(&self, entry: usize, stated: f64) -> MissedBecause {
+        if entry < 3 {
+            return MissedBecause::Tied;
+        }
+        match &self.unlimited {
+            Some(unlimited) if unlimited.entries[entry] >= (1.0 - AGREE) * stated => {
+                MissedBecause::AxesLimit
+            }
+            Some(_) | None => MissedBecause::Rotations,
         }
     }
-    warnings.extend(missed(model, body, stated));
-    warnings.extend(of_outcome(model));
-    warnings
 }
 
 /// What the statements leave open.
@@ -90,56 +194,6 @@ fn centre_alone(model: &StatedModel, stated: &Stated) -> Vec<StatementWarning> {
             more.then_some(StatementWarning::Alone { entry, alone, stated })
         })
         .collect()
-}
-
-/// The entries that do not have the stated deviation, and why.
-fn missed(model: &StatedModel, body: &Body, stated: &Stated) -> Vec<StatementWarning> {
-    let trace = model.nominal().matrix().trace();
-    let deviations_of = |scatter: Scatter| {
-        let roots = model.nominal().second_moments().roots();
-        let alone = Scattered::new(body, roots, &scatter).map(|alone| alone.moments());
-        alone.map_or([0.0; 6], |moments| moments.deviations())
-    };
-    let still = Matrix3::zeros();
-    let scatter = *model.scatter();
-    let by_moments = deviations_of(Scatter { mixing: still, ..scatter });
-    let by_axes = deviations_of(Scatter { moments: still, ..scatter });
-    let by_mass = model.mass().map_or(0.0, |mass| mass.factor_deviation());
-    let deviations = model.implied().deviations();
-    let mut warnings = Vec::new();
-    for (first, three) in [(0, stated.moments), (3, stated.products)] {
-        let Some(three) = three else { continue };
-        let small = SMALL * three.into_iter().fold(0.0, f64::max) + 1e-8 * trace;
-        for (entry, stated_here) in (first..).zip(three) {
-            let implied = deviations[entry];
-            if (implied - stated_here).abs() <= AGREE * stated_here + small {
-                continue;
-            }
-            let because = if implied > stated_here {
-                let nearly = 0.9 * stated_here;
-                let mass = by_mass * model.nominal().entries()[entry].abs();
-                if by_axes[entry] > nearly {
-                    MissedBecause::Axes { alone: by_axes[entry] }
-                } else if by_moments[entry] > nearly {
-                    MissedBecause::Moments { alone: by_moments[entry] }
-                } else if mass > nearly {
-                    MissedBecause::Mass { alone: mass }
-                } else {
-                    MissedBecause::Together
-                }
-            } else if entry < 3 {
-                MissedBecause::Tied
-            } else if stated.axes.is_some() {
-                // “Within” is a limit: products that stated axes keep smaller are within it.
-                continue;
-            } else {
-                MissedBecause::Rotations
-            };
-            let stated = stated_here;
-            warnings.push(StatementWarning::Missed { entry, stated, implied, because });
-        }
-    }
-    warnings
 }
 
 /// What the law itself has of note.

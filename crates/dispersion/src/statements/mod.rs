@@ -1,18 +1,20 @@
 //! A model of inertia made of plain statements: "moments ± 10 %", "axes within 2°", "mass ± 1 %".
 
-mod body;
 mod diagnosis;
-mod law;
-mod least_squares;
+mod entries;
+mod levenberg_marquardt;
+mod nodes;
 mod parts;
+mod scatter;
 mod solve;
 mod stated_model;
 mod warnings;
 
 use gyradius_inertia::Inertia;
 
-use body::{Body, mixing_of};
-use solve::{Asked, Solution, Task};
+use diagnosis::{Context, Unlimited};
+use scatter::Body;
+use solve::{Asked, Task};
 
 pub use parts::{
     Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, Part,
@@ -23,10 +25,6 @@ pub use warnings::{MissedBecause, StatementWarning};
 
 /// Traces whose squares, which variances are, do not overflow.
 const TRACES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
-/// A model that misses by no more than this, in squared relative errors of variances, meets the statements.
-const MET: f64 = 1e-4;
-/// Halvings of the share of the mass that the inertia follows, where it cannot follow wholly.
-const HALVINGS: usize = 8;
 
 /// What engineers say of an inertia, and nothing that they do not say: every part may be left out.
 ///
@@ -73,18 +71,12 @@ impl Statements {
     /// The model of a nominal inertia and, if it is known, its mass.
     ///
     /// # Algorithm
-    /// To first order the variance of an entry is linear in the covariance C of the second moments
-    /// K_k and in that of small rotations φ_j about the principal axes, U = Cov(sin 2φ)/4:
-    ///
-    /// Var I_ab = gᵀC g + Σ_jl d_j d_l E[ΔI_j ΔI_l] U_jl,
-    ///
-    /// with R(q) = (r_ka) of the nominal body, g_k = δ_ab − r_ka r_kb, d_j the entry ab of the symmetric product of
-    /// the two axes that rotation j mixes, and ΔI_j the difference of their moments, which scatters:
-    /// E[ΔI_j ΔI_l] follows from C. Statements on the moments open C, those on the products open U,
-    /// and the least squares solution with both positive semidefinite is taken, each variance in
-    /// units of what is stated. Second moments and rotations are independent of each other wherever
-    /// they can be: covariances have a small cost. What the law that this makes gives beyond the linear equations is
-    /// found by quadrature and taken off what is stated, until what is stated comes out.
+    /// The law has Gaussian roots k of the second moments, and axes from a radially constrained Gaussian whose
+    /// turns about the principal axes are small or not. The statements on the moments open the
+    /// deviations of the roots, those on the products the deviations of the turns, and a mass the share
+    /// α of it that the inertia follows. Their least squares solution is taken, by Levenberg and Marquardt's
+    /// method, of the errors ln(σ/σ_stated) of the deviations that the law has by quadrature. Where independent
+    /// roots and turns do not have them, correlations are opened too, and the search starts anew from several of them.
     ///
     /// A mass of relative standard deviation ρ multiplies the whole inertia by 1 + αρz, with a normal
     /// score z: Var I = (1 + α²ρ²) Var I′ + α²ρ² Ī², where I′ is the inertia at the nominal mass and
@@ -127,40 +119,40 @@ impl Statements {
         if let Some(value) = mass_kg.filter(|m| !(*m > 0.0 && *m <= 1e30)) {
             return Err(StatementError::Mass { value });
         }
-        let body = Body::new(nominal);
-        let entries = nominal.entries();
-        let [i11, i22, i33, ..] = entries;
-        let stated = Stated {
-            moments: self.moments.map(|m| m.deviations([i11, i22, i33])),
-            products: self.products.map(|p| p.deviations()),
-            axes: self.axes.map(|axes| axes.deviations()),
-            centre: match self.centre {
-                Some(centre) => Some(centre.entry_variances(
-                    mass_kg.ok_or(StatementError::NoMass { part: Part::Centre })?,
-                )),
-                None => None,
-            },
-        };
         let mass = self.mass.map(|mass| mass.relative(mass_kg)).transpose()?;
-        let solved = match mass {
-            Some(relative) => stated.following(&body, nominal, relative)?,
-            None => Solved { solution: stated.solve(&body, nominal, 0.0)?, follows: 0.0 },
-        };
+        let stated = self.stated(nominal, mass_kg)?;
+        let body = Body::new(nominal);
+        let task = stated.task(body, nominal, mass);
+        let solution = task.solve();
         // What the products alone would allow.
         let unlimited = match (stated.products, stated.axes) {
             (Some(_), Some(_)) => {
-                let products = Stated { axes: None, ..stated };
-                let factor = mass.unwrap_or(0.0) * solved.follows;
-                let solution = products.solve(&body, nominal, factor)?;
-                Some(solution.scattered.rotations.map(f64::sqrt))
+                let task = Task { axes: None, loose: true, ..task };
+                Some(Unlimited::new(&body, &task.solve())?)
             }
             _ => None,
         };
-        let mass = mass.map(|relative| StatedMass::new(relative, solved.follows));
+        let mass = mass.map(|relative| StatedMass::new(relative, solution.follows));
         let centre = self.centre.map(|centre| centre.deviations());
-        let model = StatedModel::new(nominal, &body, &stated, mass, centre, solved.solution)?;
-        let warnings = diagnosis::warnings(&model, &body, &stated, unlimited);
+        let model = StatedModel::new(nominal, &body, &stated, mass, centre, solution.scatter)?;
+        let context = Context { body, stated, unlimited, with_centre: solution.with_centre };
+        let warnings = context.warnings(&model);
         Ok(model.with_warnings(warnings))
+    }
+
+    /// The numbers that are stated.
+    fn stated(&self, nominal: &Inertia, mass_kg: Option<f64>) -> Result<Stated, StatementError> {
+        let [i11, i22, i33, ..] = nominal.entries();
+        let centre = |centre: CentreStatement| {
+            let mass_kg = mass_kg.ok_or(StatementError::NoMass { part: Part::Centre })?;
+            Ok(centre.entry_variances(mass_kg))
+        };
+        Ok(Stated {
+            moments: self.moments.map(|m| m.deviations([i11, i22, i33])),
+            products: self.products.map(|p| p.deviations()),
+            axes: self.axes.map(|axes| axes.deviations()),
+            centre: self.centre.map(centre).transpose()?,
+        })
     }
 }
 
@@ -173,106 +165,36 @@ struct Stated {
     centre: Option<[f64; 6]>,
 }
 
-/// A solution, and the share of the mass's relative change that the inertia takes.
-struct Solved {
-    solution: Solution,
-    follows: f64,
-}
-
 impl Stated {
-    /// What is asked of the inertia at the nominal mass, if the mass moves it all by a factor of this
-    /// relative standard deviation.
-    fn task(&self, nominal: &Inertia, factor: f64) -> Task {
-        let nominal = nominal.entries();
-        let square = factor * factor;
+    /// What is asked of the inertia, the mass having this relative standard deviation.
+    fn task(&self, body: Body, nominal: &Inertia, mass: Option<f64>) -> Task {
         let asked = |stated: Option<[f64; 3]>, first: usize, spoken: bool| match stated {
-            Some(deviations) => {
-                let units = deviations.map(|deviation| deviation * deviation / (1.0 + square));
-                let by_mass = |i: usize| square * nominal[first + i].powi(2) / (1.0 + square);
-                let variances = std::array::from_fn(|i| (units[i] - by_mass(i)).max(0.0));
-                Asked::Stated { variances, units }
-            }
+            Some(deviations) => Asked::Stated(deviations),
             None => match self.centre {
-                Some(centre) if !spoken => {
-                    Asked::Added(std::array::from_fn(|i| centre[first + i] / (1.0 + square)))
-                }
+                Some(centre) if !spoken => Asked::Added(std::array::from_fn(|i| centre[first + i])),
                 _ => Asked::Nothing,
             },
         };
+        // Beyond this share the mass alone would move a moment by more than is stated of it.
+        let most = |relative: f64| {
+            let entries = nominal.entries();
+            self.moments.map_or(1.0, |moments| {
+                (0..3).fold(1.0, |most: f64, i| {
+                    let by_mass = relative * entries[i].abs();
+                    if moments[i] < by_mass { most.min(moments[i] / by_mass) } else { most }
+                })
+            })
+        };
         Task {
+            body,
+            trace: nominal.matrix().trace(),
             moments: asked(self.moments, 0, false),
             // Of the products beside stated axes nothing else need be said.
             products: asked(self.products, 3, self.axes.is_some()),
-            axes: self.axes.map(|axes| axes.map(|deviation| mixing_of(deviation * deviation))),
+            axes: self.axes.map(|axes| axes.map(|deviation| deviation * deviation)),
+            mass: mass.map(|relative| (relative, most(relative))),
+            loose: false,
         }
-    }
-
-    /// The law of the inertia at the nominal mass.
-    fn solve(
-        &self,
-        body: &Body,
-        nominal: &Inertia,
-        factor: f64,
-    ) -> Result<Solution, StatementError> {
-        let task = self.task(nominal, factor);
-        let whole = task.solve(body, nominal)?;
-        let (Asked::Stated { .. }, Asked::Added(products)) = (task.moments, task.products) else {
-            return Ok(whole);
-        };
-        if whole.cost <= MET {
-            return Ok(whole);
-        }
-        // What the mass centre does to the products turns the axes, which may move the moments more than
-        // is stated of them: then it does so in part only.
-        let without = Task { products: Asked::Nothing, ..task }.solve(body, nominal)?;
-        for share in [1.0, 0.5, 0.25, 0.125] {
-            let products = Asked::Added(products.map(|variance| share * variance));
-            let part = Task { products, ..task }.solve(body, nominal)?;
-            if part.cost <= without.cost + MET {
-                return Ok(part);
-            }
-        }
-        Ok(without)
-    }
-
-    /// The inertia follows a mass of this relative deviation as far as it can without what is stated
-    /// being missed by more than it would be anyway.
-    fn following(
-        &self,
-        body: &Body,
-        nominal: &Inertia,
-        relative: f64,
-    ) -> Result<Solved, StatementError> {
-        let entries = nominal.entries();
-        let solve = |follows: f64| {
-            let solution = self.solve(body, nominal, follows * relative)?;
-            Ok::<_, StatementError>(Solved { solution, follows })
-        };
-        let Some(moments) = self.moments else { return solve(1.0) };
-        // Beyond this share the mass alone would move a moment by more than is stated of it.
-        let most = (0..3).fold(1.0, |most: f64, i| {
-            let by_mass = relative * entries[i].abs();
-            if moments[i] < by_mass { most.min(moments[i] / by_mass) } else { most }
-        });
-        let wholly = solve(most)?;
-        if wholly.solution.cost <= MET || most == 0.0 {
-            return Ok(wholly);
-        }
-        let mut best = solve(0.0)?;
-        let allowed = best.solution.cost + MET;
-        if wholly.solution.cost <= allowed {
-            return Ok(wholly);
-        }
-        let mut too_much = most;
-        for _ in 0..HALVINGS {
-            let half = solve(0.5 * (best.follows + too_much))?;
-            if half.solution.cost <= allowed {
-                best = half;
-            } else {
-                too_much = half.follows;
-            }
-        }
-        Ok(best)
     }
 }
 

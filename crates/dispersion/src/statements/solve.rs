@@ -1,394 +1,454 @@
-//! The scatter of second moments and axes that gives the entries the variances asked for, as nearly as
-//! any has.
+//! The scatter that gives the entries the deviations that are asked for, as nearly as any does that is found.
 
-use gyradius_inertia::Inertia;
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::{DVector, Matrix3, Vector3};
 
 use super::{
-    StatementError,
-    body::{Body, MOST_MIXING, Scatter},
-    law::Scattered,
-    least_squares::{Equation, Unknown, least_squares},
+    entries::Forms,
+    levenberg_marquardt::{Problem, Range, least_squares},
+    scatter::{Body, Scatter},
 };
 
-/// Rounds at most in which the linear equations are corrected by what the law really gives.
-const ROUNDS: usize = 16;
-/// Relative errors of variances that need no other round.
-const SETTLED: f64 = 1e-5;
-/// A round is worth another one if it takes this share off the cost.
-const WORTH: f64 = 0.01;
-/// Whole rounds without a better law after which they lead nowhere.
-const PATIENCE: usize = 4;
-/// Shares of the way from the best law to the solution of the equations.
-const STEPS: [f64; 5] = [0.5, 0.25, 0.1, 0.03, 0.01];
-/// How much more an error of a stated moment counts than one of a stated product: the products may
-/// not make the moments more certain than they are stated.
-const MOMENTS_FIRST: f64 = 30.0;
+/// Of relative errors of deviations, stated moments count this much more beside products: what is
+/// stated of the products may not make the moments more certain than they are stated.
+const MOMENTS_FIRST: f64 = 100.0;
+/// An entry that is surer than stated is this much worse than one that is less sure.
+const SURER: f64 = 3.0;
+/// What a mass centre adds counts this much less beside what is stated.
+const ADDED_LAST: f64 = 1.0 / 30.0;
 /// Deviations below this share of the largest beside them count as this share.
 const SMALL: f64 = 1e-3;
 /// The same of what a mass centre adds, where the smaller ones are without interest.
-const SMALL_BESIDE: f64 = 0.1;
+const SMALL_BESIDE: f64 = 0.3;
 /// A deviation of zero counts as this share of the trace.
 const ZERO: f64 = 1e-9;
-/// Cost of correlations: what is stated comes out to this share of a variance all the same.
-const COST: f64 = 1e-6;
-/// The most that the cost of correlating a second moment near zero may grow.
-const DEAREST: f64 = 1e4;
-/// Pull towards what is preferred where the equations leave it open.
-const PULL: f64 = 1e-12;
-/// Rotations that cannot contribute this share of the largest variance are left out.
-const IDLE: f64 = 1e-10;
+/// Relative errors of deviations up to which independent roots and rotations do.
+const MET: f64 = 4e-3;
+/// What an unknown costs that nothing is asked of, in units of a first guess.
+const PULL: f64 = 1e-4;
+/// What a correlation costs.
+const CORRELATED: f64 = 1e-3;
+/// What it costs that the inertia does not follow the mass.
+const FOLLOWS: f64 = 0.03;
+/// Another start is worth its law if it takes this share off the cost.
+const WORTH: f64 = 0.01;
+/// Correlations from which the search starts anew.
+const START: f64 = 0.7;
+/// Their signs.
+const SIGNS: [[f64; 3]; 4] =
+    [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+/// v/(1 + 8v) of a rotation with the variance v that may be any.
+const MOST_TURN: f64 = 0.125;
 
-/// What is asked of three entries: their variances, (kg·m²)².
+/// What is asked of three entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Asked {
     /// Nothing: they move as the rest moves them.
     Nothing,
-    /// They have these variances, everything included but what the mass does to all entries.
-    Stated {
-        /// The variances.
-        variances: [f64; 3],
-        /// The same with what the mass does, in units of which errors are counted.
-        units: [f64; 3],
-    },
-    /// Beside everything else, these come on top.
+    /// They have these deviations, kg·m², everything included.
+    Stated([f64; 3]),
+    /// Beside everything else, these variances come on top, (kg·m²)².
     Added([f64; 3]),
 }
 
 /// What is asked of a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Task {
+    pub(super) body: Body,
+    pub(super) trace: f64,
     pub(super) moments: Asked,
     pub(super) products: Asked,
-    /// Mixing of the rotations about the principal axes: as it is, or, beside products, at most.
+    /// Variances of the rotations about the principal axes, rad²: as they are, or, beside products, at most.
     pub(super) axes: Option<[f64; 3]>,
+    /// The relative deviation of the mass, and the largest share of it that the inertia may take.
+    pub(super) mass: Option<(f64, f64)>,
+    /// Rotations that do nothing are any, not none.
+    pub(super) loose: bool,
 }
 
-/// The best law that was found.
+/// The best scatter that was found.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Solution {
     pub(super) scatter: Scatter,
-    pub(super) scattered: Scattered,
-    /// Sum of the squared relative errors of the stated variances, those of the moments counted first.
-    pub(super) cost: f64,
+    /// The share of the mass's relative change that the inertia takes.
+    pub(super) follows: f64,
+    /// The deviations that a mass centre would give entries beside everything else, kg·m².
+    pub(super) with_centre: [Option<f64>; 6],
 }
 
-/// A law, and where the linear equations are corrected.
-#[derive(Clone, Copy)]
-struct Point {
-    scatter: Scatter,
-    /// What the law gives of each variance beyond the linear equations, and in all.
-    beyond: [f64; 6],
-    found: [f64; 6],
-    /// Whether what is stated comes out.
-    settled: bool,
-}
-
-/// Which unknowns the equations are solved for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Open {
-    Moments,
-    Mixing,
-    Both,
-}
-
-/// One equation for a variance.
-struct Wanted {
+/// What is asked of an entry, and what it has: variances, (kg·m²)².
+#[derive(Clone, Copy, Debug)]
+struct Compared {
     entry: usize,
-    variance: f64,
-    weight: f64,
+    wanted: f64,
+    found: f64,
+    /// The variance below which none matters.
+    least: f64,
+    /// How much an error counts.
+    counts: f64,
+}
+
+impl Compared {
+    /// The relative error of the deviation, where it is small. In logarithms, so that errors of entries that cannot be
+    /// had do not outweigh all others.
+    fn error(&self) -> f64 {
+        let error = 0.5 * libm::log((self.found + self.least) / (self.wanted + self.least));
+        if error < 0.0 { SURER * error } else { error }
+    }
+}
+
+/// The unknowns, in this order. The roots have the covariance B M Mᵀ Bᵀ with M lower triangular: its entries
+/// on the diagonal and those beside it. The rotations have deviations, and the angles of their correlations. At last
+/// the share of the mass that the inertia follows.
+const ROOTS: usize = 0;
+const ROOTS_BESIDE: usize = 3;
+const TURNS: usize = 6;
+const TURN_ANGLES: usize = 9;
+const SHARE: usize = 12;
+const UNKNOWNS: usize = 13;
+
+/// Values of all unknowns, and what the axes do with them.
+#[derive(Clone)]
+struct Point {
+    x: [f64; UNKNOWNS],
+    scatter: Scatter,
+    forms: Forms,
+}
+
+/// The unknowns that are open.
+struct Search<'a> {
+    task: &'a Task,
+    /// B.
+    basis: Matrix3<f64>,
+    open: Vec<usize>,
+    guess: [f64; UNKNOWNS],
 }
 
 impl Task {
-    /// Solves the equations, which are linear in the scatter to first order, corrects them by what the
-    /// law that this makes gives by quadrature, and keeps the best.
-    pub(super) fn solve(&self, body: &Body, nominal: &Inertia) -> Result<Solution, StatementError> {
-        let roots = nominal.second_moments().roots();
-        let zero = (ZERO * nominal.matrix().trace()).powi(2);
-        let given = match self.products {
-            Asked::Nothing => self.axes.unwrap_or([0.0; 3]),
-            Asked::Stated { .. } | Asked::Added(_) => [0.0; 3],
+    /// Searches with independent roots and rotations, and with correlated ones where these do not do.
+    pub(super) fn solve(&self) -> Solution {
+        let roots = self.first_roots();
+        let mut search = Search {
+            task: self,
+            basis: Matrix3::from_diagonal(&roots),
+            open: Vec::new(),
+            guess: self.guess(),
         };
-        let scatter =
-            Scatter { moments: Matrix3::zeros(), mixing: Matrix3::from_diagonal(&given.into()) };
-        let evaluate = |scatter: Scatter, units: Option<[f64; 6]>| {
-            let scattered = Scattered::new(body, roots, &scatter)?;
-            let implied = scattered.rough_moments();
-            let found = std::array::from_fn(|e| implied.covariance()[(e, e)].max(0.0));
-            let linear = body.variances(&scatter);
-            let beyond = std::array::from_fn(|e| found[e] - linear[e]);
-            let errors = self.errors(&found, &units.unwrap_or(found), zero);
-            let cost = errors.iter().map(|e| e * e).sum();
-            let settled = errors.iter().all(|e| e.abs() < SETTLED);
-            let solution = Solution { scatter, scattered, cost };
-            Ok::<_, StatementError>((Point { scatter, beyond, found, settled }, solution))
-        };
-        let start = Point { scatter, beyond: [0.0; 6], found: [0.0; 6], settled: false };
-        let (mut point, mut best) = evaluate(self.round(body, &start, zero, true), None)?;
-        let (units, mut at_best) = (Some(point.found), point);
-
-        // Whole steps, which mostly lead straight there. The first ones open what later ones need.
-        let mut since = 0;
-        for round in 1..ROUNDS {
-            let solution;
-            (point, solution) = evaluate(self.round(body, &point, zero, false), units)?;
-            since += 1;
-            if solution.cost <= best.cost {
-                if solution.cost < (1.0 - WORTH) * best.cost {
-                    since = 0;
-                }
-                (best, at_best) = (solution, point);
+        let moments = self.moments != Asked::Nothing;
+        let products = self.products != Asked::Nothing;
+        if moments {
+            search.open.extend(ROOTS..ROOTS_BESIDE);
+        }
+        if products {
+            search.open.extend(TURNS..TURN_ANGLES);
+        }
+        if self.mass.is_some_and(|(_, most)| most > 0.0) && self.moments.is_stated() {
+            search.open.push(SHARE);
+        }
+        let mut best = search.from(search.guess);
+        if self.worst(&best.0) > MET {
+            let independent = best.0.clone();
+            if moments {
+                search.basis = self.basis(&roots);
+                search.open.extend(ROOTS_BESIDE..TURNS);
             }
-            if round >= 2 && (at_best.settled || since >= PATIENCE) {
-                break;
+            if products {
+                search.open.extend(TURN_ANGLES..SHARE);
+            }
+            search.improve(&mut best, search.starts(&independent));
+            let around = search.correlated(&best.0.x);
+            search.improve(&mut best, around);
+        }
+        let mut with_centre = [None; 6];
+        for it in self.compare(&best.0) {
+            let asked = if it.entry < 3 { self.moments } else { self.products };
+            if !asked.is_stated() {
+                with_centre[it.entry] = Some(it.wanted.sqrt());
             }
         }
-        // From the best law on, steps that are shortened until they do better: where the law is far from
-        // linear, whole ones go to and fro.
-        for _ in 0..ROUNDS {
-            if at_best.settled {
-                break;
-            }
-            let next = self.round(body, &at_best, zero, false);
-            let mut worth = false;
-            for step in STEPS {
-                let (point, solution) = evaluate(at_best.scatter.towards(&next, step), units)?;
-                if solution.cost < best.cost {
-                    worth = solution.cost < (1.0 - WORTH) * best.cost;
-                    (best, at_best) = (solution, point);
-                    break;
-                }
-            }
-            if !worth {
-                break;
-            }
-        }
-        Ok(best)
+        Solution { scatter: best.0.scatter, follows: best.0.x[SHARE], with_centre }
     }
 
-    /// One solution of the linear equations.
-    fn round(&self, body: &Body, at: &Point, zero: f64, first: bool) -> Scatter {
-        use Asked::{Added, Nothing, Stated};
-        let Point { scatter: last, beyond, found, .. } = at;
-        let system = System { body, gaps: body.gaps(&last.moments), axes: self.axes, zero };
-        let none = Scatter { moments: Matrix3::zeros(), mixing: Matrix3::zeros() };
-        let moments = self
-            .moments
-            .stated(0, zero)
-            .into_iter()
-            .map(|w| Wanted { variance: w.variance - beyond[w.entry], ..w });
-        // A product that cannot be as small as stated counts in units of what it is.
-        let products = self.products.stated(3, zero).into_iter().map(|w| Wanted {
-            variance: w.variance - beyond[w.entry],
-            weight: w.weight.min(1.0 / found[w.entry].max(zero)),
-            ..w
-        });
-        let added = |first, variances| added(first, variances, zero);
-        match (self.moments, self.products) {
-            (Nothing, Nothing | Added(_)) => *last,
-            (Added(moments), Nothing) => Scatter {
-                mixing: last.mixing,
-                ..system.solve(Open::Moments, &none, added(0, moments))
-            },
-            (Added(moments), Added(products)) => {
-                let rows = added(0, moments).chain(added(3, products));
-                let largest = moments.iter().chain(&products).copied().fold(zero, f64::max);
-                let least = SMALL_BESIDE * SMALL_BESIDE * largest;
-                let rows = rows.map(|w| Wanted { weight: w.weight.min(1.0 / least), ..w });
-                system.solve(Open::Both, &none, rows)
-            }
-            (Added(moments), Stated { .. }) => {
-                let given = system.solve(Open::Moments, &none, added(0, moments));
-                system.solve(Open::Mixing, &given, products)
-            }
-            (Nothing, Stated { .. }) => system.solve(Open::Mixing, &none, products),
-            (Stated { .. }, Nothing) => system.solve(Open::Moments, last, moments),
-            (Stated { .. }, Added(these)) => {
-                let given = system.solve(Open::Mixing, &none, added(3, these));
-                system.solve(Open::Moments, &given, moments)
-            }
-            // The scatter of the moments first, which the products are then weighed against.
-            (Stated { .. }, Stated { .. }) if first => system.solve(Open::Moments, &none, moments),
-            (Stated { .. }, Stated { .. }) => {
-                let moments = moments.map(|w| Wanted { weight: MOMENTS_FIRST * w.weight, ..w });
-                system.solve(Open::Both, &none, moments.chain(products))
+    /// Deviations of the roots to begin with: those of equal variances of the second moments, each moment being the
+    /// sum of two.
+    fn first_roots(&self) -> Vector3<f64> {
+        let each = self.first_variance();
+        Vector3::from(self.body.roots.values()).map(|k| {
+            let square = k * k;
+            (0.5 * each / (square + (square * square + 0.5 * each).sqrt())).sqrt()
+        })
+    }
+
+    fn first_variance(&self) -> f64 {
+        match self.moments {
+            Asked::Nothing => 0.0,
+            Asked::Stated(_) | Asked::Added(_) => {
+                0.5 * self.moments.mean_variance().max(self.zero())
             }
         }
     }
 
-    /// Relative errors of the stated variances.
-    fn errors(&self, found: &[f64; 6], first_found: &[f64; 6], zero: f64) -> Vec<f64> {
-        let (moments, products) = (self.moments.stated(0, zero), self.products.stated(3, zero));
-        let first = if products.is_empty() { 1.0 } else { MOMENTS_FIRST };
-        let moments = moments.into_iter().map(|w| Wanted { weight: first * w.weight, ..w });
-        // Of products, in units of what they were at first if that is larger.
-        let products = products
-            .into_iter()
-            .map(|w| Wanted { weight: w.weight.min(1.0 / first_found[w.entry].max(zero)), ..w });
-        moments.chain(products).map(|w| w.weight * (found[w.entry] - w.variance)).collect()
+    fn zero(&self) -> f64 {
+        (ZERO * self.trace).powi(2)
+    }
+
+    /// Deviations of the roots by what they do to the moments, to first order: with this basis, rows of M are
+    /// moments, in units of what is asked of them.
+    fn basis(&self, roots: &Vector3<f64>) -> Matrix3<f64> {
+        let r = *self.body.attitude.to_rotation_matrix().matrix();
+        let k = self.body.roots.values();
+        // A root near zero moves by its square.
+        let slope = |i: usize| 2.0 * (k[i] * k[i] + roots[i] * roots[i]).sqrt();
+        let moved = Matrix3::from_fn(|a, i| (1.0 - r[(i, a)] * r[(i, a)]) * slope(i));
+        let least = self.moments.least().max(self.zero());
+        let asked = Vector3::from(self.moments.variances()).map(|v| (v + least).sqrt());
+        // About axes that are tilted so that all moments move alike, it need only be invertible.
+        let svd = moved.svd(true, true);
+        let largest = svd.singular_values.max();
+        let inverse = svd.singular_values.map(|s| 1.0 / s.max(0.01 * largest));
+        match (svd.u, svd.v_t) {
+            (Some(u), Some(v)) => {
+                v.transpose()
+                    * Matrix3::from_diagonal(&inverse)
+                    * u.transpose()
+                    * Matrix3::from_diagonal(&asked)
+            }
+            _ => Matrix3::from_diagonal(roots),
+        }
+    }
+
+    /// Where the search starts.
+    fn guess(&self) -> [f64; UNKNOWNS] {
+        let mut x = [0.0; UNKNOWNS];
+        if self.moments != Asked::Nothing {
+            x[ROOTS..ROOTS_BESIDE].fill(1.0);
+        }
+        let k = self.body.roots.values();
+        let product = self.products.mean_variance().max(self.zero());
+        let most = self.most_turns();
+        for j in 0..3 {
+            let (m, n) = ((j + 1) % 3, (j + 2) % 3);
+            let gap = (k[m] * k[m] - k[n] * k[n]).powi(2) + 2.0 * self.first_variance();
+            x[TURNS + j] = match (self.products, self.axes) {
+                (Asked::Nothing, None) => 0.0,
+                (Asked::Nothing, Some(_)) => most[j],
+                (Asked::Stated(_) | Asked::Added(_), _) => turn(product / gap).min(0.9 * most[j]),
+            };
+        }
+        x[SHARE] = self.mass.map_or(0.0, |(_, most)| most);
+        x
+    }
+
+    /// The most of each rotation.
+    fn most_turns(&self) -> [f64; 3] {
+        self.axes.unwrap_or([f64::INFINITY; 3]).map(turn)
+    }
+
+    /// What is asked of each entry at a point, and what it has there.
+    fn compare(&self, point: &Point) -> Vec<Compared> {
+        let k = self.body.second_moments(&point.scatter);
+        let (means, found) = (point.forms.means(&k), point.forms.variances(&k));
+        let still = Scatter { roots: Matrix3::zeros(), ..point.scatter };
+        let by_axes = point.forms.variances(&self.body.second_moments(&still));
+        let by_roots = Forms::still(&self.body.attitude).variances(&k);
+        let by_mass = self.mass.map_or(0.0, |(relative, _)| (relative * point.x[SHARE]).powi(2));
+        let both = self.moments.is_stated() && self.products.is_stated();
+        let any = self.moments.is_stated() || self.products.is_stated();
+        let mut compared = Vec::new();
+        for (first, asked, rest) in [(0, self.moments, by_axes), (3, self.products, by_roots)] {
+            let least = asked.least().max(self.zero());
+            let with_mass = |e: usize, v: f64| v * (1.0 + by_mass) + by_mass * means[e] * means[e];
+            for e in first..first + 3 {
+                let found = with_mass(e, found[e]);
+                match asked {
+                    Asked::Nothing => {}
+                    Asked::Stated(deviations) => {
+                        let wanted = deviations[e - first] * deviations[e - first];
+                        let counts = if both && e < 3 { MOMENTS_FIRST } else { 1.0 };
+                        compared.push(Compared { entry: e, wanted, found, least, counts });
+                    }
+                    Asked::Added(variances) => {
+                        let wanted = with_mass(e, rest[e] + variances[e - first]);
+                        let counts = if any { ADDED_LAST } else { 1.0 };
+                        compared.push(Compared { entry: e, wanted, found, least, counts });
+                    }
+                }
+            }
+        }
+        compared
+    }
+
+    /// The largest error.
+    fn worst(&self, point: &Point) -> f64 {
+        self.compare(point).iter().fold(0.0, |worst, it| it.error().abs().max(worst))
     }
 }
 
 impl Asked {
-    /// What is stated of three entries, each in units of itself.
-    fn stated(&self, first: usize, zero: f64) -> Vec<Wanted> {
-        match self {
-            Self::Nothing | Self::Added(_) => Vec::new(),
-            Self::Stated { variances, units } => {
-                let largest = units.iter().copied().fold(zero, f64::max);
-                let wanted = |i: usize| Wanted {
-                    entry: first + i,
-                    variance: variances[i],
-                    weight: 1.0 / units[i].max(SMALL * SMALL * largest),
-                };
-                (0..3).map(wanted).collect()
-            }
+    fn is_stated(&self) -> bool {
+        matches!(self, Self::Stated(_))
+    }
+
+    fn variances(&self) -> [f64; 3] {
+        match *self {
+            Self::Nothing => [0.0; 3],
+            Self::Stated(deviations) => deviations.map(|d| d * d),
+            Self::Added(variances) => variances,
         }
+    }
+
+    fn mean_variance(&self) -> f64 {
+        self.variances().iter().sum::<f64>() / 3.0
+    }
+
+    /// The variance below which none matters.
+    fn least(&self) -> f64 {
+        let share = match self {
+            Self::Nothing | Self::Stated(_) => SMALL,
+            Self::Added(_) => SMALL_BESIDE,
+        };
+        self.variances().into_iter().fold(0.0, f64::max) * (share * share)
     }
 }
 
-/// What is added to three entries, each in units of itself.
-fn added(first: usize, variances: [f64; 3], zero: f64) -> impl Iterator<Item = Wanted> {
-    let largest = variances.into_iter().fold(zero, f64::max);
-    let least = SMALL_BESIDE * SMALL_BESIDE * largest;
-    variances.into_iter().enumerate().map(move |(i, variance)| Wanted {
-        entry: first + i,
-        variance,
-        weight: 1.0 / variance.max(least),
-    })
-}
+impl Search<'_> {
+    /// The best point downhill from here, and its cost.
+    fn from(&self, x: [f64; UNKNOWNS]) -> (Point, f64) {
+        let scatter = self.scatter(&x);
+        let start = Point { x, scatter, forms: self.task.body.forms(&scatter) };
+        if self.open.is_empty() {
+            return (start, 0.0);
+        }
+        least_squares(self, start)
+    }
 
-/// The linear equations about a body, as it scattered in the last round.
-struct System<'a> {
-    body: &'a Body,
-    /// E[ΔI_j ΔI_l].
-    gaps: Matrix3<f64>,
-    axes: Option<[f64; 3]>,
-    zero: f64,
-}
+    /// Takes the first start that does, or the best of them, if it is better.
+    fn improve(&self, best: &mut (Point, f64), starts: Vec<[f64; UNKNOWNS]>) {
+        for start in starts {
+            if self.task.worst(&best.0) < MET {
+                return;
+            }
+            let found = self.from(start);
+            if found.1 < (1.0 - WORTH) * best.1 {
+                *best = found;
+            }
+        }
+    }
 
-impl System<'_> {
-    /// The open unknowns, with the others as given.
-    fn solve(
-        &self,
-        open: Open,
-        given: &Scatter,
-        rows: impl IntoIterator<Item = Wanted>,
-    ) -> Scatter {
-        let rows: Vec<_> = rows.into_iter().collect();
-        let opens = |which| open == which || open == Open::Both;
-        let right = |row: &Wanted| {
-            let mut right = row.variance;
-            if !opens(Open::Moments) {
-                right -= (self.body.growth(row.entry) * given.moments).trace();
-            }
-            if !opens(Open::Mixing) {
-                right -= (self.body.swing(row.entry, &self.gaps) * given.mixing).trace();
-            }
-            right
+    fn scatter(&self, x: &[f64; UNKNOWNS]) -> Scatter {
+        let variance = |d: f64| {
+            let square = d * d;
+            square / (1.0 - square / MOST_TURN).max(1e-6)
         };
-        let unit = rows.iter().map(|row| row.variance).fold(self.zero, f64::max);
-        let rotations = self.rotations(unit);
-        let (mut unknowns, mut which) = (Vec::new(), Vec::new());
-        if opens(Open::Moments) {
-            unknowns.push(self.second_moments());
-            which.push(Open::Moments);
+        let rotations = [0, 1, 2].map(|j| variance(x[TURNS + j]).sqrt());
+        let m = Matrix3::new(x[0], 0.0, 0.0, x[3], x[1], 0.0, x[4], x[5], x[2]);
+        let root = self.basis * m;
+        Scatter {
+            roots: root * root.transpose(),
+            rotations: covariance(rotations, &x[TURN_ANGLES..SHARE]),
         }
-        if opens(Open::Mixing) && !rotations.is_empty() {
-            unknowns.push(self.mixing(&rotations, unit));
-            which.push(Open::Mixing);
-        }
-        let equations: Vec<_> = rows
-            .iter()
-            .map(|row| Equation {
-                left: which
-                    .iter()
-                    .map(|which| match which {
-                        Open::Mixing => self.swing(row.entry, &rotations),
-                        Open::Moments | Open::Both => {
-                            DMatrix::from_fn(3, 3, |i, j| self.body.growth(row.entry)[(i, j)])
-                        }
-                    })
-                    .collect(),
-                right: right(row) / unit,
-                weight: row.weight * unit,
-            })
-            .collect();
-        let found = least_squares(&unknowns, &equations);
+    }
 
-        let mut scatter = *given;
-        if opens(Open::Mixing) {
-            scatter.mixing = Matrix3::from_diagonal(&self.preferred().into());
+    /// Where to start with correlations: where independent roots and rotations came to and where they began, and
+    /// from correlations of either sign.
+    fn starts(&self, independent: &Point) -> Vec<[f64; UNKNOWNS]> {
+        let mut again = self.guess;
+        again[SHARE] = independent.x[SHARE];
+        let turns = TURNS..TURN_ANGLES;
+        for (turn, found) in again[turns.clone()].iter_mut().zip(&independent.x[turns]) {
+            *turn = found.max(0.1 * *turn);
         }
-        for (which, found) in which.iter().zip(found) {
-            match which {
-                Open::Mixing => {
-                    for (i, &j) in rotations.iter().enumerate() {
-                        for (k, &l) in rotations.iter().enumerate() {
-                            let size = (self.gaps[(j, j)] * self.gaps[(l, l)]).sqrt();
-                            scatter.mixing[(j, l)] = found[(i, k)] * (unit / size);
-                        }
-                    }
-                }
-                Open::Moments | Open::Both => {
-                    scatter.moments = Matrix3::from_fn(|i, j| found[(i, j)] * unit);
+        let mut starts = vec![again, self.guess];
+        starts.extend(self.correlated(&self.guess));
+        starts
+    }
+
+    /// Correlations of every pair of signs on top.
+    fn correlated(&self, x: &[f64; UNKNOWNS]) -> Vec<[f64; UNKNOWNS]> {
+        let correlations =
+            [ROOTS_BESIDE, TURN_ANGLES].into_iter().filter(|i| self.open.contains(i));
+        let starts = SIGNS.map(|signs| {
+            let mut start = *x;
+            for first in correlations.clone() {
+                for (i, sign) in (first..).zip(signs) {
+                    start[i] += sign * START;
                 }
             }
+            start
+        });
+        starts.into()
+    }
+}
+
+impl Problem for Search<'_> {
+    type Point = Point;
+
+    fn values(&self, point: &Point) -> DVector<f64> {
+        DVector::from_iterator(self.open.len(), self.open.iter().map(|&i| point.x[i]))
+    }
+
+    fn at(&self, values: DVector<f64>, near: &Point) -> Point {
+        let mut point = near.clone();
+        for (&i, value) in self.open.iter().zip(&values) {
+            point.x[i] = *value;
         }
-        scatter
+        point.scatter = self.scatter(&point.x);
+        if point.x[TURNS..SHARE] != near.x[TURNS..SHARE] {
+            point.forms = self.task.body.forms(&point.scatter);
+        }
+        point
     }
 
-    /// Mixing of the rotations that the equations leave open.
-    fn preferred(&self) -> [f64; 3] {
-        self.axes.unwrap_or([0.0; 3])
+    fn residuals(&self, point: &Point) -> DVector<f64> {
+        let compared = self.task.compare(point);
+        let errors = compared.iter().map(|it| it.error() * it.counts);
+        let most = self.task.most_turns();
+        let costs = self.open.iter().map(|&i| match i {
+            ROOTS..ROOTS_BESIDE => PULL * point.x[i],
+            ROOTS_BESIDE..TURNS => CORRELATED * point.x[i],
+            TURNS..TURN_ANGLES => {
+                let limited = self.task.axes.is_some() || self.task.loose;
+                let preferred = if limited { most[i - TURNS] } else { 0.0 };
+                PULL * (point.x[i] - preferred) / most[i - TURNS]
+            }
+            TURN_ANGLES..SHARE => CORRELATED * libm::sin(point.x[i]),
+            _ => FOLLOWS * (1.0 - point.x[i] / self.guess[i]),
+        });
+        DVector::from_iterator(errors.len() + costs.len(), errors.chain(costs))
     }
 
-    /// The most mixing.
-    fn most(&self) -> [f64; 3] {
-        self.axes.unwrap_or([MOST_MIXING; 3])
-    }
-
-    /// The rotations that can contribute to variances of this size.
-    fn rotations(&self, unit: f64) -> Vec<usize> {
-        (0..3).filter(|&j| self.most()[j] * self.gaps[(j, j)] > IDLE * unit).collect()
-    }
-
-    /// The covariance of the second moments. To correlate one that is near zero is dear: all that a
-    /// plate has across itself is what it would be bent by.
-    fn second_moments(&self) -> Unknown {
-        let k = self.body.second_moments;
-        let largest = k.into_iter().fold(0.0, f64::max);
-        let cost = |i: usize, j: usize| {
-            // In this order, so that products of tiny ones do not vanish.
-            let share = (k[i] / largest) * (k[j] / largest);
-            COST * (1.0 / share).min(DEAREST)
+    fn range(&self, point: &Point, unknown: usize) -> Range {
+        let i = self.open[unknown];
+        let (least, most) = match i {
+            TURNS..TURN_ANGLES => (0.0, self.task.most_turns()[i - TURNS]),
+            SHARE => (0.0, self.guess[i]),
+            _ => (f64::NEG_INFINITY, f64::INFINITY),
         };
-        Unknown {
-            preferred: vec![0.0; 3],
-            most: vec![f64::INFINITY; 3],
-            cost: DMatrix::from_fn(3, 3, cost),
-            pull: PULL,
-        }
+        let unit = match i {
+            TURNS..TURN_ANGLES => point.x[i].max(1e-3 * self.guess[i]),
+            SHARE => self.guess[i],
+            _ => 1.0,
+        };
+        Range { least, most, unit }
     }
+}
 
-    /// The mixing of some rotations, in units of what they contribute.
-    fn mixing(&self, rotations: &[usize], unit: f64) -> Unknown {
-        let scaled =
-            |of: [f64; 3]| rotations.iter().map(|&j| of[j] * (self.gaps[(j, j)] / unit)).collect();
-        let size = rotations.len();
-        Unknown {
-            preferred: scaled(self.preferred()),
-            most: scaled(self.most()),
-            cost: DMatrix::repeat(size, size, COST),
-            pull: PULL,
-        }
+/// d with d² = v/(1 + 8v): a bounded measure of a rotation of any variance.
+fn turn(variance: f64) -> f64 {
+    if variance.is_finite() {
+        (variance / (1.0 + variance / MOST_TURN)).sqrt()
+    } else {
+        MOST_TURN.sqrt()
     }
+}
 
-    /// What some rotations do to an entry, in their units.
-    fn swing(&self, entry: usize, rotations: &[usize]) -> DMatrix<f64> {
-        let swing = self.body.swing(entry, &self.gaps);
-        DMatrix::from_fn(rotations.len(), rotations.len(), |i, k| {
-            let (j, l) = (rotations[i], rotations[k]);
-            swing[(j, l)] / (self.gaps[(j, j)] * self.gaps[(l, l)]).sqrt()
-        })
+/// A covariance of these deviations, and of correlations given by three angles: the rows of its root are
+/// points of spheres (Rapisarda, Brigo & Mercurio 2007, doi:10.1093/imaman/dpl010).
+fn covariance(deviations: [f64; 3], angles: &[f64]) -> Matrix3<f64> {
+    if angles.iter().all(|angle| *angle == 0.0) {
+        return Matrix3::from_diagonal(&deviations.map(|d| d * d).into());
     }
+    let [(s1, c1), (s2, c2), (s3, c3)] = [0, 1, 2].map(|i| libm::sincos(angles[i]));
+    let root = Matrix3::new(1.0, 0.0, 0.0, s1, c1, 0.0, s2, c2 * s3, c2 * c3);
+    let root = Matrix3::from_diagonal(&deviations.into()) * root;
+    root * root.transpose()
 }

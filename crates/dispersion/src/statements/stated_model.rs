@@ -1,13 +1,11 @@
 //! The model that statements make, and what they come to.
 
 use gyradius_inertia::Inertia;
-use nalgebra::{Matrix3, SVector, Vector3};
+use nalgebra::{SVector, Vector3};
 
 use super::{
     Stated, StatementError, StatementWarning,
-    body::{Body, Scatter},
-    law::{Law, Scattered},
-    solve::Solution,
+    scatter::{Body, Law, Scatter, roots_of},
 };
 use crate::{EntryMoments, RootMoments};
 
@@ -76,29 +74,23 @@ impl StatedModel {
         stated: &Stated,
         mass: Option<StatedMass>,
         centre: Option<[f64; 3]>,
-        solution: Solution,
+        scatter: Scatter,
     ) -> Result<Self, StatementError> {
-        let Solution { scatter, scattered, .. } = solution;
-        let implied = scattered.moments();
+        let at_nominal_mass = body.law(&scatter)?;
+        let implied = body.moments(&scatter, &at_nominal_mass);
         let square = mass.map_or(0.0, |mass| mass.factor_deviation().powi(2));
-        let whole = if square > 0.0 {
+        let (law, roots) = if square > 0.0 {
             // Of a product of independent factors.
-            let k = scattered.law.roots().second_moment_statistics();
+            let k = at_nominal_mass.roots().second_moment_statistics();
             let mean = Vector3::from(k.mean());
-            let moments: Matrix3<f64> =
-                k.covariance() * (1.0 + square) + mean * mean.transpose() * square;
-            let roots = nominal.second_moments().roots();
-            Some(Scattered::new(body, roots, &Scatter { moments, ..scatter })?)
+            let moments = k.covariance() * (1.0 + square) + mean * mean.transpose() * square;
+            let roots = roots_of(body.roots, &moments);
+            (body.law(&Scatter { roots, ..scatter })?, roots)
         } else {
-            None
+            (at_nominal_mass.clone(), scatter.roots)
         };
         let mean = SVector::<f64, 6>::from(implied.mean());
         let covariance = implied.covariance() * (1.0 + square) + mean * mean.transpose() * square;
-        let Scattered { law: at_nominal_mass, root_deviations, rotations, .. } = scattered;
-        let (law, root_deviations) = match whole {
-            Some(whole) => (whole.law, whole.root_deviations),
-            None => (at_nominal_mass.clone(), root_deviations),
-        };
         Ok(Self {
             nominal: *nominal,
             scatter,
@@ -106,8 +98,8 @@ impl StatedModel {
             law,
             mass,
             centre,
-            root_deviations,
-            rotations,
+            root_deviations: roots.diagonal().map(f64::sqrt).into(),
+            rotations: scatter.rotation_variances(),
             stated: std::array::from_fn(|e| match e {
                 0..3 => stated.moments.map(|m| m[e]),
                 _ => stated.products.map(|p| p[e - 3]),

@@ -139,7 +139,8 @@ fn a_mass_is_counted_once() {
     // Stated of the moments is less than the mass would do: it follows in part.
     let statements = Statements { moments: percent(1.0), ..statements };
     let model = statements.model(&nominal, None).unwrap();
-    assert!((model.mass().unwrap().inertia_follows() - 0.2).abs() < 1e-12);
+    let follows = model.mass().unwrap().inertia_follows();
+    assert!((follows - 0.2).abs() < 1e-4, "{follows}");
     assert!((model.implied().deviations()[0] / 50.0 - 1.0).abs() < 0.01);
     let said: String = model.warnings().iter().map(ToString::to_string).collect();
     assert!(said.contains("only in part, by 0.200"), "{said}");
@@ -218,11 +219,11 @@ fn products_of_equal_moments_come_from_their_scatter() {
     assert!((implied[3] / 3.0 - 1.0).abs() < 0.05, "{implied:?} {:?}", model.warnings());
     assert!((implied[4] / 50.0 - 1.0).abs() < 0.02, "{implied:?}");
     assert_eq!(model.warnings(), [StatementWarning::EqualMoments { axes: [1, 2] }]);
-    // Beyond it: any turn, and still too little.
+    // Beyond it: too little, whatever the turn.
     let model = make(100.0).model(&nominal, None).unwrap();
     let said: String = model.warnings().iter().map(|w| format!("{w}\n")).collect();
-    assert!(said.contains("axis 3 is taken to be uniform"), "{said}");
     assert!(said.contains("I12: a deviation of 100"), "{said}");
+    assert!(model.turns()[2] > 0.5, "{:?}", model.turns());
 }
 
 #[test]

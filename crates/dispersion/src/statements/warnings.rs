@@ -63,6 +63,15 @@ pub enum StatementWarning {
         /// What is stated, kg·m².
         stated: f64,
     },
+    /// The mass centre would move an entry of which nothing is stated by more or less than comes out.
+    CentreMissed {
+        /// The entry.
+        entry: usize,
+        /// What it would be with the mass centre, kg·m².
+        wanted: f64,
+        /// As it comes out, kg·m².
+        implied: f64,
+    },
     /// Axes and products limit the axes differently.
     AxesAndProducts {
         /// Turns about the principal axes by the one, rad.
@@ -109,6 +118,8 @@ pub enum MissedBecause {
     Together,
     /// The moments of a body are tied together, and the others do not let it.
     Tied,
+    /// The axes as they are stated do not let a product be so large.
+    AxesLimit,
     /// Rotations cannot move it so much, the moments that they mix being too near to each other or the
     /// axes lying as they do.
     Rotations,
@@ -169,6 +180,15 @@ impl fmt::Display for StatementWarning {
                      {stated} stated of it: the statement on {name} is taken"
                 )
             }
+            Self::CentreMissed { entry, wanted, implied } => {
+                let (name, wanted, implied) = (NAMES[entry], Short(wanted), Short(implied));
+                write!(
+                    f,
+                    "{name}: with what the mass centre adds, its deviation would be {wanted} kg·m², and \
+                     {implied} comes out: scatter of the second moments and turns of the axes cannot \
+                     bring it nearer beside the other entries"
+                )
+            }
             Self::AxesAndProducts { axes, products } => {
                 f.write_str(
                     "axes and products disagree on the turns about principal axes 1, 2, 3: the axes \
@@ -219,8 +239,11 @@ impl fmt::Display for MissedBecause {
             Self::Together => f.write_str("what else is stated moves it more"),
             Self::Tied => f.write_str(
                 "the moments of a body are tied together, each being the sum of two second moments, \
-                 and this one cannot scatter so much beside the others",
+                 and beside what else is stated this one cannot come nearer",
             ),
+            Self::AxesLimit => {
+                f.write_str("the axes, as they are stated, do not turn far enough for more")
+            }
             Self::Rotations => f.write_str(
                 "rotations of the principal axes cannot move this product so much: the moments that \
                  they mix are too near to each other",

@@ -1,0 +1,207 @@
+//! Nonlinear least squares within bounds, for a dozen unknowns of any size.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Steps at most.
+const STEPS: usize = 300;
+/// A step that takes less than this share off the cost is the last one.
+const WORTH: f64 = 0.001;
+/// Times that a step is shortened before it counts as none.
+const SHORTER: usize = 12;
+/// The step of differences, as a share of the size of an unknown.
+const STEP: f64 = 1e-5;
+/// The damping at first, and how it changes.
+const DAMPING: f64 = 1e-3;
+const LESS: f64 = 0.1;
+const LEAST_DAMPING: f64 = 1e-9;
+const MORE: f64 = 5.0;
+
+/// Sum of squared residuals.
+pub(super) trait Problem {
+    /// The unknowns and what is worked out of them.
+    type Point: Clone;
+
+    /// The unknowns at a point.
+    fn values(&self, point: &Self::Point) -> DVector<f64>;
+    /// The point with these unknowns, next to another one. They are within the bounds.
+    fn at(&self, values: DVector<f64>, near: &Self::Point) -> Self::Point;
+    /// What is to be small.
+    fn residuals(&self, point: &Self::Point) -> DVector<f64>;
+    /// The bounds of each unknown, and its size.
+    fn range(&self, point: &Self::Point, unknown: usize) -> Range;
+}
+
+/// Where an unknown may be.
+pub(super) struct Range {
+    pub(super) least: f64,
+    pub(super) most: f64,
+    pub(super) unit: f64,
+}
+
+/// The least sum of squares that is found downhill from a point (Levenberg 1944, Marquardt 1963, doi:10.1137/0111030).
+/// Unknowns at a bound stay there while the slope leads beyond it.
+pub(super) fn least_squares<P: Problem>(problem: &P, start: P::Point) -> (P::Point, f64) {
+    let mut point = start;
+    let mut residuals = problem.residuals(&point);
+    let mut cost = residuals.norm_squared();
+    let mut damping = DAMPING;
+    for _ in 0..STEPS {
+        let values = problem.values(&point);
+        let ranges: Vec<_> = (0..values.len()).map(|i| problem.range(&point, i)).collect();
+        let mut slopes = DMatrix::zeros(residuals.len(), values.len());
+        for (i, range) in ranges.iter().enumerate() {
+            let step = STEP * range.unit;
+            let inward = if values[i] + step > range.most { -1.0 } else { 1.0 };
+            let mut beside = values.clone();
+            beside[i] += inward * step;
+            // As far as it really went, in floating point.
+            let step = beside[i] - values[i];
+            let there = problem.residuals(&problem.at(beside, &point));
+            slopes.set_column(i, &((there - &residuals) / step));
+        }
+        let down = slopes.tr_mul(&residuals) * -1.0;
+        let held: Vec<bool> = (0..values.len())
+            .map(|i| {
+                let Range { least, most, .. } = ranges[i];
+                (values[i] <= least && down[i] < 0.0) || (values[i] >= most && down[i] > 0.0)
+            })
+            .collect();
+        let normal = slopes.tr_mul(&slopes);
+        let units: Vec<f64> = ranges.iter().map(|range| range.unit).collect();
+        let mut next = None;
+        for _ in 0..SHORTER {
+            let Some(step) = damped(&normal, &down, &held, &units, damping) else { break };
+            let values = DVector::from_fn(values.len(), |i, _| {
+                (values[i] + step[i]).clamp(ranges[i].least, ranges[i].most)
+            });
+            let there = problem.at(values, &point);
+            let residuals = problem.residuals(&there);
+            let lower = residuals.norm_squared();
+            if lower < cost {
+                next = Some((there, residuals, lower));
+                damping = (damping * LESS).max(LEAST_DAMPING);
+                break;
+            }
+            damping *= MORE;
+        }
+        let Some((there, at, lower)) = next else { break };
+        let last = lower > (1.0 - WORTH) * cost;
+        (point, residuals, cost) = (there, at, lower);
+        if last {
+            break;
+        }
+    }
+    (point, cost)
+}
+
+/// The solution of (N + λ max(N) 1) x = g over the unknowns that are not held, the others zero, all in units of
+/// their sizes. Levenberg's damping, not Marquardt's, which lets go of the unknowns that do
+/// little: in narrow valleys, where deviations cancel, it hardly gets on.
+fn damped(
+    normal: &DMatrix<f64>,
+    down: &DVector<f64>,
+    held: &[bool],
+    units: &[f64],
+    damping: f64,
+) -> Option<DVector<f64>> {
+    let open: Vec<usize> = (0..held.len()).filter(|i| !held[*i]).collect();
+    let matrix = DMatrix::from_fn(open.len(), open.len(), |a, b| {
+        normal[(open[a], open[b])] * units[open[a]] * units[open[b]]
+    });
+    let size = matrix.diagonal().max();
+    let matrix = matrix / size + DMatrix::from_diagonal_element(open.len(), open.len(), damping);
+    let right = DVector::from_fn(open.len(), |a, _| down[open[a]] * units[open[a]] / size);
+    let solution = matrix.cholesky()?.solve(&right);
+    let mut step = DVector::zeros(held.len());
+    for (a, &i) in open.iter().enumerate() {
+        step[i] = solution[a] * units[i];
+    }
+    step.iter().all(|x| x.is_finite()).then_some(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// |Ax − b|² within a box.
+    struct Boxed {
+        a: DMatrix<f64>,
+        b: DVector<f64>,
+        most: f64,
+    }
+
+    impl Problem for Boxed {
+        type Point = DVector<f64>;
+
+        fn values(&self, point: &DVector<f64>) -> DVector<f64> {
+            point.clone()
+        }
+
+        fn at(&self, values: DVector<f64>, _: &DVector<f64>) -> DVector<f64> {
+            values
+        }
+
+        fn residuals(&self, point: &DVector<f64>) -> DVector<f64> {
+            &self.a * point - &self.b
+        }
+
+        fn range(&self, _: &DVector<f64>, _: usize) -> Range {
+            Range { least: 0.0, most: self.most, unit: 1.0 }
+        }
+    }
+
+    proptest! {
+        /// Nothing within the bounds is better, tried along every unknown and towards random points.
+        #[test]
+        fn nothing_allowed_is_better(
+            a in prop::collection::vec(-1.0..1.0f64, 20),
+            b in prop::collection::vec(-1.0..1.0f64, 5),
+            others in prop::collection::vec(prop::array::uniform4(0.0..1.0f64), 20),
+            most in 0.05..3.0f64,
+        ) {
+            let a = DMatrix::from_vec(5, 4, a);
+            prop_assume!(a.clone().svd(false, false).singular_values.min() > 0.05);
+            let problem = Boxed { a, b: DVector::from_vec(b), most };
+            let (x, cost) = least_squares(&problem, DVector::from_element(4, 0.5 * most));
+            prop_assert!(x.iter().all(|x| (0.0..=most).contains(x)));
+            for other in &others {
+                let other = DVector::from_row_slice(other) * most;
+                for share in [1e-2, 0.1, 1.0] {
+                    let y = &x + (&other - &x) * share;
+                    let there = problem.residuals(&y).norm_squared();
+                    prop_assert!(there > cost * (1.0 - 2.0 * WORTH) - 1e-9, "{there} {cost}");
+                }
+            }
+        }
+    }
+
+    /// The valley of Rosenbrock (1960, doi:10.1093/comjnl/3.3.175).
+    struct Valley;
+
+    impl Problem for Valley {
+        type Point = DVector<f64>;
+
+        fn values(&self, point: &DVector<f64>) -> DVector<f64> {
+            point.clone()
+        }
+
+        fn at(&self, values: DVector<f64>, _: &DVector<f64>) -> DVector<f64> {
+            values
+        }
+
+        fn residuals(&self, x: &DVector<f64>) -> DVector<f64> {
+            DVector::from_vec(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]])
+        }
+
+        fn range(&self, _: &DVector<f64>, _: usize) -> Range {
+            Range { least: f64::NEG_INFINITY, most: f64::INFINITY, unit: 1.0 }
+        }
+    }
+
+    #[test]
+    fn a_narrow_valley_is_followed_to_its_end() {
+        let (x, cost) = least_squares(&Valley, DVector::from_vec(vec![-1.2, 1.0]));
+        assert!(cost < 1e-9 && (x[0] - 1.0).abs() < 1e-4, "{x} {cost}");
+    }
+}
