@@ -6,7 +6,7 @@ use gyradius_dispersion::{
 };
 use gyradius_formats::read_text;
 use gyradius_inertia::Inertia;
-use gyradius_study::{Fragment, FragmentBody, FragmentError};
+use gyradius_study::{Fragment, FragmentBody, FragmentError, parse_toml};
 use serde::{Deserialize, Serialize};
 use std::{error::Error, fmt::Write};
 
@@ -64,15 +64,7 @@ pub(crate) fn model(arguments: &ModelArgs) -> Result<(), Box<dyn Error>> {
     let file = arguments.file.display();
     let text = read_text(&arguments.file, MAX_BYTES)
         .map_err(|error| format!("cannot read {file}: {error}"))?;
-    let stated: Stated = toml::from_str(&text)
-        .map_err(|error| format!("{file}: {}", error.to_string().trim_end()))?;
-    let nominal = Inertia::try_from(stated.nominal.inertia_kg_m2)
-        .map_err(|error| format!("{file}: nominal.inertia_kg_m2: {error}"))?;
-    let Stated { moments, products, axes, mass, centre, .. } = stated;
-    let statements = Statements { moments, products, axes, mass, centre };
-    let model = statements
-        .model(&nominal, stated.nominal.mass_kg)
-        .map_err(|error| format!("{file}: {error}"))?;
+    let model = stated(&text).map_err(|error| format!("{file}: {error}"))?;
     let body = FragmentBody::from(arguments.fragment.body);
     let fragment = fragment(body, &model).map_err(|error| format!("{file}: {error}"))?;
     let json = || json(&model, body, &fragment);
@@ -84,6 +76,19 @@ pub(crate) fn model(arguments: &ModelArgs) -> Result<(), Box<dyn Error>> {
         &fragment,
     )?;
     Ok(())
+}
+
+/// What the text of a file states; an error names the key.
+fn stated(text: &str) -> Result<StatedModel, String> {
+    let Stated { nominal, moments, products, axes, mass, centre } = parse_toml(text)?;
+    let Nominal { inertia_kg_m2, mass_kg } = nominal;
+    let inertia = Inertia::try_from(inertia_kg_m2)
+        .map_err(|error| format!("nominal.inertia_kg_m2: {error}"))?;
+    let statements = Statements { moments, products, axes, mass, centre };
+    statements
+        .check(&inertia, mass_kg)
+        .and_then(|()| statements.model(&inertia, mass_kg))
+        .map_err(|error| error.to_string())
 }
 
 /// The inertia at the nominal mass, the mass that it goes with, and the mass centre.
@@ -186,3 +191,6 @@ fn json(
         fragment: FragmentJson::of(&body.to_string(), fragment),
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -338,15 +338,19 @@ fn bad_statements_are_refused_by_name() {
         shell.refused(&["model", "changed.toml"])
     };
     for (from, to, expected) in [
-        ("percent = 10.0", "percent = -10.0", "moments: ± -10"),
-        ("percent = 10.0", "percent = nan", "moments: ± NaN"),
+        ("percent = 10.0", "percent = -10.0", "changed.toml: moments.percent = -10.0: "),
+        ("percent = 10.0", "percent = nan", "moments.percent = NaN: "),
         ("percent = 10.0", "percent = 10.0\nkg_m2 = 3.0", "exactly one of percent, kg_m2"),
         ("sigmas = 1", "sigma = 1", "unknown field"),
-        ("sigmas = 3", "sigmas = 0", "sigmas = 0"),
-        ("deg = 2.0", "deg = 200.0", "axes: ±"),
-        ("deg = 2.0", "deg = \"two\"", "there must be one number, or a list of three"),
-        ("mass_kg = 10000.0", "mass_kg = -1.0", "mass = -1 kg"),
-        ("mass_kg = 10000.0", "", "centre: it needs the nominal mass"),
+        ("sigmas = 3", "sigmas = 0", "products.sigmas = 0.0: "),
+        ("deg = 2.0", "deg = 200.0", "axes.deg = 200.0: "),
+        (
+            "deg = 2.0",
+            "deg = \"two\"",
+            "axes.deg: invalid type: string \"two\", expected one number, or a list of three",
+        ),
+        ("mass_kg = 10000.0", "mass_kg = -1.0", "nominal.mass_kg = -1.0: "),
+        ("mass_kg = 10000.0", "", "nominal.mass_kg is missing"),
         ("[[5000.0", "[[9000.0", "nominal.inertia_kg_m2: no body has this inertia"),
         ("[nominal]", "[nomina]", "unknown field `nomina`"),
     ] {

@@ -47,7 +47,7 @@ pub use quantity::{Axis, Entry, Quantity};
 pub use replay::{Replay, ReplayError};
 pub use row::{Failure, Row};
 pub use runner::Progress;
-pub use scenario::{Scenario, ScenarioError, whole_number};
+pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
 pub use study::{Options, Study, StudyError};
 pub use summary::Summary;
 pub use table::RunTable;

@@ -319,14 +319,16 @@ fn what_is_stated_includes_mass_and_centre() {
 fn bad_statements_are_named() {
     let message = |e: StatementError| e.to_string();
     let bad = MomentsStatement::new(Amount::Percent([1.0, -1.0, 1.0]), 1.0).unwrap_err();
-    assert!(message(bad).contains("moments: ± -1"));
+    assert!(message(bad).starts_with("moments.percent[2] = -1.0: "));
     for sigmas in [0.0, -1.0, f64::NAN, 1e9] {
         let error = message(ProductsStatement::new([1.0; 3], sigmas).unwrap_err());
-        assert!(error.contains("products: sigmas ="), "{error}");
+        assert!(error.starts_with("products.sigmas = "), "{error}");
     }
-    assert!(message(AxesStatement::each([100.0; 3], 1.0).unwrap_err()).contains("at most 45°"));
+    assert!(message(AxesStatement::each([100.0; 3], 1.0).unwrap_err()).contains("at most 45 °"));
     assert!(message(AxesStatement::total(f64::NAN, 1.0).unwrap_err()).contains("NaN"));
-    assert!(message(MassStatement::kg(f64::INFINITY, 1.0).unwrap_err()).contains("mass: ± inf"));
+    assert!(
+        message(MassStatement::kg(f64::INFINITY, 1.0).unwrap_err()).starts_with("mass.kg = inf: ")
+    );
     assert!(CentreStatement::new([0.0; 3], 1.0, [f64::NAN, 0.0, 0.0]).is_err());
     let point = Inertia::new(Matrix3::zeros()).unwrap();
     assert!(matches!(
@@ -357,11 +359,11 @@ fn serde_goes_through_the_constructors() {
         assert!((a / b - 1.0).abs() < 1e-6);
     }
     for (from, to, word) in [
-        ("\"percent\": 10", "\"percent\": -10", "moments: ±"),
+        ("\"percent\": 10", "\"percent\": -10", "moments.percent = -10.0: "),
         ("\"percent\": 10", "\"percent\": 10, \"kg_m2\": 3", "exactly one of percent, kg_m2"),
         ("\"sigmas\": 1}", "\"sigma\": 1}", "unknown field"),
         ("\"percent\": 10, \"sigmas\": 1", "\"percent\": 10", "sigmas"),
-        ("\"deg\": 2", "\"deg\": [1, 2, 3]", "one number of deg"),
+        ("\"deg\": 2", "\"deg\": [1, 2, 3]", "axes.deg: there must be one number"),
     ] {
         let error = serde_json::from_str::<Statements>(&json.replacen(from, to, 1)).unwrap_err();
         assert!(error.to_string().contains(word), "{error}");

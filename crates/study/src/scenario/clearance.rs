@@ -30,9 +30,12 @@ impl Outlines {
             return Err(ScenarioError::field("clearance.coast_s", problem));
         }
         let outline = |body: &str, shapes: &[ShapeFile]| {
-            let at = |i: usize| format!("clearance.{body}[{}]", i + 1);
-            let shapes = shapes.iter().enumerate();
-            let shapes = shapes.map(|(i, s)| shape(s).map_err(|e| ScenarioError::field(at(i), e)));
+            let shapes = shapes.iter().enumerate().map(|(i, file)| {
+                shape(file).map_err(|e| {
+                    let key = shape_key(file, &e);
+                    ScenarioError::field(format!("clearance.{body}[{}].{key}", i + 1), e)
+                })
+            });
             Outline::new(shapes.collect::<Result<Vec<_>, _>>()?)
                 .map_err(|e| ScenarioError::field(format!("clearance.{body}"), e))
         };
@@ -91,5 +94,17 @@ fn shape(file: &ShapeFile) -> Result<Shape, OutlineError> {
         ShapeFile::Ring { centre_m, axis, radius_m } => {
             Shape::ring((*centre_m).into(), (*axis).into(), *radius_m)
         }
+    }
+}
+
+/// The key of what is wrong with a shape.
+fn shape_key(file: &ShapeFile, error: &OutlineError) -> &'static str {
+    match (file, error) {
+        (ShapeFile::PointsM(_), _) => "points_m",
+        (ShapeFile::HullM(_), _) => "hull_m",
+        (ShapeFile::Ring { .. }, OutlineError::Coordinate { .. }) => "ring.centre_m",
+        (ShapeFile::Ring { .. }, OutlineError::Axis { .. }) => "ring.axis",
+        (ShapeFile::Ring { .. }, OutlineError::Radius { .. }) => "ring.radius_m",
+        (ShapeFile::Ring { .. }, _) => "ring",
     }
 }

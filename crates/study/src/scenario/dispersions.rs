@@ -5,7 +5,7 @@ use gyradius_dispersion::{Correlation, CorrelationError, ScalarLaw};
 use super::{
     ScenarioError,
     file::{BodyFile, ScenarioFile, SpringFile},
-    law::{LawFile, VectorLawFile},
+    law::{CHANGES, LawFile, Unit, VectorLawFile},
 };
 use crate::quantity::Body;
 
@@ -111,6 +111,9 @@ impl Place {
     }
 }
 
+/// The key of the correlations.
+const CORRELATIONS: &str = "correlations";
+
 /// As it is put together.
 #[derive(Default)]
 struct List {
@@ -141,8 +144,8 @@ impl List {
         target: Target,
     ) -> Result<(), ScenarioError> {
         if let Some(law) = law {
-            let law = law.about(&place.field, nominal, 1.0)?;
-            positive(&place.field, &law)?;
+            let law = law.about(&place.field, nominal, Unit::OWN)?;
+            positive(&place.field, nominal, &law)?;
             self.push(&place.name, place.unit, nominal, law, target);
         }
         Ok(())
@@ -163,8 +166,8 @@ impl List {
                 Err(ScenarioError::field(field, problem))
             }
             (None, (field, Some(law))) => {
-                let law = law.about(field, nominal, 0.01 * nominal)?;
-                positive(field, &law)?;
+                let law = law.about(field, nominal, Unit::percent_of(nominal))?;
+                positive(field, nominal, &law)?;
                 self.push(&place.name, place.unit, nominal, law, target);
                 Ok(())
             }
@@ -180,7 +183,7 @@ impl List {
         target: impl Fn(usize) -> Target,
     ) -> Result<(), ScenarioError> {
         let Some(law) = law else { return Ok(()) };
-        let law = law.about(&place.field, nominal, 1.0)?;
+        let law = law.about(&place.field, nominal, Unit::OWN)?;
         let first = self.all.len();
         for (i, (law, nominal)) in law.laws.into_iter().zip(nominal).enumerate() {
             let name = format!("{}_{}", place.name, i + 1);
@@ -277,14 +280,17 @@ impl List {
 
     fn correlate(&mut self, file: &ScenarioFile) -> Result<Correlation, ScenarioError> {
         for (i, given) in file.correlations.iter().enumerate() {
-            let field = format!("correlations[{}]", i + 1);
+            let field = format!("{CORRELATIONS}[{}]", i + 1);
             let index = |name: &String| {
                 self.all.iter().position(|d| d.column == *name).ok_or_else(|| {
                     let names: Vec<_> = self.all.iter().map(|d| d.column.as_str()).collect();
                     let problem = if names.is_empty() {
-                        format!("{name:?} is not dispersed: nothing is that could be correlated")
+                        format!("{name:?} is not dispersed, and nothing is: there is nothing to correlate")
                     } else {
-                        format!("{name:?} is not dispersed: these are: {}", names.join(", "))
+                        format!(
+                            "{name:?} is not dispersed: the dispersion of payload, stage, stack and springs names {}",
+                            names.join(", ")
+                        )
                     };
                     ScenarioError::field(format!("{field}.between"), problem)
                 })
@@ -307,21 +313,32 @@ impl List {
                 | CorrelationError::NoPair { pair }
                 | CorrelationError::Twice { pair }
                 | CorrelationError::Indefinite { pair, .. } => *pair,
-                _ => return ScenarioError::field("correlations", error),
+                _ => return ScenarioError::field(CORRELATIONS, error),
+            };
+            let field = match (&error, self.fields[pair].as_str()) {
+                (CorrelationError::NoPair { .. } | CorrelationError::Twice { .. }, field)
+                    if field.starts_with(CORRELATIONS) =>
+                {
+                    format!("{field}.between")
+                }
+                (_, field) if field.starts_with(CORRELATIONS) => format!("{field}.coefficient"),
+                (_, field) => field.to_owned(),
             };
             let (a, b, _) = self.pairs[pair];
             let (a, b) = (&self.all[a].column, &self.all[b].column);
-            ScenarioError::field(&self.fields[pair], format!("{a:?} and {b:?}: {error}"))
+            ScenarioError::field(field, format!("{a:?} and {b:?}: {error}"))
         })
     }
 }
 
 /// That a law of what cannot be negative is not so more often than not.
-fn positive(field: &str, law: &ScalarLaw) -> Result<(), ScenarioError> {
+fn positive(field: &str, nominal: f64, law: &ScalarLaw) -> Result<(), ScenarioError> {
     if law.cdf(-f64::MIN_POSITIVE) < 0.5 {
         return Ok(());
     }
-    let problem = "at least half of the draws would be negative: laws \"lognormal\" (with a mean), \
-                   \"uniform\" and \"truncated-normal\" need not be";
+    let problem = format!(
+        "at least half of the draws would be negative: the nominal value is {nominal:?}, and {CHANGES}; \
+         laws \"lognormal\" (with a mean), \"uniform\" and \"truncated-normal\" need not be negative"
+    );
     Err(ScenarioError::field(field, problem))
 }

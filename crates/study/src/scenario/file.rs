@@ -152,11 +152,43 @@ pub(crate) struct ClearanceFile {
 
 /// As given: what is made of it need not have the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[serde(rename_all = "snake_case", try_from = "ShapeTable")]
 pub(crate) enum ShapeFile {
     PointsM(Vec<[f64; 3]>),
     HullM(Vec<[f64; 3]>),
     Ring { centre_m: [f64; 3], axis: [f64; 3], radius_m: f64 },
+}
+
+/// As it is read: an enum would not name a key that it does not know.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ShapeTable {
+    points_m: Option<Vec<[f64; 3]>>,
+    hull_m: Option<Vec<[f64; 3]>>,
+    ring: Option<RingFile>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RingFile {
+    centre_m: [f64; 3],
+    axis: [f64; 3],
+    radius_m: f64,
+}
+
+impl TryFrom<ShapeTable> for ShapeFile {
+    type Error = &'static str;
+
+    fn try_from(table: ShapeTable) -> Result<Self, Self::Error> {
+        match (table.points_m, table.hull_m, table.ring) {
+            (Some(points), None, None) => Ok(Self::PointsM(points)),
+            (None, Some(points), None) => Ok(Self::HullM(points)),
+            (None, None, Some(RingFile { centre_m, axis, radius_m })) => {
+                Ok(Self::Ring { centre_m, axis, radius_m })
+            }
+            _ => Err("there must be exactly one of points_m, hull_m, ring"),
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

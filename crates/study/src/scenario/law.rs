@@ -75,6 +75,10 @@ impl LawName {
     }
 }
 
+/// What stands behind an error of values that are no numbers of the file.
+pub(super) const CHANGES: &str =
+    "sigma, mean, low and high are of the change from the nominal value";
+
 /// What `sigmas` may be, as in statements.
 const SIGMAS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
@@ -146,6 +150,35 @@ impl<'de> Deserialize<'de> for VectorLawFile {
     }
 }
 
+/// What the numbers of a law are in.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unit {
+    /// In the unit of the quantity itself.
+    size: f64,
+    /// The largest number that is taken.
+    most: f64,
+}
+
+impl Unit {
+    /// That of the quantity itself.
+    pub(crate) const OWN: Self = Self { size: 1.0, most: 1e9 };
+
+    /// Percent of a nominal value.
+    pub(crate) fn percent_of(nominal: f64) -> Self {
+        Self { size: 0.01 * nominal, most: 1000.0 }
+    }
+
+    /// That a number of a law may be what it is: from `least`, in units of the most, to the most.
+    fn checked(self, field: &str, value: f64, least: f64) -> Result<f64, ScenarioError> {
+        let least = least * self.most;
+        if (least..=self.most).contains(&value) {
+            return Ok(value);
+        }
+        let problem = format!("{value:?}: it must be between {least:?} and {:?}", self.most);
+        Err(ScenarioError::field(field, problem))
+    }
+}
+
 impl LawFile {
     /// The law of the value itself, of a quantity with the given nominal value; numbers in the file
     /// are in `unit`.
@@ -153,15 +186,17 @@ impl LawFile {
         &self,
         field: &str,
         nominal: f64,
-        unit: f64,
+        unit: Unit,
     ) -> Result<ScalarLaw, ScenarioError> {
-        let refused = |e: ScalarLawError| ScenarioError::field(field, e);
         let table = match self {
             Self::Sigma(sigma) => {
-                return ScalarLaw::normal(nominal, sigma * unit).map_err(refused);
+                let sigma = unit.checked(field, *sigma, 0.0)?;
+                return ScalarLaw::normal(nominal, sigma * unit.size)
+                    .map_err(|e| ScenarioError::field(field, e));
             }
             Self::Table(table) => table,
         };
+        let at = |key: &str| format!("{field}.{key}");
         let law = table.law;
         let given = [
             ("sigma", table.sigma.is_some()),
@@ -173,42 +208,62 @@ impl LawFile {
         if let Some((name, _)) = given.iter().find(|(name, is)| *is && !law.takes().contains(name))
         {
             let problem = format!("{} takes {}, not {name}", law.text(), law.takes().join(", "));
-            return Err(ScenarioError::field(field, problem));
+            return Err(ScenarioError::field(at(name), problem));
         }
         if table.covariance.is_some() {
             let problem = "a covariance is for vectors, and for nothing beside it";
-            return Err(ScenarioError::field(field, problem));
+            return Err(ScenarioError::field(at("covariance"), problem));
         }
-        let needed = |name: &str, value: Option<f64>| {
-            let problem = || format!("{} needs {name}", law.text());
-            value.map(|x| x * unit).ok_or_else(|| ScenarioError::field(field, problem()))
-        };
         if let Some(sigmas) = table.sigmas.filter(|s| !SIGMAS.contains(s)) {
             let problem = format!(
-                "sigmas = {sigmas:?}: it must be between {:?} and {:?}: how many standard deviations sigma \
-                 stands for",
+                "{sigmas:?}: it must be between {:?} and {:?}: how many standard deviations sigma stands for",
                 SIGMAS.start(),
                 SIGMAS.end()
             );
-            return Err(ScenarioError::field(field, problem));
+            return Err(ScenarioError::field(at("sigmas"), problem));
         }
-        let sigma = || needed("sigma", table.sigma.map(|s| s / table.sigmas.unwrap_or(1.0)));
-        let mean = nominal + table.mean.unwrap_or(0.0) * unit;
+        let number = |key: &str, value: Option<f64>, least: f64| {
+            value.map(|value| unit.checked(&at(key), value, least)).transpose()
+        };
+        let [sigma, mean] = [number("sigma", table.sigma, 0.0)?, number("mean", table.mean, -1.0)?];
+        let [low, high] = [number("low", table.low, -1.0)?, number("high", table.high, -1.0)?];
+        if let (Some(low), Some(high)) = (low, high)
+            && low > high
+        {
+            let problem = format!("{high:?}: it must not be below low, which is {low:?}");
+            return Err(ScenarioError::field(at("high"), problem));
+        }
+        let needed = |key: &str, value: Option<f64>| {
+            let problem = || {
+                let or = if law == LawName::Normal { ", or, of a vector, covariance" } else { "" };
+                format!("missing: {} needs {key}{or}", law.text())
+            };
+            value.map(|x| x * unit.size).ok_or_else(|| ScenarioError::field(at(key), problem()))
+        };
+        let sigma = || needed("sigma", sigma.map(|s| s / table.sigmas.unwrap_or(1.0)));
+        let mean = nominal + mean.unwrap_or(0.0) * unit.size;
         match law {
             LawName::Normal => ScalarLaw::normal(mean, sigma()?),
             LawName::Lognormal => ScalarLaw::lognormal(mean, sigma()?),
-            LawName::Uniform => ScalarLaw::uniform(
-                nominal + needed("low", table.low)?,
-                nominal + needed("high", table.high)?,
-            ),
+            LawName::Uniform => {
+                ScalarLaw::uniform(nominal + needed("low", low)?, nominal + needed("high", high)?)
+            }
             LawName::TruncatedNormal => ScalarLaw::truncated_normal(
                 mean,
                 sigma()?,
-                nominal + table.low.unwrap_or(f64::NEG_INFINITY) * unit,
-                nominal + table.high.unwrap_or(f64::INFINITY) * unit,
+                nominal + low.unwrap_or(f64::NEG_INFINITY) * unit.size,
+                nominal + high.unwrap_or(f64::INFINITY) * unit.size,
             ),
         }
-        .map_err(refused)
+        .map_err(|error| {
+            let key = match error {
+                ScalarLawError::NotPositive { .. } => "mean",
+                ScalarLawError::Bounds { .. } => "high",
+                ScalarLawError::Deviation { .. } => "sigma",
+                _ => return ScenarioError::field(field, format!("{error}; {CHANGES}")),
+            };
+            ScenarioError::field(at(key), format!("{error}; {CHANGES}"))
+        })
     }
 
     fn covariance(&self) -> Option<[[f64; 3]; 3]> {
@@ -238,7 +293,7 @@ impl VectorLawFile {
         &self,
         field: &str,
         nominal: &[f64],
-        unit: f64,
+        unit: Unit,
     ) -> Result<VectorLaw, ScenarioError> {
         let each = match self {
             Self::Same(law) => match law.covariance() {
@@ -270,7 +325,7 @@ fn covariance(
     field: &str,
     matrix: &[[f64; 3]; 3],
     nominal: &[f64],
-    unit: f64,
+    unit: Unit,
 ) -> Result<VectorLaw, ScenarioError> {
     let field = format!("{field}.covariance");
     let refused = |problem: String| Err(ScenarioError::field(&field, problem));
@@ -279,8 +334,8 @@ fn covariance(
     }
     let mut pairs = Vec::new();
     for i in 0..3 {
-        if !(matrix[i][i] >= 0.0 && matrix[i][i].is_finite()) {
-            let problem = "a variance must be finite and not negative";
+        if !(0.0..=unit.most * unit.most).contains(&matrix[i][i]) {
+            let problem = format!("a variance must be between 0 and {:e}", unit.most * unit.most);
             return refused(format!("entry ({0}, {0}) = {1:?}: {problem}", i + 1, matrix[i][i]));
         }
         for j in 0..i {
@@ -326,7 +381,7 @@ fn covariance(
             other => other.to_string(),
         });
     }
-    let law = |i: usize| ScalarLaw::normal(nominal[i], matrix[i][i].sqrt() * unit);
+    let law = |i: usize| ScalarLaw::normal(nominal[i], matrix[i][i].sqrt() * unit.size);
     let laws = (0..3).map(law).collect::<Result<_, _>>();
     Ok(VectorLaw { laws: laws.map_err(|e| ScenarioError::field(&field, e))?, pairs })
 }

@@ -24,10 +24,42 @@ const REACH: f64 = 1e4;
 /// Longest coast, s.
 pub(super) const COAST: f64 = 1e6;
 
+/// Numbers beyond which nothing that separates is, in the units of their keys. Beyond them the
+/// rounding of double precision would be larger than what is computed.
+const MASS: f64 = 1e12;
+const POSITION: f64 = 1e9;
+const VELOCITY: f64 = 1e6;
+const ANGULAR_VELOCITY: f64 = 1e4;
+const STIFFNESS: f64 = 1e12;
+const STROKE: f64 = 1e3;
+const POINT: f64 = 1e4;
+const FRICTION: f64 = 1e12;
+const START: f64 = 1e6;
+
 /// That a scenario does not ask for more.
 pub(super) fn check(file: &ScenarioFile) -> Result<(), ScenarioError> {
     at_most("springs", file.springs.len(), SPRINGS)?;
     at_most("models", file.models.len(), MODELS)?;
+    for (name, body) in [("payload", &file.payload), ("stage", &file.stage)] {
+        let numbers: [(&str, &[f64], f64); 4] = [
+            ("mass_kg", &[body.mass_kg], MASS),
+            ("position_m", &body.position_m, POSITION),
+            ("velocity_m_per_s", &body.velocity_m_per_s, VELOCITY),
+            ("angular_velocity_rad_per_s", &body.angular_velocity_rad_per_s, ANGULAR_VELOCITY),
+        ];
+        sizes(name, &numbers)?;
+    }
+    for (i, spring) in file.springs.iter().enumerate() {
+        let numbers: [(&str, &[f64], f64); 6] = [
+            ("stiffness_n_per_m", &[spring.stiffness_n_per_m], STIFFNESS),
+            ("stroke_m", &[spring.stroke_m], STROKE),
+            ("payload_point_m", &spring.payload_point_m, POINT),
+            ("stage_point_m", &spring.stage_point_m, POINT),
+            ("friction_n", spring.friction_n.as_slice(), FRICTION),
+            ("start_s", spring.start_s.as_slice(), START),
+        ];
+        sizes(&format!("springs[{}]", i + 1), &numbers)?;
+    }
     if let Some(clearance) = &file.clearance {
         for (body, shapes) in [("payload", &clearance.payload), ("stage", &clearance.stage)] {
             for (i, shape) in shapes.iter().enumerate() {
@@ -47,6 +79,18 @@ pub(super) fn check(file: &ScenarioFile) -> Result<(), ScenarioError> {
     Ok(())
 }
 
+/// That numbers are not beyond their limits. What is no number is refused where it is used.
+fn sizes(place: &str, numbers: &[(&str, &[f64], f64)]) -> Result<(), ScenarioError> {
+    for (key, values, most) in numbers {
+        if let Some(i) = values.iter().position(|x| x.abs() > *most) {
+            let index = if values.len() > 1 { format!("[{}]", i + 1) } else { String::new() };
+            let problem = format!("{:?}: it must be at most {most:e} in magnitude", values[i]);
+            return Err(ScenarioError::field(format!("{place}.{key}{index}"), problem));
+        }
+    }
+    Ok(())
+}
+
 fn at_most(field: &str, count: usize, most: usize) -> Result<(), ScenarioError> {
     if count <= most {
         return Ok(());
@@ -54,13 +98,18 @@ fn at_most(field: &str, count: usize, most: usize) -> Result<(), ScenarioError> 
     Err(ScenarioError::field(field, format!("{count} of them: at most {most} are allowed")))
 }
 
-/// The key of a shape and how far out it is, m.
+/// How far out a shape is, m, and the key that says most of it.
 fn reach(shape: &ShapeFile) -> (&'static str, f64) {
     // Not the norm, which overflows.
     let largest = |p: &[f64; 3]| p.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let of_all = |p: &[[f64; 3]]| p.iter().map(largest).fold(0.0, f64::max);
     match shape {
-        ShapeFile::PointsM(p) => ("points_m", p.iter().map(largest).fold(0.0, f64::max)),
-        ShapeFile::HullM(p) => ("hull_m", p.iter().map(largest).fold(0.0, f64::max)),
-        ShapeFile::Ring { centre_m, radius_m, .. } => ("ring", largest(centre_m) + radius_m.abs()),
+        ShapeFile::PointsM(p) => ("points_m", of_all(p)),
+        ShapeFile::HullM(p) => ("hull_m", of_all(p)),
+        ShapeFile::Ring { centre_m, radius_m, .. } => {
+            let (centre, radius) = (largest(centre_m), radius_m.abs());
+            let key = if centre > radius { "ring.centre_m" } else { "ring.radius_m" };
+            (key, centre + radius)
+        }
     }
 }

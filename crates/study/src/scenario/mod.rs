@@ -25,7 +25,7 @@ pub(crate) use dispersions::{BodyPart, Dispersed, Dispersions, SpringPart, Stack
 use file::ScenarioFile;
 pub(crate) use file::{AxesFile as Axes, ShapeFile};
 pub(crate) use model::{Comparison, Law, ModelSpec};
-pub use parse::whole_number;
+pub use parse::{parse_toml, whole_number};
 
 use crate::folder;
 
@@ -121,7 +121,7 @@ impl Scenario {
     /// # Errors
     /// It is not TOML, has an unknown key, or a value that is not allowed.
     pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
-        let file = parse::toml::<ScenarioFile>(text)
+        let file = parse_toml::<ScenarioFile>(text)
             .map_err(|message| ScenarioError::Parse { path: None, message })?;
         limits::check(&file)?;
         Self::check(file)
@@ -178,7 +178,7 @@ impl Scenario {
             })
             .collect::<Result<Vec<_>, _>>()?;
         let separation = Separation::new(*payload.moving(), *stage.moving(), &springs)
-            .map_err(|e| ScenarioError::field(separation_key(&e), e))?;
+            .map_err(separation_error)?;
         sides::check(&separation, file.separation_direction)?;
         // Defaults go by way of the file, so that the resolved scenario gives the same bits.
         if file.separation_direction.is_none() {
@@ -300,6 +300,12 @@ impl Scenario {
         &self.models
     }
 
+    /// The key of a model in the file.
+    pub(crate) fn place(&self, model: &ModelSpec) -> String {
+        let index = self.models.iter().position(|m| m.name == model.name);
+        index.map_or_else(|| format!("model {:?}", model.name), model::place)
+    }
+
     /// Whether a model was given exactly the deviations of another.
     pub(crate) fn is_matched(&self, model: &str, to: &str) -> bool {
         let matched = |law: &Law| matches!(law, Law::Matched { to: name, .. } if name == to);
@@ -343,15 +349,24 @@ fn push(separation: &Separation) -> Option<Unit<Vector3<f64>>> {
     if sum.norm() > 1e-9 * size { unit(sum) } else { None }
 }
 
-/// The key of what does not go together.
-fn separation_key(error: &SeparationError) -> String {
-    match error {
-        SeparationError::Body { body, .. } => (*body).to_owned(),
-        SeparationError::TouchingPads { spring, .. } => format!("springs[{spring}]"),
-        SeparationError::ShortStroke { spring, .. } => format!("springs[{spring}].stroke_m"),
-        _ => "springs".to_owned(),
-    }
+/// What does not go together, by its key.
+fn separation_error(error: SeparationError) -> ScenarioError {
+    let (field, from) = match &error {
+        SeparationError::Body { body, .. } => ((*body).to_owned(), ""),
+        SeparationError::TouchingPads { spring, .. } => {
+            (format!("springs[{spring}].payload_point_m"), POINTS)
+        }
+        SeparationError::ShortStroke { spring, .. } => {
+            (format!("springs[{spring}].stroke_m"), POINTS)
+        }
+        _ => ("springs".to_owned(), ""),
+    };
+    ScenarioError::field(field, format!("{error}{from}"))
 }
+
+/// What the distances of a spring come from.
+const POINTS: &str = "; where its points are follows from payload_point_m, stage_point_m, and position_m and \
+                      body_to_inertial of the bodies";
 
 /// The key of a spring that is wrong.
 fn spring_key(error: &SpringError) -> &'static str {

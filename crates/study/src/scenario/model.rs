@@ -69,23 +69,29 @@ pub(crate) fn check_models(
         return Err(ScenarioError::field("models", "none: there must be at least one"));
     }
     for (i, file) in files.iter().enumerate() {
-        check_name(&format!("models[{}].name", i + 1), &file.name)?;
+        check_name(&format!("{}.name", place(i)), &file.name)?;
         // Some file systems do not tell upper from lower case.
         if files[..i].iter().any(|other| other.name.eq_ignore_ascii_case(&file.name)) {
             let problem =
                 format!("two are named {:?}: names must differ in more than case", file.name);
-            return Err(ScenarioError::field("models", problem));
+            return Err(ScenarioError::field(format!("{}.name", place(i)), problem));
         }
     }
-    files.iter().map(|file| check_model(file, files, bodies)).collect()
+    files.iter().enumerate().map(|(i, file)| check_model(i, file, files, bodies)).collect()
+}
+
+/// The key of a model, counted from 0.
+pub(crate) fn place(index: usize) -> String {
+    format!("models[{}]", index + 1)
 }
 
 fn check_model(
+    index: usize,
     file: &ModelFile,
     all: &[ModelFile],
     bodies: [&UncertainBody; 2],
 ) -> Result<ModelSpec, ScenarioError> {
-    let place = format!("models.{}", file.name);
+    let place = place(index);
     let kind = file.law;
     let field_error = |field: &str, problem: String| {
         Err(ScenarioError::field(format!("{place}.{field}"), problem))
@@ -102,8 +108,8 @@ fn check_model(
     if kind == ModelKind::Principal {
         let Some(axes) = file.axes else {
             return Err(ScenarioError::field(
-                place,
-                "law \"principal\" needs axes: \"whole-sphere\", \"mean-half\" or \"jacobian-twice\"",
+                format!("{place}.axes"),
+                "missing: law \"principal\" needs axes: \"whole-sphere\", \"mean-half\" or \"jacobian-twice\"",
             ));
         };
         let only = "law \"principal\" takes axes and nothing else: its variances are those of \
@@ -293,8 +299,10 @@ pub(crate) fn check_comparisons(
         };
         let names: Vec<&str> = models.iter().filter(fits).map(|m| m.name.as_str()).collect();
         models.iter().position(|m| m.name == name && fits(&m)).ok_or_else(|| {
-            let problem =
-                format!("{name:?}: it must be one of the models {which}: {}", names.join(", "));
+            let problem = format!(
+                "{name:?}: it must be the name of one of the models {which}: {}",
+                names.join(", ")
+            );
             ScenarioError::field(format!("comparisons[{}].{role}", i + 1), problem)
         })
     };

@@ -1,4 +1,4 @@
-//! TOML to a scenario file, with the path of the key that is wrong.
+//! TOML to what a file holds, with the path of the key that is wrong.
 
 use serde::{
     Deserializer,
@@ -9,10 +9,13 @@ use serde_path_to_error::{Path, Segment};
 /// Longest reason that is told.
 const MOST_CHARACTERS: usize = 400;
 
-/// What stands in the text, or what is wrong with it: key, reason and line.
-pub(super) fn toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+/// What stands in the text of a TOML file, or what is wrong with it: key, reason and line.
+///
+/// # Errors
+/// The text is no TOML, or a key of it is missing, unknown or has a value that is not allowed.
+pub fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     let toml = toml::Deserializer::parse(text).map_err(|error| told(&error, text))?;
-    serde_path_to_error::deserialize(toml).map_err(|error| {
+    let refused = |error: serde_path_to_error::Error<toml::de::Error>| {
         let path = said(error.path());
         let missing = error.inner().message().strip_prefix("missing field `");
         let missing = missing.and_then(|rest| rest.split_once('`')).map(|(name, _)| name);
@@ -22,8 +25,22 @@ pub(super) fn toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
             (_, None) => path,
         };
         let message = told(error.inner(), text);
-        if path.is_empty() { message } else { format!("{path}: {message}") }
-    })
+        if path.is_empty() || names(&message, &path) {
+            message
+        } else {
+            format!("{path}: {message}")
+        }
+    };
+    serde_path_to_error::deserialize::<_, T>(toml).map_err(refused)?;
+    // Once more from values, which knows no lines, but does not pass over what is left of a list after
+    // the three numbers of a vector, say.
+    let values: toml::Table = toml::from_str(text).map_err(|error| told(&error, text))?;
+    serde_path_to_error::deserialize(values).map_err(refused)
+}
+
+/// Whether a message begins with a key, or with one below it.
+fn names(message: &str, key: &str) -> bool {
+    message.strip_prefix(key).is_some_and(|rest| rest.starts_with(['.', '[', ':', ' ']))
 }
 
 /// The reason in our words, and the line. Not the line itself, which may be of any length.
@@ -32,8 +49,14 @@ fn told(error: &toml::de::Error, text: &str) -> String {
     if let Some((reason, _)) = message.split_once("expected struct ") {
         message = format!("{reason}expected a table");
     }
+    if message == "wanted string or table" {
+        message = "invalid type, expected one of the texts that are allowed".to_owned();
+    }
     if let Some(reason) = message.strip_suffix("expected f64") {
         message = format!("{reason}expected a number");
+    }
+    if let Some(reason) = message.strip_suffix("expected fewer elements in array") {
+        message = format!("{reason}which is too long for this list");
     }
     let mut message = short_numbers(&message);
     if let Some((end, _)) = message.char_indices().nth(MOST_CHARACTERS) {

@@ -41,7 +41,8 @@ pub(super) fn check(
             let problem = format!(
                 "{point:?}: the payload point lies behind the stage point, so that the spring pushes the \
                  payload towards {} (inertial axes), through the stage, whose mass centre is on that \
-                 side. Check the signs of payload_point_m and stage_point_m; if the payload is to leave \
+                 side. Check the signs of payload_point_m and stage_point_m, and position_m of the \
+                 bodies; if the payload is to leave \
                  that way, state separation_direction",
                 entries(&push)
             );

@@ -37,24 +37,36 @@ fn directions_and_outlines_are_read_resolved_and_checked() {
     for (from, to, expected) in [
         ("[0.1, 0.0, 3.0]", "[0.0, 0.0, 0.0]", "separation_direction: [0.0, 0.0, 0.0]: it must"),
         ("[1e300, 1e299, 0.0]", "[nan, 1.0, 0.0]", "momentum_direction: [NaN, 1.0, 0.0]"),
-        ("radius_m = 0.3", "radius_m = -0.3", "clearance.stage[1]: "),
-        ("radius_m = 0.3", "radius_m = nan", "clearance.stage[1]: ring radius = NaN m: it must"),
-        ("[0.0, 1.0, 7.0]", "[0.0, 0.0, 0.0]", "clearance.stage[1]: ring axis of length 0.0: it"),
+        ("radius_m = 0.3", "radius_m = -0.3", "clearance.stage[1].ring.radius_m: "),
+        (
+            "radius_m = 0.3",
+            "radius_m = nan",
+            "clearance.stage[1].ring.radius_m: ring radius = NaN m: it must",
+        ),
+        (
+            "[0.0, 1.0, 7.0]",
+            "[0.0, 0.0, 0.0]",
+            "clearance.stage[1].ring.axis: ring axis of length 0.0: it",
+        ),
         (
             "[0.5, 0.0, -0.5]",
             "[nan, 0.0, 0.0]",
-            "clearance.payload[1]: hull_m has coordinate NaN m",
+            "clearance.payload[1].hull_m: hull_m has coordinate NaN m",
         ),
         (
             "[0.5, 0.0, -0.5]",
             "[0.0, 1e300, 0.0]",
             "clearance.payload[1].hull_m: 1e300 m from the mass centre: it must be at most 10000.0 m",
         ),
-        ("points_m = [[0.0, 0.0, 0.3]]", "points_m = []", "clearance.stage[2]: points_m is empty"),
+        (
+            "points_m = [[0.0, 0.0, 0.3]]",
+            "points_m = []",
+            "clearance.stage[2].points_m: points_m is empty",
+        ),
         (
             "[0.0, 0.0, 0.3]]",
             many.as_str(),
-            "clearance.stage[2]: 1001 points in an outline: at most",
+            "clearance.stage[2].points_m: 1001 points in an outline: at most",
         ),
         (
             "payload = [{ hull_m = [[0.0, 0.0, -0.5], [0.5, 0.0, -0.5]] }]",
@@ -135,7 +147,7 @@ fn bad_values_name_the_field_the_value_and_what_is_allowed() {
             "stiffness_n_per_m = 0.0",
             "springs[1].stiffness_n_per_m: stiffness = 0.0 N/m",
         ),
-        ("stroke_m = 0.1", "stroke_m = inf", "springs[1].stroke_m: stroke = inf m"),
+        ("stroke_m = 0.1", "stroke_m = inf", "springs[1].stroke_m: inf: it must be at most 1e3"),
         (
             "stage_point_m = [1.0,",
             "stage_point_m = [nan,",
@@ -144,13 +156,21 @@ fn bad_values_name_the_field_the_value_and_what_is_allowed() {
         ("stroke_m = 0.1", "stroke_m = 0.1\nstart_s = -1.0", "springs[1].start_s: start = -1.0 s"),
         ("spin_axis = [1.0,", "spin_axis = [0.0,", "spin_axis: [0.0, 0.0, 0.0]: it must be"),
         ("name = \"peck-2003\"", "name = \"../peck\"", "name: \"../peck\": it must be 1 to 64"),
-        ("name = \"published\"", "name = \"proposed\"", "models: two are named \"proposed\""),
-        ("axes = \"whole-sphere\"", "", "models.proposed: law \"principal\" needs axes"),
-        ("matched_to = \"proposed\"", "matched_to = \"naive\"", "models.naive-matched.matched_to"),
+        (
+            "name = \"published\"",
+            "name = \"proposed\"",
+            "models[2].name: two are named \"proposed\"",
+        ),
+        ("axes = \"whole-sphere\"", "", "models[1].axes: missing: law \"principal\" needs axes"),
+        ("matched_to = \"proposed\"", "matched_to = \"naive\"", "models[4].matched_to"),
         ("physical = \"published\"", "physical = \"none\"", "comparisons[1].physical: \"none\""),
         ("physical = \"published\"", "physical = \"naive\"", "comparisons[1].physical: \"naive\""),
         ("naive = \"naive\"", "naive = \"proposed\"", "comparisons[1].naive: \"proposed\""),
-        ("name = \"published\"", "name = \"Proposed\"", "models: two are named \"Proposed\""),
+        (
+            "name = \"published\"",
+            "name = \"Proposed\"",
+            "models[2].name: two are named \"Proposed\"",
+        ),
         (
             "[source]",
             "[integration]\nhorizon_s = -1e300\n[source]",
@@ -300,56 +320,56 @@ fn bad_parameters_of_models_are_named() {
         .join("\n")
     };
     let cases = [
-        ("wishart", both("delta", "1.5"), "models.other.payload_delta: dispersion δ = 1.5"),
-        ("wishart", both("delta", "nan"), "models.other.payload_delta: dispersion δ = NaN"),
-        ("wishart", "payload_delta = 0.1".to_owned(), "models.other.stage_delta: missing"),
-        ("wishart", String::new(), "models.other.payload_delta: missing"),
+        ("wishart", both("delta", "1.5"), "models[5].payload_delta: dispersion δ = 1.5"),
+        ("wishart", both("delta", "nan"), "models[5].payload_delta: dispersion δ = NaN"),
+        ("wishart", "payload_delta = 0.1".to_owned(), "models[5].stage_delta: missing"),
+        ("wishart", String::new(), "models[5].payload_delta: missing"),
         (
             "wishart",
             both("deviation_kg_m2", &covariance(3, 1.0)),
-            "models.other.payload_deviation_kg_m2: law \"wishart\" needs either payload_delta",
+            "models[5].payload_deviation_kg_m2: law \"wishart\" needs either payload_delta",
         ),
         (
             "wishart",
             both("delta", "0.1") + "\nmatched_to = \"proposed\"",
-            "models.other.payload_delta: law \"wishart\" needs either",
+            "models[5].payload_delta: law \"wishart\" needs either",
         ),
-        ("wishart", "matched_to = \"naive\"".to_owned(), "models.other.matched_to: \"naive\""),
-        ("wishart", "axes = \"mean-half\"".to_owned(), "models.other.axes: law \"wishart\""),
+        ("wishart", "matched_to = \"naive\"".to_owned(), "models[5].matched_to: \"naive\""),
+        ("wishart", "axes = \"mean-half\"".to_owned(), "models[5].axes: law \"wishart\""),
         (
             "correlated-entries",
             both("covariance_kg2_m4", &covariance(6, -1.0)),
-            "models.other.payload_covariance_kg2_m4: covariance entry (1, 1)",
+            "models[5].payload_covariance_kg2_m4: covariance entry (1, 1)",
         ),
         (
             "realizable-entrywise",
             both("deviation_kg_m2", &covariance(3, -1.0)),
-            "models.other.payload_deviation_kg_m2: -1",
+            "models[5].payload_deviation_kg_m2: -1",
         ),
         (
             "log-cholesky",
             both("log_cholesky_covariance", &covariance(6, 100.0)),
-            "models.other.payload_log_cholesky_covariance: coordinate d1",
+            "models[5].payload_log_cholesky_covariance: coordinate d1",
         ),
         (
             "basilisk",
             basilisk("-1.0", "[-1.0, 1.0]", "0.1"),
-            "models.other.payload_diagonal_deviation_kg_m2: diagonal deviation = -1.0",
+            "models[5].payload_diagonal_deviation_kg_m2: diagonal deviation = -1.0",
         ),
         (
             "basilisk",
             basilisk("1.0", "[1.0, -1.0]", "0.1"),
-            "models.other.payload_diagonal_bounds_kg_m2: bounds from 1.0 to -1.0",
+            "models[5].payload_diagonal_bounds_kg_m2: bounds from 1.0 to -1.0",
         ),
         (
             "basilisk",
             basilisk("1.0", "[-1.0, 1.0]", "nan"),
-            "models.other.payload_angle_deviation_rad: angle deviation = NaN",
+            "models[5].payload_angle_deviation_rad: angle deviation = NaN",
         ),
         (
             "principal",
             "axes = \"mean-half\"\npayload_delta = 0.1".to_owned(),
-            "models.other.payload_delta: law \"principal\" takes axes",
+            "models[5].payload_delta: law \"principal\" takes axes",
         ),
     ];
     for (law, fields, expected) in cases {
@@ -409,14 +429,17 @@ fn bad_dispersions_are_named() {
     let rcg = &PECK_2003[PECK_2003.find("axes_covariance").unwrap()..];
     let rcg = &rcg[..rcg.find("\n]\n").unwrap() + 3];
     let message = error(rcg, "axes = \"fixed\"\n");
-    assert!(message.starts_with("models.published.axes: only \"whole-sphere\""), "{message}");
+    assert!(message.starts_with("models[2].axes: only \"whole-sphere\""), "{message}");
 }
 
 #[test]
 fn touching_pads_are_refused_and_explained() {
     let text = PECK_2003.replace("-0.9]", "-1.0]").replace(", 0.9]", ", 1.0]");
     let message = Scenario::from_toml(&text).unwrap_err().to_string();
-    assert!(message.starts_with("springs[1]: spring 1: its points are"), "{message}");
+    assert!(
+        message.starts_with("springs[1].payload_point_m: spring 1: its points are"),
+        "{message}"
+    );
     assert!(message.contains("apart"), "{message}");
 }
 
@@ -475,7 +498,7 @@ fn scenarios_have_limits() {
             for (key, shape) in [
                 ("points_m", format!("points_m = [{point:?}]")),
                 ("hull_m", format!("hull_m = [[0.0, 0.0, 0.1], {point:?}]")),
-                ("ring", format!("ring = {ring}")),
+                ("ring.centre_m", format!("ring = {ring}")),
             ] {
                 let outlines = format!(
                     "[clearance]\npayload = [{{ points_m = [[0.0, 0.0, -0.1]] }}]\nstage = [{{ {shape} }}]\n"

@@ -1,14 +1,19 @@
 //! The serialized forms.
 
+use serde::{
+    Deserialize, Deserializer, Serialize,
+    de::{Error, IgnoredAny, SeqAccess, Visitor},
+};
+use std::fmt;
+
 use super::{
     Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, Part,
-    ProductsStatement, StatementError,
+    ProductsStatement, StatementError, Unit, Written,
 };
-use serde::{Deserialize, Serialize};
 
 /// One number for all three, or three.
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(untagged, expecting = "there must be one number, or a list of three")]
+#[derive(Clone, Copy, Serialize)]
+#[serde(untagged)]
 pub(super) enum Three {
     One(f64),
     Each([f64; 3]),
@@ -19,6 +24,52 @@ impl Three {
         match self {
             Self::One(x) => [x; 3],
             Self::Each(x) => x,
+        }
+    }
+
+    fn each(self) -> bool {
+        matches!(self, Self::Each(_))
+    }
+}
+
+// By hand, for an untagged enum would not say what is there instead, nor which number is wrong.
+impl<'de> Deserialize<'de> for Three {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ThreeVisitor)
+    }
+}
+
+struct ThreeVisitor;
+
+impl<'de> Visitor<'de> for ThreeVisitor {
+    type Value = Three;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("one number, or a list of three")
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Three, E> {
+        Ok(Three::One(value))
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Three, E> {
+        Ok(Three::One(value as f64))
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Three, E> {
+        Ok(Three::One(value as f64))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Three, A::Error> {
+        let mut values = [0.0; 3];
+        for (i, value) in values.iter_mut().enumerate() {
+            *value = list.next_element()?.ok_or_else(|| A::Error::invalid_length(i, &self))?;
+        }
+        match list.next_element::<IgnoredAny>()? {
+            Some(_) => Err(A::Error::custom(
+                "there are more than three numbers: there must be one, or three",
+            )),
+            None => Ok(Three::Each(values)),
         }
     }
 }
@@ -37,15 +88,15 @@ impl TryFrom<Moments> for MomentsStatement {
     type Error = StatementError;
 
     fn try_from(file: Moments) -> Result<Self, StatementError> {
-        let amount = match (file.percent, file.kg_m2) {
-            (Some(x), None) => Amount::Percent(x.values()),
-            (None, Some(x)) => Amount::Absolute(x.values()),
-            _ => {
+        let (amount, each) = match (file.percent, file.kg_m2) {
+            (Some(x), None) => (Amount::Percent(x.values()), x.each()),
+            (None, Some(x)) => (Amount::Absolute(x.values()), x.each()),
+            (Some(_), Some(_)) | (None, None) => {
                 let allowed = "percent, kg_m2";
                 return Err(StatementError::Units { part: Part::Moments, allowed });
             }
         };
-        Self::new(amount, file.sigmas)
+        Self::written(amount, each, file.sigmas)
     }
 }
 
@@ -70,7 +121,7 @@ impl TryFrom<Products> for ProductsStatement {
     type Error = StatementError;
 
     fn try_from(file: Products) -> Result<Self, StatementError> {
-        Self::new(file.kg_m2.values(), file.sigmas)
+        Self::written(file.kg_m2.values(), file.kg_m2.each(), file.sigmas)
     }
 }
 
@@ -102,12 +153,9 @@ impl TryFrom<Axes> for AxesStatement {
 
     fn try_from(file: Axes) -> Result<Self, StatementError> {
         match (file.of, file.deg) {
-            (Of::EachAxis, deg) => Self::each(deg.values(), file.sigmas),
+            (Of::EachAxis, deg) => Self::written(deg.values(), deg.each(), file.sigmas),
             (Of::Total, Three::One(deg)) => Self::total(deg, file.sigmas),
-            (Of::Total, Three::Each(_)) => Err(StatementError::Units {
-                part: Part::Axes,
-                allowed: "one number of deg with of = \"total\", three with of = \"each-axis\"",
-            }),
+            (Of::Total, Three::Each(_)) => Err(StatementError::ThreeOfTotal),
         }
     }
 }
@@ -136,7 +184,9 @@ impl TryFrom<Mass> for MassStatement {
         match (file.percent, file.kg) {
             (Some(x), None) => Self::percent(x, file.sigmas),
             (None, Some(x)) => Self::kg(x, file.sigmas),
-            _ => Err(StatementError::Units { part: Part::Mass, allowed: "percent, kg" }),
+            (Some(_), Some(_)) | (None, None) => {
+                Err(StatementError::Units { part: Part::Mass, allowed: "percent, kg" })
+            }
         }
     }
 }
@@ -164,7 +214,10 @@ impl TryFrom<Centre> for CentreStatement {
     type Error = StatementError;
 
     fn try_from(file: Centre) -> Result<Self, StatementError> {
-        Self::new(file.mm.values().map(|x| 1e-3 * x), file.sigmas, file.arm_m)
+        let Centre { mm, sigmas, arm_m } = file;
+        let (unit, values, each) = (Unit::MM, mm.values(), mm.each());
+        let written = Written { part: Part::Centre, unit, values, each, sigmas };
+        Self::with_arm(written.scaled(1e-3)?, arm_m)
     }
 }
 

@@ -1,105 +1,21 @@
 //! The parts of a statement, each checked by itself.
 
+mod check;
+mod error;
 #[cfg(feature = "serde")]
 mod file;
+mod written;
 
-use std::fmt;
+use written::{Unit, Written};
+
+pub use error::{Part, StatementError};
 
 /// Most deviations that a statement may stand for.
 const MOST_SIGMAS: f64 = 10.0;
-/// Largest turn of the axes that is stated, deg: beyond it any axes do.
-const LARGEST_TURN: f64 = 45.0;
-
-/// Why a statement is refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum StatementError {
-    /// A number after the ± is negative, NaN or infinite.
-    #[error("{part}: ± {value}: it must be finite and not negative")]
-    Amount {
-        /// Which statement.
-        part: Part,
-        /// The number.
-        value: f64,
-    },
-    /// The number of deviations is not in range.
-    #[error(
-        "{part}: sigmas = {value}: it must be between 0.1 and {MOST_SIGMAS}: how many standard \
-         deviations ± stands for"
-    )]
-    Sigmas {
-        /// Which statement.
-        part: Part,
-        /// The number.
-        value: f64,
-    },
-    /// Axes beyond what a turn from a mean can be.
-    #[error("axes: ± {value}°: it must be at most {LARGEST_TURN}° (1σ)")]
-    Turn {
-        /// The turn of one deviation, deg.
-        value: f64,
-    },
-    /// A statement that gives no amount, or two.
-    #[error("{part}: there must be exactly one of {allowed}")]
-    Units {
-        /// Which statement.
-        part: Part,
-        /// The keys that give an amount.
-        allowed: &'static str,
-    },
-    /// A statement that needs the mass.
-    #[error("{part}: it needs the nominal mass")]
-    NoMass {
-        /// Which statement.
-        part: Part,
-    },
-    /// The mass is not positive and finite.
-    #[error("mass = {value} kg: it must be positive and finite")]
-    Mass {
-        /// The mass, kg.
-        value: f64,
-    },
-    /// The nominal body is a point, or so large or small that squares of its moments overflow.
-    #[error("nominal trace of inertia = {trace:e} kg·m²: it must be between 1e-60 and 1e60")]
-    Nominal {
-        /// The trace, kg·m².
-        trace: f64,
-    },
-    /// What is stated is too large for any law.
-    #[error("the statements do not make a law: {problem}")]
-    Law {
-        /// Why.
-        problem: String,
-    },
-}
-
-/// Which statement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Part {
-    /// On the moments.
-    Moments,
-    /// On the products.
-    Products,
-    /// On the axes.
-    Axes,
-    /// On the mass.
-    Mass,
-    /// On the mass centre.
-    Centre,
-}
-
-impl fmt::Display for Part {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Moments => "moments",
-            Self::Products => "products",
-            Self::Axes => "axes",
-            Self::Mass => "mass",
-            Self::Centre => "centre",
-        })
-    }
-}
+/// Largest stated deviation of moments and products, in traces of the nominal inertia.
+const MOST_TRACES: f64 = 10.0;
+/// Longest arm, m.
+const LONGEST_ARM: f64 = 1e6;
 
 /// What follows the ±.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,16 +24,6 @@ pub enum Amount {
     Percent([f64; 3]),
     /// In the unit of what is stated.
     Absolute([f64; 3]),
-}
-
-fn checked(part: Part, values: [f64; 3], sigmas: f64) -> Result<[f64; 3], StatementError> {
-    if !(0.1..=MOST_SIGMAS).contains(&sigmas) {
-        return Err(StatementError::Sigmas { part, value: sigmas });
-    }
-    match values.iter().find(|x| !(**x >= 0.0 && **x <= 1e30)) {
-        Some(&value) => Err(StatementError::Amount { part, value }),
-        None => Ok(values.map(|x| x / sigmas)),
-    }
 }
 
 /// “Moments ± 10 % (1σ)”: deviations of the diagonal entries I₁₁, I₂₂, I₃₃, about body axes.
@@ -135,15 +41,19 @@ impl MomentsStatement {
     /// ± `amount` (% or kg·m²) stands for so many standard deviations.
     ///
     /// # Errors
-    /// A number is negative or not finite, or `sigmas` is not between 0.1 and 10.
+    /// A number is negative, not finite or beyond a standard deviation of 1000 %, or `sigmas` is not
+    /// between 0.1 and 10.
     pub fn new(amount: Amount, sigmas: f64) -> Result<Self, StatementError> {
-        let check = |values| checked(Part::Moments, values, sigmas);
-        Ok(Self {
-            amount: match amount {
-                Amount::Percent(values) => Amount::Percent(check(values)?),
-                Amount::Absolute(values) => Amount::Absolute(check(values)?),
-            },
-        })
+        Self::written(amount, true, sigmas)
+    }
+
+    fn written(amount: Amount, each: bool, sigmas: f64) -> Result<Self, StatementError> {
+        let written = |unit, values| Written { part: Part::Moments, unit, values, each, sigmas };
+        let amount = match amount {
+            Amount::Percent(x) => Amount::Percent(written(Unit::PERCENT, x).deviations()?),
+            Amount::Absolute(x) => Amount::Absolute(written(Unit::KG_M2, x).deviations()?),
+        };
+        Ok(Self { amount })
     }
 
     /// Standard deviations of I₁₁, I₂₂, I₃₃, kg·m².
@@ -174,7 +84,12 @@ impl ProductsStatement {
     /// # Errors
     /// As for [`MomentsStatement::new`].
     pub fn new(kg_m2: [f64; 3], sigmas: f64) -> Result<Self, StatementError> {
-        Ok(Self { deviations: checked(Part::Products, kg_m2, sigmas)? })
+        Self::written(kg_m2, true, sigmas)
+    }
+
+    fn written(values: [f64; 3], each: bool, sigmas: f64) -> Result<Self, StatementError> {
+        let written = Written { part: Part::Products, unit: Unit::KG_M2, values, each, sigmas };
+        Ok(Self { deviations: written.deviations()? })
     }
 
     /// Standard deviations, kg·m².
@@ -200,22 +115,26 @@ impl AxesStatement {
     /// ± degrees of the turn about each principal axis stands for so many standard deviations.
     ///
     /// # Errors
-    /// As for [`MomentsStatement::new`], or a deviation is beyond 45°.
+    /// As for [`MomentsStatement::new`], but a standard deviation may be 45° at most.
     pub fn each(deg: [f64; 3], sigmas: f64) -> Result<Self, StatementError> {
-        let deviations = checked(Part::Axes, deg, sigmas)?;
-        match deviations.iter().find(|d| **d > LARGEST_TURN) {
-            Some(&value) => Err(StatementError::Turn { value }),
-            None => Ok(Self { deviations: deviations.map(f64::to_radians) }),
-        }
+        Self::written(deg, true, sigmas)
     }
 
     /// ± degrees of the angle of the whole turn, whatever its axis: its root mean square is
     /// `deg`/`sigmas`, a third of its square falls on each axis.
     ///
     /// # Errors
-    /// As for [`each`](Self::each).
+    /// As for [`each`](Self::each), but a standard deviation may be 75° at most.
     pub fn total(deg: f64, sigmas: f64) -> Result<Self, StatementError> {
-        Self::each([deg / 3_f64.sqrt(); 3], sigmas)
+        let (unit, values) = (Unit::DEG_IN_ALL, [deg; 3]);
+        let written = Written { part: Part::Axes, unit, values, each: false, sigmas };
+        let deviations = written.scaled(1.0 / 3_f64.sqrt())?;
+        Ok(Self { deviations: deviations.map(f64::to_radians) })
+    }
+
+    fn written(values: [f64; 3], each: bool, sigmas: f64) -> Result<Self, StatementError> {
+        let written = Written { part: Part::Axes, unit: Unit::DEG, values, each, sigmas };
+        Ok(Self { deviations: written.deviations()?.map(f64::to_radians) })
     }
 
     /// Standard deviations of the turns about principal axes 1, 2, 3, rad.
@@ -240,9 +159,10 @@ impl MassStatement {
     /// ± percent.
     ///
     /// # Errors
-    /// As for [`MomentsStatement::new`].
+    /// As for [`MomentsStatement::new`], but a standard deviation may be 100 % at most.
     pub fn percent(percent: f64, sigmas: f64) -> Result<Self, StatementError> {
-        Ok(Self { amount: Amount::Percent(checked(Part::Mass, [percent; 3], sigmas)?) })
+        Self::written(Unit::PERCENT_OF_MASS, percent, sigmas)
+            .map(|x| Self { amount: Amount::Percent(x) })
     }
 
     /// ± kg.
@@ -250,7 +170,11 @@ impl MassStatement {
     /// # Errors
     /// As for [`MomentsStatement::new`].
     pub fn kg(kg: f64, sigmas: f64) -> Result<Self, StatementError> {
-        Ok(Self { amount: Amount::Absolute(checked(Part::Mass, [kg; 3], sigmas)?) })
+        Self::written(Unit::KG, kg, sigmas).map(|x| Self { amount: Amount::Absolute(x) })
+    }
+
+    fn written(unit: Unit, value: f64, sigmas: f64) -> Result<[f64; 3], StatementError> {
+        Written { part: Part::Mass, unit, values: [value; 3], each: false, sigmas }.deviations()
     }
 
     /// Standard deviation over the nominal mass.
@@ -285,12 +209,19 @@ impl CentreStatement {
     /// moved to the mass centre; zero if it was computed about the nominal mass centre.
     ///
     /// # Errors
-    /// As for [`MomentsStatement::new`]; the arm must be finite.
+    /// A number is negative, not finite or beyond a standard deviation of 10 km, `sigmas` is not between
+    /// 0.1 and 10, or the arm is not finite or longer than 1000 km.
     pub fn new(metres: [f64; 3], sigmas: f64, arm_m: [f64; 3]) -> Result<Self, StatementError> {
-        if let Some(&value) = arm_m.iter().find(|x| !(x.abs() <= 1e12)) {
-            return Err(StatementError::Amount { part: Part::Centre, value });
+        let unit = Unit::M;
+        let written = Written { part: Part::Centre, unit, values: metres, each: true, sigmas };
+        Self::with_arm(written.deviations()?, arm_m)
+    }
+
+    fn with_arm(deviations: [f64; 3], arm: [f64; 3]) -> Result<Self, StatementError> {
+        match arm.iter().position(|x| !(x.abs() <= LONGEST_ARM)) {
+            Some(index) => Err(StatementError::Arm { index, value: arm[index], most: LONGEST_ARM }),
+            None => Ok(Self { deviations, arm }),
         }
-        Ok(Self { deviations: checked(Part::Centre, metres, sigmas)?, arm: arm_m })
     }
 
     /// Standard deviations along body axes 1, 2, 3, m.

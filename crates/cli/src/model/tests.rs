@@ -1,0 +1,148 @@
+//! Files of statements with every key made wrong in every way.
+
+use super::*;
+use toml::{Table, Value};
+
+const COMPLETE: &str = include_str!("../../tests/tables/payload.toml");
+
+/// Files that say everything there is, in every unit, and each statement alone.
+fn files() -> Vec<Table> {
+    let everything: Table = COMPLETE.parse().unwrap();
+    let mut other = everything.clone();
+    let tables = [
+        ("moments", "kg_m2 = [500.0, 400.0, 300.0]\nsigmas = 3"),
+        ("products", "kg_m2 = [20.0, 30.0, 40.0]\nsigmas = 2.5"),
+        ("axes", "deg = [1.0, 2.0, 3.0]\nsigmas = 3\nof = \"each-axis\""),
+        ("mass", "kg = 50.0\nsigmas = 1"),
+        ("centre", "mm = [1.0, 2.0, 3.0]\nsigmas = 3\narm_m = [0.0, 0.1, 1.0]"),
+    ];
+    for (name, table) in tables {
+        let table = table.parse::<Table>().unwrap();
+        other.insert(name.to_owned(), table.into());
+    }
+    let mut total = everything.clone();
+    total["axes"].as_table_mut().unwrap().insert("of".to_owned(), "total".into());
+    let mut all = vec![everything, other.clone(), total];
+    for (name, _) in tables {
+        let alone = other.iter().filter(|(k, _)| *k == name || *k == "nominal");
+        all.push(alone.map(|(k, v)| (k.clone(), v.clone())).collect());
+    }
+    all
+}
+
+/// What a place may become; none for it to go.
+fn wrong() -> Vec<Option<Value>> {
+    let list = |x: f64, n: usize| Value::Array(vec![Value::Float(x); n]);
+    let mut all = vec![
+        None,
+        Some(true.into()),
+        Some("ten".into()),
+        Some(Value::Array(Vec::new())),
+        Some(list(1.0, 2)),
+        Some(list(1.0, 4)),
+        Some(list(f64::NAN, 3)),
+        Some(list(-1.0, 3)),
+        Some(Table::new().into()),
+        Some(Value::Integer(-1)),
+        Some(Value::Integer(i64::MAX)),
+    ];
+    let floats = [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e300, -1e300, 1e19, -0.5];
+    all.extend(floats.map(|x| Some(Value::Float(x))));
+    all
+}
+
+fn refused(file: &Table, key: &str) -> Option<String> {
+    let text = toml::to_string(file).unwrap();
+    let message = stated(&text).err()?;
+    let digits = message.split(|c: char| !c.is_ascii_digit()).map(str::len).max();
+    assert!(digits < Some(25) && message.len() < 600, "{key}: {message}");
+    Some(message)
+}
+
+/// What has a default may be left out, and so may a mass that nothing needs; an arm points anywhere, and
+/// the nominal mass may be huge.
+fn may_be(key: &str, change: Option<&Value>) -> bool {
+    match (key, change) {
+        ("of" | "arm_m" | "mass_kg", None) => true,
+        ("arm_m", Some(Value::Array(arm))) => arm[0].as_float() == Some(-1.0),
+        ("mass_kg", Some(mass)) => {
+            mass.as_float().or(mass.as_integer().map(|m| m as f64)) > Some(1e18)
+        }
+        _ => false,
+    }
+}
+
+/// Every key with every wrong value, in every kind of file: refused, by the name of the key, with the
+/// value and what is allowed.
+#[test]
+fn whatever_is_wrong_is_refused_by_its_key() {
+    let mut count = 0;
+    for file in files() {
+        for (name, table) in &file {
+            for key in table.as_table().unwrap().keys() {
+                for change in wrong() {
+                    let mut changed = file.clone();
+                    let table = changed[name].as_table_mut().unwrap();
+                    match &change {
+                        Some(new) => drop(table.insert(key.clone(), new.clone())),
+                        None => drop(table.remove(key)),
+                    }
+                    let told = format!("{name}.{key} = {change:?}");
+                    let Some(message) = refused(&changed, &told) else {
+                        assert!(may_be(key, change.as_ref()), "{told}");
+                        continue;
+                    };
+                    count += 1;
+                    let told = format!("{told}: {message}");
+                    // An amount that is missing may be given in another unit.
+                    let missing = change.is_none() && message.starts_with(name.as_str());
+                    let named = message.starts_with(&format!("{name}.{key}"));
+                    assert!(named || missing && message.contains(key.as_str()), "{told}");
+                    let value = match &change {
+                        Some(Value::Float(x)) => {
+                            // What cannot be for this body is said as a standard deviation.
+                            vec![
+                                format!("{x:?}"),
+                                format!("`{x:.1}`"),
+                                "a standard deviation of".into(),
+                            ]
+                        }
+                        Some(Value::String(text)) => vec![text.clone()],
+                        _ => vec![String::new()],
+                    };
+                    assert!(value.iter().any(|value| message.contains(value)), "{told}");
+                    let allowed = ["must", "expected", "missing", "needs"];
+                    assert!(allowed.iter().any(|word| message.contains(word)), "{told}");
+                }
+            }
+            let mut unknown = file.clone();
+            unknown[name].as_table_mut().unwrap().insert("percents".to_owned(), 1.0.into());
+            let message = refused(&unknown, name).unwrap();
+            assert!(
+                message.starts_with(name.as_str()) && message.contains("`percents`"),
+                "{message}"
+            );
+            let mut twice = file.clone();
+            twice.insert(name.clone(), 3.0.into());
+            let message = refused(&twice, name).unwrap();
+            assert!(message.starts_with(&format!("{name}: ")), "{message}");
+        }
+    }
+    assert!(count > 1000, "{count}");
+}
+
+/// A file that states nothing, and tables that are not known.
+#[test]
+fn nothing_is_refused_with_what_may_be_stated() {
+    for mut file in files() {
+        let statements: Vec<_> = file.keys().filter(|k| *k != "nominal").cloned().collect();
+        for name in statements {
+            file.remove(&name);
+        }
+        let message = refused(&file, "nothing").unwrap();
+        assert!(message.starts_with("nothing is stated") && message.contains("[products]"));
+        file.insert("moment".to_owned(), Table::new().into());
+        let message = refused(&file, "moment").unwrap();
+        assert!(message.contains("`moment`") && message.contains("`moments`"), "{message}");
+    }
+}
