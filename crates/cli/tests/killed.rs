@@ -43,9 +43,21 @@ fn one_whole_study_survives_a_kill() {
         }
         child.kill().unwrap();
         child.wait().unwrap();
-        let next = match round % 3 {
+        let next = match round {
             0 => gyradius(&["replay", "here", "--run", "4", "--out", "replay", "--force"]),
             1 => study("5"),
+            2 => gyradius(&[
+                "replay",
+                "here/scenario.toml",
+                "--run",
+                "4",
+                "--out",
+                "replay",
+                "--force",
+            ]),
+            // A scenario holds bodies.
+            3 => gyradius(&["check", "here/scenario.toml"]),
+            4 => gyradius(&["check", "."]),
             _ => gyradius(&["study", "--scenario", "here/scenario.toml", "--out", "here"]),
         }
         .output()

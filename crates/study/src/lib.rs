@@ -48,7 +48,7 @@ pub use replay::{Replay, ReplayError};
 pub use row::{Failure, Row};
 pub use runner::Progress;
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
-pub use study::{Options, Study, StudyError};
+pub use study::{Options, Study, StudyError, restore_studies};
 pub use summary::Summary;
 pub use table::RunTable;
 pub use visible::{visible, visible_json};

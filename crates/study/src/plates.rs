@@ -19,6 +19,38 @@ pub(crate) struct Plate {
     pub(crate) svg: String,
 }
 
+/// Where a figure is written, from the folder.
+pub(crate) fn file_of(name: &str) -> String {
+    format!("figures/{name}.svg")
+}
+
+const ATTITUDES: &str = "figure-1-attitudes";
+/// Of two models that are compared, whose names follow.
+const RATIO_AND_WOBBLE: &str = "figure-4-7";
+const INERTIA_OF_PAYLOAD: &str = "figure-5-8-payload";
+const INERTIA_OF_STAGE: &str = "figure-5-8-stage";
+const ANGLES: &str = "figure-6-9";
+/// Of all models of inertia, which the summary makes.
+pub(crate) const EVERY_MODEL: &str = "figure-models";
+const CLEARANCE: &str = "clearance";
+
+fn of_pair(name: &str, physical: &str, naive: &str) -> String {
+    format!("{name}-{physical}-vs-{naive}")
+}
+
+/// The names of all figures that a study of a scenario may have: known before the runs, so that what is
+/// in their way is.
+pub(crate) fn names(scenario: &Scenario) -> Vec<String> {
+    let mut names = [ATTITUDES, CLEARANCE, EVERY_MODEL].map(str::to_owned).to_vec();
+    let models: Vec<&str> = scenario.model_names().collect();
+    for comparison in scenario.comparisons() {
+        let (physical, naive) = (models[comparison.physical], models[comparison.naive]);
+        let paired = [RATIO_AND_WOBBLE, INERTIA_OF_PAYLOAD, INERTIA_OF_STAGE, ANGLES];
+        names.extend(paired.map(|name| of_pair(name, physical, naive)));
+    }
+    names
+}
+
 pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Vec<Plate> {
     // Other vehicles have no figures of the paper to be compared with.
     let numbered = |what: &str, number: &str| match scenario.source() {
@@ -28,7 +60,6 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
     let mut plates: Vec<Plate> = attitudes(scenario, tables, &numbered).into_iter().collect();
     for comparison in scenario.comparisons() {
         let (physical, naive) = (&tables[comparison.physical], &tables[comparison.naive]);
-        let pair = format!("{}-vs-{}", physical.model(), naive.model());
         let title = |what: &str| format!("{what}: {} and {}", physical.model(), naive.model());
         let grid = |name: &str, what: &str, quantities: &[Option<Quantity>], columns: usize| {
             let samples: Vec<Option<[Vec<f64>; 2]>> = quantities
@@ -55,31 +86,31 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
                 })
                 .collect();
             Plate {
-                name: format!("{name}-{pair}"),
+                name: of_pair(name, physical.model(), naive.model()),
                 caption: format!("{}. {}", comparison.title, title(what)),
                 svg: histogram_grid(&title(what), &panels, columns),
             }
         };
         plates.push(grid(
-            "figure-4-7",
+            RATIO_AND_WOBBLE,
             &numbered("Inertia ratio and wobble", "Figures 4 and 7"),
             &[Some(Quantity::InertiaRatio), Some(Quantity::Wobble)],
             2,
         ));
         plates.push(grid(
-            "figure-5-8-payload",
+            INERTIA_OF_PAYLOAD,
             &numbered("Inertia of the payload, in matrix order", "Figures 5 and 8"),
             &matrix_order(Body::Payload),
             3,
         ));
         plates.push(grid(
-            "figure-5-8-stage",
+            INERTIA_OF_STAGE,
             &numbered("Inertia of the stage, in matrix order", "Figures 5 and 8"),
             &matrix_order(Body::Stage),
             3,
         ));
         plates.push(grid(
-            "figure-6-9",
+            ANGLES,
             &numbered("Wobble, nutation and coning", "Figures 6 and 9"),
             &[Some(Quantity::Wobble), Some(Quantity::Nutation), Some(Quantity::Cone)],
             3,
@@ -116,7 +147,7 @@ fn clearance(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Opt
         .collect();
     let title = "Smallest distance of payload and stage after the last release";
     (!panels.is_empty()).then(|| Plate {
-        name: "clearance".to_owned(),
+        name: CLEARANCE.to_owned(),
         caption: format!("{title}; runs in which they touch again are at 0"),
         svg: histogram_grid(title, &panels, if panels.len() > 4 { 3 } else { 2 }),
     })
@@ -143,7 +174,7 @@ fn attitudes(
     }
     let title = numbered("Principal axes of the payload", "Figure 1");
     Some(Plate {
-        name: "figure-1-attitudes".to_owned(),
+        name: ATTITUDES.to_owned(),
         caption: format!(
             "{title}. Random attitudes of each model, as the tips of the unit axes on the sphere; of many, \
              some that are evenly spaced in run order"
@@ -164,4 +195,55 @@ fn matrix_order(body: Body) -> [Option<Quantity>; 9] {
     use Entry::{I11, I12, I13, I22, I23, I33};
     [Some(I11), Some(I12), Some(I13), None, Some(I22), Some(I23), None, None, Some(I33)]
         .map(|entry| entry.map(|e| body.entry(e)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Options, Study};
+
+    /// Scenarios with figures of every kind: each file of a figure is announced before the runs, and a file of
+    /// the user's in its place is found then, in every place, and left alone.
+    #[test]
+    fn what_is_in_the_way_of_a_figure_is_found_before_the_runs() {
+        let paper = Scenario::peck_2003().unwrap().to_toml();
+        let outlines = "[clearance]\npayload = [{ points_m = [[0.0, 0.0, -0.6]] }]\n\
+                        stage = [{ points_m = [[0.0, 0.0, 0.6]] }]\n[payload]\n";
+        let other =
+            "\n[[comparisons]]\ntitle = \"another\"\nphysical = \"proposed\"\nnaive = \"naive\"\n";
+        let alone = paper[..paper.find("[[comparisons]]").unwrap()].to_owned();
+        for text in [
+            paper.clone(),
+            paper.replacen("[payload]\n", outlines, 1) + other,
+            alone.replacen("[payload]\n", outlines, 1),
+        ] {
+            let scenario = Scenario::from_toml(&text).unwrap().with_runs(6).unwrap();
+            let names: Vec<String> = names(&scenario).iter().map(|name| file_of(name)).collect();
+            let scratch = tempfile::tempdir().unwrap();
+            let options = |place: &str| Options {
+                out: Some(scratch.path().join(place)),
+                ..Options::default()
+            };
+            let study = Study::run(&scenario, &options("free"), &|_| {}).unwrap();
+            let mut written = 0;
+            for entry in std::fs::read_dir(study.folder().join("figures")).unwrap() {
+                let name = format!("figures/{}", entry.unwrap().file_name().to_str().unwrap());
+                assert!(names.contains(&name), "{name}");
+                written += 1;
+            }
+            assert!(written > 1);
+            for (i, name) in names.iter().enumerate() {
+                let options = Options { force: true, ..options(&format!("taken-{i}")) };
+                let mine = options.out.as_ref().unwrap().join(name);
+                std::fs::create_dir_all(mine.parent().unwrap()).unwrap();
+                std::fs::write(&mine, "mine").unwrap();
+                let begun = std::sync::atomic::AtomicBool::new(false);
+                let begin = |_| begun.store(true, std::sync::atomic::Ordering::Relaxed);
+                let error = Study::run(&scenario, &options, &begin).unwrap_err().to_string();
+                assert!(error.contains(name), "{error}");
+                assert!(!begun.into_inner(), "{name}");
+                assert_eq!(std::fs::read_to_string(&mine).unwrap(), "mine");
+            }
+        }
+    }
 }

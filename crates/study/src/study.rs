@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::{
     Forecast, Progress, RunTable, Scenario, ScenarioError, Summary,
-    folder::{Contents, Folder, FolderError},
+    folder::{self, Contents, Folder, FolderError},
     plates, report, runner,
 };
 
@@ -120,7 +120,7 @@ impl Study {
         }
         folder.write("summary.json", &(serde_json::to_string_pretty(&summary)? + "\n"))?;
         for figure in &figures {
-            folder.write(&format!("figures/{}.svg", figure.name), &figure.svg)?;
+            folder.write(&plates::file_of(&figure.name), &figure.svg)?;
         }
         folder.write("report.html", &report::html(scenario, &summary, &figures))?;
         Ok(Self { folder: folder.publish()?, tables, summary })
@@ -145,12 +145,23 @@ impl Study {
     }
 }
 
-/// What a study writes besides its figures.
+/// Puts whole what commands that were killed left of studies and comparisons: in a folder and all those
+/// below it, or in the folder that a file is in. For programs that read such folders; nothing else is
+/// touched.
+///
+/// # Errors
+/// Neither the old nor the new files can be put in place.
+pub fn restore_studies(path: &Path) -> Result<(), StudyError> {
+    Ok(folder::restore_all(path)?)
+}
+
+/// What a study writes, and the figures that it may write.
 fn contents(scenario: &Scenario) -> Contents<'_> {
     let tables = scenario.model_names().map(|model| format!("runs/{model}/runs.parquet"));
+    let figures = plates::names(scenario).into_iter().map(|name| plates::file_of(&name));
     let others = ["scenario.toml", "summary.json", "report.html", "figures/"].map(str::to_owned);
     let same = |text: &str| text == scenario.to_toml();
-    Contents::new("study", "scenario.toml", tables.chain(others), same)
+    Contents::new("study", "scenario.toml", tables.chain(figures).chain(others), same)
 }
 
 pub(crate) fn threads(number: Option<usize>) -> Result<rayon::ThreadPool, StudyError> {

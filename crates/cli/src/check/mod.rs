@@ -5,6 +5,7 @@ mod report;
 mod table;
 
 use gyradius_formats::{Found, InertiaFile, Products, find};
+use gyradius_study::restore_studies;
 use std::{
     fs, io,
     path::{Path, PathBuf},
@@ -29,6 +30,13 @@ pub(crate) fn check(arguments: &CheckArgs) -> ExitCode {
     if !inputs.is_empty() && arguments.repair.is_some() {
         complain("standard input: --repair writes beside a file, and there is none");
         return ExitCode::from(REFUSED);
+    }
+    // A study that was killed while it replaced another may have put files aside.
+    for path in &paths {
+        if let Err(error) = restore_studies(path) {
+            complain(harmless(&error.to_string()));
+            return ExitCode::from(REFUSED);
+        }
     }
     let (mut found, errors) = find(&paths);
     let mut report = Report::default();

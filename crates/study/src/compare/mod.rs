@@ -32,6 +32,7 @@ pub(crate) use section::Section;
 use crate::{
     Progress, StudyError,
     folder::{Contents, Folder, FolderError},
+    plates::file_of,
     scenario::{Scenario, ScenarioError},
     streams::Streams,
     study::threads,
@@ -169,7 +170,8 @@ impl ModelComparison {
         let settings = Settings::new(&plan);
         let wanted = serde_json::to_value(&settings)?;
         let certain = ["compare.html", "compare.csv", "compare.json", "figures/"];
-        let certain = certain.map(str::to_owned);
+        let figures = plates::names().into_iter().map(|name| file_of(&name));
+        let certain = certain.map(str::to_owned).into_iter().chain(figures);
         let contents = Contents::new("comparison", "compare.json", certain, |text: &str| {
             serde_json::from_str::<serde_json::Value>(text)
                 .is_ok_and(|found| found.get("settings") == Some(&wanted))
@@ -195,7 +197,7 @@ impl ModelComparison {
     fn write(&self, mut folder: Folder<'_>) -> Result<PathBuf, CompareError> {
         let plates = self.plates();
         for plate in &plates {
-            folder.write(&format!("figures/{}.svg", plate.name), &plate.svg)?;
+            folder.write(&file_of(&plate.name), &plate.svg)?;
         }
         folder.write("compare.html", &self.page(&plates))?;
         folder.write("compare.csv", &self.to_csv())?;

@@ -38,9 +38,25 @@ enum Scale {
     PerPercent,
 }
 
-type Value = fn(&Results) -> Option<(f64, Option<[f64; 2]>)>;
+const UNREALIZABLE: &str = "compare-unrealizable";
 
-fn line(body: &BodyResult, kind: ModelKind, value: Value, scale: Scale) -> Line {
+/// Measures whose spread has a figure.
+const SPREAD: [Measure; 4] =
+    [Measure::InertiaRatio, Measure::Wobble, Measure::Nutation, Measure::LargestMoment];
+
+fn name_of(measure: Measure) -> String {
+    format!("compare-{}", measure.name().replace('_', "-"))
+}
+
+/// The names of all figures that a comparison may have.
+pub(super) fn names() -> Vec<String> {
+    let spread = SPREAD.into_iter().map(name_of);
+    spread.chain([UNREALIZABLE.to_owned()]).collect()
+}
+
+type Value<'a> = &'a dyn Fn(&Results) -> Option<(f64, Option<[f64; 2]>)>;
+
+fn line(body: &BodyResult, kind: ModelKind, value: Value<'_>, scale: Scale) -> Line {
     let (colour, dashed) = pen(kind);
     let point = |level: &LevelResult| {
         let r = level.cell(kind)?.results.as_ref()?;
@@ -62,17 +78,11 @@ fn line(body: &BodyResult, kind: ModelKind, value: Value, scale: Scale) -> Line 
 
 impl ModelComparison {
     pub(super) fn plates(&self) -> Vec<Plate> {
-        let share: Value = |r| {
+        let share = |r: &Results| {
             let u = &r.unrealizable;
             let percent = [u.interval.lower() * 100.0, u.interval.upper() * 100.0];
             Some((100.0 * u.share, Some(percent)))
         };
-        let spread: [(Measure, Value); 4] = [
-            (Measure::InertiaRatio, |r| headline(r, Measure::InertiaRatio)),
-            (Measure::Wobble, |r| headline(r, Measure::Wobble)),
-            (Measure::Nutation, |r| headline(r, Measure::Nutation)),
-            (Measure::LargestMoment, |r| headline(r, Measure::LargestMoment)),
-        ];
         let may_fail = |kind: &ModelKind| !kind.is_realizable_by_construction();
         let mut plates = Vec::new();
         if self.settings.models.iter().any(may_fail) {
@@ -90,26 +100,26 @@ impl ModelComparison {
             };
             plates.push(self.plate(
                 &Words {
-                    name: "compare-unrealizable".to_owned(),
+                    name: UNREALIZABLE.to_owned(),
                     title: "Draws that no body has".to_owned(),
                     label: "share of draws (%)".to_owned(),
                     caption,
                 },
                 may_fail,
-                share,
+                &share,
                 Scale::Plain,
             ));
         }
-        for (measure, value) in spread {
+        for measure in SPREAD {
             plates.push(self.plate(
                 &Words {
-                    name: format!("compare-{}", measure.name().replace('_', "-")),
+                    name: name_of(measure),
                     title: format!("{}, for each percent of uncertainty", capital(measure)),
                     label: unit(measure),
                     caption: String::new(),
                 },
                 |_| true,
-                value,
+                &move |r| headline(r, measure),
                 Scale::PerPercent,
             ));
         }
@@ -120,7 +130,7 @@ impl ModelComparison {
         &self,
         Words { name, title, label, caption }: &Words,
         shown: impl Fn(&ModelKind) -> bool,
-        value: Value,
+        value: Value<'_>,
         scale: Scale,
     ) -> Plate {
         let panels: Vec<LinePanel> = self

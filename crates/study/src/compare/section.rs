@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{
     figures::{Label, RangePanel, range_grid},
-    plates::Plate,
+    plates::{EVERY_MODEL, Plate},
     scenario::{Axes, Scenario, UncertainBody},
 };
 
@@ -84,7 +84,7 @@ impl Section {
         let panels = [Measure::InertiaRatio, Measure::Wobble, Measure::Nutation].map(panel);
         let title = "Every model with the payload's mean and covariance";
         Some(Plate {
-            name: "figure-models".to_owned(),
+            name: EVERY_MODEL.to_owned(),
             caption: format!(
                 "{title}: median and middle 90 % of {DRAWS} draws (nutation: {SEPARATIONS} separations, \
                  nominal stage)"
@@ -145,6 +145,6 @@ fn unit(measure: Measure) -> String {
 
 fn td(block: Block, cell: Option<&Cell>) -> Markup {
     html! {
-        td { @if is_poor(cell) { "(" (block.full(cell)) ")" } @else { (block.full(cell)) } }
+        td { @if is_poor(cell) { "(" (block.cell(cell)) ")" } @else { (block.cell(cell)) } }
     }
 }

@@ -227,3 +227,32 @@ fn lines_fit_a_terminal() {
         }
     }
 }
+
+/// Each file of a figure is announced before the draws, and a file of the user's in its place is found then.
+#[test]
+fn what_is_in_the_way_of_a_figure_is_found_before_the_draws() {
+    let scratch = tempfile::tempdir().unwrap();
+    let options = |place: &str| CompareOptions {
+        draws: 50,
+        separations: 10,
+        bodies: vec!["payload".to_owned()],
+        levels_percent: vec![1.0, 3.0],
+        out: Some(scratch.path().join(place)),
+        force: true,
+        ..CompareOptions::default()
+    };
+    let names: Vec<String> = plates::names().iter().map(|name| file_of(name)).collect();
+    ModelComparison::run(&options("free"), &|_| {}).unwrap();
+    for entry in std::fs::read_dir(scratch.path().join("free/figures")).unwrap() {
+        let name = format!("figures/{}", entry.unwrap().file_name().to_str().unwrap());
+        assert!(names.contains(&name), "{name}");
+    }
+    for (i, name) in names.iter().enumerate() {
+        let options = options(&format!("taken-{i}"));
+        let mine = options.out.as_ref().unwrap().join(name);
+        std::fs::create_dir_all(mine.parent().unwrap()).unwrap();
+        std::fs::write(&mine, "mine").unwrap();
+        let error = ModelComparison::run(&options, &|_| panic!("it has begun")).unwrap_err();
+        assert!(error.to_string().contains(name), "{error}");
+    }
+}

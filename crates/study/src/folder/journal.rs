@@ -228,11 +228,21 @@ pub(super) fn settle_left(hidden: &Hidden) -> Result<(), Problem> {
     }
 }
 
-/// Whether a folder is not whole until its journal is settled.
-pub(super) fn is_pending(place: &Path) -> Result<bool, Problem> {
-    let lines = read(place)?.unwrap_or_default();
+/// What a command left that was killed, or that is still at work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Left {
+    /// Files that nobody sees; the folder is whole.
+    Draft,
+    /// The folder is not whole until the journal is settled.
+    Replacement,
+}
+
+/// What a journal tells of, if there is one.
+pub(super) fn left(place: &Path) -> Result<Option<Left>, Problem> {
+    let Some(lines) = read(place)? else { return Ok(None) };
     let replaces = lines.iter().any(|line| matches!(line, Line::Replace(_)));
-    Ok(replaces && !lines.iter().any(|line| matches!(line, Line::Settled)))
+    let settled = lines.iter().any(|line| matches!(line, Line::Settled));
+    Ok(Some(if replaces && !settled { Left::Replacement } else { Left::Draft }))
 }
 
 /// The lines of a journal; the last one is not there if it was broken off.

@@ -25,7 +25,7 @@ use std::{
 };
 
 use hidden::Hidden;
-use journal::{Journal, Replacement};
+use journal::{Journal, Left, Replacement};
 use name::{Found, Name, look};
 use record::Record;
 
@@ -171,9 +171,7 @@ fn make_folder(place: &Path) -> io::Result<()> {
     let missing: Vec<_> = place.ancestors().take_while(|above| !above.exists()).collect();
     fs::create_dir_all(place)?;
     for made in missing {
-        // The folder of a name without one is the current folder.
-        let above = made.parent().filter(|above| !above.as_os_str().is_empty());
-        disk::sync_folder(above.unwrap_or(Path::new(".")))?;
+        disk::sync_folder(folder_of(made))?;
     }
     Ok(())
 }
@@ -187,18 +185,51 @@ fn abandon(hidden: &Hidden, made: bool) {
     }
 }
 
-/// Puts one whole study in place if a command was killed while it replaced one by another, and touches
-/// nothing else. For commands that read a folder.
+/// Puts one whole study in place if a command was killed while it replaced one by another, removes the
+/// draft of one that was killed before, and touches nothing else. For commands that read a folder.
 pub(crate) fn restore(place: &Path) -> Result<(), FolderError> {
     let refused = |problem: Problem| FolderError { path: place.to_owned(), problem };
-    if !Hidden::is_in(place) || !journal::is_pending(place).map_err(refused)? {
+    if !Hidden::is_in(place) {
         return Ok(());
     }
-    match Hidden::lock(place) {
-        Ok(hidden) => journal::settle_left(&hidden).map_err(refused),
+    let Some(left) = journal::left(place).map_err(refused)? else { return Ok(()) };
+    let result = Hidden::lock(place).and_then(|hidden| journal::settle_left(&hidden));
+    match (result, left) {
+        (Ok(()), _) => Ok(()),
         // The one who holds the lock settles it.
-        Err(Problem::Busy) => Ok(()),
-        Err(problem) => Err(refused(problem)),
+        (Err(Problem::Busy), _) => Ok(()),
+        // A draft harms nobody who only reads, perhaps in a folder that is not to be written.
+        (Err(_), Left::Draft) => Ok(()),
+        (Err(problem), Left::Replacement) => Err(refused(problem)),
+    }
+}
+
+/// As [`restore`], for the folder that a file is in, or for a folder and all those below it, through no
+/// link.
+pub(crate) fn restore_all(path: &Path) -> Result<(), FolderError> {
+    if !path.is_dir() {
+        return restore(folder_of(path));
+    }
+    let mut folders = vec![path.to_owned()];
+    while let Some(folder) = folders.pop() {
+        restore(&folder)?;
+        // What cannot be read holds nothing that could be mended.
+        for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
+            let hidden = entry.file_name().as_encoded_bytes().starts_with(b".");
+            if !hidden && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+                folders.push(entry.path());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The folder that a file is in.
+pub(crate) fn folder_of(file: &Path) -> &Path {
+    // The folder of a name without one is the current folder.
+    match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
     }
 }
 

@@ -333,6 +333,10 @@ fn one_whole_study_survives_every_kill() {
             assert!(found == from || found == to || from == to, "{said}: {found}");
             assert!(!done || found == to || from == to, "{said}: it was done");
             untouched(&before, &scene, &said);
+            if kill % 3 == 0 {
+                let hidden = snapshot(&out.join(".gyradius"));
+                assert_eq!(hidden.keys().collect::<Vec<_>>(), ["lock", "study.json"], "{said}");
+            }
             publish(&out, to, true).unwrap_or_else(|error| panic!("{said}: {error}"));
             assert_eq!(whole(&out), Some(to), "{said}");
             let hidden = snapshot(&out.join(".gyradius"));

@@ -178,6 +178,13 @@ impl Replay {
         run: u64,
         coast_s: f64,
     ) -> Result<Self, ReplayError> {
+        // A study that was killed while it replaced this one is put right first; its scenario may be away
+        // until then.
+        let folder = if path.is_dir() { path } else { folder::folder_of(path) };
+        folder::restore(folder).map_err(|FolderError { path, problem }| {
+            let problem = problem.to_string();
+            ReplayError::Study { path, problem }
+        })?;
         if !path.is_dir() {
             if !path.exists() {
                 let problem =
@@ -188,11 +195,6 @@ impl Replay {
             }
             return Self::new(&Scenario::read(path)?, model, run, coast_s);
         }
-        // A study that was killed while it replaced this one is put right first.
-        folder::restore(path).map_err(|FolderError { path, problem }| {
-            let problem = problem.to_string();
-            ReplayError::Study { path, problem }
-        })?;
         let scenario = scenario_of(path)?;
         let mut replay = Self::new(&scenario, model, run, coast_s)?;
         let table = path.join(format!("runs/{}/runs.parquet", replay.model));
