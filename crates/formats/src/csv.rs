@@ -210,19 +210,49 @@ struct Header {
     inertia_kg_m2: f64,
 }
 
-/// Reads a row as a header: nothing if it has not the columns of the three moments.
-fn header(text: &Text, row: &[Field]) -> Result<Option<Header>, Refusal> {
+/// The units in a row below a header, none where a field is empty: nothing if one of the fields that count
+/// is no unit, or all of them are empty.
+fn units_below(text: &Text, columns: &[Option<usize>], row: &[Field]) -> Option<Vec<String>> {
+    let units: Vec<_> = row
+        .iter()
+        .map(|field| squeezed(text.as_str().get(field.start..field.end).unwrap_or_default()))
+        .collect();
+    let counts = |(column, unit): (&Option<usize>, &String)| match column {
+        Some(NAME) | None => None,
+        Some(column) => Some(unit.is_empty() || is_unit(*column, unit)),
+    };
+    let some =
+        columns.iter().zip(&units).any(|(c, u)| c.is_some_and(|c| c < MASS) && !u.is_empty());
+    let all = columns.iter().zip(&units).filter_map(counts).all(|unit| unit);
+    (row.len() == columns.len() && some && all).then_some(units)
+}
+
+/// Reads a row as a header, with the units in the row below it if that holds any: nothing if it has not
+/// the columns of the three moments. Returns whether the row below belongs to it.
+fn header(
+    text: &Text,
+    row: &[Field],
+    below: Option<&[Field]>,
+) -> Result<Option<(Header, bool)>, Refusal> {
     let written = |field: &Field| text.as_str().get(field.start..field.end).unwrap_or_default();
     let headings: Vec<_> = row.iter().map(|field| heading(written(field))).collect();
     let is_there = |column: usize| headings.iter().flatten().any(|(c, _)| *c == column);
     if !(0..3).all(is_there) {
         return Ok(None);
     }
+    let of_fields: Vec<_> = headings.iter().map(|h| h.as_ref().map(|(c, _)| *c)).collect();
+    let below = below.and_then(|row| units_below(text, &of_fields, row));
     let mut columns = [None; 8];
     let mut unit: Option<(&str, String)> = None;
     let (mut mass_kg, mut inertia_kg_m2) = (1.0, 1.0);
     for (index, (field, found)) in row.iter().zip(headings).enumerate() {
-        let Some((column, its_unit)) = found else { continue };
+        let Some((column, in_heading)) = found else { continue };
+        let in_row = below.as_ref().map_or("", |units| units[index].as_str());
+        if !in_heading.is_empty() && !in_row.is_empty() && in_heading != in_row {
+            let problem = format!("the header says {in_heading}, and the row below it {in_row}");
+            return Err(text.malformed(field.start, problem));
+        }
+        let its_unit = if in_heading.is_empty() { in_row.to_owned() } else { in_heading };
         let name = FIELDS.get(column).copied().unwrap_or("name");
         if columns[column].replace(index).is_some() && column != NAME {
             return Err(text.malformed(field.start, format!("two columns for {name}")));
@@ -259,7 +289,8 @@ fn header(text: &Text, row: &[Field]) -> Result<Option<Header>, Refusal> {
         let at = row.first().map_or(0, |field| field.start);
         return Err(text.malformed(at, "columns ixy, ixz, iyz: there must be all three or none"));
     }
-    Ok(Some(Header { columns, width: row.len(), mass_kg, inertia_kg_m2 }))
+    let header = Header { columns, width: row.len(), mass_kg, inertia_kg_m2 };
+    Ok(Some((header, below.is_some())))
 }
 
 fn is_comment(line: &str) -> bool {
@@ -284,24 +315,47 @@ fn separator(header: &str) -> char {
 /// Most lines above a header, titles and the like, that are looked through for it.
 const TITLES: usize = 100;
 
-/// Finds the header, below any titles: where it starts, what it says, and the rows below it.
+/// Finds the header, below any titles: where it starts, what it says, and the rows below it. Where there
+/// is none, it may be a comment, as many programs write it.
 fn find_header(text: &Text) -> Result<(usize, Header, Rows<'_>), Refusal> {
-    let source = text.as_str();
-    let mut at = 0;
-    let lines = source.split_inclusive('\n').map(|line| {
-        at += line.len();
-        (at - line.len(), line)
-    });
-    for (at, line) in lines.filter(|(_, line)| !is_comment(line)).take(TITLES) {
-        let mut rows = Rows { text: source, at, separator: separator(line) as u8 };
-        // In a title, a quotation mark is no more than that.
-        if let Ok(row) = rows.row()
-            && let Some(header) = header(text, &row)?
-        {
+    let lines = || {
+        let mut at = 0;
+        text.as_str().split_inclusive('\n').map(move |line| {
+            at += line.len();
+            (at - line.len(), line)
+        })
+    };
+    for (at, line) in lines().filter(|(_, line)| !is_comment(line)).take(TITLES) {
+        if let Some((header, rows)) = header_at(text, at, line)? {
+            return Ok((at, header, rows));
+        }
+    }
+    for (at, line) in lines().filter(|(_, line)| line.starts_with('#')).take(TITLES) {
+        let content = line.trim_start_matches(['#', ' ', '\t']);
+        let start = at + line.len() - content.len();
+        if let Some((header, rows)) = header_at(text, start, content)? {
             return Ok((at, header, rows));
         }
     }
     Err(unknown("a table must have the columns ixx, iyy and izz"))
+}
+
+/// The header in a line that starts at an offset, and the rows below it, if it is one.
+fn header_at<'t>(
+    text: &'t Text,
+    at: usize,
+    line: &str,
+) -> Result<Option<(Header, Rows<'t>)>, Refusal> {
+    let mut rows = Rows { text: text.as_str(), at, separator: separator(line) as u8 };
+    // In a title, a quotation mark is no more than that.
+    let Ok(row) = rows.row() else { return Ok(None) };
+    let mut below = Rows { ..rows };
+    let next = below.next().and_then(Result::ok);
+    Ok(match header(text, &row, next.as_deref())? {
+        Some((header, true)) => Some((header, below)),
+        Some((header, false)) => Some((header, rows)),
+        None => None,
+    })
 }
 
 pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal> {
@@ -415,6 +469,66 @@ mod tests {
         }
         let latin = Text::new(b"ixx [kg m\xb2],iyy,izz\n1,2,3", true).unwrap();
         assert!(read(&latin, Products::TensorEntries).is_ok());
+    }
+
+    /// Every separator, with the units in the header, in a row below it, or in both, and a header that is a
+    /// comment: the same bodies, in the same places of the file.
+    #[test]
+    fn units_stand_below_and_headers_are_comments() {
+        let units = [("", "", 1.0, 1.0), ("kg", "kg m^2", 1.0, 1.0), ("g", "g·mm²", 1e-3, 1e-9)];
+        let mut count = 0;
+        for (mass, inertia, kg, kg_m2) in units {
+            for (separator, comment, bracket, place, title) in
+                [",", ";", "\t"].iter().flat_map(|s| {
+                    ["", "#", "# "].iter().flat_map(move |c| {
+                        [("", ""), ("[", "]"), ("(", ")")].iter().flat_map(move |b| {
+                            (0..3).flat_map(move |p| {
+                                ["", "Table 3\n", "# made by hand\n"].map(|t| (s, c, b, p, t))
+                            })
+                        })
+                    })
+                })
+            {
+                let unit = |unit: &str, there: bool| {
+                    let there = there && !unit.is_empty();
+                    if there { format!("{}{unit}{}", bracket.0, bracket.1) } else { String::new() }
+                };
+                let row = |cells: [String; 6]| cells.join(separator) + "\n";
+                let names = ["part", "mass", "ixx", "note", "iyy", "izz"];
+                let of = |name: &str| match name {
+                    "mass" => mass,
+                    "part" | "note" => "",
+                    _ => inertia,
+                };
+                let above = row(
+                    names.map(|n| format!("{n} {}", unit(of(n), place != 1)).trim().to_owned())
+                );
+                let below = row(names.map(|n| unit(of(n), place != 0)));
+                let below = if place == 0 || mass.is_empty() { String::new() } else { below };
+                let data = ["arm", "2", "3", "x", "4", "5"].map(str::to_owned);
+                let text = format!("{title}{comment}{above}{below}{}", row(data));
+                let bodies = try_read(&text).unwrap_or_else(|e| panic!("{text}{e:?}"));
+                assert_eq!(bodies.len(), 1, "{text}");
+                assert_eq!(bodies[0].line(), text.lines().count(), "{text}");
+                let found = six(&bodies[0]);
+                assert!((found[0] / (3.0 * kg_m2) - 1.0).abs() < 1e-12, "{text}{found:?}");
+                assert_eq!(
+                    (bodies[0].name(), bodies[0].mass_kg()),
+                    ("arm", Some(2.0 * kg)),
+                    "{text}"
+                );
+                count += 1;
+            }
+        }
+        assert_eq!(count, 3 * 243);
+        // A row that is no units is a row; one that contradicts the header is refused.
+        let bodies = try_read("ixx,iyy,izz\nkg m2,furlongs,kg m2\n1,2,3").unwrap();
+        assert!(bodies.len() == 2 && bodies[0].inertia().is_err());
+        let message = |csv| try_read(csv).unwrap_err().problem.to_string();
+        let both = message("ixx [kg m2],iyy,izz\ng mm2,,\n1,2,3");
+        assert!(both.contains("the header says kgm2, and the row below it gmm2"), "{both}");
+        assert!(message("# ixx,iyy,izz,Ixx\n1,2,3,4").contains("two columns for ixx"));
+        assert!(message("# ixx and iyy\n1,2,3").contains("columns ixx, iyy and izz"));
     }
 
     #[test]

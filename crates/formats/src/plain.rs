@@ -1,6 +1,7 @@
 //! Single files read and written with care: no pipe is waited for, nothing is read without a limit, and
 //! nothing is written through a link, by halves, or over another file unasked.
 
+use crate::text::is_utf16;
 use std::{
     fs::{self, File, Metadata, Permissions},
     io::{self, Read, Write},
@@ -16,13 +17,21 @@ pub fn read_text(path: &Path, most_bytes: u64) -> io::Result<String> {
     if !fs::metadata(path)?.is_file() {
         return Err(io::Error::other("it is not a regular file"));
     }
-    let mut text = String::new();
-    File::open(path)?.take(most_bytes + 1).read_to_string(&mut text)?;
-    if text.len() as u64 > most_bytes {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(most_bytes + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most_bytes {
         let problem = format!("it is larger than {} MiB", most_bytes >> 20);
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, problem));
     }
-    Ok(text)
+    let sixteen = is_utf16(&bytes);
+    String::from_utf8(bytes).ok().filter(|_| !sixteen).ok_or_else(|| {
+        let problem = if sixteen {
+            "it is encoded in UTF-16: save it as UTF-8"
+        } else {
+            "it is not UTF-8: save it as UTF-8"
+        };
+        io::Error::new(io::ErrorKind::InvalidData, problem)
+    })
 }
 
 /// Whether a file has to be written to have this content; one that has it already is left alone. What is
@@ -192,6 +201,28 @@ mod tests {
             let count = fs::read_dir(scratch.path()).unwrap().count();
             assert_eq!(count, 1 + usize::from(kind != 0 || expected.is_some()), "no drafts");
         }
+    }
+
+    /// Any text in sixteen bits a character, with a mark and without, either end first, is told what to do.
+    #[test]
+    fn other_encodings_are_told_what_to_do() {
+        let scratch = tempfile::tempdir().unwrap();
+        let path = scratch.path().join("file.toml");
+        for text in ["ab", "name = \"study\"\nruns = 5\n", "[nominal]\nmass_kg = 1.0 # ± 2 %\n"] {
+            for (mark, little) in [(true, true), (true, false), (false, true), (false, false)] {
+                let marked = mark.then_some('\u{feff}').into_iter().chain(text.chars());
+                let units: Vec<u16> = marked.collect::<String>().encode_utf16().collect();
+                let bytes = |u: &u16| if little { u.to_le_bytes() } else { u.to_be_bytes() };
+                fs::write(&path, units.iter().flat_map(bytes).collect::<Vec<u8>>()).unwrap();
+                let message = read_text(&path, 1 << 20).unwrap_err().to_string();
+                assert_eq!(message, "it is encoded in UTF-16: save it as UTF-8", "{text}");
+            }
+            fs::write(&path, text).unwrap();
+            assert_eq!(read_text(&path, 1 << 20).unwrap(), text);
+        }
+        fs::write(&path, b"a = \"\xe9\"").unwrap();
+        let message = read_text(&path, 1 << 20).unwrap_err().to_string();
+        assert_eq!(message, "it is not UTF-8: save it as UTF-8");
     }
 
     #[test]

@@ -35,13 +35,11 @@ impl Text {
         if body.trim_ascii().is_empty() {
             return Err(FileProblem::Empty.into());
         }
-        if body.starts_with(b"\xff\xfe") || body.starts_with(b"\xfe\xff") {
+        if is_utf16(body) {
             return Err(FileProblem::Utf16.into());
         }
-        if let Some(at) = body.iter().position(|b| *b == 0) {
-            // UTF-16 without a mark has a zero in every other byte.
-            let utf16 = at < 2 && body.len() > 3 && (body[at ^ 2] == 0 || body[2 + at] == 0);
-            return Err(if utf16 { FileProblem::Utf16 } else { FileProblem::Binary }.into());
+        if body.contains(&0) {
+            return Err(FileProblem::Binary.into());
         }
         let text = match std::str::from_utf8(body) {
             Ok(text) => text.to_owned(),
@@ -86,6 +84,15 @@ impl Text {
     pub(crate) fn malformed(&self, offset: usize, message: impl std::fmt::Display) -> Refusal {
         self.refuse(offset, FileProblem::Malformed { message: message.to_string() })
     }
+}
+
+/// Whether bytes are sixteen bits a character: by their mark, or a zero in every other of the first bytes.
+pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
+    let zeros = bytes
+        .iter()
+        .position(|b| *b == 0)
+        .is_some_and(|at| at < 2 && bytes.len() > 3 && (bytes[at ^ 2] == 0 || bytes[2 + at] == 0));
+    bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") || zeros
 }
 
 /// Whether an XML declaration names an encoding that extends ASCII byte by byte.
