@@ -144,7 +144,9 @@ impl RootSecondMoments {
         self.0
     }
 
-    /// K_k = k_k².
+    /// K_k = k_k², rounded once: within half a unit in the last place where |k_k| ≥ 1.5e-154 or k_k = 0. Smaller
+    /// roots have squares below the normal range of `f64`: such a K_k is within 2.5e-324 kg·m² of k_k², and 0
+    /// for |k_k| < 1.5e-162. It is never an error: to any other second moment of a body, it is nothing.
     #[must_use]
     pub fn squared(&self) -> SecondMoments {
         SecondMoments(self.0.map(|k| k * k))

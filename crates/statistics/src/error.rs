@@ -5,7 +5,7 @@
 #[non_exhaustive]
 pub enum StatisticsError {
     /// A value of the sample is NaN or infinite.
-    #[error("value {index} of the sample is {value}; every value must be finite")]
+    #[error("value {} of the sample is {}; every value must be finite", index + 1, plain(*value))]
     NotFinite {
         /// Position in the sample, from 0.
         index: usize,
@@ -32,19 +32,23 @@ pub enum StatisticsError {
         maximum: f64,
     },
     /// The level is no confidence level.
-    #[error("the confidence level is {value}; it must lie strictly between 0 and 1")]
+    #[error("the confidence level is {}; it must lie strictly between 0 and 1", plain(*value))]
     Confidence {
         /// The level given.
         value: f64,
     },
     /// The number is no probability.
-    #[error("the probability is {value}; it must lie between 0 and 1")]
+    #[error("the probability is {}; it must lie between 0 and 1", plain(*value))]
     Probability {
         /// The probability given.
         value: f64,
     },
     /// The bounds are out of order or NaN.
-    #[error("the interval runs from {lower} to {upper}; the bounds must be numbers in order")]
+    #[error(
+        "the interval runs from {} to {}; the bounds must be numbers in order",
+        plain(*lower),
+        plain(*upper)
+    )]
     Bounds {
         /// The lower bound given.
         lower: f64,
@@ -69,7 +73,11 @@ pub enum StatisticsError {
         bins: usize,
     },
     /// A bin edge is not finite or not above the one before.
-    #[error("bin edge {index} is {value}; edges must be at least two, finite and increasing")]
+    #[error(
+        "bin edge {} is {}; edges must be at least two, finite and increasing",
+        index + 1,
+        plain(*value)
+    )]
     Edge {
         /// Position among the edges, from 0.
         index: usize,
@@ -77,7 +85,7 @@ pub enum StatisticsError {
         value: f64,
     },
     /// A bin is so narrow that its density is beyond the largest `f64`.
-    #[error("bin {bin} is {width:e} wide: its density is beyond f64::MAX; widen it")]
+    #[error("bin {} is {width:e} wide: its density is beyond f64::MAX; widen it", bin + 1)]
     Density {
         /// Position among the bins, from 0.
         bin: usize,
@@ -85,7 +93,11 @@ pub enum StatisticsError {
         width: f64,
     },
     /// A distribution function returned something that is no probability.
-    #[error("the distribution function is {value} at {at}; it must lie between 0 and 1")]
+    #[error(
+        "the distribution function is {} at {}; it must lie between 0 and 1",
+        plain(*value),
+        plain(*at)
+    )]
     DistributionFunction {
         /// Where it was evaluated.
         at: f64,
@@ -101,7 +113,7 @@ pub enum StatisticsError {
         expected: usize,
     },
     /// An expected count is not a positive number.
-    #[error("expected count {index} is {value}; it must be positive and finite")]
+    #[error("expected count {} is {}; it must be positive and finite", index + 1, plain(*value))]
     Expected {
         /// Position among the expected counts, from 0.
         index: usize,
@@ -109,7 +121,11 @@ pub enum StatisticsError {
         value: f64,
     },
     /// Observed and expected counts do not add up to the same total.
-    #[error("{observed} observed in all and {expected} expected; the totals must agree to 1e-8")]
+    #[error(
+        "{} observed in all and {} expected; the totals must agree to 1e-8",
+        plain(*observed),
+        plain(*expected)
+    )]
     Totals {
         /// Sum of the observed counts.
         observed: f64,
@@ -124,6 +140,12 @@ pub enum StatisticsError {
         /// The number of parameters fitted to the same data.
         fitted: usize,
     },
+}
+
+/// A number as it reads: 1000, 0.5, 1e300. Never in hundreds of digits.
+fn plain(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
 /// Refuses a sample with fewer than `required` values or with a value that is not finite.
@@ -144,10 +166,36 @@ mod tests {
     #[test]
     fn messages_name_the_value_and_what_is_allowed() {
         let text = validate(&[1.0, f64::NAN], 2).unwrap_err().to_string();
-        assert_eq!(text, "value 1 of the sample is NaN; every value must be finite");
+        assert_eq!(text, "value 2 of the sample is NaN; every value must be finite");
         let text = validate(&[1.0], 2).unwrap_err().to_string();
         assert_eq!(text, "the sample has 1 values; at least 2 are needed");
         let text = StatisticsError::Bins { bins: 0 }.to_string();
         assert_eq!(text, "0 bins; there must be 1 to 1000");
+    }
+
+    /// Wherever it stands and whatever its size: counted from 1, in few digits that read back.
+    #[test]
+    fn places_count_from_one_and_numbers_are_short() {
+        for index in 0..40 {
+            let mut sample = [1.0; 40];
+            sample[index] = f64::INFINITY;
+            let text = validate(&sample, 1).unwrap_err().to_string();
+            assert!(text.starts_with(&format!("value {} of the sample is inf;", index + 1)));
+            for error in [
+                StatisticsError::Edge { index, value: 1.0 },
+                StatisticsError::Expected { index, value: 0.0 },
+                StatisticsError::Density { bin: index, width: 1e-320 },
+            ] {
+                assert!(error.to_string().contains(&format!(" {} is ", index + 1)), "{error}");
+            }
+        }
+        for exponent in -308..=308 {
+            let value = 1.25 * 10_f64.powi(exponent);
+            let text = plain(value);
+            assert!(text.len() < 25 && text.parse() == Ok(value), "{text}");
+            let error = StatisticsError::Bounds { lower: value, upper: -value }.to_string();
+            assert!(error.len() < 120, "{error}");
+        }
+        assert_eq!([0.0, 3.0, 0.5, -2.0].map(plain), ["0", "3", "0.5", "-2"]);
     }
 }
