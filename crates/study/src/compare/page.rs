@@ -117,8 +117,8 @@ fn block_rows(body: &BodyResult, block: Block) -> Markup {
                     @for level in &body.levels {
                         @let cell = level.cell(kind);
                         td title=[interval(cell)] {
-                            @if is_poor(cell) { "(" (block.full(cell)) ")" }
-                            @else { (block.full(cell)) }
+                            @if is_poor(cell) { "(" (block.cell(cell)) ")" }
+                            @else { (block.cell(cell)) }
                         }
                     }
                 }

@@ -4,11 +4,12 @@ use gyradius_dispersion::ModelKind;
 use std::fmt::{self, Display, Formatter};
 
 use super::{BodyResult, LevelResult, ModelComparison, contest::Cell, measure::Measure};
-use crate::format::{below_hundred, optional, significant};
+use crate::format::{optional, significant};
 
-/// Levels side by side in 100 columns.
-const LEVELS: usize = 6;
+/// Columns of a terminal that are used.
+const MOST: usize = 100;
 const NAME: usize = 32;
+/// The narrowest column of a level.
 const COLUMN: usize = 10;
 
 /// A table of models by levels.
@@ -30,19 +31,7 @@ impl Block {
         }
     }
 
-    /// What a cell has to say where there is room: shares of none and of all in words.
-    pub(crate) fn full(self, cell: Option<&Cell>) -> String {
-        let short = self.cell(cell);
-        let results = cell.and_then(|cell| cell.results.as_ref());
-        match (self, results) {
-            (Self::Unrealizable, Some(r)) if short.starts_with(['<', '>']) => {
-                r.unrealizable.percent()
-            }
-            _ => short,
-        }
-    }
-
-    /// What a cell has to say in a narrow column; a dash if there is no such model.
+    /// What a cell has to say, shares of none and of all in words; a dash if there is no such model.
     pub(crate) fn cell(self, cell: Option<&Cell>) -> String {
         let Some(r) = cell.and_then(|cell| cell.results.as_ref()) else { return "–".to_owned() };
         let by_construction = cell.is_some_and(|cell| cell.realizable_by_construction);
@@ -52,11 +41,8 @@ impl Block {
         };
         match self {
             Self::Unrealizable if by_construction && r.unrealizable.count == 0 => "0".to_owned(),
-            Self::Unrealizable if r.unrealizable.count == 0 => {
-                format!("<{}", significant(100.0 * r.unrealizable.interval.upper(), 2))
-            }
-            Self::Unrealizable if r.unrealizable.count == r.unrealizable.of => {
-                format!(">{}", below_hundred(100.0 * r.unrealizable.interval.lower()))
+            Self::Unrealizable if [0, r.unrealizable.of].contains(&r.unrealizable.count) => {
+                r.unrealizable.percent()
             }
             Self::Unrealizable => significant(100.0 * r.unrealizable.share, 3),
             Self::Spread(measure) => {
@@ -190,7 +176,7 @@ impl Display for ModelComparison {
         )?;
         wrapped(
             f,
-            "–: no such model, see below; < and >: bounds, none or all were drawn; *: covariance further off the \
+            "–: no such model, see below; *: covariance further off the \
              reference than that of a body known exactly (100 %), so no like for like.",
             "",
         )?;
@@ -232,10 +218,14 @@ fn write_body(f: &mut Formatter<'_>, body: &BodyResult) -> fmt::Result {
         optional(body.nominal(Measure::Nutation), 3)
     )?;
     for block in BLOCKS {
-        for levels in body.levels.chunks(LEVELS) {
+        let cells = body.levels.iter().flat_map(|level| level.models.iter());
+        let widths = cells.map(|cell| block.cell(Some(cell)).chars().count());
+        let width = widths.fold(COLUMN, usize::max);
+        let together = ((MOST - NAME) / (width + 1)).max(1);
+        for levels in body.levels.chunks(together) {
             write!(f, "\n{:NAME$}", "")?;
             for level in levels {
-                write!(f, "{:>COLUMN$} ", heading(level))?;
+                write!(f, "{:>width$} ", heading(level))?;
             }
             writeln!(f, "\n{}", block.title())?;
             for kind in kinds(body) {
@@ -243,7 +233,7 @@ fn write_body(f: &mut Formatter<'_>, body: &BodyResult) -> fmt::Result {
                 for level in levels {
                     let cell = level.cell(kind);
                     let star = if is_poor(cell) { "*" } else { " " };
-                    write!(f, "{:>COLUMN$}{star}", block.cell(cell))?;
+                    write!(f, "{:>width$}{star}", block.cell(cell))?;
                 }
                 writeln!(f)?;
             }
@@ -261,7 +251,6 @@ fn write_body(f: &mut Formatter<'_>, body: &BodyResult) -> fmt::Result {
 
 /// The text on lines of at most 100 characters, those after the first indented.
 fn wrapped(f: &mut Formatter<'_>, text: &str, indent: &str) -> fmt::Result {
-    const MOST: usize = 100;
     let mut line = String::new();
     let start: String = text.chars().take_while(|c| *c == ' ').collect();
     line.push_str(&start);
