@@ -102,8 +102,8 @@ impl Scenario {
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let unread = |source| ScenarioError::Read { path: path.to_owned(), source };
         // One in the folder of a study may have been put aside by a command that was killed.
-        let folder = path.parent().unwrap_or(path);
-        folder::restore(folder).map_err(|error| unread(std::io::Error::other(error)))?;
+        folder::restore(folder::folder_of(path))
+            .map_err(|error| unread(std::io::Error::other(error)))?;
         let text = read_text(path, limits::BYTES).map_err(unread)?;
         Self::from_toml(&text).map_err(|error| match error {
             ScenarioError::Parse { message, .. } => {
@@ -179,10 +179,11 @@ impl Scenario {
             .collect::<Result<Vec<_>, _>>()?;
         let separation = Separation::new(*payload.moving(), *stage.moving(), &springs)
             .map_err(separation_error)?;
-        sides::check(&separation, file.separation_direction)?;
+        let push = push(&separation);
+        sides::check(&separation, file.separation_direction, push)?;
         // Defaults go by way of the file, so that the resolved scenario gives the same bits.
         if file.separation_direction.is_none() {
-            file.separation_direction = push(&separation).map(|d| d.into_inner().into());
+            file.separation_direction = push.map(|d| d.into_inner().into());
         }
         let separation_direction = file
             .separation_direction

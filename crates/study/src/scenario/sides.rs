@@ -20,35 +20,40 @@ pub(super) fn line(separation: &Separation, spring: &Spring) -> Vector3<f64> {
 ///
 /// Such a spring pushes against the direction from the stage's mass centre to the payload's. A payload
 /// that leaves through a stage around it may have all its springs push that way: then the scenario
-/// states the `separation_direction`, and springs that go with it are right.
+/// states the `separation_direction`, and springs that go with it are right. There the wrong one is that which
+/// goes against it. Without a statement the direction is that of all the springs together, so that the
+/// resolved scenario, which states it, is judged the same.
 pub(super) fn check(
     separation: &Separation,
     stated: Option<[f64; 3]>,
+    together: Option<Unit<Vector3<f64>>>,
 ) -> Result<(), ScenarioError> {
     let between = separation.payload().state().position - separation.stage().state().position;
     let Some(away) = unit(between) else { return Ok(()) };
     let stated = stated.and_then(|direction| unit(direction.into()));
+    let through = stated.or(together).filter(|direction| direction.dot(&away) < AGAINST);
     for (i, spring) in separation.springs().iter().enumerate().filter(|(_, s)| s.can_push()) {
         let Some(push) = unit(line(separation, spring)) else { continue };
         let against = |direction: &Unit<Vector3<f64>>| push.dot(direction) < AGAINST;
-        if against(&away) && stated.as_ref().is_none_or(against) {
-            let point: [f64; 3] = spring.payload_point_m().into();
-            let entries = |v: &Vector3<f64>| {
-                let entries: Vec<_> =
-                    v.iter().map(|x| format!("{}", (1e3 * x).round() / 1e3 + 0.0)).collect();
-                format!("({})", entries.join(", "))
-            };
-            let problem = format!(
-                "{point:?}: the payload point lies behind the stage point, so that the spring pushes the \
-                 payload towards {} (inertial axes), through the stage, whose mass centre is on that \
-                 side. Check the signs of payload_point_m and stage_point_m, and position_m of the \
-                 bodies; if the payload is to leave \
-                 that way, state separation_direction",
-                entries(&push)
-            );
-            let field = format!("springs[{}].payload_point_m", i + 1);
-            return Err(ScenarioError::field(field, problem));
-        }
+        let where_to = if against(&away) && stated.as_ref().is_none_or(against) {
+            "through the stage, whose mass centre is on that side"
+        } else if through.as_ref().is_some_and(against) {
+            "against the separation_direction in which the payload leaves through the stage"
+        } else {
+            continue;
+        };
+        let point: [f64; 3] = spring.payload_point_m().into();
+        let entries: Vec<_> =
+            push.iter().map(|x| format!("{}", (1e3 * x).round() / 1e3 + 0.0)).collect();
+        let problem = format!(
+            "{point:?}: the payload point lies behind the stage point, so that the spring pushes the \
+             payload towards ({}) (inertial axes), {where_to}. Check the signs of payload_point_m and \
+             stage_point_m, and position_m of the bodies; if the payload is to leave that way, state \
+             separation_direction",
+            entries.join(", ")
+        );
+        let field = format!("springs[{}].payload_point_m", i + 1);
+        return Err(ScenarioError::field(field, problem));
     }
     Ok(())
 }
@@ -129,12 +134,39 @@ mod tests {
             let away = good.positions[0] - good.positions[1];
             assert!(good.read(Some(away)).is_err());
 
-            let through = case(&mut random, -1.0);
+            let mut through = case(&mut random, -1.0);
             assert!(through.read(None).is_err());
             let away = through.positions[1] - through.positions[0];
             let scenario = through.read(Some(away)).unwrap();
             Scenario::from_toml(&scenario.to_toml()).unwrap();
+            // One of these that is turned round pushes along the line of the mass centres.
+            through.points[wrong].swap(0, 1);
+            let error = through.read(Some(away)).unwrap_err().to_string();
+            assert!(error.starts_with(&name), "{error}");
         }
+    }
+
+    /// Springs in any directions: what is taken is taken again as it resolves, its direction stated.
+    #[test]
+    fn what_is_taken_resolves_to_what_is_taken() {
+        let mut generator = ChaCha8Rng::seed_from_u64(21);
+        let uniform = Uniform::new(-1.0, 1.0).unwrap();
+        let mut random = |range: f64| range * uniform.sample(&mut generator);
+        let mut taken = 0;
+        for _ in 0..600 {
+            let mut any = case(&mut random, 1.0);
+            // Mostly across, where the sum may go anywhere.
+            let away = (any.positions[0] - any.positions[1]).normalize();
+            for [payload, stage] in &mut any.points {
+                let aside = Vector3::from_fn(|_, _| random(1.0));
+                let aside = (aside - away * away.dot(&aside)).normalize();
+                *payload = *stage + (aside + away * random(0.9)).normalize() * (0.2 + random(0.1));
+            }
+            let Ok(scenario) = any.read(None) else { continue };
+            taken += 1;
+            Scenario::from_toml(&scenario.to_toml()).unwrap();
+        }
+        assert!(taken > 100, "{taken}");
     }
 
     /// Springs across, which push neither together nor apart, and pairs against each other are taken.
