@@ -49,14 +49,15 @@ fn told(error: &toml::de::Error, text: &str) -> String {
     if let Some((reason, _)) = message.split_once("expected struct ") {
         message = format!("{reason}expected a table");
     }
-    if message == "wanted string or table" {
+    // A word out of several, for which serde would take a table as well.
+    if message == "wanted string or table" || message.starts_with("wanted exactly 1 element") {
         message = "invalid type, expected one of the texts that are allowed".to_owned();
     }
     if let Some(reason) = message.strip_suffix("expected f64") {
         message = format!("{reason}expected a number");
     }
     if let Some(reason) = message.strip_suffix("expected fewer elements in array") {
-        message = format!("{reason}which is too long for this list");
+        message = format!("{reason}expected fewer entries in this list");
     }
     let mut message = short_numbers(&message);
     if let Some((end, _)) = message.char_indices().nth(MOST_CHARACTERS) {

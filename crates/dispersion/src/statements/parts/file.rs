@@ -132,11 +132,24 @@ impl From<ProductsStatement> for Products {
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case", try_from = "String")]
 pub(super) enum Of {
     #[default]
     EachAxis,
     Total,
+}
+
+// By way of a text, for an enum would not say what is there instead.
+impl TryFrom<String> for Of {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        match text.as_str() {
+            "each-axis" => Ok(Self::EachAxis),
+            "total" => Ok(Self::Total),
+            _ => Err(format!("{text:?}: it must be \"each-axis\" or \"total\"")),
+        }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
