@@ -225,6 +225,28 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    /// Roots of every size: squares are rounded once, below the normal range to its smallest steps.
+    #[test]
+    fn squares_of_roots_of_every_size_are_as_exact_as_stated() {
+        let (up, step) = (2_f64.powi(600), 2_f64.powi(-1074));
+        for exponent in -1074..=400 {
+            for digits in [1.0, 1.0 + 1e-9, 1.234_567_89, 1.999_999_9] {
+                let k = digits * 2_f64.powi(exponent / 2) * 2_f64.powi(exponent - exponent / 2);
+                let [squared, ..] =
+                    RootSecondMoments::new([k, 0.0, 0.0]).unwrap().squared().values();
+                if k >= 1.5e-154 {
+                    assert!(k.mul_add(k, -squared).abs() <= 0.5 * f64::EPSILON * squared, "{k:e}");
+                } else {
+                    // 2^1200 times as large, where nothing underflows but what is far below a step.
+                    let exact = (k * up) * (k * up);
+                    let off = (squared * up * up - exact).abs();
+                    assert!(off <= 0.501 * step * up * up, "{k:e}: {squared:e}");
+                    assert!(k >= 1.5e-162 || squared == 0.0, "{k:e}: {squared:e}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn bad_values_are_named() {
         for bad in [-1.0, f64::NAN, f64::INFINITY, -f64::MIN_POSITIVE, 1e308] {
