@@ -27,8 +27,9 @@ const DEPTH: f64 = 41.0;
 /// The nodes and weights of the contour for one law on S^{N−1}.
 #[derive(Clone, Debug)]
 pub(crate) struct Contour<const N: usize = 4> {
-    /// θ_j c_j, and θ_j plus the saddle point.
+    /// θ_j c_j, c_j, and θ_j plus the saddle point.
     linear: [f64; N],
+    center: [f64; N],
     d: [f64; N],
     /// Distance from the saddle point, and weight.
     nodes: [(C64, C64); NODES],
@@ -54,6 +55,7 @@ impl<const N: usize> Contour<N> {
         let nodes = nodes.map(|(u, w)| (u, w / sum));
         Self {
             linear: std::array::from_fn(|j| theta[j] * center[j]),
+            center,
             d: k.d,
             nodes,
             ln_integral,
@@ -79,6 +81,16 @@ impl<const N: usize> Contour<N> {
             let inverse = self.d.map(|d| inverse(u + d));
             let mean = std::array::from_fn(|j| inverse[j] * self.linear[j]);
             (*w, mean, inverse.map(|v| v * 0.5))
+        })
+    }
+
+    /// The same with the mean of y − c, in which nothing cancels where y keeps to c.
+    pub(crate) fn nodes_about_center(&self) -> impl Iterator<Item = (C64, [C64; N], [C64; N])> {
+        let saddle = 0.5 * self.shift;
+        self.nodes.iter().map(move |(u, w)| {
+            let inverse = self.d.map(|d| inverse(u + d));
+            let offset = std::array::from_fn(|j| inverse[j] * (u + saddle) * -self.center[j]);
+            (*w, offset, inverse.map(|v| v * 0.5))
         })
     }
 

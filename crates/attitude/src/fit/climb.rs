@@ -1,6 +1,8 @@
 //! Newton's method with Levenberg and Marquardt's damping: every step that is taken climbs.
 
-use super::likelihood::{Evaluation, PARAMETERS, Square, Vector};
+use nalgebra::{SMatrix, SVector};
+
+use super::likelihood::Evaluation;
 
 /// Where the gain that the next step promises, in ln-likelihood of the whole sample, is below
 /// this, parameters are within 1e-4 of a standard error, and that step is still taken.
@@ -8,16 +10,23 @@ const GAIN: f64 = 1e-9;
 /// A climb that ends with more to gain than this has not converged.
 const ENOUGH: f64 = 1e-6;
 const ITERATIONS: usize = 200;
+/// Maxima that differ by less in ln-likelihood of the whole sample are worth the same.
+pub(super) const SAME: f64 = 1e-3;
+/// A climb ends higher than it is by no more than this many times what its next step promises.
+const HOPE: f64 = 30.0;
+/// Every so many steps a climb is given up that has gained less than that, or too little to come to
+/// what is known in five times as many.
+const STRETCH: usize = 15;
 const LEAST_DAMPING: f64 = 1e-9;
 const MOST_DAMPING: f64 = 1e12;
 
-/// A function of up to 13 coordinates on a space that may be curved.
-pub(crate) trait Hill {
+/// A function of up to N coordinates on a space that may be curved.
+pub(crate) trait Hill<const N: usize> {
     type Place: Clone;
     /// Mean ln-likelihood and its derivatives along the local coordinates.
-    fn survey(&self, place: &Self::Place) -> Evaluation;
+    fn survey(&self, place: &Self::Place) -> Evaluation<N>;
     /// The place at local coordinates `step`, if there is one.
-    fn walk(&self, place: &Self::Place, step: &Vector) -> Option<Self::Place>;
+    fn walk(&self, place: &Self::Place, step: &SVector<f64, N>) -> Option<Self::Place>;
 }
 
 /// Where a climb has ended.
@@ -32,35 +41,40 @@ pub(crate) struct Climb<P> {
 }
 
 /// Climbs from `place` along the coordinates that are `free`; `n` is the size of the sample.
-pub(crate) fn climb<H: Hill>(
+pub(crate) fn climb<const N: usize, H: Hill<N>>(
     hill: &H,
     place: H::Place,
-    free: [bool; PARAMETERS],
+    free: [bool; N],
     n: f64,
 ) -> Climb<H::Place> {
     climb_above(hill, place, free, n, f64::NEG_INFINITY)
 }
 
-/// The same, but given up where it is about to end lower than `known`: near a maximum every further
-/// step gains less than the one before it.
-pub(crate) fn climb_above<H: Hill>(
+/// The same, but given up where it is about to end no higher than `known`.
+pub(crate) fn climb_above<const N: usize, H: Hill<N>>(
     hill: &H,
     mut place: H::Place,
-    free: [bool; PARAMETERS],
+    free: [bool; N],
     n: f64,
     known: f64,
 ) -> Climb<H::Place> {
     let mut damping = 1e-3;
     let mut survey = restrict(hill.survey(&place), free);
     let mut iterations = 0;
+    let mut milestone = survey.value;
     while iterations < ITERATIONS && damping < MOST_DAMPING {
         let Some((step, promised)) = propose(&survey, damping) else {
             damping = (8.0 * damping).max(LEAST_DAMPING);
             continue;
         };
         iterations += 1;
-        let left = (ITERATIONS - iterations) as f64 * promised;
-        let hopeless = damping < 0.1 && survey.value + left < known;
+        let left = HOPE * promised;
+        let mut hopeless = damping < 0.1 && survey.value + left < known + SAME / n;
+        if iterations % STRETCH == 0 {
+            let rise = survey.value - milestone;
+            milestone = survey.value;
+            hopeless |= n * rise < SAME || survey.value + 5.0 * rise < known;
+        }
         let last = hopeless || n * promised < GAIN && damping < 0.1;
         let noise = 1e-14 * (1.0 + survey.value.abs());
         let next = hill.walk(&place, &step).map(|p| (restrict(hill.survey(&p), free), p));
@@ -88,8 +102,11 @@ pub(crate) fn climb_above<H: Hill>(
 }
 
 /// Coordinates that are held do not move.
-pub(crate) fn restrict(mut survey: Evaluation, free: [bool; PARAMETERS]) -> Evaluation {
-    for k in (0..PARAMETERS).filter(|&k| !free[k]) {
+pub(crate) fn restrict<const N: usize>(
+    mut survey: Evaluation<N>,
+    free: [bool; N],
+) -> Evaluation<N> {
+    for k in (0..N).filter(|&k| !free[k]) {
         survey.gradient[k] = 0.0;
         for m in [&mut survey.hessian, &mut survey.information] {
             m.row_mut(k).fill(0.0);
@@ -103,12 +120,12 @@ pub(crate) fn restrict(mut survey: Evaluation, free: [bool; PARAMETERS]) -> Eval
 
 /// The damped step and the rise that the quadratic model promises; none where the damped Hessian is
 /// not negative definite.
-fn propose(survey: &Evaluation, damping: f64) -> Option<(Vector, f64)> {
-    let scale = Vector::from_fn(|k, _| {
+fn propose<const N: usize>(survey: &Evaluation<N>, damping: f64) -> Option<(SVector<f64, N>, f64)> {
+    let scale = SVector::<f64, N>::from_fn(|k, _| {
         let own = survey.information[(k, k)];
         if own > 0.0 { 1.0 / own.sqrt() } else { 1.0 }
     });
-    let curvature = Square::from_fn(|i, j| {
+    let curvature = SMatrix::<f64, N, N>::from_fn(|i, j| {
         let damping = if i == j { damping } else { 0.0 };
         -survey.hessian[(i, j)] * scale[i] * scale[j] + damping
     });

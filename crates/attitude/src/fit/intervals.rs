@@ -6,13 +6,15 @@ use std::{f64::consts::PI, fmt};
 use super::{
     Family, GENERAL_TO_BINGHAM,
     climb::{Climb, Hill, restrict},
-    likelihood::{Sample, Square},
-    point::{PRECISION, Point, SLOPE, TAU, TRIANGLE},
+    likelihood::Sample,
+    point::{PRECISION, Point, SLOPE, Square, TAU, TRIANGLE},
     search::{ALIGNED, ALL},
 };
 
 /// A pivot of the scaled information below this is rounding.
 const FLAT: f64 = 1e-10;
+/// A factor of Λ below this is at the edge of the family: half turns of 1e5 rad.
+const EDGE: f64 = 1e-5;
 /// The 95 % quantile of χ² with 13 degrees of freedom: the joint region of all estimates.
 const JOINT: f64 = 22.362_032_494_826_934;
 
@@ -32,7 +34,8 @@ pub enum NoIntervals {
         /// Twice the ln-likelihood that the law is ahead of Bingham's.
         ratio: f64,
     },
-    /// The joint region reaches laws under which turns about some axis have no finite covariance.
+    /// The law, or one that the joint region reaches, is such that turns about some axis have no finite
+    /// covariance.
     UnboundedTurns,
     /// The joint region reaches half a turn from the mean attitude.
     AnyMean {
@@ -65,8 +68,8 @@ impl fmt::Display for NoIntervals {
     }
 }
 
-/// Covariance of the estimates in the coordinates of the point, zero for those that are held: the
-/// inverse of the observed information. `bingham` is the height of Bingham's law.
+/// Covariance of the mean, Λ, k and τ of the point, zero for those that are held: the inverse of the
+/// observed information. `bingham` is the height of Bingham's law.
 pub(super) fn covariance(
     sample: &Sample,
     best: &Climb<Point>,
@@ -75,6 +78,10 @@ pub(super) fn covariance(
 ) -> Result<Square, NoIntervals> {
     if !best.converged {
         return Err(NoIntervals::NotConverged);
+    }
+    // At the edge of the family Λ is singular to rounding.
+    if !best.place.precision.cholesky().is_some_and(|c| c.l_dirty().diagonal().min() > EDGE) {
+        return Err(NoIntervals::UnboundedTurns);
     }
     let covariance = inverse_information(sample, &best.place, family).ok_or(NoIntervals::Flat)?;
     if family != Family::General {
@@ -126,7 +133,15 @@ fn inverse_information(sample: &Sample, place: &Point, family: Family) -> Option
         return None;
     }
     let inverse = factor.inverse();
-    Some(Square::from_fn(|i, j| {
+    let own = Square::from_fn(|i, j| {
         if free[i] && free[j] { inverse[(i, j)] * scale[i] * scale[j] / sample.len() } else { 0.0 }
-    }))
+    });
+    // From the factor of Λ to Λ.
+    let mut slopes = Square::identity();
+    for (l, factor) in place.factors().iter().enumerate() {
+        for (k, &(i, j)) in TRIANGLE.iter().enumerate() {
+            slopes[(PRECISION + k, PRECISION + l)] = factor[(i, j)];
+        }
+    }
+    Some(slopes * own * slopes.transpose())
 }

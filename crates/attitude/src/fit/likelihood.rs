@@ -2,74 +2,15 @@
 
 use nalgebra::{Matrix4, SMatrix, SVector, UnitQuaternion, Vector4};
 
+use super::centered::{Centered, PAIRS, PRODUCTS, STATISTICS, Statistics};
 use crate::{
     contour::{C64, Contour},
-    fisher_bingham::centering_shift,
     jacobi,
     rcg::LN_PI_SQUARED,
 };
 
-/// Number of parameters: four of b, nine of P (its trace is free).
-pub(crate) const PARAMETERS: usize = 13;
-
-pub(crate) type Vector = SVector<f64, PARAMETERS>;
-pub(crate) type Square = SMatrix<f64, PARAMETERS, PARAMETERS>;
-
-/// The entries of P that are parameters; P₄₄ is 0.
-pub(crate) const PAIRS: [(usize, usize); 9] =
-    [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2), (3, 0), (3, 1), (3, 2)];
-
-/// P and b, in the frame of the sample.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Form {
-    pub(crate) p: Matrix4<f64>,
-    pub(crate) b: Vector4<f64>,
-}
-
-/// The density is ∝ exp(−½ Σ λ_j (v_j − c_j)²) in v = Vᵀy, with |c| ≤ 1.
-pub(crate) struct Centered {
-    pub(crate) axes: Matrix4<f64>,
-    pub(crate) lambda: [f64; 4],
-    pub(crate) center: [f64; 4],
-}
-
-impl Centered {
-    /// ln of the density of ±u, not normalised, and tanh bᵀu; `turn` takes u to v, `linear` is bᵀu.
-    fn exponent(&self, turn: &Matrix4<f64>, u: &Vector4<f64>, linear: f64) -> (f64, f64) {
-        // The sign that the law prefers, and by how much.
-        let sign = 1.0_f64.copysign(linear);
-        let other = libm::exp(-2.0 * linear.abs());
-        // Centred, as the plain exponent is a difference of large terms.
-        let v = turn * u * sign;
-        let square: f64 = (0..4).map(|j| self.lambda[j] * (v[j] - self.center[j]).powi(2)).sum();
-        (libm::log1p(other) - 0.5 * square, sign * (1.0 - other) / (1.0 + other))
-    }
-}
-
-impl Form {
-    /// Eigenvectors, and eigenvalues less the smallest, in the order of the columns.
-    pub(crate) fn eigen(&self) -> ([f64; 4], Matrix4<f64>) {
-        // Made definite by a shift that is small where the matrix is graded, so that the small
-        // eigenvalues keep their digits.
-        let mut shift = 0.0_f64;
-        for i in 0..4 {
-            shift = shift.max(-self.p[(i, i)]);
-        }
-        let shifted = self.p + Matrix4::identity() * (shift + 1.0);
-        let off: f64 = (0..3).map(|a| shifted[(a, 3)].powi(2) / shifted[(a, a)]).sum();
-        let (values, axes) = jacobi::eigen(&(shifted + Matrix4::identity() * off));
-        let floor = values.into_iter().fold(f64::INFINITY, f64::min);
-        (values.map(|v| v - floor), axes)
-    }
-
-    pub(crate) fn centered(&self) -> Centered {
-        let (values, axes) = self.eigen();
-        let b: [f64; 4] = axes.tr_mul(&self.b).into();
-        let shift = centering_shift(values, b);
-        let lambda = values.map(|v| v + shift);
-        Centered { axes, lambda, center: std::array::from_fn(|j| b[j] / lambda[j]) }
-    }
-}
+/// Attitudes whose two signs differ by more than e^40 have one.
+const CERTAIN: f64 = 20.0;
 
 /// Attitudes in the frame of their second moment, each coordinate over its root mean square: then
 /// parameters are of order one however concentrated the sample is.
@@ -80,18 +21,16 @@ pub(crate) struct Sample {
     /// Root mean squares of the coordinates.
     pub(crate) scale: [f64; 4],
     points: Vec<Vector4<f64>>,
-    /// Mean of the products of scaled coordinates.
-    second: Matrix4<f64>,
 }
 
-/// Mean ln-likelihood an attitude, with respect to Haar measure of total one.
+/// Mean ln-likelihood an attitude, with respect to Haar measure of total one, and its derivatives.
 #[derive(Clone, Debug)]
-pub(crate) struct Evaluation {
+pub(crate) struct Evaluation<const N: usize> {
     pub(crate) value: f64,
-    pub(crate) gradient: Vector,
-    pub(crate) hessian: Square,
+    pub(crate) gradient: SVector<f64, N>,
+    pub(crate) hessian: SMatrix<f64, N, N>,
     /// Covariance of the sufficient statistics under the law.
-    pub(crate) information: Square,
+    pub(crate) information: SMatrix<f64, N, N>,
 }
 
 impl Sample {
@@ -118,8 +57,7 @@ impl Sample {
         for point in &mut points {
             *point = Vector4::from_fn(|i, _| point[i] / scale[i]);
         }
-        let second = second_moment(&points);
-        Self { frame, scale, points, second }
+        Self { frame, scale, points }
     }
 
     pub(crate) fn len(&self) -> f64 {
@@ -128,29 +66,6 @@ impl Sample {
 
     pub(crate) fn points(&self) -> &[Vector4<f64>] {
         &self.points
-    }
-
-    /// P and b from the parameters.
-    pub(crate) fn form(&self, eta: &Vector) -> Form {
-        let mut p = Matrix4::zeros();
-        for (k, &(i, j)) in PAIRS.iter().enumerate() {
-            p[(i, j)] = eta[4 + k] / (self.scale[i] * self.scale[j]);
-            p[(j, i)] = p[(i, j)];
-        }
-        Form { p, b: Vector4::from_fn(|i, _| eta[i] / self.scale[i]) }
-    }
-
-    /// The parameters of P and b: a linear map.
-    pub(crate) fn parameters(&self, form: &Form) -> Vector {
-        let mut eta = Vector::zeros();
-        for i in 0..4 {
-            eta[i] = form.b[i] * self.scale[i];
-        }
-        for (k, &(i, j)) in PAIRS.iter().enumerate() {
-            let own = if i == j { form.p[(3, 3)] } else { 0.0 };
-            eta[4 + k] = (form.p[(i, j)] - own) * self.scale[i] * self.scale[j];
-        }
-        eta
     }
 
     /// Means of the scaled sample with signs that hold one half of it together: the local maxima
@@ -174,6 +89,11 @@ impl Sample {
         means
     }
 
+    /// Mean size of the scaled coordinate.
+    pub(crate) fn mean_size(&self, coordinate: usize) -> f64 {
+        self.points.iter().map(|u| u[coordinate].abs()).sum::<f64>() / self.len()
+    }
+
     fn signed_mean(&self, direction: &Vector4<f64>) -> Vector4<f64> {
         let mut sum = Vector4::zeros();
         for u in &self.points {
@@ -183,137 +103,194 @@ impl Sample {
     }
 
     /// The Gaussian with this mean and the sample's second moment, in scaled coordinates.
-    pub(crate) fn gaussian(&self, mean: &Vector4<f64>) -> Form {
+    pub(crate) fn gaussian(&self, mean: &Vector4<f64>) -> Centered {
         // Steeper forms are rounding where they are flat.
         let slack = (1.0 - mean.norm_squared()).max(1e-8);
         let b = mean / slack;
         let p = Matrix4::identity() + b * mean.transpose();
         let scale = Vector4::from(self.scale);
-        Form {
-            p: Matrix4::from_fn(|i, j| p[(i, j)] / (scale[i] * scale[j])),
-            b: b.component_div(&scale),
-        }
+        let p = Matrix4::from_fn(|i, j| p[(i, j)] / (scale[i] * scale[j]));
+        Centered::of(&p, &b.component_div(&scale))
     }
 
-    /// Root mean square distance of the sample from the law's thinnest hyperplane, signs as the law
-    /// has them, and the same over the sample's extent in that direction.
-    pub(crate) fn thickness(&self, form: &Form) -> (f64, f64) {
-        let law = form.centered();
-        let mut squares = Vector4::zeros();
-        for u in &self.points {
-            let y = Vector4::from_fn(|i, _| u[i] * self.scale[i]);
-            let v = law.axes.tr_mul(&y) * 1.0_f64.copysign(form.b.dot(&y));
-            let across = v - Vector4::from(law.center);
-            squares += across.component_mul(&across) / self.len();
+    /// Root mean square distance of the attitudes' quaternions, signs as the law has them, from the
+    /// nearest small sphere: along the sphere, in rad.
+    pub(crate) fn thickness(&self, law: &Centered) -> f64 {
+        let scale = Vector4::from(self.scale);
+        let b = (law.axes * Vector4::from(law.linear())).component_mul(&scale);
+        let points: Vec<Vector4<f64>> = self
+            .points
+            .iter()
+            .map(|u| u.component_mul(&scale) * 1.0_f64.copysign(b.dot(u)))
+            .collect();
+        let n = self.len();
+        let center = points.iter().sum::<Vector4<f64>>() / n;
+        let mut axes = Matrix4::identity();
+        let mut values = [0.0; 4];
+        // A second pass finds what the first has lost to rounding.
+        for _ in 0..2 {
+            let offsets: Vec<_> = points.iter().map(|y| axes.tr_mul(&(y - center))).collect();
+            let (found, turn) = jacobi::eigen(&second_moment(&offsets));
+            (values, axes) = (found, axes * turn);
         }
-        let mut thinnest = (f64::INFINITY, f64::INFINITY);
-        for j in 0..4 {
-            let reach: f64 = (0..4).map(|i| (law.axes[(i, j)] * self.scale[i]).powi(2)).sum();
-            let share = (squares[j] / reach).sqrt();
-            if share < thinnest.1 {
-                thinnest = (squares[j].sqrt(), share);
-            }
-        }
-        thinnest
+        let distances = (0..4).map(|j| {
+            // The farther the sphere is from a great one, the more slanted its plane.
+            let normal = axes.column(j);
+            let level = |y: &Vector4<f64>| (y - normal * normal.dot(y)).norm_squared();
+            (values[j].max(0.0) / (points.iter().map(level).sum::<f64>() / n)).sqrt()
+        });
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
+    /// u ↦ v.
+    fn turn(&self, law: &Centered) -> Matrix4<f64> {
+        Matrix4::from_fn(|i, j| law.axes[(j, i)] * self.scale[j])
     }
 
     /// Mean ln-likelihood alone.
-    pub(crate) fn height(&self, form: &Form) -> f64 {
-        let law = form.centered();
-        let slack = 1.0 - law.center.iter().map(|c| c * c).sum::<f64>();
-        let turn = Matrix4::from_fn(|i, j| law.axes[(j, i)] * self.scale[j]);
-        let b = form.b.component_mul(&Vector4::from(self.scale));
-        let sum: f64 = self.points.iter().map(|u| law.exponent(&turn, u, b.dot(u)).0).sum();
-        sum / self.len() - Contour::new(law.lambda, law.center, slack).ln_integral() + LN_PI_SQUARED
+    pub(crate) fn height(&self, law: &Centered) -> f64 {
+        let contour = Contour::new(law.lambda, law.center, law.slack());
+        self.means(law).exponent - contour.ln_integral() + LN_PI_SQUARED
     }
 
-    pub(crate) fn evaluate(&self, eta: &Vector) -> Evaluation {
-        let law = self.form(eta).centered();
-        let slack = 1.0 - law.center.iter().map(|c| c * c).sum::<f64>();
-        let contour = Contour::new(law.lambda, law.center, slack);
-        let (mean, information) = self.model_moments(&law, &contour);
-
-        let b = eta.fixed_rows::<4>(0).into_owned();
-        let turn = Matrix4::from_fn(|i, j| law.axes[(j, i)] * self.scale[j]);
-        let mut sum = 0.0;
-        let (mut first, mut bend) = (Vector4::zeros(), Matrix4::zeros());
-        for u in &self.points {
-            let (exponent, tanh) = law.exponent(&turn, u, b.dot(u));
-            sum += exponent;
-            first += u * tanh;
-            bend += u * (u * (1.0 - tanh * tanh)).transpose();
-        }
-        let value = sum / self.len() - contour.ln_integral() + LN_PI_SQUARED;
-        let mut gradient = -mean;
+    /// Derivatives are by the factors of the law's own statistics, of which one depends on the others.
+    pub(crate) fn evaluate(&self, law: &Centered) -> Evaluation<STATISTICS> {
+        let contour = Contour::new(law.lambda, law.center, law.slack());
+        let (expected, information) = model_moments(law, &contour);
+        let means = self.means(law);
+        // By how much the statistics of u are ahead of those of −u: linear in v.
+        let roots = law.roots();
+        let mut ahead = SMatrix::<f64, STATISTICS, 4>::zeros();
         for i in 0..4 {
-            gradient[i] += first[i] / self.len();
+            ahead[(i, i)] = 2.0 * roots[i];
         }
         for (k, &(i, j)) in PAIRS.iter().enumerate() {
-            gradient[4 + k] -= half_if(i == j) * self.second[(i, j)];
+            let factor = 2.0 * half_if(i == j) * roots[i] * roots[j];
+            ahead[(PRODUCTS + k, i)] += factor * law.center[j];
+            ahead[(PRODUCTS + k, j)] += factor * law.center[i];
         }
-        let mut hessian = -information;
-        let mut block = hessian.fixed_view_mut::<4, 4>(0, 0);
-        block += bend / self.len();
+        let mut gradient = -expected - ahead * means.other;
+        for i in 0..4 {
+            gradient[i] += means.first[i];
+        }
+        for (k, &(i, j)) in PAIRS.iter().enumerate() {
+            gradient[PRODUCTS + k] -= half_if(i == j) * means.second[(i, j)];
+        }
+        let value = means.exponent - contour.ln_integral() + LN_PI_SQUARED;
+        let hessian = ahead * means.doubt * ahead.transpose() - information;
         Evaluation { value, gradient, hessian, information }
     }
 
-    /// Mean and covariance of the statistics (u_i, −½u_a², −u_a u_b) under the law: at every node
-    /// of the contour the moments of a Gaussian, by Isserlis's theorem.
-    fn model_moments(&self, law: &Centered, contour: &Contour) -> (Vector, Square) {
-        let turn = Matrix4::from_fn(|i, j| law.axes[(i, j)] / self.scale[i]);
-        let (mut mean, mut square) = (Vector::zeros(), Square::zeros());
-        for (weight, node_mean, variance) in contour.nodes() {
-            let zero = C64::new(0.0, 0.0);
-            let mut m = [zero; 4];
-            let mut c = [[zero; 4]; 4];
+    fn means(&self, law: &Centered) -> Means {
+        let (turn, roots, b) = (self.turn(law), Vector4::from(law.roots()), law.linear());
+        let (center, b) = (Vector4::from(law.center), Vector4::from(b));
+        let mut sum = Means::default();
+        // The product of 1 + odds, whose logarithm is taken before it could overflow.
+        let mut product = 1.0;
+        for u in &self.points {
+            let v = turn * u;
+            let linear = b.dot(&v);
+            // Of u and −u the one that the law prefers. The exponent is centred, as the plain one is
+            // a difference of large terms.
+            let v = v * 1.0_f64.copysign(linear);
+            let w = (v - center).component_mul(&roots);
+            sum.exponent -= 0.5 * w.norm_squared();
+            sum.first += w;
             for i in 0..4 {
-                for k in 0..4 {
-                    m[i] += node_mean[k] * turn[(i, k)];
-                }
                 for j in 0..=i {
-                    for (k, v) in variance.iter().enumerate() {
-                        c[i][j] += v * (turn[(i, k)] * turn[(j, k)]);
+                    sum.second[(i, j)] += w[i] * w[j];
+                }
+            }
+            if linear.abs() < CERTAIN {
+                let odds = libm::exp(-2.0 * linear.abs());
+                let share = odds / (1.0 + odds);
+                product *= 1.0 + odds;
+                if product > 1e300 {
+                    sum.exponent += libm::log(product);
+                    product = 1.0;
+                }
+                sum.other += v * share;
+                sum.doubt += v * (v * (share * (1.0 - share))).transpose();
+            }
+        }
+        let n = self.len();
+        Means {
+            exponent: (sum.exponent + libm::log(product)) / n,
+            first: sum.first / n,
+            second: sum.second / n,
+            other: sum.other / n,
+            doubt: sum.doubt / n,
+        }
+    }
+}
+
+/// Averages over the sample, of each attitude the sign that the law prefers.
+#[derive(Default)]
+struct Means {
+    /// ln of the density of ±u, not normalised.
+    exponent: f64,
+    /// w.
+    first: Vector4<f64>,
+    /// w_i w_j, for i ≥ j.
+    second: Matrix4<f64>,
+    /// v times the share of the other sign, and v vᵀ times the product of the shares.
+    other: Vector4<f64>,
+    doubt: Matrix4<f64>,
+}
+
+/// Mean and covariance of the statistics under the law. At every node of the contour the w are
+/// independent Gaussians, and moments are products of theirs.
+fn model_moments(
+    law: &Centered,
+    contour: &Contour,
+) -> (Statistics, SMatrix<f64, STATISTICS, STATISTICS>) {
+    let roots = law.roots();
+    // The moment of w₁^a w₂^b w₃^c w₄^d has index 125 a + 25 b + 5 c + d.
+    const PLACE: [usize; 4] = [125, 25, 5, 1];
+    let mut moments = [0.0; 625];
+    for (weight, offset, variance) in contour.nodes_about_center() {
+        let powers: [[C64; 5]; 4] = std::array::from_fn(|i| {
+            let (m, c) = (offset[i] * roots[i], variance[i] * law.lambda[i]);
+            let square = m * m;
+            [
+                C64::new(1.0, 0.0),
+                m,
+                square + c,
+                m * (square + c * 3.0),
+                square * (square + c * 6.0) + c * c * 3.0,
+            ]
+        });
+        for a in 0..5 {
+            let first = powers[0][a] * weight;
+            for b in 0..5 - a {
+                let second = first * powers[1][b];
+                for c in 0..5 - a - b {
+                    let third = second * powers[2][c];
+                    for d in 0..5 - a - b - c {
+                        let last = powers[3][d];
+                        moments[125 * a + 25 * b + 5 * c + d] +=
+                            third.re * last.im + third.im * last.re;
                     }
-                    c[j][i] = c[i][j];
-                }
-            }
-            // Only imaginary parts are wanted: the weight goes on one factor of each product.
-            let im = |a: C64, b: C64| a.re * b.im + a.im * b.re;
-            let table = |f: &dyn Fn(usize, usize) -> C64| -> [[C64; 4]; 4] {
-                std::array::from_fn(|i| std::array::from_fn(|j| f(i, j)))
-            };
-            let product = table(&|i, j| m[i] * m[j]);
-            let raw = table(&|i, j| product[i][j] + c[i][j]);
-            let weighted_product = table(&|i, j| weight * product[i][j]);
-            let weighted = table(&|i, j| weight * raw[i][j]);
-            let weighted_mean = m.map(|m| weight * m);
-            for i in 0..4 {
-                mean[i] += weighted_mean[i].im;
-                for j in 0..=i {
-                    square[(i, j)] += weighted[i][j].im;
-                }
-            }
-            for (k, &(a, b)) in PAIRS.iter().enumerate() {
-                let sign = -half_if(a == b);
-                mean[4 + k] += sign * weighted[a][b].im;
-                for i in 0..4 {
-                    let third = im(weighted_mean[i], raw[a][b])
-                        + im(weighted_mean[a], c[i][b])
-                        + im(weighted_mean[b], c[i][a]);
-                    square[(4 + k, i)] += sign * third;
-                }
-                for (l, &(d, e)) in PAIRS.iter().enumerate().take(k + 1) {
-                    let fourth = im(weighted[a][b], raw[d][e])
-                        + im(weighted[a][d], raw[b][e])
-                        + im(weighted[a][e], raw[b][d])
-                        - 2.0 * im(weighted_product[a][b], product[d][e]);
-                    square[(4 + k, 4 + l)] += sign * -half_if(d == e) * fourth;
                 }
             }
         }
-        square.fill_upper_triangle_with_lower_triangle();
-        (mean, square - mean * mean.transpose())
     }
+    let statistic = |k: usize| match k.checked_sub(PRODUCTS) {
+        None => (PLACE[k], 1.0),
+        Some(pair) => {
+            let (i, j) = PAIRS[pair];
+            (PLACE[i] + PLACE[j], -half_if(i == j))
+        }
+    };
+    let mean = Statistics::from_fn(|k, _| {
+        let (index, factor) = statistic(k);
+        factor * moments[index]
+    });
+    let covariance = SMatrix::from_fn(|k, l| {
+        let ((a, x), (b, y)) = (statistic(k), statistic(l));
+        x * y * (moments[a + b] - moments[a] * moments[b])
+    });
+    (mean, covariance)
 }
 
 /// The 24 lines through opposite roots of F₄: no direction of ℝ⁴ is farther than 32° from one.

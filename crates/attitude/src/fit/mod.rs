@@ -1,3 +1,8 @@
+//! The most likely law of attitudes, within a family that is chosen or given.
+
+#[cfg(test)]
+mod census;
+mod centered;
 mod climb;
 mod intervals;
 mod likelihood;
@@ -10,12 +15,13 @@ mod tests;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 use std::fmt;
 
-use crate::{RadiallyConstrainedGaussian, fisher_bingham::left_multiplication, jacobi};
+use crate::{RadiallyConstrainedGaussian, fisher_bingham::left_multiplication};
+use centered::Centered;
 use climb::Climb;
 pub use intervals::NoIntervals;
-use likelihood::{PARAMETERS, Sample, Square};
-use point::{PRECISION, Point, SLOPE, TRIANGLE};
-use search::Search;
+use likelihood::Sample;
+use point::{PARAMETERS, PRECISION, Point, SLOPE, Square, TRIANGLE};
+use search::{Search, moved};
 
 /// Fewer attitudes than parameters of the law are not fitted.
 const NEEDED: usize = PARAMETERS;
@@ -58,12 +64,6 @@ pub enum FitError {
         /// Root mean square distance of the quaternions from that sphere.
         spread: f64,
     },
-    /// The most likely law is narrower than a law may be.
-    #[error("attitudes whose most likely law has a variance of {variance:e}: the least is 1e-14")]
-    Steep {
-        /// The smallest eigenvalue of its covariance.
-        variance: f64,
-    },
     /// The radial variance that was asked for is out of range.
     #[error("radial variance {value:e}: it must be between 1e-14 and 1e14, or infinite")]
     RadialVariance {
@@ -78,7 +78,8 @@ pub enum FitError {
 pub enum Family {
     /// The smallest of [`Bingham`](Self::Bingham), [`Aligned`](Self::Aligned) and
     /// [`General`](Self::General) that the likelihood ratio does not reject against a larger one
-    /// at 1 %.
+    /// at 1 %. Its law is the most likely of that family; the most likely general law has a
+    /// ln-likelihood that is up to 9.75 greater.
     #[default]
     Chosen,
     /// Bingham's law, 9 parameters: q and −q are equally likely and the radial variance is infinite.
@@ -194,25 +195,29 @@ impl RadiallyConstrainedGaussian {
     /// radial variance with [`Family::AlignedWith`].
     ///
     /// # Algorithm
-    /// Newton's method with exact derivatives and damping, each step uphill, in coordinates scaled
-    /// by the sample; Hessian from the fourth moments of the law (Isserlis at each node of the
-    /// contour integral). The likelihood can have several maxima, and the highest that is found is
-    /// taken. Starts are the best aligned law, one with little radial variance, a Gaussian for every
-    /// way to divide the attitudes' quaternions in two opposite halves whose mean is locally the
-    /// longest, in coordinates of unit variance (the L1 principal components of Kwak 2008,
-    /// doi:10.1109/TPAMI.2008.114, from 24 directions), the likeliest of 24 Gaussians whose means
-    /// cover all directions, and the likeliest laws of two lobes, found as two clusters of one
-    /// covariance of which the light one may hold a single attitude. The mean of Bingham's law is the principal axis of the second moment of the
+    /// Newton's method with exact derivatives and damping, each step uphill, in coordinates in which the
+    /// law that has been reached has unit variance, so that lobes of 1e-6 rad are as easy as wide ones;
+    /// Hessian from the fourth moments of the law (Isserlis at each node of the contour integral). The
+    /// likelihood can have several maxima, and the highest that is found is taken. Starts are the best
+    /// aligned law, one with little radial variance, a Gaussian for every way to divide the attitudes'
+    /// quaternions in two opposite halves whose mean is locally the longest, in coordinates of unit
+    /// variance (the L1 principal components of Kwak 2008, doi:10.1109/TPAMI.2008.114, from 24
+    /// directions), the likeliest of 24 Gaussians whose means cover all directions, and the likeliest
+    /// laws of two lobes, found as two clusters of one covariance of which the light one may hold a
+    /// single attitude. The mean of Bingham's law is the principal axis of the second moment of the
     /// sample (Markley et al. 2007, doi:10.2514/1.28949).
     ///
     /// # Limits
-    /// At least 13 attitudes, with root mean square distances of their quaternions from every
-    /// great sphere above 1e-7 (turns of 2e-7 rad), and from every small one above 1e-5 of their
-    /// extent. Order and signs matter to rounding only. Standard errors and intervals are those of
-    /// many attitudes: a few hundred where there are lobes to see or nothing radial to estimate,
-    /// a few thousand for a diffuse general law; [`Fit::no_intervals`] says where there are none.
-    /// The law of a smaller family can be less likely than the one that the attitudes were drawn from,
-    /// by as much as the likelihood ratio tolerates. Some 15 to 40 ms for 1,000 attitudes.
+    /// At least 13 attitudes. Their quaternions must have root mean square distances from every great
+    /// sphere, and from every small one, of more than 1e-7 (turns of 2e-7 rad). Order and signs matter
+    /// to rounding only. Standard errors and intervals are those of many attitudes: a few hundred where
+    /// there are lobes to see or nothing radial to estimate, a few thousand for a diffuse general law;
+    /// [`Fit::no_intervals`] says where there are none.
+    ///
+    /// A law that is chosen is the most likely one of its own family, not of the general family: its
+    /// ln-likelihood may be below that of the most likely general law, and so below that of the law
+    /// that the attitudes were drawn from, by what the likelihood ratio tolerates, at most 9.75. Where
+    /// nothing may be lost, ask for [`Family::General`]. Some 10 to 30 ms for 1,000 attitudes.
     ///
     /// # Errors
     /// Too few attitudes, one that is not a unit quaternion, or a likelihood without maximum.
@@ -268,8 +273,17 @@ impl RadiallyConstrainedGaussian {
         let n = sample.len();
         let bingham = search.bingham();
         let bingham_ln_likelihood = n * bingham.height;
-        let report =
-            |best, family, radial| Fit::new(&sample, best, family, radial, bingham_ln_likelihood);
+        let report_law = |best: &Climb<Point>, law: &Centered, family, radial| {
+            Fit::new(&sample, best, law, family, radial, bingham_ln_likelihood)
+        };
+        let report = |best: &Climb<Point>, family, radial| {
+            report_law(best, &best.place.law(), family, radial)
+        };
+        let report_general = |top: &Climb<Centered>| {
+            let best = moved(top, Point::of(&top.place));
+            let radial = search.interval(&best, search::GENERAL);
+            report_law(&best, &top.place, Family::General, radial)
+        };
         match family {
             Family::AlignedWith { radial_variance: value } => {
                 let finite = SMALLEST_VARIANCE..=1.0 / SMALLEST_VARIANCE;
@@ -279,7 +293,7 @@ impl RadiallyConstrainedGaussian {
                 let best = if value == f64::INFINITY {
                     bingham.clone()
                 } else {
-                    search.aligned_at(&bingham.place, 1.0 / value)
+                    search.aligned_at(&bingham, 1.0 / value)
                 };
                 report(&best, family, RadialVariance::Given(value))
             }
@@ -295,31 +309,23 @@ impl RadiallyConstrainedGaussian {
             }
             Family::General => {
                 let aligned = search.aligned(&bingham);
-                let general = search.general(&bingham, &aligned)?;
-                let radial = search.interval(&general, search::GENERAL);
-                report(&general, family, radial)
+                report_general(&search.general(&bingham, &aligned)?)
             }
             Family::Chosen => {
                 let aligned = search.aligned(&bingham);
-                let general = match search.general(&bingham, &aligned) {
-                    // Narrow clusters have few digits across the sphere: what looks steep is noise.
-                    Err(FitError::Steep { .. }) => aligned.clone(),
-                    other => other?,
-                };
-                let ratio = |larger: &Climb<Point>, smaller: &Climb<Point>| {
-                    2.0 * n * (larger.height - smaller.height)
-                };
-                if ratio(&general, &bingham) <= GENERAL_TO_BINGHAM
-                    && ratio(&aligned, &bingham) <= ALIGNED_TO_BINGHAM
+                let general = search.general(&bingham, &aligned)?;
+                let ratio =
+                    |larger: f64, smaller: &Climb<Point>| 2.0 * n * (larger - smaller.height);
+                if ratio(general.height, &bingham) <= GENERAL_TO_BINGHAM
+                    && ratio(aligned.height, &bingham) <= ALIGNED_TO_BINGHAM
                 {
                     let low = search.lowest(&aligned, search::ALIGNED);
                     report(&bingham, Family::Bingham, RadialVariance::Undetermined { low })
-                } else if ratio(&general, &aligned) <= GENERAL_TO_ALIGNED {
+                } else if ratio(general.height, &aligned) <= GENERAL_TO_ALIGNED {
                     let radial = search.interval(&aligned, search::ALIGNED);
                     report(&aligned, Family::Aligned, radial)
                 } else {
-                    let radial = search.interval(&general, search::GENERAL);
-                    report(&general, Family::General, radial)
+                    report_general(&general)
                 }
             }
         }
@@ -330,15 +336,15 @@ impl Fit {
     fn new(
         sample: &Sample,
         best: &Climb<Point>,
+        law: &Centered,
         family: Family,
         radial: RadialVariance,
         bingham_ln_likelihood: f64,
     ) -> Result<Self, FitError> {
         let Climb { place, height, converged, iterations, gain } = *best;
         let mut frame = sample.frame * place.frame;
-        let (lambda, axes) = jacobi::eigen(&place.form_about_mean());
-        let variances = lambda.map(|l| if l > 0.0 { 1.0 / l } else { f64::INFINITY });
-        let axes = frame * axes;
+        let variances = law.gaussian().0.map(|l| if l > 0.0 { 1.0 / l } else { f64::INFINITY });
+        let axes = sample.frame * law.axes;
         let mean = frame.column(3).normalize();
         // The last coordinate that is not zero is positive.
         if (0..4).rev().map(|i| mean[i]).find(|x| *x != 0.0).is_some_and(|x| x < 0.0) {
@@ -351,8 +357,8 @@ impl Fit {
         // Half turns of the body are m ⊗ (h, 0): from tangents of the fit to those.
         let body =
             (left_multiplication(&mean).tr_mul(&frame)).fixed_view::<3, 3>(0, 0).into_owned();
-        let across = place
-            .precision
+        // At the edge of the family a turn is free: as far as a law can say so.
+        let across = (place.precision + Matrix3::from_diagonal_element(SMALLEST_VARIANCE))
             .cholesky()
             .ok_or(FitError::Degenerate { spread: sample.scale[0] })?
             .inverse();

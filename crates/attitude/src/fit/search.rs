@@ -1,24 +1,28 @@
 //! The maxima of the likelihood within the families, and the interval of the radial variance.
 
-use nalgebra::{Matrix3, Matrix4, Vector3};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 
 use super::{
     FitError, RadialVariance,
-    climb::{Climb, climb, climb_above},
-    likelihood::{Form, PAIRS, PARAMETERS, Sample, Vector, root_lines},
+    centered::{Centered, PAIRS, PRODUCTS, STATISTICS},
+    climb::{Climb, SAME, climb, climb_above},
+    likelihood::{Sample, root_lines},
     lobes,
-    point::{Natural, Point, SLOPE, TAU},
+    point::{PARAMETERS, Point, SLOPE, Sheared, TAU},
 };
-use crate::jacobi;
 
 /// The 95 % quantile of χ² with one degree of freedom.
 const QUANTILE: f64 = 3.841_458_820_694_124;
 /// Range of τ = 1/s.
 const TAU_RANGE: std::ops::RangeInclusive<f64> = 1e-14..=1e14;
 
-/// The attitudes lie on a small sphere if they are no farther from it than this share of how far
-/// they spread. Rounding stops a search that has no end at 1e-7 or so.
-const THINNEST: f64 = 1e-5;
+/// Attitudes that are nearer to a small sphere lie on it, if they are as much nearer to it than to any
+/// great one: the least deviation that a law may have.
+const THINNEST: f64 = 1e-7;
+const NEARER: f64 = 0.1;
+/// The mean square of the coordinate along a mean, which is a quarter for the uniform law and greater
+/// for any with such a mean, is not below this in a sample.
+const LEAST_ALONG: f64 = 0.15;
 /// How many laws of two lobes, and of lobes that overlap, are climbed from.
 const LOBES: usize = 3;
 const OVERLAPPING: usize = 2;
@@ -54,27 +58,36 @@ impl<'a> Search<'a> {
 
     /// Bingham's law, whose axes are those of the sample's second moment.
     pub(super) fn bingham(&self) -> Climb<Point> {
-        let mut diagonal = [false; PARAMETERS];
-        let mut start = Vector::zeros();
+        let mut squares = [false; STATISTICS];
         for (k, &(i, j)) in PAIRS.iter().enumerate() {
-            if i == j {
-                diagonal[4 + k] = true;
-                start[4 + k] = 1.0 - (self.sample.scale[i] / self.sample.scale[3]).powi(2);
-            }
+            squares[PRODUCTS + k] = i == j;
         }
-        let top = climb(&Natural(self.sample), start, diagonal, self.n);
-        let form = self.sample.form(&top.place);
+        let start = self.sample.scale.map(|s| s.powi(-2));
+        let start = Centered::new(Matrix4::identity(), start, [0.0; 4]);
+        let top = climb(&Sheared(self.sample), start, squares, self.n);
+        let lambda = top.place.lambda;
         // Uniform to rounding is as flat as a law can be.
-        let diagonal = form.p.diagonal().fixed_rows::<3>(0).map(|p| p.max(*TAU_RANGE.start()));
-        let precision = Matrix3::from_diagonal(&diagonal);
-        let place =
-            Point { frame: Matrix4::identity(), precision, slope: Vector3::zeros(), tau: 0.0 };
+        let precisions = Vector3::from_fn(|i, _| (lambda[i] - lambda[3]).max(*TAU_RANGE.start()));
+        let place = Point {
+            frame: Matrix4::identity(),
+            precision: Matrix3::from_diagonal(&precisions),
+            slope: Vector3::zeros(),
+            tau: 0.0,
+        };
         moved(&top, place)
     }
 
     /// The most likely law with this τ whose mean is a principal axis.
-    pub(super) fn aligned_at(&self, start: &Point, tau: f64) -> Climb<Point> {
-        climb(self.sample, Point { tau, ..*start }, ALIGNED, self.n)
+    pub(super) fn aligned_at(&self, bingham: &Climb<Point>, tau: f64) -> Climb<Point> {
+        let start = |place: &Point| Point { tau, ..*place };
+        let mut best = climb(self.sample, start(&bingham.place), ALIGNED, self.n);
+        for place in self.along_axes() {
+            let top = climb_above(self.sample, start(&place), ALIGNED, self.n, best.height);
+            if self.n * (top.height - best.height) > SAME {
+                best = top;
+            }
+        }
+        best
     }
 
     /// The τ at which the radial variance begins to be felt.
@@ -84,95 +97,71 @@ impl<'a> Search<'a> {
     }
 
     /// The most likely law whose mean is a principal axis; Bingham's where no other is better.
-    /// Flat-topped samples drive Λ to the edge of the family, beyond which the mean is no mode:
-    /// what has not converged for that reason does not count.
     pub(super) fn aligned(&self, bingham: &Climb<Point>) -> Climb<Point> {
         let mut best = bingham.clone();
-        let mut place = bingham.place;
-        let mut tau = self.first_tau();
-        while tau <= *TAU_RANGE.end() {
-            let here = self.aligned_at(&place, tau);
-            place = here.place;
-            let drop = 2.0 * self.n * (best.height - here.height);
-            if here.converged && here.height > best.height {
-                best = here;
-            } else if !(drop < 2.0 * QUANTILE) {
-                break;
+        let mut free = ALIGNED;
+        free[TAU] = true;
+        for place in self.along_axes() {
+            let mut top = climb_above(self.sample, place, free, self.n, best.height);
+            let greatest = *TAU_RANGE.end();
+            if !(top.place.tau <= greatest) {
+                top = climb(self.sample, Point { tau: greatest, ..top.place }, ALIGNED, self.n);
             }
-            tau *= 4.0;
-        }
-        if best.place.tau == 0.0 {
-            return best;
-        }
-        let top = if self.sample.scale[2] > 0.1 {
-            let mut free = ALIGNED;
-            free[TAU] = true;
-            climb(self.sample, best.place, free, self.n)
-        } else {
-            self.refined(best)
-        };
-        let better = self.n * (top.height - bingham.height) > 1e-6;
-        if top.converged && better && top.place.tau > *TAU_RANGE.start() {
-            top
-        } else {
-            bingham.clone()
-        }
-    }
-
-    /// The best τ within a factor of four, by golden section: derivatives by τ are differences of
-    /// nearly equal moments, and rounding where the sample is narrow.
-    fn refined(&self, mut best: Climb<Point>) -> Climb<Point> {
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        let middle = libm::log(best.place.tau);
-        let mut low = middle - 1.4;
-        let mut high = (middle + 1.4).min(libm::log(*TAU_RANGE.end()));
-        for _ in 0..16 {
-            let width = GOLDEN * (high - low);
-            let [left, right] = [high - width, low + width]
-                .map(|ln_tau| self.aligned_at(&best.place, libm::exp(ln_tau)));
-            let better = if left.height > right.height {
-                high = low + width;
-                left
-            } else {
-                low = high - width;
-                right
-            };
-            if better.converged && better.height > best.height {
-                best = better;
+            if self.n * (top.height - best.height) > SAME {
+                best = top;
             }
         }
         best
     }
 
+    /// The most likely laws whose axes are those of the sample's second moment, the mean one of those
+    /// that the attitudes have a sizeable part along.
+    fn along_axes(&self) -> Vec<Point> {
+        let mut places = Vec::new();
+        for j in (0..4).rev().filter(|&j| self.sample.scale[j].powi(2) > LEAST_ALONG) {
+            let mut free = [false; STATISTICS];
+            free[j] = true;
+            for (k, &(a, b)) in PAIRS.iter().enumerate() {
+                free[PRODUCTS + k] = a == b;
+            }
+            let axis = Vector4::ith(j, 1.0);
+            let start = self.sample.gaussian(&(axis * self.sample.mean_size(j)));
+            let top = climb(&Sheared(self.sample), start, free, self.n);
+            let place = Point::about_axis(&top.place, j, &self.sample.scale);
+            places.extend((place.tau > *TAU_RANGE.start()).then_some(place));
+        }
+        places
+    }
+
     /// Where to look for the most likely law of all, laws of two lobes apart.
-    pub(super) fn starts(&self, bingham: &Climb<Point>, aligned: &Climb<Point>) -> Vec<Form> {
+    pub(super) fn starts(&self, bingham: &Climb<Point>, aligned: &Climb<Point>) -> Vec<Centered> {
         let narrow = Point { tau: 1.0 / self.sample.scale[2].powi(2), ..bingham.place };
-        let mut starts = vec![aligned.place.form()];
+        let mut starts = vec![aligned.place.law()];
         starts.extend(self.sample.halves().iter().map(|mean| self.sample.gaussian(mean)));
         starts.extend(self.overlapping());
-        starts.push(narrow.form());
+        starts.push(narrow.law());
         starts
     }
 
     /// The likeliest laws of two lobes, in the light and heavy parts of the sample.
-    fn lobes(&self) -> Vec<Form> {
-        self.likeliest(lobes::starts(self.sample).iter().map(Point::form), LOBES)
+    fn lobes(&self) -> Vec<Centered> {
+        self.likeliest(lobes::starts(self.sample).iter().map(Point::law), LOBES)
     }
 
     /// The likeliest Gaussians whose mean is on one of 24 lines that cover all directions: lobes that
     /// overlap are not parted by any division of the sample.
-    fn overlapping(&self) -> Vec<Form> {
+    fn overlapping(&self) -> Vec<Centered> {
         let means = root_lines().into_iter().map(|line| line.normalize() * OVERLAPPING_MEAN);
         self.likeliest(means.map(|mean| self.sample.gaussian(&mean)), OVERLAPPING)
     }
 
-    fn likeliest(&self, forms: impl Iterator<Item = Form>, count: usize) -> Vec<Form> {
-        let mut ranked: Vec<(f64, Form)> = forms
-            .map(|form| (self.sample.height(&form), form))
+    fn likeliest(&self, laws: impl Iterator<Item = Centered>, count: usize) -> Vec<Centered> {
+        let mut ranked: Vec<(f64, Centered)> = laws
+            .map(|law| (self.sample.height(&law), law))
             .filter(|(height, _)| height.is_finite())
             .collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-        ranked.into_iter().take(count).map(|(_, form)| form).collect()
+        ranked.into_iter().take(count).map(|(_, law)| law).collect()
     }
 
     /// The most likely law of all.
@@ -180,40 +169,46 @@ impl<'a> Search<'a> {
         &self,
         bingham: &Climb<Point>,
         aligned: &Climb<Point>,
-    ) -> Result<Climb<Point>, FitError> {
-        let mut best: Option<Climb<Vector>> = None;
-        let mut try_from = |form: &Form, accepted: &dyn Fn(&Climb<Vector>) -> bool| {
-            let known = best.as_ref().map_or(f64::NEG_INFINITY, |best| best.height);
-            let start = self.sample.parameters(form);
-            let top = climb_above(&Natural(self.sample), start, ALL, self.n, known);
-            if top.height.is_finite() && top.height > known && accepted(&top) {
+    ) -> Result<Climb<Centered>, FitError> {
+        let mut best: Option<Climb<Centered>> = None;
+        let mut try_from = |start: Centered, accepted: &dyn Fn(&Centered) -> bool| {
+            if !start.is_wide_enough() {
+                return;
+            }
+            // What has not converged is not known.
+            let known = best.as_ref().filter(|best| best.converged);
+            let known = known.map_or(f64::NEG_INFINITY, |best| best.height);
+            let all = [true; STATISTICS];
+            let top = climb_above(&Sheared(self.sample), start, all, self.n, known);
+            let better = best.as_ref().is_none_or(|best| {
+                let more = self.n * (top.height - best.height);
+                more > SAME || more > -SAME && top.converged && !best.converged
+            });
+            if top.height.is_finite() && better && accepted(&top.place) {
                 best = Some(top);
             }
         };
-        for form in self.lobes() {
+        for law in self.lobes() {
             // Lobes that were none may run away; whether the sample is to blame the others tell.
-            try_from(&form, &|top| {
-                self.sample.thickness(&self.sample.form(&top.place)).1 > THINNEST
-            });
+            try_from(law, &|law| self.on_a_small_sphere(law).is_none());
         }
-        for form in self.starts(bingham, aligned) {
-            try_from(&form, &|_| true);
+        for law in self.starts(bingham, aligned) {
+            try_from(law, &|_| true);
         }
         // Uniform attitudes have no better law than the uniform one, which is of every family.
         let Some(top) = best.filter(|top| self.n * (top.height - aligned.height) > 1e-9) else {
-            return Ok(aligned.clone());
+            return Ok(moved(aligned, aligned.place.law()));
         };
-        let form = self.sample.form(&top.place);
-        let (spread, share) = self.sample.thickness(&form);
-        if !(share > THINNEST) {
+        if let Some(spread) = self.on_a_small_sphere(&top.place) {
             return Err(FitError::Degenerate { spread });
         }
-        let place = Point::of(&form);
-        let steepest = jacobi::eigen(&place.form_about_mean()).0.into_iter().fold(0.0, f64::max);
-        if !(steepest <= *TAU_RANGE.end()) {
-            return Err(FitError::Steep { variance: 1.0 / steepest });
-        }
-        Ok(moved(&top, place))
+        Ok(top)
+    }
+
+    /// The distance from the small sphere that the attitudes lie on, signs as the law has them.
+    fn on_a_small_sphere(&self, law: &Centered) -> Option<f64> {
+        let spread = self.sample.thickness(law);
+        (!(spread > THINNEST) && spread < NEARER * self.sample.scale[0]).then_some(spread)
     }
 
     /// The least radial variance that the attitudes allow next to any larger one.
@@ -283,8 +278,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The same climb in the coordinates of a point.
-fn moved(climb: &Climb<Vector>, place: Point) -> Climb<Point> {
+/// The same climb, its end in other coordinates.
+pub(super) fn moved<P, Q>(climb: &Climb<P>, place: Q) -> Climb<Q> {
     let Climb { height, converged, iterations, gain, .. } = *climb;
     Climb { place, height, converged, iterations, gain }
 }
