@@ -209,9 +209,9 @@ impl RadiallyConstrainedGaussian {
     ///
     /// # Limits
     /// At least 13 attitudes. Their quaternions must have root mean square distances from every great
-    /// sphere, and from every small one, of more than 1e-7 (turns of 2e-7 rad). Order and signs matter
-    /// to rounding only. Standard errors and intervals are those of many attitudes: a few hundred where
-    /// there are lobes to see or nothing radial to estimate, a few thousand for a diffuse general law;
+    /// sphere, and from every small one that is ten times nearer, of more than 1e-7 (turns of 2e-7 rad).
+    /// Order and signs matter to rounding only. Standard errors and intervals are those of many attitudes: a few hundred where
+    /// there are lobes to see or nothing radial to estimate, five thousand or more for a diffuse general law;
     /// [`Fit::no_intervals`] says where there are none.
     ///
     /// A law that is chosen is the most likely one of its own family, not of the general family: its

@@ -195,6 +195,10 @@ impl<'a> Search<'a> {
         for law in self.starts(bingham, aligned) {
             try_from(law, &|_| true);
         }
+        if let Some(slow) = best.as_ref().filter(|best| !best.converged) {
+            let all = [true; STATISTICS];
+            best = Some(climb(&Sheared(self.sample), slow.place, all, self.n));
+        }
         // Uniform attitudes have no better law than the uniform one, which is of every family.
         let Some(top) = best.filter(|top| self.n * (top.height - aligned.height) > 1e-9) else {
             return Ok(moved(aligned, aligned.place.law()));

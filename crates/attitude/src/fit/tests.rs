@@ -387,36 +387,38 @@ fn errors_are_right_for_two_lobes() {
 
 #[test]
 fn errors_are_right_for_a_diffuse_law() {
-    // With 500 attitudes most samples give no intervals.
-    let repeats = Repeats::of(&diffuse(), Family::General, 3000, 200);
-    assert!(repeats.none <= 10, "{}", repeats.none);
+    // With 3,000 attitudes most samples give no intervals.
+    let repeats = Repeats::of(&diffuse(), Family::General, 8000, 80);
+    assert!(repeats.none <= 4, "{}", repeats.none);
     repeats.check("diffuse");
 }
 
 /// Errors from the information hold the truth of these laws in six to eight of ten where they are
-/// given regardless: near b = 0, in girdles, and where a turn is free.
+/// given regardless: near b = 0, in girdles, and where a turn is free. Nor do they hold where they are
+/// given to samples that just exclude all that.
 #[test]
 fn diffuse_general_laws_have_intervals_that_hold_or_none() {
-    let (mut given, mut none, mut held, mut radial) = (0, 0, 0, 0);
-    for (mean, variances) in [
+    let (mut held, mut radial, mut given) = (0, 0, [0; 5]);
+    for (k, (mean, variances)) in [
         ([0.3, 0.5, -0.4, 0.7], [0.01, 0.02, 1.0, 1.0]),
         ([0.5, -0.6, 0.2, 0.6], [0.05, 1.0, 1.0, 1.0]),
         ([1.0, 2.0, 3.0, 4.0], [0.1, 0.2, 0.3, 0.4]),
-        ([0.2, 0.1, 0.6, 0.8], [0.02, 0.05, 0.1, 0.5]),
         ([0.0, 0.0, 0.0, 1.0], [0.02, 0.02, 1e14, 1e14]),
-    ] {
+        ([0.2, 0.1, 0.6, 0.8], [0.02, 0.05, 0.1, 0.5]),
+    ]
+    .into_iter()
+    .enumerate()
+    {
         for n in [100, 400, 1600] {
-            let repeats = Repeats::of(&law(mean, variances), Family::General, n, 8);
-            given += repeats.z.len();
-            none += repeats.none;
+            let repeats = Repeats::of(&law(mean, variances), Family::General, n, 10);
+            given[k] += repeats.z.len();
             radial += repeats.covered;
             held += repeats.z.iter().flatten().filter(|z| z.abs() < 1.96).count();
         }
     }
-    // Nine numbers a fit, which depend on each other: 0.90 ± 0.02 of them, and 0.84 ± 0.06 radial.
-    assert!(given >= 15 && none >= 20, "{given} {none}");
-    assert!(held as f64 >= 0.87 * 9.0 * given as f64, "{held} of {}", 9 * given);
-    assert!(radial as f64 >= 0.8 * given as f64, "{radial} of {given}");
+    assert!(given[..4] == [0; 4] && given[4] >= 5, "{given:?}");
+    assert!(held as f64 >= 0.9 * 9.0 * given[4] as f64, "{held} of {}", 9 * given[4]);
+    assert!(radial as f64 >= 0.85 * given[4] as f64, "{radial} of {}", given[4]);
 }
 
 #[test]
