@@ -312,7 +312,7 @@ fn what_was_dispersed_is_shown() {
 fn bad_dispersions_are_named() {
     let springs = "springs[1].dispersion";
     let cases = [
-        (["mass_kg = -1.0", "", ""], "payload.dispersion.mass_kg: sigma = -1.0".to_owned()),
+        (["mass_kg = -1.0", "", ""], "payload.dispersion.mass_kg: -1.0".to_owned()),
         (["mass_kg = nan", "", ""], "payload.dispersion.mass_kg: sigma = NaN".to_owned()),
         (
             ["mass_kg = 1.0\nmass_percent = 1.0", "", ""],

@@ -43,7 +43,7 @@ fn known_parameters_come_back_within_the_stated_errors() {
     const REPEATS: u64 = 120;
     let truth = hard();
     let mut within = [0u32; 12];
-    let mut swapped = 0;
+    let (mut swapped, mut without) = (0, 0);
     for seed in 0..REPEATS {
         let fit = PrincipalFit::new(&draws(&truth, 1000, seed)).unwrap();
         assert_eq!(fit.axes().finding(), AxesFinding::Determined);
@@ -59,7 +59,11 @@ fn known_parameters_come_back_within_the_stated_errors() {
             z.push((root.deviation() - deviations[old]) / errors[1]);
         }
         let offset = (g.turn * truth.axes().mean()).inverse() * fit.axes().law().mean();
-        let covariance = fit.axes().mean_covariance().unwrap();
+        // One sample in a hundred is told from the aligned law, and its errors are not known.
+        let Some(covariance) = fit.axes().mean_covariance() else {
+            without += 1;
+            continue;
+        };
         for k in 0..3 {
             z.push(offset.scaled_axis()[k] / covariance[(k, k)].sqrt());
         }
@@ -73,6 +77,7 @@ fn known_parameters_come_back_within_the_stated_errors() {
         }
     }
     // 114 ± 4 deviations of 2.4.
+    assert!(without <= 3, "{without}");
     assert!(within.iter().all(|c| (104..=120).contains(c)), "{within:?}");
     assert!(swapped > 12_000, "the test must have something to match: {swapped}");
 }

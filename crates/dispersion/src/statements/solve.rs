@@ -29,6 +29,8 @@ const PULL: f64 = 1e-4;
 const CORRELATED: f64 = 1e-3;
 /// What it costs that the inertia does not follow the mass.
 const FOLLOWS: f64 = 0.03;
+/// A share of the most that the inertia can follow, which may be the most.
+const NEARLY: f64 = 0.95;
 /// Another start is worth its law if it takes this share off the cost.
 const WORTH: f64 = 0.01;
 /// Correlations from which the search starts anew.
@@ -74,6 +76,9 @@ pub(super) struct Solution {
     /// The deviations that a mass centre would give entries beside everything else, kg·m².
     pub(super) with_centre: [Option<f64>; 6],
 }
+
+/// The pairs of roots.
+const PAIRS: [(usize, usize); 3] = [(1, 0), (2, 0), (2, 1)];
 
 /// What is asked of an entry, and what it has: variances, (kg·m²)².
 #[derive(Clone, Copy, Debug)]
@@ -157,6 +162,13 @@ impl Task {
             search.improve(&mut best, search.starts(&independent));
             let around = search.correlated(&best.0.x);
             search.improve(&mut best, around);
+        }
+        // Nearly wholly is wholly, where nothing is lost by it.
+        let mut wholly = best.0.clone();
+        wholly.x[SHARE] = search.guess[SHARE];
+        let near = best.0.x[SHARE] > NEARLY * search.guess[SHARE];
+        if near && self.worst(&wholly) < self.worst(&best.0).max(MET) {
+            best.0 = wholly;
         }
         let mut with_centre = [None; 6];
         for it in self.compare(&best.0) {
@@ -357,6 +369,21 @@ impl Search<'_> {
         for (turn, found) in again[turns.clone()].iter_mut().zip(&independent.x[turns]) {
             *turn = found.max(0.1 * *turn);
         }
+        // M of the same roots, none of them still.
+        let inverse = self.basis.try_inverse().unwrap_or_default();
+        let roots = inverse * independent.scatter.roots * inverse.transpose();
+        let least = Matrix3::from_diagonal_element(1e-4 * roots.trace());
+        if let Some(m) = (roots + least).cholesky() {
+            let m = m.l();
+            again[ROOTS..TURNS].copy_from_slice(&[
+                m[(0, 0)],
+                m[(1, 1)],
+                m[(2, 2)],
+                m[(1, 0)],
+                m[(2, 0)],
+                m[(2, 1)],
+            ]);
+        }
         let mut starts = vec![again, self.guess];
         starts.extend(self.correlated(&self.guess));
         starts
@@ -404,7 +431,10 @@ impl Problem for Search<'_> {
         let most = self.task.most_turns();
         let costs = self.open.iter().map(|&i| match i {
             ROOTS..ROOTS_BESIDE => PULL * point.x[i],
-            ROOTS_BESIDE..TURNS => CORRELATED * point.x[i],
+            // Those of the roots, of which M holds as many numbers.
+            ROOTS_BESIDE..TURNS => {
+                CORRELATED * correlation(&point.scatter.roots, PAIRS[i - ROOTS_BESIDE])
+            }
             TURNS..TURN_ANGLES => {
                 let limited = self.task.axes.is_some() || self.task.loose;
                 let preferred = if limited { most[i - TURNS] } else { 0.0 };
@@ -430,6 +460,12 @@ impl Problem for Search<'_> {
         };
         Range { least, most, unit }
     }
+}
+
+/// The correlation of two roots, none where one of them is still.
+fn correlation(covariance: &Matrix3<f64>, (i, j): (usize, usize)) -> f64 {
+    let size = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+    if size > 0.0 { covariance[(i, j)] / size } else { 0.0 }
 }
 
 /// d with d² = v/(1 + 8v): a bounded measure of a rotation of any variance.
