@@ -313,22 +313,22 @@ fn bad_dispersions_are_named() {
     let springs = "springs[1].dispersion";
     let cases = [
         (["mass_kg = -1.0", "", ""], "payload.dispersion.mass_kg: -1.0".to_owned()),
-        (["mass_kg = nan", "", ""], "payload.dispersion.mass_kg: sigma = NaN".to_owned()),
+        (["mass_kg = nan", "", ""], "payload.dispersion.mass_kg: NaN".to_owned()),
         (
             ["mass_kg = 1.0\nmass_percent = 1.0", "", ""],
             "payload.dispersion.mass_percent: there is payload.dispersion.mass_kg already".to_owned(),
         ),
         (
             ["mass_kg = { law = \"uniform\", sigma = 1.0 }", "", ""],
-            "payload.dispersion.mass_kg: law = \"uniform\" takes low, high, not sigma".to_owned(),
+            "payload.dispersion.mass_kg.sigma: law = \"uniform\" takes low, high, not sigma".to_owned(),
         ),
         (
             ["mass_kg = { law = \"uniform\", low = 1.0 }", "", ""],
-            "payload.dispersion.mass_kg: law = \"uniform\" needs high".to_owned(),
+            "payload.dispersion.mass_kg.high: missing: law = \"uniform\" needs high".to_owned(),
         ),
         (
             ["mass_kg = { law = \"uniform\", low = 1.0, high = 0.5 }", "", ""],
-            "payload.dispersion.mass_kg: bounds from 10001.0 to 10000.5".to_owned(),
+            "payload.dispersion.mass_kg.high: 0.5: it must not be below low".to_owned(),
         ),
         (
             ["inertia_follows_mass = true", "", ""],
@@ -340,7 +340,7 @@ fn bad_dispersions_are_named() {
         ),
         (
             ["position_m = [1.0, 2.0, -3.0]", "", ""],
-            "payload.dispersion.position_m[3]: sigma = -3.0".to_owned(),
+            "payload.dispersion.position_m[3]: -3.0".to_owned(),
         ),
         (
             ["position_m = { covariance = [[1, 0, 0], [0, -1, 0], [0, 0, 1]] }", "", ""],
@@ -356,10 +356,10 @@ fn bad_dispersions_are_named() {
         ),
         (
             ["position_m = { covariance = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], sigma = 1 }", "", ""],
-            "payload.dispersion.position_m: a covariance is for vectors".to_owned(),
+            "payload.dispersion.position_m.covariance: a covariance is for vectors".to_owned(),
         ),
         (["", "friction_n = 5.0", ""], format!("{springs}.friction_n: at least half of the draws")),
-        (["", "stroke_m = inf", ""], format!("{springs}.stroke_m: sigma = inf")),
+        (["", "stroke_m = inf", ""], format!("{springs}.stroke_m: inf")),
         (["", "late_probability = 0.1", ""], format!("{springs}.late_probability: it needs start_s")),
         (["", "failure_probability = 2.0", ""], format!("{springs}.failure_probability: probability = 2.0")),
         (
@@ -368,11 +368,11 @@ fn bad_dispersions_are_named() {
         ),
         (
             ["mass_kg = 1.0", "", "[[correlations]]\nbetween = [\"payload_mass\"]\ncoefficient = 0.1"],
-            "correlations[1].between: \"payload_mass\" is not dispersed: these are: payload_mass_kg".to_owned(),
+            "correlations[1].between: \"payload_mass\" is not dispersed: the dispersion of payload, stage, stack and springs names payload_mass_kg".to_owned(),
         ),
         (
             ["", "", "[[correlations]]\nbetween = [\"a\", \"b\"]\ncoefficient = 0.1"],
-            "correlations[1].between: \"a\" is not dispersed: nothing is".to_owned(),
+            "correlations[1].between: \"a\" is not dispersed, and nothing is".to_owned(),
         ),
         (
             ["mass_kg = 1.0", "", "[[correlations]]\nbetween = [\"payload_mass_kg\"]\ncoefficient = 0.1"],
@@ -380,15 +380,15 @@ fn bad_dispersions_are_named() {
         ),
         (
             ["position_m = 1.0", "", "[[correlations]]\nbetween = [\"payload_position_1_m\", \"payload_position_2_m\"]\ncoefficient = 1.5"],
-            "correlations[1]: \"payload_position_1_m\" and \"payload_position_2_m\": coefficient = 1.5".to_owned(),
+            "correlations[1].coefficient: \"payload_position_1_m\" and \"payload_position_2_m\": coefficient = 1.5".to_owned(),
         ),
         (
             ["position_m = 1.0", "", "[[correlations]]\nbetween = [\"payload_position_1_m\", \"payload_position_2_m\", \"payload_position_3_m\"]\ncoefficient = -0.6"],
-            "correlations[1]: \"payload_position_".to_owned(),
+            "correlations[1].coefficient: \"payload_position_".to_owned(),
         ),
         (
             ["position_m = { covariance = [[1, 0.5, 0], [0.5, 1, 0], [0, 0, 1]] }", "", "[[correlations]]\nbetween = [\"payload_position_1_m\", \"payload_position_2_m\"]\ncoefficient = 0.5"],
-            "correlations[1]: \"payload_position_1_m\" and \"payload_position_2_m\": these two have been".to_owned(),
+            "correlations[1].between: \"payload_position_1_m\" and \"payload_position_2_m\": these two have been".to_owned(),
         ),
     ];
     for ([payload, spring, rest], expected) in cases {
