@@ -3,12 +3,14 @@
 //! open, by coordinate descent, to first order.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_dispersion::{
-    Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, ProductsStatement,
-    StatedModel, StatementWarning, Statements,
+    Amount, AxesStatement, CentreStatement, CorrelatedRoots, EntryMoments, MassStatement,
+    MomentsStatement, PrincipalDispersion, ProductsStatement, StatedModel, StatementWarning,
+    Statements,
 };
-use gyradius_inertia::Inertia;
-use nalgebra::{UnitQuaternion, Vector3};
+use gyradius_inertia::{Inertia, RootSecondMoments};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -275,6 +277,63 @@ fn check(seed: u64) {
             );
         }
     }
+}
+
+/// Plates, rods and plates whose second moment is zero but for rounding: every statement makes a model.
+#[test]
+fn flat_bodies_have_models() {
+    for (seed, k) in
+        (0..).zip([[1.0, 2.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 3.0], [1e-17, 1.0, 2.0]])
+    {
+        for subset in [MOMENTS, PRODUCTS, AXES, MASS, CENTRE, MOMENTS | PRODUCTS, AXES | MASS] {
+            let k = gyradius_inertia::SecondMoments::new(k).unwrap();
+            let tilt = if subset % 2 == 0 { 0.0 } else { 0.7 };
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::new(tilt, 0.5 * tilt, -tilt));
+            let nominal = Inertia::from_second_moments(k, &turn).unwrap();
+            let case = Case { nominal, ..random_case(seed, subset) };
+            let model = case.statements.model(&case.nominal, Some(2.0)).unwrap();
+            let implied = model.implied().deviations();
+            assert!(implied.iter().all(|d| d.is_finite()), "{subset:05b} {implied:?}");
+        }
+    }
+}
+
+/// Deviations that a law of the model's own family has come out of a model again, whatever its correlations.
+#[test]
+fn what_a_law_has_comes_out() {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let mut missed = 0;
+    for case in 0..24 {
+        let size = 10_f64.powf(between(&mut rng, -3.0, 3.0));
+        let mean = [(); 3].map(|()| size * between(&mut rng, 1.0, 3.0));
+        let tilt = if case % 4 == 0 { 0.0 } else { 2.0 };
+        let turn = Vector3::from_fn(|_, _| tilt * between(&mut rng, -1.0, 1.0));
+        let mut covariance = |size: f64| {
+            let f = Matrix3::from_fn(|_, _| between(&mut rng, -1.0, 1.0)) * size;
+            f * f.transpose() + Matrix3::identity() * (0.01 * size * size)
+        };
+        let (roots, turns) = (covariance(0.08 * size), covariance(0.03));
+        let roots = CorrelatedRoots::new(RootSecondMoments::new(mean).unwrap(), roots).unwrap();
+        let attitude = UnitQuaternion::from_scaled_axis(turn);
+        let axes =
+            RadiallyConstrainedGaussian::from_rotation_covariance(attitude, turns, 0.01).unwrap();
+        let k = gyradius_inertia::SecondMoments::new(mean.map(|k| k * k)).unwrap();
+        let nominal = Inertia::from_second_moments(k, &attitude).unwrap();
+        let has = EntryMoments::of(&PrincipalDispersion::new(roots, axes)).deviations();
+        let [m1, m2, m3, p1, p2, p3] = has;
+        let statements = Statements {
+            moments: Some(MomentsStatement::new(Amount::Absolute([m1, m2, m3]), 1.0).unwrap()),
+            products: Some(ProductsStatement::new([p1, p2, p3], 1.0).unwrap()),
+            ..Statements::default()
+        };
+        let model = statements.model(&nominal, None).unwrap();
+        let implied = model.implied().deviations();
+        let worst = (0..6).map(|e| (implied[e] / has[e] - 1.0).abs()).fold(0.0, f64::max);
+        missed += u32::from(worst > NEAR);
+        assert!(worst < 0.3, "case {case}: {has:?} {implied:?}");
+    }
+    // The search may end in a hollow beside the best: rarely, and not far from it.
+    assert!(missed <= 2, "{missed}");
 }
 
 #[test]

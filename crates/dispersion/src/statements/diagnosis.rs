@@ -13,7 +13,7 @@ use crate::{RootLaw, RootMoments, fit::tail};
 /// Stated and implied deviations that differ by no more than this share are the same.
 const AGREE: f64 = 0.03;
 /// And by no more than this share of the largest one stated.
-const SMALL: f64 = 2e-3;
+const SMALL: f64 = 1e-4;
 /// A share of impossible bodies that is worth a word.
 const IMPOSSIBLE: f64 = 1e-3;
 /// Roots nearer to zero than this many deviations.
@@ -25,21 +25,23 @@ const SHIFT: f64 = 0.01;
 pub(super) struct Context {
     pub(super) body: Body,
     pub(super) stated: Stated,
-    /// What the products alone would allow, where axes are stated as well.
-    pub(super) unlimited: Option<Unlimited>,
+    /// What comes out without a limit of the axes, where products and axes are stated.
+    pub(super) unlimited: Option<Outcome>,
+    /// What the products do alone, where axes or moments are stated as well.
+    pub(super) alone: Option<Outcome>,
     /// Deviations that a mass centre would give entries beside everything else, kg·m².
     pub(super) with_centre: [Option<f64>; 6],
 }
 
-/// A solution without a limit of the axes.
-pub(super) struct Unlimited {
+/// What a solution comes to.
+pub(super) struct Outcome {
     /// Deviations of the rotations, rad; infinite where a turn may be any.
     turns: [f64; 3],
     /// Deviations of the entries, kg·m².
     entries: [f64; 6],
 }
 
-impl Unlimited {
+impl Outcome {
     pub(super) fn new(body: &Body, solution: &Solution) -> Result<Self, StatementError> {
         let scatter = &solution.scatter;
         Ok(Self {
@@ -60,10 +62,10 @@ impl Context {
         }
         warnings.extend(centre_alone(model, stated));
         warnings.extend(self.centre_missed(model));
-        if let (Some(axes), Some(unlimited)) = (stated.axes, &self.unlimited) {
+        if let (Some(axes), Some(alone)) = (stated.axes, &self.alone) {
             let differ = |a: f64, b: f64| !((a - b).abs() <= 0.1 * a.max(b));
-            if (0..3).any(|j| differ(axes[j], unlimited.turns[j])) {
-                let products = unlimited.turns;
+            if (0..3).any(|j| differ(axes[j], alone.turns[j])) {
+                let products = alone.turns;
                 warnings.push(StatementWarning::AxesAndProducts { axes, products });
             }
         }
@@ -146,11 +148,15 @@ impl Context {
         if entry < 3 {
             return MissedBecause::Tied;
         }
-        match &self.unlimited {
-            Some(unlimited) if unlimited.entries[entry] >= (1.0 - AGREE) * stated => {
-                MissedBecause::AxesLimit
-            }
-            Some(_) | None => MissedBecause::Rotations,
+        let reached = |outcome: &Option<Outcome>| {
+            outcome.as_ref().is_some_and(|it| it.entries[entry] >= (1.0 - AGREE) * stated)
+        };
+        if reached(&self.unlimited) {
+            MissedBecause::AxesLimit
+        } else if reached(&self.alone) {
+            MissedBecause::MomentsLimit
+        } else {
+            MissedBecause::Rotations
         }
     }
 }
@@ -201,9 +207,14 @@ fn of_outcome(model: &StatedModel) -> Vec<StatementWarning> {
     let (nominal, implied) = (model.nominal(), model.implied());
     let mut warnings = Vec::new();
     if let [Some(a), Some(b), Some(c), ..] = model.stated() {
-        // K = (I_a + I_b − I_c)/2 in the principal axes, whose moments scatter about alike.
-        let scatter = 0.5 * (a * a + b * b + c * c).sqrt();
+        // To first order K_k moves by Σ_a (½ − r_ka²) I_aa, the products staying as they are.
+        let r = nominal.principal_axes().attitude().to_rotation_matrix();
+        let scatter = |k: usize| {
+            let part = |e: usize, d: f64| ((0.5 - r[(k, e)] * r[(k, e)]) * d).powi(2);
+            (part(0, a) + part(1, b) + part(2, c)).sqrt()
+        };
         for (axis, k) in (1..).zip(nominal.second_moments().values()) {
+            let scatter = scatter(axis - 1);
             let share = if scatter > 0.0 { tail::normal(k / scatter) } else { 0.0 };
             if share > IMPOSSIBLE {
                 warnings.push(StatementWarning::Impossible { axis, share });

@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 /// Steps at most.
-const STEPS: usize = 300;
+const STEPS: usize = 200;
 /// A step that takes less than this share off the cost is the last one.
-const WORTH: f64 = 0.001;
+const WORTH: f64 = 3e-4;
 /// Times that a step is shortened before it counts as none.
 const SHORTER: usize = 12;
 /// The step of differences, as a share of the size of an unknown.

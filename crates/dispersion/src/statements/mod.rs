@@ -12,7 +12,7 @@ mod warnings;
 
 use gyradius_inertia::Inertia;
 
-use diagnosis::{Context, Unlimited};
+use diagnosis::{Context, Outcome};
 use scatter::Body;
 use solve::{Asked, Task};
 
@@ -124,18 +124,24 @@ impl Statements {
         let body = Body::new(nominal);
         let task = stated.task(body, nominal, mass);
         let solution = task.solve();
-        // What the products alone would allow.
+        // What the products would do without a limit of the axes, and alone.
+        let without = |task: Task| Outcome::new(&body, &task.solve()).map(Some);
         let unlimited = match (stated.products, stated.axes) {
-            (Some(_), Some(_)) => {
-                let task = Task { axes: None, loose: true, ..task };
-                Some(Unlimited::new(&body, &task.solve())?)
+            (Some(_), Some(_)) => without(Task { axes: None, ..task })?,
+            _ => None,
+        };
+        let alone = match (stated.products, stated.axes, stated.moments) {
+            (Some(_), Some(_), _) | (Some(_), _, Some(_)) => {
+                let moments = Asked::Nothing;
+                without(Task { moments, axes: None, loose: true, ..task })?
             }
             _ => None,
         };
         let mass = mass.map(|relative| StatedMass::new(relative, solution.follows));
         let centre = self.centre.map(|centre| centre.deviations());
         let model = StatedModel::new(nominal, &body, &stated, mass, centre, solution.scatter)?;
-        let context = Context { body, stated, unlimited, with_centre: solution.with_centre };
+        let with_centre = solution.with_centre;
+        let context = Context { body, stated, unlimited, alone, with_centre };
         let warnings = context.warnings(&model);
         Ok(model.with_warnings(warnings))
     }

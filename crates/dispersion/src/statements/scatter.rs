@@ -20,8 +20,8 @@ use crate::{
 /// The model of Peck (2003), with roots that may be correlated.
 pub(super) type Law = PrincipalDispersion<RootLaw, RadiallyConstrainedGaussian>;
 
-/// A turn of this variance, rad², may be any: its law is uniform to a percent.
-const ANY: f64 = 50.0;
+/// A turn of this variance, rad², may be any: what its law moves is that of a uniform one to a percent.
+const ANY: f64 = 10.0;
 /// Variances of a second rotation, rad², up to which the rule of nodes is exact for every purpose.
 const NARROW: f64 = 0.04;
 

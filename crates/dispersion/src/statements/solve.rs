@@ -16,7 +16,7 @@ const SURER: f64 = 3.0;
 /// What a mass centre adds counts this much less beside what is stated.
 const ADDED_LAST: f64 = 1.0 / 30.0;
 /// Deviations below this share of the largest beside them count as this share.
-const SMALL: f64 = 1e-3;
+const SMALL: f64 = 3e-4;
 /// The same of what a mass centre adds, where the smaller ones are without interest.
 const SMALL_BESIDE: f64 = 0.3;
 /// A deviation of zero counts as this share of the trace.
@@ -77,8 +77,8 @@ pub(super) struct Solution {
     pub(super) with_centre: [Option<f64>; 6],
 }
 
-/// The pairs of roots.
-const PAIRS: [(usize, usize); 3] = [(1, 0), (2, 0), (2, 1)];
+/// Where the unknowns of the roots stand in M: on the diagonal and beside it.
+const ENTRIES_OF_M: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 0), (2, 0), (2, 1)];
 
 /// What is asked of an entry, and what it has: variances, (kg·m²)².
 #[derive(Clone, Copy, Debug)]
@@ -120,6 +120,7 @@ struct Point {
 }
 
 /// The unknowns that are open.
+#[derive(Clone)]
 struct Search<'a> {
     task: &'a Task,
     /// B.
@@ -159,9 +160,24 @@ impl Task {
             if products {
                 search.open.extend(TURN_ANGLES..SHARE);
             }
+            best.0.x = search.expressed(&best.0, 1e-12);
             search.improve(&mut best, search.starts(&independent));
             let around = search.correlated(&best.0.x);
             search.improve(&mut best, around);
+        }
+        // Where the moments cannot be had, the products may be, beside the moments as they are: the errors of the
+        // moments, which count for so much more, hide those of the products.
+        if self.moments.is_stated() && self.products.is_stated() && self.worst(&best.0) > MET {
+            let mut moments = [0.0; 3];
+            for it in self.compare(&best.0).iter().filter(|it| it.entry < 3) {
+                moments[it.entry] = it.found.sqrt();
+            }
+            let held = Self { moments: Asked::Stated(moments), ..*self };
+            let beside = Search { task: &held, ..search.clone() };
+            let mut found = beside.from(best.0.x);
+            let around = beside.correlated(&found.0.x);
+            beside.improve(&mut found, around);
+            best = found;
         }
         // Nearly wholly is wholly, where nothing is lost by it.
         let mut wholly = best.0.clone();
@@ -183,10 +199,10 @@ impl Task {
     /// Deviations of the roots to begin with: those of equal variances of the second moments, each moment being the
     /// sum of two.
     fn first_roots(&self) -> Vector3<f64> {
-        let each = self.first_variance();
+        let half = 0.5 * self.first_variance();
         Vector3::from(self.body.roots.values()).map(|k| {
-            let square = k * k;
-            (0.5 * each / (square + (square * square + 0.5 * each).sqrt())).sqrt()
+            let below = k * k + (k * k * k * k + half).sqrt();
+            if below > 0.0 { (half / below).sqrt() } else { 0.0 }
         })
     }
 
@@ -266,24 +282,24 @@ impl Task {
         let both = self.moments.is_stated() && self.products.is_stated();
         let any = self.moments.is_stated() || self.products.is_stated();
         let mut compared = Vec::new();
-        for (first, asked, rest) in [(0, self.moments, by_axes), (3, self.products, by_roots)] {
+        for (first_entry, asked, rest) in [(0, self.moments, by_axes), (3, self.products, by_roots)]
+        {
             let least = asked.least().max(self.zero());
             let with_mass = |e: usize, v: f64| v * (1.0 + by_mass) + by_mass * means[e] * means[e];
-            for e in first..first + 3 {
-                let found = with_mass(e, found[e]);
-                match asked {
-                    Asked::Nothing => {}
+            for e in first_entry..first_entry + 3 {
+                let (wanted, counts) = match asked {
+                    Asked::Nothing => continue,
                     Asked::Stated(deviations) => {
-                        let wanted = deviations[e - first] * deviations[e - first];
-                        let counts = if both && e < 3 { MOMENTS_FIRST } else { 1.0 };
-                        compared.push(Compared { entry: e, wanted, found, least, counts });
+                        let first = if both && e < 3 { MOMENTS_FIRST } else { 1.0 };
+                        (deviations[e - first_entry].powi(2), first)
                     }
                     Asked::Added(variances) => {
-                        let wanted = with_mass(e, rest[e] + variances[e - first]);
-                        let counts = if any { ADDED_LAST } else { 1.0 };
-                        compared.push(Compared { entry: e, wanted, found, least, counts });
+                        let last = if any { ADDED_LAST } else { 1.0 };
+                        (with_mass(e, rest[e] + variances[e - first_entry]), last)
                     }
-                }
+                };
+                let found = with_mass(e, found[e]);
+                compared.push(Compared { entry: e, wanted, found, least, counts });
             }
         }
         compared
@@ -352,7 +368,10 @@ impl Search<'_> {
             square / (1.0 - square / MOST_TURN).max(1e-6)
         };
         let rotations = [0, 1, 2].map(|j| variance(x[TURNS + j]).sqrt());
-        let m = Matrix3::new(x[0], 0.0, 0.0, x[3], x[1], 0.0, x[4], x[5], x[2]);
+        let mut m = Matrix3::zeros();
+        for (x, at) in x[ROOTS..TURNS].iter().zip(ENTRIES_OF_M) {
+            m[at] = *x;
+        }
         let root = self.basis * m;
         Scatter {
             roots: root * root.transpose(),
@@ -363,30 +382,32 @@ impl Search<'_> {
     /// Where to start with correlations: where independent roots and rotations came to and where they began, and
     /// from correlations of either sign.
     fn starts(&self, independent: &Point) -> Vec<[f64; UNKNOWNS]> {
-        let mut again = self.guess;
-        again[SHARE] = independent.x[SHARE];
+        // None of them still.
+        let mut again = self.expressed(independent, 1e-4);
         let turns = TURNS..TURN_ANGLES;
-        for (turn, found) in again[turns.clone()].iter_mut().zip(&independent.x[turns]) {
-            *turn = found.max(0.1 * *turn);
-        }
-        // M of the same roots, none of them still.
-        let inverse = self.basis.try_inverse().unwrap_or_default();
-        let roots = inverse * independent.scatter.roots * inverse.transpose();
-        let least = Matrix3::from_diagonal_element(1e-4 * roots.trace());
-        if let Some(m) = (roots + least).cholesky() {
-            let m = m.l();
-            again[ROOTS..TURNS].copy_from_slice(&[
-                m[(0, 0)],
-                m[(1, 1)],
-                m[(2, 2)],
-                m[(1, 0)],
-                m[(2, 0)],
-                m[(2, 1)],
-            ]);
+        for (turn, guess) in again[turns.clone()].iter_mut().zip(&self.guess[turns]) {
+            *turn = turn.max(0.1 * guess);
         }
         let mut starts = vec![again, self.guess];
         starts.extend(self.correlated(&self.guess));
         starts
+    }
+
+    /// The unknowns of a point that was found with another basis, its roots moving at least by a share of what they
+    /// move together.
+    fn expressed(&self, point: &Point, least: f64) -> [f64; UNKNOWNS] {
+        let mut x = point.x;
+        x[ROOTS..TURNS].fill(0.0);
+        let inverse = self.basis.try_inverse().unwrap_or_default();
+        let roots = inverse * point.scatter.roots * inverse.transpose();
+        let least = Matrix3::from_diagonal_element(least * roots.trace());
+        if let Some(root) = (roots + least).cholesky() {
+            let m = root.l();
+            for (i, (row, column)) in (ROOTS..).zip(ENTRIES_OF_M) {
+                x[i] = m[(row, column)];
+            }
+        }
+        x
     }
 
     /// Correlations of every pair of signs on top.
@@ -433,7 +454,7 @@ impl Problem for Search<'_> {
             ROOTS..ROOTS_BESIDE => PULL * point.x[i],
             // Those of the roots, of which M holds as many numbers.
             ROOTS_BESIDE..TURNS => {
-                CORRELATED * correlation(&point.scatter.roots, PAIRS[i - ROOTS_BESIDE])
+                CORRELATED * correlation(&point.scatter.roots, ENTRIES_OF_M[i - ROOTS])
             }
             TURNS..TURN_ANGLES => {
                 let limited = self.task.axes.is_some() || self.task.loose;

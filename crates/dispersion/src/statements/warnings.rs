@@ -120,6 +120,8 @@ pub enum MissedBecause {
     Tied,
     /// The axes as they are stated do not let a product be so large.
     AxesLimit,
+    /// The moments as they are stated do not.
+    MomentsLimit,
     /// Rotations cannot move it so much, the moments that they mix being too near to each other or the
     /// axes lying as they do.
     Rotations,
@@ -240,6 +242,9 @@ impl fmt::Display for MissedBecause {
             Self::Tied => f.write_str(
                 "the moments of a body are tied together, each being the sum of two second moments, \
                  and beside what else is stated this one cannot come nearer",
+            ),
+            Self::MomentsLimit => f.write_str(
+                "turns that moved it so far would move the moments by more than is stated of them",
             ),
             Self::AxesLimit => {
                 f.write_str("the axes, as they are stated, do not turn far enough for more")

@@ -24,6 +24,7 @@ impl Unit {
     pub(super) const DEG: Self = Self { key: "deg", most: 45.0, name: "°" };
     /// Of the whole rotation: as far on each axis.
     pub(super) const DEG_IN_ALL: Self = Self { key: "deg", most: 75.0, name: "°" };
+    #[cfg(feature = "serde")]
     pub(super) const MM: Self = Self { key: "mm", most: 1e7, name: "mm" };
     pub(super) const M: Self = Self { key: "m", most: 1e4, name: "m" };
 }
