@@ -31,6 +31,8 @@ const CORRELATED: f64 = 1e-3;
 const FOLLOWS: f64 = 0.03;
 /// A share of the most that the inertia can follow, which may be the most.
 const NEARLY: f64 = 0.95;
+/// Times that the search starts anew about the best, while that is better.
+const AGAIN: usize = 4;
 /// Another start is worth its law if it takes this share off the cost.
 const WORTH: f64 = 0.01;
 /// Correlations from which the search starts anew.
@@ -162,8 +164,13 @@ impl Task {
             }
             best.0.x = search.expressed(&best.0, 1e-12);
             search.improve(&mut best, search.starts(&independent));
-            let around = search.correlated(&best.0.x);
-            search.improve(&mut best, around);
+            for _ in 0..AGAIN {
+                let (before, around) = (best.1, search.correlated(&best.0.x));
+                search.improve(&mut best, around);
+                if best.1 == before {
+                    break;
+                }
+            }
         }
         // Where the moments cannot be had, the products may be, beside the moments as they are: the errors of the
         // moments, which count for so much more, hide those of the products.
