@@ -25,9 +25,9 @@ const SHIFT: f64 = 0.01;
 pub(super) struct Context {
     pub(super) body: Body,
     pub(super) stated: Stated,
-    /// What comes out without a limit of the axes, where products and axes are stated.
+    /// What comes out without a limit of the axes, where axes are stated and products fall short.
     pub(super) unlimited: Option<Outcome>,
-    /// What the products do alone, where axes or moments are stated as well.
+    /// What the products do alone, where axes are stated as well, or moments are and products fall short.
     pub(super) alone: Option<Outcome>,
     /// Deviations that a mass centre would give entries beside everything else, kg·m².
     pub(super) with_centre: [Option<f64>; 6],
@@ -159,6 +159,13 @@ impl Context {
             MissedBecause::Rotations
         }
     }
+}
+
+/// Whether a product is surer than stated.
+pub(super) fn products_fall_short(model: &StatedModel, stated: &Stated) -> bool {
+    let implied = model.implied().deviations();
+    let short = |(i, product): (usize, f64)| implied[3 + i] < (1.0 - AGREE) * product;
+    stated.products.is_some_and(|products| products.into_iter().enumerate().any(short))
 }
 
 /// What the statements leave open.

@@ -124,22 +124,17 @@ impl Statements {
         let body = Body::new(nominal);
         let task = stated.task(body, nominal, mass);
         let solution = task.solve();
-        // What the products would do without a limit of the axes, and alone.
-        let without = |task: Task| Outcome::new(&body, &task.solve()).map(Some);
-        let unlimited = match (stated.products, stated.axes) {
-            (Some(_), Some(_)) => without(Task { axes: None, ..task })?,
-            _ => None,
-        };
-        let alone = match (stated.products, stated.axes, stated.moments) {
-            (Some(_), Some(_), _) | (Some(_), _, Some(_)) => {
-                let moments = Asked::Nothing;
-                without(Task { moments, axes: None, loose: true, ..task })?
-            }
-            _ => None,
-        };
         let mass = mass.map(|relative| StatedMass::new(relative, solution.follows));
         let centre = self.centre.map(|centre| centre.deviations());
         let model = StatedModel::new(nominal, &body, &stated, mass, centre, solution.scatter)?;
+        // What the products would do without a limit of the axes, and alone: asked only where a warning depends on it.
+        let short = diagnosis::products_fall_short(&model, &stated);
+        let limited = stated.products.is_some() && stated.axes.is_some();
+        let without =
+            |asked: bool, task: Task| asked.then(|| Outcome::new(&body, &task.solve())).transpose();
+        let unlimited = without(limited && short, Task { axes: None, ..task })?;
+        let products = Task { moments: Asked::Nothing, axes: None, loose: true, ..task };
+        let alone = without(limited || (short && stated.moments.is_some()), products)?;
         let with_centre = solution.with_centre;
         let context = Context { body, stated, unlimited, alone, with_centre };
         let warnings = context.warnings(&model);

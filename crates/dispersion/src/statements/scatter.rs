@@ -125,7 +125,7 @@ impl Body {
 }
 
 /// Gaussian roots whose squares have this covariance, (kg·m²)²; of correlations that no squares have, the largest
-/// share that they have. Kept for a mass, which moves the second moments all together.
+/// share that they have.
 pub(super) fn roots_of(mean: RootSecondMoments, moments: &Matrix3<f64>) -> Matrix3<f64> {
     let k = mean.values();
     // The smaller of the two solutions of Cov(K_i, K_j) = 4 k̄_i k̄_j c + 2c².

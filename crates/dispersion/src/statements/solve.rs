@@ -5,7 +5,7 @@ use nalgebra::{DVector, Matrix3, Vector3};
 use super::{
     entries::Forms,
     levenberg_marquardt::{Problem, Range, least_squares},
-    scatter::{Body, Scatter},
+    scatter::{Body, Scatter, roots_of},
 };
 
 /// Of relative errors of deviations, stated moments count this much more beside products: what is
@@ -206,11 +206,8 @@ impl Task {
     /// Deviations of the roots to begin with: those of equal variances of the second moments, each moment being the
     /// sum of two.
     fn first_roots(&self) -> Vector3<f64> {
-        let half = 0.5 * self.first_variance();
-        Vector3::from(self.body.roots.values()).map(|k| {
-            let below = k * k + (k * k * k * k + half).sqrt();
-            if below > 0.0 { (half / below).sqrt() } else { 0.0 }
-        })
+        let each = Matrix3::from_diagonal_element(self.first_variance());
+        roots_of(self.body.roots, &each).diagonal().map(f64::sqrt)
     }
 
     fn first_variance(&self) -> f64 {
