@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use crate::{SecondMomentStatistics, entry_moments::real_forms};
+use crate::SecondMomentStatistics;
 
 /// An entry is Σ_k K_k M_k with forms M of the axes: the mean and the covariance of M for each entry.
 #[derive(Clone, Copy, Debug)]
@@ -17,26 +17,36 @@ impl Forms {
         Self { mean: forms(attitude), covariance: [Matrix3::zeros(); 6] }
     }
 
-    /// About axes given by nodes and weights. They are gone through twice, so that small covariances
-    /// keep their digits.
-    pub(super) fn over(nodes: &[(f64, UnitQuaternion<f64>)]) -> Self {
+    /// About axes given by nodes and weights, near this attitude or not: what is summed is what the forms are more than
+    /// there, so that small covariances keep their digits.
+    pub(super) fn over(near: &UnitQuaternion<f64>, nodes: &[(f64, UnitQuaternion<f64>)]) -> Self {
+        let first = forms(near);
         let mut total = 0.0;
-        let mut mean = [Vector3::zeros(); 6];
+        let mut sums = [[0.0; 3]; 6];
+        let mut squares = [[0.0; 6]; 6];
         for (weight, q) in nodes {
+            let forms = forms(q);
             total += weight;
-            for (sum, form) in mean.iter_mut().zip(forms(q)) {
-                *sum += form * *weight;
+            for e in 0..6 {
+                let off = forms[e] - first[e];
+                let [x, y, z] = [off.x * weight, off.y * weight, off.z * weight];
+                sums[e][0] += x;
+                sums[e][1] += y;
+                sums[e][2] += z;
+                squares[e][0] += x * off.x;
+                squares[e][1] += y * off.y;
+                squares[e][2] += z * off.z;
+                squares[e][3] += x * off.y;
+                squares[e][4] += x * off.z;
+                squares[e][5] += y * off.z;
             }
         }
-        let mean = mean.map(|sum| sum / total);
-        let mut covariance = [Matrix3::zeros(); 6];
-        for (weight, q) in nodes {
-            for ((sum, form), mean) in covariance.iter_mut().zip(forms(q)).zip(&mean) {
-                let off = form - mean;
-                *sum += (off * *weight) * off.transpose();
-            }
-        }
-        Self { mean, covariance: covariance.map(|sum| sum / total) }
+        let off = sums.map(|sum| Vector3::from(sum) / total);
+        let covariance = std::array::from_fn(|e| {
+            let [xx, yy, zz, xy, xz, yz] = squares[e].map(|sum| sum / total);
+            Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) - off[e] * off[e].transpose()
+        });
+        Self { mean: std::array::from_fn(|e| first[e] + off[e]), covariance }
     }
 
     /// Means of the entries, kg·m².
@@ -57,6 +67,15 @@ impl Forms {
 
 /// The forms of each entry.
 fn forms(q: &UnitQuaternion<f64>) -> [Vector3<f64>; 6] {
-    let forms = real_forms(q);
-    std::array::from_fn(|e| Vector3::from_fn(|k, _| forms[k][e]))
+    let r = q.to_rotation_matrix();
+    let [x, y, z] = [0, 1, 2].map(|a| r.matrix().column(a).into_owned());
+    let one = Vector3::from_element(1.0);
+    [
+        one - x.component_mul(&x),
+        one - y.component_mul(&y),
+        one - z.component_mul(&z),
+        -x.component_mul(&y),
+        -x.component_mul(&z),
+        -y.component_mul(&z),
+    ]
 }

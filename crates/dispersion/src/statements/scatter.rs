@@ -64,7 +64,7 @@ impl Body {
         if scatter.rotations.amax() == 0.0 {
             return Forms::still(&self.attitude);
         }
-        Forms::over(&self.turns(scatter).nodes(Rule::QUICK))
+        Forms::over(&self.attitude, &self.turns(scatter).nodes(Rule::QUICK))
     }
 
     /// Moments of the entries of the law that scatters so.
