@@ -303,8 +303,7 @@ fn flat_bodies_have_models() {
 fn what_a_law_has_comes_out() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let mut missed = 0;
-    let cases: u32 = std::env::var("CASES").map_or(24, |n| n.parse().unwrap());
-    for case in 0..cases {
+    for case in 0..24 {
         let size = 10_f64.powf(between(&mut rng, -3.0, 3.0));
         let mean = [(); 3].map(|()| size * between(&mut rng, 1.0, 3.0));
         let tilt = if case % 4 == 0 { 0.0 } else { 2.0 };
@@ -331,10 +330,10 @@ fn what_a_law_has_comes_out() {
         let implied = model.implied().deviations();
         let worst = (0..6).map(|e| (implied[e] / has[e] - 1.0).abs()).fold(0.0, f64::max);
         missed += u32::from(worst > NEAR);
-        if worst > NEAR { println!("{case} {worst:.4}"); }
+        assert!(worst < 0.3, "case {case}: {has:?} {implied:?}");
     }
     // The search may end in a hollow beside the best: rarely, and not far from it.
-    assert!(missed <= 2, "{missed}");
+    assert!(missed <= 1, "{missed}");
 }
 
 #[test]

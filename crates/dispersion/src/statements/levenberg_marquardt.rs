@@ -2,10 +2,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Steps at most.
-const STEPS: usize = 200;
-/// A step that takes less than this share off the cost is the last one.
-const WORTH: f64 = 3e-4;
 /// Times that a step is shortened before it counts as none.
 const SHORTER: usize = 12;
 /// The step of differences, as a share of the size of an unknown.
@@ -15,6 +11,21 @@ const DAMPING: f64 = 1e-3;
 const LESS: f64 = 0.1;
 const LEAST_DAMPING: f64 = 1e-9;
 const MORE: f64 = 5.0;
+
+/// When the search ends.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// Steps at most.
+    steps: usize,
+    /// A step that takes less than this share off the cost is the last one.
+    worth: f64,
+}
+
+impl Effort {
+    pub(super) const FULL: Self = Self { steps: 200, worth: 3e-4 };
+    /// To see which of many starts is worth it.
+    pub(super) const SHORT: Self = Self { steps: 15, worth: 3e-2 };
+}
 
 /// Sum of squared residuals.
 pub(super) trait Problem {
@@ -40,12 +51,16 @@ pub(super) struct Range {
 
 /// The least sum of squares that is found downhill from a point (Levenberg 1944, Marquardt 1963, doi:10.1137/0111030).
 /// Unknowns at a bound stay there while the slope leads beyond it.
-pub(super) fn least_squares<P: Problem>(problem: &P, start: P::Point) -> (P::Point, f64) {
+pub(super) fn least_squares<P: Problem>(
+    problem: &P,
+    start: P::Point,
+    effort: Effort,
+) -> (P::Point, f64) {
     let mut point = start;
     let mut residuals = problem.residuals(&point);
     let mut cost = residuals.norm_squared();
     let mut damping = DAMPING;
-    for _ in 0..STEPS {
+    for _ in 0..effort.steps {
         let values = problem.values(&point);
         let ranges: Vec<_> = (0..values.len()).map(|i| problem.range(&point, i)).collect();
         let mut slopes = DMatrix::zeros(residuals.len(), values.len());
@@ -85,7 +100,7 @@ pub(super) fn least_squares<P: Problem>(problem: &P, start: P::Point) -> (P::Poi
             damping *= MORE;
         }
         let Some((there, at, lower)) = next else { break };
-        let last = lower > (1.0 - WORTH) * cost;
+        let last = lower > (1.0 - effort.worth) * cost;
         (point, residuals, cost) = (there, at, lower);
         if last {
             break;
@@ -163,14 +178,14 @@ mod tests {
             let a = DMatrix::from_vec(5, 4, a);
             prop_assume!(a.clone().svd(false, false).singular_values.min() > 0.05);
             let problem = Boxed { a, b: DVector::from_vec(b), most };
-            let (x, cost) = least_squares(&problem, DVector::from_element(4, 0.5 * most));
+            let (x, cost) = least_squares(&problem, DVector::from_element(4, 0.5 * most), Effort::FULL);
             prop_assert!(x.iter().all(|x| (0.0..=most).contains(x)));
             for other in &others {
                 let other = DVector::from_row_slice(other) * most;
                 for share in [1e-2, 0.1, 1.0] {
                     let y = &x + (&other - &x) * share;
                     let there = problem.residuals(&y).norm_squared();
-                    prop_assert!(there > cost * (1.0 - 2.0 * WORTH) - 1e-9, "{there} {cost}");
+                    prop_assert!(there > cost * (1.0 - 2.0 * Effort::FULL.worth) - 1e-9, "{there} {cost}");
                 }
             }
         }
@@ -201,7 +216,7 @@ mod tests {
 
     #[test]
     fn a_narrow_valley_is_followed_to_its_end() {
-        let (x, cost) = least_squares(&Valley, DVector::from_vec(vec![-1.2, 1.0]));
+        let (x, cost) = least_squares(&Valley, DVector::from_vec(vec![-1.2, 1.0]), Effort::FULL);
         assert!(cost < 1e-9 && (x[0] - 1.0).abs() < 1e-4, "{x} {cost}");
     }
 }

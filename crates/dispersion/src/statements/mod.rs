@@ -8,13 +8,15 @@ mod parts;
 mod scatter;
 mod solve;
 mod stated_model;
+mod task;
+mod unknowns;
 mod warnings;
 
 use gyradius_inertia::Inertia;
 
 use diagnosis::{Context, Outcome};
 use scatter::Body;
-use solve::{Asked, Task};
+use task::{Asked, Task};
 
 pub use parts::{
     Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, Part,
