@@ -132,6 +132,9 @@ pub enum RepairError {
     /// A copy is there already, and is another one.
     #[error("{} exists: --force replaces it", .0.display())]
     Exists(PathBuf),
+    /// A folder, a link, a pipe or a device is there.
+    #[error("{} is not a regular file, and is neither followed nor replaced", .0.display())]
+    NoFile(PathBuf),
     /// The copy has the name of a file that is being checked.
     #[error("{} is itself being checked, and originals are never written over", .0.display())]
     Original(PathBuf),
@@ -321,7 +324,8 @@ fn write(
         return Err(RepairError::Original(copy.to_owned()));
     }
     write_file_as(copy, bytes, force, permissions).map_err(|error| match error {
-        WriteError::Exists(path) | WriteError::NoFile(path) => RepairError::Exists(path),
+        WriteError::Exists(path) => RepairError::Exists(path),
+        WriteError::NoFile(path) => RepairError::NoFile(path),
         WriteError::Io { path, error } => RepairError::Io { path, error },
     })
 }

@@ -34,11 +34,13 @@ struct BodyModel {
 
 impl Model {
     pub(crate) fn new(spec: &ModelSpec, scenario: &Scenario) -> Result<Self, ScenarioError> {
-        let at = |e| ScenarioError::field(scenario.place(spec), e);
         let body = |which: Body, body: &UncertainBody| {
             let purpose = format!("{} inertia", which.name());
             Ok(BodyModel {
-                law: law(spec, which, body, scenario).map_err(at)?,
+                law: law(spec, which, body, scenario).map_err(|error| {
+                    let problem = format!("the {}: {error}", which.name());
+                    ScenarioError::field(scenario.place(spec), problem)
+                })?,
                 streams: Streams::new(scenario.seed(), &spec.name, &purpose),
             })
         };

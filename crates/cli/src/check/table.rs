@@ -252,7 +252,7 @@ fn summary(out: &mut impl Write, report: &Report, arguments: &CheckArgs) -> io::
     if others > 0 {
         words.push(count(others, "file without inertias", "files without inertias"));
     }
-    writeln!(out, "{} (tolerance {:e})", words.join(", "), arguments.tolerance)
+    writeln!(out, "{} (tolerance {:?})", words.join(", "), arguments.tolerance)
 }
 
 #[cfg(test)]

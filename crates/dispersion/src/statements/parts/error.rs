@@ -29,9 +29,9 @@ pub enum StatementError {
     },
     /// What nobody means, or what no model can be made of.
     #[error(
-        "{key} = {value:?}: with sigmas = {sigmas:?} this is a standard deviation of {:.4e} {unit}, \
+        "{key} = {value:?}: with sigmas = {sigmas:?} this is a standard deviation of {:?} {unit}, \
          and it must be at most {most} {unit}",
-        value / sigmas
+        rounded(value / sigmas)
     )]
     TooLarge {
         /// Its key.
@@ -47,8 +47,10 @@ pub enum StatementError {
     },
     /// Moments or products that scatter far beyond the body.
     #[error(
-        "{part}.kg_m2: a standard deviation of {deviation:.4e} kg·m² is stated, and it must be at most \
-         {MOST_TRACES} times the trace of the nominal inertia, which is {trace:.4e} kg·m²"
+        "{part}.kg_m2: a standard deviation of {:?} kg·m² is stated, and it must be at most \
+         {MOST_TRACES} times the trace of the nominal inertia, which is {:?} kg·m²",
+        rounded(*deviation),
+        rounded(*trace)
     )]
     BeyondBody {
         /// Which statement.
@@ -60,8 +62,10 @@ pub enum StatementError {
     },
     /// A mass that scatters beyond itself.
     #[error(
-        "mass.kg: a standard deviation of {deviation:.4e} kg is stated, and it must be at most the \
-         nominal mass, which is {mass:.4e} kg"
+        "mass.kg: a standard deviation of {:?} kg is stated, and it must be at most the \
+         nominal mass, which is {:?} kg",
+        rounded(*deviation),
+        rounded(*mass)
     )]
     BeyondMass {
         /// What is stated, kg.
@@ -122,6 +126,11 @@ pub enum StatementError {
         /// Why.
         problem: String,
     },
+}
+
+/// A number of five digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
 }
 
 /// Which statement.

@@ -1,0 +1,158 @@
+//! What is asked of the scatter of a body, and how far a scatter is from it.
+
+use nalgebra::Matrix3;
+
+use super::{
+    entries::Forms,
+    scatter::{Body, Scatter},
+};
+
+/// Of relative errors of deviations, stated moments count this much more beside products: what is
+/// stated of the products may not make the moments more certain than they are stated.
+const MOMENTS_FIRST: f64 = 100.0;
+/// An entry that is surer than stated is this much worse than one that is less sure.
+const SURER: f64 = 3.0;
+/// What a mass centre adds counts this much less beside what is stated.
+const ADDED_LAST: f64 = 1.0 / 30.0;
+/// Deviations below this share of the largest beside them count as this share.
+const SMALL: f64 = 3e-4;
+/// The same of what a mass centre adds, where the smaller ones are without interest.
+const SMALL_BESIDE: f64 = 0.3;
+/// A deviation of zero counts as this share of the trace.
+const ZERO: f64 = 1e-9;
+
+/// What is asked of a body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Task {
+    pub(super) body: Body,
+    pub(super) trace: f64,
+    pub(super) moments: Asked,
+    pub(super) products: Asked,
+    /// Variances of the rotations about the principal axes, rad²: as they are, or, beside products, at most.
+    pub(super) axes: Option<[f64; 3]>,
+    /// The relative deviation of the mass, and the largest share of it that the inertia may take.
+    pub(super) mass: Option<(f64, f64)>,
+    /// Rotations that do nothing are any, not none.
+    pub(super) loose: bool,
+}
+
+/// What is asked of three entries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Asked {
+    /// Nothing: they move as the rest moves them.
+    Nothing,
+    /// They have these deviations, kg·m², everything included.
+    Stated([f64; 3]),
+    /// Beside everything else, these variances come on top, (kg·m²)².
+    Added([f64; 3]),
+}
+
+/// A scatter, what its axes do to the entries, and the share of the mass that the inertia follows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    pub(super) scatter: Scatter,
+    pub(super) forms: Forms,
+    pub(super) follows: f64,
+}
+
+/// What is asked of an entry, and what it has: variances, (kg·m²)².
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Compared {
+    pub(super) entry: usize,
+    pub(super) wanted: f64,
+    pub(super) found: f64,
+    /// The variance below which none matters.
+    least: f64,
+    /// How much an error counts.
+    pub(super) counts: f64,
+}
+
+impl Compared {
+    /// The relative error of the deviation, where it is small. In logarithms, so that errors of entries that cannot be
+    /// had do not outweigh all others.
+    pub(super) fn error(&self) -> f64 {
+        let error = 0.5 * libm::log((self.found + self.least) / (self.wanted + self.least));
+        if error < 0.0 { SURER * error } else { error }
+    }
+}
+
+impl Task {
+    pub(super) fn first_variance(&self) -> f64 {
+        match self.moments {
+            Asked::Nothing => 0.0,
+            Asked::Stated(_) | Asked::Added(_) => {
+                0.5 * self.moments.mean_variance().max(self.zero())
+            }
+        }
+    }
+
+    pub(super) fn zero(&self) -> f64 {
+        (ZERO * self.trace).powi(2)
+    }
+
+    /// What is asked of each entry at a point, and what it has there.
+    pub(super) fn compare(&self, at: &Point) -> Vec<Compared> {
+        let k = self.body.second_moments(&at.scatter);
+        let (means, found) = (at.forms.means(&k), at.forms.variances(&k));
+        let still = Scatter { roots: Matrix3::zeros(), ..at.scatter };
+        let by_axes = at.forms.variances(&self.body.second_moments(&still));
+        let by_roots = Forms::still(&self.body.attitude).variances(&k);
+        let by_mass = self.mass.map_or(0.0, |(relative, _)| (relative * at.follows).powi(2));
+        let both = self.moments.is_stated() && self.products.is_stated();
+        let any = self.moments.is_stated() || self.products.is_stated();
+        let mut compared = Vec::new();
+        for (first_entry, asked, rest) in [(0, self.moments, by_axes), (3, self.products, by_roots)]
+        {
+            let least = asked.least().max(self.zero());
+            let with_mass = |e: usize, v: f64| v * (1.0 + by_mass) + by_mass * means[e] * means[e];
+            for e in first_entry..first_entry + 3 {
+                let (wanted, counts) = match asked {
+                    Asked::Nothing => continue,
+                    Asked::Stated(deviations) => {
+                        let first = if both && e < 3 { MOMENTS_FIRST } else { 1.0 };
+                        (deviations[e - first_entry].powi(2), first)
+                    }
+                    Asked::Added(variances) => {
+                        let last = if any { ADDED_LAST } else { 1.0 };
+                        (with_mass(e, rest[e] + variances[e - first_entry]), last)
+                    }
+                };
+                let found = with_mass(e, found[e]);
+                compared.push(Compared { entry: e, wanted, found, least, counts });
+            }
+        }
+        compared
+    }
+
+    /// The largest error.
+    pub(super) fn worst(&self, at: &Point) -> f64 {
+        self.compare(at).iter().fold(0.0, |worst, it| it.error().abs().max(worst))
+    }
+}
+
+impl Asked {
+    pub(super) fn is_stated(&self) -> bool {
+        matches!(self, Self::Stated(_))
+    }
+
+    pub(super) fn variances(&self) -> [f64; 3] {
+        match *self {
+            Self::Nothing => [0.0; 3],
+            Self::Stated(deviations) => deviations.map(|d| d * d),
+            Self::Added(variances) => variances,
+        }
+    }
+
+    pub(super) fn mean_variance(&self) -> f64 {
+        self.variances().iter().sum::<f64>() / 3.0
+    }
+
+    /// The variance below which none matters.
+    pub(super) fn least(&self) -> f64 {
+        let share = match self {
+            Self::Nothing | Self::Stated(_) => SMALL,
+            Self::Added(_) => SMALL_BESIDE,
+        };
+        self.variances().into_iter().fold(0.0, f64::max) * (share * share)
+    }
+}
