@@ -234,7 +234,7 @@ fn impossible_draws_are_failed_rows() {
             table.drawn("spring_1_stiffness_n_per_m").unwrap(),
         );
         let mut failed = 0;
-        for (i, row) in table.rows().iter().enumerate() {
+        for (i, row) in table.rows().enumerate() {
             if mass[i] <= 0.0 {
                 assert!(row.status().starts_with("payload: mass = -"), "{}", row.status());
                 assert!(row.status().contains("kg: it must be positive"), "{}", row.status());
@@ -278,7 +278,7 @@ fn a_failed_spring_is_none() {
         // It lets go at no time and in no order, for a time of zero would be one.
         assert!(a.values(Quantity::SpringRelease(0)).is_empty());
         assert_eq!(a.values(Quantity::SpringRelease(1)).len(), 10);
-        assert!(a.rows().iter().all(|row| !row.release_order().unwrap().contains('1')));
+        assert!(a.rows().all(|row| !row.release_order().unwrap().contains('1')));
     }
 }
 

@@ -23,7 +23,7 @@ fn runs_that_fail_are_rows_with_a_reason() {
     assert_ne!(text, paper());
     let (study, _scratch) = run(&text);
     let naive = study.tables().iter().find(|t| t.model() == "naive").unwrap();
-    let failed: Vec<_> = naive.rows().iter().filter(|r| r.status() != "ok").collect();
+    let failed: Vec<_> = naive.rows().filter(|r| r.status() != "ok").collect();
     assert!((10..290).contains(&failed.len()), "{} failed", failed.len());
     for row in &failed {
         assert!(row.status().starts_with("payload: inertia with principal moments"));
@@ -31,7 +31,7 @@ fn runs_that_fail_are_rows_with_a_reason() {
         assert_eq!(row.value(Quantity::Cone), None);
         assert!(row.value(Quantity::SpinRate).is_none());
     }
-    assert_eq!(naive.rows().len(), 300);
+    assert_eq!(naive.len(), 300);
     assert_eq!(naive.values(Quantity::Wobble).len(), 300 - failed.len());
 
     let table = study.summary().to_string();
@@ -41,7 +41,7 @@ fn runs_that_fail_are_rows_with_a_reason() {
     let kind = format!("{} × payload: inertia not positive definite", failed.len());
     assert!(report.contains(&kind) && table.contains(&kind), "counted by kind");
     // And those of the other models did not.
-    assert!(study.tables()[0].rows().iter().all(|r| r.status() == "ok"));
+    assert!(study.tables()[0].rows().all(|r| r.status() == "ok"));
 }
 
 /// Where no run succeeds there is nothing to summarise, and the study says so.
@@ -49,7 +49,7 @@ fn runs_that_fail_are_rows_with_a_reason() {
 fn a_study_in_which_everything_fails_still_ends() {
     let (study, _scratch) = run(&paper().replace("horizon_s = 60.0", "horizon_s = 0.001"));
     for table in study.tables() {
-        assert!(table.rows().iter().all(|r| r.status().contains("had not let go after 0.001 s")));
+        assert!(table.rows().all(|r| r.status().contains("had not let go after 0.001 s")));
     }
     assert!(study.summary().to_string().contains("300 of 300 runs failed"));
 }
@@ -100,7 +100,7 @@ fn recontact_is_an_outcome() {
     };
     let (study, _scratch) = run(&at(-5.0, 8.0));
     for table in study.tables() {
-        assert!(table.rows().iter().all(|r| r.status() == "ok"));
+        assert!(table.rows().all(|r| r.status() == "ok"));
         let (clearance, touch) =
             (table.values(Quantity::Clearance), table.values(Quantity::RecontactTime));
         assert_eq!(clearance.len(), 300);
@@ -125,8 +125,7 @@ fn recontact_is_an_outcome() {
     let told = &summary["models"][0]["releases"]["clearance"];
     let least = clearance.iter().copied().fold(f64::INFINITY, f64::min);
     assert_eq!(told["least_m"], least);
-    let nearest =
-        table.rows().iter().find(|r| r.value(Quantity::Clearance) == Some(least)).unwrap();
+    let nearest = table.rows().find(|r| r.value(Quantity::Clearance) == Some(least)).unwrap();
     assert_eq!(told["run"], nearest.run());
     let p01 = told["p01_m"].as_f64().unwrap();
     assert!(clearance.iter().filter(|c| **c < p01).count() <= clearance.len() / 100 + 1);
@@ -155,7 +154,7 @@ fn an_outline_that_cannot_be_placed_fails_its_run() {
     );
     let (study, _scratch) = run(&text);
     for table in study.tables() {
-        let failed: Vec<_> = table.rows().iter().filter(|r| r.failure().is_some()).collect();
+        let failed: Vec<_> = table.rows().filter(|r| r.failure().is_some()).collect();
         assert!((50..250).contains(&failed.len()), "{}", failed.len());
         for row in failed {
             let status = row.status();

@@ -54,12 +54,12 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
 
     let mut code = ExitCode::SUCCESS;
     for table in study.tables() {
-        let failed = table.rows().iter().filter(|row| row.failure().is_some()).count();
-        if failed as f64 > arguments.max_failed * table.rows().len() as f64 {
+        let failed = table.failures().len();
+        if failed as f64 > arguments.max_failed * table.len() as f64 {
             complain(format_args!(
                 "{}: {failed} of {} runs failed, and --max-failed allows {} %",
                 table.model(),
-                table.rows().len(),
+                table.len(),
                 short(100.0 * arguments.max_failed)
             ));
             code = ExitCode::from(FAILED);

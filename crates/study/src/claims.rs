@@ -2,10 +2,11 @@
 
 use gyradius_dispersion::ModelKind;
 use gyradius_statistics::Interval;
-use serde::Serialize;
 
 use crate::{
-    quantity::{Body, Entry, Quantity},
+    body::{Body, Entry},
+    claim::{Claim, Verdict},
+    quantity::Quantity,
     scenario::Scenario,
     summary::{ComparisonSummary, ModelSummary, Summary},
     table::RunTable,
@@ -24,64 +25,6 @@ const RARE: f64 = 0.01;
 const ENOUGH_FOR_SHAPES: usize = 500;
 /// A skewness beyond this is one-sided; a Gaussian has none.
 pub(crate) const ONE_SIDED: f64 = 1.0;
-
-/// Whether a claim stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Verdict {
-    /// It does.
-    Holds,
-    /// For some of what it says, or under one reading.
-    HoldsInPart,
-    /// It does not.
-    DoesNotHold,
-    /// These runs cannot tell.
-    NotTested,
-}
-
-impl Verdict {
-    /// In words.
-    pub(crate) fn words(self) -> &'static str {
-        match self {
-            Self::Holds => "holds",
-            Self::HoldsInPart => "holds in part",
-            Self::DoesNotHold => "does not hold",
-            Self::NotTested => "cannot tell",
-        }
-    }
-
-    /// All hold: holds. None of those that can be told: does not. Otherwise in part.
-    fn of_all(parts: &[Self]) -> Self {
-        let any = |verdict| parts.contains(&verdict);
-        if any(Self::Holds) || any(Self::HoldsInPart) {
-            if parts.iter().all(|p| *p == Self::Holds) { Self::Holds } else { Self::HoldsInPart }
-        } else if any(Self::DoesNotHold) {
-            Self::DoesNotHold
-        } else {
-            Self::NotTested
-        }
-    }
-
-    /// Whether a number known to an interval is above a line.
-    fn above(interval: Interval, line: f64) -> Self {
-        if interval.lower() > line {
-            Self::Holds
-        } else if interval.upper() < line {
-            Self::DoesNotHold
-        } else {
-            Self::NotTested
-        }
-    }
-}
-
-/// A claim, what the runs show, and whether it stands.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Claim {
-    pub(crate) claim: String,
-    /// One finding for each reading.
-    pub(crate) findings: Vec<String>,
-    pub(crate) verdict: Verdict,
-}
 
 pub(crate) fn judge(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Vec<Claim> {
     let mut claims = vec![always_realizable(summary), naive_unphysical(summary)];
@@ -206,7 +149,7 @@ fn same_deviations(scenario: &Scenario, summary: &Summary) -> Claim {
             let entries = Entry::ALL.into_iter().zip(given);
             let ratios: Vec<(f64, Interval)> = entries
                 .filter_map(|(entry, given)| {
-                    let found = physical.quantity(body.entry(entry))?;
+                    let found = physical.quantity(Quantity::entry(body, entry))?;
                     let interval = found.deviation_interval.filter(|i| i.lower() > 0.0)?;
                     let (low, high) = (given / interval.upper(), given / interval.lower());
                     let interval = Interval::new(low, high, interval.confidence()).ok()?;
@@ -351,9 +294,11 @@ struct Shape {
 
 impl Shape {
     fn of(table: &RunTable) -> Self {
-        let mut skewed = (Quantity::Payload(Entry::I11), 0.0_f64);
+        let mut skewed = (Quantity::PayloadI11, 0.0_f64);
         let mut two_peaked: Option<(Quantity, f64)> = None;
-        for quantity in Body::BOTH.into_iter().flat_map(|b| Entry::ALL.map(|e| b.entry(e))) {
+        for quantity in
+            Body::BOTH.into_iter().flat_map(|b| Entry::ALL.map(|e| Quantity::entry(b, e)))
+        {
             let values = table.values(quantity);
             let Ok(moments) = gyradius_statistics::Moments::new(&values) else { continue };
             let skewness = moments.skewness().unwrap_or(0.0);
@@ -376,9 +321,10 @@ impl Shape {
 
 impl std::fmt::Display for Shape {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let name = |q: Quantity| match q {
-            Quantity::Stage(_) => format!("stage {}", q.label()),
-            _ => format!("payload {}", q.label()),
+        let name = |q: Quantity| {
+            let of_stage = Quantity::STAGE_INERTIA.contains(&q);
+            let body = if of_stage { Body::Stage } else { Body::Payload };
+            format!("{} {}", body.name(), q.label())
         };
         write!(f, "has skewness up to {:.2} ({})", self.skewed.1, name(self.skewed.0))?;
         match self.two_peaked {

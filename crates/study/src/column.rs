@@ -1,11 +1,8 @@
-//! The columns of the run table: one place for their names, their types and what stands in them.
+//! The columns of the run table: their names, their order and their types.
 
 use std::borrow::Cow;
 
-use crate::{
-    quantity::{Body, Quantity},
-    row::Row,
-};
+use crate::{body::Body, quantity::Quantity};
 
 /// A column of the run table.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +19,23 @@ pub(crate) enum Column<'a> {
     /// What else was drawn, by its place and its name.
     Drawn(usize, &'a str),
     ClearanceNote,
+}
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Text,
+    Integer,
+    Number,
+    Flag,
+}
+
+struct Declaration<'a> {
+    name: Cow<'a, str>,
+    kind: Kind,
+    /// Whether some runs have nothing there.
+    optional: bool,
+    meaning: &'a str,
 }
 
 /// What stands in a column for a run.
@@ -61,77 +75,144 @@ impl std::fmt::Display for Cell {
 }
 
 impl<'a> Column<'a> {
-    /// All columns, in order, of a separation by so many springs in which that else was drawn.
-    pub(crate) fn of(springs: usize, drawn: &'a [String]) -> Vec<Self> {
+    /// All columns, in order, of these quantities and of what else was drawn.
+    pub(crate) fn of(quantities: impl Iterator<Item = Quantity>, drawn: &'a [String]) -> Vec<Self> {
         let mut columns = vec![Self::Model, Self::Run, Self::Status];
-        let mut numbers = Quantity::of(springs).map(Self::Number);
-        columns.extend(numbers.by_ref().take(Quantity::FIRST));
-        columns.push(Self::Realizable);
-        columns.extend(Body::BOTH.into_iter().flat_map(|b| (0..4).map(move |i| Self::Axes(b, i))));
-        columns.extend(numbers);
+        for quantity in quantities {
+            columns.push(Self::Number(quantity));
+            if quantity == Quantity::LAST_BEFORE_REALIZABLE {
+                columns.push(Self::Realizable);
+                let axes = |b: Body| (0..4).map(move |i| Self::Axes(b, i));
+                columns.extend(Body::BOTH.into_iter().flat_map(axes));
+            }
+        }
         columns.extend([Self::ReleaseOrder, Self::Recompressed]);
         columns.extend(drawn.iter().enumerate().map(|(i, name)| Self::Drawn(i, name)));
         columns.push(Self::ClearanceNote);
         columns
     }
 
+    fn declaration(self) -> Declaration<'a> {
+        use Kind::{Flag, Integer, Number, Text};
+        let (name, kind, optional, meaning): (Cow<'a, str>, _, _, &str) = match self {
+            Self::Model => ("model".into(), Text, false, "Name of the model."),
+            Self::Run => ("run".into(), Integer, false, "Number of the run, from 0."),
+            Self::Status => {
+                ("status".into(), Text, false, "`ok`, or the reason why the run failed.")
+            }
+            Self::Number(quantity) => (quantity.column(), Number, true, quantity.meaning()),
+            Self::Realizable => {
+                let meaning = "Whether the inertias of both bodies are realizable.";
+                ("realizable".into(), Flag, false, meaning)
+            }
+            Self::Axes(body, i) => (
+                format!("{}_q{}", body.name(), i + 1).into(),
+                Number,
+                true,
+                "Component of the attitude of the body's principal axes as drawn, scalar last; none for \
+                 entrywise models.",
+            ),
+            Self::ReleaseOrder => (
+                "release_order".into(),
+                Text,
+                true,
+                "Springs from 1 in the order of release, `+` between those that let go together, as in \
+                 `1 2 3+4`; without those that never push.",
+            ),
+            Self::Recompressed => (
+                "recompressed".into(),
+                Text,
+                true,
+                "Springs from 1 that were pressed below their free length after their release, while \
+                 others still pushed; none if there is no such spring.",
+            ),
+            Self::Drawn(_, name) => {
+                (name.into(), Number, true, "What else is dispersed, as drawn.")
+            }
+            Self::ClearanceNote => (
+                "clearance_note".into(),
+                Text,
+                true,
+                "Why there is no clearance (all outlines are mated; the search failed), or not one of the \
+                 whole coast (a body turns too far to be followed); none if there is nothing to say.",
+            ),
+        };
+        Declaration { name, kind, optional, meaning }
+    }
+
     pub(crate) fn name(self) -> Cow<'a, str> {
+        self.declaration().name
+    }
+
+    /// Its unit, of numbers that have one.
+    pub(crate) fn unit(self) -> Option<&'static str> {
         match self {
-            Self::Model => "model".into(),
-            Self::Run => "run".into(),
-            Self::Status => "status".into(),
-            Self::Number(quantity) => quantity.column(),
-            Self::Realizable => "realizable".into(),
-            Self::Axes(body, i) => format!("{}_q{}", body.name(), i + 1).into(),
-            Self::ReleaseOrder => "release_order".into(),
-            Self::Recompressed => "recompressed".into(),
-            Self::Drawn(_, name) => name.into(),
-            Self::ClearanceNote => "clearance_note".into(),
+            Self::Number(quantity) => Some(quantity.unit()),
+            Self::Model
+            | Self::Run
+            | Self::Status
+            | Self::Realizable
+            | Self::Axes(..)
+            | Self::ReleaseOrder
+            | Self::Recompressed
+            | Self::Drawn(..)
+            | Self::ClearanceNote => None,
         }
     }
 
+    /// What it means, in a sentence.
+    pub(crate) fn meaning(self) -> &'a str {
+        self.declaration().meaning
+    }
+
     pub(crate) fn is_optional(self) -> bool {
-        !matches!(self, Self::Model | Self::Run | Self::Status | Self::Realizable)
+        self.declaration().optional
     }
 
     /// The column in Parquet's message type.
     pub(crate) fn field(self) -> String {
-        let kind = match self {
-            Self::Run => "int64",
-            Self::Realizable => "boolean",
-            Self::Number(_) | Self::Axes(..) | Self::Drawn(..) => "double",
-            Self::Model
-            | Self::Status
-            | Self::ReleaseOrder
-            | Self::Recompressed
-            | Self::ClearanceNote => "binary",
-        };
-        let needed = if self.is_optional() { "optional" } else { "required" };
-        let text = if kind == "binary" { " (string)" } else { "" };
-        format!("{needed} {kind} {}{text}", self.name())
+        let Declaration { name, kind, optional, .. } = self.declaration();
+        let needed = if optional { "optional" } else { "required" };
+        match kind {
+            Kind::Integer => format!("{needed} int64 {name}"),
+            Kind::Flag => format!("{needed} boolean {name}"),
+            Kind::Number => format!("{needed} double {name}"),
+            Kind::Text => format!("{needed} binary {name} (string)"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fmt::Write;
+
+    /// The page of the run table, from the declarations.
+    fn page() -> String {
+        let drawn = ["payload_mass_kg".to_owned()];
+        let mut page = "# The run table\n\n\
+            `runs/<model>/runs.parquet` holds one row a run, in run order. A half-written Parquet file is refused by readers; half a\n\
+            CSV is read without a word. What a failed run has drawn is there, and its outcomes are null; so is every number that has no\n\
+            meaning for a run. Numbers are stored bit for bit.\n\n\
+            Each spring has a `spring_…_release_s`, springs from 1. In the place of `payload_mass_kg` stands what else is\n\
+            [dispersed](scenario.md#what-else-is-uncertain), in that order; nothing if nothing is. The outcomes are explained in\n\
+            [separation](models/separation.md), equation numbers are those of Peck (2003).\n\n\
+            | column | unit | |\n|---|---|---|\n"
+            .to_owned();
+        for column in Column::of(Quantity::of(1), &drawn) {
+            let unit = column.unit().unwrap_or_default();
+            writeln!(page, "| `{}` | {unit} | {} |", column.name(), column.meaning()).unwrap();
+        }
+        page
     }
 
-    pub(crate) fn cell(self, model: &str, row: &Row) -> Cell {
-        let number = |x: Option<f64>| x.map_or(Cell::Null, Cell::Number);
-        match self {
-            Self::Model => Cell::Text(model.to_owned()),
-            // There are fewer runs than 2⁶³.
-            Self::Run => Cell::Integer(row.run() as i64),
-            Self::Status => Cell::Text(row.status().into_owned()),
-            Self::Number(quantity) => number(row.value(quantity)),
-            Self::Realizable => Cell::Flag(row.realizable()),
-            Self::Drawn(i, _) => number(row.drawn.get(i).copied()),
-            Self::Axes(body, i) => number(row.axes(body).map(|q| q.coords[i])),
-            Self::ReleaseOrder => {
-                row.release_order().map_or(Cell::Null, |order| Cell::Text(order.to_owned()))
-            }
-            Self::Recompressed => {
-                let springs: Vec<_> = row.recompressed().iter().map(ToString::to_string).collect();
-                if springs.is_empty() { Cell::Null } else { Cell::Text(springs.join(" ")) }
-            }
-            Self::ClearanceNote => {
-                row.clearance_note().map_or(Cell::Null, |note| Cell::Text(note.to_string()))
-            }
+    /// Run with `WRITE_PAGE` set to write it anew.
+    #[test]
+    fn the_page_lists_every_column() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/run-table.md");
+        if std::env::var_os("WRITE_PAGE").is_some() {
+            std::fs::write(path, page()).unwrap();
         }
+        assert_eq!(std::fs::read_to_string(path).unwrap(), page());
     }
 }

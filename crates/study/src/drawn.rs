@@ -8,8 +8,8 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::{
-    quantity::Body,
-    row::Failure,
+    body::Body,
+    failure::Failure,
     scenario::{BodyPart, Dispersions, Scenario, SpringPart, StackPart, Target},
     streams::Streams,
 };

@@ -14,24 +14,30 @@
 //! # Ok::<(), gyradius_study::StudyError>(())
 //! ```
 
+mod body;
+mod claim;
 mod claims;
 mod column;
 mod compare;
 mod drawn;
+mod failure;
+mod figure;
 mod figures;
+mod figures_of_study;
 mod folder;
 mod forecast;
 mod format;
 mod fragment;
 mod model;
+mod numbers;
 mod page;
-mod plates;
 mod quantity;
 mod replay;
 mod report;
-mod row;
+mod run;
 mod runner;
 mod scenario;
+mod share;
 mod streams;
 mod study;
 mod summary;
@@ -39,18 +45,19 @@ mod table;
 mod text;
 mod visible;
 
+pub use body::Entry;
 pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
+pub use failure::Failure;
 pub use forecast::Forecast;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_dispersion::ModelKind;
-pub use quantity::{Axis, Entry, Quantity};
+pub use quantity::Quantity;
 pub use replay::{Replay, ReplayError};
-pub use row::{Failure, Row};
 pub use runner::Progress;
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
 pub use study::{Options, Study, StudyError, restore_studies};
 pub use summary::Summary;
-pub use table::RunTable;
+pub use table::{Row, RunTable};
 pub use visible::{visible, visible_json};
 
 #[cfg(doctest)]

@@ -3,18 +3,17 @@
 use gyradius_dispersion::{
     DispersionModel, EntrywiseGaussian, KnownMoments, ModelDraw, ModelKind, RealizableOnly,
 };
-use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{Batch, Clearance, ClearanceError, RunError, Separation};
-use nalgebra::UnitQuaternion;
+use gyradius_separation::Batch;
 use rand_distr::Distribution;
 use std::ops::Range;
 
 use crate::{
+    body::Body,
     drawn::{self, Draws},
-    quantity::Body,
-    row::{Failure, Outcome, Row},
+    run::Case,
     scenario::{Law, ModelSpec, Scenario, ScenarioError, UncertainBody},
     streams::Streams,
+    table::RunTable,
 };
 
 /// A model ready to draw: a law and its random streams for either body.
@@ -52,10 +51,6 @@ impl Model {
         })
     }
 
-    pub(crate) fn name(&self) -> &str {
-        &self.name
-    }
-
     /// Which model it is.
     pub(crate) fn kind(&self) -> ModelKind {
         self.payload.law.kind()
@@ -87,7 +82,6 @@ impl Model {
         }
         let separation = drawn::separation(scenario, &drawn, payload.inertia, stage.inertia);
         Case {
-            run,
             payload: payload.inertia,
             stage: stage.inertia,
             payload_axes: payload.axes,
@@ -98,96 +92,24 @@ impl Model {
     }
 
     /// Draws the bodies of several runs and separates them together, to the bits that each has alone.
-    pub(crate) fn run(&self, scenario: &Scenario, runs: Range<u64>, batch: &mut Batch) -> Vec<Row> {
+    pub(crate) fn run(&self, scenario: &Scenario, runs: Range<u64>, batch: &mut Batch) -> RunTable {
+        let mut table = self.table(scenario, runs.start);
         let cases: Vec<Case> = runs.map(|run| self.draw(scenario, run)).collect();
         let sound = |i: &usize| cases[*i].separation.is_ok();
         let places: Vec<usize> = (0..cases.len()).filter(sound).collect();
         let mut results: Vec<_> = cases.iter().map(|_| None).collect();
         let queue = cases.iter().filter_map(|case| case.separation.as_ref().ok());
         batch.run(queue, |i, result| results[places[i]] = Some(result));
-        let cases = cases.iter().zip(results);
-        cases.map(|(case, result)| case.row(scenario, result)).collect()
-    }
-}
-
-/// What is drawn for a run.
-#[derive(Clone, Debug)]
-pub(crate) struct Case {
-    pub(crate) run: u64,
-    pub(crate) payload: InertiaMatrix,
-    pub(crate) stage: InertiaMatrix,
-    pub(crate) payload_axes: Option<UnitQuaternion<f64>>,
-    pub(crate) stage_axes: Option<UnitQuaternion<f64>>,
-    pub(crate) separation: Result<Separation, Failure>,
-    /// What else was drawn, in the order of the scenario's dispersions.
-    pub(crate) drawn: Box<[f64]>,
-}
-
-impl Case {
-    /// The bodies without any dispersion.
-    pub(crate) fn nominal(scenario: &Scenario) -> Self {
-        Self {
-            run: 0,
-            payload: *scenario.payload().nominal().as_inertia_matrix(),
-            stage: *scenario.stage().nominal().as_inertia_matrix(),
-            payload_axes: None,
-            stage_axes: None,
-            separation: Ok(scenario.separation().clone()),
-            drawn: Box::default(),
+        for (case, result) in cases.iter().zip(results) {
+            table.push(&case.ended(scenario, result));
         }
+        table
     }
 
-    /// The row of a run that ended so; without a separation there is no end.
-    pub(crate) fn row(
-        &self,
-        scenario: &Scenario,
-        result: Option<Result<gyradius_separation::Outcome, RunError>>,
-    ) -> Row {
-        self.ended(scenario, result).0
-    }
-
-    /// The row, and how near the bodies come if that is watched and the run ends well.
-    pub(crate) fn ended(
-        &self,
-        scenario: &Scenario,
-        result: Option<Result<gyradius_separation::Outcome, RunError>>,
-    ) -> (Row, Option<Clearance>) {
-        let mut near = None;
-        let outcome = match (&self.separation, result) {
-            (Ok(separation), Some(Ok(outcome))) => {
-                self.clearance(scenario, &outcome).map(|watched| {
-                    let outcome = Outcome::new(scenario, separation, &outcome, watched.as_ref());
-                    near = watched.and_then(Result::ok);
-                    outcome
-                })
-            }
-            (Ok(_), Some(Err(error))) => Err(error.into()),
-            (Err(failure), _) => Err(failure.clone()),
-            // A batch gives every run a result.
-            (Ok(_), None) => Err(RunError::NotFinite { time: 0.0 }.into()),
-        };
-        let row = Row {
-            run: self.run,
-            payload: self.payload.entries(),
-            stage: self.stage.entries(),
-            realizable: self.payload.is_realizable() && self.stage.is_realizable(),
-            payload_axes: self.payload_axes,
-            stage_axes: self.stage_axes,
-            outcome,
-            drawn: self.drawn.clone(),
-        };
-        (row, near)
-    }
-
-    fn clearance(
-        &self,
-        scenario: &Scenario,
-        outcome: &gyradius_separation::Outcome,
-    ) -> Result<Option<Result<Clearance, ClearanceError>>, Failure> {
-        let watched = scenario.outlines().map(|outlines| {
-            outlines.clearance(outcome, &drawn::mass_centres(scenario.dispersions(), &self.drawn))
-        });
-        watched.transpose()
+    /// A table for its runs from this one on.
+    pub(crate) fn table(&self, scenario: &Scenario, first: u64) -> RunTable {
+        let springs = scenario.separation().springs().len();
+        RunTable::new(&self.name, first, springs, &scenario.dispersions().columns())
     }
 }
 

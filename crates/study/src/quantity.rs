@@ -1,351 +1,291 @@
+//! Every number of a run, each declared in one place: its column, what it is called, its unit, where the report shows
+//! it, what it means and how it follows from a run.
+
 use std::borrow::Cow;
 
-/// An entry of a symmetric matrix.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names are the entries")]
-pub enum Entry {
-    I11,
-    I22,
-    I33,
-    I12,
-    I13,
-    I23,
+use crate::{
+    body::{Body, Entry},
+    run::Run,
+};
+
+/// Where the report tells of a quantity, and in which place there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Shown {
+    /// Nowhere: it is in the run table and the summary.
+    Table,
+    /// Among what the paper's results are about.
+    Behaviour(u8),
+    /// Among how the bodies part.
+    Parting(u8),
 }
 
-impl Entry {
-    /// All six, in the order of the run table.
-    pub const ALL: [Self; 6] = [Self::I11, Self::I22, Self::I33, Self::I12, Self::I13, Self::I23];
+struct Declaration {
+    column: &'static str,
+    label: &'static str,
+    unit: &'static str,
+    shown: Shown,
+    meaning: &'static str,
+    of: fn(&Run<'_>) -> Option<f64>,
 }
 
-/// One of the two bodies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Body {
-    Payload,
-    Stage,
-}
-
-impl Body {
-    pub(crate) const BOTH: [Self; 2] = [Self::Payload, Self::Stage];
-
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Payload => "payload",
-            Self::Stage => "stage",
+/// Declares quantities, in the order of the run table: the meaning, then
+/// `name: column, label, unit, shown, how it follows from a run`.
+macro_rules! quantities {
+    ($($(#[doc = $meaning:literal])+ $name:ident:
+        $column:literal, $label:literal, $unit:literal, $shown:expr, $of:expr;)+) => {
+        /// A number that a run has.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Quantity {
+            $($(#[doc = $meaning])+ $name,)+
+            /// When a spring let go; none if it never pushed, a late one too. Springs from 0.
+            SpringRelease(usize),
         }
-    }
 
-    /// An entry of its inertia matrix.
-    pub(crate) fn entry(self, entry: Entry) -> Quantity {
-        match self {
-            Self::Payload => Quantity::Payload(entry),
-            Self::Stage => Quantity::Stage(entry),
+        impl Quantity {
+            /// All but those of single springs, in the order of the run table.
+            pub const ALL: &'static [Self] = &[$(Self::$name),+];
+
+            fn declaration(self) -> &'static Declaration {
+                use Shown::{Behaviour, Parting, Table};
+                match self {
+                    $(Self::$name => const {
+                        &Declaration {
+                            column: $column,
+                            label: $label,
+                            unit: $unit,
+                            shown: $shown,
+                            meaning: concat!($($meaning),+),
+                            of: $of,
+                        }
+                    },)+
+                    Self::SpringRelease(_) => const {
+                        &Declaration {
+                            column: "spring_{}_release_s",
+                            label: "release of spring {}",
+                            unit: "s",
+                            shown: Table,
+                            meaning: " When the spring let go; none if it never pushed, a late one too.",
+                            of: |_| None,
+                        }
+                    },
+                }
+            }
         }
-    }
+    };
 }
 
-/// An axis of a body or of the inertial frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names are the axes")]
-pub enum Axis {
-    One,
-    Two,
-    Three,
-}
-
-/// A number that every run has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// Entry of the payload's inertia matrix, kg·m².
-    Payload(Entry),
-    /// Entry of the stage's inertia matrix, kg·m².
-    Stage(Entry),
-    /// From when on no spring can push, s: when the last one let go, or, late, came to its free length.
-    ReleaseTime,
-    /// Speed at which the mass centres part, m/s.
-    RelativeSpeed,
-    /// Angular velocity of the payload after the last release, body axes, rad/s.
-    PayloadRate(Axis),
-    /// Its magnitude, rad/s.
-    SpinRate,
-    /// Angle between spin axis and nearest principal axis, deg.
-    Wobble,
-    /// Angle between that principal axis and angular momentum, deg.
-    Nutation,
-    /// Extreme of the nutation in the 1-2 plane, deg, above 90 for a backward spin; none where the
-    /// momentum circles another axis.
-    Nutation2,
-    /// Extreme of the nutation in the 1-3 plane, deg, likewise.
-    Nutation3,
-    /// Angle between spin axis and angular momentum, deg.
-    Cone,
-    /// Inertia ratio, 1.
-    InertiaRatio,
-    /// Velocity of the payload's mass centre relative to the stage's, inertial axes, m/s.
-    RelativeVelocity(Axis),
-    /// Angle between it and the intended direction of separation, deg.
-    DirectionError,
-    /// Change of the payload's angular velocity from the start, body axes, deg/s.
-    PayloadTipOff(Axis),
-    /// Change of the stage's angular velocity from the start, body axes, deg/s.
-    StageTipOff(Axis),
-    /// Least nutation of the free motion, deg.
-    NutationLeast,
-    /// Greatest nutation of the free motion, deg.
-    NutationGreatest,
-    /// Nutation at the start, deg.
-    NutationBefore,
-    /// Least nutation if the payload had gone on as it started, deg.
-    NutationLeastBefore,
-    /// Greatest nutation if the payload had gone on as it started, deg.
-    NutationGreatestBefore,
-    /// Angular momentum of the payload about its mass centre, inertial axes, kg·m²/s.
-    Momentum(Axis),
-    /// Angle between it and its intended direction, deg.
-    MomentumError,
-    /// Energy that the springs had stored, J.
-    SpringEnergy,
-    /// What of it went into the payload's translation, J.
-    PayloadTranslation,
-    /// Into the payload's rotation, J.
-    PayloadRotation,
-    /// Into the stage's translation, J.
-    StageTranslation,
-    /// Into the stage's rotation, J.
-    StageRotation,
-    /// Smallest distance of the outlines over the coast, m; 0 if any two of them touch. Outlines that
-    /// touch at the start count only if they touch again.
-    Clearance,
-    /// When that is, s.
-    ClearanceTime,
-    /// When outlines first touch, s.
-    RecontactTime,
-    /// When a spring let go, s, none if it never pushed; springs from 0.
-    SpringRelease(usize),
+quantities! {
+    /// Entry 11 of the payload's inertia matrix as drawn, about its mass centre, body axes.
+    PayloadI11: "payload_i11", "I₁₁", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[0]);
+    /// Entry 22 of the payload's inertia matrix as drawn, about its mass centre, body axes.
+    PayloadI22: "payload_i22", "I₂₂", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[1]);
+    /// Entry 33 of the payload's inertia matrix as drawn, about its mass centre, body axes.
+    PayloadI33: "payload_i33", "I₃₃", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[2]);
+    /// Entry 12 of the payload's inertia matrix as drawn, about its mass centre, body axes.
+    PayloadI12: "payload_i12", "I₁₂", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[3]);
+    /// Entry 13 of the payload's inertia matrix as drawn, about its mass centre, body axes.
+    PayloadI13: "payload_i13", "I₁₃", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[4]);
+    /// Entry 23 of the payload's inertia matrix as drawn, about its mass centre, body axes.
+    PayloadI23: "payload_i23", "I₂₃", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[5]);
+    /// Entry 11 of the stage's inertia matrix as drawn, about its mass centre, body axes.
+    StageI11: "stage_i11", "I₁₁", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[0]);
+    /// Entry 22 of the stage's inertia matrix as drawn, about its mass centre, body axes.
+    StageI22: "stage_i22", "I₂₂", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[1]);
+    /// Entry 33 of the stage's inertia matrix as drawn, about its mass centre, body axes.
+    StageI33: "stage_i33", "I₃₃", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[2]);
+    /// Entry 12 of the stage's inertia matrix as drawn, about its mass centre, body axes.
+    StageI12: "stage_i12", "I₁₂", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[3]);
+    /// Entry 13 of the stage's inertia matrix as drawn, about its mass centre, body axes.
+    StageI13: "stage_i13", "I₁₃", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[4]);
+    /// Entry 23 of the stage's inertia matrix as drawn, about its mass centre, body axes.
+    StageI23: "stage_i23", "I₂₃", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[5]);
+    /// From when on no spring can push: when the last one let go, or, late, came to its free length.
+    ReleaseTime: "release_time_s", "release time", "s", Parting(10), |r| Some(r.end()?.separated.release_time());
+    /// Speed at which the mass centres part.
+    RelativeSpeed: "relative_speed_m_per_s", "relative speed", "m/s", Parting(0), |r| Some(r.end()?.separated.relative_speed());
+    /// Angular velocity of the payload about its body axis 1 after the last release.
+    PayloadRate1: "payload_w1_rad_per_s", "ω₁", "rad/s", Table, |r| Some(r.end()?.separated.payload().state().angular_velocity[0]);
+    /// Angular velocity of the payload about its body axis 2 after the last release.
+    PayloadRate2: "payload_w2_rad_per_s", "ω₂", "rad/s", Table, |r| Some(r.end()?.separated.payload().state().angular_velocity[1]);
+    /// Angular velocity of the payload about its body axis 3 after the last release.
+    PayloadRate3: "payload_w3_rad_per_s", "ω₃", "rad/s", Table, |r| Some(r.end()?.separated.payload().state().angular_velocity[2]);
+    /// Magnitude of that angular velocity.
+    SpinRate: "spin_rate_rad_per_s", "spin rate", "rad/s", Behaviour(4), |r| Some(r.end()?.spin.spin_rate());
+    /// Angle between the spin axis and the nearest principal axis, Eq. 33.
+    Wobble: "wobble_deg", "wobble", "deg", Behaviour(0), |r| Some(r.end()?.spin.wobble().to_degrees());
+    /// Angle between that principal axis and the angular momentum at the last release, Eq. 34; above 90 for a backward spin; none where the payload does not turn.
+    Nutation: "nutation_deg", "nutation", "deg", Behaviour(1), |r| r.end()?.spin.nutation().map(f64::to_degrees);
+    /// Extreme of the nutation in the 1-2 plane, Eq. 35; none where the momentum circles another axis.
+    Nutation2: "nutation_2_deg", "nutation θ₂", "deg", Table, |r| r.end()?.spin.nutation_2().map(f64::to_degrees);
+    /// Extreme of the nutation in the 1-3 plane, likewise.
+    Nutation3: "nutation_3_deg", "nutation θ₃", "deg", Table, |r| r.end()?.spin.nutation_3().map(f64::to_degrees);
+    /// Angle between the spin axis and the angular momentum, Eq. 36; none where the payload does not turn.
+    Cone: "cone_deg", "cone", "deg", Behaviour(2), |r| r.end()?.spin.cone().map(f64::to_degrees);
+    /// Inertia ratio, Eq. 37.
+    InertiaRatio: "inertia_ratio", "inertia ratio", "1", Behaviour(3), |r| Some(r.end()?.spin.inertia_ratio());
+    /// Velocity of the payload's mass centre from the stage's along inertial axis 1, after the last release.
+    RelativeVelocity1: "relative_v1_m_per_s", "relative v₁", "m/s", Table, |r| Some(r.end()?.separated.relative_velocity()[0]);
+    /// Velocity of the payload's mass centre from the stage's along inertial axis 2, after the last release.
+    RelativeVelocity2: "relative_v2_m_per_s", "relative v₂", "m/s", Table, |r| Some(r.end()?.separated.relative_velocity()[1]);
+    /// Velocity of the payload's mass centre from the stage's along inertial axis 3, after the last release.
+    RelativeVelocity3: "relative_v3_m_per_s", "relative v₃", "m/s", Table, |r| Some(r.end()?.separated.relative_velocity()[2]);
+    /// Angle between that velocity and `separation_direction`; none if there is none, or the bodies do not part.
+    DirectionError: "direction_error_deg", "direction error", "deg", Parting(1), |r| r.end()?.direction_error().map(f64::to_degrees);
+    /// Angular velocity of the payload after the last release less that at the start, about its body axis 1.
+    PayloadTipOff1: "payload_tip_off_1_deg_per_s", "payload tip-off ω₁", "deg/s", Parting(2), |r| Some(r.end()?.tip_off[0][0].to_degrees());
+    /// Angular velocity of the payload after the last release less that at the start, about its body axis 2.
+    PayloadTipOff2: "payload_tip_off_2_deg_per_s", "payload tip-off ω₂", "deg/s", Parting(3), |r| Some(r.end()?.tip_off[0][1].to_degrees());
+    /// Angular velocity of the payload after the last release less that at the start, about its body axis 3.
+    PayloadTipOff3: "payload_tip_off_3_deg_per_s", "payload tip-off ω₃", "deg/s", Parting(4), |r| Some(r.end()?.tip_off[0][2].to_degrees());
+    /// Angular velocity of the stage after the last release less that at the start, about its body axis 1.
+    StageTipOff1: "stage_tip_off_1_deg_per_s", "stage tip-off ω₁", "deg/s", Parting(5), |r| Some(r.end()?.tip_off[1][0].to_degrees());
+    /// Angular velocity of the stage after the last release less that at the start, about its body axis 2.
+    StageTipOff2: "stage_tip_off_2_deg_per_s", "stage tip-off ω₂", "deg/s", Parting(6), |r| Some(r.end()?.tip_off[1][1].to_degrees());
+    /// Angular velocity of the stage after the last release less that at the start, about its body axis 3.
+    StageTipOff3: "stage_tip_off_3_deg_per_s", "stage tip-off ω₃", "deg/s", Parting(7), |r| Some(r.end()?.tip_off[1][2].to_degrees());
+    /// Least nutation of the free motion after the last release, by energy and momentum.
+    NutationLeast: "nutation_least_deg", "least nutation", "deg", Table, |r| Some(r.end()?.spin.nutation_bounds()?[0].to_degrees());
+    /// Greatest nutation of the free motion after the last release, likewise.
+    NutationGreatest: "nutation_greatest_deg", "greatest nutation", "deg", Parting(8), |r| Some(r.end()?.spin.nutation_bounds()?[1].to_degrees());
+    /// Nutation at the start; none at rest.
+    NutationBefore: "nutation_before_deg", "nutation before", "deg", Table, |r| r.end()?.spin_before.nutation().map(f64::to_degrees);
+    /// Least nutation if the payload had gone on as it started.
+    NutationLeastBefore: "nutation_least_before_deg", "least nutation before", "deg", Table, |r| Some(r.end()?.spin_before.nutation_bounds()?[0].to_degrees());
+    /// Greatest nutation if the payload had gone on as it started.
+    NutationGreatestBefore: "nutation_greatest_before_deg", "greatest nutation before", "deg", Table, |r| Some(r.end()?.spin_before.nutation_bounds()?[1].to_degrees());
+    /// Angular momentum of the payload about its mass centre along inertial axis 1, after the last release.
+    Momentum1: "payload_h1_kg_m2_per_s", "momentum h₁", "kg·m²/s", Table, |r| Some(r.end()?.momentum[0]);
+    /// Angular momentum of the payload about its mass centre along inertial axis 2, after the last release.
+    Momentum2: "payload_h2_kg_m2_per_s", "momentum h₂", "kg·m²/s", Table, |r| Some(r.end()?.momentum[1]);
+    /// Angular momentum of the payload about its mass centre along inertial axis 3, after the last release.
+    Momentum3: "payload_h3_kg_m2_per_s", "momentum h₃", "kg·m²/s", Table, |r| Some(r.end()?.momentum[2]);
+    /// Angle between that momentum and `momentum_direction`; none where the payload does not turn.
+    MomentumError: "momentum_error_deg", "momentum error", "deg", Parting(9), |r| r.end()?.momentum_error().map(f64::to_degrees);
+    /// Energy that the springs had stored at the start.
+    SpringEnergy: "spring_energy_j", "spring energy", "J", Table, |r| Some(r.end()?.energy.stored_j());
+    /// What of it went into the payload's translation, relative to the common mass centre.
+    PayloadTranslation: "payload_translation_j", "payload translation", "J", Table, |r| Some(r.end()?.energy.payload_translation_j());
+    /// What of it went into the payload's rotation.
+    PayloadRotation: "payload_rotation_j", "payload rotation", "J", Table, |r| Some(r.end()?.energy.payload_rotation_j());
+    /// What of it went into the stage's translation, relative to the common mass centre.
+    StageTranslation: "stage_translation_j", "stage translation", "J", Table, |r| Some(r.end()?.energy.stage_translation_j());
+    /// What of it went into the stage's rotation.
+    StageRotation: "stage_rotation_j", "stage rotation", "J", Table, |r| Some(r.end()?.energy.stage_rotation_j());
+    /// Smallest distance of the outlines over the coast after the last release, 0 if any two touch; none without outlines, and where `clearance_note` says so.
+    Clearance: "clearance_m", "clearance", "m", Parting(11), |r| Some(r.end()?.closest()?.distance_m());
+    /// When that is, at the first contact.
+    ClearanceTime: "clearance_time_s", "time of clearance", "s", Table, |r| Some(r.end()?.closest()?.time_s());
+    /// When outlines first touch, those that touch at the last release after having parted; none if they do not.
+    RecontactTime: "recontact_s", "recontact", "s", Table, |r| r.end()?.clearance()?.contact_s();
 }
 
 impl Quantity {
-    /// All but those of single springs, in the order of the run table.
-    pub const ALL: [Self; 51] = {
-        use Axis::{One, Three, Two};
-        [
-            Self::Payload(Entry::I11),
-            Self::Payload(Entry::I22),
-            Self::Payload(Entry::I33),
-            Self::Payload(Entry::I12),
-            Self::Payload(Entry::I13),
-            Self::Payload(Entry::I23),
-            Self::Stage(Entry::I11),
-            Self::Stage(Entry::I22),
-            Self::Stage(Entry::I33),
-            Self::Stage(Entry::I12),
-            Self::Stage(Entry::I13),
-            Self::Stage(Entry::I23),
-            Self::ReleaseTime,
-            Self::RelativeSpeed,
-            Self::PayloadRate(One),
-            Self::PayloadRate(Two),
-            Self::PayloadRate(Three),
-            Self::SpinRate,
-            Self::Wobble,
-            Self::Nutation,
-            Self::Nutation2,
-            Self::Nutation3,
-            Self::Cone,
-            Self::InertiaRatio,
-            Self::RelativeVelocity(One),
-            Self::RelativeVelocity(Two),
-            Self::RelativeVelocity(Three),
-            Self::DirectionError,
-            Self::PayloadTipOff(One),
-            Self::PayloadTipOff(Two),
-            Self::PayloadTipOff(Three),
-            Self::StageTipOff(One),
-            Self::StageTipOff(Two),
-            Self::StageTipOff(Three),
-            Self::NutationLeast,
-            Self::NutationGreatest,
-            Self::NutationBefore,
-            Self::NutationLeastBefore,
-            Self::NutationGreatestBefore,
-            Self::Momentum(One),
-            Self::Momentum(Two),
-            Self::Momentum(Three),
-            Self::MomentumError,
-            Self::SpringEnergy,
-            Self::PayloadTranslation,
-            Self::PayloadRotation,
-            Self::StageTranslation,
-            Self::StageRotation,
-            Self::Clearance,
-            Self::ClearanceTime,
-            Self::RecontactTime,
-        ]
-    };
+    /// Entries of the payload's inertia matrix.
+    pub const PAYLOAD_INERTIA: [Self; 6] = [
+        Self::PayloadI11,
+        Self::PayloadI22,
+        Self::PayloadI33,
+        Self::PayloadI12,
+        Self::PayloadI13,
+        Self::PayloadI23,
+    ];
+    /// Entries of the stage's inertia matrix.
+    pub const STAGE_INERTIA: [Self; 6] = [
+        Self::StageI11,
+        Self::StageI22,
+        Self::StageI33,
+        Self::StageI12,
+        Self::StageI13,
+        Self::StageI23,
+    ];
+    /// Angular velocity of the payload after the last release.
+    pub const PAYLOAD_RATE: [Self; 3] =
+        [Self::PayloadRate1, Self::PayloadRate2, Self::PayloadRate3];
+    /// Velocity of the payload's mass centre from the stage's.
+    pub const RELATIVE_VELOCITY: [Self; 3] =
+        [Self::RelativeVelocity1, Self::RelativeVelocity2, Self::RelativeVelocity3];
+    /// Change of the payload's angular velocity.
+    pub const PAYLOAD_TIP_OFF: [Self; 3] =
+        [Self::PayloadTipOff1, Self::PayloadTipOff2, Self::PayloadTipOff3];
+    /// Change of the stage's angular velocity.
+    pub const STAGE_TIP_OFF: [Self; 3] =
+        [Self::StageTipOff1, Self::StageTipOff2, Self::StageTipOff3];
+    /// Angular momentum of the payload.
+    pub const MOMENTUM: [Self; 3] = [Self::Momentum1, Self::Momentum2, Self::Momentum3];
 
-    /// How many of [`ALL`](Self::ALL) come before `realizable` in the run table; the rest come after the
-    /// attitudes.
-    pub(crate) const FIRST: usize = 24;
+    /// An entry of the inertia matrix of a body.
+    pub(crate) fn entry(body: Body, entry: Entry) -> Self {
+        let entries = match body {
+            Body::Payload => Self::PAYLOAD_INERTIA,
+            Body::Stage => Self::STAGE_INERTIA,
+        };
+        entries[entry as usize]
+    }
+
+    /// The last one before `realizable` in the run table; the rest come after the attitudes.
+    pub(crate) const LAST_BEFORE_REALIZABLE: Self = Self::InertiaRatio;
 
     /// All of them, of a separation by so many springs.
     pub fn of(springs: usize) -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().chain((0..springs).map(Self::SpringRelease))
+        Self::ALL.iter().copied().chain((0..springs).map(Self::SpringRelease))
     }
 
     /// What the paper's results are about.
-    pub const BEHAVIOUR: [Self; 5] =
-        [Self::Wobble, Self::Nutation, Self::Cone, Self::InertiaRatio, Self::SpinRate];
+    #[must_use]
+    pub fn behaviour() -> Vec<Self> {
+        Self::shown(|shown| matches!(shown, Shown::Behaviour(_)))
+    }
 
     /// How the bodies part: what a separation analyst asks for.
-    pub const PARTING: [Self; 12] = [
-        Self::RelativeSpeed,
-        Self::DirectionError,
-        Self::PayloadTipOff(Axis::One),
-        Self::PayloadTipOff(Axis::Two),
-        Self::PayloadTipOff(Axis::Three),
-        Self::StageTipOff(Axis::One),
-        Self::StageTipOff(Axis::Two),
-        Self::StageTipOff(Axis::Three),
-        Self::NutationGreatest,
-        Self::MomentumError,
-        Self::ReleaseTime,
-        Self::Clearance,
-    ];
+    #[must_use]
+    pub fn parting() -> Vec<Self> {
+        Self::shown(|shown| matches!(shown, Shown::Parting(_)))
+    }
+
+    fn shown(here: impl Fn(Shown) -> bool) -> Vec<Self> {
+        let shown = |quantity: &Self| quantity.declaration().shown;
+        let mut found: Vec<Self> =
+            Self::ALL.iter().copied().filter(|quantity| here(shown(quantity))).collect();
+        found.sort_by_key(shown);
+        found
+    }
+
+    /// Its value in a run; none if the run failed or it has no meaning for this run.
+    pub(crate) fn value(self, run: &Run<'_>) -> Option<f64> {
+        match self {
+            Self::SpringRelease(spring) => run.end()?.separated.release_times().nth(spring)?,
+            other => (other.declaration().of)(run),
+        }
+    }
 
     /// Name of the column in the run table, with its unit.
     #[must_use]
     pub fn column(self) -> Cow<'static, str> {
-        const PAYLOAD: [&str; 6] = [
-            "payload_i11",
-            "payload_i22",
-            "payload_i33",
-            "payload_i12",
-            "payload_i13",
-            "payload_i23",
-        ];
-        const STAGE: [&str; 6] =
-            ["stage_i11", "stage_i22", "stage_i33", "stage_i12", "stage_i13", "stage_i23"];
-        const RATE: [&str; 3] =
-            ["payload_w1_rad_per_s", "payload_w2_rad_per_s", "payload_w3_rad_per_s"];
-        const VELOCITY: [&str; 3] =
-            ["relative_v1_m_per_s", "relative_v2_m_per_s", "relative_v3_m_per_s"];
-        const PAYLOAD_TIP_OFF: [&str; 3] = [
-            "payload_tip_off_1_deg_per_s",
-            "payload_tip_off_2_deg_per_s",
-            "payload_tip_off_3_deg_per_s",
-        ];
-        const STAGE_TIP_OFF: [&str; 3] =
-            ["stage_tip_off_1_deg_per_s", "stage_tip_off_2_deg_per_s", "stage_tip_off_3_deg_per_s"];
-        const MOMENTUM: [&str; 3] =
-            ["payload_h1_kg_m2_per_s", "payload_h2_kg_m2_per_s", "payload_h3_kg_m2_per_s"];
-        let plain = match self {
-            Self::Payload(entry) => PAYLOAD[entry as usize],
-            Self::Stage(entry) => STAGE[entry as usize],
-            Self::ReleaseTime => "release_time_s",
-            Self::RelativeSpeed => "relative_speed_m_per_s",
-            Self::PayloadRate(axis) => RATE[axis as usize],
-            Self::SpinRate => "spin_rate_rad_per_s",
-            Self::Wobble => "wobble_deg",
-            Self::Nutation => "nutation_deg",
-            Self::Nutation2 => "nutation_2_deg",
-            Self::Nutation3 => "nutation_3_deg",
-            Self::Cone => "cone_deg",
-            Self::InertiaRatio => "inertia_ratio",
-            Self::RelativeVelocity(axis) => VELOCITY[axis as usize],
-            Self::DirectionError => "direction_error_deg",
-            Self::PayloadTipOff(axis) => PAYLOAD_TIP_OFF[axis as usize],
-            Self::StageTipOff(axis) => STAGE_TIP_OFF[axis as usize],
-            Self::NutationLeast => "nutation_least_deg",
-            Self::NutationGreatest => "nutation_greatest_deg",
-            Self::NutationBefore => "nutation_before_deg",
-            Self::NutationLeastBefore => "nutation_least_before_deg",
-            Self::NutationGreatestBefore => "nutation_greatest_before_deg",
-            Self::Momentum(axis) => MOMENTUM[axis as usize],
-            Self::MomentumError => "momentum_error_deg",
-            Self::SpringEnergy => "spring_energy_j",
-            Self::PayloadTranslation => "payload_translation_j",
-            Self::PayloadRotation => "payload_rotation_j",
-            Self::StageTranslation => "stage_translation_j",
-            Self::StageRotation => "stage_rotation_j",
-            Self::Clearance => "clearance_m",
-            Self::ClearanceTime => "clearance_time_s",
-            Self::RecontactTime => "recontact_s",
-            Self::SpringRelease(spring) => {
-                return format!("spring_{}_release_s", spring + 1).into();
-            }
-        };
-        plain.into()
+        self.numbered(self.declaration().column)
     }
 
     /// What it is called in tables and figures.
     #[must_use]
     pub fn label(self) -> Cow<'static, str> {
-        const ENTRY: [&str; 6] = ["I₁₁", "I₂₂", "I₃₃", "I₁₂", "I₁₃", "I₂₃"];
-        const RATE: [&str; 3] = ["ω₁", "ω₂", "ω₃"];
-        const VELOCITY: [&str; 3] = ["relative v₁", "relative v₂", "relative v₃"];
-        const PAYLOAD_TIP_OFF: [&str; 3] =
-            ["payload tip-off ω₁", "payload tip-off ω₂", "payload tip-off ω₃"];
-        const STAGE_TIP_OFF: [&str; 3] =
-            ["stage tip-off ω₁", "stage tip-off ω₂", "stage tip-off ω₃"];
-        const MOMENTUM: [&str; 3] = ["momentum h₁", "momentum h₂", "momentum h₃"];
-        let plain = match self {
-            Self::Payload(entry) | Self::Stage(entry) => ENTRY[entry as usize],
-            Self::ReleaseTime => "release time",
-            Self::RelativeSpeed => "relative speed",
-            Self::PayloadRate(axis) => RATE[axis as usize],
-            Self::SpinRate => "spin rate",
-            Self::Wobble => "wobble",
-            Self::Nutation => "nutation",
-            Self::Nutation2 => "nutation θ₂",
-            Self::Nutation3 => "nutation θ₃",
-            Self::Cone => "cone",
-            Self::InertiaRatio => "inertia ratio",
-            Self::RelativeVelocity(axis) => VELOCITY[axis as usize],
-            Self::DirectionError => "direction error",
-            Self::PayloadTipOff(axis) => PAYLOAD_TIP_OFF[axis as usize],
-            Self::StageTipOff(axis) => STAGE_TIP_OFF[axis as usize],
-            Self::NutationLeast => "least nutation",
-            Self::NutationGreatest => "greatest nutation",
-            Self::NutationBefore => "nutation before",
-            Self::NutationLeastBefore => "least nutation before",
-            Self::NutationGreatestBefore => "greatest nutation before",
-            Self::Momentum(axis) => MOMENTUM[axis as usize],
-            Self::MomentumError => "momentum error",
-            Self::SpringEnergy => "spring energy",
-            Self::PayloadTranslation => "payload translation",
-            Self::PayloadRotation => "payload rotation",
-            Self::StageTranslation => "stage translation",
-            Self::StageRotation => "stage rotation",
-            Self::Clearance => "clearance",
-            Self::ClearanceTime => "time of clearance",
-            Self::RecontactTime => "recontact",
-            Self::SpringRelease(spring) => {
-                return format!("release of spring {}", spring + 1).into();
-            }
-        };
-        plain.into()
+        self.numbered(self.declaration().label)
     }
 
     /// Its unit.
     #[must_use]
     pub fn unit(self) -> &'static str {
+        self.declaration().unit
+    }
+
+    /// What it means, in a sentence.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        self.declaration().meaning.trim_start()
+    }
+
+    fn numbered(self, name: &'static str) -> Cow<'static, str> {
         match self {
-            Self::Payload(_) | Self::Stage(_) => "kg·m²",
-            Self::ReleaseTime
-            | Self::SpringRelease(_)
-            | Self::ClearanceTime
-            | Self::RecontactTime => "s",
-            Self::Clearance => "m",
-            Self::RelativeSpeed | Self::RelativeVelocity(_) => "m/s",
-            Self::PayloadRate(_) | Self::SpinRate => "rad/s",
-            Self::PayloadTipOff(_) | Self::StageTipOff(_) => "deg/s",
-            Self::Momentum(_) => "kg·m²/s",
-            Self::SpringEnergy
-            | Self::PayloadTranslation
-            | Self::PayloadRotation
-            | Self::StageTranslation
-            | Self::StageRotation => "J",
-            Self::InertiaRatio => "1",
-            _ => "deg",
+            Self::SpringRelease(spring) => name.replace("{}", &(spring + 1).to_string()).into(),
+            _ => name.into(),
         }
     }
 }

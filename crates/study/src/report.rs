@@ -5,16 +5,18 @@ use maud::{Markup, PreEscaped, html};
 use nalgebra::{Unit, Vector3};
 
 use crate::{
-    claims::{CONSIDERABLE, Claim, IDENTICAL, LESS, ONE_SIDED, Verdict},
+    body::{Body, Entry},
+    claim::{Claim, Verdict},
+    claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED},
+    figure::Figure,
     format::{interval, optional, significant},
     page::page,
-    plates::Plate,
-    quantity::{Body, Entry, Quantity},
+    quantity::Quantity,
     scenario::{Comparison, Scenario},
     summary::{ClearanceSummary, ComparisonSummary, ModelSummary, Summary},
 };
 
-pub(crate) fn html(scenario: &Scenario, summary: &Summary, plates: &[Plate]) -> String {
+pub(crate) fn html(scenario: &Scenario, summary: &Summary, figures: &[Figure]) -> String {
     let content = html! {
         (head(summary))
         (results(summary))
@@ -25,7 +27,7 @@ pub(crate) fn html(scenario: &Scenario, summary: &Summary, plates: &[Plate]) -> 
         (far_lobe(summary))
         (dispersed(summary))
         (summary.every_model.markup())
-        (figures(plates))
+        (all_figures(figures))
         (inputs(scenario, summary))
     };
     page(&format!("gyradius study: {}", summary.scenario), "", &content)
@@ -51,10 +53,10 @@ fn results(summary: &Summary) -> Markup {
                 tr {
                     th rowspan="2" { "model" }
                     th rowspan="2" { "unrealizable draws" }
-                    @for q in Quantity::BEHAVIOUR { th.group colspan="3" { (q.label()) (unit(q)) } }
+                    @for q in Quantity::behaviour() { th.group colspan="3" { (q.label()) (unit(q)) } }
                 }
                 tr {
-                    @for _ in Quantity::BEHAVIOUR { th { "mean" } th { "sd" } th { "p95" } }
+                    @for _ in Quantity::behaviour() { th { "mean" } th { "sd" } th { "p95" } }
                 }
             }
             tbody {
@@ -62,7 +64,7 @@ fn results(summary: &Summary) -> Markup {
                     tr {
                         th scope="row" { (model.name) }
                         td { (model.unrealizable.percent()) }
-                        @for q in Quantity::BEHAVIOUR {
+                        @for q in Quantity::behaviour() {
                             @let s = model.quantity(q);
                             td.group { (optional(s.and_then(|s| s.mean), 4)) }
                             td title=[tip(s.and_then(|s| s.deviation_interval), 4)] {
@@ -77,7 +79,7 @@ fn results(summary: &Summary) -> Markup {
                 tr.nominal {
                     th scope="row" { "nominal bodies" }
                     td { "–" }
-                    @for q in Quantity::BEHAVIOUR {
+                    @for q in Quantity::behaviour() {
                         td.group { (optional(summary.nominal_value(q), 4)) }
                         td {} td {}
                     }
@@ -107,7 +109,7 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
     };
     // What no run has is not asked.
     let has = |q: &Quantity| summary.models.iter().any(|m| m.quantity(*q).is_some_and(|q| q.n > 0));
-    let parting = Quantity::PARTING.into_iter().filter(has);
+    let parting = Quantity::parting().into_iter().filter(has);
     html! {
         h2 { "How they part" }
         p {
@@ -289,14 +291,14 @@ fn ratios(summary: &Summary) -> Markup {
                 thead {
                     tr {
                         th { "comparison" }
-                        @for q in Quantity::BEHAVIOUR { th { (q.label()) } }
+                        @for q in Quantity::behaviour() { th { (q.label()) } }
                     }
                 }
                 tbody {
                     @for c in &summary.comparisons {
                         tr {
                             th scope="row" { (c.title) br; small { (c.naive) " over " (c.physical) } }
-                            @for q in Quantity::BEHAVIOUR { td { (ratio(c, q)) } }
+                            @for q in Quantity::behaviour() { td { (ratio(c, q)) } }
                         }
                     }
                 }
@@ -347,7 +349,7 @@ fn deviation_table(
         div.wide { table {
             thead { tr {
                 th { "body" } th {}
-                @for entry in Entry::ALL { th { (Quantity::Payload(entry).label()) } }
+                @for entry in Entry::ALL { th { (Quantity::entry(Body::Payload, entry).label()) } }
             } }
             tbody {
                 @for (body, given) in Body::BOTH.into_iter().zip(given) {
@@ -355,7 +357,7 @@ fn deviation_table(
                         th rowspan="3" scope="rowgroup" { (body.name()) }
                         th scope="row" { (physical.name) }
                         @for entry in Entry::ALL {
-                            @let q = physical.quantity(body.entry(entry));
+                            @let q = physical.quantity(Quantity::entry(body, entry));
                             td {
                                 (optional(q.and_then(|q| q.deviation), 4)) br;
                                 small { (interval(q.and_then(|q| q.deviation_interval), 4)) }
@@ -369,7 +371,7 @@ fn deviation_table(
                     tr {
                         th scope="row" { "given over found" }
                         @for (entry, value) in Entry::ALL.into_iter().zip(given) {
-                            @let found = physical.quantity(body.entry(entry)).and_then(|q| q.deviation);
+                            @let found = physical.quantity(Quantity::entry(body, entry)).and_then(|q| q.deviation);
                             td { (optional(found.filter(|f| *f > 0.0).map(|f| value / f), 3)) }
                         }
                     }
@@ -440,14 +442,14 @@ fn dispersed(summary: &Summary) -> Markup {
     }
 }
 
-fn figures(plates: &[Plate]) -> Markup {
+fn all_figures(figures: &[Figure]) -> Markup {
     html! {
         h2 { "Figures" }
-        @for plate in plates {
-            figure id=(plate.name) {
+        @for figure in figures {
+            figure id=(figure.name) {
                 // Made by this program, every text in it escaped.
-                (PreEscaped(plate.svg.as_str()))
-                figcaption { (plate.caption) ". " code { "figures/" (plate.name) ".svg" } }
+                (PreEscaped(figure.svg.as_str()))
+                figcaption { (figure.caption) ". " code { "figures/" (figure.name) ".svg" } }
             }
         }
     }

@@ -4,7 +4,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::{
     model::Model,
-    row::Row,
     scenario::{Scenario, ScenarioError},
     table::RunTable,
 };
@@ -27,13 +26,13 @@ pub(crate) fn run(
     progress: Progress<'_>,
 ) -> Vec<RunTable> {
     let done = AtomicU64::new(0);
-    let springs = scenario.separation().springs().len();
-    let rows = |model: &Model, batch: &mut Batch, first: u64| {
-        let rows = model.run(scenario, first..(first + TOGETHER).min(scenario.runs()), batch);
-        for _ in &rows {
+    let part = |model: &Model, batch: &mut Batch, first: u64| {
+        let runs = first..(first + TOGETHER).min(scenario.runs());
+        let part = model.run(scenario, runs.clone(), batch);
+        for _ in runs {
             progress(done.fetch_add(1, Ordering::Relaxed) + 1);
         }
-        rows
+        part
     };
     threads.install(|| {
         models
@@ -41,11 +40,14 @@ pub(crate) fn run(
             .map(|model| {
                 let groups = (0..scenario.runs().div_ceil(TOGETHER)).into_par_iter();
                 let batch = || Batch::new(*scenario.settings());
-                let rows: Vec<Vec<Row>> = groups
-                    .map_init(batch, |batch, group| rows(model, batch, group * TOGETHER))
+                let parts: Vec<RunTable> = groups
+                    .map_init(batch, |batch, group| part(model, batch, group * TOGETHER))
                     .collect();
-                RunTable::new(model.name(), springs, rows.into_iter().flatten().collect())
-                    .with_drawn(scenario.dispersions().columns())
+                let mut whole = model.table(scenario, 0);
+                for part in parts {
+                    whole.append(part);
+                }
+                whole
             })
             .collect()
     })

@@ -3,9 +3,10 @@ use parquet::errors::ParquetError;
 use std::path::{Path, PathBuf};
 
 use crate::{
-    Forecast, Progress, RunTable, Scenario, ScenarioError, Summary,
+    Forecast, Progress, RunTable, Scenario, ScenarioError, Summary, claims, figure,
+    figures_of_study,
     folder::{self, Contents, Folder, FolderError},
-    plates, report, runner,
+    report, runner,
 };
 
 /// Most threads that may be asked for.
@@ -108,7 +109,9 @@ impl Study {
         say(Forecast::of(scenario, &models, threads.current_num_threads()));
         let tables = runner::run(scenario, &models, &threads, progress);
         let summary = threads.install(|| Summary::new(scenario, &models, &tables))?;
-        let figures = plates::of_study(scenario, &summary, &tables);
+        let claims = claims::judge(scenario, &summary, &tables);
+        let summary = summary.with_claims(claims);
+        let figures = figures_of_study::of_study(scenario, &summary, &tables);
 
         folder.write("scenario.toml", &scenario.to_toml())?;
         for table in &tables {
@@ -120,7 +123,7 @@ impl Study {
         }
         folder.write("summary.json", &(serde_json::to_string_pretty(&summary)? + "\n"))?;
         for figure in &figures {
-            folder.write(&plates::file_of(&figure.name), &figure.svg)?;
+            folder.write(&figure::file_of(&figure.name), &figure.svg)?;
         }
         folder.write("report.html", &report::html(scenario, &summary, &figures))?;
         Ok(Self { folder: folder.publish()?, tables, summary })
@@ -158,7 +161,7 @@ pub fn restore_studies(path: &Path) -> Result<(), StudyError> {
 /// What a study writes, and the figures that it may write.
 fn contents(scenario: &Scenario) -> Contents<'_> {
     let tables = scenario.model_names().map(|model| format!("runs/{model}/runs.parquet"));
-    let figures = plates::names(scenario).into_iter().map(|name| plates::file_of(&name));
+    let figures = figures_of_study::names(scenario).into_iter().map(|name| figure::file_of(&name));
     let others = ["scenario.toml", "summary.json", "report.html", "figures/"].map(str::to_owned);
     let same = |text: &str| text == scenario.to_toml();
     Contents::new("study", "scenario.toml", tables.chain(figures).chain(others), same)

@@ -3,21 +3,23 @@
 use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_dispersion::ModelKind;
 use gyradius_statistics::{
-    Confidence, Deviation, Interval, Moments, Proportion, SortedSample, StatisticsError,
+    Confidence, Deviation, Interval, Moments, SortedSample, StatisticsError,
 };
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 use crate::{
-    claims::{self, Claim},
+    body::Body,
+    claim::Claim,
+    column::Column,
     compare::Section,
-    format::{below_hundred, significant},
-    model::{Case, Model},
-    quantity::{Body, Quantity},
-    row::{ClearanceNote, Row},
+    model::Model,
+    quantity::Quantity,
+    run::{Case, ClearanceNote},
     scenario::{Dispersed, Scenario},
-    table::RunTable,
+    share::{Share, counted},
+    table::{Row, RunTable},
 };
 
 /// Every number that the report shows.
@@ -31,12 +33,23 @@ pub struct Summary {
     pub(crate) runs_per_model: u64,
     /// Of every interval.
     pub(crate) confidence: f64,
+    /// Of the run tables.
+    pub(crate) columns: Vec<ColumnSummary>,
     pub(crate) nominal: Vec<Nominal>,
     pub(crate) models: Vec<ModelSummary>,
     pub(crate) comparisons: Vec<ComparisonSummary>,
     pub(crate) claims: Vec<Claim>,
     /// Every model of inertia with the moments of the scenario's bodies.
     pub(crate) every_model: Section,
+}
+
+/// A column of the run tables.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct ColumnSummary {
+    pub(crate) column: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) unit: Option<&'static str>,
+    pub(crate) meaning: String,
 }
 
 /// A quantity of the run without any dispersion.
@@ -122,15 +135,6 @@ pub(crate) struct Order {
     pub(crate) share: Share,
 }
 
-/// A share of the runs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Share {
-    pub(crate) count: u64,
-    pub(crate) of: u64,
-    pub(crate) share: f64,
-    pub(crate) interval: Interval,
-}
-
 /// The distribution of one quantity under one model. What a sample cannot tell is null.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct QuantitySummary {
@@ -207,21 +211,25 @@ impl Summary {
                 }
             })
             .collect();
-        let mut summary = Self {
+        Ok(Self {
             gyradius_version: env!("CARGO_PKG_VERSION"),
             scenario: scenario.name().to_owned(),
             fingerprint: scenario.fingerprint(),
             seed: scenario.seed(),
             runs_per_model: scenario.runs(),
             confidence: confidence.level(),
+            columns: columns(tables),
             nominal,
             models,
             comparisons,
             claims: Vec::new(),
             every_model: Section::new(scenario)?,
-        };
-        summary.claims = claims::judge(scenario, &summary, tables);
-        Ok(summary)
+        })
+    }
+
+    /// The same with the claims of the scenario's source, judged by it.
+    pub(crate) fn with_claims(self, claims: Vec<Claim>) -> Self {
+        Self { claims, ..self }
     }
 
     pub(crate) fn model(&self, name: &str) -> Option<&ModelSummary> {
@@ -233,14 +241,25 @@ impl Summary {
     }
 }
 
+/// The columns, which are the same of every model.
+fn columns(tables: &[RunTable]) -> Vec<ColumnSummary> {
+    let columns = tables.first().into_iter().flat_map(RunTable::columns);
+    let summary = |column: Column<'_>| ColumnSummary {
+        column: column.name().into_owned(),
+        unit: column.unit(),
+        meaning: column.meaning().to_owned(),
+    };
+    columns.map(summary).collect()
+}
+
 /// The run of the nominal bodies.
 fn nominal(scenario: &Scenario) -> Vec<Nominal> {
     let case = Case::nominal(scenario);
     let result = scenario.separation().run(scenario.settings());
-    let row = case.row(scenario, Some(result));
+    let run = case.ended(scenario, Some(result));
     Quantity::of(scenario.separation().springs().len())
         .filter_map(|quantity| {
-            let value = row.value(quantity)?;
+            let value = quantity.value(&run)?;
             Some(Nominal { quantity, unit: quantity.unit(), value })
         })
         .collect()
@@ -269,20 +288,12 @@ impl ModelSummary {
         table: &RunTable,
         confidence: Confidence,
     ) -> Result<Self, StatisticsError> {
-        let rows = table.rows();
-        let share = |count: usize| Share::new(count as u64, rows.len() as u64, confidence);
-        let mut failures: Vec<(String, u64)> = Vec::new();
-        for failure in rows.iter().filter_map(|r| r.outcome.as_ref().err()) {
-            let kind = failure.kind();
-            match failures.iter_mut().find(|(other, _)| *other == kind) {
-                Some((_, count)) => *count += 1,
-                None => failures.push((kind.into_owned(), 1)),
-            }
-        }
-        let draws_axes = rows.iter().any(|r| r.payload_axes.is_some());
+        let share = |count: usize| Share::new(count as u64, table.len() as u64, confidence);
+        let failures = counted(table.failures().map(|(_, failure)| failure.kind().into_owned()));
+        let draws_axes = table.rows().any(|r| r.axes(Body::Payload).is_some());
         let far = |body: Body, law: &RadiallyConstrainedGaussian| {
             let far = |q: &UnitQuaternion<f64>| !law.in_mean_half(q);
-            share(rows.iter().filter_map(|r| r.axes(body)).filter(far).count())
+            share(table.rows().filter_map(|r| r.axes(body)).filter(far).count())
         };
         let laws = (scenario.payload().gaussian_axes(), scenario.stage().gaussian_axes());
         let far_half = match laws {
@@ -298,7 +309,7 @@ impl ModelSummary {
             acceptance: model.acceptance(),
             failed: failures.iter().map(|f| f.1).sum(),
             failures,
-            unrealizable: share(rows.iter().filter(|r| !r.realizable).count())?,
+            unrealizable: share(table.rows().filter(|r| !r.realizable()).count())?,
             far_half,
             given_deviations_kg_m2: model.given_deviations(),
             releases: Releases::new(table, scenario.outlines().is_some(), confidence)?,
@@ -324,18 +335,17 @@ impl Releases {
         confidence: Confidence,
     ) -> Result<Self, StatisticsError> {
         let mut counts = BTreeMap::<&str, u64>::new();
-        for order in table.rows().iter().filter_map(Row::release_order) {
+        for order in table.rows().filter_map(|row| row.release_order()) {
             *counts.entry(order).or_default() += 1;
         }
         let of = counts.values().sum();
-        let pressed = table.rows().iter().filter(|r| !r.recompressed().is_empty()).count();
+        let pressed = table.rows().filter(|r| !r.recompressed().is_empty()).count();
         let recompressed =
             if of == 0 { None } else { Some(Share::new(pressed as u64, of, confidence)?) };
         let touching = table.values(Quantity::RecontactTime).len() as u64;
         let recontact =
             if of == 0 || !watched { None } else { Some(Share::new(touching, of, confidence)?) };
-        let clearance =
-            if watched { ClearanceSummary::new(table.rows(), confidence) } else { None };
+        let clearance = if watched { ClearanceSummary::new(table, confidence) } else { None };
         let mut counts: Vec<_> = counts.into_iter().collect();
         // Stable: equal counts stay in the order of their names.
         counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
@@ -352,16 +362,11 @@ impl Releases {
 }
 
 impl ClearanceSummary {
-    fn new(rows: &[Row], confidence: Confidence) -> Option<Self> {
-        let of = |row: &Row| Some((row.value(Quantity::Clearance)?, row.run()));
-        let found: Vec<(f64, u64)> = rows.iter().filter_map(of).collect();
-        let mut notes: Vec<(&'static str, u64)> = Vec::new();
-        for kind in rows.iter().filter_map(Row::clearance_note).map(ClearanceNote::kind) {
-            match notes.iter_mut().find(|(other, _)| *other == kind) {
-                Some((_, count)) => *count += 1,
-                None => notes.push((kind, 1)),
-            }
-        }
+    fn new(table: &RunTable, confidence: Confidence) -> Option<Self> {
+        let of = |row: Row<'_>| Some((row.value(Quantity::Clearance)?, row.run()));
+        let found: Vec<(f64, u64)> = table.rows().filter_map(of).collect();
+        let notes = table.rows().filter_map(|row| row.clearance_note());
+        let notes = counted(notes.map(ClearanceNote::kind));
         if found.is_empty() && notes.is_empty() {
             return None;
         }
@@ -379,32 +384,6 @@ impl ClearanceSummary {
             p05_m: quantile(0.05),
             notes,
         })
-    }
-}
-
-impl Share {
-    pub(crate) fn new(
-        count: u64,
-        of: u64,
-        confidence: Confidence,
-    ) -> Result<Self, StatisticsError> {
-        let proportion = Proportion::new(count, of)?;
-        let interval = proportion.interval(confidence);
-        Ok(Self { count, of, share: proportion.value(), interval })
-    }
-
-    /// The share in percent with its interval; of none or all the bound on the other side.
-    pub(crate) fn percent(&self) -> String {
-        let [lower, upper] = [self.interval.lower(), self.interval.upper()].map(|x| 100.0 * x);
-        if self.count == 0 {
-            return format!("none (under {} %)", significant(upper, 2));
-        }
-        if self.count == self.of {
-            return format!("all (over {} %)", below_hundred(lower));
-        }
-        // Digits that tell shares near all from all.
-        let number = |x: f64| if x > 99.0 { below_hundred(x) } else { significant(x, 3) };
-        format!("{} % [{}, {}]", number(100.0 * self.share), number(lower), number(upper))
     }
 }
 
@@ -463,41 +442,5 @@ impl Ratio {
 impl ComparisonSummary {
     pub(crate) fn ratio(&self, quantity: Quantity) -> Option<&Ratio> {
         self.ratios.iter().find(|r| r.quantity == quantity)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Numbers in a text, in order.
-    fn numbers(text: &str) -> Vec<f64> {
-        let parts = text.split(|c: char| !(c.is_ascii_digit() || ".e-".contains(c)));
-        parts.filter_map(|part| part.parse().ok()).collect()
-    }
-
-    /// Every count of samples of many sizes: none and all are bounds, and no interval is of zeros or of
-    /// hundreds, nor without its share.
-    #[test]
-    fn shares_of_none_and_of_all_are_bounds() {
-        let share = |count, of| Share::new(count, of, Confidence::default()).unwrap();
-        assert_eq!(share(0, 100_000).percent(), "none (under 0.0037 %)");
-        assert_eq!(share(100_000, 100_000).percent(), "all (over 99.9963 %)");
-        for of in [1_u64, 2, 3, 10, 100, 3000, 100_000, 10_000_000] {
-            let some = [0, 1, 2, of / 3, of / 2, of - of / 50, of.saturating_sub(2), of - 1, of];
-            for count in some.into_iter().filter(|count| *count <= of) {
-                let text = share(count, of).percent();
-                let found = numbers(&text);
-                if count == 0 || count == of {
-                    let word = if count == 0 { "none (under " } else { "all (over " };
-                    assert!(text.starts_with(word) && found.len() == 1, "{text}");
-                    assert!(found[0] > 0.0 && found[0] < 100.0, "{count} of {of}: {text}");
-                } else {
-                    let [value, lower, upper] = found[..] else { panic!("{text}") };
-                    assert!(lower > 0.0 && upper < 100.0, "{count} of {of}: {text}");
-                    assert!(lower <= value && value <= upper, "{count} of {of}: {text}");
-                }
-            }
-        }
     }
 }

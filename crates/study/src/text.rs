@@ -19,11 +19,11 @@ impl Display for Summary {
         let wide =
             shares.iter().map(|s| s.chars().count()).max().unwrap_or(0).max("unrealizable".len());
         write!(f, "{:width$}  {:>wide$}  {:4}", "model", "unrealizable", "")?;
-        for quantity in Quantity::BEHAVIOUR {
+        for quantity in Quantity::behaviour() {
             write!(f, " {:>13}", quantity.label())?;
         }
         write!(f, "\n{:width$}  {:>wide$}  {:4}", "", "draws", "")?;
-        for quantity in Quantity::BEHAVIOUR {
+        for quantity in Quantity::behaviour() {
             write!(f, " {:>13}", quantity.unit())?;
         }
         writeln!(f)?;
@@ -35,7 +35,7 @@ impl Display for Summary {
                     write!(f, "{:width$}  {:wide$}", "", "")?;
                 }
                 write!(f, "  {told:4}")?;
-                for quantity in Quantity::BEHAVIOUR {
+                for quantity in Quantity::behaviour() {
                     let value = optional(model.quantity(quantity).and_then(value), 4);
                     write!(f, " {value:>13}")?;
                 }

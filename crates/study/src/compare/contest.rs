@@ -14,7 +14,12 @@ use super::{
     options::Size,
     reference::Target,
 };
-use crate::{row::Failure, scenario::Scenario, streams::Streams, summary::Share};
+use crate::{
+    failure::Failure,
+    scenario::Scenario,
+    share::{Share, counted},
+    streams::Streams,
+};
 
 /// How a model did, or why there is none.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -110,13 +115,8 @@ impl Results {
         separated: &[Result<Option<f64>, Failure>],
     ) -> Result<Self, StatisticsError> {
         let unrealizable = drawn.iter().filter(|d| !d.realizable).count() as u64;
-        let mut failures: Vec<(String, u64)> = Vec::new();
-        for failure in separated.iter().filter_map(|s| s.as_ref().err()) {
-            match failures.iter_mut().find(|(kind, _)| *kind == failure.kind()) {
-                Some((_, count)) => *count += 1,
-                None => failures.push((failure.kind().into_owned(), 1)),
-            }
-        }
+        let failed = separated.iter().filter_map(|s| s.as_ref().err());
+        let failures = counted(failed.map(|failure| failure.kind().into_owned()));
         let spreads = Measure::ALL.into_iter().enumerate().map(|(i, measure)| {
             if i < Measure::OF_DRAWS {
                 Spread::new(measure, drawn.iter().map(|d| Some(d.measures[i])))

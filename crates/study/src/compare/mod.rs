@@ -3,11 +3,11 @@
 
 mod body;
 mod contest;
+mod figures_of_models;
 mod fit;
 mod measure;
 mod options;
 mod page;
-mod plates;
 mod reference;
 mod section;
 mod table;
@@ -31,8 +31,8 @@ pub(crate) use section::Section;
 
 use crate::{
     Progress, StudyError,
+    figure::file_of,
     folder::{Contents, Folder, FolderError},
-    plates::file_of,
     scenario::{Scenario, ScenarioError},
     streams::Streams,
     study::threads,
@@ -85,7 +85,7 @@ impl CompareError {
 /// The page of a comparison.
 #[cfg(test)]
 pub(crate) fn page_of(comparison: &ModelComparison) -> String {
-    comparison.page(&comparison.plates())
+    comparison.page(&comparison.figures())
 }
 
 /// Models of inertia uncertainty compared.
@@ -170,7 +170,7 @@ impl ModelComparison {
         let settings = Settings::new(&plan);
         let wanted = serde_json::to_value(&settings)?;
         let certain = ["compare.html", "compare.csv", "compare.json", "figures/"];
-        let figures = plates::names().into_iter().map(|name| file_of(&name));
+        let figures = figures_of_models::names().into_iter().map(|name| file_of(&name));
         let certain = certain.map(str::to_owned).into_iter().chain(figures);
         let contents = Contents::new("comparison", "compare.json", certain, |text: &str| {
             serde_json::from_str::<serde_json::Value>(text)
@@ -195,11 +195,11 @@ impl ModelComparison {
     }
 
     fn write(&self, mut folder: Folder<'_>) -> Result<PathBuf, CompareError> {
-        let plates = self.plates();
-        for plate in &plates {
-            folder.write(&file_of(&plate.name), &plate.svg)?;
+        let figures = self.figures();
+        for figure in &figures {
+            folder.write(&file_of(&figure.name), &figure.svg)?;
         }
-        folder.write("compare.html", &self.page(&plates))?;
+        folder.write("compare.html", &self.page(&figures))?;
         folder.write("compare.csv", &self.to_csv())?;
         folder.write("compare.json", &self.to_json()?)?;
         Ok(folder.publish()?)

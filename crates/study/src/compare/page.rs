@@ -7,7 +7,7 @@ use super::{
     measure::Measure,
     text::{Block, heading, is_poor, kinds, matched, remarks},
 };
-use crate::{format::optional, page::page, plates::Plate};
+use crate::{figure::Figure, format::optional, page::page};
 
 const BLOCKS: [Block; 9] = [
     Block::Unrealizable,
@@ -25,7 +25,7 @@ const BLOCKS: [Block; 9] = [
 const STYLE: &str = ".block th { padding-top: 1.2em; border-bottom: 1px solid var(--ink); }\n";
 
 impl ModelComparison {
-    pub(super) fn page(&self, plates: &[Plate]) -> String {
+    pub(super) fn page(&self, figures: &[Figure]) -> String {
         let s = &self.settings;
         let content = html! {
             h1 { "Models of inertia uncertainty, head to head" }
@@ -37,10 +37,10 @@ impl ModelComparison {
             }
             (reading(s.reference_meaning))
             h2 { "Figures" }
-            @for plate in plates {
-                figure id=(plate.name) {
-                    (PreEscaped(plate.svg.as_str()))
-                    figcaption { (plate.caption) ". " code { "figures/" (plate.name) ".svg" } }
+            @for figure in figures {
+                figure id=(figure.name) {
+                    (PreEscaped(figure.svg.as_str()))
+                    figcaption { (figure.caption) ". " code { "figures/" (figure.name) ".svg" } }
                 }
             }
             @for body in &self.bodies { (body_tables(body)) }

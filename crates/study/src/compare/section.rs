@@ -16,8 +16,8 @@ use super::{
     text::{Block, is_poor, kinds, matched, remarks},
 };
 use crate::{
+    figure::{EVERY_MODEL, Figure},
     figures::{Label, RangePanel, range_grid},
-    plates::{EVERY_MODEL, Plate},
     scenario::{Axes, Scenario, UncertainBody},
 };
 
@@ -56,7 +56,7 @@ impl Section {
     }
 
     /// Where the payload's spin lies under each model.
-    pub(crate) fn plate(&self) -> Option<Plate> {
+    pub(crate) fn figure(&self) -> Option<Figure> {
         let payload = self.bodies.first()?;
         let level = payload.levels.first()?;
         let panel = |measure: Measure| RangePanel {
@@ -77,13 +77,13 @@ impl Section {
             .into_iter()
             .map(|kind| Label {
                 name: kind.name().to_owned(),
-                colour: super::plates::pen(kind).0,
+                colour: super::figures_of_models::pen(kind).0,
                 hollow: is_poor(level.cell(kind)),
             })
             .collect();
         let panels = [Measure::InertiaRatio, Measure::Wobble, Measure::Nutation].map(panel);
         let title = "Every model with the payload's mean and covariance";
-        Some(Plate {
+        Some(Figure {
             name: EVERY_MODEL.to_owned(),
             caption: format!(
                 "{title}: median and middle 90 % of {DRAWS} draws (nutation: {SEPARATIONS} separations, \

@@ -112,7 +112,7 @@ fn models_that_do_not_exist_are_told() {
     let naive = level.cell(ModelKind::Entrywise).unwrap().results.as_ref().unwrap();
     assert!(naive.failed_separations > 0);
     assert!(text.contains("separations failed"), "{text}");
-    assert!(comparison.page(&comparison.plates()).contains("no wishart"));
+    assert!(comparison.page(&comparison.figures()).contains("no wishart"));
 }
 
 fn small() -> CompareOptions {
@@ -241,7 +241,7 @@ fn what_is_in_the_way_of_a_figure_is_found_before_the_draws() {
         force: true,
         ..CompareOptions::default()
     };
-    let names: Vec<String> = plates::names().iter().map(|name| file_of(name)).collect();
+    let names: Vec<String> = figures_of_models::names().iter().map(|name| file_of(name)).collect();
     ModelComparison::run(&options("free"), &|_| {}).unwrap();
     for entry in std::fs::read_dir(scratch.path().join("free/figures")).unwrap() {
         let name = format!("figures/{}", entry.unwrap().file_name().to_str().unwrap());

@@ -3,7 +3,7 @@
 use gyradius_statistics::{BinEdges, Histogram, SortedSample};
 
 use super::axis::Units;
-use super::histogram::Panel;
+use super::samples::Panel;
 
 /// The histograms of one panel, in units that read well.
 #[derive(Debug)]
@@ -164,7 +164,7 @@ fn edges(samples: &[&SortedSample], nominal: Option<f64>, most: usize) -> Option
 
 #[cfg(test)]
 mod tests {
-    use super::super::histogram::Series;
+    use super::super::samples::Series;
     use super::*;
 
     fn binned(samples: &[&[f64]], nominal: Option<f64>) -> Option<Binned> {

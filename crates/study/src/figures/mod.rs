@@ -16,13 +16,15 @@ mod legend;
 mod lines;
 mod panel;
 mod ranges;
+mod samples;
 mod sphere;
 mod style;
 mod svg;
 mod text;
 
 pub(crate) use curves::{Chart, Colours, Curve, time_charts};
-pub(crate) use histogram::{Panel, Series, histogram_grid};
+pub(crate) use histogram::histogram_grid;
 pub(crate) use lines::{Line, LinePanel, LinePoint, Range, line_grid};
 pub(crate) use ranges::{Label, RangePanel, range_grid};
+pub(crate) use samples::{Panel, Series};
 pub(crate) use sphere::{Cloud, attitude_spheres};

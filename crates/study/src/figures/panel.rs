@@ -2,7 +2,7 @@
 
 use super::axis::{Spacing, Tick, Units, ticks, times};
 use super::bins::{Beyond, Binned};
-use super::histogram::{Panel, Series};
+use super::samples::{Panel, Series};
 use super::style;
 use super::svg::{Anchor, Look, Svg, px};
 use super::text::{count, fit, significant, width};

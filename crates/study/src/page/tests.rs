@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::{
-    CompareOptions, ModelComparison, Replay, Scenario, Summary, compare, plates, replay, report,
-    runner,
+    CompareOptions, ModelComparison, Replay, Scenario, Summary, compare, figures_of_study, replay,
+    report, runner,
 };
 
 /// Elements without content.
@@ -176,7 +176,7 @@ fn report_of(scenario: &Scenario) -> String {
     let threads = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let tables = runner::run(scenario, &models, &threads, &|_| {});
     let summary = Summary::new(scenario, &models, &tables).unwrap();
-    let figures = plates::of_study(scenario, &summary, &tables);
+    let figures = figures_of_study::of_study(scenario, &summary, &tables);
     // The end of a study on the terminal is made of the same.
     assert!(!summary.to_string().contains("[0.00") && !summary.to_string().contains("0 % ["));
     report::html(scenario, &summary, &figures)

@@ -5,6 +5,7 @@ mod outlines;
 pub(crate) mod page;
 mod picture;
 mod record;
+mod short;
 mod words;
 
 use gyradius_formats::{WriteError, must_write, write_file};
@@ -17,10 +18,10 @@ use std::{
 };
 
 use crate::{
-    Row, Scenario, ScenarioError,
-    column::Column,
+    Row, RunTable, Scenario, ScenarioError,
     folder::{self, FolderError},
-    model::{Case, Model},
+    model::Model,
+    run::{Case, End},
 };
 use history::History;
 
@@ -156,7 +157,8 @@ pub struct Replay {
     scenario: Scenario,
     model: String,
     case: Case,
-    row: Row,
+    /// The table of this run alone.
+    own: RunTable,
     history: History,
     /// How near the bodies come, if that is watched and the run ends well.
     clearance: Option<Clearance>,
@@ -225,7 +227,8 @@ impl Replay {
             let known = scenario.model_names().map(str::to_owned).collect();
             return Err(ReplayError::Model { model: model.unwrap_or_default().to_owned(), known });
         };
-        let case = Model::new(spec, scenario)?.draw(scenario, run);
+        let model = Model::new(spec, scenario)?;
+        let case = model.draw(scenario, run);
         let (mut steps, mut result) = (Vec::<Step>::new(), None);
         if let Ok(separation) = &case.separation {
             let settings = scenario.settings();
@@ -239,9 +242,12 @@ impl Replay {
         let springs = case.separation.as_ref().map_or(&[][..], Separation::springs);
         let ended = result.as_ref().and_then(|result| result.as_ref().ok());
         let history = History::new(&steps, springs, ended);
-        let (row, clearance) = case.ended(scenario, result);
+        let mut own = model.table(scenario, run);
+        let run = case.ended(scenario, result);
+        own.push(&run);
+        let clearance = run.end().and_then(End::clearance).cloned();
         Ok(Self {
-            row,
+            own,
             history,
             scenario: scenario.clone(),
             model: spec.name.clone(),
@@ -253,8 +259,8 @@ impl Replay {
 
     /// What came of it.
     #[must_use]
-    pub fn row(&self) -> &Row {
-        &self.row
+    pub fn row(&self) -> Row<'_> {
+        Row::only(&self.own)
     }
 
     /// Name of the model.
@@ -266,7 +272,7 @@ impl Replay {
     /// Where its files go if nothing else is said: `target/replay/<scenario>/<model>-<run>`.
     #[must_use]
     pub fn default_folder(&self) -> PathBuf {
-        let name = format!("{}-{}", self.model, self.row.run());
+        let name = format!("{}-{}", self.model, self.row().run());
         Path::new("target/replay").join(self.scenario.name()).join(name)
     }
 
@@ -307,17 +313,16 @@ impl Replay {
             table: found,
             replayed,
         };
-        let found = record::read(table, self.row.run()).map_err(unreadable)?;
+        let found = record::read(table, self.row().run()).map_err(unreadable)?;
         let found = found
             .ok_or_else(|| unreadable(ParquetError::General("it has no such run".to_owned())))?;
-        let drawn = self.scenario.dispersions().columns();
-        let columns = Column::of(self.scenario.separation().springs().len(), &drawn);
+        let columns = self.own.columns();
         if columns.len() != found.len() {
             let count = |n: usize| format!("{n} columns");
             return Err(differs("the number of columns", count(found.len()), count(columns.len())));
         }
         for (column, (name, cell)) in columns.into_iter().zip(found) {
-            let own = column.cell(&self.model, &self.row);
+            let own = self.row().cell(column);
             if column.name() != name {
                 return Err(differs("the name of a column", name, column.name().into_owned()));
             }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-use super::page::short;
+use super::short::short;
 use crate::scenario::ShapeFile;
 
 /// Corners of a hull up to which its edges are looked for; beyond, its shadow is drawn alone.

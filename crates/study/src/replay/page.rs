@@ -6,7 +6,7 @@ use maud::{PreEscaped, html};
 use nalgebra::UnitQuaternion;
 use serde_json::{Value, json};
 
-use super::{Replay, history::Moment, outlines};
+use super::{Replay, history::Moment, outlines, short::short};
 use crate::{drawn, page::page};
 
 const SCRIPT: &str = include_str!("page.js");
@@ -18,7 +18,7 @@ const SPRINGS: usize = 200;
 
 pub(crate) fn html(replay: &Replay) -> String {
     let name = replay.scenario.name();
-    let (model, run) = (&replay.model, replay.row.run());
+    let (model, run) = (&replay.model, replay.row().run());
     // JSON in a script must not end it.
     let data = data(replay).to_string().replace('<', "\\u003c");
     let content = html! {
@@ -28,11 +28,11 @@ pub(crate) fn html(replay: &Replay) -> String {
             "drawn as the uniform box that has its mass and inertia, which is not its shape; boxes may "
             "overlap."
             @if replay.scenario.outlines().is_some() { " Outlines are drawn over the boxes, as the scenario gives them." }
-            @if !replay.row.realizable() {
+            @if !replay.row().realizable() {
                 " No distribution of mass has the inertia drawn: boxes are flat where they would be less."
             }
         }
-        @if replay.row.failure().is_some() { p.warning { (replay.row.status()) } }
+        @if replay.row().failure().is_some() { p.warning { (replay.row().status()) } }
         div.scene { canvas #scene tabindex="0" aria-label="Payload, stage and springs in three dimensions" {} }
         div.controls {
             button #play type="button" { "Pause" }
@@ -69,7 +69,7 @@ fn data(replay: &Replay) -> Value {
             let released = history.releases.iter().find(|(number, _)| *number == i + 1);
             // Of a run that fails some still push at its end.
             let pushes =
-                released.is_some() || (spring.can_push() && replay.row.failure().is_some());
+                released.is_some() || (spring.can_push() && replay.row().failure().is_some());
             json!({
                 "p": short(spring.payload_point_m().as_slice()),
                 "s": short(spring.stage_point_m().as_slice()),
@@ -150,14 +150,4 @@ fn cuboid(body: &MovingBody) -> Value {
     let attitude = UnitQuaternion::from_rotation_matrix(&principal.axes());
     let (sides, attitude) = (short(&sides), short(attitude.coords.as_slice()));
     json!({ "sides": sides, "q": attitude })
-}
-
-/// To six digits; what is not finite is zero, which draws.
-pub(super) fn short(values: &[f64]) -> Vec<Value> {
-    let number = |x: &f64| {
-        let text = if x.is_finite() { format!("{x:.5e}") } else { "0".to_owned() };
-        // Back from text, for the shortest form of it.
-        json!(text.parse::<f64>().unwrap_or(0.0))
-    };
-    values.iter().map(number).collect()
 }

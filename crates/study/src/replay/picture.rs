@@ -68,6 +68,6 @@ pub(super) fn svg(replay: &Replay) -> String {
     charts.extend(both("nutation (deg)", Colours::Series, &nutation));
     charts.push(chart("energy (J)", Colours::Series, parts(&[0, 1, 3]), near));
     charts.push(chart("energy of rotation (J)", Colours::Series, parts(&[2, 4]), near));
-    let title = format!("{}: {}, run {}", replay.scenario.name(), replay.model, replay.row.run());
+    let title = format!("{}: {}, run {}", replay.scenario.name(), replay.model, replay.row().run());
     time_charts(&title, &charts, &history.releases)
 }

@@ -7,8 +7,9 @@ use gyradius_separation::ShapeClearance;
 
 use super::Replay;
 use crate::{
+    body::{Body, Entry},
     format::{optional, significant},
-    quantity::{Axis, Body, Entry, Quantity},
+    quantity::Quantity,
 };
 
 /// Pairs of shapes that are told of.
@@ -31,7 +32,7 @@ fn approach(shapes: &ShapeClearance) -> String {
 
 impl Display for Replay {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let (scenario, row) = (&self.scenario, &self.row);
+        let (scenario, row) = (&self.scenario, self.row());
         writeln!(
             f,
             "{}, model {}, run {} of {}, seed {}",
@@ -48,12 +49,12 @@ impl Display for Replay {
         }
         write!(f, "\ninertia (kg·m²)")?;
         for entry in Entry::ALL {
-            write!(f, "{:>11}", Quantity::Payload(entry).label())?;
+            write!(f, "{:>11}", Quantity::entry(Body::Payload, entry).label())?;
         }
         for body in Body::BOTH {
             write!(f, "\n  {:13}", body.name())?;
             for entry in Entry::ALL {
-                write!(f, "{:>11}", optional(row.value(body.entry(entry)), 5))?;
+                write!(f, "{:>11}", optional(row.value(Quantity::entry(body, entry)), 5))?;
             }
         }
         writeln!(f)?;
@@ -100,9 +101,7 @@ impl Display for Replay {
         }
         writeln!(f)?;
         let value = |quantity| optional(row.value(quantity), 6);
-        let three = |of: fn(Axis) -> Quantity| {
-            [Axis::One, Axis::Two, Axis::Three].map(|axis| value(of(axis))).join(", ")
-        };
+        let three = |of: [Quantity; 3]| of.map(value).join(", ");
         let mut line = |what: &str, value: String, unit: &str| {
             let unit = if value == "–" { "" } else { unit };
             write!(f, "\n  {what:42}{value}{unit}")
@@ -111,10 +110,10 @@ impl Display for Replay {
             format!("{}° in [{}°, {}°]", value(now), value(least), value(greatest))
         };
         line("relative speed", value(Quantity::RelativeSpeed), " m/s")?;
-        line("relative velocity, inertial axes", three(Quantity::RelativeVelocity), " m/s")?;
+        line("relative velocity, inertial axes", three(Quantity::RELATIVE_VELOCITY), " m/s")?;
         line("angle to the intended direction", value(Quantity::DirectionError), "°")?;
-        line("tip-off of the payload, body axes", three(Quantity::PayloadTipOff), " deg/s")?;
-        line("tip-off of the stage, body axes", three(Quantity::StageTipOff), " deg/s")?;
+        line("tip-off of the payload, body axes", three(Quantity::PAYLOAD_TIP_OFF), " deg/s")?;
+        line("tip-off of the stage, body axes", three(Quantity::STAGE_TIP_OFF), " deg/s")?;
         let rate = row.value(Quantity::SpinRate).map(f64::to_degrees);
         line("spin rate of the payload", optional(rate, 6), " deg/s")?;
         line("wobble", value(Quantity::Wobble), "°")?;
@@ -126,7 +125,7 @@ impl Display for Replay {
             line("the same at the start", nutation(now, least, greatest), "")?;
         }
         line("cone", value(Quantity::Cone), "°")?;
-        line("angular momentum, inertial axes", three(Quantity::Momentum), " kg·m²/s")?;
+        line("angular momentum, inertial axes", three(Quantity::MOMENTUM), " kg·m²/s")?;
         line("angle to its intended direction", value(Quantity::MomentumError), "°")?;
         line("inertia ratio", value(Quantity::InertiaRatio), "")?;
         if let (None, Some(note)) = (&self.clearance, row.clearance_note()) {
@@ -177,7 +176,7 @@ impl Replay {
         let width = dispersed.iter().map(|d| d.column.len()).max().unwrap_or(0);
         let [value, nominal, sigmas] = ["drawn", "nominal", "σ from mean"];
         writeln!(f, "\nalso dispersed{:1$}{value:>14}{nominal:>14}{sigmas:>14}", "", width - 12)?;
-        for (d, value) in dispersed.iter().zip(&self.row.drawn) {
+        for (d, value) in dispersed.iter().zip(&self.case.drawn) {
             let sigmas = (value - d.law.mean()) / d.law.deviation();
             // Nothing of what happens or not, nor of a start that is not late.
             let tells = sigmas.is_finite() && *value != d.nominal && d.law.name() != "bernoulli";

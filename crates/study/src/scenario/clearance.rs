@@ -10,7 +10,7 @@ use super::{
     file::{ClearanceFile, ShapeFile},
     limits,
 };
-use crate::{quantity::Body, row::Failure};
+use crate::{body::Body, failure::Failure};
 
 /// What of the bodies may touch, and how long it is watched.
 #[derive(Clone, Debug)]

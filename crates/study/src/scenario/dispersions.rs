@@ -7,7 +7,7 @@ use super::{
     file::{BodyFile, ScenarioFile, SpringFile},
     law::{CHANGES, LawFile, Unit, VectorLawFile},
 };
-use crate::quantity::Body;
+use crate::body::Body;
 
 /// A number that every run draws.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,8 +4,8 @@ use gyradius_dispersion::ModelKind;
 
 use super::{BodyResult, LevelResult, ModelComparison, contest::Results, measure::Measure};
 use crate::{
+    figure::Figure,
     figures::{Line, LinePanel, LinePoint, Range, line_grid},
-    plates::Plate,
 };
 
 /// Colour and dashes of a model: kept for conditioned twins, which are dashed.
@@ -77,14 +77,14 @@ fn line(body: &BodyResult, kind: ModelKind, value: Value<'_>, scale: Scale) -> L
 }
 
 impl ModelComparison {
-    pub(super) fn plates(&self) -> Vec<Plate> {
+    pub(super) fn figures(&self) -> Vec<Figure> {
         let share = |r: &Results| {
             let u = &r.unrealizable;
             let percent = [u.interval.lower() * 100.0, u.interval.upper() * 100.0];
             Some((100.0 * u.share, Some(percent)))
         };
         let may_fail = |kind: &ModelKind| !kind.is_realizable_by_construction();
-        let mut plates = Vec::new();
+        let mut figures = Vec::new();
         if self.settings.models.iter().any(may_fail) {
             let safe: Vec<&str> = self
                 .settings
@@ -98,7 +98,7 @@ impl ModelComparison {
             } else {
                 format!(". Zero at every level, and not shown: {}", safe.join(", "))
             };
-            plates.push(self.plate(
+            figures.push(self.figure(
                 &Words {
                     name: UNREALIZABLE.to_owned(),
                     title: "Draws that no body has".to_owned(),
@@ -111,7 +111,7 @@ impl ModelComparison {
             ));
         }
         for measure in SPREAD {
-            plates.push(self.plate(
+            figures.push(self.figure(
                 &Words {
                     name: name_of(measure),
                     title: format!("{}, for each percent of uncertainty", capital(measure)),
@@ -123,16 +123,16 @@ impl ModelComparison {
                 Scale::PerPercent,
             ));
         }
-        plates
+        figures
     }
 
-    fn plate(
+    fn figure(
         &self,
         Words { name, title, label, caption }: &Words,
         shown: impl Fn(&ModelKind) -> bool,
         value: Value<'_>,
         scale: Scale,
-    ) -> Plate {
+    ) -> Figure {
         let panels: Vec<LinePanel> = self
             .bodies
             .iter()
@@ -158,7 +158,7 @@ impl ModelComparison {
                 Scale::PerPercent => Range::Own,
             },
         );
-        Plate {
+        Figure {
             name: name.clone(),
             caption: format!("{title}, over the uncertainty, for each body{caption}"),
             svg,

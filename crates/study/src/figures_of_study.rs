@@ -3,26 +3,14 @@
 use nalgebra::UnitQuaternion;
 
 use crate::{
+    body::{Body, Entry},
+    figure::{EVERY_MODEL, Figure},
     figures::{Cloud, Panel, Series, attitude_spheres, histogram_grid},
-    quantity::{Body, Entry, Quantity},
+    quantity::Quantity,
     scenario::Scenario,
     summary::Summary,
     table::RunTable,
 };
-
-/// A figure with what it shows.
-#[derive(Clone, Debug)]
-pub(crate) struct Plate {
-    /// Name of its file, without the ending.
-    pub(crate) name: String,
-    pub(crate) caption: String,
-    pub(crate) svg: String,
-}
-
-/// Where a figure is written, from the folder.
-pub(crate) fn file_of(name: &str) -> String {
-    format!("figures/{name}.svg")
-}
 
 const ATTITUDES: &str = "figure-1-attitudes";
 /// Of two models that are compared, whose names follow.
@@ -30,8 +18,6 @@ const RATIO_AND_WOBBLE: &str = "figure-4-7";
 const INERTIA_OF_PAYLOAD: &str = "figure-5-8-payload";
 const INERTIA_OF_STAGE: &str = "figure-5-8-stage";
 const ANGLES: &str = "figure-6-9";
-/// Of all models of inertia, which the summary makes.
-pub(crate) const EVERY_MODEL: &str = "figure-models";
 const CLEARANCE: &str = "clearance";
 
 fn of_pair(name: &str, physical: &str, naive: &str) -> String {
@@ -51,13 +37,13 @@ pub(crate) fn names(scenario: &Scenario) -> Vec<String> {
     names
 }
 
-pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Vec<Plate> {
+pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Vec<Figure> {
     // Other vehicles have no figures of the paper to be compared with.
     let numbered = |what: &str, number: &str| match scenario.source() {
         Some(_) => format!("{what} ({number})"),
         None => what.to_owned(),
     };
-    let mut plates: Vec<Plate> = attitudes(scenario, tables, &numbered).into_iter().collect();
+    let mut figures: Vec<Figure> = attitudes(scenario, tables, &numbered).into_iter().collect();
     for comparison in scenario.comparisons() {
         let (physical, naive) = (&tables[comparison.physical], &tables[comparison.naive]);
         let title = |what: &str| format!("{what}: {} and {}", physical.model(), naive.model());
@@ -74,55 +60,51 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
                     Some(Panel {
                         label: axis_label(quantity),
                         series: vec![
-                            Series {
-                                name: physical.model(),
-                                values: a,
-                                runs: physical.rows().len(),
-                            },
-                            Series { name: naive.model(), values: b, runs: naive.rows().len() },
+                            Series { name: physical.model(), values: a, runs: physical.len() },
+                            Series { name: naive.model(), values: b, runs: naive.len() },
                         ],
                         nominal: summary.nominal_value(quantity),
                     })
                 })
                 .collect();
-            Plate {
+            Figure {
                 name: of_pair(name, physical.model(), naive.model()),
                 caption: format!("{}. {}", comparison.title, title(what)),
                 svg: histogram_grid(&title(what), &panels, columns),
             }
         };
-        plates.push(grid(
+        figures.push(grid(
             RATIO_AND_WOBBLE,
             &numbered("Inertia ratio and wobble", "Figures 4 and 7"),
             &[Some(Quantity::InertiaRatio), Some(Quantity::Wobble)],
             2,
         ));
-        plates.push(grid(
+        figures.push(grid(
             INERTIA_OF_PAYLOAD,
             &numbered("Inertia of the payload, in matrix order", "Figures 5 and 8"),
             &matrix_order(Body::Payload),
             3,
         ));
-        plates.push(grid(
+        figures.push(grid(
             INERTIA_OF_STAGE,
             &numbered("Inertia of the stage, in matrix order", "Figures 5 and 8"),
             &matrix_order(Body::Stage),
             3,
         ));
-        plates.push(grid(
+        figures.push(grid(
             ANGLES,
             &numbered("Wobble, nutation and coning", "Figures 6 and 9"),
             &[Some(Quantity::Wobble), Some(Quantity::Nutation), Some(Quantity::Cone)],
             3,
         ));
     }
-    plates.extend(clearance(scenario, summary, tables));
-    plates.extend(summary.every_model.plate());
-    plates
+    figures.extend(clearance(scenario, summary, tables));
+    figures.extend(summary.every_model.figure());
+    figures
 }
 
 /// How near the bodies come: a comparison a panel, or a model where nothing is compared.
-fn clearance(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Option<Plate> {
+fn clearance(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Option<Figure> {
     let samples: Vec<Vec<f64>> = tables.iter().map(|t| t.values(Quantity::Clearance)).collect();
     let compared = scenario.comparisons().iter().map(|c| vec![c.physical, c.naive]);
     let mut groups: Vec<Vec<usize>> = compared.collect();
@@ -136,7 +118,7 @@ fn clearance(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Opt
             let series = |i: usize| Series {
                 name: tables[i].model(),
                 values: &samples[i],
-                runs: tables[i].rows().len(),
+                runs: tables[i].len(),
             };
             Some(Panel {
                 label: axis_label(Quantity::Clearance),
@@ -146,7 +128,7 @@ fn clearance(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Opt
         })
         .collect();
     let title = "Smallest distance of payload and stage after the last release";
-    (!panels.is_empty()).then(|| Plate {
+    (!panels.is_empty()).then(|| Figure {
         name: CLEARANCE.to_owned(),
         caption: format!("{title}; runs in which they touch again are at 0"),
         svg: histogram_grid(title, &panels, if panels.len() > 4 { 3 } else { 2 }),
@@ -158,10 +140,10 @@ fn attitudes(
     scenario: &Scenario,
     tables: &[RunTable],
     numbered: &impl Fn(&str, &str) -> String,
-) -> Option<Plate> {
+) -> Option<Figure> {
     let drawn: Vec<(&RunTable, Vec<UnitQuaternion<f64>>)> = tables
         .iter()
-        .map(|t| (t, t.rows().iter().filter_map(|r| r.axes(Body::Payload)).collect::<Vec<_>>()))
+        .map(|t| (t, t.rows().filter_map(|r| r.axes(Body::Payload)).collect::<Vec<_>>()))
         .filter(|(_, attitudes)| !attitudes.is_empty())
         .collect();
     let mean = scenario.payload().mean_axes();
@@ -173,7 +155,7 @@ fn attitudes(
         return None;
     }
     let title = numbered("Principal axes of the payload", "Figure 1");
-    Some(Plate {
+    Some(Figure {
         name: ATTITUDES.to_owned(),
         caption: format!(
             "{title}. Random attitudes of each model, as the tips of the unit axes on the sphere; of many, \
@@ -194,13 +176,13 @@ fn axis_label(quantity: Quantity) -> String {
 fn matrix_order(body: Body) -> [Option<Quantity>; 9] {
     use Entry::{I11, I12, I13, I22, I23, I33};
     [Some(I11), Some(I12), Some(I13), None, Some(I22), Some(I23), None, None, Some(I33)]
-        .map(|entry| entry.map(|e| body.entry(e)))
+        .map(|entry| entry.map(|e| Quantity::entry(body, e)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Options, Study};
+    use crate::{Options, Study, figure::file_of};
 
     /// Scenarios with figures of every kind: each file of a figure is announced before the runs, and a file of
     /// the user's in its place is found then, in every place, and left alone.

@@ -1,7 +1,7 @@
-//! Rows of scenarios with mated hulls and antennas, backward spins, late and failing springs.
+//! Runs of scenarios with mated hulls and antennas, backward spins, late and failing springs.
 
 use super::*;
-use crate::{RunTable, runner};
+use crate::{Quantity, Row, RunTable, runner};
 
 /// The paper's bodies with solids that are in each other at the last release, other shapes as asked, and
 /// all that is dispersed.
@@ -35,7 +35,7 @@ fn rows(payload_shape: &str, spin: &str, springs: &str, coast: &str) -> (Scenari
 }
 
 /// What must be true of every row, whatever was drawn.
-fn check(row: &Row, drawn: impl Fn(&str) -> Option<f64>) {
+fn check(row: &Row<'_>, drawn: impl Fn(&str) -> Option<f64>) {
     let value = |q: Quantity| row.value(q);
     let (clearance, recontact) = (value(Quantity::Clearance), value(Quantity::RecontactTime));
     if recontact.is_some() {
@@ -84,12 +84,12 @@ fn every_row_agrees_with_itself() {
     ] {
         let (_, tables) = rows(shape, spin, springs, "40.0");
         let names = tables[0].drawn_columns();
-        for row in tables[0].rows().iter().filter(|row| row.failure().is_none()) {
+        for row in tables[0].rows().filter(|row| row.failure().is_none()) {
             let drawn = |name: &str| {
                 let place = names.iter().position(|n| n == name)?;
-                row.drawn.get(place).copied()
+                row.drawn().nth(place).flatten()
             };
-            check(row, drawn);
+            check(&row, drawn);
             touch += u32::from(row.value(Quantity::RecontactTime).is_some());
             mated += u32::from(row.clearance_note() == Some(ClearanceNote::Mated));
             backward += u32::from(row.value(Quantity::Nutation2).is_some_and(|x| x > 90.0));
@@ -110,7 +110,7 @@ fn fast_turning_fails_no_row() {
     let spin = "angular_velocity_rad_per_s = [{ mean = 12.0, sigma = 0.1 }, 0.0001, 0.0001]\n\
                 velocity_m_per_s = [0.0001, 0.0001, { mean = -0.3, sigma = 0.05 }]";
     let (_, tables) = rows(", { points_m = [[0.0, 0.0, 3.4]] }", spin, springs, "900.0");
-    let good = tables[0].rows().iter().filter(|row| row.failure().is_none());
+    let good = tables[0].rows().filter(|row| row.failure().is_none());
     let mut partial = 0;
     for row in good {
         assert_eq!(row.status(), "ok");

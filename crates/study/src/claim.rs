@@ -1,0 +1,62 @@
+//! A claim of a paper, and whether it stands.
+
+use gyradius_statistics::Interval;
+use serde::Serialize;
+
+/// Whether a claim stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Verdict {
+    /// It does.
+    Holds,
+    /// For some of what it says, or under one reading.
+    HoldsInPart,
+    /// It does not.
+    DoesNotHold,
+    /// These runs cannot tell.
+    NotTested,
+}
+
+impl Verdict {
+    /// In words.
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::HoldsInPart => "holds in part",
+            Self::DoesNotHold => "does not hold",
+            Self::NotTested => "cannot tell",
+        }
+    }
+
+    /// All hold: holds. None of those that can be told: does not. Otherwise in part.
+    pub(crate) fn of_all(parts: &[Self]) -> Self {
+        let any = |verdict| parts.contains(&verdict);
+        if any(Self::Holds) || any(Self::HoldsInPart) {
+            if parts.iter().all(|p| *p == Self::Holds) { Self::Holds } else { Self::HoldsInPart }
+        } else if any(Self::DoesNotHold) {
+            Self::DoesNotHold
+        } else {
+            Self::NotTested
+        }
+    }
+
+    /// Whether a number known to an interval is above a line.
+    pub(crate) fn above(interval: Interval, line: f64) -> Self {
+        if interval.lower() > line {
+            Self::Holds
+        } else if interval.upper() < line {
+            Self::DoesNotHold
+        } else {
+            Self::NotTested
+        }
+    }
+}
+
+/// A claim, what the runs show, and whether it stands.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Claim {
+    pub(crate) claim: String,
+    /// One finding for each reading.
+    pub(crate) findings: Vec<String>,
+    pub(crate) verdict: Verdict,
+}

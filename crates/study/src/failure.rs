@@ -1,0 +1,62 @@
+//! Why a run failed.
+
+use gyradius_separation::{BodyError, OutlineError, RunError, SeparationError, SpringError};
+use std::borrow::Cow;
+
+/// Why a run failed, with the numbers of the run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Failure {
+    /// What was drawn makes no separation.
+    #[error(transparent)]
+    Refused(#[from] SeparationError),
+    /// What was drawn makes no spring.
+    #[error("spring {spring}: {source}")]
+    Spring {
+        /// Its number, from 1.
+        spring: usize,
+        /// What is wrong with it.
+        source: SpringError,
+    },
+    /// The separation does not come to an end.
+    #[error(transparent)]
+    Broken(#[from] RunError),
+    /// The outline of a body cannot be placed about its mass centre.
+    #[error("{body}: outline: {source}")]
+    Outline {
+        /// Whose.
+        body: &'static str,
+        /// Why.
+        source: OutlineError,
+    },
+}
+
+impl Failure {
+    /// What kind it is, without numbers, so that failures of a kind can be counted.
+    #[must_use]
+    pub fn kind(&self) -> Cow<'static, str> {
+        let plain: &'static str = match self {
+            Self::Refused(SeparationError::Body { body, source }) => {
+                let what = match source {
+                    BodyError::Mass { .. } => "mass not positive",
+                    BodyError::NotPositiveDefinite { .. } => "inertia not positive definite",
+                    _ => "state refused",
+                };
+                return format!("{body}: {what}").into();
+            }
+            Self::Spring { spring, .. } => return format!("spring {spring}: impossible").into(),
+            Self::Refused(SeparationError::NonePushes) => "no spring pushes",
+            Self::Refused(SeparationError::TouchingPads { .. }) => "points of a spring touch",
+            Self::Refused(SeparationError::ShortStroke { .. }) => "stroke too short",
+            Self::Refused(_) => "separation refused",
+            Self::Broken(RunError::NotReleased { .. }) => "springs not released within the horizon",
+            Self::Broken(RunError::PadsMeet { .. }) => "points of a spring meet",
+            Self::Broken(RunError::StepUnderflow { .. }) => "step underflow",
+            Self::Broken(RunError::TooManySteps { .. }) => "too many steps",
+            Self::Broken(RunError::NotFinite { .. }) => "numbers out of range",
+            Self::Broken(_) => "integration failed",
+            Self::Outline { body, .. } => return format!("{body}: outline beyond bounds").into(),
+        };
+        plain.into()
+    }
+}

@@ -1,0 +1,233 @@
+//! A run that has ended: what was drawn for it, and what came of it.
+
+use gyradius_inertia::InertiaMatrix;
+use gyradius_separation::{
+    Approach, Clearance, ClearanceError, EnergySplit, Outcome as Separated, RunError, Separation,
+    SpinMetrics,
+};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::{body::Body, drawn, failure::Failure, scenario::Scenario};
+
+/// What is drawn for a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Case {
+    pub(crate) payload: InertiaMatrix,
+    pub(crate) stage: InertiaMatrix,
+    pub(crate) payload_axes: Option<UnitQuaternion<f64>>,
+    pub(crate) stage_axes: Option<UnitQuaternion<f64>>,
+    pub(crate) separation: Result<Separation, Failure>,
+    /// What else was drawn, in the order of the scenario's dispersions.
+    pub(crate) drawn: Box<[f64]>,
+}
+
+/// A run that has ended.
+#[derive(Clone, Debug)]
+pub(crate) struct Run<'a> {
+    pub(crate) case: &'a Case,
+    end: Result<End<'a>, Failure>,
+}
+
+/// The end of a run in which the bodies part.
+#[derive(Clone, Debug)]
+pub(crate) struct End<'a> {
+    scenario: &'a Scenario,
+    pub(crate) separated: Separated,
+    /// Of the payload after the last release.
+    pub(crate) spin: SpinMetrics,
+    /// Of the payload at the start.
+    pub(crate) spin_before: SpinMetrics,
+    /// Of payload and stage, body axes, rad/s.
+    pub(crate) tip_off: [Vector3<f64>; 2],
+    /// Of the payload about its mass centre, inertial axes, kg·m²/s.
+    pub(crate) momentum: Vector3<f64>,
+    pub(crate) energy: EnergySplit,
+    /// How near the bodies come, if that is watched.
+    watched: Option<Result<Clearance, ClearanceError>>,
+}
+
+impl Case {
+    /// The bodies without any dispersion.
+    pub(crate) fn nominal(scenario: &Scenario) -> Self {
+        Self {
+            payload: *scenario.payload().nominal().as_inertia_matrix(),
+            stage: *scenario.stage().nominal().as_inertia_matrix(),
+            payload_axes: None,
+            stage_axes: None,
+            separation: Ok(scenario.separation().clone()),
+            drawn: Box::default(),
+        }
+    }
+
+    /// The run that ended so; without a separation there is no end.
+    pub(crate) fn ended<'a>(
+        &'a self,
+        scenario: &'a Scenario,
+        result: Option<Result<Separated, RunError>>,
+    ) -> Run<'a> {
+        let end = match (&self.separation, result) {
+            (Ok(separation), Some(Ok(separated))) => self
+                .clearance(scenario, &separated)
+                .map(|watched| End::new(scenario, separation, separated, watched)),
+            (Ok(_), Some(Err(error))) => Err(error.into()),
+            (Err(failure), _) => Err(failure.clone()),
+            // A batch gives every run a result.
+            (Ok(_), None) => Err(RunError::NotFinite { time: 0.0 }.into()),
+        };
+        Run { case: self, end }
+    }
+
+    fn clearance(
+        &self,
+        scenario: &Scenario,
+        separated: &Separated,
+    ) -> Result<Option<Result<Clearance, ClearanceError>>, Failure> {
+        let watched = scenario.outlines().map(|outlines| {
+            outlines.clearance(separated, &drawn::mass_centres(scenario.dispersions(), &self.drawn))
+        });
+        watched.transpose()
+    }
+}
+
+impl<'a> Run<'a> {
+    /// Why it failed, if it did.
+    pub(crate) fn failure(&self) -> Option<&Failure> {
+        self.end.as_ref().err()
+    }
+
+    /// How it ended, unless it failed.
+    pub(crate) fn end(&self) -> Option<&End<'a>> {
+        self.end.as_ref().ok()
+    }
+
+    /// The drawn inertia: I11, I22, I33, I12, I13, I23, kg·m².
+    pub(crate) fn inertia(&self, body: Body) -> [f64; 6] {
+        match body {
+            Body::Payload => self.case.payload.entries(),
+            Body::Stage => self.case.stage.entries(),
+        }
+    }
+
+    /// Whether both drawn inertias are realizable.
+    pub(crate) fn realizable(&self) -> bool {
+        self.case.payload.is_realizable() && self.case.stage.is_realizable()
+    }
+
+    /// The attitude of the principal axes of a body, as drawn.
+    pub(crate) fn axes(&self, body: Body) -> Option<UnitQuaternion<f64>> {
+        match body {
+            Body::Payload => self.case.payload_axes,
+            Body::Stage => self.case.stage_axes,
+        }
+    }
+}
+
+impl<'a> End<'a> {
+    fn new(
+        scenario: &'a Scenario,
+        separation: &Separation,
+        separated: Separated,
+        watched: Option<Result<Clearance, ClearanceError>>,
+    ) -> Self {
+        Self {
+            scenario,
+            spin: separated.spin_metrics(scenario.spin_axis()),
+            spin_before: separation.payload().spin_metrics(scenario.spin_axis()),
+            tip_off: separated.tip_off(separation),
+            momentum: separated.payload().inertial_spin_angular_momentum(),
+            energy: separated.energy_split(separation),
+            separated,
+            watched,
+        }
+    }
+
+    /// Angle to the intended direction of separation, rad.
+    pub(crate) fn direction_error(&self) -> Option<f64> {
+        self.separated.direction_error(self.scenario.separation_direction()?)
+    }
+
+    /// Angle of the payload's momentum to its intended direction, rad.
+    pub(crate) fn momentum_error(&self) -> Option<f64> {
+        self.separated.momentum_error(self.scenario.momentum_direction())
+    }
+
+    /// How near the bodies come, if that is watched and found.
+    pub(crate) fn clearance(&self) -> Option<&Clearance> {
+        self.watched.as_ref()?.as_ref().ok()
+    }
+
+    /// Where they are nearest.
+    pub(crate) fn closest(&self) -> Option<&Approach> {
+        self.clearance()?.closest()
+    }
+
+    /// Why there is no clearance, or not one of the whole coast; none if there is nothing to say.
+    pub(crate) fn clearance_note(&self) -> Option<ClearanceNote> {
+        self.watched.as_ref().and_then(ClearanceNote::new)
+    }
+
+    /// Springs from 1 in the order of their releases, `+` between those that let go together.
+    pub(crate) fn release_order(&self) -> String {
+        let together = |springs: &Vec<usize>| {
+            springs.iter().map(ToString::to_string).collect::<Vec<_>>().join("+")
+        };
+        self.separated.release_order().iter().map(together).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Springs from 1 that were pressed again after they had let go.
+    pub(crate) fn recompressed(&self) -> Vec<usize> {
+        self.separated.recompressed().map(|(spring, _)| spring).collect()
+    }
+}
+
+/// Why a run has no clearance, or not one of its whole coast.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum ClearanceNote {
+    /// All outlines touch at the start, part, and do not touch again.
+    #[error("all outlines are mated: they touch at the start and do not touch again after parting")]
+    Mated,
+    /// All outlines touch at the start, and some of them do not part.
+    #[error("all outlines are mated, and some do not part")]
+    Together,
+    /// The bodies turn so far that they are not followed to the end of the coast, in which they could
+    /// still come nearer.
+    #[error("followed to {until:?} s only: a body turns by more than 7,000 rad in the coast")]
+    Partial {
+        /// Until when they are followed, s.
+        until: f64,
+    },
+    /// The search has failed.
+    #[error("clearance not found: {0}")]
+    NotFound(ClearanceError),
+}
+
+impl ClearanceNote {
+    /// What there is to say of a clearance.
+    pub(crate) fn new(found: &Result<Clearance, ClearanceError>) -> Option<Self> {
+        let clearance = match found {
+            Ok(clearance) => clearance,
+            Err(error) => return Some(Self::NotFound(*error)),
+        };
+        if let Some(until) = clearance.undecided_from_s() {
+            return Some(Self::Partial { until });
+        }
+        if clearance.closest().is_some() {
+            return None;
+        }
+        let parted = clearance.shapes().iter().all(|s| s.counts_from_s().is_some());
+        Some(if parted { Self::Mated } else { Self::Together })
+    }
+
+    /// What kind it is, without numbers, so that those of a kind can be counted.
+    pub(crate) fn kind(self) -> &'static str {
+        match self {
+            Self::Mated => "all outlines are mated and do not touch again after parting",
+            Self::Together => "all outlines are mated, and some do not part",
+            Self::Partial { .. } => "a body turns too far to be followed to the end of the coast",
+            Self::NotFound(_) => "the clearance was not found",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
