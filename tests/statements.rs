@@ -2,7 +2,7 @@
 //! go together.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use gyradius_dispersion::{Amount, CentreStatement, MassStatement, MomentsStatement, Statements};
+use gyradius_estimation::{Amount, CentreStatement, MassStatement, MomentsStatement, Statements};
 use gyradius_inertia::{Inertia, InertiaMatrix};
 use gyradius_statistics::Moments;
 use gyradius_study::{Entry, Fragment, FragmentBody, Options, Quantity, Scenario, Study};

@@ -1,11 +1,11 @@
 //! `gyradius model`: a nominal inertia and plain statements, and what they come to.
 
-use gyradius_dispersion::{
+use gyradius_estimation::{
     AxesStatement, CentreStatement, MassStatement, MomentsStatement, ProductsStatement,
     StatedModel, Statements,
 };
 use gyradius_formats::read_text;
-use gyradius_inertia::Inertia;
+use gyradius_inertia::{Inertia, InertiaMatrix};
 use gyradius_study::{Fragment, FragmentBody, FragmentError, parse_toml};
 use serde::{Deserialize, Serialize};
 use std::{error::Error, fmt::Write};
@@ -17,7 +17,6 @@ use crate::{
     output,
 };
 
-const ENTRIES: [&str; 6] = ["I11", "I22", "I33", "I12", "I13", "I23"];
 /// Bytes of the largest file that is read: such files have a few lines.
 const MAX_BYTES: u64 = 1 << 20;
 
@@ -118,7 +117,7 @@ fn write_report(out: &mut String, file: &str, model: &StatedModel) -> std::fmt::
     let nominal = model.nominal().entries();
     let deviations = model.implied().deviations();
     let covariance = model.implied().covariance();
-    for (e, name) in ENTRIES.iter().enumerate() {
+    for (e, name) in InertiaMatrix::ENTRY_NAMES.iter().enumerate() {
         let stated = model.stated()[e].map_or_else(|| "-".to_owned(), short);
         let [nominal, implied] = [nominal[e], deviations[e]].map(short);
         write!(out, "  {name}{nominal:>17}{stated:>21}{implied:>11}")?;

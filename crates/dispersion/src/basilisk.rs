@@ -2,10 +2,10 @@ use gyradius_inertia::{InertiaMatrix, MAX_ENTRY};
 use nalgebra::{Matrix3, SMatrix};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
-use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+use std::f64::consts::TAU;
 
 use crate::entry_moments::ENTRIES;
-use crate::{EntryMoments, KnownMoments};
+use crate::{EntryMoments, KnownMoments, normal};
 
 /// Largest deviation and finite bound, so that draws stay in range.
 const MAX_DEVIATION: f64 = MAX_ENTRY / 1e3;
@@ -143,8 +143,7 @@ impl BasiliskDispersion {
         }
         // In deviations. Below α and above β all is at the bound.
         let [a, b] = self.bounds.map(|x| (x / s).clamp(-40.0, 40.0));
-        let below = 0.5 * libm::erfc(-a * FRAC_1_SQRT_2);
-        let above = 0.5 * libm::erfc(b * FRAC_1_SQRT_2);
+        let (below, above) = (normal::below(a), normal::above(b));
         let phi = |t: f64| libm::exp(-0.5 * t * t) / TAU.sqrt();
         let mean = a * below + b * above + phi(a) - phi(b);
         let square =

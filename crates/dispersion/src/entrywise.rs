@@ -48,8 +48,7 @@ impl EntrywiseGaussian {
         mean: impl Into<InertiaMatrix>,
         deviations: [f64; 6],
     ) -> Result<Self, EntrywiseError> {
-        const NAMES: [&str; 6] = ["I11", "I22", "I33", "I12", "I13", "I23"];
-        for (entry, value) in NAMES.into_iter().zip(deviations) {
+        for (entry, value) in InertiaMatrix::ENTRY_NAMES.into_iter().zip(deviations) {
             if !(0.0..=MAX_DEVIATION).contains(&value) {
                 return Err(EntrywiseError::Deviation { entry, value });
             }

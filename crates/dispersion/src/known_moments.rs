@@ -1,3 +1,5 @@
+//! Laws of inertia whose moments are known, and the moments of the principal one.
+
 use crate::{AttitudeMoments, EntryMoments, EntrywiseGaussian, PrincipalDispersion, RootMoments};
 use nalgebra::SMatrix;
 
@@ -6,6 +8,14 @@ use nalgebra::SMatrix;
 pub trait KnownMoments {
     /// Mean and covariance of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.
     fn entry_moments(&self) -> EntryMoments;
+}
+
+impl EntryMoments {
+    /// Of any roots with known moments about axes from any law with known moments, by quadrature.
+    #[must_use]
+    pub fn of<K: RootMoments, A: AttitudeMoments>(law: &PrincipalDispersion<K, A>) -> Self {
+        law.axes().entry_moments(&law.roots().second_moment_statistics())
+    }
 }
 
 impl<K: RootMoments, A: AttitudeMoments> KnownMoments for PrincipalDispersion<K, A> {

@@ -9,8 +9,6 @@
 //!   every draw is an [`Inertia`].
 //! * [`BasiliskDispersion`]: what a well-known simulator does.
 //! * [`AnyBody`]: every shape, size and attitude, for property tests and domain randomisation.
-//! * [`PrincipalFit`] and [`Statements`]: the first of these from samples of an inertia, or from what
-//!   engineers know before there are any.
 //!
 //! All are [`Distribution`](rand_distr::Distribution)s; [`DispersionModel`] is any of them, chosen at
 //! run time and matched to the moments of another. [`EntryMoments`] are the mean and covariance of the
@@ -52,11 +50,11 @@ mod correlated_entries;
 mod correlation;
 mod entry_moments;
 mod entrywise;
-mod fit;
 mod known_moments;
 mod log_cholesky;
 mod matched;
 mod model;
+mod normal;
 #[cfg(test)]
 mod pinned_values;
 mod principal;
@@ -66,9 +64,7 @@ mod roots;
 mod scalar;
 mod second_moment_matrix;
 mod semidefinite;
-mod statements;
 mod truncated_normal;
-mod turns;
 mod wishart;
 
 pub use any_body::{AnyBody, AnyBodyError};
@@ -79,10 +75,6 @@ pub use correlated_entries::CorrelatedEntries;
 pub use correlation::{Correlation, CorrelationError};
 pub use entry_moments::{EntryMoments, EntryMomentsError};
 pub use entrywise::{EntrywiseError, EntrywiseGaussian};
-pub use fit::{
-    Aspect, Assessment, AxesFinding, AxesFit, FitNote, FitTest, Matching, PrincipalFit,
-    PrincipalFitError, RootEstimate, RootFit,
-};
 pub use known_moments::KnownMoments;
 pub use log_cholesky::{LogCholeskyGaussian, LogCholeskyGaussianError};
 pub use matched::{MatchError, Matched};
@@ -100,10 +92,6 @@ pub use roots::{
 };
 pub use scalar::{ScalarLaw, ScalarLawError};
 pub use semidefinite::CovarianceError;
-pub use statements::{
-    Amount, AxesStatement, CentreStatement, MassStatement, MissedBecause, MomentsStatement, Part,
-    ProductsStatement, StatedMass, StatedModel, StatementError, StatementWarning, Statements,
-};
 pub use wishart::{Wishart, WishartError};
 
 #[cfg(doctest)]

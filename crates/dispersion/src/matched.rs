@@ -4,7 +4,7 @@ use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_inertia::{Inertia, InertiaMatrix, PrincipalAxes, RootSecondMoments};
 use nalgebra::{Matrix3, SMatrix, SVector};
 
-use crate::entry_moments::{ENTRIES, NAMES};
+use crate::entry_moments::ENTRIES;
 use crate::second_moment_matrix::inertia_map;
 use crate::{
     BasiliskDispersion, CorrelatedEntries, CorrelatedRoots, DispersionModel, EntryMoments,
@@ -302,7 +302,7 @@ fn first_order(
             return Err(format!(
                 "{} varies by {:.3e} kg·m² in principal axes: no small turn of the axes does that, for \
                  the two moments are too alike",
-                NAMES[3 + a],
+                InertiaMatrix::ENTRY_NAMES[3 + a],
                 products[(a, a)].sqrt()
             )
             .into());

@@ -62,9 +62,11 @@ impl SecondMomentStatistics {
         Self { mean, covariance }
     }
 
-    /// Of the squares of jointly Gaussian roots with the mean k̄ and the covariance c:
-    /// E K_i = k̄_i² + c_ii and Cov(K_i, K_j) = 4 k̄_i k̄_j c_ij + 2 c_ij².
-    pub(crate) fn of_gaussian_roots(mean: RootSecondMoments, covariance: &Matrix3<f64>) -> Self {
+    /// Of the squares of jointly Gaussian roots with the mean k̄, √kg·m, and the covariance c, kg·m²:
+    /// E K_i = k̄_i² + c_ii and Cov(K_i, K_j) = 4 k̄_i k̄_j c_ij + 2 c_ij². That c is a covariance is not
+    /// checked, for searches that try many: [`CorrelatedRoots`](crate::CorrelatedRoots) checks it.
+    #[must_use]
+    pub fn of_gaussian_roots(mean: RootSecondMoments, covariance: &Matrix3<f64>) -> Self {
         let (k, c) = (mean.values(), covariance);
         Self::joint(
             std::array::from_fn(|i| k[i] * k[i] + c[(i, i)]),

@@ -1,7 +1,7 @@
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
-use std::f64::consts::FRAC_1_SQRT_2;
 
+use crate::normal::below;
 use crate::truncated_normal::{MAX_DISTANCE, TruncatedNormal, WindowError};
 
 /// Largest magnitude of what a law may be given.
@@ -90,11 +90,6 @@ pub(crate) enum Kind {
     Truncated(TruncatedNormal),
     Lognormal { mean: f64, deviation: f64, log_deviation: f64 },
     Bernoulli { probability: f64 },
-}
-
-/// Φ(z).
-fn below(z: f64) -> f64 {
-    0.5 * libm::erfc(-z * FRAC_1_SQRT_2)
 }
 
 fn number(field: &'static str, value: f64) -> Result<f64, ScalarLawError> {

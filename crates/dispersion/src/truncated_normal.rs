@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
+use crate::normal::above;
+
 /// The nearer bound may be this many standard deviations from the mean: beyond, the Gaussian holds
 /// 1e-9.
 pub(crate) const MAX_DISTANCE: f64 = 6.0;
@@ -168,7 +170,7 @@ impl TruncatedNormal {
         let width = to - from;
         // From the end that is nearer, so that small shares keep their digits.
         let rising = z < 0.0;
-        let share = 0.5 * libm::erfc(z.abs() * FRAC_1_SQRT_2);
+        let share = above(z.abs());
         let target = self.whole * share;
         let mut v = if width > NARROW {
             (z - self.offset).clamp(from, to)
@@ -260,11 +262,10 @@ fn panel(from: f64, to: f64, mut at: impl FnMut(f64, f64)) {
 
 /// Φ(β) − Φ(α), without cancellation in the tails.
 pub(crate) fn share(alpha: f64, beta: f64) -> f64 {
-    let tail = |t: f64| 0.5 * libm::erfc(t * FRAC_1_SQRT_2);
     if alpha > 0.0 {
-        tail(alpha) - tail(beta)
+        above(alpha) - above(beta)
     } else if beta < 0.0 {
-        tail(-beta) - tail(-alpha)
+        above(-beta) - above(-alpha)
     } else {
         0.5 * (libm::erf(beta * FRAC_1_SQRT_2) - libm::erf(alpha * FRAC_1_SQRT_2))
     }
@@ -405,7 +406,7 @@ mod tests {
             let law = ScalarLaw::truncated_normal(mean, deviation, low, high).unwrap();
             let k = law.at_score(z);
             prop_assert!((low..=high).contains(&k));
-            let target = 0.5 * libm::erfc(-z * FRAC_1_SQRT_2);
+            let target = above(-z);
             // The mass between neighbours of k.
             let step = law.cdf(k.next_up().next_up()) - law.cdf(k.next_down().next_down());
             let error = (law.cdf(k) - target).abs();

@@ -144,6 +144,9 @@ impl InertiaMatrix {
         &self.0
     }
 
+    /// Names of the six entries, in the order of [`entries`](Self::entries).
+    pub const ENTRY_NAMES: [&'static str; 6] = ["I11", "I22", "I33", "I12", "I13", "I23"];
+
     /// The six entries in the order I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.
     #[must_use]
     pub fn entries(&self) -> [f64; 6] {

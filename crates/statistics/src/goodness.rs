@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::{SortedSample, StatisticsError, law};
+use crate::{SortedSample, StatisticsError, tail};
 
 /// The outcome of a test that a sample was drawn from a given law: the statistic, and the
 /// probability of one at least as large if it was.
@@ -87,7 +87,7 @@ impl GoodnessOfFit {
         }
         let statistic = observed.iter().zip(expected).map(|(&o, &e)| (o as f64 - e).powi(2) / e);
         let statistic: f64 = statistic.sum();
-        Ok(Self { statistic, p_value: law::chi_squared_tail(statistic, freedom as f64) })
+        Ok(Self { statistic, p_value: tail::chi_squared(statistic, freedom as f64) })
     }
 
     /// The statistic: `D` of Kolmogorov–Smirnov or `X²` of Pearson.

@@ -1,4 +1,4 @@
-//! Quantiles and tails of the normal, χ², F and beta laws.
+//! Quantiles of the normal, χ², F and beta laws.
 //!
 //! Every quantile takes the probability *beyond* it: `1 − α/2` would round to 1 long before `α/2`
 //! rounds to 0. The incomplete gamma function is that of `statrs`. Its incomplete beta function
@@ -9,7 +9,9 @@
 use std::f64::consts::{SQRT_2, TAU};
 
 use statrs::function::erf::erfc_inv;
-use statrs::function::gamma::{checked_gamma_lr, checked_gamma_ur, ln_gamma};
+use statrs::function::gamma::{checked_gamma_lr, ln_gamma};
+
+use crate::tail::chi_squared as chi_squared_tail;
 
 /// The value a standard normal variable exceeds with probability `tail`.
 pub(crate) fn normal(tail: f64) -> f64 {
@@ -44,12 +46,6 @@ pub(crate) fn chi_squared_lower(tail: f64, freedom: f64) -> f64 {
 /// The value a χ² variable exceeds with probability `tail`.
 pub(crate) fn chi_squared_upper(tail: f64, freedom: f64) -> f64 {
     bisect(0.0, f64::MAX, |x| chi_squared_tail(x, freedom) > tail)
-}
-
-/// The probability that a χ² variable exceeds `x`.
-pub(crate) fn chi_squared_tail(x: f64, freedom: f64) -> f64 {
-    // The only arguments refused are 0 and infinity.
-    checked_gamma_ur(freedom / 2.0, x / 2.0).unwrap_or(if x > 1.0 { 0.0 } else { 1.0 })
 }
 
 /// The value a beta variable falls below with probability `tail`.

@@ -12,6 +12,7 @@ mod moments;
 mod proportion;
 mod quantile;
 mod ratio;
+pub mod tail;
 
 pub use deviation::Deviation;
 pub use edges::BinEdges;

@@ -1,6 +1,5 @@
-use gyradius_dispersion::{
-    Aspect, Assessment, AxesFinding, EntryMoments, PrincipalFit, RootEstimate,
-};
+use gyradius_dispersion::EntryMoments;
+use gyradius_estimation::{Aspect, Assessment, AxesFinding, PrincipalFit, RootEstimate};
 use gyradius_study::Fragment;
 use serde::Serialize;
 

@@ -4,7 +4,8 @@ mod json;
 mod report;
 mod table;
 
-use gyradius_dispersion::{EntryMoments, PrincipalFit};
+use gyradius_dispersion::EntryMoments;
+use gyradius_estimation::PrincipalFit;
 use gyradius_formats::Products;
 use gyradius_study::Fragment;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

@@ -1,10 +1,10 @@
-use gyradius_dispersion::{Assessment, AxesFinding, EntryMoments, PrincipalFit, RootEstimate};
+use gyradius_dispersion::EntryMoments;
+use gyradius_estimation::{Assessment, AxesFinding, PrincipalFit, RootEstimate};
+use gyradius_inertia::InertiaMatrix;
 use std::fmt::Write;
 
 use super::{FitArgs, table::Table};
 use crate::number::{probability, short, with_error};
-
-const ENTRIES: [&str; 6] = ["I11", "I22", "I33", "I12", "I13", "I23"];
 
 /// Parameters with their errors, what to know of them, and the verdict.
 pub(super) fn text(
@@ -81,7 +81,7 @@ fn write_text(
     writeln!(out, "\nkg·m²          nominal     deviation: samples        fit")?;
     let (nominal, found, law) =
         (fit.nominal().entries(), fit.sample_deviations(), moments.deviations());
-    for (e, name) in ENTRIES.iter().enumerate() {
+    for (e, name) in InertiaMatrix::ENTRY_NAMES.iter().enumerate() {
         let [a, b, c] = [nominal[e], found[e], law[e]].map(short);
         writeln!(out, "  {name}{a:>17}{b:>22}{c:>11}")?;
     }

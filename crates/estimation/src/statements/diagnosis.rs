@@ -1,5 +1,7 @@
 //! What a model of statements gives rise to: contradictions, and what has been left open.
 
+use gyradius_dispersion::{RootLaw, RootMoments};
+use gyradius_statistics::tail;
 use nalgebra::Matrix3;
 
 use super::{
@@ -8,7 +10,6 @@ use super::{
     scatter::{Body, Scatter},
     solve::Solution,
 };
-use crate::{RootLaw, RootMoments, fit::tail};
 
 /// Stated and implied deviations that differ by no more than this share are the same.
 const AGREE: f64 = 0.03;

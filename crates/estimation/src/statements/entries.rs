@@ -1,8 +1,7 @@
 //! The six entries as the axes move them: moments of the forms that multiply the second moments.
 
+use gyradius_dispersion::SecondMomentStatistics;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-
-use crate::SecondMomentStatistics;
 
 /// An entry is Σ_k K_k M_k with forms M of the axes: the mean and the covariance of M for each entry.
 #[derive(Clone, Copy, Debug)]

@@ -1,3 +1,5 @@
+//! Laws of axes that scatter by independent small turns, some of which may be any.
+
 use gyradius_attitude::{RadiallyConstrainedGaussian, RcgError};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 

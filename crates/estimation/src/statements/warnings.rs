@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use crate::entry_moments::NAMES;
+use gyradius_inertia::InertiaMatrix;
+
+/// The names of the entries.
+const NAMES: [&str; 6] = InertiaMatrix::ENTRY_NAMES;
 
 /// Contradictions among statements, and what they leave open. Written out by `Display`; deviations
 /// are standard deviations, entries in the order 11, 22, 33, 12, 13, 23 from 0.

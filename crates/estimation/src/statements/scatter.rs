@@ -3,6 +3,10 @@
 use std::error::Error;
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
+use gyradius_dispersion::{
+    CorrelatedRoots, EntryMoments, GaussianRoots, PrincipalDispersion, RootLaw,
+    SecondMomentStatistics,
+};
 use gyradius_inertia::{Inertia, RootSecondMoments};
 use nalgebra::{Matrix3, SymmetricEigen, UnitQuaternion};
 
@@ -11,11 +15,7 @@ use super::{
     entries::Forms,
     nodes::{Rule, Turns},
 };
-use crate::{
-    CorrelatedRoots, EntryMoments, GaussianRoots, PrincipalDispersion, RootLaw,
-    SecondMomentStatistics,
-    turns::{chart_variances, law_of_turns_about},
-};
+use crate::turns::{chart_variances, law_of_turns_about};
 
 /// The model of Peck (2003), with roots that may be correlated.
 pub(super) type Law = PrincipalDispersion<RootLaw, RadiallyConstrainedGaussian>;
@@ -156,7 +156,7 @@ pub(super) fn roots_of(mean: RootSecondMoments, moments: &Matrix3<f64>) -> Matri
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::RootMoments;
+    use gyradius_dispersion::RootMoments;
     use nalgebra::Vector3;
     use proptest::prelude::*;
 

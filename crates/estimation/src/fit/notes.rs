@@ -1,3 +1,5 @@
+//! What a user of a fit should know.
+
 use std::fmt;
 
 use super::{AxesFinding, PrincipalFit, root::RootEstimate};

@@ -93,7 +93,7 @@ impl Statements {
     /// range.
     ///
     /// ```
-    /// use gyradius_dispersion::{Amount, AxesStatement, MomentsStatement, Statements};
+    /// use gyradius_estimation::{Amount, AxesStatement, MomentsStatement, Statements};
     /// use gyradius_inertia::{Inertia, InertiaMatrix};
     ///
     /// let payload = InertiaMatrix::from_entries([5000.0, 4000.0, 3000.0], [20.0, 2.0, -50.0])?;

@@ -16,7 +16,7 @@ impl Statements {
     /// As said, and a mass in kg without the nominal mass.
     ///
     /// ```
-    /// use gyradius_dispersion::{ProductsStatement, Statements};
+    /// use gyradius_estimation::{ProductsStatement, Statements};
     /// use gyradius_inertia::{Inertia, InertiaMatrix};
     ///
     /// let body = Inertia::try_from(InertiaMatrix::from_entries([5.0, 4.0, 3.0], [0.0; 3])?)?;

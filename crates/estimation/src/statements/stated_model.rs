@@ -1,13 +1,13 @@
 //! The model that statements make, and what they come to.
 
+use gyradius_dispersion::{EntryMoments, RootMoments};
 use gyradius_inertia::Inertia;
-use nalgebra::{SVector, Vector3};
+use nalgebra::Vector3;
 
 use super::{
     Stated, StatementError, StatementWarning,
     scatter::{Body, Law, Scatter, roots_of},
 };
-use crate::{EntryMoments, RootMoments};
 
 /// The model that statements make, and what they come to.
 ///
@@ -89,8 +89,6 @@ impl StatedModel {
         } else {
             (at_nominal_mass.clone(), scatter.roots)
         };
-        let mean = SVector::<f64, 6>::from(implied.mean());
-        let covariance = implied.covariance() * (1.0 + square) + mean * mean.transpose() * square;
         Ok(Self {
             nominal: *nominal,
             scatter,
@@ -104,7 +102,7 @@ impl StatedModel {
                 0..3 => stated.moments.map(|m| m[e]),
                 _ => stated.products.map(|p| p[e - 3]),
             }),
-            implied: EntryMoments::unchecked(implied.mean(), covariance),
+            implied: implied.times_factor(square),
             warnings: Vec::new(),
         })
     }

@@ -6,10 +6,10 @@
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
-use gyradius_dispersion::{
-    Amount, AxesStatement, CentreStatement, CorrelatedRoots, EntryMoments, MassStatement,
-    MomentsStatement, PrincipalDispersion, ProductsStatement, StatedModel, StatementWarning,
-    Statements,
+use gyradius_dispersion::{CorrelatedRoots, EntryMoments, PrincipalDispersion};
+use gyradius_estimation::{
+    Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, ProductsStatement,
+    StatedModel, StatementWarning, Statements,
 };
 use gyradius_inertia::{Inertia, RootSecondMoments};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};

@@ -1,3 +1,6 @@
+//! Whether samples look like draws of the model that was fitted to them.
+
+use gyradius_statistics::tail;
 use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -5,7 +8,7 @@ use std::fmt;
 
 use super::{
     AxesFinding, PrincipalFit, matching::mean_attitude, relabel::Sample, root::RootEstimate,
-    root::RootFit, tail,
+    root::RootFit,
 };
 
 /// The verdict falls when a model that is right would look worse this often.
@@ -231,7 +234,7 @@ impl PrincipalFit {
             tests.push(FitTest { aspect: Aspect::Axes, p_value, least });
             if self.axes.finding() == AxesFinding::Determined {
                 let statistic = anderson_darling_of(self.ln_densities(&self.samples), densities);
-                let p_value = tail::anderson_darling_given(statistic);
+                let p_value = tail::anderson_darling(statistic);
                 tests.push(FitTest { aspect: Aspect::Turn, p_value, least: 0.0 });
             }
         }
@@ -340,7 +343,7 @@ fn root_p_value<R: Rng + ?Sized>(
         |fit: &RootFit, sorted: &[f64]| anderson_darling(sorted.iter().map(|k| fit.below(*k)));
     let observed = statistic(fit, &values);
     if !is_folded(fit) {
-        return (tail::anderson_darling(observed, n as f64), 0.0);
+        return (tail::anderson_darling_normal(observed, n as f64), 0.0);
     }
     bootstrap(observed, n, tick, || {
         let mut drawn: Vec<f64> = (0..n)
@@ -425,5 +428,5 @@ fn independence(a: &[Vec<f64>], b: &[Vec<f64>], n: usize) -> f64 {
         let second = correlation.view((p, p), (q, q)).into_owned().determinant();
         ((whole / (first * second)).max(1e-300), count - 1.0 - 0.5 * (size + 1.0), p * q)
     };
-    tail::chi_squared(-factor * libm::log(ratio.min(1.0)), freedom)
+    tail::chi_squared(-factor * libm::log(ratio.min(1.0)), freedom as f64)
 }

@@ -1,18 +1,19 @@
+//! The paper's model fitted to samples of an inertia matrix.
+
 mod axes;
 mod goodness;
 mod matching;
 mod notes;
 mod relabel;
 mod root;
-pub(crate) mod tail;
 #[cfg(test)]
 mod tests;
 
 use gyradius_attitude::{FitError, RadiallyConstrainedGaussian};
+use gyradius_dispersion::{GaussianRoots, GaussianRootsError, PrincipalDispersion};
 use gyradius_inertia::{Inertia, RootSecondMoments, SecondMoments};
 use nalgebra::{Matrix3, UnitQuaternion};
 
-use crate::{GaussianRoots, GaussianRootsError, PrincipalDispersion};
 use matching::{Center, matched};
 use relabel::{Relabeling, Sample};
 
@@ -87,7 +88,8 @@ pub struct Matching {
 ///
 /// ```
 /// use gyradius_attitude::RadiallyConstrainedGaussian;
-/// use gyradius_dispersion::{GaussianRoots, PrincipalDispersion, PrincipalFit};
+/// use gyradius_dispersion::{GaussianRoots, PrincipalDispersion};
+/// use gyradius_estimation::PrincipalFit;
 /// use gyradius_inertia::{Inertia, RootSecondMoments};
 /// use nalgebra::{Matrix3, UnitQuaternion};
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -185,7 +187,7 @@ impl PrincipalFit {
     }
 
     /// The inertia of the mean roots about the mean axes. It is not the mean of the samples, which
-    /// scatter moves: see [`EntryMoments`](crate::EntryMoments).
+    /// scatter moves: see [`EntryMoments`](gyradius_dispersion::EntryMoments).
     #[must_use]
     pub fn nominal(&self) -> &Inertia {
         &self.nominal
@@ -217,7 +219,7 @@ impl PrincipalFit {
     }
 
     /// Standard deviations of the six entries of the samples, kg·m², in the order 11, 22, 33, 12, 13,
-    /// 23: to be compared with those of the law, [`EntryMoments`](crate::EntryMoments).
+    /// 23: to be compared with those of the law, [`EntryMoments`](gyradius_dispersion::EntryMoments).
     #[must_use]
     pub fn sample_deviations(&self) -> [f64; 6] {
         self.deviations

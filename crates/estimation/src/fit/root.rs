@@ -1,3 +1,6 @@
+//! A root of a second moment fitted: Gaussian, folded or constant.
+
+use gyradius_statistics::tail;
 use std::fmt;
 
 /// From this many deviations on, a mean is so far from zero that no sign is ever lost: e^(−2·36)
@@ -121,8 +124,8 @@ impl RootFit {
 
     /// Distribution function of |k|.
     pub(super) fn below(&self, k: f64) -> f64 {
-        let phi = |x: f64| 0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2);
-        phi((k - self.mean) / self.deviation) - phi((-k - self.mean) / self.deviation)
+        let below = |x: f64| tail::normal(-(x - self.mean) / self.deviation);
+        below(k) - below(-k)
     }
 }
 

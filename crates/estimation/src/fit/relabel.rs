@@ -1,3 +1,5 @@
+//! The 24 right-handed ways to name and point the axes of one body.
+
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use std::sync::OnceLock;
 

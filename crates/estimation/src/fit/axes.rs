@@ -1,11 +1,13 @@
+//! The axes of a fit: which of their angles the samples determine, and the law of those.
+
 use gyradius_attitude::{Family, FitError, RadialVariance, RadiallyConstrainedGaussian};
+use gyradius_statistics::tail;
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
 use super::{
     matching::{mean_attitude, vector_part},
     relabel::Sample,
     root::RootFit,
-    tail,
 };
 use crate::turns::{FIXED, law_of_turns};
 
@@ -159,7 +161,7 @@ impl AxesFit {
         }
         let round = 4.0 * (aa * bb - ab * ab) / ((aa + bb) * (aa + bb));
         if round.is_finite() && variance > FIXED * FIXED {
-            fit.isotropy = Some(tail::chi_squared(-n * libm::log(round.clamp(1e-300, 1.0)), 2));
+            fit.isotropy = Some(tail::chi_squared(-n * libm::log(round.clamp(1e-300, 1.0)), 2.0));
         }
         fit
     }
@@ -354,7 +356,7 @@ fn uniform_p_value(samples: &[Sample], apart: [bool; 3]) -> f64 {
                 sum += square * square.transpose() / n;
             }
         }
-        return tail::chi_squared(n * (sum.norm_squared() - 9.0 / 5.0) * 7.5, 9);
+        return tail::chi_squared(n * (sum.norm_squared() - 9.0 / 5.0) * 7.5, 9.0);
     }
     let mut tensors = [-Matrix3::identity() / 3.0; 3];
     for s in samples {
@@ -367,12 +369,12 @@ fn uniform_p_value(samples: &[Sample], apart: [bool; 3]) -> f64 {
     if known == 3 {
         let [q1, q2, q3] = tensors;
         let statistic = (q1 - q2).norm_squared() * 2.5 + q3.norm_squared() * 7.5;
-        return tail::chi_squared(n * statistic, 10);
+        return tail::chi_squared(n * statistic, 10.0);
     }
     // One pair cannot be told apart: the third axis can. With two such pairs, none can.
     let pairs: Vec<usize> = (0..3).filter(|k| !apart[*k]).collect();
     match pairs[..] {
-        [axis] => tail::chi_squared(n * tensors[axis].norm_squared() * 7.5, 5),
+        [axis] => tail::chi_squared(n * tensors[axis].norm_squared() * 7.5, 5.0),
         _ => uniform_p_value(samples, [false; 3]),
     }
 }

@@ -391,7 +391,7 @@ fn unusable_samples_are_refused() {
 /// What holds for one sample holds for a body of any kind: no panic, a law that draws.
 #[test]
 fn any_bodies_at_all_are_fitted_or_refused() {
-    use crate::AnyBody;
+    use gyradius_dispersion::AnyBody;
     for (low, high) in [(1.0, 1.0), (1e-9, 1e9), (1e-300, 1e-290)] {
         let bodies = AnyBody::new(low, high).unwrap();
         let mut rng = ChaCha8Rng::seed_from_u64(4);
@@ -419,7 +419,7 @@ fn objections_name_what_is_wrong() {
 /// The paper's payload: narrow axes with a second lobe of 3.46 % about the inverse of the mean.
 #[test]
 fn the_papers_law_comes_back_with_its_second_lobe() {
-    use crate::EntryMoments;
+    use gyradius_dispersion::EntryMoments;
     let nominal = Inertia::try_from(
         InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0]).unwrap(),
     )

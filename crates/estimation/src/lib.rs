@@ -1,0 +1,52 @@
+//! The law of an uncertain rigid-body inertia, from samples of it or from plain statements.
+//!
+//! * [`PrincipalFit`] takes samples of an inertia matrix, for example of CAD variants or of a product line. It
+//!   matches their principal axes, fits the model of Peck (2003) by maximum likelihood, with standard
+//!   errors, and [assesses](PrincipalFit::assess) whether the samples look like draws of that model.
+//! * [`Statements`] are what engineers know before there are samples, such as "moments ±10 % (1σ)" or "axes
+//!   within 2°". They make a [`StatedModel`], which warns when statements contradict each other, or when
+//!   no physical body can satisfy them.
+//!
+//! Both give a [`PrincipalDispersion`](gyradius_dispersion::PrincipalDispersion), whose draws are bodies that
+//! could be built.
+//!
+//! ```
+//! use gyradius_estimation::{Amount, AxesStatement, MomentsStatement, PrincipalFit, Statements};
+//! use gyradius_inertia::{Inertia, InertiaMatrix};
+//! use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+//! use rand_distr::Distribution;
+//!
+//! let matrix = InertiaMatrix::from_entries([900.0, 1000.0, 1100.0], [0.0; 3])?;
+//! let statements = Statements {
+//!     moments: Some(MomentsStatement::new(Amount::Percent([2.0; 3]), 1.0)?),
+//!     axes: Some(AxesStatement::each([3.0; 3], 1.0)?),
+//!     ..Statements::default()
+//! };
+//! let model = statements.model(&Inertia::try_from(matrix)?, None)?;
+//! let [i11, ..] = model.implied().deviations();
+//! assert!((i11 / 18.0 - 1.0).abs() < 0.01);
+//!
+//! let mut rng = ChaCha8Rng::seed_from_u64(1);
+//! let samples: Vec<Inertia> = (0..300).map(|_| model.law().sample(&mut rng)).collect();
+//! let fit = PrincipalFit::new(&samples)?;
+//! let rotation = fit.axes().turn_covariance()[(0, 0)].sqrt().to_degrees();
+//! assert!((rotation - 3.0).abs() < 0.5);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod fit;
+mod statements;
+mod turns;
+
+pub use fit::{
+    Aspect, Assessment, AxesFinding, AxesFit, FitNote, FitTest, Matching, PrincipalFit,
+    PrincipalFitError, RootEstimate, RootFit,
+};
+pub use statements::{
+    Amount, AxesStatement, CentreStatement, MassStatement, MissedBecause, MomentsStatement, Part,
+    ProductsStatement, StatedMass, StatedModel, StatementError, StatementWarning, Statements,
+};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
