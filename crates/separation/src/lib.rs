@@ -4,9 +4,9 @@
 //! along the line between its points, until it reaches its free length and is lost for good. This
 //! crate integrates the motion to the last release at full precision ([`Separation::run`], many at a
 //! time in a [`Batch`], with all that lies between as a [`Trajectory`]) and says what became of it
-//! ([`Outcome`]: relative velocity, tip-off rates, releases, energy split), of the payload's spin
-//! ([`SpinMetrics`]: wobble, nutation and its bounds, coning, inertia ratio; Peck 2003, Eq. 28-37), and
-//! how near the bodies come to each other afterwards ([`Clearance`]). It knows no probability.
+//! ([`Outcome`]: relative velocity, tip-off rates, releases, energy split) and of the payload's spin
+//! ([`SpinMetrics`]: wobble, nutation and its bounds, coning, inertia ratio; Peck 2003, Eq. 28-37). How near
+//! the bodies come to each other afterwards is what `gyradius-clearance` tells. It knows no probability.
 //!
 //! # Conventions
 //! * SI units; angles in rad. Inertia about the mass centre in body axes, products as tensor
@@ -43,7 +43,6 @@ mod abreast;
 mod alone;
 mod batch;
 mod body;
-mod clearance;
 mod energy;
 mod expansion;
 mod gaps;
@@ -69,10 +68,6 @@ mod vector;
 
 pub use batch::Batch;
 pub use body::{Body, BodyError, BodyState, MovingBody};
-pub use clearance::{
-    Approach, Clearance, ClearanceError, ClearanceSettings, ClearanceSettingsError, Coast, Motion,
-    MotionLimits, Outline, OutlineError, Shape, ShapeClearance,
-};
 pub use energy::EnergySplit;
 pub use metrics::SpinMetrics;
 pub use outcome::Outcome;

@@ -1,6 +1,7 @@
 //! Why a run failed.
 
-use gyradius_separation::{BodyError, OutlineError, RunError, SeparationError, SpringError};
+use gyradius_clearance::OutlineError;
+use gyradius_separation::{BodyError, RunError, SeparationError, SpringError};
 use std::borrow::Cow;
 
 /// Why a run failed, with the numbers of the run.

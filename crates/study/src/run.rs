@@ -1,10 +1,8 @@
 //! A run that has ended: what was drawn for it, and what came of it.
 
+use gyradius_clearance::{Approach, Clearance, ClearanceError};
 use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{
-    Approach, Clearance, ClearanceError, EnergySplit, Outcome as Separated, RunError, Separation,
-    SpinMetrics,
-};
+use gyradius_separation::{EnergySplit, Outcome as Separated, RunError, Separation, SpinMetrics};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::{body::Body, drawn, failure::Failure, scenario::Scenario};

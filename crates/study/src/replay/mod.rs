@@ -8,8 +8,9 @@ mod record;
 mod short;
 mod words;
 
+use gyradius_clearance::Clearance;
 use gyradius_formats::{WriteError, must_write, write_file};
-use gyradius_separation::{Clearance, RunError, Separation, Step};
+use gyradius_separation::{RunError, Separation, Step};
 use parquet::errors::ParquetError;
 use serde_json::Value;
 use std::{

@@ -1,7 +1,8 @@
 //! The animation of a run: one page of HTML that needs nothing but itself.
 
+use gyradius_clearance::Clearance;
 use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{Clearance, MovingBody};
+use gyradius_separation::MovingBody;
 use maud::{PreEscaped, html};
 use nalgebra::UnitQuaternion;
 use serde_json::{Value, json};

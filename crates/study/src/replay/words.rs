@@ -1,9 +1,8 @@
 //! A run on a page.
 
+use gyradius_clearance::ShapeClearance;
 use gyradius_separation::Separation;
 use std::fmt::{self, Display, Formatter};
-
-use gyradius_separation::ShapeClearance;
 
 use super::Replay;
 use crate::{

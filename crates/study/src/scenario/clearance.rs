@@ -1,8 +1,10 @@
 //! What of the bodies may touch after the separation.
 
-use gyradius_separation::{
-    Clearance, ClearanceError, ClearanceSettings, Coast, Outcome, Outline, OutlineError, Shape,
+use gyradius_clearance::{
+    Clearance, ClearanceError, ClearanceSettings, Coast, FreeBody, Outline, OutlineError,
+    RigidState, Shape,
 };
+use gyradius_separation::{MovingBody, Outcome};
 use nalgebra::Vector3;
 
 use super::{
@@ -68,7 +70,7 @@ impl Outlines {
         let payload = about(Body::Payload, &self.payload, payload)?;
         let stage = about(Body::Stage, &self.stage, stage)?;
         let from = outcome.release_time();
-        let mut coast = Coast::new(outcome.payload(), outcome.stage(), from);
+        let mut coast = Coast::new(&free(outcome.payload()), &free(outcome.stage()), from);
         let settings = ClearanceSettings::default();
         let to = from + self.coast;
         Ok(Clearance::new(&payload, &stage, &mut coast, from, to, &settings))
@@ -83,6 +85,22 @@ impl ShapeFile {
             Self::HullM(_) => "hull",
             Self::Ring { .. } => "ring",
         }
+    }
+}
+
+/// The body as nothing pushes it any more.
+fn free(moving: &MovingBody) -> FreeBody {
+    let (state, body) = (moving.state(), moving.body());
+    FreeBody {
+        state: RigidState {
+            position: state.position,
+            velocity: state.velocity,
+            attitude: state.attitude,
+            angular_velocity: state.angular_velocity,
+        },
+        inertia: *body.inertia().matrix(),
+        inverse_inertia: *body.inverse_inertia(),
+        principal_moments: body.inertia().principal_axes().moments(),
     }
 }
 

@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use super::motion::Frame;
+use crate::motion::Frame;
 
 /// Nearest points of two hulls, as far as found.
 #[derive(Clone, Copy, Debug)]
@@ -273,17 +273,17 @@ pub(crate) fn direction(frame: &Frame, body: usize, normal: &Vector3<f64>, t: f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::BodyState;
+    use crate::RigidState;
     use nalgebra::UnitQuaternion;
     use proptest::prelude::*;
 
     type V = Vector3<f64>;
 
     pub(crate) fn frame(offset: V, a: [f64; 3], b: [f64; 3]) -> Frame {
-        let state = |position, turn: [f64; 3]| BodyState {
+        let state = |position, turn: [f64; 3]| RigidState {
             position,
             attitude: UnitQuaternion::from_scaled_axis(turn.into()),
-            ..BodyState::default()
+            ..RigidState::default()
         };
         Frame::new(&[state(offset, a), state(V::zeros(), b)]).unwrap()
     }

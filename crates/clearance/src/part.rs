@@ -2,11 +2,13 @@
 
 use nalgebra::Vector3;
 
-use super::arc::{Arc, RingAndHull, Turning};
-use super::circle::{Curve, CurveAndRing};
-use super::convex::{Nearest, gap_along, nearest};
-use super::motion::{Frame, MotionLimits};
-use super::outline::{Kind, Ring, Shape, farthest};
+use crate::{
+    arc::{Arc, RingAndHull, Turning},
+    circle::{Curve, CurveAndRing},
+    convex::{Nearest, gap_along, nearest},
+    motion::{Frame, MotionLimits},
+    outline::{Kind, Ring, Shape, farthest},
+};
 
 /// Most that a direction is turned over a span or an arc, rad.
 const MOST_TURN: f64 = 0.5;

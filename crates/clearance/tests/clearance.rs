@@ -1,27 +1,25 @@
 //! Clearance against closed forms and against dense sampling.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{
-    Approach, Body, BodyState, Clearance, ClearanceError, ClearanceSettings, Coast, Motion,
-    MotionLimits, MovingBody, Outline, Shape,
+use gyradius_clearance::{
+    Approach, Clearance, ClearanceError, ClearanceSettings, Coast, FreeBody, Motion, MotionLimits,
+    Outline, RigidState, Shape,
 };
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 type V = Vector3<f64>;
 
-fn body(moments: [f64; 3], position: V, velocity: V, angular_velocity: V) -> MovingBody {
-    let inertia = InertiaMatrix::from_entries(moments, [0.0; 3]).unwrap();
-    let state = BodyState { position, velocity, angular_velocity, ..BodyState::default() };
-    Body::new(100.0, inertia).unwrap().moving(state)
+fn body(moments: [f64; 3], position: V, velocity: V, angular_velocity: V) -> FreeBody {
+    let state = RigidState { position, velocity, angular_velocity, ..RigidState::default() };
+    FreeBody::new(state, Matrix3::from_diagonal(&moments.into())).unwrap()
 }
 
-fn ball(position: V, velocity: V, angular_velocity: V) -> MovingBody {
+fn ball(position: V, velocity: V, angular_velocity: V) -> FreeBody {
     body([1.0; 3], position, velocity, angular_velocity)
 }
 
-fn at_rest() -> MovingBody {
+fn at_rest() -> FreeBody {
     ball(V::zeros(), V::zeros(), V::zeros())
 }
 
@@ -43,7 +41,7 @@ fn points(p: &[V]) -> Outline {
 fn coasting(
     payload: &Outline,
     stage: &Outline,
-    bodies: [MovingBody; 2],
+    bodies: [FreeBody; 2],
     horizon: f64,
     settings: &ClearanceSettings,
 ) -> Clearance {
@@ -211,20 +209,20 @@ fn rings_that_link_touch_on_the_way() {
 /// told from zero where it matters, and has to be that of the smaller one's.
 #[test]
 fn rings_of_unlike_sizes_pass() {
-    let moving = |moments, products, attitude: [f64; 4], position, velocity, rate| {
-        let inertia = InertiaMatrix::from_entries(moments, products).unwrap();
+    let moving = |moments: [f64; 3], attitude: [f64; 4], position, velocity, rate| {
+        let [a, b, c] = moments;
+        let [p, q, r] = [0.040199, 0.03, -0.02];
         let [i, j, k, w] = attitude;
-        let state = BodyState {
+        let state = RigidState {
             position,
             velocity,
             attitude: UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k)),
             angular_velocity: rate,
         };
-        Body::new(100.0, inertia).unwrap().moving(state)
+        FreeBody::new(state, Matrix3::new(a, p, q, p, b, r, q, r, c)).unwrap()
     };
     let small = moving(
         [1.66039, 2.687226, 1.66114],
-        [0.040199, 0.03, -0.02],
         [0.797854, 0.432109, 0.407932, -0.101498],
         V::new(-20.092437, 131.198073, 153.825516),
         V::new(9.121931, -22.735331, -20.350009),
@@ -232,7 +230,6 @@ fn rings_of_unlike_sizes_pass() {
     );
     let large = moving(
         [2.891959, 2.345368, 2.33712],
-        [0.040199, 0.03, -0.02],
         [0.5169807, -0.833868665, -0.1933384802, -0.00377295],
         V::zeros(),
         V::zeros(),
@@ -281,10 +278,10 @@ struct Thrown {
 }
 
 impl Motion for Thrown {
-    fn states(&mut self, t: f64) -> Option<[BodyState; 2]> {
+    fn states(&mut self, t: f64) -> Option<[RigidState; 2]> {
         let position = V::z() * (self.speed * t - 0.5 * self.deceleration * t * t);
         let velocity = V::z() * (self.speed - self.deceleration * t);
-        Some([BodyState { position, velocity, ..BodyState::default() }, BodyState::default()])
+        Some([RigidState { position, velocity, ..RigidState::default() }, RigidState::default()])
     }
 
     fn limits(&mut self, from: f64, to: f64) -> MotionLimits {

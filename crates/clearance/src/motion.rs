@@ -1,6 +1,8 @@
+//! How two bodies move: where they are at a time, and bounds on how fast they can move.
+
 use nalgebra::{Matrix3, Vector3};
 
-use crate::BodyState;
+use crate::state::RigidState;
 
 /// How fast payload and stage may move over a span of time: upper bounds, which need not be sharp
 /// but must hold.
@@ -49,7 +51,7 @@ impl MotionLimits {
 /// `&mut self`, so that a motion may be computed as far as it is asked for.
 pub trait Motion {
     /// Payload and stage at the time, s; none where the motion is not known.
-    fn states(&mut self, time_s: f64) -> Option<[BodyState; 2]>;
+    fn states(&mut self, time_s: f64) -> Option<[RigidState; 2]>;
 
     /// Payload's mass centre from the stage's, inertial axes, m. Asked more often than the states:
     /// override it where it is cheaper.
@@ -85,8 +87,8 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    pub(crate) fn new([payload, stage]: &[BodyState; 2]) -> Option<Self> {
-        let of = |state: &BodyState| {
+    pub(crate) fn new([payload, stage]: &[RigidState; 2]) -> Option<Self> {
+        let of = |state: &RigidState| {
             let rotation = state.attitude.to_rotation_matrix().into_inner();
             (rotation, rotation * state.angular_velocity)
         };

@@ -2,124 +2,135 @@
 
 use nalgebra::Vector3;
 
-use super::motion::Motion;
-use super::outline::Outline;
-use super::part::Seen;
-use super::search::Search;
+use crate::{
+    error::ClearanceError, motion::Motion, outline::Outline, part::Seen, search::Search,
+    settings::ClearanceSettings,
+};
 
-/// Why there is no clearance to report.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ClearanceError {
-    /// The span is none.
-    #[error(
-        "clearance from {from:?} s to {to:?} s: both must be finite, and the end not before the start"
-    )]
-    Span {
-        /// Start, s.
-        from: f64,
-        /// End, s.
-        to: f64,
-    },
-    /// The motion is not known, or not finite.
-    #[error("clearance at {time} s: where the bodies are then is not known or not finite")]
-    Motion {
-        /// When, s.
-        time: f64,
-    },
-    /// Bounds on speeds are negative or not finite.
-    #[error("clearance from {time} s on: the speeds of the bodies have no finite bound")]
-    Limits {
-        /// From when on, s.
-        time: f64,
-    },
+/// Clearance of payload and stage over a span of time, shape by shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clearance {
+    shapes: Vec<ShapeClearance>,
+    undecided: Option<f64>,
+    looks: usize,
 }
 
-/// Why clearance settings are refused.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ClearanceSettingsError {
-    /// The tolerance is out of range.
-    #[error("tolerance = {value:?} m: it must be between 1e-12 and 1e-2 m")]
-    Tolerance {
-        /// The tolerance, m.
-        value: f64,
-    },
-    /// The distance of touching is out of range.
-    #[error("touch = {value:?} m: it must be at least 100 tolerances ({least:e} m) and finite")]
-    Touch {
-        /// The distance, m.
-        value: f64,
-        /// What it must be at least, m.
-        least: f64,
-    },
-    /// The distance of having parted is out of range.
-    #[error("parted = {value:?} m: it must be finite and more than twice the touch ({touch:e} m)")]
-    Parted {
-        /// The distance, m.
-        value: f64,
-        /// The distance of touching, m.
-        touch: f64,
-    },
-}
-
-/// How closely clearance is found, and what touching and parting mean.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ClearanceSettings {
-    tolerance: f64,
-    touch: f64,
-    parted: f64,
-}
-
-impl Default for ClearanceSettings {
-    /// Distances to 1e-9 m; nearer than 1e-6 m is touching; a millimetre is parted.
-    fn default() -> Self {
-        Self { tolerance: 1e-9, touch: 1e-6, parted: 1e-3 }
-    }
-}
-
-impl ClearanceSettings {
-    /// Tolerance of the smallest distance; distance up to which shapes touch; distance from which
-    /// shapes that touched at the start have parted. All in m.
+impl Clearance {
+    /// The smallest distance of two outlines over [from, to] (s), and whether they touch.
+    ///
+    /// # Definition
+    /// For each shape of the payload and each of the stage, the least distance of their points over
+    /// the span, exact to the tolerance and with the proof of it; they touch when it is at most the
+    /// touch of the settings, and what comes after the first contact does not count, for then the
+    /// motion would be another one.
+    ///
+    /// Shapes that touch when the span begins are mated: rings on each other, pads on springs. They
+    /// count from when they have parted, and a later contact is a recontact. Their smallest distance
+    /// is that of parting, which says nothing of the bodies: [`Clearance::closest`] takes none but
+    /// their contacts.
+    ///
+    /// A motion that ends before the span does ([`Motion::known_until_s`]) is followed to its end;
+    /// [`Clearance::undecided_from_s`] says so if the rest of the span could tell something else.
+    ///
+    /// # Algorithm
+    /// Branch and bound over time; see `docs/models/clearance.md`.
     ///
     /// # Errors
-    /// The tolerance is not in 1e-12 to 1e-2, the touch below a hundred tolerances, the parting not
-    /// above twice the touch.
-    pub fn new(
-        tolerance_m: f64,
-        touch_m: f64,
-        parted_m: f64,
-    ) -> Result<Self, ClearanceSettingsError> {
-        if !(1e-12..=1e-2).contains(&tolerance_m) {
-            return Err(ClearanceSettingsError::Tolerance { value: tolerance_m });
+    /// The span is none, or the motion not known at its start or not finite on it.
+    pub fn new<M: Motion>(
+        payload: &Outline,
+        stage: &Outline,
+        motion: &mut M,
+        from_s: f64,
+        to_s: f64,
+        settings: &ClearanceSettings,
+    ) -> Result<Self, ClearanceError> {
+        if !(from_s.is_finite() && to_s.is_finite() && from_s <= to_s) {
+            return Err(ClearanceError::Span { from: from_s, to: to_s });
         }
-        // Decimal inputs such as 1e-9 and 1e-7 are to pass.
-        let least = 100.0 * tolerance_m;
-        if !(touch_m >= least * (1.0 - 1e-12) && touch_m.is_finite()) {
-            return Err(ClearanceSettingsError::Touch { value: touch_m, least });
+        // The start itself has to be known.
+        let until = motion.known_until_s().min(to_s).max(from_s);
+        let mut shapes = Vec::with_capacity(payload.shapes().len() * stage.shapes().len());
+        let mut looks = 0;
+        for (i, p) in payload.shapes().iter().enumerate() {
+            for (j, s) in stage.shapes().iter().enumerate() {
+                let mut search =
+                    Search::new(motion, p, s, settings.tolerance_m(), settings.touch_m());
+                let mut found = shape_clearance(&mut search, from_s, until, settings)?;
+                (found.payload_shape, found.stage_shape) = (i, j);
+                looks += search.nodes();
+                shapes.push(found);
+            }
         }
-        if !(parted_m > 2.0 * touch_m && parted_m.is_finite()) {
-            return Err(ClearanceSettingsError::Parted { value: parted_m, touch: touch_m });
+        let mut found = Self { shapes, undecided: None, looks };
+        if until < to_s && !found.is_final(payload, stage, motion, [until, to_s]) {
+            found.undecided = Some(until);
         }
-        Ok(Self { tolerance: tolerance_m, touch: touch_m, parted: parted_m })
+        Ok(found)
     }
 
-    /// Tolerance of the smallest distance, m.
-    #[must_use]
-    pub fn tolerance_m(&self) -> f64 {
-        self.tolerance
+    /// Whether the rest of the span cannot tell something else than what was found: the bodies have
+    /// touched already, or the spheres around them stay farther apart than they have come.
+    fn is_final<M: Motion>(
+        &self,
+        payload: &Outline,
+        stage: &Outline,
+        motion: &mut M,
+        [from, to]: [f64; 2],
+    ) -> bool {
+        if self.contact_s().is_some() {
+            return true;
+        }
+        let Some(least) = motion.least_offset(from, to) else { return false };
+        let reach = payload.bounding_radius_m() + stage.bounding_radius_m();
+        let nearest = self.closest().map_or(0.0, Approach::distance_m);
+        let parted = self.shapes.iter().all(|s| s.counts_from.is_some());
+        parted && least - reach > nearest
     }
 
-    /// Distance up to which shapes touch, m.
+    /// Every shape of the payload with every shape of the stage, the payload's in the outer order.
     #[must_use]
-    pub fn touch_m(&self) -> f64 {
-        self.touch
+    pub fn shapes(&self) -> &[ShapeClearance] {
+        &self.shapes
     }
 
-    /// Distance from which shapes that touched at the start have parted, m.
+    /// The closest approach of all shapes: the first contact in time of any two, mated ones after
+    /// having parted, with distance 0; where there is none, the smallest distance of two that are not
+    /// mated. None where all are mated and do not touch again: their distance as they part is no
+    /// clearance.
     #[must_use]
-    pub fn parted_m(&self) -> f64 {
-        self.parted
+    pub fn closest(&self) -> Option<&Approach> {
+        self.closest_shapes().and_then(ShapeClearance::closest)
+    }
+
+    /// The shapes whose approach is the closest.
+    #[must_use]
+    pub fn closest_shapes(&self) -> Option<&ShapeClearance> {
+        let first = |of: fn(&ShapeClearance) -> Option<f64>| {
+            let all = self.shapes.iter().filter_map(|s| Some((of(s)?, s)));
+            all.reduce(|a, b| if b.0 < a.0 { b } else { a }).map(|(_, shapes)| shapes)
+        };
+        let apart = |s: &ShapeClearance| s.closest.filter(|_| !s.mated).map(|a| a.distance);
+        first(|s| s.contact).or_else(|| first(apart))
+    }
+
+    /// From when on the bodies could come nearer, or touch, and this is not known, s: where the motion
+    /// ends before the span does. None if the whole span is decided.
+    #[must_use]
+    pub fn undecided_from_s(&self) -> Option<f64> {
+        self.undecided
+    }
+
+    /// When any shapes first touch, mated ones after having parted, s.
+    #[must_use]
+    pub fn contact_s(&self) -> Option<f64> {
+        self.shapes.iter().filter_map(|s| s.contact).reduce(f64::min)
+    }
+
+    /// Instants and spans looked at.
+    #[must_use]
+    pub fn looks(&self) -> usize {
+        self.looks
     }
 }
 
@@ -215,132 +226,6 @@ impl ShapeClearance {
     }
 }
 
-/// Clearance of payload and stage over a span of time, shape by shape.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Clearance {
-    shapes: Vec<ShapeClearance>,
-    undecided: Option<f64>,
-    looks: usize,
-}
-
-impl Clearance {
-    /// The smallest distance of two outlines over [from, to] (s), and whether they touch.
-    ///
-    /// # Definition
-    /// For each shape of the payload and each of the stage, the least distance of their points over
-    /// the span, exact to the tolerance and with the proof of it; they touch when it is at most the
-    /// touch of the settings, and what comes after the first contact does not count, for then the
-    /// motion would be another one.
-    ///
-    /// Shapes that touch when the span begins are mated: rings on each other, pads on springs. They
-    /// count from when they have parted, and a later contact is a recontact. Their smallest distance
-    /// is that of parting, which says nothing of the bodies: [`Clearance::closest`] takes none but
-    /// their contacts.
-    ///
-    /// A motion that ends before the span does ([`Motion::known_until_s`]) is followed to its end;
-    /// [`Clearance::undecided_from_s`] says so if the rest of the span could tell something else.
-    ///
-    /// # Algorithm
-    /// Branch and bound over time; see `docs/models/clearance.md`.
-    ///
-    /// # Errors
-    /// The span is none, or the motion not known at its start or not finite on it.
-    pub fn new<M: Motion>(
-        payload: &Outline,
-        stage: &Outline,
-        motion: &mut M,
-        from_s: f64,
-        to_s: f64,
-        settings: &ClearanceSettings,
-    ) -> Result<Self, ClearanceError> {
-        if !(from_s.is_finite() && to_s.is_finite() && from_s <= to_s) {
-            return Err(ClearanceError::Span { from: from_s, to: to_s });
-        }
-        // The start itself has to be known.
-        let until = motion.known_until_s().min(to_s).max(from_s);
-        let mut shapes = Vec::with_capacity(payload.shapes().len() * stage.shapes().len());
-        let mut looks = 0;
-        for (i, p) in payload.shapes().iter().enumerate() {
-            for (j, s) in stage.shapes().iter().enumerate() {
-                let mut search = Search::new(motion, p, s, settings.tolerance, settings.touch);
-                let mut found = shape_clearance(&mut search, from_s, until, settings)?;
-                (found.payload_shape, found.stage_shape) = (i, j);
-                looks += search.nodes();
-                shapes.push(found);
-            }
-        }
-        let mut found = Self { shapes, undecided: None, looks };
-        if until < to_s && !found.is_final(payload, stage, motion, [until, to_s]) {
-            found.undecided = Some(until);
-        }
-        Ok(found)
-    }
-
-    /// Whether the rest of the span cannot tell something else than what was found: the bodies have
-    /// touched already, or the spheres around them stay farther apart than they have come.
-    fn is_final<M: Motion>(
-        &self,
-        payload: &Outline,
-        stage: &Outline,
-        motion: &mut M,
-        [from, to]: [f64; 2],
-    ) -> bool {
-        if self.contact_s().is_some() {
-            return true;
-        }
-        let Some(least) = motion.least_offset(from, to) else { return false };
-        let reach = payload.bounding_radius_m() + stage.bounding_radius_m();
-        let nearest = self.closest().map_or(0.0, Approach::distance_m);
-        let parted = self.shapes.iter().all(|s| s.counts_from.is_some());
-        parted && least - reach > nearest
-    }
-
-    /// Every shape of the payload with every shape of the stage, the payload's in the outer order.
-    #[must_use]
-    pub fn shapes(&self) -> &[ShapeClearance] {
-        &self.shapes
-    }
-
-    /// The closest approach of all shapes: the first contact in time of any two, mated ones after
-    /// having parted, with distance 0; where there is none, the smallest distance of two that are not
-    /// mated. None where all are mated and do not touch again: their distance as they part is no
-    /// clearance.
-    #[must_use]
-    pub fn closest(&self) -> Option<&Approach> {
-        self.closest_shapes().and_then(ShapeClearance::closest)
-    }
-
-    /// The shapes whose approach is the closest.
-    #[must_use]
-    pub fn closest_shapes(&self) -> Option<&ShapeClearance> {
-        let first = |of: fn(&ShapeClearance) -> Option<f64>| {
-            let all = self.shapes.iter().filter_map(|s| Some((of(s)?, s)));
-            all.reduce(|a, b| if b.0 < a.0 { b } else { a }).map(|(_, shapes)| shapes)
-        };
-        let apart = |s: &ShapeClearance| s.closest.filter(|_| !s.mated).map(|a| a.distance);
-        first(|s| s.contact).or_else(|| first(apart))
-    }
-
-    /// From when on the bodies could come nearer, or touch, and this is not known, s: where the motion
-    /// ends before the span does. None if the whole span is decided.
-    #[must_use]
-    pub fn undecided_from_s(&self) -> Option<f64> {
-        self.undecided
-    }
-
-    /// When any shapes first touch, mated ones after having parted, s.
-    #[must_use]
-    pub fn contact_s(&self) -> Option<f64> {
-        self.shapes.iter().filter_map(|s| s.contact).reduce(f64::min)
-    }
-
-    /// Instants and spans looked at.
-    #[must_use]
-    pub fn looks(&self) -> usize {
-        self.looks
-    }
-}
-
 /// Steps in which no parting of mated shapes can be missed.
 const MOST_STEPS: usize = 20_000;
 /// Even steps in the rest of the span.
@@ -353,7 +238,7 @@ fn shape_clearance<M: Motion>(
     settings: &ClearanceSettings,
 ) -> Result<ShapeClearance, ClearanceError> {
     let mut first = search.begin(from, to)?;
-    let mated = first.distance <= settings.touch;
+    let mated = first.distance <= settings.touch_m();
     let start = if mated { parting(search, from, to, settings)? } else { Some(from) };
     let mut result = ShapeClearance {
         payload_shape: 0,
@@ -369,11 +254,11 @@ fn shape_clearance<M: Motion>(
     if mated {
         first = search.begin(start, to)?;
     }
-    let smallest = search.finish(first, settings.touch)?;
+    let smallest = search.finish(first, settings.touch_m())?;
     let Seen { distance, time, points, .. } = smallest.seen;
-    if distance <= settings.touch {
+    if distance <= settings.touch_m() {
         let Seen { time, points, .. } =
-            search.first_contact(start, smallest.seen, settings.touch)?;
+            search.first_contact(start, smallest.seen, settings.touch_m())?;
         result.closest = Some(Approach { distance: 0.0, at_least: 0.0, time, points });
         result.contact = Some(time);
     } else {
@@ -397,14 +282,14 @@ fn parting<M: Motion>(
     for step in 0.. {
         // Half a touch short is parted: the last bit would take for ever.
         let seen = search.begin(time, time)?;
-        let missing = settings.parted - seen.distance + seen.depth;
-        if missing <= 0.5 * settings.touch {
+        let missing = settings.parted_m() - seen.distance + seen.depth;
+        if missing <= 0.5 * settings.touch_m() {
             return Ok(Some(time));
         }
         if step == MOST_STEPS {
             shortest = (to - time) / MOST_EVEN_STEPS as f64;
         }
-        let together = search.together(&seen, time, to, settings.parted)?;
+        let together = search.together(&seen, time, to, settings.parted_m())?;
         let next = time + (missing / rate).max(together).max(shortest);
         if !(next < to) {
             break;

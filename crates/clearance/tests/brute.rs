@@ -2,8 +2,8 @@
 //! where the bounds on the motion, on which the proofs stand, are too small.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use gyradius_separation::{
-    Approach, BodyState, Clearance, ClearanceSettings, Coast, Motion, MotionLimits,
+use gyradius_clearance::{
+    Approach, Clearance, ClearanceSettings, Coast, Motion, MotionLimits, RigidState,
 };
 use nalgebra::UnitQuaternion;
 use proptest::prelude::*;
@@ -123,11 +123,11 @@ struct Swing {
 }
 
 impl Motion for Swing {
-    fn states(&mut self, t: f64) -> Option<[BodyState; 2]> {
+    fn states(&mut self, t: f64) -> Option<[RigidState; 2]> {
         let (s, c) = (self.pace * t).sin_cos();
         let (a, b) = (self.turning * t).sin_cos();
         let angle = self.turn * a;
-        let state = |position, velocity, axis: V| BodyState {
+        let state = |position, velocity, axis: V| RigidState {
             position,
             velocity,
             attitude: UnitQuaternion::from_scaled_axis(axis * angle),

@@ -1,3 +1,5 @@
+//! Trigonometric polynomials, and whether one is positive at all angles.
+
 use std::sync::LazyLock;
 
 /// Harmonics of a trigonometric polynomial beyond the constant.

@@ -4,11 +4,13 @@ use nalgebra::Vector3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::arc::Arc;
-use super::motion::{Frame, Motion, MotionLimits};
-use super::outline::Shape;
-use super::part::{Look, Part, Seen, parts};
-use super::report::ClearanceError;
+use crate::{
+    arc::Arc,
+    error::ClearanceError,
+    motion::{Frame, Motion, MotionLimits},
+    outline::Shape,
+    part::{Look, Part, Seen, parts},
+};
 
 /// Nodes looked at before a search ends with what it has. Far above any case met.
 const MOST_NODES: usize = 2_000_000;

@@ -13,9 +13,11 @@
 
 use nalgebra::Vector3;
 
-use super::motion::{Frame, MotionLimits};
-use super::outline::Ring;
-use super::trigonometric::{Sign, Trigonometric};
+use crate::{
+    motion::{Frame, MotionLimits},
+    outline::Ring,
+    trigonometric::{Sign, Trigonometric},
+};
 
 /// c + u cos θ + w sin θ, body axes: a ring, or a point.
 #[derive(Clone, Copy, Debug)]
@@ -269,9 +271,9 @@ fn aside(normal: &Vector3<f64>, x: &Triple) -> Triple {
 
 #[cfg(test)]
 mod tests {
-    use super::super::outline::{Kind, Shape};
     use super::*;
-    use crate::BodyState;
+    use crate::RigidState;
+    use crate::outline::{Kind, Shape};
     use nalgebra::UnitQuaternion;
     use proptest::prelude::*;
 
@@ -283,10 +285,10 @@ mod tests {
     }
 
     fn frame(offset: [f64; 3], turn: [f64; 3]) -> Frame {
-        let state = |position: Vector3<f64>, turn: Vector3<f64>| BodyState {
+        let state = |position: Vector3<f64>, turn: Vector3<f64>| RigidState {
             position,
             attitude: UnitQuaternion::from_scaled_axis(turn),
-            ..BodyState::default()
+            ..RigidState::default()
         };
         let stage = state(Vector3::zeros(), Vector3::zeros());
         Frame::new(&[state(offset.into(), turn.into()), stage]).unwrap()

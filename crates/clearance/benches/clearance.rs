@@ -3,20 +3,21 @@
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on fails")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{
-    Body, BodyState, Clearance, ClearanceSettings, Coast, MovingBody, Outline, Separation,
-    Settings, Shape, Spring,
+use gyradius_clearance::{
+    Clearance, ClearanceSettings, Coast, FreeBody, Outline, RigidState, Shape,
 };
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use std::hint::black_box;
 
 type V = Vector3<f64>;
 
-fn moving(moments: [f64; 3], position: V, velocity: V, angular_velocity: V) -> MovingBody {
-    let inertia = InertiaMatrix::from_entries(moments, [20.0, 10.0, -20.0]).unwrap();
-    let state = BodyState { position, velocity, angular_velocity, ..BodyState::default() };
-    Body::new(1e4, inertia).unwrap().moving(state)
+fn free(state: RigidState, [a, b, c]: [f64; 3], [p, q, r]: [f64; 3]) -> FreeBody {
+    FreeBody::new(state, Matrix3::new(a, p, q, p, b, r, q, r, c)).unwrap()
+}
+
+fn moving(moments: [f64; 3], position: V, velocity: V, angular_velocity: V) -> FreeBody {
+    let state = RigidState { position, velocity, angular_velocity, ..RigidState::default() };
+    free(state, moments, [20.0, 10.0, -20.0])
 }
 
 /// A prism of `sides` sides about z.
@@ -33,20 +34,32 @@ fn ring(z: f64, radius: f64) -> Outline {
     Shape::ring(V::z() * z, V::z(), radius).unwrap().into()
 }
 
-/// After the separation of Peck (2003), Table 1.
-fn paper() -> [MovingBody; 2] {
-    let payload = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0]).unwrap();
-    let stage = InertiaMatrix::from_entries([6.7e3, 6.7e3, 2e3], [0.0, 20.0, -20.0]).unwrap();
-    let springs = [(1e5, 1.0, 1.0), (1e5, -1.0, 1.0), (3e4, 1.0, -1.0), (3e4, -1.0, -1.0)];
-    let springs = springs
-        .map(|(k, x, y)| Spring::new(k, 0.1, V::new(x, y, -0.9), V::new(x, y, 0.9)).unwrap());
-    let separation = Separation::new(
-        Body::new(1e4, payload).unwrap().at(V::z()),
-        Body::new(4e3, stage).unwrap().at(-V::z()),
-        &springs,
+/// The last release of the separation of Peck (2003), Table 1, as `gyradius-separation` integrates it.
+fn paper() -> [FreeBody; 2] {
+    let state = |position: [f64; 3], velocity: [f64; 3], [i, j, k, w]: [f64; 4], rate: [f64; 3]| {
+        RigidState {
+            position: position.into(),
+            velocity: velocity.into(),
+            attitude: UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k)),
+            angular_velocity: rate.into(),
+        }
+    };
+    let payload = state(
+        [4.391377e-6, 2.2446779e-4, 1.0469084],
+        [1.8137802e-5, 1.7523087e-3, 0.26113116],
+        [1.887411e-2, -7.628484e-5, -4.709204e-5, 0.9998219],
+        [0.15930837, -4.1853007e-4, -6.2946844e-4],
     );
-    let outcome = separation.unwrap().run(&Settings::default()).unwrap();
-    [*outcome.payload(), *outcome.stage()]
+    let stage = state(
+        [-1.0978443e-5, -5.6116946e-4, -1.117271],
+        [-4.5344504e-5, -4.3807717e-3, -0.6528279],
+        [-1.3745084e-2, -1.461533e-5, 1.8189134e-4, 0.9999055],
+        [-0.11353697, -2.3887004e-4, 1.8046013e-3],
+    );
+    [
+        free(payload, [5e3, 4e3, 3e3], [20.0, 2.0, -50.0]),
+        free(stage, [6.7e3, 6.7e3, 2e3], [0.0, 20.0, -20.0]),
+    ]
 }
 
 fn both(a: &Outline, b: &Outline) -> Outline {
@@ -67,7 +80,7 @@ fn clearance(c: &mut Criterion) {
         moving([5e3, 4e3, 3e3], V::z() * 1.1, V::z() * 0.06, V::new(0.15, 0.05, 0.0)),
         moving([6.7e3, 6.7e3, 2e3], -V::z(), V::zeros(), V::zeros()),
     ];
-    let cases: [(&str, &[MovingBody; 2], Outline, Outline); 11] = [
+    let cases: [(&str, &[FreeBody; 2], Outline, Outline); 11] = [
         ("paper: spacecraft and adapter ring", &parted, spacecraft.clone(), ring(0.95, 0.6)),
         (
             "paper: spacecraft and stage",

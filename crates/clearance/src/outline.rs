@@ -1,3 +1,5 @@
+//! What of a body can touch the other: points, hulls and rings.
+
 use nalgebra::{Unit, Vector3};
 use std::sync::Arc;
 
@@ -6,46 +8,6 @@ const FARTHEST: f64 = 1e6;
 /// Most points of an outline, those of all its shapes together: every point of one body may have to
 /// be held against every point of the other.
 const MOST_POINTS: usize = 1000;
-
-/// Why shapes are none, or make no outline.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum OutlineError {
-    /// A coordinate is not finite or absurdly far out.
-    #[error(
-        "{field} has coordinate {value:?} m: it must be within {FARTHEST:e} m of the mass centre"
-    )]
-    Coordinate {
-        /// Which field.
-        field: &'static str,
-        /// The coordinate, m.
-        value: f64,
-    },
-    /// The axis of a ring has no direction.
-    #[error("ring axis of length {norm:?}: it must be finite and longer than 1e-150")]
-    Axis {
-        /// Its length.
-        norm: f64,
-    },
-    /// The radius of a ring is not positive, or absurdly large.
-    #[error("ring radius = {value:?} m: it must be positive and at most {FARTHEST:e} m")]
-    Radius {
-        /// The radius, m.
-        value: f64,
-    },
-    /// A shape has no points, or an outline no shapes.
-    #[error("{field} is empty: it must hold at least one entry")]
-    Empty {
-        /// Which field.
-        field: &'static str,
-    },
-    /// More points than can be compared in reasonable time.
-    #[error("{count} points in an outline: at most {MOST_POINTS} are allowed")]
-    TooManyPoints {
-        /// How many.
-        count: usize,
-    },
-}
 
 /// A circle fixed in a body: an interface ring, the lip of a nozzle. The curve, not the disc: other
 /// parts may pass through it.
@@ -323,6 +285,46 @@ impl From<Shape> for Fields {
             }
         }
     }
+}
+
+/// Why shapes are none, or make no outline.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OutlineError {
+    /// A coordinate is not finite or absurdly far out.
+    #[error(
+        "{field} has coordinate {value:?} m: it must be within {FARTHEST:e} m of the mass centre"
+    )]
+    Coordinate {
+        /// Which field.
+        field: &'static str,
+        /// The coordinate, m.
+        value: f64,
+    },
+    /// The axis of a ring has no direction.
+    #[error("ring axis of length {norm:?}: it must be finite and longer than 1e-150")]
+    Axis {
+        /// Its length.
+        norm: f64,
+    },
+    /// The radius of a ring is not positive, or absurdly large.
+    #[error("ring radius = {value:?} m: it must be positive and at most {FARTHEST:e} m")]
+    Radius {
+        /// The radius, m.
+        value: f64,
+    },
+    /// A shape has no points, or an outline no shapes.
+    #[error("{field} is empty: it must hold at least one entry")]
+    Empty {
+        /// Which field.
+        field: &'static str,
+    },
+    /// More points than can be compared in reasonable time.
+    #[error("{count} points in an outline: at most {MOST_POINTS} are allowed")]
+    TooManyPoints {
+        /// How many.
+        count: usize,
+    },
 }
 
 #[cfg(test)]

@@ -2,9 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::convex::direction;
-use super::motion::Frame;
-use super::outline::Ring;
+use crate::{convex::direction, motion::Frame, outline::Ring};
 
 /// An arc of a ring: angles from middle − half to middle + half.
 #[derive(Clone, Copy, Debug)]
@@ -117,18 +115,18 @@ impl RingAndHull<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::motion::MotionLimits;
-    use super::super::outline::{Kind, Shape};
-    use super::super::part::parts;
     use super::*;
-    use crate::BodyState;
+    use crate::RigidState;
+    use crate::motion::MotionLimits;
+    use crate::outline::{Kind, Shape};
+    use crate::part::parts;
     use nalgebra::UnitQuaternion;
     use proptest::prelude::*;
 
     type V = Vector3<f64>;
 
     fn frame(states: [(V, [f64; 3], V, V); 2]) -> Frame {
-        Frame::new(&states.map(|(position, turn, velocity, rate)| BodyState {
+        Frame::new(&states.map(|(position, turn, velocity, rate)| RigidState {
             position,
             velocity,
             attitude: UnitQuaternion::from_scaled_axis(turn.into()),

@@ -1,9 +1,8 @@
 //! Shapes as the tests know them, and their distance found in another way than the program's.
 #![allow(dead_code, reason = "not every test uses everything")]
 
-use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{Body, BodyState, MovingBody, Outline, Shape};
-use nalgebra::{DMatrix, DVector, Vector3};
+use gyradius_clearance::{FreeBody, Outline, RigidState, Shape};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use proptest::prelude::*;
 
 pub(crate) type V = Vector3<f64>;
@@ -39,7 +38,7 @@ impl Form {
     }
 
     /// Convex pieces in inertial axes, and how many times as many for a ring cut finer.
-    pub(crate) fn pieces(&self, state: &BodyState, count: i32) -> Vec<Vec<V>> {
+    pub(crate) fn pieces(&self, state: &RigidState, count: i32) -> Vec<Vec<V>> {
         let place = |x: &V| state.position + state.attitude * x;
         match self {
             Self::Points(p) => p.iter().map(|x| vec![place(x)]).collect(),
@@ -126,7 +125,7 @@ pub(crate) fn nearest(corners: &[V]) -> f64 {
 }
 
 /// Distance at an instant, from above: rings by points on them, then about the nearest.
-pub(crate) fn distance(forms: [&Form; 2], states: &[BodyState; 2]) -> f64 {
+pub(crate) fn distance(forms: [&Form; 2], states: &[RigidState; 2]) -> f64 {
     let between = |a: &[V], b: &[V]| {
         let corners: Vec<V> = a.iter().flat_map(|p| b.iter().map(move |q| p - q)).collect();
         nearest(&corners)
@@ -181,13 +180,12 @@ pub(crate) fn distance(forms: [&Form; 2], states: &[BodyState; 2]) -> f64 {
     best
 }
 
-pub(crate) fn body(moments: [f64; 3], position: V, velocity: V, angular_velocity: V) -> MovingBody {
-    let inertia = InertiaMatrix::from_entries(moments, [0.0; 3]).unwrap();
-    let state = BodyState { position, velocity, angular_velocity, ..BodyState::default() };
-    Body::new(100.0, inertia).unwrap().moving(state)
+pub(crate) fn body(moments: [f64; 3], position: V, velocity: V, angular_velocity: V) -> FreeBody {
+    let state = RigidState { position, velocity, angular_velocity, ..RigidState::default() };
+    FreeBody::new(state, Matrix3::from_diagonal(&moments.into())).unwrap()
 }
 
-pub(crate) fn at_rest() -> MovingBody {
+pub(crate) fn at_rest() -> FreeBody {
     body([1.0; 3], V::zeros(), V::zeros(), V::zeros())
 }
 

@@ -1,6 +1,12 @@
+//! Two bodies that nothing pushes any more: attitudes as power series, and bounds on their rates.
+
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use crate::{BodyState, Motion, MotionLimits, MovingBody};
+use crate::{
+    free_body::FreeBody,
+    motion::{Motion, MotionLimits},
+    state::RigidState,
+};
 
 /// Degree of the power series of a step.
 const DEGREE: usize = 18;
@@ -10,7 +16,7 @@ const SHARE: f64 = 0.14;
 /// Most steps of a body, about 7,000 rad of turning: what is computed is kept.
 const MOST_STEPS: usize = 30_000;
 
-/// Payload and stage after the last release: no forces, no torques.
+/// Payload and stage when nothing pushes them any more: no forces, no torques.
 ///
 /// # Algorithm
 /// Mass centres move uniformly. Each attitude is a power series of degree 18 in steps of at most
@@ -25,7 +31,7 @@ const MOST_STEPS: usize = 30_000;
 #[derive(Clone, Debug)]
 pub struct Coast {
     start: f64,
-    bodies: [FreeBody; 2],
+    bodies: [FreeMotion; 2],
     offset: Vector3<f64>,
     velocity: Vector3<f64>,
 }
@@ -33,18 +39,18 @@ pub struct Coast {
 impl Coast {
     /// From the given states at the time `start_s` (s) on. Backwards it is not known.
     #[must_use]
-    pub fn new(payload: &MovingBody, stage: &MovingBody, start_s: f64) -> Self {
+    pub fn new(payload: &FreeBody, stage: &FreeBody, start_s: f64) -> Self {
         Self {
             start: start_s,
-            bodies: [FreeBody::new(payload), FreeBody::new(stage)],
-            offset: payload.state().position - stage.state().position,
-            velocity: payload.state().velocity - stage.state().velocity,
+            bodies: [FreeMotion::new(payload), FreeMotion::new(stage)],
+            offset: payload.state.position - stage.state.position,
+            velocity: payload.state.velocity - stage.state.velocity,
         }
     }
 }
 
 impl Motion for Coast {
-    fn states(&mut self, time_s: f64) -> Option<[BodyState; 2]> {
+    fn states(&mut self, time_s: f64) -> Option<[RigidState; 2]> {
         let t = time_s - self.start;
         let [payload, stage] = &mut self.bodies;
         Some([payload.at(t)?, stage.at(t)?])
@@ -81,9 +87,10 @@ impl Motion for Coast {
     }
 }
 
+/// One of the bodies, computed as far as it was asked for.
 #[derive(Clone, Debug)]
-struct FreeBody {
-    state: BodyState,
+struct FreeMotion {
+    state: RigidState,
     inverse: Matrix3<f64>,
     /// Bounds on angular speed and acceleration.
     fastest: f64,
@@ -92,11 +99,11 @@ struct FreeBody {
     series: Vec<Series>,
 }
 
-impl FreeBody {
-    fn new(body: &MovingBody) -> Self {
-        let state = *body.state();
-        let momentum = body.spin_angular_momentum();
-        let i = body.body().inertia().principal_axes().moments();
+impl FreeMotion {
+    fn new(body: &FreeBody) -> Self {
+        let state = body.state;
+        let momentum = body.inertia * state.angular_velocity;
+        let i = body.principal_moments;
         let smallest = i.into_iter().fold(f64::INFINITY, f64::min);
         let energy2 = momentum.dot(&state.angular_velocity).max(0.0);
         // A hair above, for the rounding of the moments.
@@ -107,7 +114,7 @@ impl FreeBody {
         let growth = skew / 3.0_f64.sqrt() * (1.0 + 1e-9);
         let hardest = growth * fastest * fastest;
         let step = (TURN / fastest).min(SHARE / (growth * fastest)).min(1e9);
-        let inverse = *body.body().inverse_inertia();
+        let inverse = body.inverse_inertia;
         Self { state, inverse, fastest, hardest, step, series: Vec::new() }
     }
 
@@ -116,7 +123,7 @@ impl FreeBody {
         self.step * (MOST_STEPS - 1) as f64
     }
 
-    fn at(&mut self, t: f64) -> Option<BodyState> {
+    fn at(&mut self, t: f64) -> Option<RigidState> {
         let index = (t / self.step).floor();
         // Written so that NaN is refused: of the time, and of a step that is none.
         if !(t >= 0.0 && index < MOST_STEPS as f64) {
@@ -134,7 +141,7 @@ impl FreeBody {
             self.series.push(Series::new(&q, &h, &self.inverse));
         }
         let (attitude, momentum) = self.series[index].at(t - index as f64 * self.step);
-        Some(BodyState {
+        Some(RigidState {
             position: self.state.position + self.state.velocity * t,
             velocity: self.state.velocity,
             attitude,
@@ -189,20 +196,18 @@ impl Series {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Body;
-    use gyradius_inertia::InertiaMatrix;
     use proptest::prelude::*;
 
     type V = Vector3<f64>;
 
-    fn body(moments: [f64; 3], products: [f64; 3], w: [f64; 3]) -> MovingBody {
-        let inertia = InertiaMatrix::from_entries(moments, products).unwrap();
-        let state = BodyState {
+    fn body(moments: [f64; 3], products: [f64; 3], w: [f64; 3]) -> FreeBody {
+        let [[a, b, c], [p, q, r]] = [moments, products];
+        let state = RigidState {
             angular_velocity: w.into(),
             velocity: Vector3::new(0.1, -0.2, 0.5),
-            ..BodyState::default()
+            ..RigidState::default()
         };
-        Body::new(10.0, inertia).unwrap().moving(state)
+        FreeBody::new(state, Matrix3::new(a, p, q, p, b, r, q, r, c)).unwrap()
     }
 
     /// Axisymmetric: the body precesses about H at H/I_t and turns about its axis besides.
@@ -220,7 +225,7 @@ mod tests {
             assert!(state.attitude.angle_to(&exact) < 2e-13 * (1.0 + t), "{t}");
             let w = Vector3::new(0.4 * (relative * t).cos(), -0.4 * (relative * t).sin(), 2.0);
             assert!((state.angular_velocity - w).norm() < 1e-12 * (1.0 + t));
-            assert!((state.position - moving.state().velocity * t).norm() < 1e-13);
+            assert!((state.position - moving.state.velocity * t).norm() < 1e-13);
         }
         assert!(coast.states(4.9).is_none() && coast.offset(4.9).is_none());
         for t in [f64::NAN, f64::INFINITY, 1e9] {
@@ -245,10 +250,9 @@ mod tests {
             (V::new(2.0, 1.0, 0.0), V::zeros()),
             (V::zeros(), V::x()),
         ] {
-            let state = BodyState { position, velocity, ..BodyState::default() };
-            let inertia = InertiaMatrix::from_entries([1.0; 3], [0.0; 3]).unwrap();
-            let moving = Body::new(1.0, inertia).unwrap().moving(state);
-            let still = Body::new(1.0, inertia).unwrap().moving(BodyState::default());
+            let state = RigidState { position, velocity, ..RigidState::default() };
+            let moving = FreeBody::new(state, Matrix3::identity()).unwrap();
+            let still = FreeBody::new(RigidState::default(), Matrix3::identity()).unwrap();
             let mut coast = Coast::new(&moving, &still, 0.0);
             for (from, to) in [(0.0, 10.0), (0.0, 3.0), (6.0, 9.0), (4.0, 4.0)] {
                 let at = |i: u32| from + (to - from) * f64::from(i) / 1000.0;
@@ -271,12 +275,12 @@ mod tests {
         ) {
             // Not all realizable, which the motion does not ask.
             let moving = body(moments, [0.2, -0.1, 0.15], w);
-            let inertia = *moving.body().inertia().matrix();
+            let inertia = moving.inertia;
             let mut coast = Coast::new(&moving, &moving, 0.0);
             let mut fine = coast.clone();
             fine.bodies[0].step *= 0.5;
             let limits = coast.limits(0.0, 30.0);
-            let h0 = inertia * moving.state().angular_velocity;
+            let h0 = inertia * moving.state.angular_velocity;
             let mut before: Option<(f64, Vector3<f64>)> = None;
             for i in 0..300 {
                 let t = 0.1 * f64::from(i);
@@ -284,7 +288,7 @@ mod tests {
                 let w = state.angular_velocity;
                 let h = state.attitude * (inertia * w);
                 prop_assert!((h - h0).norm() < 1e-11 * h0.norm());
-                let energy = w.dot(&(inertia * w)) / moving.state().angular_velocity.dot(&h0);
+                let energy = w.dot(&(inertia * w)) / moving.state.angular_velocity.dot(&h0);
                 prop_assert!((energy - 1.0).abs() < 1e-11);
                 let [other, _] = fine.states(t).unwrap();
                 prop_assert!(state.attitude.angle_to(&other.attitude) < 1e-10);

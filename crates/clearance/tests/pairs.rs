@@ -2,7 +2,7 @@
 //! also of mated shapes, are clearance zero at the first of them in time.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use gyradius_separation::{
+use gyradius_clearance::{
     Clearance, ClearanceSettings, Coast, Motion, Outline, Shape, ShapeClearance,
 };
 use proptest::prelude::*;

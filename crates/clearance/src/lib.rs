@@ -1,0 +1,27 @@
+//! The smallest distance of two rigid bodies in motion, with proof, and their first contact.
+//!
+#![doc = include_str!("../README.md")]
+
+mod arc;
+mod circle;
+mod clearance;
+mod coast;
+mod convex;
+mod error;
+mod free_body;
+mod motion;
+mod outline;
+mod part;
+mod search;
+mod settings;
+mod state;
+mod trigonometric;
+
+pub use clearance::{Approach, Clearance, ShapeClearance};
+pub use coast::Coast;
+pub use error::ClearanceError;
+pub use free_body::{FreeBody, FreeBodyError};
+pub use motion::{Motion, MotionLimits};
+pub use outline::{Outline, OutlineError, Shape};
+pub use settings::{ClearanceSettings, ClearanceSettingsError};
+pub use state::RigidState;
