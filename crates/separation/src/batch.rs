@@ -1,3 +1,5 @@
+//! Many runs at a time, in vector lanes.
+
 use std::borrow::Borrow;
 
 use crate::{
@@ -50,7 +52,7 @@ impl Batch {
                 let over = stepped.is_err() || track.all_released();
                 if over && let Some((i, track)) = slot.take() {
                     let state = self.integrator.state(lane);
-                    result(i, stepped.map(|()| track.outcome(&state, &self.settings)));
+                    result(i, stepped.map(|()| Outcome::new(track, &state, &self.settings)));
                 }
             }
         }

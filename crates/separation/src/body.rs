@@ -1,3 +1,5 @@
+//! Rigid bodies and their states.
+
 use gyradius_inertia::InertiaMatrix;
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 

@@ -1,4 +1,6 @@
-use crate::{MovingBody, Outcome, Separation};
+//! Where the energy of the springs has gone.
+
+use crate::MovingBody;
 
 /// Where the energy of the springs has gone, J.
 ///
@@ -18,15 +20,12 @@ pub struct EnergySplit {
 }
 
 impl EnergySplit {
-    /// Of a separation and what became of it.
-    #[must_use]
-    pub fn new(separation: &Separation, outcome: &Outcome) -> Self {
-        let before = [separation.payload(), separation.stage()];
-        let after = [outcome.payload(), outcome.stage()];
-        let (was, is) = (translations(before), translations(after));
+    /// Of the energy stored at the start, J, and payload and stage at the start and after the last release.
+    pub(crate) fn new(stored: f64, before: &[MovingBody; 2], after: &[MovingBody; 2]) -> Self {
+        let (was, is) = (translations(before.each_ref()), translations(after.each_ref()));
         let rotation = |i: usize| after[i].rotational_energy() - before[i].rotational_energy();
         Self {
-            stored: separation.stored_energy(),
+            stored,
             payload_translation: is[0] - was[0],
             payload_rotation: rotation(0),
             stage_translation: is[1] - was[1],
@@ -89,8 +88,7 @@ pub(crate) fn translations(bodies: [&MovingBody; 2]) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::{Body, BodyState, Settings, Spring};
+    use crate::{Body, BodyState, Separation, Settings, Spring};
     use gyradius_inertia::InertiaMatrix;
     use nalgebra::Vector3;
 
@@ -116,7 +114,7 @@ mod tests {
             )
             .unwrap();
             let outcome = separation.run(&Settings::default()).unwrap();
-            let split = EnergySplit::new(&separation, &outcome);
+            let split = outcome.energy_split();
             // Velocities of 7.5 km/s carry 1e-12 m/s.
             let near = if speed > 100.0 { 1e-11 } else { 1e-13 };
             assert!((split.payload_translation_j() - 1.0).abs() < 4.0 * near, "{split:?}");
@@ -140,7 +138,7 @@ mod tests {
         )
         .unwrap();
         let outcome = separation.run(&Settings::default()).unwrap();
-        let split = outcome.energy_split(&separation);
+        let split = outcome.energy_split();
         assert!((split.stored_j() - 8.0).abs() < 1e-14, "{split:?}");
         let given = 0.5 * 800.0 * (0.1_f64 - 20.0 / 800.0).powi(2);
         assert!((split.total_j() - given).abs() < 1e-12, "{split:?}");
@@ -162,7 +160,7 @@ mod tests {
         )
         .unwrap();
         let outcome = separation.run(&Settings::default()).unwrap();
-        let split = EnergySplit::new(&separation, &outcome);
+        let split = outcome.energy_split();
         let shares = [1.0 / 12.0, 0.16 / 3.0, 1.0 / 5.0, 0.16 / 1.5];
         let whole: f64 = shares.iter().sum();
         let found = [

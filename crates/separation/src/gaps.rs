@@ -3,14 +3,8 @@
 use std::borrow::Borrow;
 
 use crate::{
-    RunError, Separation,
-    expansion::ORDER,
-    integrator::Integrator,
-    lanes::{Lanes, Packing},
-    polynomial::first_zero,
-    separation::TOUCHING,
-    state,
-    track::Track,
+    RunError, Separation, integrator::Integrator, lanes::Lanes, layout::ORDER, packing::Packing,
+    polynomial::first_zero, separation::TOUCHING, state, track::Track,
 };
 
 /// A spring that is shorter than its free length by more than this share of its stroke pushes no

@@ -1,9 +1,13 @@
+//! Steps of several runs: how far the series are good, which spring lets go, and when.
+
 use std::borrow::Borrow;
 
 use crate::{
     RunError, Separation, Settings,
-    expansion::{Expansion, ORDER, Rotor, STATE, STOPS, TERMS},
-    lanes::{Lanes, M3, Packing},
+    expansion::{Expansion, Rotor},
+    lanes::{Lanes, M3},
+    layout::{ORDER, STATE, STOPS, TERMS},
+    packing::Packing,
     polynomial::first_zero,
     separation::TOUCHING,
     spring_series::SpringSeries,
@@ -368,9 +372,9 @@ mod tests {
         }
         let (here, any) = (vector::Machine::new(), vector::Machine::BASELINE);
         assert_eq!(ends::<1>(here), ends::<1>(any));
-        let abreast = ends::<WIDTH>(here);
-        assert_eq!(abreast, ends::<WIDTH>(any));
-        assert_eq!(abreast[0], ends::<1>(here)[0]);
-        assert_ne!(abreast[0], abreast[1]);
+        let batch = ends::<WIDTH>(here);
+        assert_eq!(batch, ends::<WIDTH>(any));
+        assert_eq!(batch[0], ends::<1>(here)[0]);
+        assert_ne!(batch[0], batch[1]);
     }
 }

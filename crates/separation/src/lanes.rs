@@ -5,8 +5,6 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use crate::{abreast::Abreast, alone::Alone, products::Products};
-
 /// One number for each of `L` runs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lanes<const L: usize>(pub(crate) [f64; L]);
@@ -87,45 +85,6 @@ impl<const L: usize> SubAssign for Lanes<L> {
 
 /// Lanes that springs are computed in: runs of a batch, or springs of a run alone.
 pub(crate) const WIDTH: usize = 4;
-
-/// How runs and their springs share lanes. Springs are added in their order either way, so that a
-/// run comes to the same bits alone and in a batch.
-pub(crate) trait Packing<const L: usize>: Sized {
-    /// Coefficients that go into products.
-    type Products: Products<L>;
-    /// Springs of one run that go into the lanes side by side.
-    const SPRINGS: usize;
-    /// What all springs in the lanes share.
-    fn spread(self) -> Lanes<WIDTH>;
-    /// Adds what the springs in the lanes contribute.
-    fn collect(self, springs: Lanes<WIDTH>) -> Self;
-}
-
-impl Packing<1> for Lanes<1> {
-    type Products = Alone;
-    const SPRINGS: usize = WIDTH;
-    #[inline(always)]
-    fn spread(self) -> Lanes<WIDTH> {
-        Lanes::splat(self.0[0])
-    }
-    #[inline(always)]
-    fn collect(self, springs: Lanes<WIDTH>) -> Self {
-        Self([springs.0.iter().fold(self.0[0], |sum, x| sum + x)])
-    }
-}
-
-impl Packing<WIDTH> for Lanes<WIDTH> {
-    type Products = Abreast;
-    const SPRINGS: usize = 1;
-    #[inline(always)]
-    fn spread(self) -> Lanes<WIDTH> {
-        self
-    }
-    #[inline(always)]
-    fn collect(self, springs: Lanes<WIDTH>) -> Self {
-        self + springs
-    }
-}
 
 /// A vector, and a matrix by rows.
 pub(crate) type V3<const L: usize> = [Lanes<L>; 3];

@@ -39,8 +39,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod abreast;
-mod alone;
 mod batch;
 mod body;
 mod energy;
@@ -48,14 +46,17 @@ mod expansion;
 mod gaps;
 mod integrator;
 mod lanes;
+mod layout;
 mod metrics;
 mod nutation;
 mod outcome;
+mod packing;
 mod polynomial;
 mod products;
 mod root;
 mod rounding;
 mod run;
+mod run_error;
 mod separation;
 mod settings;
 mod snapshot;
@@ -71,7 +72,7 @@ pub use body::{Body, BodyError, BodyState, MovingBody};
 pub use energy::EnergySplit;
 pub use metrics::SpinMetrics;
 pub use outcome::Outcome;
-pub use run::RunError;
+pub use run_error::RunError;
 pub use separation::{Separation, SeparationError};
 pub use settings::{Settings, SettingsError};
 pub use snapshot::{Snapshot, SpringState};

@@ -1,25 +1,47 @@
 //! What a separation leaves: the bodies after the last release, and what is told of them.
 
 use nalgebra::{Unit, Vector3};
+use std::borrow::Borrow;
 
 use crate::{
-    EnergySplit, MovingBody, Separation, SpinMetrics,
+    BodyState, EnergySplit, MovingBody, Separation, Settings, SpinMetrics,
     metrics::angle_of,
     rounding::Rounding,
-    track::{Fate, Fates},
+    state::{self, State},
+    track::{Fate, Fates, Track},
 };
 
-/// The two bodies at the release of the last spring, from where they move freely.
+/// The two bodies at the release of the last spring, from where they move freely, and as they were at
+/// the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    pub(crate) springs: Fates,
-    pub(crate) payload: MovingBody,
-    pub(crate) stage: MovingBody,
-    pub(crate) steps: u32,
-    pub(crate) rounding: Rounding,
+    springs: Fates,
+    payload: MovingBody,
+    stage: MovingBody,
+    /// Payload and stage when the clamp opened.
+    start: [BodyState; 2],
+    /// Energy of the springs then, J.
+    stored: f64,
+    steps: u32,
+    rounding: Rounding,
 }
 
 impl Outcome {
+    /// Of a run that is over, in the state that it came to.
+    pub(crate) fn new<S: Borrow<Separation>>(
+        track: Track<S>,
+        state: &State,
+        settings: &Settings,
+    ) -> Self {
+        let separation = track.separation.borrow();
+        let (payload, stage) = state::bodies(separation, state, track.time);
+        let rounding = Rounding::new(separation, &track.springs, settings, track.steps);
+        let start = [*separation.payload().state(), *separation.stage().state()];
+        let stored = separation.stored_energy();
+        let (springs, steps) = (track.springs, track.steps);
+        Self { springs, payload, stage, start, stored, steps, rounding }
+    }
+
     /// When each spring let go, s, in the order of the springs. None for a spring that never pushed:
     /// it failed, could not overcome its friction, or was late and came to its free length before its
     /// start.
@@ -50,6 +72,13 @@ impl Outcome {
     #[must_use]
     pub fn stage(&self) -> &MovingBody {
         &self.stage
+    }
+
+    /// Payload and stage when the clamp opened.
+    #[must_use]
+    pub fn start(&self) -> [MovingBody; 2] {
+        let [payload, stage] = self.start;
+        [self.payload.body().moving(payload), self.stage.body().moving(stage)]
     }
 
     /// Velocity of the payload's mass centre relative to the stage's, inertial axes, m/s.
@@ -92,11 +121,11 @@ impl Outcome {
     /// Tip-off rates: angular velocities of payload and stage after the last release less those at the
     /// start of the separation, each in its body's axes, rad/s.
     #[must_use]
-    pub fn tip_off(&self, separation: &Separation) -> [Vector3<f64>; 2] {
-        let of = |after: &MovingBody, before: &MovingBody| {
-            after.state().angular_velocity - before.state().angular_velocity
+    pub fn tip_off(&self) -> [Vector3<f64>; 2] {
+        let of = |after: &MovingBody, before: &BodyState| {
+            after.state().angular_velocity - before.angular_velocity
         };
-        [of(&self.payload, separation.payload()), of(&self.stage, separation.stage())]
+        [of(&self.payload, &self.start[0]), of(&self.stage, &self.start[1])]
     }
 
     /// The springs in the order in which they let go, from 1; those that let go at one time together.
@@ -111,10 +140,10 @@ impl Outcome {
         groups.map(|group| group.iter().map(|(_, spring)| *spring).collect()).collect()
     }
 
-    /// Where the energy of the springs of `separation`, of which this is the outcome, has gone.
+    /// Where the energy of the springs has gone.
     #[must_use]
-    pub fn energy_split(&self, separation: &Separation) -> EnergySplit {
-        EnergySplit::new(separation, self)
+    pub fn energy_split(&self) -> EnergySplit {
+        EnergySplit::new(self.stored, &self.start(), &[self.payload, self.stage])
     }
 
     /// Wobble, nutation, coning and the rest, of the payload about the given body axis. A payload whose

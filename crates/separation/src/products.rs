@@ -1,15 +1,18 @@
 //! The products of series that the equations of motion are made of, term by term: how the
 //! coefficients of two orders go into one of their product.
 //!
-//! Runs abreast have one lane each. A run alone has several numbers of its own in the lanes, laid out
+//! The runs of a batch have one lane each. A run alone has several numbers of its own in the lanes, laid out
 //! so that the same operations come in the same order: it gets the same bits. Where it multiplies by
 //! zeros instead of leaving a term out, sums start from +0 and stay as they are.
+
+pub(crate) mod batch;
+pub(crate) mod single;
 
 use std::fmt::Debug;
 
 use crate::{
-    expansion::STATE,
     lanes::{Lanes, M3, V3, WIDTH},
+    layout::STATE,
     vector::{Four, Simd},
 };
 

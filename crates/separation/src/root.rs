@@ -1,3 +1,5 @@
+//! Roots to a few digits.
+
 use std::f64::consts::LN_2;
 
 /// About x^(−1/n), to 1 %: a step need not be exact.

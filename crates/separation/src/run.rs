@@ -1,79 +1,19 @@
-use crate::{Outcome, Separation, Settings, integrator::Integrator};
+//! A run alone.
 
-/// Why a separation could not be followed to its end.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RunError {
-    /// Springs are still in contact at the horizon.
-    #[error(
-        "springs {springs:?} had not let go after {horizon:?} s: spring {} is {compression:e} m short \
-         of its free length and grows by {rate:e} m/s", .springs[0]
-    )]
-    NotReleased {
-        /// The springs, from 1.
-        springs: Vec<usize>,
-        /// The horizon, s.
-        horizon: f64,
-        /// How far the first of them is from its free length, m.
-        compression: f64,
-        /// How fast it grows, m/s.
-        rate: f64,
-    },
-    /// The two points of a spring have come together, and its force has lost its direction.
-    #[error(
-        "spring {spring}: its points meet at {time:?} s, closing at {speed:?} m/s: the line between them is \
-         the direction of the force"
-    )]
-    PadsMeet {
-        /// The spring, from 1.
-        spring: usize,
-        /// When, s.
-        time: f64,
-        /// How fast they came together, m/s.
-        speed: f64,
-    },
-    /// Steps have become too small to go on.
-    #[error("the step at {time:?} s would be {step:e} s, too small to go on")]
-    StepUnderflow {
-        /// When, s.
-        time: f64,
-        /// The step, s.
-        step: f64,
-    },
-    /// So many steps that the motion must be far faster than the springs are.
-    #[error(
-        "{steps} steps have led to {time:?} s only, at a relative tolerance of {relative_tolerance:e}: \
-         the bodies turn too fast for their springs"
-    )]
-    TooManySteps {
-        /// Steps.
-        steps: u32,
-        /// When, s.
-        time: f64,
-        /// The tolerance asked for.
-        relative_tolerance: f64,
-    },
-    /// The coast asked for is none.
-    #[error("coast = {value:?} s: it must be zero or positive, and finite")]
-    Coast {
-        /// The coast, s.
-        value: f64,
-    },
-    /// A number has overflowed.
-    #[error("the motion at {time:?} s is beyond the range of numbers")]
-    NotFinite {
-        /// When, s.
-        time: f64,
-    },
-}
+use crate::{Outcome, RunError, Separation, Settings, integrator::Integrator};
 
-pub(crate) fn run(separation: &Separation, settings: &Settings) -> Result<Outcome, RunError> {
-    let mut integrator = Integrator::<1>::new(*settings);
-    let mut track = integrator.load(0, separation);
-    while !track.all_released() {
-        integrator.expand();
-        integrator.step(0, &mut track)?;
+impl Separation {
+    /// Integrates to the release of the last spring. Does not allocate for up to eight springs.
+    ///
+    /// # Errors
+    /// A spring is not released within the horizon, or the integration cannot go on.
+    pub fn run(&self, settings: &Settings) -> Result<Outcome, RunError> {
+        let mut integrator = Integrator::<1>::new(*settings);
+        let mut track = integrator.load(0, self);
+        while !track.all_released() {
+            integrator.expand();
+            integrator.step(0, &mut track)?;
+        }
+        Ok(Outcome::new(track, &integrator.state(0), settings))
     }
-    let state = integrator.state(0);
-    Ok(track.outcome(&state, settings))
 }

@@ -1,8 +1,10 @@
+//! Two bodies and the springs between them, at the moment the clamp opens.
+
 use gyradius_inertia::InertiaMatrix;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-use crate::{Body, BodyError, BodyState, MovingBody, Outcome, RunError, Settings, Spring, run};
+use crate::{Body, BodyError, BodyState, MovingBody, Spring};
 
 /// Pads nearer than this share of their stroke count as touching.
 pub(crate) const TOUCHING: f64 = 1e-6;
@@ -163,14 +165,6 @@ impl Separation {
     #[must_use]
     pub fn stored_energy(&self) -> f64 {
         self.springs.iter().map(Spring::stored_energy).sum()
-    }
-
-    /// Integrates to the release of the last spring. Does not allocate for up to eight springs.
-    ///
-    /// # Errors
-    /// A spring is not released within the horizon, or the integration cannot go on.
-    pub fn run(&self, settings: &Settings) -> Result<Outcome, RunError> {
-        run::run(self, settings)
     }
 
     /// 1/m of the payload plus 1/m of the stage, 1/kg.

@@ -1,3 +1,5 @@
+//! How to integrate.
+
 /// Why settings are refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -1,7 +1,9 @@
+//! Bodies and springs at a moment.
+
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
-use crate::{MovingBody, Separation, energy::translations, expansion::INLINE_SPRINGS, state};
+use crate::{MovingBody, Separation, energy::translations, layout::INLINE_SPRINGS, state};
 
 /// A spring at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]

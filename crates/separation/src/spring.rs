@@ -1,6 +1,8 @@
+//! A spring between two bodies.
+
 use nalgebra::Vector3;
 
-/// Why a spring is none.
+/// Errors of a spring's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpringError {

@@ -1,9 +1,9 @@
-//! The series of springs, as many at a time as there are lanes: of a run alone side by side, of runs
-//! abreast one of each.
+//! The series of springs, as many at a time as there are lanes: of a run alone side by side, of the runs
+//! of a batch one of each.
 
 use crate::{
-    expansion::{INVERSE, TERMS},
     lanes::{Lanes, M3, V3, WIDTH},
+    layout::{INVERSE, TERMS},
     products::{cross, load},
     vector::{Four, Simd},
 };

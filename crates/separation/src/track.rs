@@ -4,9 +4,8 @@ use smallvec::SmallVec;
 use std::borrow::Borrow;
 
 use crate::{
-    Outcome, RunError, Separation, Settings, Spring,
-    expansion::INLINE_SPRINGS,
-    rounding::Rounding,
+    RunError, Separation, Settings, Spring,
+    layout::INLINE_SPRINGS,
     state::{self, State},
 };
 
@@ -86,12 +85,5 @@ impl<S: Borrow<Separation>> Track<S> {
             }
             _ => Ok(()),
         }
-    }
-
-    pub(crate) fn outcome(self, state: &State, settings: &Settings) -> Outcome {
-        let separation = self.separation.borrow();
-        let (payload, stage) = state::bodies(separation, state, self.time);
-        let rounding = Rounding::new(separation, &self.springs, settings, self.steps);
-        Outcome { springs: self.springs, payload, stage, steps: self.steps, rounding }
     }
 }

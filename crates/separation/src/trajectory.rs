@@ -1,9 +1,11 @@
+//! All that lies between the start and the last release, as power series, step by step.
+
 use smallvec::SmallVec;
 
 use crate::{
     Outcome, RunError, Separation, Settings, Snapshot,
-    expansion::{INLINE_SPRINGS, ORDER, TERMS},
     integrator::Integrator,
+    layout::{INLINE_SPRINGS, ORDER, TERMS},
     state::{self, State},
     track::Fate,
 };
@@ -127,7 +129,7 @@ impl Separation {
             let state = integrator.state(0);
             track.check(&state, settings)?;
             if outcome.is_none() && track.all_released() {
-                outcome = Some(track.clone().outcome(&state, settings));
+                outcome = Some(Outcome::new(track.clone(), &state, settings));
                 end = track.time + coast_s;
             }
         }

@@ -64,9 +64,9 @@ impl Case {
         result: Option<Result<Separated, RunError>>,
     ) -> Run<'a> {
         let end = match (&self.separation, result) {
-            (Ok(separation), Some(Ok(separated))) => self
+            (Ok(_), Some(Ok(separated))) => self
                 .clearance(scenario, &separated)
-                .map(|watched| End::new(scenario, separation, separated, watched)),
+                .map(|watched| End::new(scenario, separated, watched)),
             (Ok(_), Some(Err(error))) => Err(error.into()),
             (Err(failure), _) => Err(failure.clone()),
             // A batch gives every run a result.
@@ -123,17 +123,16 @@ impl<'a> Run<'a> {
 impl<'a> End<'a> {
     fn new(
         scenario: &'a Scenario,
-        separation: &Separation,
         separated: Separated,
         watched: Option<Result<Clearance, ClearanceError>>,
     ) -> Self {
         Self {
             scenario,
             spin: separated.spin_metrics(scenario.spin_axis()),
-            spin_before: separation.payload().spin_metrics(scenario.spin_axis()),
-            tip_off: separated.tip_off(separation),
+            spin_before: separated.start()[0].spin_metrics(scenario.spin_axis()),
+            tip_off: separated.tip_off(),
             momentum: separated.payload().inertial_spin_angular_momentum(),
-            energy: separated.energy_split(separation),
+            energy: separated.energy_split(),
             separated,
             watched,
         }

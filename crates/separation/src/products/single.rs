@@ -1,8 +1,8 @@
 //! Products of a run alone: numbers of its own side by side in the lanes.
 
 use crate::{
-    expansion::{ATTITUDE, OFFSET, PAYLOAD_RATE, RELATIVE, STAGE_RATE, VELOCITY, part},
     lanes::{Lanes, M3, V3, WIDTH},
+    layout::{ATTITUDE, OFFSET, PAYLOAD_RATE, RELATIVE, STAGE_RATE, VELOCITY, part},
     products::{Coefficients, Products, Row, Term, cross, load},
     vector::{Four, Simd},
 };
@@ -16,7 +16,7 @@ fn broad<const N: usize, S: Simd>(simd: S, x: &Row<1>, at: usize) -> [Four<S>; N
 /// Of a run alone.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-pub(crate) struct Alone {
+pub(crate) struct Single {
     /// Offset, velocity and the momenta side by side, and the rates of their axes.
     carried: V3<WIDTH>,
     rates: V3<WIDTH>,
@@ -33,7 +33,7 @@ pub(crate) struct Alone {
     reaction: V3<1>,
 }
 
-type One = Coefficients<Alone, 1>;
+type One = Coefficients<Single, 1>;
 
 /// Numbers to be loaded together are stored together, which the machine wants.
 #[inline(always)]
@@ -47,7 +47,7 @@ fn turned_about<S: Simd>(simd: S, v: &V3<1>) -> [Lanes<WIDTH>; 2] {
     [pack(simd, [y, z, x, 0.0]), pack(simd, [z, x, y, 0.0])]
 }
 
-impl Products<1> for Alone {
+impl Products<1> for Single {
     type Squares<S: Simd> = [Four<S>; 3];
     type Turn<S: Simd> = [Four<S>; 1];
     type Crosses<S: Simd> = [Four<S>; 3];

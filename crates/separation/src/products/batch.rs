@@ -1,15 +1,15 @@
-//! Products of runs abreast, one in each lane.
+//! Products of the runs of a batch, one in each lane.
 
 use crate::{
-    expansion::{ATTITUDE, OFFSET, PAYLOAD_RATE, RELATIVE, STAGE_RATE, VELOCITY},
     lanes::{Lanes, M3, V3, WIDTH},
+    layout::{ATTITUDE, OFFSET, PAYLOAD_RATE, RELATIVE, STAGE_RATE, VELOCITY},
     products::{Coefficients, Products, Row, cross, load, load_part},
     vector::{Four, Simd},
 };
 
-/// Of runs abreast.
+/// Of the runs of a batch.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Abreast {
+pub(crate) struct Batched {
     /// ω_L − ω_P and ω_L + ω_P.
     rates: [V3<WIDTH>; 2],
     momenta: [V3<WIDTH>; 2],
@@ -18,9 +18,9 @@ pub(crate) struct Abreast {
     reaction: V3<WIDTH>,
 }
 
-type Pair = Coefficients<Abreast, WIDTH>;
+type Pair = Coefficients<Batched, WIDTH>;
 
-impl Products<WIDTH> for Abreast {
+impl Products<WIDTH> for Batched {
     type Squares<S: Simd> = [Four<S>; 9];
     // As many sums at a time as there are registers for.
     type Turn<S: Simd> = [Four<S>; 4];
