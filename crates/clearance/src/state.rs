@@ -2,8 +2,8 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// Where a rigid body is and how it moves.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Where a rigid body is and how it moves; by default at rest at the origin, axes along the inertial ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RigidState {
     /// Mass centre, inertial axes, m.
     pub position: Vector3<f64>,
@@ -13,16 +13,4 @@ pub struct RigidState {
     pub attitude: UnitQuaternion<f64>,
     /// Angular velocity, body axes, rad/s.
     pub angular_velocity: Vector3<f64>,
-}
-
-impl Default for RigidState {
-    /// At rest at the origin, axes along the inertial ones.
-    fn default() -> Self {
-        Self {
-            position: Vector3::zeros(),
-            velocity: Vector3::zeros(),
-            attitude: UnitQuaternion::identity(),
-            angular_velocity: Vector3::zeros(),
-        }
-    }
 }

@@ -108,8 +108,8 @@ impl Body {
     }
 }
 
-/// Where a body is and how it moves.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Where a body is and how it moves; by default at rest at the origin, axes along the inertial ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyState {
     /// Mass centre, inertial axes, m.
     pub position: Vector3<f64>,
@@ -119,18 +119,6 @@ pub struct BodyState {
     pub attitude: UnitQuaternion<f64>,
     /// Angular velocity, body axes, rad/s.
     pub angular_velocity: Vector3<f64>,
-}
-
-impl Default for BodyState {
-    /// At rest at the origin, axes along the inertial ones.
-    fn default() -> Self {
-        Self {
-            position: Vector3::zeros(),
-            velocity: Vector3::zeros(),
-            attitude: UnitQuaternion::identity(),
-            angular_velocity: Vector3::zeros(),
-        }
-    }
 }
 
 impl BodyState {

@@ -3,8 +3,15 @@
 use std::borrow::Borrow;
 
 use crate::{
-    RunError, Separation, integrator::Integrator, lanes::Lanes, layout::ORDER, packing::Packing,
-    polynomial::first_zero, separation::TOUCHING, state, track::Track,
+    RunError, Separation,
+    integrator::Integrator,
+    lanes::Lanes,
+    layout::ORDER,
+    packing::Packing,
+    polynomial::first_zero,
+    separation::TOUCHING,
+    state,
+    track::{Fate, Track},
 };
 
 /// A spring that is shorter than its free length by more than this share of its stroke pushes no
@@ -84,8 +91,7 @@ where
         }
         let run = track.separation.borrow();
         for (i, fate) in track.springs.iter_mut().enumerate() {
-            let lost = fate.let_go().is_some();
-            if lost && fate.recompressed.is_none() {
+            if let Fate::Released { recompressed: recompressed @ None, .. } = fate {
                 let slack =
                     2.0 * run.free_lengths()[i] * RECOMPRESSED * run.springs()[i].stroke_m();
                 let (series, at) = self.spring(lane, i);
@@ -94,8 +100,7 @@ where
                     continue;
                 }
                 let gap = self.gap(lane, i, taken, -1.0, slack);
-                fate.recompressed =
-                    first_zero(self.known(lane, &gap)).map(|x| track.time + x * taken);
+                *recompressed = first_zero(self.known(lane, &gap)).map(|x| track.time + x * taken);
             }
         }
     }

@@ -94,7 +94,7 @@ where
             let series = &mut expansion.springs[block];
             series.stiffness.0[lane] = 0.0;
             if let Some(spring) = run.springs().get(i) {
-                if Fate::of(spring).pushes() {
+                if Fate::of(spring) == Fate::Pushing {
                     series.stiffness.0[lane] = spring.stiffness_n_per_m();
                 }
                 series.free_length.0[lane] = run.free_lengths()[i];
@@ -218,7 +218,7 @@ where
             None if h == reach => self.expansion.end.map(|x| x.0[lane]),
             None => self.at(lane, h),
         };
-        for i in track.pushing().filter(|i| track.springs[*i].pushes()) {
+        for i in track.pushing().filter(|i| track.springs[*i] == Fate::Pushing) {
             self.check_apart(lane, track, i, taken)?;
         }
         state::normalize(&mut next);
@@ -239,10 +239,8 @@ where
                     series.upper.0[at] >= NEAR * series.free_length.0[at].powi(2)
                         && state::gap(run, &next, i).value >= -state::rounding(run, &next, i)
                 };
-                if fate.released.is_none() && (i == spring || free()) {
-                    fate.released = Some(track.time);
-                    fate.pushed = !fate.waiting;
-                    fate.waiting = false;
+                if fate.is_open() && (i == spring || free()) {
+                    fate.end(track.time);
                     let (block, lane) = slot::<L>(lane, i);
                     self.expansion.springs[block].stiffness.0[lane] = 0.0;
                 }
@@ -251,12 +249,12 @@ where
         for (i, fate) in track.springs.iter_mut().enumerate() {
             let run = track.separation.borrow();
             let spring = &run.springs()[i];
-            if fate.waiting && spring.start_s().is_some_and(|start| start <= track.time) {
+            if *fate == Fate::Waiting && spring.start_s().is_some_and(|start| start <= track.time) {
                 if !(state::line(&next, spring).norm() > TOUCHING * spring.stroke_m()) {
                     let speed = -state::gap(run, &self.at(lane, 0.999 * taken), i).rate;
                     return Err(RunError::PadsMeet { spring: i + 1, time: track.time, speed });
                 }
-                fate.waiting = false;
+                *fate = Fate::Pushing;
                 let (block, lane) = slot::<L>(lane, i);
                 self.expansion.springs[block].stiffness.0[lane] = spring.stiffness_n_per_m();
             }

@@ -53,13 +53,16 @@ impl Outcome {
     /// came to its free length. The bodies are told as they are then.
     #[must_use]
     pub fn release_time(&self) -> f64 {
-        self.springs.iter().filter_map(|fate| fate.released).fold(0.0, f64::max)
+        self.springs.iter().filter_map(Fate::ended).fold(0.0, f64::max)
     }
 
     /// The springs that were pressed below their free length again after they had let go, and while
     /// others still pushed: number from 1, and when that began, s. They stay lost.
     pub fn recompressed(&self) -> impl Iterator<Item = (usize, f64)> {
-        self.springs.iter().enumerate().filter_map(|(i, fate)| Some((i + 1, fate.recompressed?)))
+        self.springs.iter().zip(1..).filter_map(|(fate, number)| match fate {
+            Fate::Released { recompressed, .. } => Some((number, (*recompressed)?)),
+            Fate::Failed | Fate::Waiting | Fate::Pushing | Fate::Missed { .. } => None,
+        })
     }
 
     /// The payload after the last release.

@@ -9,33 +9,64 @@ use crate::{
     state::{self, State},
 };
 
-/// What becomes of one spring: when it comes to its free length, whether it pushed until then, and when
-/// it is first shorter than its free length after that; and whether it is yet to start.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Fate {
-    pub(crate) released: Option<f64>,
-    pub(crate) pushed: bool,
-    pub(crate) recompressed: Option<f64>,
-    pub(crate) waiting: bool,
+/// What has become of one spring; times in s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Fate {
+    /// It never pushes.
+    Failed,
+    /// It has yet to start.
+    Waiting,
+    Pushing,
+    /// It came to its free length before it started, and never pushed.
+    Missed {
+        time: f64,
+    },
+    /// It let go, and was shorter than its free length again from a time on.
+    Released {
+        time: f64,
+        recompressed: Option<f64>,
+    },
 }
 
 impl Fate {
     pub(crate) fn of(spring: &Spring) -> Self {
-        Self {
-            released: (!spring.can_push()).then_some(0.0),
-            pushed: false,
-            recompressed: None,
-            waiting: spring.can_push() && spring.start_s() != Some(0.0),
+        match spring.start_s() {
+            Some(start) if spring.can_push() => {
+                if start == 0.0 {
+                    Self::Pushing
+                } else {
+                    Self::Waiting
+                }
+            }
+            _ => Self::Failed,
         }
     }
 
-    pub(crate) fn pushes(&self) -> bool {
-        self.released.is_none() && !self.waiting
+    /// Comes to its free length.
+    pub(crate) fn end(&mut self, time: f64) {
+        match self {
+            Self::Waiting => *self = Self::Missed { time },
+            Self::Pushing => *self = Self::Released { time, recompressed: None },
+            Self::Failed | Self::Missed { .. } | Self::Released { .. } => {}
+        }
     }
 
-    /// When it let go, s; none of one that never pushed.
+    /// Whether it pushes or will.
+    pub(crate) fn is_open(&self) -> bool {
+        matches!(self, Self::Waiting | Self::Pushing)
+    }
+
+    /// When it came to its free length, whether it pushed or not.
+    pub(crate) fn ended(&self) -> Option<f64> {
+        match self {
+            Self::Missed { time } | Self::Released { time, .. } => Some(*time),
+            Self::Failed | Self::Waiting | Self::Pushing => None,
+        }
+    }
+
+    /// When it let go; none of one that never pushed.
     pub(crate) fn let_go(&self) -> Option<f64> {
-        self.released.filter(|_| self.pushed)
+        self.ended().filter(|_| matches!(self, Self::Released { .. }))
     }
 }
 
@@ -57,13 +88,14 @@ impl<S: Borrow<Separation>> Track<S> {
     /// The springs that push or will.
     pub(crate) fn pushing(&self) -> impl Iterator<Item = usize> {
         let springs = self.springs.iter().enumerate();
-        springs.filter(|(_, fate)| fate.released.is_none()).map(|(i, _)| i)
+        springs.filter(|(_, fate)| fate.is_open()).map(|(i, _)| i)
     }
 
     /// When the next spring starts.
     pub(crate) fn next_start(&self) -> f64 {
         let springs = self.separation.borrow().springs().iter().zip(&self.springs);
-        let starts = springs.filter(|(_, fate)| fate.waiting).filter_map(|(s, _)| s.start_s());
+        let starts =
+            springs.filter(|(_, fate)| **fate == Fate::Waiting).filter_map(|(s, _)| s.start_s());
         starts.fold(f64::INFINITY, f64::min)
     }
 

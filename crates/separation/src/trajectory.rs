@@ -118,7 +118,7 @@ impl Separation {
         while outcome.is_none() || track.time < end {
             integrator.expand();
             let (start, series) = (track.time, integrator.series(0));
-            let pushing: SmallVec<_> = track.springs.iter().map(Fate::pushes).collect();
+            let pushing: SmallVec<_> = track.springs.iter().map(|f| *f == Fate::Pushing).collect();
             let before = track.springs.clone();
             let duration = integrator.advance(0, &mut track, end)?;
             let released = track.springs.iter().zip(&before).enumerate();

@@ -48,8 +48,8 @@ fn fixed_steps(separation: &Separation, h: f64, until: f64, located: bool) -> St
         integrator.set_state(0, &next);
         track.time = end;
         for (i, fate) in track.springs.iter_mut().enumerate() {
-            if fate.released.is_none() && state::gap(separation, &next, i).value >= 0.0 {
-                fate.released = Some(end);
+            if fate.is_open() && state::gap(separation, &next, i).value >= 0.0 {
+                fate.end(end);
                 let (block, lane) = slot::<1>(0, i);
                 integrator.expansion.springs[block].stiffness.0[lane] = 0.0;
             }
