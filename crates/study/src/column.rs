@@ -35,6 +35,7 @@ struct Declaration<'a> {
     kind: Kind,
     /// Whether some runs have nothing there.
     optional: bool,
+    unit: Option<&'static str>,
     meaning: &'a str,
 }
 
@@ -137,7 +138,8 @@ impl<'a> Column<'a> {
                  whole coast (a body turns too far to be followed); none if there is nothing to say.",
             ),
         };
-        Declaration { name, kind, optional, meaning }
+        let unit = if let Self::Number(quantity) = self { Some(quantity.unit()) } else { None };
+        Declaration { name, kind, optional, unit, meaning }
     }
 
     pub(crate) fn name(self) -> Cow<'a, str> {
@@ -146,18 +148,7 @@ impl<'a> Column<'a> {
 
     /// Its unit, of numbers that have one.
     pub(crate) fn unit(self) -> Option<&'static str> {
-        match self {
-            Self::Number(quantity) => Some(quantity.unit()),
-            Self::Model
-            | Self::Run
-            | Self::Status
-            | Self::Realizable
-            | Self::Axes(..)
-            | Self::ReleaseOrder
-            | Self::Recompressed
-            | Self::Drawn(..)
-            | Self::ClearanceNote => None,
-        }
+        self.declaration().unit
     }
 
     /// What it means, in a sentence.

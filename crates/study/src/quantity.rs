@@ -25,7 +25,6 @@ struct Declaration {
     unit: &'static str,
     shown: Shown,
     meaning: &'static str,
-    of: fn(&Run<'_>) -> Option<f64>,
 }
 
 /// Declares quantities, in the order of the run table: the meaning, then
@@ -55,7 +54,6 @@ macro_rules! quantities {
                             unit: $unit,
                             shown: $shown,
                             meaning: concat!($($meaning),+),
-                            of: $of,
                         }
                     },)+
                     Self::SpringRelease(_) => const {
@@ -65,10 +63,20 @@ macro_rules! quantities {
                             unit: "s",
                             shown: Table,
                             meaning: " When the spring let go; none if it never pushed, a late one too.",
-                            of: |_| None,
                         }
                     },
                 }
+            }
+
+            /// Its value in a run; none if the run failed or it has no meaning for this run.
+            pub(crate) fn value(self, run: &Run<'_>) -> Option<f64> {
+                let of: fn(&Run<'_>) -> Option<f64> = match self {
+                    $(Self::$name => $of,)+
+                    Self::SpringRelease(spring) => {
+                        return run.end()?.separated.release_times().nth(spring)?;
+                    }
+                };
+                of(run)
             }
         }
     };
@@ -109,19 +117,19 @@ quantities! {
     PayloadRate2: "payload_w2_rad_per_s", "ω₂", "rad/s", Table, |r| Some(r.end()?.separated.payload().state().angular_velocity[1]);
     /// Angular velocity of the payload about its body axis 3 after the last release.
     PayloadRate3: "payload_w3_rad_per_s", "ω₃", "rad/s", Table, |r| Some(r.end()?.separated.payload().state().angular_velocity[2]);
-    /// Magnitude of that angular velocity.
+    /// Magnitude of the payload's angular velocity after the last release.
     SpinRate: "spin_rate_rad_per_s", "spin rate", "rad/s", Behaviour(4), |r| Some(r.end()?.spin.spin_rate());
     /// Angle between the spin axis and the nearest principal axis, Eq. 33.
     Wobble: "wobble_deg", "wobble", "deg", Behaviour(0), |r| Some(r.end()?.spin.wobble().to_degrees());
-    /// Angle between that principal axis and the angular momentum at the last release, Eq. 34; above 90 for a backward spin; none where the payload does not turn.
+    /// Angle between the principal axis nearest to the spin axis and the angular momentum at the last release, Eq. 34; above 90 for a backward spin; none where the payload does not turn.
     Nutation: "nutation_deg", "nutation", "deg", Behaviour(1), |r| r.end()?.spin.nutation().map(f64::to_degrees);
     /// Extreme of the nutation in the 1-2 plane, Eq. 35; none where the momentum circles another axis.
     Nutation2: "nutation_2_deg", "nutation θ₂", "deg", Table, |r| r.end()?.spin.nutation_2().map(f64::to_degrees);
-    /// Extreme of the nutation in the 1-3 plane, likewise.
+    /// Extreme of the nutation in the 1-3 plane, Eq. 35; none where the momentum circles another axis.
     Nutation3: "nutation_3_deg", "nutation θ₃", "deg", Table, |r| r.end()?.spin.nutation_3().map(f64::to_degrees);
     /// Angle between the spin axis and the angular momentum, Eq. 36; none where the payload does not turn.
     Cone: "cone_deg", "cone", "deg", Behaviour(2), |r| r.end()?.spin.cone().map(f64::to_degrees);
-    /// Inertia ratio, Eq. 37.
+    /// Inertia ratio of the payload, Eq. 37.
     InertiaRatio: "inertia_ratio", "inertia ratio", "1", Behaviour(3), |r| Some(r.end()?.spin.inertia_ratio());
     /// Velocity of the payload's mass centre from the stage's along inertial axis 1, after the last release.
     RelativeVelocity1: "relative_v1_m_per_s", "relative v₁", "m/s", Table, |r| Some(r.end()?.separated.relative_velocity()[0]);
@@ -129,7 +137,7 @@ quantities! {
     RelativeVelocity2: "relative_v2_m_per_s", "relative v₂", "m/s", Table, |r| Some(r.end()?.separated.relative_velocity()[1]);
     /// Velocity of the payload's mass centre from the stage's along inertial axis 3, after the last release.
     RelativeVelocity3: "relative_v3_m_per_s", "relative v₃", "m/s", Table, |r| Some(r.end()?.separated.relative_velocity()[2]);
-    /// Angle between that velocity and `separation_direction`; none if there is none, or the bodies do not part.
+    /// Angle between the relative velocity after the last release and `separation_direction`; none if there is none, or the bodies do not part.
     DirectionError: "direction_error_deg", "direction error", "deg", Parting(1), |r| r.end()?.direction_error().map(f64::to_degrees);
     /// Angular velocity of the payload after the last release less that at the start, about its body axis 1.
     PayloadTipOff1: "payload_tip_off_1_deg_per_s", "payload tip-off ω₁", "deg/s", Parting(2), |r| Some(r.end()?.tip_off[0][0].to_degrees());
@@ -145,7 +153,7 @@ quantities! {
     StageTipOff3: "stage_tip_off_3_deg_per_s", "stage tip-off ω₃", "deg/s", Parting(7), |r| Some(r.end()?.tip_off[1][2].to_degrees());
     /// Least nutation of the free motion after the last release, by energy and momentum.
     NutationLeast: "nutation_least_deg", "least nutation", "deg", Table, |r| Some(r.end()?.spin.nutation_bounds()?[0].to_degrees());
-    /// Greatest nutation of the free motion after the last release, likewise.
+    /// Greatest nutation of the free motion after the last release, by energy and momentum.
     NutationGreatest: "nutation_greatest_deg", "greatest nutation", "deg", Parting(8), |r| Some(r.end()?.spin.nutation_bounds()?[1].to_degrees());
     /// Nutation at the start; none at rest.
     NutationBefore: "nutation_before_deg", "nutation before", "deg", Table, |r| r.end()?.spin_before.nutation().map(f64::to_degrees);
@@ -159,21 +167,21 @@ quantities! {
     Momentum2: "payload_h2_kg_m2_per_s", "momentum h₂", "kg·m²/s", Table, |r| Some(r.end()?.momentum[1]);
     /// Angular momentum of the payload about its mass centre along inertial axis 3, after the last release.
     Momentum3: "payload_h3_kg_m2_per_s", "momentum h₃", "kg·m²/s", Table, |r| Some(r.end()?.momentum[2]);
-    /// Angle between that momentum and `momentum_direction`; none where the payload does not turn.
+    /// Angle between the payload's angular momentum after the last release and `momentum_direction`; none where the payload does not turn.
     MomentumError: "momentum_error_deg", "momentum error", "deg", Parting(9), |r| r.end()?.momentum_error().map(f64::to_degrees);
-    /// Energy that the springs had stored at the start.
+    /// Energy that the springs had stored at the start. The translation and rotation of both bodies sum to it, less what friction takes, what a late spring gives away under its latch and what failed ones keep.
     SpringEnergy: "spring_energy_j", "spring energy", "J", Table, |r| Some(r.end()?.energy.stored_j());
-    /// What of it went into the payload's translation, relative to the common mass centre.
+    /// Energy of the springs that went into the payload's translation, relative to the common mass centre.
     PayloadTranslation: "payload_translation_j", "payload translation", "J", Table, |r| Some(r.end()?.energy.payload_translation_j());
-    /// What of it went into the payload's rotation.
+    /// Energy of the springs that went into the payload's rotation.
     PayloadRotation: "payload_rotation_j", "payload rotation", "J", Table, |r| Some(r.end()?.energy.payload_rotation_j());
-    /// What of it went into the stage's translation, relative to the common mass centre.
+    /// Energy of the springs that went into the stage's translation, relative to the common mass centre.
     StageTranslation: "stage_translation_j", "stage translation", "J", Table, |r| Some(r.end()?.energy.stage_translation_j());
-    /// What of it went into the stage's rotation.
+    /// Energy of the springs that went into the stage's rotation.
     StageRotation: "stage_rotation_j", "stage rotation", "J", Table, |r| Some(r.end()?.energy.stage_rotation_j());
     /// Smallest distance of the outlines over the coast after the last release, 0 if any two touch; none without outlines, and where `clearance_note` says so.
     Clearance: "clearance_m", "clearance", "m", Parting(11), |r| Some(r.end()?.closest()?.distance_m());
-    /// When that is, at the first contact.
+    /// When the outlines are nearest, at the first contact if any two touch.
     ClearanceTime: "clearance_time_s", "time of clearance", "s", Table, |r| Some(r.end()?.closest()?.time_s());
     /// When outlines first touch, those that touch at the last release after having parted; none if they do not.
     RecontactTime: "recontact_s", "recontact", "s", Table, |r| r.end()?.clearance()?.contact_s();
@@ -248,14 +256,6 @@ impl Quantity {
             Self::ALL.iter().copied().filter(|quantity| here(shown(quantity))).collect();
         found.sort_by_key(shown);
         found
-    }
-
-    /// Its value in a run; none if the run failed or it has no meaning for this run.
-    pub(crate) fn value(self, run: &Run<'_>) -> Option<f64> {
-        match self {
-            Self::SpringRelease(spring) => run.end()?.separated.release_times().nth(spring)?,
-            other => (other.declaration().of)(run),
-        }
     }
 
     /// Name of the column in the run table, with its unit.

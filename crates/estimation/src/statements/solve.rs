@@ -41,12 +41,11 @@ pub(super) struct Solution {
 impl Task {
     /// Searches with independent roots and rotations, and with correlated ones where these do not do.
     pub(super) fn solve(&self) -> Solution {
-        let unknowns = Unknowns::new(self);
-        let mut search = Search { unknowns };
-        let mut best = search.from(search.unknowns.guess);
+        let mut unknowns = Unknowns::new(self);
+        let mut best = unknowns.downhill(unknowns.guess);
         if self.worst(&best.0.at) > MET {
-            search.unknowns = search.unknowns.correlated();
-            best = search.with_correlations(best);
+            unknowns = unknowns.correlated();
+            best = unknowns.with_correlations(best);
         }
         // Where the moments cannot be had, the products may be, beside the moments as they are: the errors of the
         // moments, which count for so much more, hide those of the products.
@@ -57,8 +56,8 @@ impl Task {
                 moments[it.entry] = it.found.sqrt();
             }
             let held = Self { moments: Asked::Stated(moments), ..*self };
-            let beside = Search { unknowns: search.unknowns.of(&held) };
-            best = beside.from(best.0.x);
+            let beside = unknowns.of(&held);
+            best = beside.downhill(best.0.x);
             let around = beside.around(&best.0.x);
             beside.improve(&mut best, around);
         }
@@ -80,27 +79,23 @@ impl Task {
     }
 }
 
-/// The search over some unknowns.
-struct Search<'a> {
-    unknowns: Unknowns<'a>,
-}
-
-impl Search<'_> {
+/// The search.
+impl Unknowns<'_> {
     /// The best trial downhill from here, and its cost.
-    fn from(&self, x: Values) -> (Trial, f64) {
+    fn downhill(&self, x: Values) -> (Trial, f64) {
         self.steps(x, Effort::FULL)
     }
 
     fn steps(&self, x: Values, effort: Effort) -> (Trial, f64) {
-        let start = self.unknowns.trial(x);
-        if self.unknowns.open.is_empty() {
+        let start = self.trial(x);
+        if self.open.is_empty() {
             return (start, 0.0);
         }
-        least_squares(&self.unknowns, start, effort)
+        least_squares(self, start, effort)
     }
 
     fn misses(&self, best: &(Trial, f64)) -> bool {
-        self.unknowns.task.worst(&best.0.at) > MET
+        self.task.worst(&best.0.at) > MET
     }
 
     /// Takes the first start that does, or the best of them, if it is better.
@@ -109,7 +104,7 @@ impl Search<'_> {
             if !self.misses(best) {
                 return;
             }
-            let found = self.from(start);
+            let found = self.downhill(start);
             if found.1 < (1.0 - WORTH) * best.1 {
                 *best = found;
             }
@@ -119,14 +114,14 @@ impl Search<'_> {
     /// The best with correlations: from where independent roots and rotations came to and where they began, then
     /// from anywhere.
     fn with_correlations(&self, independent: (Trial, f64)) -> (Trial, f64) {
-        let Unknowns { guess, .. } = self.unknowns;
+        let guess = self.guess;
         // None of them still.
-        let mut again = self.unknowns.expressed(&independent.0, 1e-4);
+        let mut again = self.expressed(&independent.0, 1e-4);
         for turn in TURNS..TURN_ANGLES {
             again[turn] = again[turn].max(0.1 * guess[turn]);
         }
         let mut best = independent;
-        best.0.x = self.unknowns.expressed(&independent.0, 1e-12);
+        best.0.x = self.expressed(&independent.0, 1e-12);
         self.improve(&mut best, vec![again, guess]);
         if self.misses(&best) {
             let mut found: Vec<_> = self.anywhere().map(|x| self.steps(x, Effort::SHORT)).collect();
@@ -148,8 +143,8 @@ impl Search<'_> {
     fn anywhere(&self) -> impl Iterator<Item = Values> {
         const PRIMES: [u16; UNKNOWNS] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41];
         (1..=ANYWHERE).map(|n| {
-            let mut x = self.unknowns.guess;
-            for &i in &self.unknowns.open {
+            let mut x = self.guess;
+            for &i in &self.open {
                 let part = f64::from(n) * f64::from(PRIMES[i]).sqrt();
                 let off = WIDE * (2.0 * (part - part.floor()) - 1.0);
                 match i {
@@ -164,7 +159,7 @@ impl Search<'_> {
 
     /// Correlations of every pair of signs on top.
     fn around(&self, x: &Values) -> Vec<Values> {
-        let open = |first: &usize| self.unknowns.open.contains(first);
+        let open = |first: &usize| self.open.contains(first);
         let starts = SIGNS.map(|signs| {
             let mut start = *x;
             for first in [ROOTS_BESIDE, TURN_ANGLES].into_iter().filter(open) {
