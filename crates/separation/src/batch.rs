@@ -14,7 +14,7 @@ use crate::{
 #[derive(Debug)]
 pub struct Batch {
     settings: Settings,
-    integrator: Box<Integrator<WIDTH>>,
+    integrator: Box<Integrator>,
 }
 
 impl Batch {
@@ -40,6 +40,9 @@ impl Batch {
             for (lane, slot) in lanes.iter_mut().enumerate() {
                 if slot.is_none() {
                     *slot = queue.next().map(|(i, run)| (i, self.integrator.load(lane, run)));
+                }
+                if slot.is_none() {
+                    self.integrator.rest(lane);
                 }
             }
             if lanes.iter().all(Option::is_none) {

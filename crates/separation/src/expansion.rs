@@ -15,65 +15,66 @@ use crate::{
         ATTITUDE, INLINE_SPRINGS, INVERSE, OFFSET, ORDER, PAYLOAD_RATE, RELATIVE, STAGE_RATE,
         STATE, STOPS, TERMS, VELOCITY, part,
     },
-    packing::Packing,
-    products::{Coefficients, Products, Row, Term},
+    products::{Coefficients, Products, Row},
     root::inverse_root,
     spring_series::SpringSeries,
-    vector::Simd,
+    vector::{Four, Simd},
 };
 
 /// What a body resists torques with.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rotor<const L: usize> {
-    pub(crate) inertia: M3<L>,
-    pub(crate) inverse: M3<L>,
+pub(crate) struct Rotor {
+    pub(crate) inertia: M3,
+    pub(crate) inverse: M3,
 }
-
-/// What goes into products beside the state.
-type Of<const L: usize> = <Lanes<L> as Packing<L>>::Products;
 
 /// The series of a state and all that goes into it.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub(crate) struct Expansion<const L: usize>
-where
-    Lanes<L>: Packing<L>,
-{
-    pub(crate) terms: [Coefficients<Of<L>, L>; TERMS],
-    pub(crate) springs: SmallVec<[SpringSeries; INLINE_SPRINGS / WIDTH]>,
-    pub(crate) payload: Rotor<L>,
-    pub(crate) stage: Rotor<L>,
+pub(crate) struct Expansion {
+    pub(crate) terms: [Coefficients; TERMS],
+    pub(crate) springs: SmallVec<[SpringSeries; INLINE_SPRINGS]>,
+    pub(crate) payload: Rotor,
+    pub(crate) stage: Rotor,
     /// 1 over what each entry of the state is measured by.
-    pub(crate) inverse_scale: [Lanes<L>; STATE],
+    pub(crate) inverse_scale: [Lanes; STATE],
     /// The radius of convergence, s; zero before the first expansion.
-    pub(crate) radius: Lanes<L>,
+    pub(crate) radius: Lanes,
     /// The share of the radius that a step may take, for each degree to stop at.
     pub(crate) stretch: [f64; STOPS.len()],
     /// How far the series are good for, s.
-    pub(crate) reach: Lanes<L>,
+    pub(crate) reach: Lanes,
     /// The degrees that they have come to; coefficients beyond are left over.
-    pub(crate) order: [usize; L],
+    pub(crate) order: [usize; WIDTH],
     /// The state there.
-    pub(crate) end: Row<L>,
+    pub(crate) end: Row,
     /// 1/m of the payload plus 1/m of the stage.
-    pub(crate) inverse_mass: Lanes<L>,
+    pub(crate) inverse_mass: Lanes,
+    /// Lanes that hold a run: the others wait for none and keep none waiting.
+    pub(crate) busy: [bool; WIDTH],
 }
 
 /// The coefficient of a product by Cauchy's rule, of the order that coefficients are given to. What
 /// waits for the newest of the second factor comes last.
 #[inline(always)]
-fn cauchy<S: Simd, T: Term<S>, C>(simd: S, of: &[C], term: impl Fn(S, &C, &C) -> T) -> T {
-    let mut sum = T::zero(simd);
+fn cauchy<S: Simd, const N: usize>(
+    simd: S,
+    of: &[Coefficients],
+    term: impl Fn(S, &Coefficients, &Coefficients) -> [Four<S>; N],
+) -> [Four<S>; N] {
+    let mut sum = [Four::splat(simd, 0.0); N];
     for (a, b) in of.iter().rev().zip(of) {
-        sum = sum.plus(term(simd, a, b));
+        sum = plus(sum, term(simd, a, b));
     }
     sum
 }
 
-impl<const L: usize> Expansion<L>
-where
-    Lanes<L>: Packing<L>,
-{
+#[inline(always)]
+fn plus<S: Simd, const N: usize>(a: [Four<S>; N], b: [Four<S>; N]) -> [Four<S>; N] {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+impl Expansion {
     #[inline(always)]
     pub(crate) fn new(stretch: [f64; STOPS.len()]) -> Self {
         let vector = [Lanes::ZERO; 3];
@@ -87,9 +88,10 @@ where
             radius: Lanes::ZERO,
             stretch,
             reach: Lanes::ZERO,
-            order: [ORDER; L],
+            order: [ORDER; WIDTH],
             end: [Lanes::ZERO; STATE],
             inverse_mass: Lanes::ZERO,
+            busy: [false; WIDTH],
         }
     }
 
@@ -101,14 +103,14 @@ where
     #[inline(always)]
     pub(crate) fn expand<S: Simd>(&mut self, simd: S) {
         let top = self.expand_lanes(simd);
-        for lane in 0..L {
+        let busy = self.busy;
+        for lane in (0..WIDTH).filter(|lane| busy[*lane]) {
             let beyond = self.order[lane] + 1..=top;
             for term in &mut self.terms[beyond] {
                 for x in &mut term.state {
                     x.0[lane] = 0.0;
                 }
             }
-            // Lanes differ where springs have the lanes of their runs.
             let beyond = self.order[lane]..top;
             for springs in &mut self.springs {
                 for term in &mut springs.terms[beyond.clone()] {
@@ -125,7 +127,7 @@ where
             }
             self.end[at..at + SUMS].copy_from_slice(&sum);
         }
-        let reach = self.reach.spread();
+        let reach = self.reach;
         for springs in &mut self.springs {
             let (mut power, mut up, mut down) = (reach, Lanes::ZERO, Lanes::ZERO);
             for term in &springs.terms[1..top] {
@@ -143,25 +145,25 @@ where
     #[inline(always)]
     fn expand_lanes<S: Simd>(&mut self, simd: S) -> usize {
         let before = self.radius;
-        let mut under_way = [true; L];
+        let mut under_way = self.busy;
         let mut from = 0;
         for (stop, stretch) in STOPS.into_iter().zip(self.stretch) {
             for k in from..stop {
                 self.expand_once(simd, k);
             }
             from = stop;
-            let mut stops = [true; L];
+            let mut stops = [true; WIDTH];
             if stop < ORDER {
                 // The radius seldom grows much from one step to the next, and takes time to find.
                 stops = self.releases_within(before * (2.0 * stretch), stop);
-                if !stops.iter().any(|x| *x) {
+                if !stops.iter().zip(&under_way).any(|(stops, under_way)| *stops && *under_way) {
                     continue;
                 }
             }
             let radius = self.radius(stop);
             let reach = radius * stretch;
             let ends = self.releases_within(reach, stop);
-            for lane in 0..L {
+            for lane in 0..WIDTH {
                 if under_way[lane] && stops[lane] && (ends[lane] || stop == ORDER) {
                     under_way[lane] = false;
                     self.radius.0[lane] = radius.0[lane];
@@ -179,9 +181,8 @@ where
     /// Whether a spring reaches its free length by a time, as far as the coefficients below an order
     /// tell.
     #[inline(always)]
-    fn releases_within(&self, time: Lanes<L>, order: usize) -> [bool; L] {
+    fn releases_within(&self, time: Lanes, order: usize) -> [bool; WIDTH] {
         let mut released = Lanes::ZERO;
-        let time = time.spread();
         for springs in &self.springs {
             let mut sum = Lanes::ZERO;
             for term in springs.terms[..order].iter().rev() {
@@ -189,7 +190,7 @@ where
             }
             let beyond = sum.zip(springs.free_length, |s, l| if s >= l * l { 1.0 } else { 0.0 });
             let pushes = springs.stiffness.map(|k| if k == 0.0 { 0.0 } else { 1.0 });
-            released = released.collect(beyond * pushes);
+            released = released + beyond * pushes;
         }
         released.0.map(|x| x > 0.0)
     }
@@ -202,27 +203,23 @@ where
         let (step, velocity) = (INVERSE[k + 1], part(&newest.state, VELOCITY));
         // Loops that wait for nothing stand between those that wait for what came last, and what comes
         // of them is put away: all registers are for the sums.
-        let attitude = Of::<L>::of_turn(&cauchy(simd, &self.terms[..=k], Of::<L>::attitude));
+        let attitude = Products::of_turn(&cauchy(simd, &self.terms[..=k], Products::attitude));
         put(&mut self.terms[k + 1].state, ATTITUDE, &attitude, 0.5 * step);
 
         let rotation = rotation(&squares(simd, &self.terms[..=k]), k);
         let newest = &mut self.terms[k];
-        newest.products.set_rotation(simd, &rotation);
-        let (arm, turn) = (
-            part::<_, 3>(&newest.state, OFFSET).map(Packing::spread),
-            rotation.map(|row| row.map(Packing::spread)),
-        );
-        let momenta = [
+        newest.products.rotation = rotation;
+        let arm = part(&newest.state, OFFSET);
+        newest.products.momenta = [
             times(&self.payload.inertia, &part(&newest.state, PAYLOAD_RATE)),
             times(&self.stage.inertia, &part(&newest.state, STAGE_RATE)),
         ];
-        newest.products.set_momenta(simd, &newest.state, &momenta);
         for springs in &mut self.springs {
-            springs.stretch(simd, k, &arm, &turn);
+            springs.stretch(simd, k, &arm, &rotation);
         }
 
-        let crosses = cauchy(simd, &self.terms[..=k], Of::<L>::crosses);
-        let [offset, acceleration, payload_turn] = Of::<L>::of_crosses(&crosses);
+        let crosses = cauchy(simd, &self.terms[..=k], Products::crosses);
+        let [offset, acceleration, payload_turn] = Products::of_crosses(&crosses);
         let next = &mut self.terms[k + 1].state;
         put(next, OFFSET, &add(velocity, offset), step);
         put(next, VELOCITY, &acceleration, 1.0);
@@ -231,27 +228,27 @@ where
         let (mut force, mut torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
         for springs in &mut self.springs {
             let Some([push, moment]) = springs.push(simd, k) else { continue };
-            force = std::array::from_fn(|i| force[i].collect(push[i]));
-            torque = std::array::from_fn(|i| torque[i].collect(moment[i]));
+            force = std::array::from_fn(|i| force[i] + push[i]);
+            torque = std::array::from_fn(|i| torque[i] + moment[i]);
         }
-        self.terms[k].products.set_force(simd, &force);
+        self.terms[k].products.force = force;
         let next = &mut self.terms[k + 1].state;
         let acceleration = add(scale(force, self.inverse_mass), part(next, VELOCITY));
         put(next, VELOCITY, &acceleration, step);
         let payload_turn = add(torque, part(next, PAYLOAD_RATE));
         put(next, PAYLOAD_RATE, &times(&self.payload.inverse, &payload_turn), step);
 
-        let gyration = cauchy(simd, &self.terms[..=k], Of::<L>::gyration);
-        let stage_turn = Of::<L>::of_gyration(&crosses, &gyration);
+        let gyration = cauchy(simd, &self.terms[..=k], Products::gyration);
+        let stage_turn = gyration.map(Four::store);
         put(&mut self.terms[k + 1].state, STAGE_RATE, &stage_turn, 1.0);
 
-        let moment = Of::<L>::of_vector(&cauchy(simd, &self.terms[..=k], Of::<L>::moment));
-        self.terms[k].products.set_reaction(&add(moment, torque).map(|x| -x));
+        let moment = cauchy(simd, &self.terms[..=k], Products::moment).map(Four::store);
+        self.terms[k].products.reaction = add(moment, torque).map(|x| -x);
 
-        let relative = Of::<L>::of_turn(&cauchy(simd, &self.terms[..=k], Of::<L>::relative));
+        let relative = Products::of_turn(&cauchy(simd, &self.terms[..=k], Products::relative));
         put(&mut self.terms[k + 1].state, RELATIVE, &relative, 0.5 * step);
 
-        let torque = Of::<L>::of_vector(&cauchy(simd, &self.terms[..=k], Of::<L>::torque));
+        let torque = cauchy(simd, &self.terms[..=k], Products::torque).map(Four::store);
         let next = &mut self.terms[k + 1].state;
         let stage_turn = add(torque, part(next, STAGE_RATE));
         put(next, STAGE_RATE, &times(&self.stage.inverse, &stage_turn), step);
@@ -260,7 +257,7 @@ where
     /// The radius of convergence as the last two coefficients up to an order tell it, each entry
     /// measured by its scale: of both, for series of even or odd functions have every other one.
     #[inline(always)]
-    fn radius(&self, order: usize) -> Lanes<L> {
+    fn radius(&self, order: usize) -> Lanes {
         let (mut last, mut previous) = (Lanes::ZERO, Lanes::ZERO);
         // NaN stays, which `f64::max` would pass over.
         let larger = |m: f64, x: f64| if x.abs() <= m { m } else { x.abs() };
@@ -277,12 +274,7 @@ where
 }
 
 #[inline(always)]
-fn put<const N: usize, const L: usize>(
-    row: &mut [Lanes<L>; STATE],
-    at: usize,
-    values: &[Lanes<L>; N],
-    factor: f64,
-) {
+fn put<const N: usize>(row: &mut [Lanes; STATE], at: usize, values: &[Lanes; N], factor: f64) {
     for (x, v) in row[at..at + N].iter_mut().zip(values) {
         *x = *v * factor;
     }
@@ -290,29 +282,27 @@ fn put<const N: usize, const L: usize>(
 
 /// The coefficients of order k of squares of the quaternion from stage to payload.
 #[inline(always)]
-fn squares<S: Simd, const L: usize>(simd: S, terms: &[Coefficients<Of<L>, L>]) -> [Lanes<L>; 9]
-where
-    Lanes<L>: Packing<L>,
-{
+fn squares<S: Simd>(simd: S, terms: &[Coefficients]) -> [Lanes; 9] {
     let half = terms.len() / 2;
     let (low, high) = (&terms[..half], &terms[terms.len() - half..]);
-    let mut pairs = Term::zero(simd);
+    let zero = [Four::splat(simd, 0.0); 9];
+    let mut pairs = zero;
     for (a, b) in low.iter().zip(high.iter().rev()) {
-        pairs = Term::plus(pairs, Of::<L>::squares(simd, a, b));
+        pairs = plus(pairs, Products::squares(simd, a, b));
     }
     let own = match terms.len() % 2 {
-        0 => Term::zero(simd),
-        _ => Of::<L>::own_squares(simd, &terms[half]),
+        0 => zero,
+        _ => Products::own_squares(simd, &terms[half]),
     };
-    Of::<L>::of_squares(&pairs, &own)
+    Products::of_squares(&pairs, &own)
 }
 
 /// The rotation matrix, from the coefficients of order k of squares of the quaternion.
 #[inline(always)]
-fn rotation<const L: usize>(squares: &[Lanes<L>; 9], k: usize) -> M3<L> {
+fn rotation(squares: &[Lanes; 9], k: usize) -> M3 {
     let [xx, yy, zz, xy, xz, yz, wx, wy, wz] = *squares;
     let one = Lanes::splat(if k == 0 { 1.0 } else { 0.0 });
-    let double = |x: Lanes<L>| x + x;
+    let double = |x: Lanes| x + x;
     [
         [one - double(yy + zz), double(xy - wz), double(xz + wy)],
         [double(xy + wz), one - double(xx + zz), double(yz - wx)],

@@ -5,9 +5,7 @@ use std::borrow::Borrow;
 use crate::{
     RunError, Separation,
     integrator::Integrator,
-    lanes::Lanes,
     layout::ORDER,
-    packing::Packing,
     polynomial::first_zero,
     separation::TOUCHING,
     state,
@@ -18,10 +16,7 @@ use crate::{
 /// more but is reported.
 const RECOMPRESSED: f64 = 1e-9;
 
-impl<const L: usize> Integrator<L>
-where
-    Lanes<L>: Packing<L>,
-{
+impl Integrator {
     /// The square of a spring's length less that of its free length, times a sign, less an offset,
     /// as a polynomial on [0, 1] for [0, h].
     pub(crate) fn gap(
@@ -33,7 +28,7 @@ where
         offset: f64,
     ) -> [f64; ORDER] {
         let order = self.expansion.order[lane];
-        let (series, lane) = self.spring(lane, spring);
+        let series = &self.expansion.springs[spring];
         let free = series.free_length.0[lane];
         let mut power = sign;
         let mut gap = [0.0; ORDER];
@@ -61,9 +56,9 @@ where
     ) -> Result<(), RunError> {
         let run = track.separation.borrow();
         let touching = (TOUCHING * run.springs()[spring].stroke_m()).powi(2);
-        let (series, at) = self.spring(lane, spring);
+        let series = &self.expansion.springs[spring];
         // The terms that bring them nearer do not suffice, most often.
-        if series.lower.0[at] > touching {
+        if series.lower.0[lane] > touching {
             return Ok(());
         }
         let free = run.free_lengths()[spring];
@@ -94,9 +89,9 @@ where
             if let Fate::Released { recompressed: recompressed @ None, .. } = fate {
                 let slack =
                     2.0 * run.free_lengths()[i] * RECOMPRESSED * run.springs()[i].stroke_m();
-                let (series, at) = self.spring(lane, i);
+                let series = &self.expansion.springs[i];
                 let free = run.free_lengths()[i];
-                if series.lower.0[at] > free * free - slack {
+                if series.lower.0[lane] > free * free - slack {
                     continue;
                 }
                 let gap = self.gap(lane, i, taken, -1.0, slack);

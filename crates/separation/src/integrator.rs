@@ -7,7 +7,6 @@ use crate::{
     expansion::{Expansion, Rotor},
     lanes::{Lanes, M3},
     layout::{ORDER, STATE, STOPS, TERMS},
-    packing::Packing,
     polynomial::first_zero,
     separation::TOUCHING,
     spring_series::SpringSeries,
@@ -28,43 +27,23 @@ const NEAR: f64 = 1.0 - 1e-9;
 
 /// Several runs, one in each lane.
 #[derive(Debug)]
-pub(crate) struct Integrator<const L: usize>
-where
-    Lanes<L>: Packing<L>,
-{
-    pub(crate) expansion: Expansion<L>,
+pub(crate) struct Integrator {
+    pub(crate) expansion: Expansion,
     settings: Settings,
     machine: vector::Machine,
 }
 
 /// The expansion of all lanes, compiled for the vector units there are.
-struct Expand<'a, const L: usize>(&'a mut Expansion<L>)
-where
-    Lanes<L>: Packing<L>;
+struct Expand<'a>(&'a mut Expansion);
 
-impl<const L: usize> vector::Kernel for Expand<'_, L>
-where
-    Lanes<L>: Packing<L>,
-{
+impl vector::Kernel for Expand<'_> {
     #[inline(always)]
     fn run<S: vector::Simd>(self, simd: S) {
         self.0.expand(simd);
     }
 }
 
-/// Where a spring of the run in a lane is: which of the series, and which of their lanes.
-fn slot<const L: usize>(lane: usize, spring: usize) -> (usize, usize)
-where
-    Lanes<L>: Packing<L>,
-{
-    let side_by_side = <Lanes<L> as Packing<L>>::SPRINGS;
-    (spring / side_by_side, lane + spring % side_by_side)
-}
-
-impl<const L: usize> Integrator<L>
-where
-    Lanes<L>: Packing<L>,
-{
+impl Integrator {
     pub(crate) fn new(settings: Settings) -> Self {
         // The first term left out, extrapolated geometrically from the last two, is the tolerance
         // (Jorba & Zou 2005, §3.2). Few terms tell less: half of that.
@@ -79,19 +58,17 @@ where
     pub(crate) fn load<S: Borrow<Separation>>(&mut self, lane: usize, separation: S) -> Track<S> {
         let run: &Separation = separation.borrow();
         let expansion = &mut self.expansion;
-        let blocks = run.springs().len().div_ceil(<Lanes<L> as Packing<L>>::SPRINGS);
-        while expansion.springs.len() < blocks {
+        expansion.busy[lane] = true;
+        while expansion.springs.len() < run.springs().len() {
             expansion.springs.push(SpringSeries::new());
         }
-        let set = |to: &mut [Lanes<L>], from: &[f64]| {
+        let set = |to: &mut [Lanes], from: &[f64]| {
             for (to, from) in to.iter_mut().zip(from) {
                 to.0[lane] = *from;
             }
         };
         // A run with fewer springs than there is room for has some that do not push.
-        for i in 0..expansion.springs.len() * <Lanes<L> as Packing<L>>::SPRINGS {
-            let (block, lane) = slot::<L>(lane, i);
-            let series = &mut expansion.springs[block];
+        for (i, series) in expansion.springs.iter_mut().enumerate() {
             series.stiffness.0[lane] = 0.0;
             if let Some(spring) = run.springs().get(i) {
                 if Fate::of(spring) == Fate::Pushing {
@@ -104,14 +81,14 @@ where
                 }
             }
         }
-        let matrix = |to: &mut M3<L>, from: &nalgebra::Matrix3<f64>| {
+        let matrix = |to: &mut M3, from: &nalgebra::Matrix3<f64>| {
             for (row, from) in to.iter_mut().zip(from.row_iter()) {
                 for (to, from) in row.iter_mut().zip(from.iter()) {
                     to.0[lane] = *from;
                 }
             }
         };
-        let rotor = |to: &mut Rotor<L>, body: &crate::Body| {
+        let rotor = |to: &mut Rotor, body: &crate::Body| {
             matrix(&mut to.inertia, body.inertia().matrix());
             matrix(&mut to.inverse, body.inverse_inertia());
         };
@@ -124,6 +101,11 @@ where
         self.set_state(lane, &state::initial(run));
         let springs = run.springs().iter().map(Fate::of).collect();
         Track { time: 0.0, steps: 0, springs, time_scale: state::time_scale(&scales), separation }
+    }
+
+    /// Leaves a lane without a run.
+    pub(crate) fn rest(&mut self, lane: usize) {
+        self.expansion.busy[lane] = false;
     }
 
     /// Expands the motion in all lanes.
@@ -183,10 +165,10 @@ where
         let h = reach.min(until.min(start) - track.time);
         let mut first: Option<(f64, usize)> = None;
         for i in track.pushing() {
-            let (spring, at) = self.spring(lane, i);
-            let free = spring.free_length.0[at];
+            let spring = &self.expansion.springs[i];
+            let free = spring.free_length.0[lane];
             // Most come nowhere near. NaN does not pass.
-            if spring.upper.0[at] < free * free {
+            if spring.upper.0[lane] < free * free {
                 continue;
             }
             let gap = self.gap(lane, i, h, 1.0, 0.0);
@@ -234,15 +216,14 @@ where
             for (i, fate) in track.springs.iter_mut().enumerate() {
                 // Springs that are as long to rounding let go together.
                 let free = || {
-                    let (series, at) = self.spring(lane, i);
+                    let series = &self.expansion.springs[i];
                     // Most come nowhere near.
-                    series.upper.0[at] >= NEAR * series.free_length.0[at].powi(2)
+                    series.upper.0[lane] >= NEAR * series.free_length.0[lane].powi(2)
                         && state::gap(run, &next, i).value >= -state::rounding(run, &next, i)
                 };
                 if fate.is_open() && (i == spring || free()) {
                     fate.end(track.time);
-                    let (block, lane) = slot::<L>(lane, i);
-                    self.expansion.springs[block].stiffness.0[lane] = 0.0;
+                    self.expansion.springs[i].stiffness.0[lane] = 0.0;
                 }
             }
         }
@@ -255,18 +236,11 @@ where
                     return Err(RunError::PadsMeet { spring: i + 1, time: track.time, speed });
                 }
                 *fate = Fate::Pushing;
-                let (block, lane) = slot::<L>(lane, i);
-                self.expansion.springs[block].stiffness.0[lane] = spring.stiffness_n_per_m();
+                self.expansion.springs[i].stiffness.0[lane] = spring.stiffness_n_per_m();
             }
         }
         self.set_state(lane, &next);
         Ok(taken)
-    }
-
-    /// The series that a spring is in, and its lane.
-    pub(crate) fn spring(&self, lane: usize, spring: usize) -> (&SpringSeries, usize) {
-        let (block, lane) = slot::<L>(lane, spring);
-        (&self.expansion.springs[block], lane)
     }
 
     /// The state after a time.
@@ -334,7 +308,7 @@ mod tests {
             ],
         )
         .unwrap();
-        let mut integrator = Integrator::<1>::new(Settings::default());
+        let mut integrator = Integrator::new(Settings::default());
         let mut track = integrator.load(0, &separation);
         let mut degrees = vec![];
         while !track.all_released() {
@@ -347,14 +321,11 @@ mod tests {
 
     #[test]
     fn every_machine_gets_the_same_bits() {
-        fn ends<const L: usize>(machine: vector::Machine) -> Vec<String>
-        where
-            Lanes<L>: Packing<L>,
-        {
+        fn ends(machine: vector::Machine) -> Vec<String> {
             let separation = turning(true);
-            let mut integrator = Integrator::<L>::new(Settings::default());
+            let mut integrator = Integrator::new(Settings::default());
             integrator.machine = machine;
-            let mut tracks: [_; L] =
+            let mut tracks: [_; WIDTH] =
                 std::array::from_fn(|lane| integrator.load(lane, separation.clone()));
             // Lanes that stop at a degree of their own.
             while !tracks.iter().all(Track::all_released) {
@@ -366,13 +337,13 @@ mod tests {
                     }
                 }
             }
-            (0..L).map(|lane| format!("{:?} {:?}", integrator.state(lane), tracks[lane])).collect()
+            (0..WIDTH)
+                .map(|lane| format!("{:?} {:?}", integrator.state(lane), tracks[lane]))
+                .collect()
         }
         let (here, any) = (vector::Machine::new(), vector::Machine::BASELINE);
-        assert_eq!(ends::<1>(here), ends::<1>(any));
-        let batch = ends::<WIDTH>(here);
-        assert_eq!(batch, ends::<WIDTH>(any));
-        assert_eq!(batch[0], ends::<1>(here)[0]);
+        let batch = ends(here);
+        assert_eq!(batch, ends(any));
         assert_ne!(batch[0], batch[1]);
     }
 }

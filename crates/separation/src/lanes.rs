@@ -1,20 +1,20 @@
-//! Several numbers that go through the same operations: one lane for a run alone, four for a batch.
+//! Several numbers that go through the same operations: one lane for each run.
 //!
 //! Sums, products, quotients and square roots only, each correctly rounded and never fused: a lane
 //! holds the same bits whatever the other lanes hold and however many there are.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// One number for each of `L` runs.
+/// One number for each run.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lanes<const L: usize>(pub(crate) [f64; L]);
+pub(crate) struct Lanes(pub(crate) [f64; WIDTH]);
 
-impl<const L: usize> Lanes<L> {
-    pub(crate) const ZERO: Self = Self([0.0; L]);
+impl Lanes {
+    pub(crate) const ZERO: Self = Self([0.0; WIDTH]);
 
     #[inline(always)]
     pub(crate) fn splat(x: f64) -> Self {
-        Self([x; L])
+        Self([x; WIDTH])
     }
 
     // Loops, for the library's functions are not always inlined.
@@ -42,7 +42,7 @@ impl<const L: usize> Lanes<L> {
 
 macro_rules! lanewise {
     ($($operation:ident $method:ident $symbol:tt),*) => {$(
-        impl<const L: usize> $operation for Lanes<L> {
+        impl $operation for Lanes {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
@@ -53,7 +53,7 @@ macro_rules! lanewise {
 }
 lanewise!(Add add +, Sub sub -, Mul mul *, Div div /);
 
-impl<const L: usize> Mul<f64> for Lanes<L> {
+impl Mul<f64> for Lanes {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: f64) -> Self {
@@ -61,7 +61,7 @@ impl<const L: usize> Mul<f64> for Lanes<L> {
     }
 }
 
-impl<const L: usize> Neg for Lanes<L> {
+impl Neg for Lanes {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -69,49 +69,43 @@ impl<const L: usize> Neg for Lanes<L> {
     }
 }
 
-impl<const L: usize> AddAssign for Lanes<L> {
+impl AddAssign for Lanes {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl<const L: usize> SubAssign for Lanes<L> {
+impl SubAssign for Lanes {
     #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-/// Lanes that springs are computed in: runs of a batch, or springs of a run alone.
+/// Runs that are computed at a time.
 pub(crate) const WIDTH: usize = 4;
 
 /// A vector, and a matrix by rows.
-pub(crate) type V3<const L: usize> = [Lanes<L>; 3];
-pub(crate) type M3<const L: usize> = [V3<L>; 3];
+pub(crate) type V3 = [Lanes; 3];
+pub(crate) type M3 = [V3; 3];
 
 #[inline(always)]
-pub(crate) fn add<const N: usize, const L: usize>(
-    a: [Lanes<L>; N],
-    b: [Lanes<L>; N],
-) -> [Lanes<L>; N] {
+pub(crate) fn add<const N: usize>(a: [Lanes; N], b: [Lanes; N]) -> [Lanes; N] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
 #[inline(always)]
-pub(crate) fn scale<const N: usize, const L: usize>(
-    a: [Lanes<L>; N],
-    s: Lanes<L>,
-) -> [Lanes<L>; N] {
+pub(crate) fn scale<const N: usize>(a: [Lanes; N], s: Lanes) -> [Lanes; N] {
     a.map(|x| x * s)
 }
 
 #[inline(always)]
-pub(crate) fn dot<const L: usize>(a: &V3<L>, b: &V3<L>) -> Lanes<L> {
+pub(crate) fn dot(a: &V3, b: &V3) -> Lanes {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]
-pub(crate) fn times<const L: usize>(m: &M3<L>, v: &V3<L>) -> V3<L> {
+pub(crate) fn times(m: &M3, v: &V3) -> V3 {
     [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v)]
 }

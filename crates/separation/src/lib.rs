@@ -50,7 +50,6 @@ mod layout;
 mod metrics;
 mod nutation;
 mod outcome;
-mod packing;
 mod polynomial;
 mod products;
 mod root;

@@ -1,135 +1,169 @@
 //! The products of series that the equations of motion are made of, term by term: how the
 //! coefficients of two orders go into one of their product.
-//!
-//! The runs of a batch have one lane each. A run alone has several numbers of its own in the lanes, laid out
-//! so that the same operations come in the same order: it gets the same bits. Where it multiplies by
-//! zeros instead of leaving a term out, sums start from +0 and stay as they are.
-
-pub(crate) mod batch;
-pub(crate) mod single;
-
-use std::fmt::Debug;
 
 use crate::{
-    lanes::{Lanes, M3, V3, WIDTH},
-    layout::STATE,
+    lanes::{Lanes, M3, V3},
+    layout::{ATTITUDE, OFFSET, PAYLOAD_RATE, RELATIVE, STAGE_RATE, STATE, VELOCITY},
     vector::{Four, Simd},
 };
 
 /// The coefficients of one order of a state.
-pub(crate) type Row<const L: usize> = [Lanes<L>; STATE];
-
-/// What sums are made of.
-pub(crate) trait Term<S>: Copy {
-    fn zero(simd: S) -> Self;
-    fn plus(self, other: Self) -> Self;
-}
-
-impl<const N: usize, S: Simd> Term<S> for [Four<S>; N] {
-    #[inline(always)]
-    fn zero(simd: S) -> Self {
-        [Four::splat(simd, 0.0); N]
-    }
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        std::array::from_fn(|i| self[i] + other[i])
-    }
-}
+pub(crate) type Row = [Lanes; STATE];
 
 /// The coefficients of one order: of a state, and of what else goes into products.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-pub(crate) struct Coefficients<P, const L: usize> {
-    pub(crate) state: Row<L>,
-    pub(crate) products: P,
+pub(crate) struct Coefficients {
+    pub(crate) state: Row,
+    pub(crate) products: Products,
 }
 
 /// Coefficients of one order of what is not in the state, and the terms they make.
-pub(crate) trait Products<const L: usize>: Copy + Debug {
-    type Squares<S: Simd>: Term<S>;
-    type Turn<S: Simd>: Term<S>;
-    type Crosses<S: Simd>: Term<S>;
-    type Gyration<S: Simd>: Term<S>;
-    type Vector<S: Simd>: Term<S>;
-
-    const ZERO: Self;
-    /// From the state.
-    fn set_motion<S: Simd>(&mut self, simd: S, state: &Row<L>);
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Products {
+    /// ω_L − ω_P and ω_L + ω_P.
+    rates: [V3; 2],
     /// The angular momenta about the mass centres, body axes.
-    fn set_momenta<S: Simd>(&mut self, simd: S, state: &Row<L>, momenta: &[V3<L>; 2]);
+    pub(crate) momenta: [V3; 2],
     /// Takes stage components to payload components.
-    fn set_rotation<S: Simd>(&mut self, simd: S, rotation: &M3<L>);
+    pub(crate) rotation: M3,
     /// On the payload, payload axes.
-    fn set_force<S: Simd>(&mut self, simd: S, force: &V3<L>);
+    pub(crate) force: V3,
     /// On the stage, −(ρ × F + T), payload axes.
-    fn set_reaction(&mut self, reaction: &V3<L>);
+    pub(crate) reaction: V3,
+}
+
+impl Products {
+    pub(crate) const ZERO: Self = {
+        let zero = [Lanes::ZERO; 3];
+        Self {
+            rates: [zero; 2],
+            momenta: [zero; 2],
+            rotation: [zero; 3],
+            force: zero,
+            reaction: zero,
+        }
+    };
+
+    /// From the state.
+    #[inline(always)]
+    pub(crate) fn set_motion<S: Simd>(&mut self, simd: S, state: &Row) {
+        let l: [Four<S>; 3] = load_part(simd, state, STAGE_RATE);
+        let p: [Four<S>; 3] = load_part(simd, state, PAYLOAD_RATE);
+        self.rates =
+            [[0, 1, 2].map(|i| (l[i] - p[i]).store()), [0, 1, 2].map(|i| (l[i] + p[i]).store())];
+    }
 
     /// Of the quaternion from stage to payload: of two orders, either way round.
-    fn squares<S: Simd>(
-        s: S,
-        a: &Coefficients<Self, L>,
-        b: &Coefficients<Self, L>,
-    ) -> Self::Squares<S>;
+    #[inline(always)]
+    pub(crate) fn squares<S: Simd>(s: S, a: &Coefficients, b: &Coefficients) -> [Four<S>; 9] {
+        let [x, y, z, w] = load_part(s, &a.state, RELATIVE);
+        let [bx, by, bz, bw] = load_part(s, &b.state, RELATIVE);
+        [
+            x * bx,
+            y * by,
+            z * bz,
+            x * by + bx * y,
+            x * bz + bx * z,
+            y * bz + by * z,
+            x * bw + bx * w,
+            y * bw + by * w,
+            z * bw + bz * w,
+        ]
+    }
+
     /// Of one order by itself.
-    fn own_squares<S: Simd>(s: S, a: &Coefficients<Self, L>) -> Self::Squares<S>;
+    #[inline(always)]
+    pub(crate) fn own_squares<S: Simd>(s: S, a: &Coefficients) -> [Four<S>; 9] {
+        let [x, y, z, w] = load_part(s, &a.state, RELATIVE);
+        [x * x, y * y, z * z, x * y, x * z, y * z, x * w, y * w, z * w]
+    }
+
     /// xx, yy, zz, xy, xz, yz, xw, yw, zw.
-    fn of_squares<S: Simd>(pairs: &Self::Squares<S>, own: &Self::Squares<S>) -> [Lanes<L>; 9];
+    #[inline(always)]
+    pub(crate) fn of_squares<S: Simd>(pairs: &[Four<S>; 9], own: &[Four<S>; 9]) -> [Lanes; 9] {
+        // Doubling is exact, whenever it is done.
+        let sum = |i: usize| if i < 3 { pairs[i] + pairs[i] } else { pairs[i] };
+        std::array::from_fn(|i| (sum(i) + own[i]).store())
+    }
 
     /// 2q̇ of the quaternion from stage to payload, q ∘ ω_L − ω_P ∘ q, by ω_L − ω_P and ω_L + ω_P.
-    fn relative<S: Simd>(
-        s: S,
-        a: &Coefficients<Self, L>,
-        b: &Coefficients<Self, L>,
-    ) -> Self::Turn<S>;
+    #[inline(always)]
+    pub(crate) fn relative<S: Simd>(simd: S, a: &Coefficients, b: &Coefficients) -> [Four<S>; 4] {
+        let [x, y, z, w] = load_part(simd, &a.state, RELATIVE);
+        let [d, s] = b.products.rates.map(|x| load(simd, &x));
+        [
+            y * s[2] + (w * d[0] - z * s[1]),
+            (z * s[0] + w * d[1]) - x * s[2],
+            (x * s[1] - y * s[0]) + w * d[2],
+            (x * d[0] + y * d[1]) + z * d[2],
+        ]
+    }
+
     /// 2q̇ of the quaternion from payload to inertial, q ∘ ω_P.
-    fn attitude<S: Simd>(
-        s: S,
-        a: &Coefficients<Self, L>,
-        b: &Coefficients<Self, L>,
-    ) -> Self::Turn<S>;
-    fn of_turn<S: Simd>(sum: &Self::Turn<S>) -> [Lanes<L>; 4];
+    #[inline(always)]
+    pub(crate) fn attitude<S: Simd>(s: S, a: &Coefficients, b: &Coefficients) -> [Four<S>; 4] {
+        let [i, j, k, r] = load_part(s, &a.state, ATTITUDE);
+        let [u, v, t] = load_part(s, &b.state, PAYLOAD_RATE);
+        [
+            (u * r - v * k) + t * j,
+            (u * k + v * r) - t * i,
+            (v * i - u * j) + t * r,
+            (u * i + v * j) + t * k,
+        ]
+    }
+
+    #[inline(always)]
+    pub(crate) fn of_turn<S: Simd>(sum: &[Four<S>; 4]) -> [Lanes; 4] {
+        let [x, y, z, w] = sum.map(Four::store);
+        // The sign was left out.
+        [x, y, z, Lanes::ZERO - w]
+    }
 
     /// Offset, velocity and angular momentum of the payload, each × the rate of its axes.
-    fn crosses<S: Simd>(
-        s: S,
-        a: &Coefficients<Self, L>,
-        b: &Coefficients<Self, L>,
-    ) -> Self::Crosses<S>;
-    /// The angular momentum of the stage × the rate of its axes, if not among the former.
-    fn gyration<S: Simd>(
-        s: S,
-        a: &Coefficients<Self, L>,
-        b: &Coefficients<Self, L>,
-    ) -> Self::Gyration<S>;
-    fn of_crosses<S: Simd>(sum: &Self::Crosses<S>) -> [V3<L>; 3];
-    fn of_gyration<S: Simd>(crosses: &Self::Crosses<S>, sum: &Self::Gyration<S>) -> V3<L>;
+    #[inline(always)]
+    pub(crate) fn crosses<S: Simd>(s: S, a: &Coefficients, b: &Coefficients) -> [Four<S>; 9] {
+        let rate = load_part(s, &b.state, PAYLOAD_RATE);
+        let [x, y, z] = cross(&load_part(s, &a.state, OFFSET), &rate);
+        let [u, v, w] = cross(&load_part(s, &a.state, VELOCITY), &rate);
+        let [l, m, n] = cross(&load(s, &a.products.momenta[0]), &rate);
+        [x, y, z, u, v, w, l, m, n]
+    }
+
+    /// The angular momentum of the stage × the rate of its axes.
+    #[inline(always)]
+    pub(crate) fn gyration<S: Simd>(s: S, a: &Coefficients, b: &Coefficients) -> [Four<S>; 3] {
+        cross(&load(s, &a.products.momenta[1]), &load_part(s, &b.state, STAGE_RATE))
+    }
+
+    #[inline(always)]
+    pub(crate) fn of_crosses<S: Simd>(sum: &[Four<S>; 9]) -> [V3; 3] {
+        let [a, b, c, d, e, f, g, h, i] = sum.map(Four::store);
+        [[a, b, c], [d, e, f], [g, h, i]]
+    }
 
     /// ρ × F.
-    fn moment<S: Simd>(
-        s: S,
-        a: &Coefficients<Self, L>,
-        b: &Coefficients<Self, L>,
-    ) -> Self::Vector<S>;
+    #[inline(always)]
+    pub(crate) fn moment<S: Simd>(s: S, a: &Coefficients, b: &Coefficients) -> [Four<S>; 3] {
+        cross(&load_part(s, &a.state, OFFSET), &load(s, &b.products.force))
+    }
+
     /// The reaction in stage axes.
-    fn torque<S: Simd>(
-        s: S,
-        a: &Coefficients<Self, L>,
-        b: &Coefficients<Self, L>,
-    ) -> Self::Vector<S>;
-    fn of_vector<S: Simd>(sum: &Self::Vector<S>) -> V3<L>;
+    #[inline(always)]
+    pub(crate) fn torque<S: Simd>(s: S, a: &Coefficients, b: &Coefficients) -> [Four<S>; 3] {
+        let (m, v) = (&a.products.rotation, load(s, &b.products.reaction));
+        let [x, y, z] = [load(s, &m[0]), load(s, &m[1]), load(s, &m[2])];
+        std::array::from_fn(|i| x[i] * v[0] + y[i] * v[1] + z[i] * v[2])
+    }
 }
 
 #[inline(always)]
-pub(crate) fn load<const N: usize, S: Simd>(simd: S, x: &[Lanes<WIDTH>; N]) -> [Four<S>; N] {
+pub(crate) fn load<const N: usize, S: Simd>(simd: S, x: &[Lanes; N]) -> [Four<S>; N] {
     std::array::from_fn(|i| Four::load(simd, &x[i]))
 }
 
 #[inline(always)]
-pub(crate) fn load_part<const N: usize, S: Simd>(
-    simd: S,
-    x: &Row<WIDTH>,
-    at: usize,
-) -> [Four<S>; N] {
+pub(crate) fn load_part<const N: usize, S: Simd>(simd: S, x: &Row, at: usize) -> [Four<S>; N] {
     std::array::from_fn(|i| Four::load(simd, &x[at + i]))
 }
 

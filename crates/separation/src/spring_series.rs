@@ -1,8 +1,7 @@
-//! The series of springs, as many at a time as there are lanes: of a run alone side by side, of the runs
-//! of a batch one of each.
+//! The series of springs, one of each run at a time.
 
 use crate::{
-    lanes::{Lanes, M3, V3, WIDTH},
+    lanes::{Lanes, M3, V3},
     layout::{INVERSE, TERMS},
     products::{cross, load},
     vector::{Four, Simd},
@@ -23,11 +22,11 @@ const QUARTERS: [f64; 4 * TERMS] = {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpringTerm {
     /// From stage point to payload point, s.
-    line: V3<WIDTH>,
+    line: V3,
     /// s².
-    pub(crate) square: Lanes<WIDTH>,
+    pub(crate) square: Lanes,
     /// k L₀/|s|: less k, the force over the length.
-    push: Lanes<WIDTH>,
+    push: Lanes,
 }
 
 /// As many springs as there are lanes, and their series.
@@ -36,22 +35,22 @@ pub(crate) struct SpringTerm {
 pub(crate) struct SpringSeries {
     pub(crate) terms: [SpringTerm; TERMS],
     /// Zero where a spring no longer pushes.
-    pub(crate) stiffness: Lanes<WIDTH>,
-    pub(crate) free_length: Lanes<WIDTH>,
-    pub(crate) payload_point: V3<WIDTH>,
-    pub(crate) stage_point: V3<WIDTH>,
+    pub(crate) stiffness: Lanes,
+    pub(crate) free_length: Lanes,
+    pub(crate) payload_point: V3,
+    pub(crate) stage_point: V3,
     /// What s² stays below and above as far as the series is good.
-    pub(crate) upper: Lanes<WIDTH>,
-    pub(crate) lower: Lanes<WIDTH>,
+    pub(crate) upper: Lanes,
+    pub(crate) lower: Lanes,
     /// Force over the length, of order 0.
-    first_push: Lanes<WIDTH>,
+    first_push: Lanes,
     /// 1/s² of order 0, zero for springs that do not push.
-    inverse_square: Lanes<WIDTH>,
+    inverse_square: Lanes,
     /// Half of the push of order 0.
-    half_push: Lanes<WIDTH>,
+    half_push: Lanes,
     /// What there is of the sums of the order under way.
-    slope: Lanes<WIDTH>,
-    force: V3<WIDTH>,
+    slope: Lanes,
+    force: V3,
     /// That none of them pushes any more.
     lost: bool,
 }
@@ -84,13 +83,7 @@ impl SpringSeries {
     /// The coefficients of order k of the lines and of s², from those of where the stage's mass centre
     /// is and of the rotation from stage to payload; and what else of order k waits for nothing.
     #[inline(always)]
-    pub(crate) fn stretch<S: Simd>(
-        &mut self,
-        simd: S,
-        k: usize,
-        offset: &V3<WIDTH>,
-        rotation: &M3<WIDTH>,
-    ) {
+    pub(crate) fn stretch<S: Simd>(&mut self, simd: S, k: usize, offset: &V3, rotation: &M3) {
         if k == 0 {
             self.lost = self.stiffness.0.iter().all(|s| *s == 0.0);
         }
@@ -115,7 +108,7 @@ impl SpringSeries {
     /// The coefficients of order k of the forces on the payload, and of their moments about its mass
     /// centre; none if all springs are lost.
     #[inline(always)]
-    pub(crate) fn push<S: Simd>(&mut self, simd: S, k: usize) -> Option<[V3<WIDTH>; 2]> {
+    pub(crate) fn push<S: Simd>(&mut self, simd: S, k: usize) -> Option<[V3; 2]> {
         if self.lost {
             return None;
         }
@@ -192,7 +185,7 @@ impl SpringSeries {
     #[inline(always)]
     fn start(&mut self) {
         // A lost spring may come to length zero.
-        let of = |x: Lanes<WIDTH>| self.stiffness.zip(x, |k, x| if k == 0.0 { 0.0 } else { x });
+        let of = |x: Lanes| self.stiffness.zip(x, |k, x| if k == 0.0 { 0.0 } else { x });
         let inverse = of(Lanes::splat(1.0) / self.terms[0].square.sqrt());
         self.inverse_square = inverse * inverse;
         let push = self.stiffness * (self.free_length * inverse);

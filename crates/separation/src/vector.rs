@@ -92,7 +92,7 @@ pub(crate) struct Four<S: Simd>(S, S::Four);
 
 impl<S: Simd> Four<S> {
     #[inline(always)]
-    pub(crate) fn load(simd: S, x: &Lanes<WIDTH>) -> Self {
+    pub(crate) fn load(simd: S, x: &Lanes) -> Self {
         Self(simd, simd.load(x.0))
     }
 
@@ -102,7 +102,7 @@ impl<S: Simd> Four<S> {
     }
 
     #[inline(always)]
-    pub(crate) fn store(self) -> Lanes<WIDTH> {
+    pub(crate) fn store(self) -> Lanes {
         Lanes(self.0.store(self.1))
     }
 }
