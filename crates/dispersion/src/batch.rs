@@ -6,8 +6,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::{
     AxesLaw, CorrelatedRoots, EmpiricalRoots, FixedAttitude, GaussianRoots, IndependentRoots,
-    JacobianTwice, LognormalRoots, PrincipalDispersion, RootLaw, TruncatedRoots, UniformRoots,
-    WithMoments,
+    JacobianTwice, PrincipalDispersion, RootLaw, ScalarRoots, WithMoments,
 };
 
 /// Draws made at a time: few enough for the first-level cache.
@@ -51,9 +50,7 @@ impl BatchRoots for GaussianRoots {
 }
 
 impl BatchRoots for CorrelatedRoots {}
-impl BatchRoots for UniformRoots {}
-impl BatchRoots for LognormalRoots {}
-impl BatchRoots for TruncatedRoots {}
+impl BatchRoots for ScalarRoots {}
 impl BatchRoots for EmpiricalRoots {}
 impl<L: Distribution<f64>> BatchRoots for IndependentRoots<L> {}
 
@@ -68,9 +65,7 @@ impl BatchRoots for RootLaw {
         match self {
             Self::Gaussian(law) => law.squares_into(rng, columns),
             Self::CorrelatedGaussian(law) => law.squares_into(rng, columns),
-            Self::Uniform(law) => law.squares_into(rng, columns),
-            Self::Lognormal(law) => law.squares_into(rng, columns),
-            Self::TruncatedGaussian(law) => law.squares_into(rng, columns),
+            Self::Independent(law) => law.squares_into(rng, columns),
             Self::Empirical(law) => law.squares_into(rng, columns),
         }
     }
@@ -293,6 +288,10 @@ mod tests {
         }
     }
 
+    fn uniform(bounds: [[f64; 2]; 3]) -> ScalarRoots {
+        ScalarRoots::new(bounds.map(|[a, b]| crate::ScalarLaw::uniform(a, b).unwrap())).unwrap()
+    }
+
     #[test]
     fn batches_have_the_moments_and_are_bodies() {
         let (roots, axes) = laws();
@@ -301,7 +300,7 @@ mod tests {
         check("uniform", &PrincipalDispersion::new(roots, UniformAttitude), 3);
         let fixed = FixedAttitude::new(axes.mean());
         check("fixed", &PrincipalDispersion::new(roots, fixed), 4);
-        let law = RootLaw::from(UniformRoots::new([[1.0, 2.0], [0.0, 0.0], [-1.0, 1.0]]).unwrap());
+        let law = RootLaw::from(uniform([[1.0, 2.0], [0.0, 0.0], [-1.0, 1.0]]));
         check("any", &PrincipalDispersion::new(law, AxesLaw::from(axes)), 5);
     }
 
@@ -310,7 +309,7 @@ mod tests {
     fn bodies_are_put_together_as_one_by_one() {
         let q = UnitQuaternion::from_euler_angles(1.0, -0.4, 2.0);
         let law = PrincipalDispersion::new(
-            RootLaw::from(UniformRoots::new([[2.0, 3.0], [1.0, 1.5], [0.0, 1.0]]).unwrap()),
+            RootLaw::from(uniform([[2.0, 3.0], [1.0, 1.5], [0.0, 1.0]])),
             FixedAttitude::new(q),
         );
         let columns = fill(&law, 6, 1000);

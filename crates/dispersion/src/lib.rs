@@ -64,6 +64,7 @@ mod roots;
 mod scalar;
 mod second_moment_matrix;
 mod semidefinite;
+mod truncated_draw;
 mod truncated_normal;
 mod wishart;
 
@@ -86,9 +87,8 @@ pub use root_moments::{
 };
 pub use roots::{
     CorrelatedRoots, CorrelatedRootsError, EmpiricalRoots, EmpiricalRootsError, GaussianRoots,
-    GaussianRootsError, IndependentRoots, IndependentRootsError, LognormalRoots,
-    LognormalRootsError, RootLaw, TruncatedRoots, TruncatedRootsError, UniformRoots,
-    UniformRootsError,
+    GaussianRootsError, IndependentRoots, IndependentRootsError, RootLaw, ScalarRoots,
+    ScalarRootsError,
 };
 pub use scalar::{ScalarLaw, ScalarLawError};
 pub use semidefinite::CovarianceError;

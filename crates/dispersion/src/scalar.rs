@@ -1,8 +1,11 @@
-use rand::Rng;
+//! Laws of one number.
+
+use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::normal::below;
-use crate::truncated_normal::{MAX_DISTANCE, TruncatedNormal, WindowError};
+use crate::truncated_draw::Truncated;
+use crate::truncated_normal::{MAX_DISTANCE, WindowError};
 
 /// Largest magnitude of what a law may be given.
 const MAX: f64 = 1e100;
@@ -78,17 +81,25 @@ pub enum ScalarLawError {
 /// | lognormal of mean m and deviation σ | m exp(s z − s²/2), s² = ln(1 + σ²/m²) |
 /// | Bernoulli | 1 if Φ(−z) < p, else 0 |
 ///
+/// [`sample`](Distribution::sample) draws a score. [`ScalarRoots`](crate::ScalarRoots) draw the same laws in quicker
+/// ways, which give other values.
+///
 /// # Limits
 /// The mean of a truncated normal law may be at most 6σ outside of its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Parameters", into = "Parameters")
+)]
 pub struct ScalarLaw(pub(crate) Kind);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
     Normal { mean: f64, deviation: f64 },
     Uniform { low: f64, high: f64 },
-    Truncated(TruncatedNormal),
-    Lognormal { mean: f64, deviation: f64, log_deviation: f64 },
+    Truncated(Truncated),
+    Lognormal { mean: f64, deviation: f64, variance: f64, log_median: f64, log_deviation: f64 },
     Bernoulli { probability: f64 },
 }
 
@@ -140,8 +151,8 @@ impl ScalarLaw {
                 return Err(ScalarLawError::Number { field, value });
             }
         }
-        match TruncatedNormal::new(mean, deviation, [low, high]) {
-            Ok(window) => Ok(Self(Kind::Truncated(window))),
+        match Truncated::new(mean, deviation, [low, high]) {
+            Ok(law) => Ok(Self(Kind::Truncated(law))),
             Err(WindowError::Bounds) => Err(ScalarLawError::Bounds { low, high }),
             Err(WindowError::Distance(distance)) => {
                 Err(ScalarLawError::Distance { low, high, distance })
@@ -154,16 +165,31 @@ impl ScalarLaw {
     /// # Errors
     /// The mean is not positive or too large, or the deviation negative, NaN or too large.
     pub fn lognormal(mean: f64, sigma: f64) -> Result<Self, ScalarLawError> {
+        Self::lognormal_of(mean, sigma, sigma * sigma)
+    }
+
+    /// The same with the variance, which would lose its last digit as a root.
+    pub(crate) fn lognormal_of(
+        mean: f64,
+        sigma: f64,
+        variance: f64,
+    ) -> Result<Self, ScalarLawError> {
         let (mean, deviation) = (number("mean", mean)?, deviation(sigma)?);
         if !(mean > 0.0) {
             return Err(ScalarLawError::NotPositive { value: mean });
         }
         let ratio = deviation / mean;
-        let log_deviation = libm::sqrt(libm::log1p(ratio * ratio));
-        if !log_deviation.is_finite() {
+        let square = libm::log1p(ratio * ratio);
+        if !square.is_finite() {
             return Err(ScalarLawError::Deviation { value: sigma });
         }
-        Ok(Self(Kind::Lognormal { mean, deviation, log_deviation }))
+        Ok(Self(Kind::Lognormal {
+            mean,
+            deviation,
+            variance,
+            log_median: libm::log(mean) - 0.5 * square,
+            log_deviation: square.sqrt(),
+        }))
     }
 
     /// One with a probability, else zero.
@@ -183,7 +209,7 @@ impl ScalarLaw {
         match self.0 {
             Kind::Normal { mean, deviation } => mean + deviation * z,
             Kind::Uniform { low, high } => (low + (high - low) * below(z)).clamp(low, high),
-            Kind::Truncated(window) => window.at_score(z),
+            Kind::Truncated(law) => law.window.at_score(z),
             Kind::Lognormal { mean, log_deviation: s, .. } => mean * libm::exp(s * (z - 0.5 * s)),
             Kind::Bernoulli { probability } => f64::from(u8::from(below(-z) < probability)),
         }
@@ -198,7 +224,7 @@ impl ScalarLaw {
             Kind::Normal { mean, deviation } => below((x - mean) / deviation),
             Kind::Uniform { low, high } if low == high => step(low),
             Kind::Uniform { low, high } => ((x - low) / (high - low)).clamp(0.0, 1.0),
-            Kind::Truncated(window) => window.cdf(x),
+            Kind::Truncated(law) => law.window.cdf(x),
             Kind::Lognormal { mean, log_deviation: 0.0, .. } => step(mean),
             Kind::Lognormal { mean, log_deviation: s, .. } => {
                 if x > 0.0 {
@@ -223,7 +249,7 @@ impl ScalarLaw {
         match self.0 {
             Kind::Normal { mean, .. } | Kind::Lognormal { mean, .. } => mean,
             Kind::Uniform { low, high } => 0.5 * low + 0.5 * high,
-            Kind::Truncated(window) => window.moments().mean,
+            Kind::Truncated(law) => law.window.moments().mean,
             Kind::Bernoulli { probability } => probability,
         }
     }
@@ -234,7 +260,7 @@ impl ScalarLaw {
         match self.0 {
             Kind::Normal { deviation, .. } | Kind::Lognormal { deviation, .. } => deviation,
             Kind::Uniform { low, high } => (0.5 * high - 0.5 * low) / 3.0_f64.sqrt(),
-            Kind::Truncated(window) => window.moments().variance.sqrt(),
+            Kind::Truncated(law) => law.window.moments().variance.sqrt(),
             Kind::Bernoulli { probability: p } => (p * (1.0 - p)).sqrt(),
         }
     }
@@ -252,6 +278,64 @@ impl ScalarLaw {
     }
 }
 
+/// What a law of roots needs.
+impl ScalarLaw {
+    /// A draw in the quickest way. A law without width draws nothing where it is lognormal or truncated.
+    #[inline]
+    pub(crate) fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
+        let mut score = || -> f64 { StandardNormal.sample(rng) };
+        match self.0 {
+            Kind::Normal { .. } | Kind::Bernoulli { .. } => self.at_score(score()),
+            Kind::Uniform { low, high } => {
+                let u: f64 = rng.random();
+                (low + u * (high - low)).clamp(low, high)
+            }
+            Kind::Truncated(law) => law.sample(rng),
+            Kind::Lognormal { mean, log_deviation: 0.0, .. } => mean,
+            Kind::Lognormal { log_median, log_deviation, .. } => {
+                libm::exp(log_median + log_deviation * score())
+            }
+        }
+    }
+
+    /// Mean and variance of the square.
+    pub(crate) fn square_moments(&self) -> (f64, f64) {
+        match self.0 {
+            Kind::Normal { mean: m, deviation } => {
+                let v = deviation * deviation;
+                (m * m + v, 2.0 * v * (2.0 * m * m + v))
+            }
+            Kind::Uniform { low, high } => {
+                let (c, h) = (0.5 * (low + high), 0.5 * (high - low));
+                (c * c + h * h / 3.0, 4.0 * h * h * (c * c / 3.0 + h * h / 45.0))
+            }
+            Kind::Truncated(law) => {
+                let moments = law.window.moments();
+                (moments.square_mean, moments.square_variance)
+            }
+            // Lognormal too, of twice the deviation of the logarithm.
+            Kind::Lognormal { mean, variance, log_deviation: s, .. } => {
+                let square = mean * mean + variance;
+                (square, square * square * libm::expm1(4.0 * s * s))
+            }
+            Kind::Bernoulli { probability: p } => (p, p * (1.0 - p)),
+        }
+    }
+
+    /// What no draw exceeds in magnitude, `far` standard deviations of what is normal in it taken for all.
+    pub(crate) fn reach(&self, far: f64) -> f64 {
+        match self.0 {
+            Kind::Normal { mean, deviation } => mean.abs() + far * deviation,
+            Kind::Uniform { low, high } => low.abs().max(high.abs()),
+            Kind::Truncated(law) => law.mean.abs() + far * law.window.deviation(),
+            Kind::Lognormal { log_median, log_deviation, .. } => {
+                libm::exp(log_median + far * log_deviation)
+            }
+            Kind::Bernoulli { .. } => 1.0,
+        }
+    }
+}
+
 impl Distribution<f64> for ScalarLaw {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
@@ -259,126 +343,72 @@ impl Distribution<f64> for ScalarLaw {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// The serialized form; bounds that are infinite are left out.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(tag = "law", rename_all = "kebab-case", deny_unknown_fields)]
+enum Parameters {
+    Normal {
+        mean: f64,
+        sigma: f64,
+    },
+    Uniform {
+        low: f64,
+        high: f64,
+    },
+    TruncatedNormal {
+        mean: f64,
+        sigma: f64,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        low: Option<f64>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        high: Option<f64>,
+    },
+    Lognormal {
+        mean: f64,
+        sigma: f64,
+    },
+    Bernoulli {
+        probability: f64,
+    },
+}
 
-    const INF: f64 = f64::INFINITY;
+#[cfg(feature = "serde")]
+impl TryFrom<Parameters> for ScalarLaw {
+    type Error = ScalarLawError;
 
-    fn laws() -> Vec<ScalarLaw> {
-        vec![
-            ScalarLaw::normal(3.0, 2.0).unwrap(),
-            ScalarLaw::uniform(-1.0, 4.0).unwrap(),
-            ScalarLaw::lognormal(5.0, 0.5).unwrap(),
-            ScalarLaw::lognormal(0.01, 0.05).unwrap(),
-            ScalarLaw::truncated_normal(1.0, 2.0, 0.0, INF).unwrap(),
-            ScalarLaw::truncated_normal(0.0, 1.0, -2.0, 2.0).unwrap(),
-            ScalarLaw::truncated_normal(0.0, 1.0, 5.0, INF).unwrap(),
-            ScalarLaw::truncated_normal(0.0, 1.0, -7.0, -4.0).unwrap(),
-            ScalarLaw::truncated_normal(0.0, 1.0, 0.3, 0.31).unwrap(),
-        ]
-    }
-
-    /// Kolmogorov and Smirnov's distance below its 1e-4 point; means and deviations to |z| < 4.
-    /// Another law of the same mean and deviation is told apart.
-    #[test]
-    fn draws_follow_the_law() {
-        const N: usize = 40_000;
-        let gap = |law: &ScalarLaw, draws: &[f64]| {
-            let gaps = draws.iter().enumerate();
-            let gap = gaps.map(|(i, x)| (law.cdf(*x) - (i as f64 + 0.5) / N as f64).abs());
-            gap.fold(0.0, f64::max) * (N as f64).sqrt()
-        };
-        for (i, law) in laws().into_iter().enumerate() {
-            let mut rng = ChaCha8Rng::seed_from_u64(300 + i as u64);
-            let mut draws: Vec<f64> = (0..N).map(|_| law.sample(&mut rng)).collect();
-            draws.sort_by(f64::total_cmp);
-            assert!(gap(&law, &draws) < 2.23, "{law:?}: {}", gap(&law, &draws));
-            if !matches!(law.0, Kind::Normal { .. }) && i != 5 {
-                let other = ScalarLaw::normal(law.mean(), law.deviation()).unwrap();
-                assert!(gap(&other, &draws) > 2.23, "{law:?} passes for normal");
-            }
-            let mean = draws.iter().sum::<f64>() / N as f64;
-            let z = (mean - law.mean()) / law.deviation() * (N as f64).sqrt();
-            assert!(z.abs() < 4.0, "{law:?}: mean {z}");
-            let squares: Vec<f64> = draws.iter().map(|x| (x - law.mean()).powi(2)).collect();
-            let variance = squares.iter().sum::<f64>() / N as f64;
-            let spread = squares.iter().map(|s| (s - variance).powi(2)).sum::<f64>() / N as f64;
-            let z = (variance - law.deviation().powi(2)) / (spread / N as f64).sqrt();
-            // The variance of the fourth law hangs on its far tail.
-            assert!(z.abs() < 4.0 || i == 3, "{law:?}: variance {z}");
-        }
-    }
-
-    #[test]
-    fn probabilities_are_met() {
-        let mut rng = ChaCha8Rng::seed_from_u64(310);
-        for p in [0.0, 0.02, 0.5, 1.0] {
-            let law = ScalarLaw::bernoulli(p).unwrap();
-            let count = (0..10_000).map(|_| law.sample(&mut rng)).sum::<f64>();
-            let z = (count - 1e4 * p) / (100.0 * law.deviation().max(1e-9));
-            assert!(z.abs() < 4.0, "{p}: {count}");
-            assert_eq!([law.cdf(-0.1), law.cdf(0.0), law.cdf(1.0)], [0.0, 1.0 - p, 1.0]);
-        }
-    }
-
-    proptest! {
-        /// F(F⁻¹(Φ(z))) is Φ(z), from both tails.
-        #[test]
-        fn scores_are_quantiles(z in -6.0..6.0f64) {
-            for law in laws() {
-                let x = law.at_score(z);
-                let error = law.cdf(x) - below(z);
-                prop_assert!(error.abs() < 1e-12, "{:?} {} {:e}", law, x, error);
-                prop_assert!(law.at_score(z + 0.01) >= x);
-            }
-        }
-
-        /// Without bounds that matter it is normal, in the tails too.
-        #[test]
-        fn wide_bounds_are_none(z in -7.0..7.0f64) {
-            let law = ScalarLaw::truncated_normal(2.0, 3.0, -INF, INF).unwrap();
-            prop_assert!((law.at_score(z) - (2.0 + 3.0 * z)).abs() < 1e-12);
-        }
-    }
-
-    #[test]
-    fn laws_without_width_stay_put() {
-        for law in [
-            ScalarLaw::normal(2.0, 0.0),
-            ScalarLaw::uniform(2.0, 2.0),
-            ScalarLaw::truncated_normal(2.0, 0.0, 0.0, 3.0),
-            ScalarLaw::lognormal(2.0, 0.0),
-        ] {
-            let law = law.unwrap();
-            assert_eq!([law.at_score(-3.0), law.mean(), law.deviation()], [2.0, 2.0, 0.0]);
-            assert_eq!([law.cdf(1.9), law.cdf(2.0)], [0.0, 1.0]);
-        }
-    }
-
-    #[test]
-    fn bad_numbers_are_named() {
-        use ScalarLaw as L;
-        let cases = [
-            (L::normal(f64::NAN, 1.0), "mean = NaN"),
-            (L::normal(0.0, -1.0), "sigma = -1.0"),
-            (L::normal(0.0, INF), "sigma = inf"),
-            (L::uniform(1.0, 0.0), "bounds from 1.0 to 0.0"),
-            (L::uniform(-INF, 0.0), "low = -inf"),
-            (L::truncated_normal(0.0, 1.0, f64::NAN, 1.0), "low = NaN"),
-            (L::truncated_normal(0.0, 1.0, 7.0, 8.0), "bounds from 7.0 to 8.0: the mean"),
-            (L::truncated_normal(0.0, 0.0, 1.0, 2.0), "bounds from 1.0 to 2.0: the mean"),
-            (L::truncated_normal(0.0, 1.0, 1.0, 1.0), "bounds from 1.0 to 1.0: the second"),
-            (L::lognormal(0.0, 1.0), "a lognormal law about 0.0"),
-            (L::lognormal(1e-100, 1e100), "sigma = 1e100"),
-            (L::bernoulli(1.5), "probability = 1.5"),
-            (L::bernoulli(f64::NAN), "probability = NaN"),
-        ];
-        for (law, expected) in cases {
-            let message = law.unwrap_err().to_string();
-            assert!(message.starts_with(expected), "{message}");
+    fn try_from(p: Parameters) -> Result<Self, Self::Error> {
+        match p {
+            Parameters::Normal { mean, sigma } => Self::normal(mean, sigma),
+            Parameters::Uniform { low, high } => Self::uniform(low, high),
+            Parameters::TruncatedNormal { mean, sigma, low, high } => Self::truncated_normal(
+                mean,
+                sigma,
+                low.unwrap_or(f64::NEG_INFINITY),
+                high.unwrap_or(f64::INFINITY),
+            ),
+            Parameters::Lognormal { mean, sigma } => Self::lognormal(mean, sigma),
+            Parameters::Bernoulli { probability } => Self::bernoulli(probability),
         }
     }
 }
+
+#[cfg(feature = "serde")]
+impl From<ScalarLaw> for Parameters {
+    fn from(law: ScalarLaw) -> Self {
+        match law.0 {
+            Kind::Normal { mean, deviation: sigma } => Self::Normal { mean, sigma },
+            Kind::Uniform { low, high } => Self::Uniform { low, high },
+            Kind::Truncated(law) => {
+                let [low, high] = law.window.bounds().map(|x| x.is_finite().then_some(x));
+                let sigma = law.window.deviation();
+                Self::TruncatedNormal { mean: law.mean, sigma, low, high }
+            }
+            Kind::Lognormal { mean, deviation: sigma, .. } => Self::Lognormal { mean, sigma },
+            Kind::Bernoulli { probability } => Self::Bernoulli { probability },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -123,6 +123,12 @@ impl TruncatedNormal {
         self.sign
     }
 
+    /// The window.
+    #[cfg(feature = "serde")]
+    pub(crate) fn bounds(&self) -> [f64; 2] {
+        self.bounds
+    }
+
     /// The window in v.
     pub(crate) fn ends(&self) -> [f64; 2] {
         self.ends
@@ -279,14 +285,14 @@ mod tests {
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     use rand_distr::{Distribution, StandardNormal};
 
-    use crate::{RootMoments, ScalarLaw, TruncatedRoots};
+    use crate::{RootMoments, ScalarLaw, ScalarRoots};
     use gyradius_inertia::RootSecondMoments;
 
     const INF: f64 = f64::INFINITY;
 
-    fn roots([mean, deviation, low, high]: [f64; 4]) -> TruncatedRoots {
+    fn roots([mean, deviation, low, high]: [f64; 4]) -> ScalarRoots {
         let mean = RootSecondMoments::new([mean; 3]).unwrap();
-        TruncatedRoots::new(mean, [deviation * deviation; 3], [[low, high]; 3]).unwrap()
+        ScalarRoots::truncated_normal(mean, [deviation * deviation; 3], [[low, high]; 3]).unwrap()
     }
 
     /// Mean and variance of k and of k², as the two laws that have windows tell them.

@@ -8,8 +8,8 @@
 use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
 use gyradius_dispersion::{
     AnyBody, AxesLaw, CorrelatedRoots, DispersionModel, EmpiricalRoots, EntrywiseGaussian,
-    FixedAttitude, GaussianRoots, JacobianTwice, LogCholeskyGaussian, LognormalRoots,
-    PrincipalDispersion, RealizableOnly, RootLaw, TruncatedRoots, UniformRoots, Wishart,
+    FixedAttitude, GaussianRoots, JacobianTwice, LogCholeskyGaussian, PrincipalDispersion,
+    RealizableOnly, RootLaw, ScalarRoots, Wishart,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, RootSecondMoments};
 use nalgebra::{Matrix3, Matrix4, SMatrix, UnitQuaternion};
@@ -40,19 +40,19 @@ fn any_roots(rng: &mut impl Rng) -> RootLaw {
     let mean = RootSecondMoments::new(k).unwrap();
     match rng.random_range(0..6) {
         0 => GaussianRoots::new(mean, variances).unwrap().into(),
-        1 => UniformRoots::from_variances(mean, variances).unwrap().into(),
+        1 => ScalarRoots::uniform(mean, variances).unwrap().into(),
         2 => {
             let positive = k.map(|k| k.max(1e-300));
             let mean = RootSecondMoments::new(positive).unwrap();
             let variances = std::array::from_fn(|i| variances[i].min(positive[i].powi(2)));
-            LognormalRoots::new(mean, variances).unwrap().into()
+            ScalarRoots::lognormal(mean, variances).unwrap().into()
         }
         3 => {
             let bounds = std::array::from_fn(|i| {
                 let s = variances[i].sqrt();
                 [k[i] - s * rng.random::<f64>() - 1e-3 * s, k[i] + 3.0 * s]
             });
-            TruncatedRoots::new(mean, variances, bounds).unwrap().into()
+            ScalarRoots::truncated_normal(mean, variances, bounds).unwrap().into()
         }
         4 => {
             let f = Matrix3::from_fn(|i, _| variances[i].sqrt() * normal(rng));

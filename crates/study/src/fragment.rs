@@ -337,7 +337,8 @@ mod tests {
         let RootLaw::CorrelatedGaussian(roots) = read.roots() else { panic!("{read:?}") };
         assert_eq!(*roots.covariance(), c);
 
-        let uniform = gyradius_dispersion::UniformRoots::new([[1.0, 2.0]; 3]).unwrap();
+        let uniform =
+            gyradius_dispersion::ScalarRoots::uniform(law.roots().mean(), [0.1; 3]).unwrap();
         let law = PrincipalDispersion::new(uniform, law.axes().clone());
         let refused = Fragment::new(FragmentBody::Payload, &nominal, &law);
         assert_eq!(refused.unwrap_err(), FragmentError::RootLaw);

@@ -3,7 +3,7 @@
 use super::*;
 use crate::{
     AttitudeMoments, AxesLaw, CorrelatedRoots, FixedAttitude, GaussianRoots, JacobianTwice,
-    LognormalRoots, PrincipalDispersion, RootMoments, UniformRoots,
+    PrincipalDispersion, RootMoments, ScalarRoots,
 };
 use gyradius_attitude::{FisherBingham, MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
 use gyradius_inertia::{Inertia, InertiaMatrix};
@@ -85,8 +85,8 @@ fn draws_agree_for_every_combination() {
     let roots: [crate::RootLaw; 4] = [
         (*wide.roots()).into(),
         CorrelatedRoots::new(k, spread * spread.transpose()).unwrap().into(),
-        UniformRoots::from_variances(k, [0.3, 0.1, 0.05]).unwrap().into(),
-        LognormalRoots::new(k, [0.3, 0.1, 0.05]).unwrap().into(),
+        ScalarRoots::uniform(k, [0.3, 0.1, 0.05]).unwrap().into(),
+        ScalarRoots::lognormal(k, [0.3, 0.1, 0.05]).unwrap().into(),
     ];
     let rcg = wide.axes();
     let axes: [AxesLaw; 5] = [

@@ -1,10 +1,12 @@
+//! Any law of roots, chosen at run time.
+
 use gyradius_inertia::RootSecondMoments;
 use rand::Rng;
 use rand_distr::Distribution;
 
 use crate::{
-    CorrelatedRoots, EmpiricalRoots, GaussianRoots, LognormalRoots, RootMoments,
-    SecondMomentStatistics, TruncatedRoots, UniformRoots,
+    CorrelatedRoots, EmpiricalRoots, GaussianRoots, RootMoments, ScalarRoots,
+    SecondMomentStatistics,
 };
 
 /// Any of the laws of roots that this crate has, chosen at run time.
@@ -22,12 +24,8 @@ pub enum RootLaw {
     Gaussian(GaussianRoots),
     /// Jointly Gaussian.
     CorrelatedGaussian(CorrelatedRoots),
-    /// Uniform on intervals.
-    Uniform(UniformRoots),
-    /// Lognormal.
-    Lognormal(LognormalRoots),
-    /// Gaussians kept to intervals.
-    TruncatedGaussian(TruncatedRoots),
+    /// Independent, each with a scalar law.
+    Independent(ScalarRoots),
     /// Observed triples.
     Empirical(EmpiricalRoots),
 }
@@ -37,9 +35,7 @@ macro_rules! each {
         match $self {
             RootLaw::Gaussian($law) => $body,
             RootLaw::CorrelatedGaussian($law) => $body,
-            RootLaw::Uniform($law) => $body,
-            RootLaw::Lognormal($law) => $body,
-            RootLaw::TruncatedGaussian($law) => $body,
+            RootLaw::Independent($law) => $body,
             RootLaw::Empirical($law) => $body,
         }
     };
@@ -70,9 +66,7 @@ macro_rules! from {
 from!(
     Gaussian(GaussianRoots),
     CorrelatedGaussian(CorrelatedRoots),
-    Uniform(UniformRoots),
-    Lognormal(LognormalRoots),
-    TruncatedGaussian(TruncatedRoots),
+    Independent(ScalarRoots),
     Empirical(EmpiricalRoots)
 );
 
@@ -96,9 +90,9 @@ mod tests {
     #[test]
     fn serde_keeps_the_law_and_its_name() {
         let mean = RootSecondMoments::new([1.0, 2.0, 3.0]).unwrap();
-        let law = RootLaw::from(LognormalRoots::new(mean, [0.1; 3]).unwrap());
+        let law = RootLaw::from(ScalarRoots::uniform(mean, [0.1; 3]).unwrap());
         let json = serde_json::to_string(&law).unwrap();
-        assert!(json.contains(r#""law":"lognormal""#), "{json}");
+        assert!(json.contains(r#""law":"independent""#), "{json}");
         assert_eq!(serde_json::from_str::<RootLaw>(&json).unwrap(), law);
     }
 }

@@ -5,18 +5,14 @@ mod empirical;
 mod gaussian;
 mod independent;
 mod law;
-mod lognormal;
-mod truncated;
-mod uniform;
+mod scalar;
 
 pub use correlated::{CorrelatedRoots, CorrelatedRootsError};
 pub use empirical::{EmpiricalRoots, EmpiricalRootsError};
 pub use gaussian::{GaussianRoots, GaussianRootsError};
 pub use independent::{IndependentRoots, IndependentRootsError};
 pub use law::RootLaw;
-pub use lognormal::{LognormalRoots, LognormalRootsError};
-pub use truncated::{TruncatedRoots, TruncatedRootsError};
-pub use uniform::{UniformRoots, UniformRootsError};
+pub use scalar::{ScalarRoots, ScalarRootsError};
 
 /// Draws farther out than this many deviations have probability 1e-349.
 const FAR: f64 = 40.0;

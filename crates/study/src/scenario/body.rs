@@ -1,7 +1,7 @@
 use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
 use gyradius_dispersion::{
     AxesLaw, CorrelatedRoots, EmpiricalRoots, FixedAttitude, GaussianRoots, JacobianTwice,
-    JacobianTwiceError, LognormalRoots, PrincipalDispersion, RootLaw, TruncatedRoots, UniformRoots,
+    JacobianTwiceError, PrincipalDispersion, RootLaw, ScalarRoots, ScalarRootsError,
 };
 use gyradius_inertia::{Inertia, RootSecondMoments};
 use gyradius_separation::{Body, BodyState, MovingBody};
@@ -166,18 +166,18 @@ fn roots(
                 .map_err(|e| refused(COVARIANCE, &e))?
                 .into()
         }
-        RootsFile::Uniform => UniformRoots::from_variances(mean, variances()?)
-            .map_err(|e| refused(VARIANCE, &e))?
-            .into(),
+        RootsFile::Uniform => {
+            ScalarRoots::uniform(mean, variances()?).map_err(|e| refused(VARIANCE, &e))?.into()
+        }
         RootsFile::Lognormal => {
-            LognormalRoots::new(mean, variances()?).map_err(|e| refused(VARIANCE, &e))?.into()
+            ScalarRoots::lognormal(mean, variances()?).map_err(|e| refused(VARIANCE, &e))?.into()
         }
         RootsFile::TruncatedGaussian => {
             let bounds = needed(place, BOUNDS, law, file.root_second_moment_bounds_sqrt_kg_m)?;
-            TruncatedRoots::new(mean, variances()?, bounds)
+            ScalarRoots::truncated_normal(mean, variances()?, bounds)
                 .map_err(|e| {
-                    use gyradius_dispersion::TruncatedRootsError::Variance;
-                    refused(if matches!(e, Variance { .. }) { VARIANCE } else { BOUNDS }, &e)
+                    let variance = matches!(e, ScalarRootsError::Variance { .. });
+                    refused(if variance { VARIANCE } else { BOUNDS }, &e)
                 })?
                 .into()
         }
