@@ -190,7 +190,7 @@ impl Expansion {
             }
             let beyond = sum.zip(springs.free_length, |s, l| if s >= l * l { 1.0 } else { 0.0 });
             let pushes = springs.stiffness.map(|k| if k == 0.0 { 0.0 } else { 1.0 });
-            released = released + beyond * pushes;
+            released += beyond * pushes;
         }
         released.0.map(|x| x > 0.0)
     }
