@@ -1,7 +1,7 @@
 //! One run again: the same bits as in the study, and a history that keeps what physics keeps.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use gyradius_study::{Options, Quantity, Replay, ReplayError, Scenario, Study};
+use gyradius_study::{Options, Quantity, Replay, ReplayError, ResultsError, Scenario, Study};
 use std::{collections::HashMap, fs, path::Path};
 
 fn paper() -> String {
@@ -261,7 +261,7 @@ fn what_cannot_be_replayed_is_named() {
     let (scenario, summary) = (out.join("scenario.toml"), out.join("summary.json"));
     let text = fs::read_to_string(&scenario).unwrap();
     fs::write(&scenario, text.replace("mass_kg = 10000.0", "mass_kg = 10001.0")).unwrap();
-    assert!(matches!(of(&out), ReplayError::Fingerprint { .. }));
+    assert!(matches!(of(&out), ReplayError::Study(ResultsError::Fingerprint { .. })));
     fs::write(&scenario, text).unwrap();
     let text = fs::read_to_string(&summary).unwrap();
     let old = text.replace("\"gyradius_version\": \"", "\"gyradius_version\": \"0.0.");
@@ -269,7 +269,7 @@ fn what_cannot_be_replayed_is_named() {
     assert!(of(&out).to_string().contains("the study was made by gyradius 0.0."));
     for bad in ["", "{}", "[1, 2", "\u{0}"] {
         fs::write(&summary, bad).unwrap();
-        assert!(matches!(of(&out), ReplayError::Study { .. }), "{bad}");
+        assert!(matches!(of(&out), ReplayError::Study(ResultsError::Study { .. })), "{bad}");
     }
 }
 

@@ -19,6 +19,13 @@ pub(crate) enum Command {
     /// figures (SVG) and report.html.
     #[command(after_help = EXAMPLES)]
     Study(StudyArgs),
+    /// Make the report and the figures of a study again, from its folder alone
+    ///
+    /// Reads scenario.toml and summary.json, and draws nothing and runs nothing: the same folder gives the
+    /// same report to the byte. Useful after files were deleted, for another place, or for a page of a
+    /// study whose run tables are kept elsewhere.
+    #[command(after_help = REPORT_EXAMPLES)]
+    Report(ReportArgs),
     /// Do one run of a study again, bit for bit, and write its full history
     ///
     /// Holds the run against its row in the run table, prints a page on it, and writes a folder with
@@ -79,6 +86,16 @@ Examples:
 
 Exit code: 0, for a run that failed as it did in the study too; 2 if there is no such run, if it is not
 what the table says, or if something could not be read or written.";
+
+const REPORT_EXAMPLES: &str = "\
+Examples:
+  gyradius report /tmp/quick
+      The report and the figures of the study in /tmp/quick, in their places
+  gyradius report results/vehicle-a --out pages/vehicle-a
+      The same in another folder
+
+Exit code: 0 if the report was made; 2 if there is no study, if its files were changed after the study, or
+if something could not be read or written. What was there is then as it was.";
 
 const MODEL_EXAMPLES: &str = "\
 Examples:
@@ -207,6 +224,21 @@ pub(crate) struct StudyArgs {
     /// Largest share of the runs of a model that may fail, as 0.05 or 5%, for exit code 0
     #[arg(long, value_name = "SHARE", default_value = "50%", value_parser = share)]
     pub(crate) max_failed: f64,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct ReportArgs {
+    /// Folder of a study [default: target/study/peck-2003]
+    #[arg(value_name = "STUDY")]
+    pub(crate) study: Option<PathBuf>,
+
+    /// Folder to write [default: that of the study]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Replace another report in the folder given with --out
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 #[derive(Args, Debug)]

@@ -9,6 +9,7 @@ mod number;
 mod output;
 mod progress;
 mod replay;
+mod report;
 mod study;
 
 use args::{Cli, Command};
@@ -32,6 +33,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(arguments) => return check::check(arguments),
         Command::Fit(arguments) => return fit::fit(arguments),
         Command::Model(arguments) => model::model(arguments).map(done),
+        Command::Report(arguments) => report::report(arguments).map(done),
         Command::Replay(arguments) => replay::replay(arguments).map(done),
         Command::Study(arguments) => study::study(arguments),
         Command::Compare(arguments) => compare::compare(arguments).map(done).map_err(Into::into),

@@ -6,7 +6,7 @@ use std::{error::Error, path::Path};
 use crate::{args::ReplayArgs, output::print};
 
 /// Where `gyradius study` writes if nothing else is said.
-const DEFAULT: &str = "target/study/peck-2003";
+pub(crate) const DEFAULT: &str = "target/study/peck-2003";
 
 /// Runs the verb.
 pub(crate) fn replay(arguments: &ReplayArgs) -> Result<(), Box<dyn Error>> {

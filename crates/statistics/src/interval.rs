@@ -61,7 +61,7 @@ impl From<Confidence> for f64 {
 /// A two-sided confidence interval, both bounds included.
 ///
 /// A bound is infinite where the sample is too small to give one, or where the bound is beyond
-/// `f64`. JSON knows no infinity: `serde_json` writes `null` and refuses to read it back.
+/// `f64`. JSON knows no infinity: `serde_json` writes `null`, which is read as no bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
@@ -143,8 +143,8 @@ impl fmt::Display for Interval {
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct Unchecked {
-    lower: f64,
-    upper: f64,
+    lower: Option<f64>,
+    upper: Option<f64>,
     confidence: Confidence,
 }
 
@@ -153,7 +153,8 @@ impl TryFrom<Unchecked> for Interval {
     type Error = StatisticsError;
 
     fn try_from(raw: Unchecked) -> Result<Self, StatisticsError> {
-        Self::new(raw.lower, raw.upper, raw.confidence)
+        let lower = raw.lower.unwrap_or(f64::NEG_INFINITY);
+        Self::new(lower, raw.upper.unwrap_or(f64::INFINITY), raw.confidence)
     }
 }
 
@@ -210,6 +211,12 @@ mod tests {
             let text = serde_json::to_string(&interval).unwrap();
             assert_eq!(text, r#"{"lower":1.0,"upper":2.5,"confidence":0.95}"#);
             assert_eq!(serde_json::from_str::<Interval>(&text).unwrap(), interval);
+            // JSON knows no infinity.
+            for (lower, upper) in [(1.0, f64::INFINITY), (f64::NEG_INFINITY, 1.0)] {
+                let interval = Interval::new(lower, upper, Confidence::default()).unwrap();
+                let text = serde_json::to_string(&interval).unwrap();
+                assert_eq!(serde_json::from_str::<Interval>(&text).unwrap(), interval);
+            }
             for bad in [
                 r#"{"lower":3.0,"upper":2.5,"confidence":0.95}"#,
                 r#"{"lower":1.0,"upper":2.5,"confidence":95.0}"#,

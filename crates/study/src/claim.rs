@@ -1,10 +1,10 @@
 //! A claim of a paper, and whether it stands.
 
 use gyradius_statistics::Interval;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Whether a claim stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Verdict {
     /// It does.
@@ -53,7 +53,7 @@ impl Verdict {
 }
 
 /// A claim, what the runs show, and whether it stands.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Claim {
     pub(crate) claim: String,
     /// One finding for each reading.

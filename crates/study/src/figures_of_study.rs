@@ -1,11 +1,10 @@
 //! The figures of a study, numbered as in the paper.
 
+use gyradius_report::{AttitudeSpheres, Cloud, Figure, HistogramGrid, Panel, Picture, Series};
 use nalgebra::UnitQuaternion;
 
 use crate::{
     body::{Body, Entry},
-    figure::{EVERY_MODEL, Figure},
-    figures::{Cloud, Panel, Series, attitude_spheres, histogram_grid},
     quantity::Quantity,
     scenario::Scenario,
     summary::Summary,
@@ -19,6 +18,8 @@ const INERTIA_OF_PAYLOAD: &str = "figure-5-8-payload";
 const INERTIA_OF_STAGE: &str = "figure-5-8-stage";
 const ANGLES: &str = "figure-6-9";
 const CLEARANCE: &str = "clearance";
+/// Of all models of inertia.
+pub(crate) const EVERY_MODEL: &str = "figure-models";
 
 fn of_pair(name: &str, physical: &str, naive: &str) -> String {
     format!("{name}-{physical}-vs-{naive}")
@@ -70,7 +71,7 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
             Figure {
                 name: of_pair(name, physical.model(), naive.model()),
                 caption: format!("{}. {}", comparison.title, title(what)),
-                svg: histogram_grid(&title(what), &panels, columns),
+                picture: Picture::Histograms(HistogramGrid::new(&title(what), &panels, columns)),
             }
         };
         figures.push(grid(
@@ -127,11 +128,12 @@ fn clearance(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Opt
             })
         })
         .collect();
+    let columns = if panels.len() > 4 { 3 } else { 2 };
     let title = "Smallest distance of payload and stage after the last release";
     (!panels.is_empty()).then(|| Figure {
         name: CLEARANCE.to_owned(),
         caption: format!("{title}; runs in which they touch again are at 0"),
-        svg: histogram_grid(title, &panels, if panels.len() > 4 { 3 } else { 2 }),
+        picture: Picture::Histograms(HistogramGrid::new(title, &panels, columns)),
     })
 }
 
@@ -161,7 +163,7 @@ fn attitudes(
             "{title}. Random attitudes of each model, as the tips of the unit axes on the sphere; of many, \
              some that are evenly spaced in run order"
         ),
-        svg: attitude_spheres(&title, &clouds),
+        picture: Picture::Attitudes(AttitudeSpheres::new(&title, &clouds)),
     })
 }
 
@@ -182,7 +184,8 @@ fn matrix_order(body: Body) -> [Option<Quantity>; 9] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Options, Study, figure::file_of};
+    use crate::{Options, Study};
+    use gyradius_report::file_of;
 
     /// Scenarios with figures of every kind: each file of a figure is announced before the runs, and a file of
     /// the user's in its place is found then, in every place, and left alone.

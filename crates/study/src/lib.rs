@@ -21,19 +21,18 @@ mod column;
 mod compare;
 mod drawn;
 mod failure;
-mod figure;
-mod figures;
 mod figures_of_study;
 mod folder;
 mod forecast;
-mod format;
 mod fragment;
 mod model;
 mod numbers;
-mod page;
+#[cfg(test)]
+mod pages;
 mod quantity;
 mod replay;
 mod report;
+mod results;
 mod run;
 mod runner;
 mod scenario;
@@ -43,7 +42,6 @@ mod study;
 mod summary;
 mod table;
 mod text;
-mod visible;
 
 pub use body::Entry;
 pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
@@ -51,14 +49,15 @@ pub use failure::Failure;
 pub use forecast::Forecast;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_dispersion::ModelKind;
+pub use gyradius_report::{visible, visible_json};
 pub use quantity::Quantity;
 pub use replay::{Replay, ReplayError};
+pub use results::{Results, ResultsError};
 pub use runner::Progress;
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
 pub use study::{Options, Study, StudyError, restore_studies};
 pub use summary::Summary;
 pub use table::{Row, RunTable};
-pub use visible::{visible, visible_json};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

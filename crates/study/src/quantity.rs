@@ -264,6 +264,18 @@ impl Quantity {
         self.numbered(self.declaration().column)
     }
 
+    /// The quantity of a column.
+    #[must_use]
+    pub fn of_column(column: &str) -> Option<Self> {
+        let known = Self::ALL.iter().copied().find(|quantity| quantity.column() == column);
+        let released = || {
+            let spring = column.strip_prefix("spring_")?.strip_suffix("_release_s")?;
+            let release = Self::SpringRelease(spring.parse::<usize>().ok()?.checked_sub(1)?);
+            (release.column() == column).then_some(release)
+        };
+        known.or_else(released)
+    }
+
     /// What it is called in tables and figures.
     #[must_use]
     pub fn label(self) -> Cow<'static, str> {

@@ -1,5 +1,6 @@
 //! The report: one page of HTML that needs nothing but itself.
 
+use gyradius_report::{Figure, interval, optional, page, significant};
 use gyradius_statistics::Interval;
 use maud::{Markup, PreEscaped, html};
 use nalgebra::{Unit, Vector3};
@@ -8,15 +9,12 @@ use crate::{
     body::{Body, Entry},
     claim::{Claim, Verdict},
     claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED},
-    figure::Figure,
-    format::{interval, optional, significant},
-    page::page,
     quantity::Quantity,
     scenario::{Comparison, Scenario},
     summary::{ClearanceSummary, ComparisonSummary, ModelSummary, Summary},
 };
 
-pub(crate) fn html(scenario: &Scenario, summary: &Summary, figures: &[Figure]) -> String {
+pub(crate) fn html(scenario: &Scenario, summary: &Summary) -> String {
     let content = html! {
         (head(summary))
         (results(summary))
@@ -27,7 +25,7 @@ pub(crate) fn html(scenario: &Scenario, summary: &Summary, figures: &[Figure]) -
         (far_lobe(summary))
         (dispersed(summary))
         (summary.every_model.markup())
-        (all_figures(figures))
+        (all_figures(&summary.figures))
         (inputs(scenario, summary))
     };
     page(&format!("gyradius study: {}", summary.scenario), "", &content)
@@ -448,8 +446,8 @@ fn all_figures(figures: &[Figure]) -> Markup {
         @for figure in figures {
             figure id=(figure.name) {
                 // Made by this program, every text in it escaped.
-                (PreEscaped(figure.svg.as_str()))
-                figcaption { (figure.caption) ". " code { "figures/" (figure.name) ".svg" } }
+                (PreEscaped(figure.svg()))
+                figcaption { (figure.caption) ". " code { (figure.file()) } }
             }
         }
     }

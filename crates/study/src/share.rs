@@ -1,12 +1,12 @@
 //! Shares of the runs, and counts of what there is.
 
 use gyradius_statistics::{Confidence, Interval, Proportion, StatisticsError};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use crate::format::{below_hundred, significant};
+use gyradius_report::{below_hundred, significant};
 
 /// A share of the runs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Share {
     pub(crate) count: u64,
     pub(crate) of: u64,

@@ -1,12 +1,15 @@
+use gyradius_report::file_of;
 use gyradius_statistics::StatisticsError;
 use parquet::errors::ParquetError;
 use std::path::{Path, PathBuf};
 
 use crate::{
-    Forecast, Progress, RunTable, Scenario, ScenarioError, Summary, claims, figure,
+    Forecast, Progress, RunTable, Scenario, ScenarioError, Summary, claims,
+    compare::Section,
     figures_of_study,
     folder::{self, Contents, Folder, FolderError},
-    report, runner,
+    model::Model,
+    runner,
 };
 
 /// Most threads that may be asked for.
@@ -108,12 +111,8 @@ impl Study {
 
         say(Forecast::of(scenario, &models, threads.current_num_threads()));
         let tables = runner::run(scenario, &models, &threads, progress);
-        let summary = threads.install(|| Summary::new(scenario, &models, &tables))?;
-        let claims = claims::judge(scenario, &summary, &tables);
-        let summary = summary.with_claims(claims);
-        let figures = figures_of_study::of_study(scenario, &summary, &tables);
+        let summary = threads.install(|| results(scenario, &models, &tables))?;
 
-        folder.write("scenario.toml", &scenario.to_toml())?;
         for table in &tables {
             let file = folder.create(&format!("runs/{}/runs.parquet", table.model()))?;
             table.write_parquet(file).map_err(|source| StudyError::RunTable {
@@ -121,11 +120,7 @@ impl Study {
                 source,
             })?;
         }
-        folder.write("summary.json", &(serde_json::to_string_pretty(&summary)? + "\n"))?;
-        for figure in &figures {
-            folder.write(&figure::file_of(&figure.name), &figure.svg)?;
-        }
-        folder.write("report.html", &report::html(scenario, &summary, &figures))?;
+        let summary = crate::results::write(&mut folder, scenario, &summary)?;
         Ok(Self { folder: folder.publish()?, tables, summary })
     }
 
@@ -158,10 +153,22 @@ pub fn restore_studies(path: &Path) -> Result<(), StudyError> {
     Ok(folder::restore_all(path)?)
 }
 
+/// What the runs of a scenario amount to: every number, judgement and figure, before any page is made.
+pub(crate) fn results(
+    scenario: &Scenario,
+    models: &[Model],
+    tables: &[RunTable],
+) -> Result<Summary, StatisticsError> {
+    let mut summary = Summary::new(scenario, models, tables, Section::new(scenario)?)?;
+    summary.claims = claims::judge(scenario, &summary, tables);
+    summary.figures = figures_of_study::of_study(scenario, &summary, tables);
+    Ok(summary)
+}
+
 /// What a study writes, and the figures that it may write.
 fn contents(scenario: &Scenario) -> Contents<'_> {
     let tables = scenario.model_names().map(|model| format!("runs/{model}/runs.parquet"));
-    let figures = figures_of_study::names(scenario).into_iter().map(|name| figure::file_of(&name));
+    let figures = figures_of_study::names(scenario).into_iter().map(|name| file_of(&name));
     let others = ["scenario.toml", "summary.json", "report.html", "figures/"].map(str::to_owned);
     let same = |text: &str| text == scenario.to_toml();
     Contents::new("study", "scenario.toml", tables.chain(figures).chain(others), same)

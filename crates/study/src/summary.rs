@@ -2,12 +2,13 @@
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_dispersion::ModelKind;
+use gyradius_report::Figure;
 use gyradius_statistics::{
     Confidence, Deviation, Interval, Moments, SortedSample, StatisticsError,
 };
 use nalgebra::UnitQuaternion;
-use serde::Serialize;
-use std::collections::BTreeMap;
+use serde::{Deserialize, Serialize, Serializer, ser::Error};
+use std::{borrow::Cow, collections::BTreeMap};
 
 use crate::{
     body::Body,
@@ -16,16 +17,16 @@ use crate::{
     compare::Section,
     model::Model,
     quantity::Quantity,
-    run::{Case, ClearanceNote},
+    run::Case,
     scenario::{Dispersed, Scenario},
     share::{Share, counted},
     table::{Row, RunTable},
 };
 
 /// Every number that the report shows.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    pub(crate) gyradius_version: &'static str,
+    pub(crate) gyradius_version: Cow<'static, str>,
     pub(crate) scenario: String,
     /// SHA-256 of the resolved scenario.
     pub(crate) fingerprint: String,
@@ -41,28 +42,31 @@ pub struct Summary {
     pub(crate) claims: Vec<Claim>,
     /// Every model of inertia with the moments of the scenario's bodies.
     pub(crate) every_model: Section,
+    /// What the figures show.
+    #[serde(serialize_with = "a_line_each")]
+    pub(crate) figures: Vec<Figure>,
 }
 
 /// A column of the run tables.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ColumnSummary {
     pub(crate) column: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) unit: Option<&'static str>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) unit: Option<Cow<'static, str>>,
     pub(crate) meaning: String,
 }
 
 /// A quantity of the run without any dispersion.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Nominal {
-    #[serde(serialize_with = "column")]
+    #[serde(with = "column")]
     pub(crate) quantity: Quantity,
-    pub(crate) unit: &'static str,
+    pub(crate) unit: Cow<'static, str>,
     pub(crate) value: f64,
 }
 
 /// What the runs of one model did.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ModelSummary {
     pub(crate) name: String,
     pub(crate) law: ModelKind,
@@ -82,15 +86,15 @@ pub(crate) struct ModelSummary {
     pub(crate) releases: Releases,
     pub(crate) quantities: Vec<QuantitySummary>,
     /// What else was drawn, in all runs, those that failed too.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) dispersed: Vec<DispersedSummary>,
 }
 
 /// A dispersed quantity: its law, and what one model drew of it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct DispersedSummary {
     pub(crate) quantity: String,
-    pub(crate) law: &'static str,
+    pub(crate) law: Cow<'static, str>,
     pub(crate) nominal: f64,
     pub(crate) law_mean: f64,
     pub(crate) law_deviation: f64,
@@ -99,7 +103,7 @@ pub(crate) struct DispersedSummary {
 }
 
 /// How springs let go in the runs that succeed.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Releases {
     /// The orders of releases, as in the run table, the most frequent first.
     pub(crate) orders: Vec<Order>,
@@ -112,7 +116,7 @@ pub(crate) struct Releases {
 }
 
 /// How near the bodies come.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ClearanceSummary {
     /// Runs that have a clearance.
     pub(crate) n: u64,
@@ -124,11 +128,11 @@ pub(crate) struct ClearanceSummary {
     pub(crate) p01_interval_m: Option<Interval>,
     pub(crate) p05_m: Option<f64>,
     /// Why runs have no clearance, or not one of their whole coast, with how often.
-    pub(crate) notes: Vec<(&'static str, u64)>,
+    pub(crate) notes: Vec<(String, u64)>,
 }
 
 /// How often springs let go in an order.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Order {
     pub(crate) order: String,
     #[serde(flatten)]
@@ -136,11 +140,11 @@ pub(crate) struct Order {
 }
 
 /// The distribution of one quantity under one model. What a sample cannot tell is null.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct QuantitySummary {
-    #[serde(serialize_with = "column")]
+    #[serde(with = "column")]
     pub(crate) quantity: Quantity,
-    pub(crate) unit: &'static str,
+    pub(crate) unit: Cow<'static, str>,
     pub(crate) n: u64,
     pub(crate) mean: Option<f64>,
     pub(crate) mean_interval: Option<Interval>,
@@ -157,7 +161,7 @@ pub(crate) struct QuantitySummary {
 }
 
 /// A naive model beside a physical one.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ComparisonSummary {
     pub(crate) title: String,
     pub(crate) physical: String,
@@ -166,9 +170,9 @@ pub(crate) struct ComparisonSummary {
 }
 
 /// How much more a quantity varies, and how much larger it is, under the naive model.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Ratio {
-    #[serde(serialize_with = "column")]
+    #[serde(with = "column")]
     pub(crate) quantity: Quantity,
     /// Deviation under the naive model over deviation under the physical one.
     pub(crate) deviation_ratio: Option<f64>,
@@ -178,8 +182,25 @@ pub(crate) struct Ratio {
     pub(crate) mean_difference_interval: Option<Interval>,
 }
 
-fn column<S: serde::Serializer>(quantity: &Quantity, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(&quantity.column())
+/// Figures hold many numbers, which would have a line each.
+fn a_line_each<S: Serializer>(figures: &[Figure], to: S) -> Result<S::Ok, S::Error> {
+    let line = |figure| serde_json::value::to_raw_value(figure).map_err(S::Error::custom);
+    figures.iter().map(line).collect::<Result<Vec<_>, _>>()?.serialize(to)
+}
+
+/// A quantity by the name of its column.
+mod column {
+    use super::Quantity;
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub(super) fn serialize<S: Serializer>(quantity: &Quantity, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(&quantity.column())
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Quantity, D::Error> {
+        let name = String::deserialize(from)?;
+        Quantity::of_column(&name).ok_or_else(|| D::Error::custom(format!("no column {name:?}")))
+    }
 }
 
 impl Summary {
@@ -187,6 +208,7 @@ impl Summary {
         scenario: &Scenario,
         models: &[Model],
         tables: &[RunTable],
+        every_model: Section,
     ) -> Result<Self, StatisticsError> {
         let confidence = Confidence::default();
         let nominal = nominal(scenario);
@@ -212,7 +234,7 @@ impl Summary {
             })
             .collect();
         Ok(Self {
-            gyradius_version: env!("CARGO_PKG_VERSION"),
+            gyradius_version: env!("CARGO_PKG_VERSION").into(),
             scenario: scenario.name().to_owned(),
             fingerprint: scenario.fingerprint(),
             seed: scenario.seed(),
@@ -223,13 +245,9 @@ impl Summary {
             models,
             comparisons,
             claims: Vec::new(),
-            every_model: Section::new(scenario)?,
+            every_model,
+            figures: Vec::new(),
         })
-    }
-
-    /// The same with the claims of the scenario's source, judged by it.
-    pub(crate) fn with_claims(self, claims: Vec<Claim>) -> Self {
-        Self { claims, ..self }
     }
 
     pub(crate) fn model(&self, name: &str) -> Option<&ModelSummary> {
@@ -246,7 +264,7 @@ fn columns(tables: &[RunTable]) -> Vec<ColumnSummary> {
     let columns = tables.first().into_iter().flat_map(RunTable::columns);
     let summary = |column: Column<'_>| ColumnSummary {
         column: column.name().into_owned(),
-        unit: column.unit(),
+        unit: column.unit().map(Cow::Borrowed),
         meaning: column.meaning().to_owned(),
     };
     columns.map(summary).collect()
@@ -259,8 +277,8 @@ fn nominal(scenario: &Scenario) -> Vec<Nominal> {
     let run = case.ended(scenario, Some(result));
     Quantity::of(scenario.separation().springs().len())
         .filter_map(|quantity| {
-            let value = quantity.value(&run)?;
-            Some(Nominal { quantity, unit: quantity.unit(), value })
+            let value = quantity.value(&run).filter(|value| value.is_finite())?;
+            Some(Nominal { quantity, unit: quantity.unit().into(), value })
         })
         .collect()
 }
@@ -270,7 +288,7 @@ fn dispersed(scenario: &Scenario, table: &RunTable) -> Vec<DispersedSummary> {
         let moments = table.drawn(&d.column).and_then(|values| Moments::new(&values).ok());
         DispersedSummary {
             quantity: d.column.clone(),
-            law: d.law.name(),
+            law: d.law.name().into(),
             nominal: d.nominal,
             law_mean: d.law.mean(),
             law_deviation: d.law.deviation(),
@@ -366,7 +384,7 @@ impl ClearanceSummary {
         let of = |row: Row<'_>| Some((row.value(Quantity::Clearance)?, row.run()));
         let found: Vec<(f64, u64)> = table.rows().filter_map(of).collect();
         let notes = table.rows().filter_map(|row| row.clearance_note());
-        let notes = counted(notes.map(ClearanceNote::kind));
+        let notes = counted(notes.map(|note| note.kind().to_owned()));
         if found.is_empty() && notes.is_empty() {
             return None;
         }
@@ -395,7 +413,7 @@ impl QuantitySummary {
         let quantile = |p| sorted.as_ref().and_then(|s| s.quantile(p).ok());
         Self {
             quantity,
-            unit: quantity.unit(),
+            unit: quantity.unit().into(),
             n: values.len() as u64,
             mean: moments.map(|m| m.mean()),
             mean_interval: moments.map(|m| m.mean_interval(confidence)),

@@ -1,7 +1,7 @@
+use gyradius_report::optional;
 use std::fmt::{self, Display, Formatter};
 
 use crate::{
-    format::optional,
     quantity::Quantity,
     summary::{QuantitySummary, Summary},
 };

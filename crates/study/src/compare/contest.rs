@@ -6,7 +6,8 @@ use gyradius_separation::SpinMetrics;
 use gyradius_statistics::{Confidence, StatisticsError};
 use rand_distr::Distribution;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 use super::{
     fit::Fit,
@@ -22,7 +23,7 @@ use crate::{
 };
 
 /// How a model did, or why there is none.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Cell {
     pub(crate) model: ModelKind,
     pub(crate) realizable_by_construction: bool,
@@ -32,10 +33,10 @@ pub(crate) struct Cell {
 }
 
 /// What the draws of a model are like.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Results {
     /// What of the moments it was given.
-    pub(crate) matched: &'static str,
+    pub(crate) matched: Cow<'static, str>,
     pub(crate) fit: Fit,
     /// The share of draws that rejection keeps, if it rejects.
     pub(crate) acceptance: Option<f64>,
@@ -125,7 +126,7 @@ impl Results {
             }
         });
         Ok(Self {
-            matched,
+            matched: matched.into(),
             fit,
             acceptance,
             unrealizable: Share::new(unrealizable, drawn.len() as u64, Confidence::default())?,

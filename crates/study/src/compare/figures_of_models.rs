@@ -1,12 +1,9 @@
 //! The figures of a comparison.
 
 use gyradius_dispersion::ModelKind;
+use gyradius_report::{Figure, Line, LineGrid, LinePanel, LinePoint, Picture, Range};
 
 use super::{BodyResult, LevelResult, ModelComparison, contest::Results, measure::Measure};
-use crate::{
-    figure::Figure,
-    figures::{Line, LinePanel, LinePoint, Range, line_grid},
-};
 
 /// Colour and dashes of a model: kept for conditioned twins, which are dashed.
 pub(super) fn pen(kind: ModelKind) -> (usize, bool) {
@@ -147,21 +144,21 @@ impl ModelComparison {
                     .collect(),
             })
             .collect();
-        let svg = line_grid(
-            title,
-            &panels,
-            "uncertainty (% of the largest moment)",
-            label,
-            &self.settings.levels_percent,
-            match scale {
+        let lines = LineGrid {
+            title: title.clone(),
+            panels,
+            x_label: "uncertainty (% of the largest moment)".to_owned(),
+            y_label: label.clone(),
+            levels: self.settings.levels_percent.clone(),
+            range: match scale {
                 Scale::Plain => Range::Common,
                 Scale::PerPercent => Range::Own,
             },
-        );
+        };
         Figure {
             name: name.clone(),
             caption: format!("{title}, over the uncertainty, for each body{caption}"),
-            svg,
+            picture: Picture::Lines(lines),
         }
     }
 }

@@ -1,6 +1,6 @@
 use gyradius_dispersion::EntryMoments;
 use nalgebra::{SMatrix, SVector};
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// A covariance further off than this, in sizes of the reference's, is called a poor match: a body known
 /// exactly is no further.
@@ -13,14 +13,27 @@ const NONE: f64 = 10.0;
 /// In the norm ‖M‖² = Σ M_ab² of the matrix, in which products count twice and which is the same in
 /// every frame: the distance of the means over the deviation of the whole matrix, √E‖I − E I‖², and
 /// the norm of the difference of the covariances over that of the reference's.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Fit {
+    #[serde(deserialize_with = "number")]
     pub(crate) mean_off: f64,
+    #[serde(deserialize_with = "number")]
     pub(crate) covariance_off: f64,
     /// Estimated from the draws, so with their noise, rather than known.
     pub(crate) from_draws: bool,
     /// Standard deviations of I11, I22, I33, I12, I13, I23 of the model, kg·m².
+    #[serde(deserialize_with = "numbers")]
     pub(crate) deviations_kg_m2: [f64; 6],
+}
+
+/// A number, or null for one that JSON does not know.
+fn number<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
+}
+
+fn numbers<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 6], D::Error> {
+    let numbers = <[Option<f64>; 6]>::deserialize(from)?;
+    Ok(numbers.map(|number| number.unwrap_or(f64::NAN)))
 }
 
 impl Fit {

@@ -1,8 +1,9 @@
 use gyradius_statistics::{Confidence, Deviation, Interval, Moments, SortedSample};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// What follows from a drawn inertia.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Measure {
     LargestMoment,
@@ -75,10 +76,10 @@ impl Measure {
 ///
 /// Quantiles say more here than deviations: a body that cannot exist can have an inertia ratio as
 /// large as one likes, and one such draw makes the deviation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Spread {
     pub(crate) measure: Measure,
-    pub(crate) unit: &'static str,
+    pub(crate) unit: Cow<'static, str>,
     pub(crate) n: u64,
     /// Draws for which it is infinite or not defined.
     pub(crate) undefined: u64,
@@ -107,7 +108,7 @@ impl Spread {
         let finite = |i: &Interval| i.lower().is_finite() && i.upper().is_finite();
         Self {
             measure,
-            unit: measure.unit(),
+            unit: measure.unit().into(),
             n: kept.len() as u64,
             undefined,
             mean: moments.map(|m| m.mean()),

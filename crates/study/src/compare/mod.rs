@@ -16,10 +16,12 @@ mod tests;
 mod text;
 
 use gyradius_dispersion::ModelKind;
+use gyradius_report::file_of;
 use gyradius_statistics::StatisticsError;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::{
+    borrow::Cow,
     path::{Path, PathBuf},
     sync::atomic::{AtomicU64, Ordering},
 };
@@ -31,7 +33,6 @@ pub(crate) use section::Section;
 
 use crate::{
     Progress, StudyError,
-    figure::file_of,
     folder::{Contents, Folder, FolderError},
     scenario::{Scenario, ScenarioError},
     streams::Streams,
@@ -120,7 +121,7 @@ struct Settings {
 }
 
 /// All models about one body.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct BodyResult {
     name: String,
     /// I11, I22, I33, I12, I13, I23.
@@ -130,15 +131,15 @@ pub(crate) struct BodyResult {
     levels: Vec<LevelResult>,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct NominalValue {
     measure: Measure,
-    unit: &'static str,
+    unit: Cow<'static, str>,
     value: Option<f64>,
 }
 
 /// All models at one level.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LevelResult {
     /// None for a body's own uncertainty, which no percentage says.
     level_percent: Option<f64>,
@@ -149,7 +150,7 @@ pub(crate) struct LevelResult {
 }
 
 /// What the models were to have at a level.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct ReferenceResult {
     mean_kg_m2: [f64; 6],
     deviations_kg_m2: [f64; 6],
@@ -197,7 +198,7 @@ impl ModelComparison {
     fn write(&self, mut folder: Folder<'_>) -> Result<PathBuf, CompareError> {
         let figures = self.figures();
         for figure in &figures {
-            folder.write(&file_of(&figure.name), &figure.svg)?;
+            folder.write(&figure.file(), &figure.svg())?;
         }
         folder.write("compare.html", &self.page(&figures))?;
         folder.write("compare.csv", &self.to_csv())?;
@@ -315,7 +316,7 @@ impl BodyResult {
                 .zip(values)
                 .map(|(measure, value)| NominalValue {
                     measure,
-                    unit: measure.unit(),
+                    unit: measure.unit().into(),
                     value: value.filter(|x| x.is_finite()),
                 })
                 .collect(),

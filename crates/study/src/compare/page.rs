@@ -7,7 +7,7 @@ use super::{
     measure::Measure,
     text::{Block, heading, is_poor, kinds, matched, remarks},
 };
-use crate::{figure::Figure, format::optional, page::page};
+use gyradius_report::{Figure, optional, page};
 
 const BLOCKS: [Block; 9] = [
     Block::Unrealizable,
@@ -39,8 +39,8 @@ impl ModelComparison {
             h2 { "Figures" }
             @for figure in figures {
                 figure id=(figure.name) {
-                    (PreEscaped(figure.svg.as_str()))
-                    figcaption { (figure.caption) ". " code { "figures/" (figure.name) ".svg" } }
+                    (PreEscaped(figure.svg()))
+                    figcaption { (figure.caption) ". " code { (figure.file()) } }
                 }
             }
             @for body in &self.bodies { (body_tables(body)) }

@@ -129,7 +129,7 @@ impl Target {
         match fit {
             Some(fit) if !fit.is_near() => Err(format!(
                 "a match to first order misses: the covariance comes out {} times too large",
-                crate::format::significant(1.0 + fit.covariance_off, 2)
+                gyradius_report::significant(1.0 + fit.covariance_off, 2)
             )),
             _ => Ok((model, what)),
         }
@@ -155,9 +155,9 @@ impl Target {
             let taken = covariance(product, product);
             // The mean product is zero in principal axes.
             (taken > room * (1.0 + 1e-9)).then(|| {
-                let deviation = crate::format::significant(taken.sqrt(), 3);
+                let deviation = gyradius_report::significant(taken.sqrt(), 3);
                 if room > 0.0 {
-                    let most = crate::format::significant(room.sqrt(), 3);
+                    let most = gyradius_report::significant(room.sqrt(), 3);
                     format!(
                         "no law of bodies has these moments: a product of inertia with a deviation of \
                          {deviation} kg·m², of which at most {most} is possible beside these moments"

@@ -1,9 +1,10 @@
 //! The same comparison for the bodies of a study, at the uncertainty that its scenario gives them.
 
 use gyradius_dispersion::ModelKind;
+use gyradius_report::{Figure, Label, Picture, RangeGrid, RangePanel};
 use gyradius_statistics::StatisticsError;
 use maud::{Markup, html};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{
     BodyResult,
@@ -16,8 +17,7 @@ use super::{
     text::{Block, is_poor, kinds, matched, remarks},
 };
 use crate::{
-    figure::{EVERY_MODEL, Figure},
-    figures::{Label, RangePanel, range_grid},
+    figures_of_study::EVERY_MODEL,
     scenario::{Axes, Scenario, UncertainBody},
 };
 
@@ -26,7 +26,7 @@ const DRAWS: u64 = 2000;
 const SEPARATIONS: u64 = 150;
 
 /// All models about payload and stage of a scenario.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Section {
     draws: u64,
     separations: u64,
@@ -89,7 +89,7 @@ impl Section {
                 "{title}: median and middle 90 % of {DRAWS} draws (nutation: {SEPARATIONS} separations, \
                  nominal stage)"
             ),
-            svg: range_grid(title, &names, &panels),
+            picture: Picture::Ranges(RangeGrid::new(title, names, panels.into())),
         })
     }
 

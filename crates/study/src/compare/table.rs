@@ -33,7 +33,7 @@ impl ModelComparison {
                     let u = &r.unrealizable;
                     let place = format!(
                         "{place},,{},{},{},{},{},{},{},{},{},{},{},{}",
-                        quoted(r.matched),
+                        quoted(&r.matched),
                         r.fit.mean_off,
                         r.fit.covariance_off,
                         r.fit.from_draws,

@@ -4,7 +4,7 @@ use gyradius_dispersion::ModelKind;
 use std::fmt::{self, Display, Formatter};
 
 use super::{BodyResult, LevelResult, ModelComparison, contest::Cell, measure::Measure};
-use crate::format::{optional, significant};
+use gyradius_report::{optional, significant};
 
 /// Columns of a terminal that are used.
 const MOST: usize = 100;
@@ -134,7 +134,7 @@ pub(crate) fn matched(body: &BodyResult, kind: ModelKind) -> String {
         let Some(r) = level.cell(kind).and_then(|cell| cell.results.as_ref()) else { continue };
         match told.iter_mut().find(|(what, _)| *what == r.matched) {
             Some((_, levels)) => levels.push(heading(level)),
-            None => told.push((r.matched, vec![heading(level)])),
+            None => told.push((&r.matched, vec![heading(level)])),
         }
     }
     match told.as_slice() {

@@ -39,6 +39,8 @@ pub(crate) struct Contents<'a> {
     certain: Vec<String>,
     /// Whether this text of the mark is that of the very same.
     same: Box<dyn Fn(&str) -> bool + 'a>,
+    /// Which files that were written before stay as they are.
+    kept: Box<dyn Fn(&str) -> bool + 'a>,
 }
 
 impl<'a> Contents<'a> {
@@ -50,7 +52,13 @@ impl<'a> Contents<'a> {
         certain: impl IntoIterator<Item = String>,
         same: impl Fn(&str) -> bool + 'a,
     ) -> Self {
-        Self { what, mark, certain: certain.into_iter().collect(), same: Box::new(same) }
+        let certain = certain.into_iter().collect();
+        Self { what, mark, certain, same: Box::new(same), kept: Box::new(|_| false) }
+    }
+
+    /// The same as a part of what was written before, of which these files stay as they are.
+    pub(crate) fn keeping(self, kept: impl Fn(&str) -> bool + 'a) -> Self {
+        Self { kept: Box::new(kept), ..self }
     }
 }
 
@@ -142,12 +150,14 @@ impl<'a> Folder<'a> {
     }
 
     fn put(&mut self) -> Result<(), Problem> {
-        let Contents { what, mark, .. } = self.contents;
+        let Contents { what, mark, kept, .. } = self.contents;
         let (old, old_hash) = self.hidden.record(what)?;
         let new = self.journal.written(&self.hidden, &old)?;
         // Asked again, for hours may have passed.
         unobstructed(self.hidden.place(), &old, new.names())?;
-        let text = new.to_json()?;
+        let (stays, old) = old.split(kept);
+        let new = new.in_folders_of(&stays);
+        let text = stays.and(&new).to_json()?;
         let name = Hidden::record_name(what);
         self.journal.create(&self.hidden, name.clone())?.write_all(text.as_bytes())?;
         let replacement =

@@ -41,6 +41,26 @@ impl Record {
         &self.folders
     }
 
+    /// The files that are kept and those that are not, each with the folders if any file is kept.
+    pub(super) fn split(self, kept: impl Fn(&str) -> bool) -> (Self, Self) {
+        let (kept, rest): (BTreeMap<_, _>, _) =
+            self.files.into_iter().partition(|(name, _)| kept(&name.to_string()));
+        let folders = if kept.is_empty() { BTreeSet::new() } else { self.folders.clone() };
+        (Self::new(kept, folders), Self::new(rest, self.folders))
+    }
+
+    /// The same files, in these folders too.
+    pub(super) fn in_folders_of(mut self, other: &Self) -> Self {
+        self.folders.extend(other.folders.iter().cloned());
+        self
+    }
+
+    /// These files and others.
+    pub(super) fn and(mut self, others: &Self) -> Self {
+        self.files.extend(others.files.clone());
+        self.in_folders_of(others)
+    }
+
     pub(super) fn to_json(&self) -> serde_json::Result<String> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }

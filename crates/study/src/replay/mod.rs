@@ -12,15 +12,13 @@ use gyradius_clearance::Clearance;
 use gyradius_formats::{WriteError, must_write, write_file};
 use gyradius_separation::{RunError, Separation, Step};
 use parquet::errors::ParquetError;
-use serde_json::Value;
 use std::{
     fs, io,
     path::{Path, PathBuf},
 };
 
 use crate::{
-    Row, RunTable, Scenario, ScenarioError,
-    folder::{self, FolderError},
+    Results, ResultsError, Row, RunTable, Scenario, ScenarioError, folder,
     model::Model,
     run::{Case, End},
 };
@@ -36,39 +34,9 @@ pub enum ReplayError {
     /// The scenario is refused.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// There is no study.
-    #[error("{}: {problem}", path.display())]
-    Study {
-        /// Where it was looked for.
-        path: PathBuf,
-        /// What is wrong.
-        problem: String,
-    },
-    /// The study was made by another version, whose numbers need not be these.
-    #[error(
-        "{}: the study was made by gyradius {found}, and this is {}: run it again, or replay it with \
-         that version", path.display(), env!("CARGO_PKG_VERSION")
-    )]
-    Version {
-        /// The study's folder.
-        path: PathBuf,
-        /// The version in its summary.
-        found: String,
-    },
-    /// The scenario in the folder is not the one that its runs are from.
-    #[error(
-        "{}: scenario.toml has the fingerprint {scenario}, and the runs are from a scenario with \
-         {summary}: it was changed after the study; run the study again",
-        path.display()
-    )]
-    Fingerprint {
-        /// The study's folder.
-        path: PathBuf,
-        /// Fingerprint of the scenario.
-        scenario: String,
-        /// Fingerprint in the summary.
-        summary: String,
-    },
+    /// The study cannot be read.
+    #[error(transparent)]
+    Study(#[from] ResultsError),
     /// The scenario has no such model.
     #[error("model {model:?}: the scenario has {}", known.join(", "))]
     Model {
@@ -184,22 +152,19 @@ impl Replay {
         // A study that was killed while it replaced this one is put right first; its scenario may be away
         // until then.
         let folder = if path.is_dir() { path } else { folder::folder_of(path) };
-        folder::restore(folder).map_err(|FolderError { path, problem }| {
-            let problem = problem.to_string();
-            ReplayError::Study { path, problem }
-        })?;
+        folder::restore(folder).map_err(ResultsError::from)?;
         if !path.is_dir() {
             if !path.exists() {
                 let problem =
                     "there is no such study: run `gyradius study`, or name the folder of one \
                                or a scenario file"
                         .to_owned();
-                return Err(ReplayError::Study { path: path.to_owned(), problem });
+                return Err(ResultsError::Study { path: path.to_owned(), problem }.into());
             }
             return Self::new(&Scenario::read(path)?, model, run, coast_s);
         }
-        let scenario = scenario_of(path)?;
-        let mut replay = Self::new(&scenario, model, run, coast_s)?;
+        let results = Results::read(path)?;
+        let mut replay = Self::new(results.scenario(), model, run, coast_s)?;
         let table = path.join(format!("runs/{}/runs.parquet", replay.model));
         replay.compare(&table)?;
         replay.table = Some(table);
@@ -333,38 +298,4 @@ impl Replay {
         }
         Ok(())
     }
-}
-
-/// The scenario of the study in a folder, if its runs are this program's.
-fn scenario_of(folder: &Path) -> Result<Scenario, ReplayError> {
-    let (file, summary) = (folder.join("scenario.toml"), folder.join("summary.json"));
-    let problem = |problem: String| ReplayError::Study { path: folder.to_owned(), problem };
-    if !file.is_file() || !summary.is_file() {
-        return Err(problem(
-            "it holds no study, which has a scenario.toml and a summary.json; name the folder of one or \
-             a scenario file"
-                .to_owned(),
-        ));
-    }
-    let text = fs::read_to_string(&summary)
-        .map_err(|e| problem(format!("summary.json cannot be read: {e}")))?;
-    let value: Value = serde_json::from_str(&text)
-        .map_err(|e| problem(format!("summary.json is no summary: {e}")))?;
-    let said = |field: &str| value[field].as_str().map(str::to_owned);
-    let (Some(version), Some(fingerprint)) = (said("gyradius_version"), said("fingerprint")) else {
-        return Err(problem("summary.json names no version and no fingerprint".to_owned()));
-    };
-    // First: another version may read other scenarios.
-    if version != env!("CARGO_PKG_VERSION") {
-        return Err(ReplayError::Version { path: folder.to_owned(), found: version });
-    }
-    let scenario = Scenario::read(&file)?;
-    if scenario.fingerprint() != fingerprint {
-        return Err(ReplayError::Fingerprint {
-            path: folder.to_owned(),
-            scenario: scenario.fingerprint(),
-            summary: fingerprint,
-        });
-    }
-    Ok(scenario)
 }

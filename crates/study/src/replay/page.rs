@@ -2,13 +2,14 @@
 
 use gyradius_clearance::Clearance;
 use gyradius_inertia::InertiaMatrix;
+use gyradius_report::page;
 use gyradius_separation::MovingBody;
 use maud::{PreEscaped, html};
 use nalgebra::UnitQuaternion;
 use serde_json::{Value, json};
 
 use super::{Replay, history::Moment, outlines, short::short};
-use crate::{drawn, page::page};
+use crate::drawn;
 
 const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");

@@ -6,7 +6,7 @@ use super::{
     Replay,
     history::{Moment, energies},
 };
-use crate::figures::{Chart, Colours, Curve, time_charts};
+use gyradius_report::{Chart, Colours, Curve, time_charts};
 
 /// How far beyond the last release the left half shows, relative.
 const BEYOND: f64 = 1.15;

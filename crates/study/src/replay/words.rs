@@ -4,10 +4,11 @@ use gyradius_clearance::ShapeClearance;
 use gyradius_separation::Separation;
 use std::fmt::{self, Display, Formatter};
 
+use gyradius_report::{optional, significant};
+
 use super::Replay;
 use crate::{
     body::{Body, Entry},
-    format::{optional, significant},
     quantity::Quantity,
 };
 

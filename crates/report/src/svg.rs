@@ -1,11 +1,11 @@
 //! A small writer of SVG.
 
-use super::style;
-use super::text::{escape, rich, wrap};
+use crate::style;
+use crate::text::{escape, rich, wrap};
 
 /// Where the text stands with respect to its position.
 #[derive(Clone, Copy)]
-pub(super) enum Anchor {
+pub(crate) enum Anchor {
     Start,
     Middle,
     End,
@@ -13,62 +13,62 @@ pub(super) enum Anchor {
 
 /// How text is set.
 #[derive(Clone, Copy)]
-pub(super) struct Look {
-    pub(super) size: f64,
-    pub(super) colour: &'static str,
-    pub(super) anchor: Anchor,
-    pub(super) bold: bool,
+pub(crate) struct Look {
+    pub(crate) size: f64,
+    pub(crate) colour: &'static str,
+    pub(crate) anchor: Anchor,
+    pub(crate) bold: bool,
 }
 
 impl Look {
-    pub(super) const fn new(size: f64, colour: &'static str) -> Self {
+    pub(crate) const fn new(size: f64, colour: &'static str) -> Self {
         Self { size, colour, anchor: Anchor::Start, bold: false }
     }
 
-    pub(super) const fn at(self, anchor: Anchor) -> Self {
+    pub(crate) const fn at(self, anchor: Anchor) -> Self {
         Self { anchor, ..self }
     }
 
-    pub(super) const fn bold(self) -> Self {
+    pub(crate) const fn bold(self) -> Self {
         Self { bold: true, ..self }
     }
 }
 
 /// A figure under construction; lengths are CSS pixels at natural size.
-pub(super) struct Svg(String);
+pub(crate) struct Svg(String);
 
 impl Svg {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(String::new())
     }
 
     /// A path with the attributes given.
-    pub(super) fn path(&mut self, attributes: &str, d: &str) {
+    pub(crate) fn path(&mut self, attributes: &str, d: &str) {
         if !d.is_empty() {
             self.0.push_str(&format!("<path {attributes} d=\"{d}\"/>\n"));
         }
     }
 
     /// Everything that `draw` adds, in a group with the attributes given.
-    pub(super) fn group(&mut self, attributes: &str, draw: impl FnOnce(&mut Self)) {
+    pub(crate) fn group(&mut self, attributes: &str, draw: impl FnOnce(&mut Self)) {
         self.0.push_str(&format!("<g {attributes}>\n"));
         draw(self);
         self.0.push_str("</g>\n");
     }
 
     /// A drawing with its origin moved.
-    pub(super) fn place(&mut self, x: f64, y: f64, drawing: &Self) {
+    pub(crate) fn place(&mut self, x: f64, y: f64, drawing: &Self) {
         let attributes = format!("transform=\"translate({} {})\"", px(x), px(y));
         self.group(&attributes, |svg| svg.0.push_str(&drawing.0));
     }
 
     /// One line of text.
-    pub(super) fn text(&mut self, x: f64, y: f64, look: Look, text: &str) {
+    pub(crate) fn text(&mut self, x: f64, y: f64, look: Look, text: &str) {
         self.runs(x, y, look, &[(look.colour, text)]);
     }
 
     /// One line of text in several colours.
-    pub(super) fn runs(&mut self, x: f64, y: f64, look: Look, runs: &[(&str, &str)]) {
+    pub(crate) fn runs(&mut self, x: f64, y: f64, look: Look, runs: &[(&str, &str)]) {
         let anchor = match look.anchor {
             Anchor::Start => "",
             Anchor::Middle => " text-anchor=\"middle\"",
@@ -88,7 +88,7 @@ impl Svg {
     }
 
     /// The title at the top, if any, on at most two lines; returns where it ends.
-    pub(super) fn heading(&mut self, title: &str, figure_width: f64) -> f64 {
+    pub(crate) fn heading(&mut self, title: &str, figure_width: f64) -> f64 {
         const LOOK: Look = Look::new(15.0, style::INK).bold();
         let room = (figure_width - 2.0 * style::MARGIN) / 1.06;
         let mut y = style::MARGIN;
@@ -100,7 +100,7 @@ impl Svg {
     }
 
     /// The whole document. Without a title it is called by its description.
-    pub(super) fn finish(self, size: (f64, f64), title: &str, description: &str) -> String {
+    pub(crate) fn finish(self, size: (f64, f64), title: &str, description: &str) -> String {
         let (w, h) = (px(size.0.ceil()), px(size.1.ceil()));
         let title = if title.trim().is_empty() { description } else { title };
         format!(
@@ -120,19 +120,19 @@ impl Svg {
 }
 
 /// A coordinate to a tenth of a pixel.
-pub(super) fn px(x: f64) -> String {
+pub(crate) fn px(x: f64) -> String {
     let tenths = if x.is_finite() { (x * 10.0).round() } else { 0.0 };
     // Adding 0 makes a zero of −0.
     format!("{}", tenths / 10.0 + 0.0)
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// The text that a reader sees, provided that the figure is well-formed, its coordinates are
     /// numbers, and what is in a page with it is left alone.
-    pub(in super::super) fn read(svg: &str) -> String {
+    pub(crate) fn read(svg: &str) -> String {
         let (mut open, mut seen) = (Vec::new(), String::new());
         let mut rest = svg.strip_suffix('\n').unwrap();
         while !rest.is_empty() {

@@ -3,7 +3,7 @@
 use gyradius_statistics::Interval;
 
 /// To a number of significant digits, plain where that is short, scientific where it is not.
-pub(crate) fn significant(x: f64, digits: usize) -> String {
+pub fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{x}");
     }
@@ -17,19 +17,19 @@ pub(crate) fn significant(x: f64, digits: usize) -> String {
 }
 
 /// The same, or a dash.
-pub(crate) fn optional(x: Option<f64>, digits: usize) -> String {
+pub fn optional(x: Option<f64>, digits: usize) -> String {
     x.map_or_else(|| "–".to_owned(), |x| significant(x, digits))
 }
 
 /// `[lower, upper]`, or nothing.
-pub(crate) fn interval(interval: Option<Interval>, digits: usize) -> String {
+pub fn interval(interval: Option<Interval>, digits: usize) -> String {
     interval.map_or_else(String::new, |i| {
         format!("[{}, {}]", significant(i.lower(), digits), significant(i.upper(), digits))
     })
 }
 
 /// A percentage with two digits of what is missing to a hundred.
-pub(crate) fn below_hundred(percent: f64) -> String {
+pub fn below_hundred(percent: f64) -> String {
     let missing = significant(100.0 - percent, 2);
     let decimals = missing.split_once('.').map_or(0, |(_, decimals)| decimals.len());
     if missing.contains('e') { format!("{percent}") } else { format!("{percent:.decimals$}") }

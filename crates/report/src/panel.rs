@@ -1,23 +1,26 @@
 //! One panel of histograms: axes, bars, notes.
 
-use super::axis::{Spacing, Tick, Units, ticks, times};
-use super::bins::{Beyond, Binned};
-use super::samples::{Panel, Series};
-use super::style;
-use super::svg::{Anchor, Look, Svg, px};
-use super::text::{count, fit, significant, width};
+use gyradius_statistics::SortedSample;
+use serde::{Deserialize, Serialize};
+
+use crate::axis::{Spacing, Tick, Units, ticks, times};
+use crate::bins::{Beyond, Binned};
+use crate::samples::{Panel, Series};
+use crate::style;
+use crate::svg::{Anchor, Look, Svg, px};
+use crate::text::{count, fit, significant, width};
 
 const TICK: Look = Look::new(11.0, style::MUTED);
 const LABEL: Look = Look::new(12.0, style::INK).at(Anchor::Middle);
 const NOTE: Look = Look::new(10.5, style::MUTED);
 
 /// Space between the columns.
-pub(super) const GUTTER: f64 = 26.0;
+pub(crate) const GUTTER: f64 = 26.0;
 /// The least width of a bin in pixels that still reads as a step.
 const STEP: f64 = 2.5;
 
 /// The pen and fill of the bars of a model.
-pub(super) fn outline_pen(model: usize) -> String {
+pub(crate) fn outline_pen(model: usize) -> String {
     let colour = style::model(model);
     format!(
         "fill=\"{colour}\" fill-opacity=\"0.16\" stroke=\"{colour}\" stroke-width=\"1.3\" \
@@ -25,16 +28,16 @@ pub(super) fn outline_pen(model: usize) -> String {
     )
 }
 
-pub(super) fn nominal_pen() -> String {
+pub(crate) fn nominal_pen() -> String {
     format!("stroke=\"{}\" stroke-dasharray=\"4 3\"", style::NOMINAL)
 }
 
 /// The rectangle that bars are drawn in.
-pub(super) struct Frame {
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) width: f64,
-    pub(super) height: f64,
+pub(crate) struct Frame {
+    pub(crate) left: f64,
+    pub(crate) top: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
 }
 
 impl Frame {
@@ -51,42 +54,79 @@ impl Frame {
     }
 }
 
+/// What is known of the samples of a panel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Counted {
+    pub(crate) label: String,
+    /// A finite value to mark, in the unit of the label.
+    pub(crate) nominal: Option<f64>,
+    pub(crate) series: Vec<CountedSeries>,
+    /// None without data.
+    pub(crate) bins: Option<Binned>,
+}
+
+/// What is known of a sample beside its bins.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct CountedSeries {
+    pub(crate) name: String,
+    /// How many runs there are, and how many of them have a value.
+    pub(crate) runs: usize,
+    pub(crate) values: usize,
+    /// Least, middle and largest of the finite values, where there are any.
+    pub(crate) quantiles: Option<[f64; 3]>,
+}
+
+impl Counted {
+    /// Counts for a plot of this width.
+    pub(crate) fn new(panel: &Panel<'_>, width: f64) -> Self {
+        let series = |series: &Series<'_>| {
+            let finite: Vec<f64> =
+                series.values.iter().copied().filter(|x| x.is_finite()).collect();
+            let sample = SortedSample::new(&finite).ok();
+            CountedSeries {
+                name: series.name.to_owned(),
+                runs: series.runs,
+                values: series.values.len(),
+                quantiles: sample.map(|s| [s.minimum(), s.median(), s.maximum()]),
+            }
+        };
+        Self {
+            label: panel.label.clone(),
+            nominal: panel.nominal.filter(|x| x.is_finite()),
+            series: panel.series.iter().map(series).collect(),
+            bins: Binned::new(panel, (width / STEP) as usize),
+        }
+    }
+}
+
 /// A panel with what is to be drawn of it.
-pub(super) struct Cell<'a> {
-    panel: &'a Panel<'a>,
+pub(crate) struct Cell<'a> {
+    panel: &'a Counted,
     /// Place of each series among the models of the figure.
     models: Vec<usize>,
     /// `None` without data.
-    plot: Option<(Binned, Vertical)>,
+    plot: Option<(&'a Binned, Vertical)>,
 }
 
 impl<'a> Cell<'a> {
-    /// The panel for a plot of the width and height given.
-    pub(super) fn new(
-        panel: &'a Panel<'a>,
-        models: Vec<usize>,
-        density: bool,
-        (width, height): (f64, f64),
-    ) -> Self {
-        let plot = Binned::new(panel, (width / STEP) as usize).map(|binned| {
-            let vertical = Vertical::new(&binned, density, height);
-            (binned, vertical)
-        });
+    /// The panel for a plot of the height given.
+    pub(crate) fn new(panel: &'a Counted, models: Vec<usize>, density: bool, height: f64) -> Self {
+        let plot = panel.bins.as_ref().map(|bins| (bins, Vertical::new(bins, density, height)));
         Self { panel, models, plot }
     }
 
     /// Width that the labels of the vertical axis need.
-    pub(super) fn room(&self) -> f64 {
+    pub(crate) fn room(&self) -> f64 {
         let ticks = self.plot.iter().flat_map(|(_, vertical)| &vertical.ticks);
         8.0 + ticks.map(|tick| width(&tick.label, TICK.size)).fold(0.0, f64::max)
     }
 
-    pub(super) fn marks_nominal(&self) -> bool {
+    pub(crate) fn marks_nominal(&self) -> bool {
         self.plot.as_ref().is_some_and(|(binned, _)| binned.nominal.is_some())
     }
 
     /// Draws the panel; returns where it ends.
-    pub(super) fn draw(&self, svg: &mut Svg, frame: &Frame) -> f64 {
+    pub(crate) fn draw(&self, svg: &mut Svg, frame: &Frame) -> f64 {
         let base = frame.bottom();
         let units = if let Some((binned, vertical)) = &self.plot {
             vertical.draw(svg, frame);
@@ -193,7 +233,7 @@ impl<'a> Cell<'a> {
                 line(&runs);
             }
         };
-        let binned = self.plot.as_ref().map(|(binned, _)| binned);
+        let binned = self.panel.bins.as_ref();
         if let Some(binned) = binned {
             let beyond = |all: &[Beyond]| {
                 let text =
@@ -205,12 +245,12 @@ impl<'a> Cell<'a> {
         }
         let series = || self.panel.series.iter();
         let told = |n: usize| (n > 0).then(|| count(n));
-        let finite = |s: &Series<'_>| s.values.iter().filter(|x| x.is_finite()).count();
-        tell("not finite: ", series().map(|s| told(s.values.len() - finite(s))).collect());
-        let without = |s: &Series<'_>| told(s.runs.saturating_sub(s.values.len()));
+        let finite = |i: usize| binned.map_or(0, |binned| binned.finite[i]);
+        let lost = series().enumerate().map(|(i, s)| told(s.values - finite(i)));
+        tell("not finite: ", lost.collect());
+        let without = |s: &CountedSeries| told(s.runs.saturating_sub(s.values));
         tell("runs without a value: ", series().map(without).collect());
-        if let Some(nominal) = self.panel.nominal.filter(|x| x.is_finite() && !self.marks_nominal())
-        {
+        if let Some(nominal) = self.panel.nominal.filter(|_| !self.marks_nominal()) {
             let off = if binned.is_some() { ", off the axis" } else { "" };
             line(&[(style::MUTED, &format!("nominal{off}: {}", significant(nominal, 5)))]);
         }
@@ -297,8 +337,8 @@ fn steps(
 
 #[cfg(test)]
 mod tests {
-    use super::super::svg::tests::read;
     use super::*;
+    use crate::svg::tests::read;
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     use rand_distr::{Cauchy, Distribution, Normal, Uniform};
 
@@ -370,7 +410,8 @@ mod tests {
             };
             let density = round % 2 == 0;
             let size = [(500.0, 220.0), (350.0, 160.0), (232.0, 122.0)][round % 3];
-            let cell = Cell::new(&panel, (0..series).collect(), density, size);
+            let counted = Counted::new(&panel, size.0);
+            let cell = Cell::new(&counted, (0..series).collect(), density, size.1);
             let mut svg = Svg::new();
             let frame = Frame { left: 50.0, top: 20.0, width: size.0, height: size.1 };
             let end = cell.draw(&mut svg, &frame);

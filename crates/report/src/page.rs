@@ -2,12 +2,12 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::visible;
+use crate::visible::visible;
 
-const STYLE: &str = include_str!("report.css");
+const STYLE: &str = include_str!("page.css");
 
 /// A page in the style that all have, and in its own, without characters that command how it is shown.
-pub(crate) fn page(title: &str, style: &str, content: &Markup) -> String {
+pub fn page(title: &str, style: &str, content: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -22,6 +22,3 @@ pub(crate) fn page(title: &str, style: &str, content: &Markup) -> String {
     };
     visible(&page.into_string())
 }
-
-#[cfg(test)]
-mod tests;

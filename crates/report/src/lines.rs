@@ -1,10 +1,12 @@
 //! Lines over a few levels on logarithmic axes, in a grid of panels.
 
-use super::axis::Tick;
-use super::legend::{Entry, legend};
-use super::style::{self, MARGIN};
-use super::svg::{Anchor, Look, Svg, px};
-use super::text::{fit, significant, superscript, width};
+use serde::{Deserialize, Serialize};
+
+use crate::axis::Tick;
+use crate::legend::{Entry, legend};
+use crate::style::{self, MARGIN};
+use crate::svg::{Anchor, Look, Svg, px};
+use crate::text::{fit, significant, superscript, width};
 
 const TICK: Look = Look::new(11.0, style::MUTED);
 const LABEL: Look = Look::new(12.0, style::INK).at(Anchor::Middle);
@@ -20,43 +22,44 @@ const ZERO: f64 = 26.0;
 const DECADES: i32 = 6;
 
 /// A value at a level.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct LinePoint {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LinePoint {
     /// The level.
-    pub(crate) x: f64,
+    pub x: f64,
     /// Not negative.
-    pub(crate) y: f64,
+    pub y: f64,
     /// What is drawn as a bar through the point.
-    pub(crate) interval: Option<[f64; 2]>,
+    pub interval: Option<[f64; 2]>,
     /// Whether the point is to be told from the others.
-    pub(crate) hollow: bool,
+    pub hollow: bool,
 }
 
 /// A line through points.
-#[derive(Debug, Clone)]
-pub(crate) struct Line {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Line {
     /// As in the legend; a name has the same pen in all panels.
-    pub(crate) name: String,
+    pub name: String,
     /// Place among the colours of models.
-    pub(crate) colour: usize,
+    pub colour: usize,
     /// Whether the line is dashed.
-    pub(crate) dashed: bool,
+    pub dashed: bool,
     /// From left to right; what is not finite or negative is left out.
-    pub(crate) points: Vec<LinePoint>,
+    pub points: Vec<LinePoint>,
 }
 
 /// Lines on the same axes.
-#[derive(Debug, Clone)]
-pub(crate) struct LinePanel {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LinePanel {
     /// What stands above it.
-    pub(crate) title: String,
+    pub title: String,
     /// The lines.
-    pub(crate) lines: Vec<Line>,
+    pub lines: Vec<Line>,
 }
 
 /// What the vertical axes span.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Range {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Range {
     /// The same in all panels.
     Common,
     /// What each panel needs.
@@ -65,7 +68,32 @@ pub(crate) enum Range {
 
 /// Panels in two columns; `levels` are the ticks of the horizontal axis, which is the same in all. Zeros
 /// stand below the lowest decade.
-pub(crate) fn line_grid(
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LineGrid {
+    /// What stands above the panels.
+    pub title: String,
+    /// The panels, row by row.
+    pub panels: Vec<LinePanel>,
+    /// What is on the horizontal axes, with its unit.
+    pub x_label: String,
+    /// What is on the vertical axes, with its unit.
+    pub y_label: String,
+    /// Ticks of the horizontal axes.
+    pub levels: Vec<f64>,
+    /// What the vertical axes span.
+    pub range: Range,
+}
+
+impl LineGrid {
+    /// The figure drawn.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        let Self { title, panels, x_label, y_label, levels, range } = self;
+        line_grid(title, panels, x_label, y_label, levels, *range)
+    }
+}
+
+fn line_grid(
     title: &str,
     panels: &[LinePanel],
     x_label: &str,
@@ -351,8 +379,8 @@ fn description(panels: &[LinePanel]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::svg::tests::read;
     use super::*;
+    use crate::svg::tests::read;
 
     const LEVELS: [f64; 6] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
 

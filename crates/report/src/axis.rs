@@ -1,19 +1,21 @@
 //! Axes: units in which a range is readable, ticks at round numbers.
 
-use super::text::{decimal, significant, superscript, width};
+use serde::{Deserialize, Serialize};
+
+use crate::text::{decimal, significant, superscript, width};
 
 /// A change of units, `u = (x − base)·10^(−exponent)`, that brings values to a readable size.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Units {
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Units {
     base: f64,
     /// Significant digits that write the base in full.
     digits: usize,
-    pub(super) exponent: i32,
+    pub(crate) exponent: i32,
 }
 
 impl Units {
     /// Units for values between `lower ≤ upper`: as they are where that reads well.
-    pub(super) fn for_range(lower: f64, upper: f64) -> Self {
+    pub(crate) fn for_range(lower: f64, upper: f64) -> Self {
         let largest = f64::max(lower.abs(), upper.abs());
         // Halves, as the range may be beyond f64.
         let half = upper / 2.0 - lower / 2.0;
@@ -30,19 +32,19 @@ impl Units {
     }
 
     /// Units in which `largest` lies between 1 and 1000.
-    pub(super) fn with_factor(largest: f64) -> Self {
+    pub(crate) fn with_factor(largest: f64) -> Self {
         Self { base: 0.0, digits: 1, exponent: order(largest).div_euclid(3) * 3 }
     }
 
     /// `x` in these units.
-    pub(super) fn of(self, x: f64) -> f64 {
+    pub(crate) fn of(self, x: f64) -> f64 {
         let (x, k) = (x - self.base, self.exponent);
         // 10^324, for the smallest of floats, is beyond f64.
         if k < -300 { x * 1e300 * power(-k - 300) } else { shift(x, -k) }
     }
 
     /// What to write beside an axis labelled in these units.
-    pub(super) fn note(self) -> String {
+    pub(crate) fn note(self) -> String {
         let exponent = times(self.exponent);
         if self.base == 0.0 {
             return exponent;
@@ -54,7 +56,7 @@ impl Units {
 }
 
 /// The factor `10^exponent` as text, empty for 1.
-pub(super) fn times(exponent: i32) -> String {
+pub(crate) fn times(exponent: i32) -> String {
     if exponent == 0 { String::new() } else { format!("×10{}", superscript(exponent)) }
 }
 
@@ -76,27 +78,27 @@ fn shift(x: f64, k: i32) -> f64 {
 
 /// A labelled position on an axis.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tick {
-    pub(super) at: f64,
-    pub(super) label: String,
+pub(crate) struct Tick {
+    pub(crate) at: f64,
+    pub(crate) label: String,
 }
 
 /// How densely an axis may be labelled.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Spacing {
+pub(crate) struct Spacing {
     /// Length of the axis in pixels.
-    pub(super) length: f64,
+    pub(crate) length: f64,
     /// The most ticks.
-    pub(super) most: usize,
+    pub(crate) most: usize,
     /// Font size if labels stand side by side and must not touch.
-    pub(super) side_by_side: Option<f64>,
+    pub(crate) side_by_side: Option<f64>,
     /// Whether only whole numbers make sense.
-    pub(super) whole: bool,
+    pub(crate) whole: bool,
 }
 
 /// Ticks at multiples of 1, 2 or 5 times a power of ten between `lower` and `upper`: the finest
 /// that the spacing allows. For ranges that [`Units`] made.
-pub(super) fn ticks(lower: f64, upper: f64, spacing: Spacing) -> Vec<Tick> {
+pub(crate) fn ticks(lower: f64, upper: f64, spacing: Spacing) -> Vec<Tick> {
     let range = upper - lower;
     if !range.is_finite() || !(range > 0.0) {
         return Vec::new();

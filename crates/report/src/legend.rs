@@ -1,22 +1,22 @@
 //! A legend: swatches and names in rows.
 
-use super::style;
-use super::svg::{Anchor, Look, Svg};
-use super::text::{fit, width};
+use crate::style;
+use crate::svg::{Anchor, Look, Svg};
+use crate::text::{fit, width};
 
 const LOOK: Look = Look::new(12.0, style::INK).at(Anchor::Start);
 const ROW: f64 = 20.0;
 const GAP: f64 = 22.0;
 
 /// One entry: what it is called, and how it is drawn, from the origin so wide to the right.
-pub(super) struct Entry {
-    pub(super) name: String,
-    pub(super) width: f64,
-    pub(super) swatch: Svg,
+pub(crate) struct Entry {
+    pub(crate) name: String,
+    pub(crate) width: f64,
+    pub(crate) swatch: Svg,
 }
 
 /// Draws the entries from `top` down, in as many rows as it takes; returns where they end.
-pub(super) fn legend(svg: &mut Svg, entries: Vec<Entry>, top: f64, figure_width: f64) -> f64 {
+pub(crate) fn legend(svg: &mut Svg, entries: Vec<Entry>, top: f64, figure_width: f64) -> f64 {
     let right = figure_width - style::MARGIN;
     let (mut x, mut middle) = (style::MARGIN, top + ROW / 2.0);
     let empty = entries.is_empty();

@@ -1,9 +1,9 @@
 //! Text: widths, breaking, escaping, numbers.
 
-use crate::visible;
+use crate::visible::visible;
 
 /// Estimated width of the text set in Helvetica or a face of the same metrics, a little generous.
-pub(super) fn width(text: &str, size: f64) -> f64 {
+pub(crate) fn width(text: &str, size: f64) -> f64 {
     text.chars().map(em).sum::<f64>() * size
 }
 
@@ -27,7 +27,7 @@ fn em(c: char) -> f64 {
 }
 
 /// The text, cut to fit with an ellipsis at the end if it must be.
-pub(super) fn fit(text: &str, size: f64, room: f64) -> String {
+pub(crate) fn fit(text: &str, size: f64, room: f64) -> String {
     if width(text, size) <= room {
         return text.to_owned();
     }
@@ -43,7 +43,7 @@ pub(super) fn fit(text: &str, size: f64, room: f64) -> String {
 }
 
 /// The text in at most `most` lines, broken between words, each cut to fit.
-pub(super) fn wrap(text: &str, size: f64, room: f64, most: usize) -> Vec<String> {
+pub(crate) fn wrap(text: &str, size: f64, room: f64, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         let last = lines.len() >= most;
@@ -59,7 +59,7 @@ pub(super) fn wrap(text: &str, size: f64, room: f64, most: usize) -> Vec<String>
 }
 
 /// The text with what XML reserves escaped, and what it forbids replaced.
-pub(super) fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in visible(text).chars() {
         match c {
@@ -78,7 +78,7 @@ pub(super) fn escape(text: &str) -> String {
 /// Escaped text, each run in its colour or in that of the line, with superscript and subscript
 /// characters set as such in the face of the rest: few faces have them all, and a browser would
 /// take each from another.
-pub(super) fn rich(runs: &[(Option<&str>, &str)]) -> String {
+pub(crate) fn rich(runs: &[(Option<&str>, &str)]) -> String {
     let mut out = String::new();
     let mut raised = 0.0;
     for &(colour, text) in runs {
@@ -147,7 +147,7 @@ fn shifted(c: char) -> Option<(char, Level)> {
 }
 
 /// A whole number in superscript characters.
-pub(super) fn superscript(number: i32) -> String {
+pub(crate) fn superscript(number: i32) -> String {
     number
         .to_string()
         .chars()
@@ -159,12 +159,12 @@ pub(super) fn superscript(number: i32) -> String {
 }
 
 /// A whole number with thin spaces between thousands from 10 000 on.
-pub(super) fn count(number: usize) -> String {
+pub(crate) fn count(number: usize) -> String {
     thousands(&number.to_string())
 }
 
 /// The number with the decimals given, a true minus and thin spaces between thousands.
-pub(super) fn decimal(number: f64, decimals: usize) -> String {
+pub(crate) fn decimal(number: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", number.abs());
     if !text.contains(|c: char| ('1'..='9').contains(&c)) {
         return "0".to_owned();
@@ -177,7 +177,7 @@ pub(super) fn decimal(number: f64, decimals: usize) -> String {
 }
 
 /// The number to so many significant digits, as a decimal or times a power of ten.
-pub(super) fn significant(number: f64, digits: usize) -> String {
+pub(crate) fn significant(number: f64, digits: usize) -> String {
     let text = format!("{number:.*e}", digits.saturating_sub(1));
     let Some((mantissa, exponent)) = text.split_once('e') else { return text };
     let exponent: i32 = exponent.parse().unwrap_or(0);

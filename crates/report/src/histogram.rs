@@ -1,35 +1,63 @@
 //! Histograms of quantities under several models, in a grid of panels.
 
-use gyradius_statistics::SortedSample;
+use serde::{Deserialize, Serialize};
 
-use super::legend::{Entry, legend};
-use super::panel::{Cell, Frame, GUTTER, nominal_pen, outline_pen};
-use super::samples::{Panel, Series};
-use super::style::{self, MARGIN};
-use super::svg::{Anchor, Look, Svg};
-use super::text::{count, significant};
+use crate::legend::{Entry, legend};
+use crate::panel::{Cell, Counted, Frame, GUTTER, nominal_pen, outline_pen};
+use crate::samples::Panel;
+use crate::style::{self, MARGIN};
+use crate::svg::{Anchor, Look, Svg};
+use crate::text::{count, significant};
 
-/// A grid of panels, row by row with so many columns; `None` leaves its place empty.
+/// Histograms of quantities under several models, in a grid of panels: bins and counts.
 ///
 /// Bins are those of Freedman and Diaconis, shared by the series of a panel, and no more than are
 /// wide enough to be seen. The vertical axis counts runs if in every panel all series have as many
 /// values, and is a density otherwise. Extreme values that would squeeze the rest are drawn at the
 /// edges of the axis, in the colours of their models, and a note says how many they are and how far they
 /// go. The colours of the models follow their first appearance.
-pub(crate) fn histogram_grid(title: &str, panels: &[Option<Panel<'_>>], columns: usize) -> String {
-    let columns = columns.clamp(1, panels.len().max(1));
-    let (width, height) = match columns {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HistogramGrid {
+    title: String,
+    columns: usize,
+    panels: Vec<Option<Counted>>,
+}
+
+impl HistogramGrid {
+    /// A grid of panels, row by row with so many columns; `None` leaves its place empty.
+    #[must_use]
+    pub fn new(title: &str, panels: &[Option<Panel<'_>>], columns: usize) -> Self {
+        let columns = columns.clamp(1, panels.len().max(1));
+        let counted = |panel: &Panel<'_>| Counted::new(panel, plot(columns).0);
+        let panels = panels.iter().map(|panel| panel.as_ref().map(counted)).collect();
+        Self { title: title.to_owned(), columns, panels }
+    }
+
+    /// The figure drawn.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        draw(&self.title, &self.panels, self.columns.max(1))
+    }
+}
+
+/// Width and height of a plot among so many columns.
+fn plot(columns: usize) -> (f64, f64) {
+    match columns {
         1 => (500.0, 220.0),
         2 => (350.0, 160.0),
         _ => (232.0, 122.0),
-    };
+    }
+}
+
+fn draw(title: &str, panels: &[Option<Counted>], columns: usize) -> String {
+    let (width, height) = plot(columns);
     let density = panels.iter().flatten().any(sizes_differ);
     let mut names = Vec::new();
     let cells: Vec<Option<Cell<'_>>> = panels
         .iter()
         .map(|panel| {
             let panel = panel.as_ref()?;
-            Some(Cell::new(panel, models(panel, &mut names), density, (width, height)))
+            Some(Cell::new(panel, models(panel, &mut names), density, height))
         })
         .collect();
     let room = cells.iter().flatten().map(Cell::room).fold(22.0, f64::max);
@@ -58,20 +86,20 @@ pub(crate) fn histogram_grid(title: &str, panels: &[Option<Panel<'_>>], columns:
     svg.finish((figure_width, y), title, &description(panels, density))
 }
 
-fn sizes_differ(panel: &Panel<'_>) -> bool {
-    let mut sizes = panel.series.iter().map(|s| s.values.len()).filter(|&n| n > 0);
+fn sizes_differ(panel: &Counted) -> bool {
+    let mut sizes = panel.series.iter().map(|s| s.values).filter(|&n| n > 0);
     let first = sizes.next();
     sizes.any(|n| Some(n) != first)
 }
 
 /// Places of the names of the series among `names`, which grow as needed. Two series of the same
 /// name in one panel are two entries.
-fn models<'a>(panel: &Panel<'a>, names: &mut Vec<&'a str>) -> Vec<usize> {
+fn models<'a>(panel: &'a Counted, names: &mut Vec<&'a str>) -> Vec<usize> {
     let mut taken = Vec::new();
     for series in &panel.series {
         let known = (0..names.len()).find(|i| names[*i] == series.name && !taken.contains(i));
         taken.push(known.unwrap_or_else(|| {
-            names.push(series.name);
+            names.push(&series.name);
             names.len() - 1
         }));
     }
@@ -95,11 +123,14 @@ fn entries(names: &[&str], cells: &[Option<Cell<'_>>]) -> Vec<Entry> {
 }
 
 /// The figure in words.
-fn description(panels: &[Option<Panel<'_>>], density: bool) -> String {
+fn description(panels: &[Option<Counted>], density: bool) -> String {
     let mut text = format!("Histograms, {}.", if density { "density" } else { "runs per bin" });
     for panel in panels.iter().flatten() {
-        let of = |s: &Series<'_>| format!("{}, {}", s.name, summary(s.values));
-        let mut parts: Vec<String> = panel.series.iter().map(of).collect();
+        let told = panel.series.iter().enumerate().map(|(i, series)| {
+            let finite = panel.bins.as_ref().map_or(0, |bins| bins.finite[i]);
+            format!("{}, {}", series.name, summary(finite, series.quantiles))
+        });
+        let mut parts: Vec<String> = told.collect();
         if let Some(nominal) = panel.nominal {
             parts.push(format!("nominal {}", significant(nominal, 5)));
         }
@@ -108,24 +139,34 @@ fn description(panels: &[Option<Panel<'_>>], density: bool) -> String {
     text
 }
 
-fn summary(values: &[f64]) -> String {
-    let finite: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
-    match SortedSample::new(&finite) {
-        Ok(sample) => format!(
-            "{} values from {} to {}, median {}",
-            count(sample.n()),
-            significant(sample.minimum(), 5),
-            significant(sample.maximum(), 5),
-            significant(sample.median(), 5)
-        ),
-        Err(_) => "no data".to_owned(),
-    }
+fn summary(finite: usize, quantiles: Option<[f64; 3]>) -> String {
+    quantiles.map_or_else(
+        || "no data".to_owned(),
+        |[least, middle, largest]| {
+            format!(
+                "{} values from {} to {}, median {}",
+                count(finite),
+                significant(least, 5),
+                significant(largest, 5),
+                significant(middle, 5)
+            )
+        },
+    )
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::svg::tests::read;
     use super::*;
+    use crate::{samples::Series, svg::tests::read};
+
+    /// Drawn from what was written and read back.
+    fn histogram_grid(title: &str, panels: &[Option<Panel<'_>>], columns: usize) -> String {
+        let histograms = HistogramGrid::new(title, panels, columns);
+        let read = serde_json::from_str(&serde_json::to_string(&histograms).unwrap());
+        let svg = histograms.svg();
+        assert_eq!(svg, HistogramGrid::svg(&read.unwrap()));
+        svg
+    }
 
     fn panel<'a>(values: &[&'a [f64]], nominal: Option<f64>) -> Option<Panel<'a>> {
         let names = ["one", "two", "two"];

@@ -1,10 +1,12 @@
 //! Ranges of quantities under several models, a row for each model.
 
-use super::axis::{Spacing, Units, ticks};
-use super::panel::nominal_pen;
-use super::style::{self, MARGIN};
-use super::svg::{Anchor, Look, Svg, px};
-use super::text::{significant, width};
+use serde::{Deserialize, Serialize};
+
+use crate::axis::{Spacing, Units, ticks};
+use crate::panel::nominal_pen;
+use crate::style::{self, MARGIN};
+use crate::svg::{Anchor, Look, Svg, px};
+use crate::text::{significant, width};
 
 const TICK: Look = Look::new(11.0, style::MUTED);
 const NAME: Look = Look::new(12.0, style::INK).at(Anchor::End);
@@ -15,29 +17,56 @@ const ROW: f64 = 19.0;
 const GUTTER: f64 = 26.0;
 
 /// A row.
-#[derive(Debug, Clone)]
-pub(crate) struct Label {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Label {
     /// What it is called.
-    pub(crate) name: String,
+    pub name: String,
     /// Place among the colours of models.
-    pub(crate) colour: usize,
+    pub colour: usize,
     /// Whether it is to be told from the others.
-    pub(crate) hollow: bool,
+    pub hollow: bool,
 }
 
 /// A quantity.
-#[derive(Debug, Clone)]
-pub(crate) struct RangePanel {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RangePanel {
     /// What is on the axis, with its unit.
-    pub(crate) label: String,
+    pub label: String,
     /// A value to mark.
-    pub(crate) nominal: Option<f64>,
+    pub nominal: Option<f64>,
     /// Lower end, middle and upper end in each row, finite, where there is a range.
-    pub(crate) ranges: Vec<Option<[f64; 3]>>,
+    pub ranges: Vec<Option<[f64; 3]>>,
 }
 
 /// Panels side by side, on the same rows.
-pub(crate) fn range_grid(title: &str, rows: &[Label], panels: &[RangePanel]) -> String {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RangeGrid {
+    title: String,
+    rows: Vec<Label>,
+    panels: Vec<RangePanel>,
+}
+
+impl RangeGrid {
+    /// Panels of the same rows; what is not finite is left out.
+    #[must_use]
+    pub fn new(title: &str, rows: Vec<Label>, mut panels: Vec<RangePanel>) -> Self {
+        for panel in &mut panels {
+            panel.nominal = panel.nominal.filter(|x| x.is_finite());
+            for range in &mut panel.ranges {
+                *range = range.filter(|range| range.iter().all(|x| x.is_finite()));
+            }
+        }
+        Self { title: title.to_owned(), rows, panels }
+    }
+
+    /// The figure drawn.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        range_grid(&self.title, &self.rows, &self.panels)
+    }
+}
+
+fn range_grid(title: &str, rows: &[Label], panels: &[RangePanel]) -> String {
     let room = 12.0 + rows.iter().map(|r| width(&r.name, NAME.size)).fold(0.0, f64::max);
     let columns = panels.len() as f64;
     let figure_width = 2.0 * MARGIN + room + (WIDTH + GUTTER) * columns.max(1.0) - GUTTER + 12.0;
@@ -133,8 +162,8 @@ fn description(rows: &[Label], panels: &[RangePanel]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::svg::tests::read;
     use super::*;
+    use crate::svg::tests::read;
 
     #[test]
     fn whatever_the_data_there_is_a_figure() {

@@ -2,24 +2,80 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::{Complex, UnitQuaternion, Vector3};
+use nalgebra::{Complex, Quaternion, UnitQuaternion, Vector3, Vector4};
+use serde::{Deserialize, Serialize};
 
-use super::legend::{Entry, legend};
-use super::style::{self, MARGIN};
-use super::svg::{Anchor, Look, Svg, px};
-use super::text::{count, fit};
+use crate::legend::{Entry, legend};
+use crate::style::{self, MARGIN};
+use crate::svg::{Anchor, Look, Svg, px};
+use crate::text::{count, fit};
 
 /// A sample of attitudes under one model.
 ///
 /// Each takes body components to principal components, `v_P = R(q)·v_B`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Cloud<'a> {
+pub struct Cloud<'a> {
     /// Name of the model, above its sphere.
-    pub(crate) name: &'a str,
+    pub name: &'a str,
     /// The attitudes; those not finite are left out, and counted in a note.
-    pub(crate) attitudes: &'a [UnitQuaternion<f64>],
+    pub attitudes: &'a [UnitQuaternion<f64>],
     /// The mean attitude, whose axes are marked.
-    pub(crate) mean: UnitQuaternion<f64>,
+    pub mean: UnitQuaternion<f64>,
+}
+
+/// Attitudes under several models, a sphere each, three in a row at most: the tips of the three principal
+/// axes in body components, the rows of `R(q)`, seen from afar from a direction that is stated.
+///
+/// Tips on the far side are fainter; the axes of the mean attitude are spokes that end in a ring.
+/// Of many attitudes some are kept and drawn, evenly spaced in the sample, and the figure says how many.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AttitudeSpheres {
+    title: String,
+    clouds: Vec<Kept>,
+}
+
+/// What is kept of a cloud.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Kept {
+    name: String,
+    /// How many attitudes there are, and how many of them are not finite.
+    all: usize,
+    not_finite: usize,
+    /// Scalar last; none if it is not finite.
+    mean: Option<[f64; 4]>,
+    /// Those that are drawn, scalar last.
+    drawn: Vec<[f64; 4]>,
+}
+
+impl AttitudeSpheres {
+    /// Keeps what is drawn of these clouds.
+    #[must_use]
+    pub fn new(title: &str, clouds: &[Cloud<'_>]) -> Self {
+        let most = (MOST / clouds.len().max(1)).clamp(1, MOST_ON_ONE);
+        let keep = |cloud: &Cloud<'_>| {
+            let sound: Vec<[f64; 4]> = cloud.attitudes.iter().filter_map(components).collect();
+            let drawn = sound.len().min(most);
+            Kept {
+                name: cloud.name.to_owned(),
+                all: cloud.attitudes.len(),
+                not_finite: cloud.attitudes.len() - sound.len(),
+                mean: components(&cloud.mean),
+                drawn: (0..drawn).map(|i| sound[i * sound.len() / drawn]).collect(),
+            }
+        };
+        Self { title: title.to_owned(), clouds: clouds.iter().map(keep).collect() }
+    }
+
+    /// The figure drawn.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        draw(&self.title, &self.clouds)
+    }
+}
+
+/// The components of an attitude whose axes can be drawn, scalar last.
+fn components(attitude: &UnitQuaternion<f64>) -> Option<[f64; 4]> {
+    tips(attitude).map(|_| attitude.coords.into())
 }
 
 /// The most attitudes drawn in one figure and on one sphere: what a page can carry.
@@ -33,17 +89,11 @@ const NOTE: Look = Look::new(11.0, style::MUTED).at(Anchor::Middle);
 const AZIMUTH: i32 = 35;
 const ELEVATION: i32 = 28;
 
-/// One sphere per cloud, side by side, three in a row at most: the tips of the three principal
-/// axes in body components, the rows of `R(q)`, seen from afar from a direction that is stated.
-///
-/// Tips on the far side are fainter; the axes of the mean attitude are spokes that end in a ring.
-/// Of many attitudes some are drawn, evenly spaced in the sample, and the figure says how many.
-pub(crate) fn attitude_spheres(title: &str, clouds: &[Cloud<'_>]) -> String {
+fn draw(title: &str, clouds: &[Kept]) -> String {
     let columns = clouds.len().clamp(1, 3);
     let radius = [190.0, 165.0, 125.0][columns - 1];
     let pitch = 2.0 * radius * 1.22;
     let figure_width = 2.0 * MARGIN + pitch * columns as f64;
-    let most = (MOST / clouds.len().max(1)).clamp(1, MOST_ON_ONE);
 
     let mut svg = Svg::new();
     let mut y = svg.heading(title, figure_width);
@@ -56,8 +106,8 @@ pub(crate) fn attitude_spheres(title: &str, clouds: &[Cloud<'_>]) -> String {
         for (column, cloud) in row.iter().enumerate() {
             let x = MARGIN + pitch * (column as f64 + 0.5);
             let sphere = Sphere::new((x, y + 40.0 + 1.1 * radius), radius);
-            svg.text(x, y + 26.0, NAME, &fit(cloud.name, NAME.size, 0.9 * pitch));
-            let note = sphere.draw(&mut svg, cloud, most);
+            svg.text(x, y + 26.0, NAME, &fit(&cloud.name, NAME.size, 0.9 * pitch));
+            let note = sphere.draw(&mut svg, cloud);
             svg.text(x, y + 62.0 + 2.1 * radius, NOTE, &note);
         }
         y += 2.1 * radius + 72.0;
@@ -70,10 +120,10 @@ pub(crate) fn attitude_spheres(title: &str, clouds: &[Cloud<'_>]) -> String {
     svg.finish((figure_width, y), title, &description(clouds, &view))
 }
 
-fn description(clouds: &[Cloud<'_>], view: &str) -> String {
+fn description(clouds: &[Kept], view: &str) -> String {
     let mut text = "Tips of the principal axes on the unit sphere.".to_owned();
     for cloud in clouds {
-        text.push_str(&format!(" {}: {} attitudes.", cloud.name, count(cloud.attitudes.len())));
+        text.push_str(&format!(" {}: {} attitudes.", cloud.name, count(cloud.all)));
     }
     format!("{text} {view}")
 }
@@ -158,11 +208,12 @@ impl Sphere {
     }
 
     /// Draws the sphere with its cloud; returns what to say about the number of attitudes.
-    fn draw(&self, svg: &mut Svg, cloud: &Cloud<'_>, most: usize) -> String {
-        let tips: Vec<[Vector3<f64>; 3]> = cloud.attitudes.iter().filter_map(tips).collect();
-        let drawn = tips.len().min(most);
-        let chosen: Vec<_> = (0..drawn).map(|i| tips[i * tips.len() / drawn]).collect();
-        let mean = self::tips(&cloud.mean);
+    fn draw(&self, svg: &mut Svg, cloud: &Kept) -> String {
+        let tips = |components: &[f64; 4]| {
+            tips(&UnitQuaternion::new_unchecked(Quaternion::from(Vector4::from(*components))))
+        };
+        let chosen: Vec<[Vector3<f64>; 3]> = cloud.drawn.iter().filter_map(tips).collect();
+        let mean = cloud.mean.as_ref().and_then(tips);
 
         svg.path("fill=\"#fafafa\"", &circle(self.centre, self.radius));
         for near in [false, true] {
@@ -178,15 +229,14 @@ impl Sphere {
             spoke(svg, colour, self.centre, to, near);
         }
 
-        let lost = cloud.attitudes.len() - tips.len();
-        let mut note = match (tips.len(), drawn) {
+        let mut note = match (cloud.all.saturating_sub(cloud.not_finite), cloud.drawn.len()) {
             (0, _) => "no data".to_owned(),
             (1, _) => "1 attitude".to_owned(),
             (n, m) if n == m => format!("{} attitudes", count(n)),
             (n, m) => format!("{} of {} attitudes drawn", count(m), count(n)),
         };
-        if lost > 0 {
-            note.push_str(&format!("; {} not finite", count(lost)));
+        if cloud.not_finite > 0 {
+            note.push_str(&format!("; {} not finite", count(cloud.not_finite)));
         }
         note
     }
@@ -302,10 +352,17 @@ fn trail(dots: BTreeSet<(i32, i32)>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Quaternion;
-
-    use super::super::svg::tests::read;
     use super::*;
+    use crate::svg::tests::read;
+
+    /// Drawn from what was written and read back.
+    fn attitude_spheres(title: &str, clouds: &[Cloud<'_>]) -> String {
+        let spheres = AttitudeSpheres::new(title, clouds);
+        let read = serde_json::from_str(&serde_json::to_string(&spheres).unwrap());
+        let svg = spheres.svg();
+        assert_eq!(svg, AttitudeSpheres::svg(&read.unwrap()));
+        svg
+    }
 
     fn spread(n: u32) -> Vec<UnitQuaternion<f64>> {
         let angle = |i: u32, k: u32| f64::from(i.wrapping_mul(k) % 65_521) / 65_521.0 * 6.0;

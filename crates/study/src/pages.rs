@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::{
-    CompareOptions, ModelComparison, Replay, Scenario, Summary, compare, figures_of_study, replay,
-    report, runner,
+    CompareOptions, ModelComparison, Replay, Scenario, compare, replay, report, runner,
+    study::results,
 };
 
 /// Elements without content.
@@ -175,11 +175,10 @@ fn report_of(scenario: &Scenario) -> String {
     let models = runner::models(scenario).unwrap();
     let threads = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let tables = runner::run(scenario, &models, &threads, &|_| {});
-    let summary = Summary::new(scenario, &models, &tables).unwrap();
-    let figures = figures_of_study::of_study(scenario, &summary, &tables);
+    let summary = results(scenario, &models, &tables).unwrap();
     // The end of a study on the terminal is made of the same.
     assert!(!summary.to_string().contains("[0.00") && !summary.to_string().contains("0 % ["));
-    report::html(scenario, &summary, &figures)
+    report::html(scenario, &summary)
 }
 
 /// The paper's study with names that are markup, with what else can be told: outlines, dispersions.

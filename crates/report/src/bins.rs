@@ -1,36 +1,37 @@
 //! From samples to counts on shared bins.
 
 use gyradius_statistics::{BinEdges, Histogram, SortedSample};
+use serde::{Deserialize, Serialize};
 
-use super::axis::Units;
-use super::samples::Panel;
+use crate::axis::Units;
+use crate::samples::Panel;
 
 /// The histograms of one panel, in units that read well.
-#[derive(Debug)]
-pub(super) struct Binned {
-    pub(super) units: Units,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Binned {
+    pub(crate) units: Units,
     /// Edges in these units, increasing.
-    pub(super) edges: Vec<f64>,
+    pub(crate) edges: Vec<f64>,
     /// Counts per series and bin; none for a series without a finite value.
-    pub(super) counts: Vec<Vec<u64>>,
+    pub(crate) counts: Vec<Vec<u64>>,
     /// Finite values per series.
-    pub(super) finite: Vec<usize>,
+    pub(crate) finite: Vec<usize>,
     /// Values per series below and above the edges.
-    pub(super) below: Vec<Beyond>,
-    pub(super) above: Vec<Beyond>,
+    pub(crate) below: Vec<Beyond>,
+    pub(crate) above: Vec<Beyond>,
     /// The nominal value in these units, if it is near enough to be shown.
-    pub(super) nominal: Option<f64>,
+    pub(crate) nominal: Option<f64>,
     /// The range of the axis: the edges and the nominal value, with a margin, in which what lies beyond
     /// the edges has its place.
-    pub(super) range: (f64, f64),
+    pub(crate) range: (f64, f64),
 }
 
 /// The values of a series beyond an edge.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Beyond {
-    pub(super) count: usize,
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Beyond {
+    pub(crate) count: usize,
     /// The farthest of them, in the unit of the panel's label.
-    pub(super) extreme: f64,
+    pub(crate) extreme: f64,
 }
 
 /// Share of the axis that is left free beyond its ends, and for what lies beyond an edge.
@@ -39,7 +40,7 @@ const EDGE: f64 = 0.07;
 
 impl Binned {
     /// Counts on shared Freedman-Diaconis bins, `most` at most; `None` without a finite value.
-    pub(super) fn new(panel: &Panel<'_>, most: usize) -> Option<Self> {
+    pub(crate) fn new(panel: &Panel<'_>, most: usize) -> Option<Self> {
         let samples: Vec<Option<SortedSample>> = panel
             .series
             .iter()
@@ -99,14 +100,14 @@ impl Binned {
     }
 
     /// The height of each bin of a series: counts, or density in the units of the axis.
-    pub(super) fn heights(&self, series: usize, density: bool) -> Vec<f64> {
+    pub(crate) fn heights(&self, series: usize, density: bool) -> Vec<f64> {
         let widths = self.edges.windows(2).map(|pair| pair[1] - pair[0]);
         let heights = self.counts[series].iter().zip(widths);
         heights.map(|(&count, width)| self.height(series, count, width, density)).collect()
     }
 
     /// The heights of what lies below and above the edges: as if it were in the nearest bin.
-    pub(super) fn edge_heights(&self, series: usize, density: bool) -> [f64; 2] {
+    pub(crate) fn edge_heights(&self, series: usize, density: bool) -> [f64; 2] {
         let widths: Vec<f64> = self.edges.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let at = |beyond: &[Beyond], width: Option<&f64>| {
             let count = beyond[series].count as u64;
@@ -164,8 +165,8 @@ fn edges(samples: &[&SortedSample], nominal: Option<f64>, most: usize) -> Option
 
 #[cfg(test)]
 mod tests {
-    use super::super::samples::Series;
     use super::*;
+    use crate::samples::Series;
 
     fn binned(samples: &[&[f64]], nominal: Option<f64>) -> Option<Binned> {
         let series =

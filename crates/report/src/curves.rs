@@ -1,9 +1,9 @@
 //! Quantities against time, in two columns of charts.
 
-use super::axis::{Spacing, Units, ticks};
-use super::style::{self, MARGIN};
-use super::svg::{Anchor, Look, Svg, px};
-use super::text::{fit, width};
+use crate::axis::{Spacing, Units, ticks};
+use crate::style::{self, MARGIN};
+use crate::svg::{Anchor, Look, Svg, px};
+use crate::text::{fit, width};
 
 const TICK: Look = Look::new(11.0, style::MUTED);
 const LABEL: Look = Look::new(12.0, style::INK);
@@ -16,7 +16,7 @@ const NAMES: usize = 12;
 
 /// What colours the curves of a chart have.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Colours {
+pub enum Colours {
     /// Those of axes 1, 2, 3.
     Axes,
     /// One after the other.
@@ -25,26 +25,29 @@ pub(crate) enum Colours {
 
 /// A quantity against time.
 #[derive(Clone, Debug)]
-pub(crate) struct Curve {
+pub struct Curve {
     /// What it is called beside the label; may be empty.
-    pub(crate) name: String,
+    pub name: String,
     /// Time and value; what is not finite is left out.
-    pub(crate) points: Vec<(f64, f64)>,
+    pub points: Vec<(f64, f64)>,
 }
 
 /// Curves on the same axes from time zero on.
 #[derive(Clone, Debug)]
-pub(crate) struct Chart {
+pub struct Chart {
     /// What is shown, with its unit.
-    pub(crate) label: String,
-    pub(crate) colours: Colours,
-    pub(crate) curves: Vec<Curve>,
+    pub label: String,
+    /// How its curves are told apart.
+    pub colours: Colours,
+    /// The curves.
+    pub curves: Vec<Curve>,
     /// The end of the time axis.
-    pub(crate) until: f64,
+    pub until: f64,
 }
 
 /// Charts row by row in two columns, with marks (their numbers, and when) on all of them.
-pub(crate) fn time_charts(title: &str, charts: &[Chart], marks: &[(usize, f64)]) -> String {
+#[must_use]
+pub fn time_charts(title: &str, charts: &[Chart], marks: &[(usize, f64)]) -> String {
     let scales: Vec<Scale> = charts.iter().map(Scale::new).collect();
     let room = scales.iter().map(Scale::room).fold(26.0, f64::max);
     let pitch = room + WIDTH + GUTTER;
@@ -72,7 +75,7 @@ struct Scale {
     units: Units,
     lower: f64,
     upper: f64,
-    ticks: Vec<super::axis::Tick>,
+    ticks: Vec<crate::axis::Tick>,
 }
 
 impl Scale {
@@ -220,8 +223,8 @@ fn releases(svg: &mut Svg, (left, top): (f64, f64), until: f64, marks: &[(usize,
 
 #[cfg(test)]
 mod tests {
-    use super::super::svg::tests::read;
     use super::*;
+    use crate::svg::tests::read;
 
     fn chart(values: impl Fn(f64) -> f64) -> Chart {
         let points = (0..2000).map(|i| f64::from(i) * 0.01).map(|t| (t, values(t))).collect();

@@ -1,0 +1,175 @@
+//! `gyradius report`: the same bytes from the folder alone, and nothing touched that is not its own.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+fn gyradius(arguments: &[&str], folder: &Path) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gyradius"));
+    command.args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Every file below a folder with its content, hidden ones too.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().to_str().unwrap().to_owned();
+                found.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+/// A study with outlines, dispersed quantities, failures and a comparison; one that is all failures; one
+/// run, of which hardly a number can be told.
+fn studies(scratch: &Path) -> Vec<String> {
+    let out = |name: &str| scratch.join(name).to_str().unwrap().to_owned();
+    let paper = out("paper");
+    assert!(gyradius(&["study", "--runs", "40", "--out", &paper], scratch).status.success());
+    let text = fs::read_to_string(scratch.join("paper/scenario.toml")).unwrap();
+    let full = text.replacen(
+        "[payload]\n",
+        "[clearance]\npayload = [{ points_m = [[0.0, 0.0, -0.6]] }]\n\
+         stage = [{ points_m = [[0.0, 0.0, 0.6]] }]\n[payload]\n",
+        1,
+    );
+    let second = full.match_indices("[[springs]]").nth(1).unwrap().0;
+    let full = format!(
+        "{}[springs.dispersion]\nfailure_probability = 0.3\n\n{}",
+        &full[..second],
+        &full[second..]
+    );
+    let failing = text.replace("horizon_s = 60.0", "horizon_s = 0.01");
+    assert_ne!(failing, text);
+    let mut folders = vec![paper];
+    for (name, text, runs) in [("full", full, "30"), ("failing", failing, "5"), ("one", text, "1")]
+    {
+        let scenario = out(&format!("{name}.toml"));
+        fs::write(&scenario, text).unwrap();
+        let arguments = [
+            "study",
+            "--scenario",
+            &scenario,
+            "--runs",
+            runs,
+            "--out",
+            &out(name),
+            "--max-failed",
+            "1",
+        ];
+        let study = gyradius(&arguments, scratch);
+        assert!(study.status.success(), "{}", said(&study));
+        folders.push(out(name));
+    }
+    folders
+}
+
+#[test]
+fn a_report_is_made_again_to_the_byte() {
+    let scratch = tempfile::tempdir().unwrap();
+    for folder in studies(scratch.path()) {
+        let place = Path::new(&folder);
+        let before = files(place);
+        assert!(gyradius(&["report", &folder], scratch.path()).status.success());
+        assert_eq!(files(place), before, "{folder}");
+        // Without what it makes, and without the run tables.
+        for gone in ["figures", "runs"] {
+            fs::remove_dir_all(place.join(gone)).unwrap();
+        }
+        fs::remove_file(place.join("report.html")).unwrap();
+        fs::write(place.join("notes.txt"), "mine").unwrap();
+        let again = gyradius(&["report", &folder], scratch.path());
+        assert!(again.status.success(), "{}", said(&again));
+        let mut after = files(place);
+        assert_eq!(after.remove("notes.txt").unwrap(), b"mine");
+        let kept: BTreeMap<_, _> =
+            before.into_iter().filter(|(name, _)| !name.starts_with("runs/")).collect();
+        assert_eq!(after, kept, "{folder}");
+        // Elsewhere, from the two files alone.
+        let two = scratch.path().join("two");
+        fs::create_dir_all(&two).unwrap();
+        for name in ["scenario.toml", "summary.json"] {
+            fs::copy(place.join(name), two.join(name)).unwrap();
+        }
+        let elsewhere = format!("{folder}-report");
+        let arguments = ["report", two.to_str().unwrap(), "--out", &elsewhere];
+        assert!(gyradius(&arguments, scratch.path()).status.success());
+        for (name, content) in files(Path::new(&elsewhere)) {
+            assert!(name.starts_with(".gyradius/") || after[&name] == content, "{folder}: {name}");
+        }
+    }
+}
+
+#[test]
+fn what_was_changed_is_not_replaced() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("study");
+    let name = folder.to_str().unwrap();
+    assert!(gyradius(&["study", "--runs", "8", "--out", name], scratch.path()).status.success());
+    let written: Vec<String> =
+        files(&folder).into_keys().filter(|name| !name.starts_with(".gyradius/")).collect();
+    assert!(written.len() > 5);
+    for file in written {
+        let path = folder.join(&file);
+        let content = fs::read(&path).unwrap();
+        fs::write(&path, "mine").unwrap();
+        let before = files(&folder);
+        let refused = gyradius(&["report", name], scratch.path());
+        assert_eq!(refused.status.code(), Some(2), "{file}");
+        assert!(said(&refused).contains(&file), "{file}: {}", said(&refused));
+        assert_eq!(files(&folder), before, "{file}");
+        fs::write(&path, content).unwrap();
+    }
+    // A file of the user's in the place of a figure that was deleted.
+    let figure = folder.join("figures/figure-models.svg");
+    fs::remove_file(&figure).unwrap();
+    fs::create_dir(&figure).unwrap();
+    let refused = gyradius(&["report", name], scratch.path());
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said(&refused).contains("figure-models.svg"), "{}", said(&refused));
+    fs::remove_dir(&figure).unwrap();
+    // A study that replaces the one whose report was made again knows all of its files.
+    assert!(gyradius(&["report", name], scratch.path()).status.success());
+    let arguments = ["study", "--runs", "9", "--out", name, "--force"];
+    assert!(gyradius(&arguments, scratch.path()).status.success());
+}
+
+#[test]
+fn what_is_no_study_is_refused() {
+    let scratch = tempfile::tempdir().unwrap();
+    let empty = scratch.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    for (summary, problem) in [
+        ("{}", "names no version"),
+        ("", "is no summary"),
+        ("[1, 2", "is no summary"),
+        ("{\"gyradius_version\": \"0.0.1\", \"fingerprint\": \"\"}", "made by gyradius 0.0.1"),
+    ] {
+        fs::write(empty.join("scenario.toml"), "").unwrap();
+        fs::write(empty.join("summary.json"), summary).unwrap();
+        let refused = gyradius(&["report", "empty"], scratch.path());
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(said(&refused).contains(problem), "{}", said(&refused));
+    }
+    for place in ["nowhere", "empty/scenario.toml"] {
+        let refused = gyradius(&["report", place], scratch.path());
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(said(&refused).contains("holds no study"), "{}", said(&refused));
+    }
+    assert_eq!(files(&empty).len(), 2);
+}

@@ -1,0 +1,57 @@
+//! A figure: what it shows as data, what it says, and where it is written.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{AttitudeSpheres, HistogramGrid, LineGrid, RangeGrid};
+
+/// A figure with what it shows. Kept as data it can be drawn again, to the byte, from results that were
+/// read back.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// Name of its file, without the ending.
+    pub name: String,
+    /// What stands below it.
+    pub caption: String,
+    /// What it shows.
+    #[serde(flatten)]
+    pub picture: Picture,
+}
+
+/// What a figure shows, as data.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Picture {
+    /// Histograms of quantities.
+    Histograms(HistogramGrid),
+    /// Attitudes on the unit sphere.
+    Attitudes(AttitudeSpheres),
+    /// Ranges of quantities.
+    Ranges(RangeGrid),
+    /// Lines over levels.
+    Lines(LineGrid),
+}
+
+impl Figure {
+    /// The figure drawn: SVG that can stand alone or in a page. The same data give the same bytes.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        match &self.picture {
+            Picture::Histograms(histograms) => histograms.svg(),
+            Picture::Attitudes(spheres) => spheres.svg(),
+            Picture::Ranges(ranges) => ranges.svg(),
+            Picture::Lines(lines) => lines.svg(),
+        }
+    }
+
+    /// Where it is written, from the folder of the results.
+    #[must_use]
+    pub fn file(&self) -> String {
+        file_of(&self.name)
+    }
+}
+
+/// Where a figure of a name is written, from the folder of the results.
+#[must_use]
+pub fn file_of(name: &str) -> String {
+    format!("figures/{name}.svg")
+}

@@ -1,0 +1,59 @@
+//! Pages and figures, made from results alone: no physics, no random numbers.
+//!
+//! A [`Figure`] is data (bins and counts, attitudes, ranges, lines) that is written beside the other
+//! results, reads back, and is drawn as SVG from what was read: the same data give the same bytes. The files
+//! name no font to be loaded and hold no `id`, style sheet or script, so that several can be inlined in one
+//! page. Their natural size is in `width` and `height`; they shrink with a narrower page. A [`page()`] of HTML
+//! needs nothing but itself.
+//!
+//! The SVG is written by hand: `plotters` rounds every coordinate to a whole pixel, writes one
+//! element per dot, and has neither title nor description for readers who cannot see the figure.
+//!
+//! ```
+//! use gyradius_report::{HistogramGrid, Panel, Series};
+//!
+//! let wobble = [0.4, 0.6, 0.3, 0.5, 0.9, 0.7];
+//! let panel = Panel {
+//!     label: "wobble (deg)".to_owned(),
+//!     series: vec![Series { name: "measured", values: &wobble, runs: 6 }],
+//!     nominal: Some(0.5),
+//! };
+//! let histograms = HistogramGrid::new("Wobble after separation", &[Some(panel)], 1);
+//! let written = serde_json::to_string(&histograms)?;
+//! let read: HistogramGrid = serde_json::from_str(&written)?;
+//! assert_eq!(read.svg(), histograms.svg());
+//! # Ok::<(), serde_json::Error>(())
+//! ```
+
+mod axis;
+mod bins;
+mod curves;
+mod figure;
+mod histogram;
+mod legend;
+mod lines;
+mod numbers;
+mod page;
+mod panel;
+mod ranges;
+mod samples;
+mod sphere;
+mod style;
+mod svg;
+mod text;
+mod visible;
+
+pub use curves::{Chart, Colours, Curve, time_charts};
+pub use figure::{Figure, Picture, file_of};
+pub use histogram::HistogramGrid;
+pub use lines::{Line, LineGrid, LinePanel, LinePoint, Range};
+pub use numbers::{below_hundred, interval, optional, significant};
+pub use page::page;
+pub use ranges::{Label, RangeGrid, RangePanel};
+pub use samples::{Panel, Series};
+pub use sphere::{AttitudeSpheres, Cloud};
+pub use visible::{visible, visible_json};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

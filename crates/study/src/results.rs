@@ -1,0 +1,179 @@
+//! The results of a study as plain data: read back from its folder, and the report that is made from them.
+
+use gyradius_formats::read_text;
+use gyradius_report::file_of;
+use serde_json::Value;
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+use crate::{
+    Scenario, ScenarioError, StudyError, Summary, figures_of_study,
+    folder::{self, Contents, Folder, FolderError},
+    report,
+};
+
+/// Largest `summary.json` that is read, far beyond any that is written.
+const BYTES: u64 = 1 << 30;
+
+/// Why the results in a folder are not read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ResultsError {
+    /// The scenario is refused.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// There are none.
+    #[error("{}: {problem}", path.display())]
+    Study {
+        /// Where they were looked for.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
+    /// Another version made them, whose numbers need not be these.
+    #[error(
+        "{}: the study was made by gyradius {found}, and this is {}: run the study again, or use that \
+         version", path.display(), env!("CARGO_PKG_VERSION")
+    )]
+    Version {
+        /// The study's folder.
+        path: PathBuf,
+        /// The version in its summary.
+        found: String,
+    },
+    /// The scenario in the folder is not the one that its runs are from.
+    #[error(
+        "{}: scenario.toml has the fingerprint {scenario}, and the runs are from a scenario with \
+         {summary}: it was changed after the study; run the study again",
+        path.display()
+    )]
+    Fingerprint {
+        /// The study's folder.
+        path: PathBuf,
+        /// Fingerprint of the scenario.
+        scenario: String,
+        /// Fingerprint in the summary.
+        summary: String,
+    },
+}
+
+impl From<FolderError> for ResultsError {
+    fn from(FolderError { path, problem }: FolderError) -> Self {
+        Self::Study { path, problem: problem.to_string() }
+    }
+}
+
+/// A study's scenario and every number, judgement and figure that came of its runs.
+///
+/// The report is made from nothing else, so that it can be made again from the folder alone, to the byte.
+#[derive(Clone, Debug)]
+pub struct Results {
+    folder: PathBuf,
+    scenario: Scenario,
+    summary: Summary,
+}
+
+impl Results {
+    /// Reads `scenario.toml` and `summary.json` of the study in a folder.
+    ///
+    /// # Errors
+    /// The folder holds no study, or one by another version; the scenario is not the one that the runs are
+    /// from.
+    pub fn read(folder: &Path) -> Result<Self, ResultsError> {
+        let problem = |problem: String| ResultsError::Study { path: folder.to_owned(), problem };
+        // A study that was killed while it replaced this one is put right first.
+        folder::restore(folder)?;
+        let (file, written) = (folder.join("scenario.toml"), folder.join("summary.json"));
+        if !file.is_file() || !written.is_file() {
+            return Err(problem(
+                "it holds no study, which has a scenario.toml and a summary.json; name the folder of one"
+                    .to_owned(),
+            ));
+        }
+        let no_summary = |e: serde_json::Error| problem(format!("summary.json is no summary: {e}"));
+        let text = read_text(&written, BYTES)
+            .map_err(|e: io::Error| problem(format!("summary.json cannot be read: {e}")))?;
+        let value: Value = serde_json::from_str(&text).map_err(no_summary)?;
+        let said = |field: &str| value[field].as_str().map(str::to_owned);
+        let (Some(version), Some(fingerprint)) = (said("gyradius_version"), said("fingerprint"))
+        else {
+            return Err(problem("summary.json names no version and no fingerprint".to_owned()));
+        };
+        // First: another version may read other scenarios.
+        if version != env!("CARGO_PKG_VERSION") {
+            return Err(ResultsError::Version { path: folder.to_owned(), found: version });
+        }
+        let scenario = Scenario::read(&file)?;
+        if scenario.fingerprint() != fingerprint {
+            return Err(ResultsError::Fingerprint {
+                path: folder.to_owned(),
+                scenario: scenario.fingerprint(),
+                summary: fingerprint,
+            });
+        }
+        let summary = serde_json::from_str(&text).map_err(no_summary)?;
+        Ok(Self { folder: folder.to_owned(), scenario, summary })
+    }
+
+    /// The scenario.
+    #[must_use]
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// What the runs amount to.
+    #[must_use]
+    pub fn summary(&self) -> &Summary {
+        &self.summary
+    }
+
+    /// The report, a page of HTML that needs nothing but itself.
+    #[must_use]
+    pub fn report(&self) -> String {
+        report::html(&self.scenario, &self.summary)
+    }
+
+    /// Makes the figures and the report again, in the study's folder or in another; returns the folder.
+    ///
+    /// In the study's folder only the report and the figures are written, and only over those that the
+    /// study wrote. A study is replaced by none of this.
+    ///
+    /// # Errors
+    /// Something in the study's folder was changed after the study, or the other folder holds something else
+    /// and `force` is not set; something cannot be written. What was there stays as it was.
+    pub fn write_report(&self, out: Option<&Path>, force: bool) -> Result<PathBuf, StudyError> {
+        let report = self.report();
+        let names = figures_of_study::names(&self.scenario).into_iter().map(|name| file_of(&name));
+        let certain = names.chain(["report.html", "figures/"].map(str::to_owned));
+        let contents = match out {
+            Some(_) => Contents::new("report", "report.html", certain, |text| text == report),
+            None => Contents::new("study", "summary.json", certain, |_| true)
+                .keeping(|name| name != "report.html" && !name.starts_with("figures/")),
+        };
+        let mut folder = Folder::prepare(out.unwrap_or(&self.folder), &contents, force)?;
+        write_figures(&mut folder, &self.summary)?;
+        folder.write("report.html", &report)?;
+        Ok(folder.publish()?)
+    }
+}
+
+/// Writes the results and the report made from what a reader of the folder has; returns the results as read.
+pub(crate) fn write(
+    folder: &mut Folder<'_>,
+    scenario: &Scenario,
+    summary: &Summary,
+) -> Result<Summary, StudyError> {
+    folder.write("scenario.toml", &scenario.to_toml())?;
+    let written = serde_json::to_string_pretty(summary)? + "\n";
+    folder.write("summary.json", &written)?;
+    let summary: Summary = serde_json::from_str(&written)?;
+    write_figures(folder, &summary)?;
+    folder.write("report.html", &report::html(scenario, &summary))?;
+    Ok(summary)
+}
+
+fn write_figures(folder: &mut Folder<'_>, summary: &Summary) -> Result<(), FolderError> {
+    summary.figures.iter().try_for_each(|figure| folder.write(&figure.file(), &figure.svg()))
+}
