@@ -177,9 +177,9 @@ fn ratios_of_deviations() {
     let scenario = Scenario::peck_2003().unwrap().with_runs(5000).unwrap();
     let options = Options { out: Some(scratch.path().join("study")), ..Options::default() };
     let study = Study::run(&scenario, &options, &|_| {}).unwrap();
-    let deviation = |model: &str, quantity| {
+    let deviation = |model: &str, quantity: Quantity| {
         let table = study.tables().iter().find(|t| t.model() == model).unwrap();
-        Deviation::new(&table.values(quantity)).unwrap()
+        Deviation::new(&quantity.in_table(table)).unwrap()
     };
     for (naive, physical, expected) in pairs {
         for (quantity, expected) in quantities.into_iter().zip(expected) {

@@ -74,8 +74,8 @@ fn a_replay_tells_what_was_drawn() {
     );
     let study = study(&text, 60, &out);
     let table = &study.tables()[0];
-    let mass = table.drawn("payload_mass_kg").unwrap();
-    let centre = table.drawn("payload_mass_centre_3_m").unwrap();
+    let mass = table.values("payload_mass_kg").unwrap();
+    let centre = table.values("payload_mass_centre_3_m").unwrap();
     let failed = table.rows().position(|row| row.failure().is_some()).unwrap();
     for run in [failed, failed + 1] {
         let page = Replay::open(&out, None, run as u64, 0.0).unwrap().to_string();
@@ -132,7 +132,7 @@ fn a_history_keeps_energy_and_momenta_and_ends_as_the_row_says() {
     assert!(times.len() > 200 && times.windows(2).all(|pair| pair[0] < pair[1]));
     assert_eq!(times[0], 0.0);
     let row = replay.row();
-    let end = row.value(Quantity::ReleaseTime).unwrap() + 2.0;
+    let end = Quantity::ReleaseTime.in_row(&row).unwrap() + 2.0;
     assert!((times.last().unwrap() - end).abs() < 1e-12);
 
     let steady = |name: &str, size: f64| {
@@ -155,7 +155,7 @@ fn a_history_keeps_energy_and_momenta_and_ends_as_the_row_says() {
         let sum: f64 = parts.map(|part| at(&format!("{part}_j"))).sum();
         assert!((sum - at("energy_j")).abs() < 1e-9);
         for (spring, stiffness) in [(1, 1e5), (2, 1e5), (3, 3e4), (4, 3e4)] {
-            let released = row.value(Quantity::SpringRelease(spring - 1)).unwrap();
+            let released = Quantity::SpringRelease(spring - 1).in_row(&row).unwrap();
             let force = at(&format!("spring_{spring}_force_n"));
             let components = (1..=3).map(|i| at(&format!("spring_{spring}_force_{i}_n")));
             let norm = components.map(|f| f * f).sum::<f64>().sqrt();
@@ -175,13 +175,13 @@ fn a_history_keeps_energy_and_momenta_and_ends_as_the_row_says() {
     // Every release is a row, at its time to the bit, and after the last the rates are the outcome's.
     let text = fs::read_to_string(&files[0]).unwrap();
     for spring in 0..4 {
-        let time = row.value(Quantity::SpringRelease(spring)).unwrap();
+        let time = Quantity::SpringRelease(spring).in_row(&row).unwrap();
         let event = format!("\n{time:?},spring {} released,", spring + 1);
         assert!(text.contains(&event), "{event}");
     }
-    let last = row.value(Quantity::ReleaseTime).unwrap();
+    let last = Quantity::ReleaseTime.in_row(&row).unwrap();
     let k = times.iter().position(|time| *time == last).unwrap();
-    let rate = row.value(Quantity::PayloadRate2).unwrap();
+    let rate = Quantity::PayloadRate2.in_row(&row).unwrap();
     assert!((table["payload_w2_rad_per_s"][k] - rate).abs() < 1e-15);
     assert_eq!(text.lines().nth(1).unwrap().split(',').nth(1), Some("clamp opens"));
     assert!(text.lines().last().unwrap().contains(",end,"));
@@ -243,7 +243,7 @@ fn what_cannot_be_replayed_is_named() {
     // A table that says otherwise in the last bit of a number, or is not there.
     let table = out.join("runs/proposed/runs.parquet");
     let bytes = fs::read(&table).unwrap();
-    let wobble = Replay::open(&out, None, 0, 0.0).unwrap().row().value(Quantity::Wobble).unwrap();
+    let wobble = Quantity::Wobble.in_row(&Replay::open(&out, None, 0, 0.0).unwrap().row()).unwrap();
     let at = bytes.windows(8).position(|w| w == wobble.to_le_bytes()).unwrap();
     let mut changed = bytes.clone();
     changed[at] ^= 1;

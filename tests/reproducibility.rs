@@ -74,7 +74,7 @@ fn another_seed_and_another_model_draw_otherwise() {
     let scenario = Scenario::peck_2003().unwrap().with_runs(5).unwrap().with_seed(7).unwrap();
     let options = Options { out: Some(scratch.path().join("other")), ..Options::default() };
     let other = Study::run(&scenario, &options, &|_| {}).unwrap();
-    let column = |study: &Study, model: usize| study.tables()[model].values(Quantity::Wobble);
+    let column = |study: &Study, model: usize| Quantity::Wobble.in_table(&study.tables()[model]);
     assert_ne!(column(&base, 0), column(&other, 0));
     assert_ne!(column(&base, 0), column(&base, 1));
 }
@@ -89,7 +89,7 @@ fn value_stability() {
         .iter()
         .map(|t| {
             let row = t.row(1).unwrap();
-            let value = |q| row.value(q).unwrap();
+            let value = |q: Quantity| q.in_row(&row).unwrap();
             (t.model().to_owned(), value(Quantity::Wobble), value(Quantity::InertiaRatio))
         })
         .collect();

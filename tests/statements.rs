@@ -52,14 +52,14 @@ fn a_study_has_what_was_stated() {
             // Four standard errors of a deviation of 4,000 runs.
             assert!((found / expected - 1.0).abs() < 4.0 / 8_000_f64.sqrt(), "{found} {expected}");
         };
-        let masses = table.drawn("payload_mass_kg").unwrap();
+        let masses = table.values("payload_mass_kg").unwrap();
         near(deviation(&masses), 100.0 * mass);
         for (i, expected) in [0.01, 0.02, 0.03].into_iter().enumerate() {
-            let centre = table.drawn(&format!("payload_mass_centre_{}_m", i + 1)).unwrap();
+            let centre = table.values(&format!("payload_mass_centre_{}_m", i + 1)).unwrap();
             near(deviation(&centre), expected);
         }
         for (entry, nominal) in [(Entry::I11, 5e3), (Entry::I22, 4e3), (Entry::I33, 3e3)] {
-            let values = table.values(Quantity::PAYLOAD_INERTIA[entry as usize]);
+            let values = Quantity::PAYLOAD_INERTIA[entry as usize].in_table(table);
             near(deviation(&values), 0.01 * moments * nominal);
             let (a, b) = (Moments::new(&masses).unwrap(), Moments::new(&values).unwrap());
             let together: f64 = masses

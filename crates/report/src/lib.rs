@@ -37,6 +37,7 @@ mod page;
 mod panel;
 mod ranges;
 mod samples;
+mod share;
 mod sphere;
 mod style;
 mod svg;
@@ -51,6 +52,7 @@ pub use numbers::{below_hundred, interval, optional, significant};
 pub use page::page;
 pub use ranges::{Label, RangeGrid, RangePanel};
 pub use samples::{Panel, Series};
+pub use share::percent;
 pub use sphere::{AttitudeSpheres, Cloud};
 pub use visible::{visible, visible_json};
 

@@ -1,6 +1,8 @@
 //! The paper's claims, judged by what the runs show.
 
+use gyradius_campaign::Table;
 use gyradius_dispersion::ModelKind;
+use gyradius_report::percent;
 use gyradius_statistics::Interval;
 
 use crate::{
@@ -9,7 +11,6 @@ use crate::{
     quantity::Quantity,
     scenario::Scenario,
     summary::{ComparisonSummary, ModelSummary, Summary},
-    table::RunTable,
 };
 
 /// "Considerably more" is taken to mean a deviation larger by at least this factor, with the whole
@@ -26,7 +27,7 @@ const ENOUGH_FOR_SHAPES: usize = 500;
 /// A skewness beyond this is one-sided; a Gaussian has none.
 pub(crate) const ONE_SIDED: f64 = 1.0;
 
-pub(crate) fn judge(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Vec<Claim> {
+pub(crate) fn judge(scenario: &Scenario, summary: &Summary, tables: &[Table]) -> Vec<Claim> {
     let mut claims = vec![always_realizable(summary), naive_unphysical(summary)];
     claims.extend(central_values(scenario, summary));
     if summary.comparisons.is_empty() {
@@ -90,7 +91,7 @@ fn unrealizable(model: &ModelSummary) -> String {
         model.name,
         share.count,
         share.of,
-        share.percent()
+        percent(share)
     )
 }
 
@@ -150,10 +151,10 @@ fn same_deviations(scenario: &Scenario, summary: &Summary) -> Claim {
             let ratios: Vec<(f64, Interval)> = entries
                 .filter_map(|(entry, given)| {
                     let found = physical.quantity(Quantity::entry(body, entry))?;
-                    let interval = found.deviation_interval.filter(|i| i.lower() > 0.0)?;
+                    let interval = found.sample.deviation_interval.filter(|i| i.lower() > 0.0)?;
                     let (low, high) = (given / interval.upper(), given / interval.lower());
                     let interval = Interval::new(low, high, interval.confidence()).ok()?;
-                    Some((given / found.deviation?, interval))
+                    Some((given / found.sample.deviation?, interval))
                 })
                 .collect();
             let Some(worst) = ratios
@@ -230,7 +231,8 @@ fn reduces(summary: &Summary) -> Claim {
         for quantity in [Quantity::Nutation, Quantity::Cone] {
             let ratio = comparison.ratio(quantity);
             let difference = ratio.and_then(|r| r.mean_difference.zip(r.mean_difference_interval));
-            let naive = summary.model(&comparison.naive).and_then(|m| m.quantity(quantity)?.mean);
+            let naive =
+                summary.model(&comparison.naive).and_then(|m| m.quantity(quantity)?.sample.mean);
             let (Some((difference, interval)), Some(naive)) = (difference, naive) else {
                 parts.push(Verdict::NotTested);
                 words.push(format!("{} cannot be told from these runs", quantity.label()));
@@ -255,7 +257,7 @@ fn reduces(summary: &Summary) -> Claim {
     }
 }
 
-fn shapes(summary: &Summary, tables: &[RunTable]) -> Claim {
+fn shapes(summary: &Summary, tables: &[Table]) -> Claim {
     let mut findings = Vec::new();
     let mut parts = Vec::new();
     for comparison in &summary.comparisons {
@@ -293,13 +295,13 @@ struct Shape {
 }
 
 impl Shape {
-    fn of(table: &RunTable) -> Self {
+    fn of(table: &Table) -> Self {
         let mut skewed = (Quantity::PayloadI11, 0.0_f64);
         let mut two_peaked: Option<(Quantity, f64)> = None;
         for quantity in
             Body::BOTH.into_iter().flat_map(|b| Entry::ALL.map(|e| Quantity::entry(b, e)))
         {
-            let values = table.values(quantity);
+            let values = quantity.in_table(table);
             let Ok(moments) = gyradius_statistics::Moments::new(&values) else { continue };
             let skewness = moments.skewness().unwrap_or(0.0);
             if skewness.abs() > skewed.1.abs() {

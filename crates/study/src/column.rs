@@ -1,85 +1,39 @@
-//! The columns of the run table: their names, their order and their types.
+//! The columns of a separation's run table, each declared in one place: its name and its order, what it means and
+//! what a run writes into it.
 
-use std::borrow::Cow;
+use gyradius_campaign::{Cell, Column as RunColumn, Kind, Table};
+use nalgebra::{Quaternion, UnitQuaternion};
 
-use crate::{body::Body, quantity::Quantity};
+use crate::{
+    body::Body,
+    quantity::Quantity,
+    run::{End, Run},
+};
 
-/// A column of the run table.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Column<'a> {
-    Model,
-    Run,
-    Status,
+/// A column of the run table, after `model`, `run` and `status`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Column {
     Number(Quantity),
     Realizable,
     /// A component of the attitude of a body's principal axes, scalar last.
     Axes(Body, usize),
     ReleaseOrder,
     Recompressed,
-    /// What else was drawn, by its place and its name.
-    Drawn(usize, &'a str),
+    /// What else was drawn, by its place.
+    Drawn(usize),
     ClearanceNote,
 }
 
-/// What a column holds.
-#[derive(Clone, Copy, Debug)]
-enum Kind {
-    Text,
-    Integer,
-    Number,
-    Flag,
-}
+pub(crate) const REALIZABLE: &str = "realizable";
+pub(crate) const RELEASE_ORDER: &str = "release_order";
+pub(crate) const RECOMPRESSED: &str = "recompressed";
+pub(crate) const CLEARANCE_NOTE: &str = "clearance_note";
 
-struct Declaration<'a> {
-    name: Cow<'a, str>,
-    kind: Kind,
-    /// Whether some runs have nothing there.
-    optional: bool,
-    unit: Option<&'static str>,
-    meaning: &'a str,
-}
-
-/// What stands in a column for a run.
-#[derive(Clone, Debug)]
-pub(crate) enum Cell {
-    Text(String),
-    Integer(i64),
-    Number(f64),
-    Flag(bool),
-    Null,
-}
-
-/// Numbers are the same if their bits are.
-impl PartialEq for Cell {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Text(a), Self::Text(b)) => a == b,
-            (Self::Integer(a), Self::Integer(b)) => a == b,
-            (Self::Number(a), Self::Number(b)) => a.to_bits() == b.to_bits(),
-            (Self::Flag(a), Self::Flag(b)) => a == b,
-            (Self::Null, Self::Null) => true,
-            _ => false,
-        }
-    }
-}
-
-impl std::fmt::Display for Cell {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Text(text) => write!(f, "{text}"),
-            Self::Integer(integer) => write!(f, "{integer}"),
-            Self::Number(number) => write!(f, "{number:?}"),
-            Self::Flag(flag) => write!(f, "{flag}"),
-            Self::Null => write!(f, "nothing"),
-        }
-    }
-}
-
-impl<'a> Column<'a> {
-    /// All columns, in order, of these quantities and of what else was drawn.
-    pub(crate) fn of(quantities: impl Iterator<Item = Quantity>, drawn: &'a [String]) -> Vec<Self> {
-        let mut columns = vec![Self::Model, Self::Run, Self::Status];
-        for quantity in quantities {
+impl Column {
+    /// All columns, in order, of a separation by so many springs in which so much else is drawn.
+    pub(crate) fn all(springs: usize, drawn: usize) -> Vec<Self> {
+        let mut columns = Vec::new();
+        for quantity in Quantity::of(springs) {
             columns.push(Self::Number(quantity));
             if quantity == Quantity::LAST_BEFORE_REALIZABLE {
                 columns.push(Self::Realizable);
@@ -88,89 +42,89 @@ impl<'a> Column<'a> {
             }
         }
         columns.extend([Self::ReleaseOrder, Self::Recompressed]);
-        columns.extend(drawn.iter().enumerate().map(|(i, name)| Self::Drawn(i, name)));
+        columns.extend((0..drawn).map(Self::Drawn));
         columns.push(Self::ClearanceNote);
         columns
     }
 
-    fn declaration(self) -> Declaration<'a> {
-        use Kind::{Flag, Integer, Number, Text};
-        let (name, kind, optional, meaning): (Cow<'a, str>, _, _, &str) = match self {
-            Self::Model => ("model".into(), Text, false, "Name of the model."),
-            Self::Run => ("run".into(), Integer, false, "Number of the run, from 0."),
-            Self::Status => {
-                ("status".into(), Text, false, "`ok`, or the reason why the run failed.")
-            }
-            Self::Number(quantity) => (quantity.column(), Number, true, quantity.meaning()),
+    /// What it is called, holds and means; `drawn` are the names of what else is drawn.
+    pub(crate) fn declaration(self, drawn: &[String]) -> RunColumn {
+        use Kind::{Flag, Number, Text};
+        match self {
+            Self::Number(q) => RunColumn::number(q.column(), q.unit(), q.meaning()),
             Self::Realizable => {
                 let meaning = "Whether the inertias of both bodies are realizable.";
-                ("realizable".into(), Flag, false, meaning)
+                RunColumn::new(REALIZABLE, Flag, meaning).required()
             }
-            Self::Axes(body, i) => (
-                format!("{}_q{}", body.name(), i + 1).into(),
+            Self::Axes(body, i) => RunColumn::new(
+                axes_name(body, i),
                 Number,
-                true,
                 "Component of the attitude of the body's principal axes as drawn, scalar last; none for \
                  entrywise models.",
             ),
-            Self::ReleaseOrder => (
-                "release_order".into(),
+            Self::ReleaseOrder => RunColumn::new(
+                RELEASE_ORDER,
                 Text,
-                true,
                 "Springs from 1 in the order of release, `+` between those that let go together, as in \
                  `1 2 3+4`; without those that never push.",
             ),
-            Self::Recompressed => (
-                "recompressed".into(),
+            Self::Recompressed => RunColumn::new(
+                RECOMPRESSED,
                 Text,
-                true,
                 "Springs from 1 that were pressed below their free length after their release, while \
                  others still pushed; none if there is no such spring.",
             ),
-            Self::Drawn(_, name) => {
-                (name.into(), Number, true, "What else is dispersed, as drawn.")
+            Self::Drawn(i) => {
+                let name = drawn.get(i).cloned().unwrap_or_default();
+                RunColumn::new(name, Number, "What else is dispersed, as drawn.")
             }
-            Self::ClearanceNote => (
-                "clearance_note".into(),
+            Self::ClearanceNote => RunColumn::new(
+                CLEARANCE_NOTE,
                 Text,
-                true,
                 "Why there is no clearance (all outlines are mated; the search failed), or not one of the \
                  whole coast (a body turns too far to be followed); none if there is nothing to say.",
             ),
-        };
-        let unit = if let Self::Number(quantity) = self { Some(quantity.unit()) } else { None };
-        Declaration { name, kind, optional, unit, meaning }
-    }
-
-    pub(crate) fn name(self) -> Cow<'a, str> {
-        self.declaration().name
-    }
-
-    /// Its unit, of numbers that have one.
-    pub(crate) fn unit(self) -> Option<&'static str> {
-        self.declaration().unit
-    }
-
-    /// What it means, in a sentence.
-    pub(crate) fn meaning(self) -> &'a str {
-        self.declaration().meaning
-    }
-
-    pub(crate) fn is_optional(self) -> bool {
-        self.declaration().optional
-    }
-
-    /// The column in Parquet's message type.
-    pub(crate) fn field(self) -> String {
-        let Declaration { name, kind, optional, .. } = self.declaration();
-        let needed = if optional { "optional" } else { "required" };
-        match kind {
-            Kind::Integer => format!("{needed} int64 {name}"),
-            Kind::Flag => format!("{needed} boolean {name}"),
-            Kind::Number => format!("{needed} double {name}"),
-            Kind::Text => format!("{needed} binary {name} (string)"),
         }
     }
+
+    /// What a run writes into it.
+    pub(crate) fn cell(self, run: &Run<'_>) -> Cell<'static> {
+        let text = |text: Option<String>| text.map_or(Cell::Null, |text| Cell::Text(text.into()));
+        match self {
+            Self::Number(quantity) => quantity.value(run).into(),
+            Self::Realizable => run.realizable().into(),
+            Self::Axes(body, i) => run.axes(body).map(|q| q.coords[i]).into(),
+            Self::ReleaseOrder => text(run.end().map(End::release_order)),
+            Self::Recompressed => {
+                text(run.end().map(End::recompressed).filter(|springs| !springs.is_empty()))
+            }
+            Self::Drawn(i) => run.case.drawn.get(i).copied().into(),
+            Self::ClearanceNote => {
+                run.end().and_then(End::clearance_note).map_or(Cell::Null, |note| Cell::Note {
+                    kind: note.kind().into(),
+                    text: note.to_string().into(),
+                })
+            }
+        }
+    }
+}
+
+fn axes_name(body: Body, component: usize) -> String {
+    format!("{}_q{}", body.name(), component + 1)
+}
+
+/// The attitudes of the principal axes of a body as drawn, of the runs that have one.
+pub(crate) fn attitudes(table: &Table, body: Body) -> Vec<UnitQuaternion<f64>> {
+    let Some(components) =
+        (0..4).map(|i| table.values(&axes_name(body, i))).collect::<Option<Vec<_>>>()
+    else {
+        return Vec::new();
+    };
+    let attitude = |i: usize| {
+        let [x, y, z, w] = [0, 1, 2, 3].map(|c: usize| components[c][i]);
+        UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
+    };
+    (0..components[0].len()).map(attitude).collect()
 }
 
 #[cfg(test)]
@@ -190,7 +144,9 @@ mod tests {
             [separation](models/separation.md), equation numbers are those of Peck (2003).\n\n\
             | column | unit | |\n|---|---|---|\n"
             .to_owned();
-        for column in Column::of(Quantity::of(1), &drawn) {
+        let own = Column::all(1, 1).into_iter().map(|column| column.declaration(&drawn));
+        let table = Table::new("", 0, own.collect()).unwrap();
+        for column in table.columns() {
             let unit = column.unit().unwrap_or_default();
             writeln!(page, "| `{}` | {unit} | {} |", column.name(), column.meaning()).unwrap();
         }

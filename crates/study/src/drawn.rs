@@ -1,5 +1,6 @@
 //! Draws of what is uncertain besides the inertias, and the separation that they make.
 
+use gyradius_campaign::Streams;
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::{
     Body as RigidBody, BodyState, MovingBody, Separation, SeparationError, Spring,
@@ -11,7 +12,6 @@ use crate::{
     body::Body,
     failure::Failure,
     scenario::{BodyPart, Dispersions, Scenario, SpringPart, StackPart, Target},
-    streams::Streams,
 };
 
 /// The random streams of a model's dispersions, one for each quantity.

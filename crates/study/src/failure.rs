@@ -32,6 +32,12 @@ pub enum Failure {
     },
 }
 
+impl From<&Failure> for gyradius_campaign::Failure {
+    fn from(failure: &Failure) -> Self {
+        Self::new(failure.kind(), failure.to_string())
+    }
+}
+
 impl Failure {
     /// What kind it is, without numbers, so that failures of a kind can be counted.
     #[must_use]

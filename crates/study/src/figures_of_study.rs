@@ -1,14 +1,15 @@
 //! The figures of a study, numbered as in the paper.
 
+use gyradius_campaign::Table;
 use gyradius_report::{AttitudeSpheres, Cloud, Figure, HistogramGrid, Panel, Picture, Series};
 use nalgebra::UnitQuaternion;
 
 use crate::{
     body::{Body, Entry},
+    column,
     quantity::Quantity,
     scenario::Scenario,
     summary::Summary,
-    table::RunTable,
 };
 
 const ATTITUDES: &str = "figure-1-attitudes";
@@ -38,7 +39,7 @@ pub(crate) fn names(scenario: &Scenario) -> Vec<String> {
     names
 }
 
-pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Vec<Figure> {
+pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[Table]) -> Vec<Figure> {
     // Other vehicles have no figures of the paper to be compared with.
     let numbered = |what: &str, number: &str| match scenario.source() {
         Some(_) => format!("{what} ({number})"),
@@ -51,7 +52,7 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
         let grid = |name: &str, what: &str, quantities: &[Option<Quantity>], columns: usize| {
             let samples: Vec<Option<[Vec<f64>; 2]>> = quantities
                 .iter()
-                .map(|q| q.map(|q| [physical.values(q), naive.values(q)]))
+                .map(|q| q.map(|q| [q.in_table(physical), q.in_table(naive)]))
                 .collect();
             let panels: Vec<Option<Panel<'_>>> = quantities
                 .iter()
@@ -105,8 +106,8 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[RunTabl
 }
 
 /// How near the bodies come: a comparison a panel, or a model where nothing is compared.
-fn clearance(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Option<Figure> {
-    let samples: Vec<Vec<f64>> = tables.iter().map(|t| t.values(Quantity::Clearance)).collect();
+fn clearance(scenario: &Scenario, summary: &Summary, tables: &[Table]) -> Option<Figure> {
+    let samples: Vec<Vec<f64>> = tables.iter().map(|t| Quantity::Clearance.in_table(t)).collect();
     let compared = scenario.comparisons().iter().map(|c| vec![c.physical, c.naive]);
     let mut groups: Vec<Vec<usize>> = compared.collect();
     if groups.is_empty() {
@@ -140,12 +141,12 @@ fn clearance(scenario: &Scenario, summary: &Summary, tables: &[RunTable]) -> Opt
 /// Figure 1 for every model that draws attitudes.
 fn attitudes(
     scenario: &Scenario,
-    tables: &[RunTable],
+    tables: &[Table],
     numbered: &impl Fn(&str, &str) -> String,
 ) -> Option<Figure> {
-    let drawn: Vec<(&RunTable, Vec<UnitQuaternion<f64>>)> = tables
+    let drawn: Vec<(&Table, Vec<UnitQuaternion<f64>>)> = tables
         .iter()
-        .map(|t| (t, t.rows().filter_map(|r| r.axes(Body::Payload)).collect::<Vec<_>>()))
+        .map(|t| (t, column::attitudes(t, Body::Payload)))
         .filter(|(_, attitudes)| !attitudes.is_empty())
         .collect();
     let mean = scenario.payload().mean_axes();

@@ -1,7 +1,7 @@
 //! Monte Carlo studies of spacecraft separation under inertia uncertainty, from a scenario file to
 //! a report.
 //!
-//! Data flows one way: [`Scenario`] → draws → separations → [`RunTable`] → [`Summary`] → figures and
+//! Data flows one way: [`Scenario`] → draws → separations → [`Table`] → [`Summary`] → figures and
 //! report, and [`Study::run`] takes it along. A row depends on (seed, model, run) alone, so results
 //! are the same bits on any number of threads, and every run can be replayed.
 //!
@@ -22,11 +22,8 @@ mod compare;
 mod drawn;
 mod failure;
 mod figures_of_study;
-mod folder;
-mod forecast;
 mod fragment;
 mod model;
-mod numbers;
 #[cfg(test)]
 mod pages;
 mod quantity;
@@ -34,30 +31,24 @@ mod replay;
 mod report;
 mod results;
 mod run;
-mod runner;
 mod scenario;
-mod share;
-mod streams;
 mod study;
 mod summary;
-mod table;
 mod text;
 
 pub use body::Entry;
 pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
 pub use failure::Failure;
-pub use forecast::Forecast;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
+pub use gyradius_campaign::{Cell, Column, Forecast, Progress, Row, Table};
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};
 pub use quantity::Quantity;
 pub use replay::{Replay, ReplayError};
 pub use results::{Results, ResultsError};
-pub use runner::Progress;
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
 pub use study::{Options, Study, StudyError, restore_studies};
 pub use summary::Summary;
-pub use table::{Row, RunTable};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,5 +1,6 @@
 //! Inertia models ready to draw, and the runs that their draws make.
 
+use gyradius_campaign::{Column as RunColumn, Failure, Simulation, Streams, Table, TableError};
 use gyradius_dispersion::{
     DispersionModel, EntrywiseGaussian, KnownMoments, ModelDraw, ModelKind, RealizableOnly,
 };
@@ -9,11 +10,10 @@ use std::ops::Range;
 
 use crate::{
     body::Body,
+    column::Column,
     drawn::{self, Draws},
-    run::Case,
+    run::{Case, Run},
     scenario::{Law, ModelSpec, Scenario, ScenarioError, UncertainBody},
-    streams::Streams,
-    table::RunTable,
 };
 
 /// A model ready to draw: a law and its random streams for either body.
@@ -32,6 +32,11 @@ struct BodyModel {
 }
 
 impl Model {
+    /// Those of a scenario.
+    pub(crate) fn all(scenario: &Scenario) -> Result<Vec<Self>, ScenarioError> {
+        scenario.models().iter().map(|spec| Self::new(spec, scenario)).collect()
+    }
+
     pub(crate) fn new(spec: &ModelSpec, scenario: &Scenario) -> Result<Self, ScenarioError> {
         let body = |which: Body, body: &UncertainBody| {
             let purpose = format!("{} inertia", which.name());
@@ -49,6 +54,11 @@ impl Model {
             stage: body(Body::Stage, scenario.stage())?,
             draws: Draws::new(scenario.seed(), &spec.name, scenario.dispersions()),
         })
+    }
+
+    /// What it is called.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
     }
 
     /// Which model it is.
@@ -90,26 +100,65 @@ impl Model {
             drawn,
         }
     }
+}
+
+/// The separations of a scenario with the bodies that a model draws.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Separations<'a> {
+    scenario: &'a Scenario,
+    model: &'a Model,
+}
+
+impl<'a> Separations<'a> {
+    pub(crate) fn new(scenario: &'a Scenario, model: &'a Model) -> Self {
+        Self { scenario, model }
+    }
+
+    fn layout(&self) -> Vec<Column> {
+        let springs = self.scenario.separation().springs().len();
+        Column::all(springs, self.scenario.dispersions().columns().len())
+    }
+
+    /// Writes the row of a run that has ended.
+    pub(crate) fn push(&self, run: &Run<'_>, rows: &mut Table) -> Result<(), TableError> {
+        self.push_as(&self.layout(), run, rows)
+    }
+
+    fn push_as(
+        &self,
+        layout: &[Column],
+        run: &Run<'_>,
+        rows: &mut Table,
+    ) -> Result<(), TableError> {
+        rows.push(run.failure().map(Failure::from), layout.iter().map(|column| column.cell(run)))
+    }
+}
+
+impl Simulation for Separations<'_> {
+    type Worker = Batch;
+
+    fn columns(&self) -> Vec<RunColumn> {
+        let drawn = self.scenario.dispersions().columns();
+        self.layout().into_iter().map(|column| column.declaration(&drawn)).collect()
+    }
+
+    fn worker(&self) -> Batch {
+        Batch::new(*self.scenario.settings())
+    }
 
     /// Draws the bodies of several runs and separates them together, to the bits that each has alone.
-    pub(crate) fn run(&self, scenario: &Scenario, runs: Range<u64>, batch: &mut Batch) -> RunTable {
-        let mut table = self.table(scenario, runs.start);
-        let cases: Vec<Case> = runs.map(|run| self.draw(scenario, run)).collect();
+    fn run(&self, runs: Range<u64>, batch: &mut Batch, rows: &mut Table) -> Result<(), TableError> {
+        let (scenario, layout) = (self.scenario, self.layout());
+        let cases: Vec<Case> = runs.map(|run| self.model.draw(scenario, run)).collect();
         let sound = |i: &usize| cases[*i].separation.is_ok();
         let places: Vec<usize> = (0..cases.len()).filter(sound).collect();
         let mut results: Vec<_> = cases.iter().map(|_| None).collect();
         let queue = cases.iter().filter_map(|case| case.separation.as_ref().ok());
         batch.run(queue, |i, result| results[places[i]] = Some(result));
         for (case, result) in cases.iter().zip(results) {
-            table.push(&case.ended(scenario, result));
+            self.push_as(&layout, &case.ended(scenario, result), rows)?;
         }
-        table
-    }
-
-    /// A table for its runs from this one on.
-    pub(crate) fn table(&self, scenario: &Scenario, first: u64) -> RunTable {
-        let springs = scenario.separation().springs().len();
-        RunTable::new(&self.name, first, springs, &scenario.dispersions().columns())
+        Ok(())
     }
 }
 

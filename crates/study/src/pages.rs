@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 
 use crate::{
-    CompareOptions, ModelComparison, Replay, Scenario, compare, replay, report, runner,
-    study::results,
+    CompareOptions, ModelComparison, Replay, Scenario, compare,
+    model::Model,
+    replay, report,
+    study::{results, tables},
 };
 
 /// Elements without content.
@@ -172,9 +174,9 @@ fn read(tag: &str) -> (String, Vec<(String, String)>) {
 
 /// The report of a scenario, without its folder.
 fn report_of(scenario: &Scenario) -> String {
-    let models = runner::models(scenario).unwrap();
+    let models = Model::all(scenario).unwrap();
     let threads = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let tables = runner::run(scenario, &models, &threads, &|_| {});
+    let tables = tables(scenario, &models, &threads, &|_| {}).unwrap();
     let summary = results(scenario, &models, &tables).unwrap();
     // The end of a study on the terminal is made of the same.
     assert!(!summary.to_string().contains("[0.00") && !summary.to_string().contains("0 % ["));

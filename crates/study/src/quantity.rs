@@ -1,6 +1,7 @@
 //! Every number of a run, each declared in one place: its column, what it is called, its unit, where the report shows
 //! it, what it means and how it follows from a run.
 
+use gyradius_campaign::{Row, Table};
 use std::borrow::Cow;
 
 use crate::{
@@ -262,6 +263,18 @@ impl Quantity {
     #[must_use]
     pub fn column(self) -> Cow<'static, str> {
         self.numbered(self.declaration().column)
+    }
+
+    /// Its values in a run table, in run order, of the runs that have one.
+    #[must_use]
+    pub fn in_table(self, table: &Table) -> Vec<f64> {
+        table.values(&self.column()).unwrap_or_default()
+    }
+
+    /// Its value in a row of a run table; none if the run failed or it has no meaning for this run.
+    #[must_use]
+    pub fn in_row(self, row: &Row<'_>) -> Option<f64> {
+        row.number(&self.column())
     }
 
     /// The quantity of a column.

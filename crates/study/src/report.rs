@@ -1,6 +1,6 @@
 //! The report: one page of HTML that needs nothing but itself.
 
-use gyradius_report::{Figure, interval, optional, page, significant};
+use gyradius_report::{Figure, interval, optional, page, percent, significant};
 use gyradius_statistics::Interval;
 use maud::{Markup, PreEscaped, html};
 use nalgebra::{Unit, Vector3};
@@ -61,15 +61,15 @@ fn results(summary: &Summary) -> Markup {
                 @for model in &summary.models {
                     tr {
                         th scope="row" { (model.name) }
-                        td { (model.unrealizable.percent()) }
+                        td { (percent(&model.unrealizable)) }
                         @for q in Quantity::behaviour() {
                             @let s = model.quantity(q);
-                            td.group { (optional(s.and_then(|s| s.mean), 4)) }
-                            td title=[tip(s.and_then(|s| s.deviation_interval), 4)] {
-                                (optional(s.and_then(|s| s.deviation), 3))
+                            td.group { (optional(s.and_then(|s| s.sample.mean), 4)) }
+                            td title=[tip(s.and_then(|s| s.sample.deviation_interval), 4)] {
+                                (optional(s.and_then(|s| s.sample.deviation), 3))
                             }
-                            td title=[tip(s.and_then(|s| s.p95_interval), 4)] {
-                                (optional(s.and_then(|s| s.p95), 4))
+                            td title=[tip(s.and_then(|s| s.sample.p95_interval), 4)] {
+                                (optional(s.and_then(|s| s.sample.p95), 4))
                             }
                         }
                     }
@@ -106,7 +106,9 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
         direction.map_or_else(|| "none, for the springs' forces cancel".to_owned(), entries)
     };
     // What no run has is not asked.
-    let has = |q: &Quantity| summary.models.iter().any(|m| m.quantity(*q).is_some_and(|q| q.n > 0));
+    let has = |q: &Quantity| {
+        summary.models.iter().any(|m| m.quantity(*q).is_some_and(|q| q.sample.n > 0))
+    };
     let parting = Quantity::parting().into_iter().filter(has);
     html! {
         h2 { "How they part" }
@@ -144,17 +146,17 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                         @for model in &summary.models {
                             @let s = model.quantity(q);
                             td {
-                                span title=[tip(s.and_then(|s| s.mean_interval), 4)] {
-                                    (optional(s.and_then(|s| s.mean), 4))
+                                span title=[tip(s.and_then(|s| s.sample.mean_interval), 4)] {
+                                    (optional(s.and_then(|s| s.sample.mean), 4))
                                 }
                                 " ± "
-                                span title=[tip(s.and_then(|s| s.deviation_interval), 4)] {
-                                    (optional(s.and_then(|s| s.deviation), 3))
+                                span title=[tip(s.and_then(|s| s.sample.deviation_interval), 4)] {
+                                    (optional(s.and_then(|s| s.sample.deviation), 3))
                                 }
                                 br;
-                                small title=[tip(s.and_then(|s| s.p95_interval), 4)] {
-                                    (optional(s.and_then(|s| s.p05), 4)) " … "
-                                    (optional(s.and_then(|s| s.p95), 4))
+                                small title=[tip(s.and_then(|s| s.sample.p95_interval), 4)] {
+                                    (optional(s.and_then(|s| s.sample.p05), 4)) " … "
+                                    (optional(s.and_then(|s| s.sample.p95), 4))
                                 }
                             }
                         }
@@ -171,17 +173,17 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
                         strong { (model.name) } ": let go in the order "
                         @for (i, order) in model.releases.orders.iter().take(3).enumerate() {
                             @if i > 0 { "; " }
-                            code { (order.order) } " in " (order.share.percent()) " of the runs"
+                            code { (order.order) } " in " (percent(&order.share)) " of the runs"
                         }
                         @if model.releases.orders.len() > 3 { "; others" }
                         ". " (energy(model))
                         @if let Some(clearance) = &model.releases.clearance { " " (nearest(clearance)) }
                         @if let Some(touch) = model.releases.recontact {
-                            " The bodies touch again in " (touch.percent()) " of the runs."
+                            " The bodies touch again in " (percent(&touch)) " of the runs."
                         }
                         @if pressed.count > 0 {
                             " A spring was pressed again after its release in "
-                            (pressed.percent()) " of the runs."
+                            (percent(&pressed)) " of the runs."
                         }
                     }
                 } }
@@ -212,7 +214,7 @@ fn nearest(clearance: &ClearanceSummary) -> Markup {
 
 /// Where the energy of the springs goes, on the average.
 fn energy(model: &ModelSummary) -> String {
-    let mean = |q| model.quantity(q).and_then(|s| s.mean);
+    let mean = |q| model.quantity(q).and_then(|s| s.sample.mean);
     let Some(whole) = mean(Quantity::SpringEnergy).filter(|whole| *whole > 0.0) else {
         return String::new();
     };
@@ -357,8 +359,8 @@ fn deviation_table(
                         @for entry in Entry::ALL {
                             @let q = physical.quantity(Quantity::entry(body, entry));
                             td {
-                                (optional(q.and_then(|q| q.deviation), 4)) br;
-                                small { (interval(q.and_then(|q| q.deviation_interval), 4)) }
+                                (optional(q.and_then(|q| q.sample.deviation), 4)) br;
+                                small { (interval(q.and_then(|q| q.sample.deviation_interval), 4)) }
                             }
                         }
                     }
@@ -369,7 +371,7 @@ fn deviation_table(
                     tr {
                         th scope="row" { "given over found" }
                         @for (entry, value) in Entry::ALL.into_iter().zip(given) {
-                            @let found = physical.quantity(Quantity::entry(body, entry)).and_then(|q| q.deviation);
+                            @let found = physical.quantity(Quantity::entry(body, entry)).and_then(|q| q.sample.deviation);
                             td { (optional(found.filter(|f| *f > 0.0).map(|f| value / f), 3)) }
                         }
                     }
@@ -395,7 +397,7 @@ fn far_lobe(summary: &Summary) -> Markup {
                 @for (name, [payload, stage]) in &lobes {
                     li {
                         strong { (name) } ": "
-                        (payload.percent()) " of the payload's draws, " (stage.percent()) " of the stage's."
+                        (percent(payload)) " of the payload's draws, " (percent(stage)) " of the stage's."
                     }
                 }
             }

@@ -1,5 +1,6 @@
 //! The results of a study as plain data: read back from its folder, and the report that is made from them.
 
+use gyradius_campaign::{Contents, Folder, FolderError, restore};
 use gyradius_formats::read_text;
 use gyradius_report::file_of;
 use serde_json::Value;
@@ -8,11 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{
-    Scenario, ScenarioError, StudyError, Summary, figures_of_study,
-    folder::{self, Contents, Folder, FolderError},
-    report,
-};
+use crate::{Scenario, ScenarioError, StudyError, Summary, figures_of_study, report};
 
 /// Largest `summary.json` that is read, far beyond any that is written.
 const BYTES: u64 = 1 << 30;
@@ -60,8 +57,8 @@ pub enum ResultsError {
 }
 
 impl From<FolderError> for ResultsError {
-    fn from(FolderError { path, problem }: FolderError) -> Self {
-        Self::Study { path, problem: problem.to_string() }
+    fn from(error: FolderError) -> Self {
+        Self::Study { path: error.path().to_owned(), problem: error.problem() }
     }
 }
 
@@ -84,7 +81,7 @@ impl Results {
     pub fn read(folder: &Path) -> Result<Self, ResultsError> {
         let problem = |problem: String| ResultsError::Study { path: folder.to_owned(), problem };
         // A study that was killed while it replaced this one is put right first.
-        folder::restore(folder)?;
+        restore(folder)?;
         let (file, written) = (folder.join("scenario.toml"), folder.join("summary.json"));
         if !file.is_file() || !written.is_file() {
             return Err(problem(

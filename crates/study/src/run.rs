@@ -172,8 +172,9 @@ impl<'a> End<'a> {
     }
 
     /// Springs from 1 that were pressed again after they had let go.
-    pub(crate) fn recompressed(&self) -> Vec<usize> {
-        self.separated.recompressed().map(|(spring, _)| spring).collect()
+    pub(crate) fn recompressed(&self) -> String {
+        let springs = self.separated.recompressed().map(|(spring, _)| spring.to_string());
+        springs.collect::<Vec<_>>().join(" ")
     }
 }
 

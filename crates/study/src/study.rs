@@ -1,19 +1,17 @@
+use gyradius_campaign::{
+    CampaignError, Contents, Folder, FolderError, Forecast, Progress, Table, run, threads,
+};
 use gyradius_report::file_of;
 use gyradius_statistics::StatisticsError;
 use parquet::errors::ParquetError;
 use std::path::{Path, PathBuf};
 
 use crate::{
-    Forecast, Progress, RunTable, Scenario, ScenarioError, Summary, claims,
+    Scenario, ScenarioError, Summary, claims,
     compare::Section,
     figures_of_study,
-    folder::{self, Contents, Folder, FolderError},
-    model::Model,
-    runner,
+    model::{Model, Separations},
 };
-
-/// Most threads that may be asked for.
-const MAX_THREADS: usize = 1024;
 
 /// Why a study could not be done. Nothing has been overwritten.
 #[derive(Debug, thiserror::Error)]
@@ -32,18 +30,15 @@ pub enum StudyError {
     },
     /// A run table cannot be written.
     #[error("cannot write the run table of {model}: {source}")]
-    RunTable {
+    Table {
         /// The model.
         model: String,
         /// Why.
         source: ParquetError,
     },
-    /// The number of threads is out of range, or they cannot be started.
-    #[error("threads: {problem}")]
-    Threads {
-        /// What is wrong.
-        problem: String,
-    },
+    /// The runs cannot be made on so many threads, or leave no rows.
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
     /// The runs cannot be summarised.
     #[error("cannot summarise the runs: {0}")]
     Statistics(#[from] StatisticsError),
@@ -53,8 +48,8 @@ pub enum StudyError {
 }
 
 impl From<FolderError> for StudyError {
-    fn from(FolderError { path, problem }: FolderError) -> Self {
-        Self::Folder { path, problem: problem.to_string() }
+    fn from(error: FolderError) -> Self {
+        Self::Folder { path: error.path().to_owned(), problem: error.problem() }
     }
 }
 
@@ -73,7 +68,7 @@ pub struct Options {
 #[derive(Debug)]
 pub struct Study {
     folder: PathBuf,
-    tables: Vec<RunTable>,
+    tables: Vec<Table>,
     summary: Summary,
 }
 
@@ -105,20 +100,22 @@ impl Study {
         let threads = threads(options.threads)?;
         let default = || Path::new("target/study").join(scenario.name());
         let place = options.out.clone().unwrap_or_else(default);
-        let models = runner::models(scenario)?;
+        let models = Model::all(scenario)?;
         let contents = contents(scenario);
         let mut folder = Folder::prepare(&place, &contents, options.force)?;
 
-        say(Forecast::of(scenario, &models, threads.current_num_threads()));
-        let tables = runner::run(scenario, &models, &threads, progress);
+        let simulations: Vec<_> =
+            models.iter().map(|model| Separations::new(scenario, model)).collect();
+        say(Forecast::of(&simulations, scenario.runs(), threads.current_num_threads())
+            .map_err(CampaignError::from)?);
+        let tables = tables(scenario, &models, &threads, progress)?;
         let summary = threads.install(|| results(scenario, &models, &tables))?;
 
         for table in &tables {
             let file = folder.create(&format!("runs/{}/runs.parquet", table.model()))?;
-            table.write_parquet(file).map_err(|source| StudyError::RunTable {
-                model: table.model().to_owned(),
-                source,
-            })?;
+            table
+                .write_parquet(file)
+                .map_err(|source| StudyError::Table { model: table.model().to_owned(), source })?;
         }
         let summary = crate::results::write(&mut folder, scenario, &summary)?;
         Ok(Self { folder: folder.publish()?, tables, summary })
@@ -132,7 +129,7 @@ impl Study {
 
     /// The runs, model by model.
     #[must_use]
-    pub fn tables(&self) -> &[RunTable] {
+    pub fn tables(&self) -> &[Table] {
         &self.tables
     }
 
@@ -150,14 +147,14 @@ impl Study {
 /// # Errors
 /// Neither the old nor the new files can be put in place.
 pub fn restore_studies(path: &Path) -> Result<(), StudyError> {
-    Ok(folder::restore_all(path)?)
+    Ok(gyradius_campaign::restore_all(path)?)
 }
 
 /// What the runs of a scenario amount to: every number, judgement and figure, before any page is made.
 pub(crate) fn results(
     scenario: &Scenario,
     models: &[Model],
-    tables: &[RunTable],
+    tables: &[Table],
 ) -> Result<Summary, StatisticsError> {
     let mut summary = Summary::new(scenario, models, tables, Section::new(scenario)?)?;
     summary.claims = claims::judge(scenario, &summary, tables);
@@ -174,15 +171,20 @@ fn contents(scenario: &Scenario) -> Contents<'_> {
     Contents::new("study", "scenario.toml", tables.chain(figures).chain(others), same)
 }
 
-pub(crate) fn threads(number: Option<usize>) -> Result<rayon::ThreadPool, StudyError> {
-    if let Some(n) = number
-        && !(1..=MAX_THREADS).contains(&n)
-    {
-        let problem = format!("{n}: it must be between 1 and {MAX_THREADS}");
-        return Err(StudyError::Threads { problem });
+/// Runs every model of a scenario.
+pub(crate) fn tables(
+    scenario: &Scenario,
+    models: &[Model],
+    threads: &rayon::ThreadPool,
+    progress: Progress<'_>,
+) -> Result<Vec<Table>, CampaignError> {
+    let mut done = 0;
+    let mut tables = Vec::new();
+    for model in models {
+        let simulation = Separations::new(scenario, model);
+        let progress = |runs| progress(done + runs);
+        tables.push(run(&simulation, model.name(), scenario.runs(), threads, &progress)?);
+        done += scenario.runs();
     }
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(number.unwrap_or(0))
-        .build()
-        .map_err(|e| StudyError::Threads { problem: e.to_string() })
+    Ok(tables)
 }

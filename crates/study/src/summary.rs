@@ -1,6 +1,7 @@
 //! Every number that the report shows.
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
+use gyradius_campaign::{SampleSummary, Share, Table, counted};
 use gyradius_dispersion::ModelKind;
 use gyradius_report::Figure;
 use gyradius_statistics::{
@@ -13,14 +14,12 @@ use std::{borrow::Cow, collections::BTreeMap};
 use crate::{
     body::Body,
     claim::Claim,
-    column::Column,
+    column::{CLEARANCE_NOTE, REALIZABLE, RECOMPRESSED, RELEASE_ORDER, attitudes},
     compare::Section,
     model::Model,
     quantity::Quantity,
     run::Case,
     scenario::{Dispersed, Scenario},
-    share::{Share, counted},
-    table::{Row, RunTable},
 };
 
 /// Every number that the report shows.
@@ -145,19 +144,8 @@ pub(crate) struct QuantitySummary {
     #[serde(with = "column")]
     pub(crate) quantity: Quantity,
     pub(crate) unit: Cow<'static, str>,
-    pub(crate) n: u64,
-    pub(crate) mean: Option<f64>,
-    pub(crate) mean_interval: Option<Interval>,
-    pub(crate) deviation: Option<f64>,
-    pub(crate) deviation_interval: Option<Interval>,
-    pub(crate) minimum: Option<f64>,
-    pub(crate) p05: Option<f64>,
-    pub(crate) median: Option<f64>,
-    pub(crate) p95: Option<f64>,
-    pub(crate) p95_interval: Option<Interval>,
-    pub(crate) maximum: Option<f64>,
-    pub(crate) skewness: Option<f64>,
-    pub(crate) kurtosis: Option<f64>,
+    #[serde(flatten)]
+    pub(crate) sample: SampleSummary,
 }
 
 /// A naive model beside a physical one.
@@ -207,7 +195,7 @@ impl Summary {
     pub(crate) fn new(
         scenario: &Scenario,
         models: &[Model],
-        tables: &[RunTable],
+        tables: &[Table],
         every_model: Section,
     ) -> Result<Self, StatisticsError> {
         let confidence = Confidence::default();
@@ -260,11 +248,11 @@ impl Summary {
 }
 
 /// The columns, which are the same of every model.
-fn columns(tables: &[RunTable]) -> Vec<ColumnSummary> {
-    let columns = tables.first().into_iter().flat_map(RunTable::columns);
-    let summary = |column: Column<'_>| ColumnSummary {
-        column: column.name().into_owned(),
-        unit: column.unit().map(Cow::Borrowed),
+fn columns(tables: &[Table]) -> Vec<ColumnSummary> {
+    let columns = tables.first().into_iter().flat_map(Table::columns);
+    let summary = |column: &gyradius_campaign::Column| ColumnSummary {
+        column: column.name().to_owned(),
+        unit: column.unit().map(|unit| unit.to_owned().into()),
         meaning: column.meaning().to_owned(),
     };
     columns.map(summary).collect()
@@ -283,9 +271,9 @@ fn nominal(scenario: &Scenario) -> Vec<Nominal> {
         .collect()
 }
 
-fn dispersed(scenario: &Scenario, table: &RunTable) -> Vec<DispersedSummary> {
+fn dispersed(scenario: &Scenario, table: &Table) -> Vec<DispersedSummary> {
     let summary = |d: &Dispersed| {
-        let moments = table.drawn(&d.column).and_then(|values| Moments::new(&values).ok());
+        let moments = table.values(&d.column).and_then(|values| Moments::new(&values).ok());
         DispersedSummary {
             quantity: d.column.clone(),
             law: d.law.name().into(),
@@ -303,15 +291,16 @@ impl ModelSummary {
     fn new(
         scenario: &Scenario,
         model: &Model,
-        table: &RunTable,
+        table: &Table,
         confidence: Confidence,
     ) -> Result<Self, StatisticsError> {
         let share = |count: usize| Share::new(count as u64, table.len() as u64, confidence);
-        let failures = counted(table.failures().map(|(_, failure)| failure.kind().into_owned()));
-        let draws_axes = table.rows().any(|r| r.axes(Body::Payload).is_some());
+        let failures = counted(table.failures().map(|(_, failure)| failure.kind().to_owned()));
+        let drawn = Body::BOTH.map(|body| attitudes(table, body));
+        let draws_axes = !drawn[Body::Payload as usize].is_empty();
         let far = |body: Body, law: &RadiallyConstrainedGaussian| {
             let far = |q: &UnitQuaternion<f64>| !law.in_mean_half(q);
-            share(table.rows().filter_map(|r| r.axes(body)).filter(far).count())
+            share(drawn[body as usize].iter().filter(|q| far(q)).count())
         };
         let laws = (scenario.payload().gaussian_axes(), scenario.stage().gaussian_axes());
         let far_half = match laws {
@@ -327,12 +316,14 @@ impl ModelSummary {
             acceptance: model.acceptance(),
             failed: failures.iter().map(|f| f.1).sum(),
             failures,
-            unrealizable: share(table.rows().filter(|r| !r.realizable()).count())?,
+            unrealizable: share(
+                table.flags(REALIZABLE).iter().filter(|flag| **flag == Some(false)).count(),
+            )?,
             far_half,
             given_deviations_kg_m2: model.given_deviations(),
             releases: Releases::new(table, scenario.outlines().is_some(), confidence)?,
             quantities: Quantity::of(scenario.separation().springs().len())
-                .map(|q| QuantitySummary::new(q, &table.values(q), confidence))
+                .map(|q| QuantitySummary::new(q, table, confidence))
                 .collect(),
             dispersed: dispersed(scenario, table),
         })
@@ -347,20 +338,16 @@ impl ModelSummary {
 const ORDERS: usize = 12;
 
 impl Releases {
-    fn new(
-        table: &RunTable,
-        watched: bool,
-        confidence: Confidence,
-    ) -> Result<Self, StatisticsError> {
+    fn new(table: &Table, watched: bool, confidence: Confidence) -> Result<Self, StatisticsError> {
         let mut counts = BTreeMap::<&str, u64>::new();
-        for order in table.rows().filter_map(|row| row.release_order()) {
+        for (order, _) in table.notes(RELEASE_ORDER) {
             *counts.entry(order).or_default() += 1;
         }
         let of = counts.values().sum();
-        let pressed = table.rows().filter(|r| !r.recompressed().is_empty()).count();
+        let pressed = table.notes(RECOMPRESSED).count();
         let recompressed =
             if of == 0 { None } else { Some(Share::new(pressed as u64, of, confidence)?) };
-        let touching = table.values(Quantity::RecontactTime).len() as u64;
+        let touching = Quantity::RecontactTime.in_table(table).len() as u64;
         let recontact =
             if of == 0 || !watched { None } else { Some(Share::new(touching, of, confidence)?) };
         let clearance = if watched { ClearanceSummary::new(table, confidence) } else { None };
@@ -380,11 +367,11 @@ impl Releases {
 }
 
 impl ClearanceSummary {
-    fn new(table: &RunTable, confidence: Confidence) -> Option<Self> {
-        let of = |row: Row<'_>| Some((row.value(Quantity::Clearance)?, row.run()));
-        let found: Vec<(f64, u64)> = table.rows().filter_map(of).collect();
-        let notes = table.rows().filter_map(|row| row.clearance_note());
-        let notes = counted(notes.map(|note| note.kind().to_owned()));
+    fn new(table: &Table, confidence: Confidence) -> Option<Self> {
+        let clearances = table.numbers(&Quantity::Clearance.column())?;
+        let of = |run: u64| Some((clearances.get(usize::try_from(run).ok()?)?, run));
+        let found: Vec<(f64, u64)> = (0..table.len() as u64).filter_map(of).collect();
+        let notes = counted(table.notes(CLEARANCE_NOTE).map(|(_, kind)| kind.to_owned()));
         if found.is_empty() && notes.is_empty() {
             return None;
         }
@@ -406,42 +393,15 @@ impl ClearanceSummary {
 }
 
 impl QuantitySummary {
-    fn new(quantity: Quantity, values: &[f64], confidence: Confidence) -> Self {
-        let moments = Moments::new(values).ok();
-        let sorted = SortedSample::new(values).ok();
-        let robust = Deviation::new(values).ok();
-        let quantile = |p| sorted.as_ref().and_then(|s| s.quantile(p).ok());
-        Self {
-            quantity,
-            unit: quantity.unit().into(),
-            n: values.len() as u64,
-            mean: moments.map(|m| m.mean()),
-            mean_interval: moments.map(|m| m.mean_interval(confidence)),
-            deviation: moments.map(|m| m.standard_deviation()),
-            deviation_interval: robust.and_then(|d| d.interval(confidence).ok()),
-            minimum: sorted.as_ref().map(SortedSample::minimum),
-            p05: quantile(0.05),
-            median: quantile(0.5),
-            p95: quantile(0.95),
-            p95_interval: sorted
-                .as_ref()
-                .and_then(|s| s.quantile_interval(0.95, confidence).ok())
-                .filter(|i| i.lower().is_finite() && i.upper().is_finite()),
-            maximum: sorted.as_ref().map(SortedSample::maximum),
-            skewness: moments.and_then(|m| m.skewness()),
-            kurtosis: moments.and_then(|m| m.kurtosis()),
-        }
+    fn new(quantity: Quantity, table: &Table, confidence: Confidence) -> Self {
+        let sample = SampleSummary::new(&quantity.in_table(table), confidence);
+        Self { quantity, unit: quantity.unit().into(), sample }
     }
 }
 
 impl Ratio {
-    fn new(
-        quantity: Quantity,
-        physical: &RunTable,
-        naive: &RunTable,
-        confidence: Confidence,
-    ) -> Self {
-        let (physical, naive) = (physical.values(quantity), naive.values(quantity));
+    fn new(quantity: Quantity, physical: &Table, naive: &Table, confidence: Confidence) -> Self {
+        let (physical, naive) = (quantity.in_table(physical), quantity.in_table(naive));
         let deviations = Deviation::new(&naive).ok().zip(Deviation::new(&physical).ok());
         let moments = Moments::new(&naive).ok().zip(Moments::new(&physical).ok());
         Self {

@@ -1,4 +1,4 @@
-use gyradius_report::optional;
+use gyradius_report::{optional, percent};
 use std::fmt::{self, Display, Formatter};
 
 use crate::{
@@ -8,14 +8,15 @@ use crate::{
 
 /// What is told of every quantity.
 type Told = (&'static str, fn(&QuantitySummary) -> Option<f64>);
-const TOLD: [Told; 3] = [("mean", |q| q.mean), ("sd", |q| q.deviation), ("p95", |q| q.p95)];
+const TOLD: [Told; 3] =
+    [("mean", |q| q.sample.mean), ("sd", |q| q.sample.deviation), ("p95", |q| q.sample.p95)];
 
 /// The short table that ends a study on the terminal.
 impl Display for Summary {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let names = self.models.iter().map(|m| m.name.chars().count());
         let width = names.max().unwrap_or(0).max("model".len());
-        let shares: Vec<String> = self.models.iter().map(|m| m.unrealizable.percent()).collect();
+        let shares: Vec<String> = self.models.iter().map(|m| percent(&m.unrealizable)).collect();
         let wide =
             shares.iter().map(|s| s.chars().count()).max().unwrap_or(0).max("unrealizable".len());
         write!(f, "{:width$}  {:>wide$}  {:4}", "model", "unrealizable", "")?;

@@ -1,5 +1,6 @@
 //! One model about one body at one level.
 
+use gyradius_campaign::{Share, Streams, counted};
 use gyradius_dispersion::{ModelDraw, ModelKind};
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::SpinMetrics;
@@ -15,12 +16,7 @@ use super::{
     options::Size,
     reference::Target,
 };
-use crate::{
-    failure::Failure,
-    scenario::Scenario,
-    share::{Share, counted},
-    streams::Streams,
-};
+use crate::{failure::Failure, scenario::Scenario};
 
 /// How a model did, or why there is none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

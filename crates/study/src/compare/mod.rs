@@ -15,6 +15,7 @@ mod table;
 mod tests;
 mod text;
 
+use gyradius_campaign::{CampaignError, Contents, Folder, FolderError, Progress, Streams, threads};
 use gyradius_dispersion::ModelKind;
 use gyradius_report::file_of;
 use gyradius_statistics::StatisticsError;
@@ -32,11 +33,8 @@ pub use reference::Reference;
 pub(crate) use section::Section;
 
 use crate::{
-    Progress, StudyError,
-    folder::{Contents, Folder, FolderError},
+    StudyError,
     scenario::{Scenario, ScenarioError},
-    streams::Streams,
-    study::threads,
 };
 use body::NominalBody;
 use contest::{Cell, measures, nutation};
@@ -68,6 +66,12 @@ pub enum CompareError {
     /// The result cannot be put into JSON.
     #[error("cannot write the comparison: {0}")]
     Json(#[from] serde_json::Error),
+}
+
+impl From<CampaignError> for CompareError {
+    fn from(error: CampaignError) -> Self {
+        Self::Write(error.into())
+    }
 }
 
 impl From<FolderError> for CompareError {

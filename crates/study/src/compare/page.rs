@@ -7,7 +7,7 @@ use super::{
     measure::Measure,
     text::{Block, heading, is_poor, kinds, matched, remarks},
 };
-use gyradius_report::{Figure, optional, page};
+use gyradius_report::{Figure, optional, page, percent};
 
 const BLOCKS: [Block; 9] = [
     Block::Unrealizable,
@@ -130,5 +130,5 @@ fn block_rows(body: &BodyResult, block: Block) -> Markup {
 /// The share of unrealizable draws with its interval; nothing if there is no such model.
 fn interval(cell: Option<&super::contest::Cell>) -> Option<String> {
     let results = cell.and_then(|cell| cell.results.as_ref());
-    results.map(|r| format!("unrealizable: {}", r.unrealizable.percent()))
+    results.map(|r| format!("unrealizable: {}", percent(&r.unrealizable)))
 }

@@ -4,7 +4,7 @@ use gyradius_dispersion::ModelKind;
 use std::fmt::{self, Display, Formatter};
 
 use super::{BodyResult, LevelResult, ModelComparison, contest::Cell, measure::Measure};
-use gyradius_report::{optional, significant};
+use gyradius_report::{optional, percent, significant};
 
 /// Columns of a terminal that are used.
 const MOST: usize = 100;
@@ -42,7 +42,7 @@ impl Block {
         match self {
             Self::Unrealizable if by_construction && r.unrealizable.count == 0 => "0".to_owned(),
             Self::Unrealizable if [0, r.unrealizable.of].contains(&r.unrealizable.count) => {
-                r.unrealizable.percent()
+                percent(&r.unrealizable)
             }
             Self::Unrealizable => significant(100.0 * r.unrealizable.share, 3),
             Self::Spread(measure) => {

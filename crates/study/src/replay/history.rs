@@ -240,7 +240,7 @@ mod tests {
         let scenario = Scenario::from_toml(&format!("{head}start_s = 0.02\n\n{tail}")).unwrap();
         let replay = Replay::new(&scenario, None, 0, 5.0).unwrap();
         let pushing = replay.history.pushing_s();
-        assert_eq!(Some(pushing), replay.row().value(crate::Quantity::ReleaseTime));
+        assert_eq!(Some(pushing), crate::Quantity::ReleaseTime.in_row(&replay.row()));
         assert!((replay.history.end_s() - pushing - 5.0).abs() < 1e-12);
         let page = replay.to_string();
         assert!(page.contains("\n  1 never pushes\n  2 starts at 0.020000000 s\n"), "{page}");

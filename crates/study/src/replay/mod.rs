@@ -4,10 +4,10 @@ mod history;
 mod outlines;
 pub(crate) mod page;
 mod picture;
-mod record;
 mod short;
 mod words;
 
+use gyradius_campaign::{Row, Simulation, Table, TableError, folder_of, read_row, restore};
 use gyradius_clearance::Clearance;
 use gyradius_formats::{WriteError, must_write, write_file};
 use gyradius_separation::{RunError, Separation, Step};
@@ -18,8 +18,8 @@ use std::{
 };
 
 use crate::{
-    Results, ResultsError, Row, RunTable, Scenario, ScenarioError, folder,
-    model::Model,
+    Results, ResultsError, Scenario, ScenarioError,
+    model::{Model, Separations},
     run::{Case, End},
 };
 use history::History;
@@ -37,6 +37,9 @@ pub enum ReplayError {
     /// The study cannot be read.
     #[error(transparent)]
     Study(#[from] ResultsError),
+    /// The run leaves no row.
+    #[error(transparent)]
+    Row(#[from] TableError),
     /// The scenario has no such model.
     #[error("model {model:?}: the scenario has {}", known.join(", "))]
     Model {
@@ -127,7 +130,7 @@ pub struct Replay {
     model: String,
     case: Case,
     /// The table of this run alone.
-    own: RunTable,
+    own: Table,
     history: History,
     /// How near the bodies come, if that is watched and the run ends well.
     clearance: Option<Clearance>,
@@ -151,8 +154,8 @@ impl Replay {
     ) -> Result<Self, ReplayError> {
         // A study that was killed while it replaced this one is put right first; its scenario may be away
         // until then.
-        let folder = if path.is_dir() { path } else { folder::folder_of(path) };
-        folder::restore(folder).map_err(ResultsError::from)?;
+        let folder = if path.is_dir() { path } else { folder_of(path) };
+        restore(folder).map_err(ResultsError::from)?;
         if !path.is_dir() {
             if !path.exists() {
                 let problem =
@@ -208,9 +211,10 @@ impl Replay {
         let springs = case.separation.as_ref().map_or(&[][..], Separation::springs);
         let ended = result.as_ref().and_then(|result| result.as_ref().ok());
         let history = History::new(&steps, springs, ended);
-        let mut own = model.table(scenario, run);
+        let simulation = Separations::new(scenario, &model);
+        let mut own = Table::new(&spec.name, run, simulation.columns())?;
         let run = case.ended(scenario, result);
-        own.push(&run);
+        simulation.push(&run, &mut own)?;
         let clearance = run.end().and_then(End::clearance).cloned();
         Ok(Self {
             own,
@@ -226,7 +230,7 @@ impl Replay {
     /// What came of it.
     #[must_use]
     pub fn row(&self) -> Row<'_> {
-        Row::only(&self.own)
+        self.own.rows().next().expect("the table of a replay has its run")
     }
 
     /// Name of the model.
@@ -279,18 +283,17 @@ impl Replay {
             table: found,
             replayed,
         };
-        let found = record::read(table, self.row().run()).map_err(unreadable)?;
+        let found = read_row(table, self.row().run()).map_err(unreadable)?;
         let found = found
             .ok_or_else(|| unreadable(ParquetError::General("it has no such run".to_owned())))?;
-        let columns = self.own.columns();
-        if columns.len() != found.len() {
+        let columns = self.own.columns().len();
+        if columns != found.len() {
             let count = |n: usize| format!("{n} columns");
-            return Err(differs("the number of columns", count(found.len()), count(columns.len())));
+            return Err(differs("the number of columns", count(found.len()), count(columns)));
         }
-        for (column, (name, cell)) in columns.into_iter().zip(found) {
-            let own = self.row().cell(column);
+        for ((column, own), (name, cell)) in self.row().cells().zip(found) {
             if column.name() != name {
-                return Err(differs("the name of a column", name, column.name().into_owned()));
+                return Err(differs("the name of a column", name, column.name().to_owned()));
             }
             if own != cell {
                 return Err(differs(&name, cell.to_string(), own.to_string()));

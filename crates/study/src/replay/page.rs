@@ -9,7 +9,7 @@ use nalgebra::UnitQuaternion;
 use serde_json::{Value, json};
 
 use super::{Replay, history::Moment, outlines, short::short};
-use crate::drawn;
+use crate::{column::REALIZABLE, drawn};
 
 const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");
@@ -30,7 +30,7 @@ pub(crate) fn html(replay: &Replay) -> String {
             "drawn as the uniform box that has its mass and inertia, which is not its shape; boxes may "
             "overlap."
             @if replay.scenario.outlines().is_some() { " Outlines are drawn over the boxes, as the scenario gives them." }
-            @if !replay.row().realizable() {
+            @if replay.row().flag(REALIZABLE) == Some(false) {
                 " No distribution of mass has the inertia drawn: boxes are flat where they would be less."
             }
         }

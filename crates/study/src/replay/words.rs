@@ -9,6 +9,7 @@ use gyradius_report::{optional, significant};
 use super::Replay;
 use crate::{
     body::{Body, Entry},
+    column::{CLEARANCE_NOTE, REALIZABLE, RECOMPRESSED},
     quantity::Quantity,
 };
 
@@ -54,11 +55,11 @@ impl Display for Replay {
         for body in Body::BOTH {
             write!(f, "\n  {:13}", body.name())?;
             for entry in Entry::ALL {
-                write!(f, "{:>11}", optional(row.value(Quantity::entry(body, entry)), 5))?;
+                write!(f, "{:>11}", optional(Quantity::entry(body, entry).in_row(&row), 5))?;
             }
         }
         writeln!(f)?;
-        if !row.realizable() {
+        if row.flag(REALIZABLE) == Some(false) {
             writeln!(f, "  no distribution of mass has such inertia")?;
         }
         self.drawn(f)?;
@@ -78,7 +79,7 @@ impl Display for Replay {
         let springs = self.case.separation.iter().flat_map(Separation::springs);
         for (spring, number) in springs.zip(1..) {
             let start = spring.start_s().filter(|start| *start > 0.0);
-            match row.value(Quantity::SpringRelease(number - 1)) {
+            match Quantity::SpringRelease(number - 1).in_row(&row) {
                 None if spring.can_push() => {
                     write!(
                         f,
@@ -96,11 +97,11 @@ impl Display for Replay {
         for (spring, time) in &self.history.releases {
             write!(f, "\n  {spring} lets go at {time:.9} s")?;
         }
-        for spring in row.recompressed() {
+        for spring in row.text(RECOMPRESSED).into_iter().flat_map(str::split_whitespace) {
             write!(f, "\n  {spring} is pressed again later, and stays lost")?;
         }
         writeln!(f)?;
-        let value = |quantity| optional(row.value(quantity), 6);
+        let value = |quantity: Quantity| optional(quantity.in_row(&row), 6);
         let three = |of: [Quantity; 3]| of.map(value).join(", ");
         let mut line = |what: &str, value: String, unit: &str| {
             let unit = if value == "–" { "" } else { unit };
@@ -114,12 +115,12 @@ impl Display for Replay {
         line("angle to the intended direction", value(Quantity::DirectionError), "°")?;
         line("tip-off of the payload, body axes", three(Quantity::PAYLOAD_TIP_OFF), " deg/s")?;
         line("tip-off of the stage, body axes", three(Quantity::STAGE_TIP_OFF), " deg/s")?;
-        let rate = row.value(Quantity::SpinRate).map(f64::to_degrees);
+        let rate = Quantity::SpinRate.in_row(&row).map(f64::to_degrees);
         line("spin rate of the payload", optional(rate, 6), " deg/s")?;
         line("wobble", value(Quantity::Wobble), "°")?;
         let (now, least) = (Quantity::Nutation, Quantity::NutationLeast);
         line("nutation, and its bounds", nutation(now, least, Quantity::NutationGreatest), "")?;
-        if row.value(Quantity::NutationBefore).is_some() {
+        if Quantity::NutationBefore.in_row(&row).is_some() {
             let (now, least) = (Quantity::NutationBefore, Quantity::NutationLeastBefore);
             let greatest = Quantity::NutationGreatestBefore;
             line("the same at the start", nutation(now, least, greatest), "")?;
@@ -128,7 +129,7 @@ impl Display for Replay {
         line("angular momentum, inertial axes", three(Quantity::MOMENTUM), " kg·m²/s")?;
         line("angle to its intended direction", value(Quantity::MomentumError), "°")?;
         line("inertia ratio", value(Quantity::InertiaRatio), "")?;
-        if let (None, Some(note)) = (&self.clearance, row.clearance_note()) {
+        if let (None, Some(note)) = (&self.clearance, row.text(CLEARANCE_NOTE)) {
             line("clearance", note.to_string(), "")?;
         }
         if let (Some(outlines), Some(clearance)) = (self.scenario.outlines(), &self.clearance) {
@@ -143,7 +144,7 @@ impl Display for Replay {
                 None => "none".to_owned(),
             };
             line("clearance", nearest, "")?;
-            if let Some(note) = row.clearance_note() {
+            if let Some(note) = row.text(CLEARANCE_NOTE) {
                 line("", note.to_string(), "")?;
             }
             if clearance.shapes().len() > 1 {
@@ -151,7 +152,7 @@ impl Display for Replay {
                     line(&format!("  {}", shapes(s)), approach(s), "")?;
                 }
             }
-            let touch = row.value(Quantity::RecontactTime);
+            let touch = Quantity::RecontactTime.in_row(&row);
             let touch = touch.map_or("none".to_owned(), |time| format!("at {time:.9} s"));
             line(&format!("recontact within {} s", outlines.coast_s()), touch, "")?;
         }

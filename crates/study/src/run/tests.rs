@@ -1,11 +1,11 @@
 //! Runs of scenarios with mated hulls and antennas, backward spins, late and failing springs.
 
 use super::*;
-use crate::{Quantity, Row, RunTable, runner};
+use crate::{Quantity, Row, Table, column::CLEARANCE_NOTE, model::Model, study::tables};
 
 /// The paper's bodies with solids that are in each other at the last release, other shapes as asked, and
 /// all that is dispersed.
-fn rows(payload_shape: &str, spin: &str, springs: &str, coast: &str) -> (Scenario, Vec<RunTable>) {
+fn rows(payload_shape: &str, spin: &str, springs: &str, coast: &str) -> (Scenario, Vec<Table>) {
     let text = Scenario::peck_2003().unwrap().with_runs(120).unwrap().to_toml();
     let solid = |low: f64| {
         let corner = |i: i32| {
@@ -28,22 +28,22 @@ fn rows(payload_shape: &str, spin: &str, springs: &str, coast: &str) -> (Scenari
         solid(0.7)
     );
     let scenario = Scenario::from_toml(&text).unwrap();
-    let models = runner::models(&scenario).unwrap();
+    let models = Model::all(&scenario).unwrap();
     let threads = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-    let tables = runner::run(&scenario, &models[..1], &threads, &|_| {});
+    let tables = tables(&scenario, &models[..1], &threads, &|_| {}).unwrap();
     (scenario, tables)
 }
 
 /// What must be true of every row, whatever was drawn.
 fn check(row: &Row<'_>, drawn: impl Fn(&str) -> Option<f64>) {
-    let value = |q: Quantity| row.value(q);
+    let value = |q: Quantity| q.in_row(row);
     let (clearance, recontact) = (value(Quantity::Clearance), value(Quantity::RecontactTime));
     if recontact.is_some() {
         assert_eq!((clearance, value(Quantity::ClearanceTime)), (Some(0.0), recontact));
     } else {
         assert!(clearance != Some(0.0), "no contact");
     }
-    assert!(clearance.is_some() || row.clearance_note().is_some(), "nothing says why");
+    assert!(clearance.is_some() || row.text(CLEARANCE_NOTE).is_some(), "nothing says why");
     let within = |x: Option<f64>, least: Quantity, greatest: Quantity| {
         let Some(x) = x else { return };
         let (least, greatest) = (value(least).unwrap(), value(greatest).unwrap());
@@ -55,7 +55,7 @@ fn check(row: &Row<'_>, drawn: impl Fn(&str) -> Option<f64>) {
     let before = (Quantity::NutationLeastBefore, Quantity::NutationGreatestBefore);
     within(value(Quantity::NutationBefore), before.0, before.1);
     // A spring has a release if and only if it pushed, which is after its start.
-    let order = row.release_order().unwrap();
+    let order = row.text("release_order").unwrap();
     for spring in 0..4 {
         let release = value(Quantity::SpringRelease(spring));
         let named = order.split([' ', '+']).any(|name| name == (spring + 1).to_string());
@@ -83,18 +83,14 @@ fn every_row_agrees_with_itself() {
         ("", "angular_velocity_rad_per_s = 0.1"),
     ] {
         let (_, tables) = rows(shape, spin, springs, "40.0");
-        let names = tables[0].drawn_columns();
         for row in tables[0].rows().filter(|row| row.failure().is_none()) {
-            let drawn = |name: &str| {
-                let place = names.iter().position(|n| n == name)?;
-                row.drawn().nth(place).flatten()
-            };
+            let drawn = |name: &str| row.number(name);
             check(&row, drawn);
-            touch += u32::from(row.value(Quantity::RecontactTime).is_some());
-            mated += u32::from(row.clearance_note() == Some(ClearanceNote::Mated));
-            backward += u32::from(row.value(Quantity::Nutation2).is_some_and(|x| x > 90.0));
+            touch += u32::from(Quantity::RecontactTime.in_row(&row).is_some());
+            mated += u32::from(row.text(CLEARANCE_NOTE) == Some(&ClearanceNote::Mated.to_string()));
+            backward += u32::from(Quantity::Nutation2.in_row(&row).is_some_and(|x| x > 90.0));
             let late = drawn("spring_1_failure") == Some(0.0);
-            never += u32::from(late && row.value(Quantity::SpringRelease(0)).is_none());
+            never += u32::from(late && Quantity::SpringRelease(0).in_row(&row).is_none());
         }
     }
     assert!(
@@ -114,10 +110,9 @@ fn fast_turning_fails_no_row() {
     let mut partial = 0;
     for row in good {
         assert_eq!(row.status(), "ok");
-        assert!(row.value(Quantity::Nutation).is_some());
-        if let Some(note) = row.clearance_note() {
-            partial += u32::from(matches!(note, ClearanceNote::Partial { .. }));
-        }
+        assert!(Quantity::Nutation.in_row(&row).is_some());
+        let note = row.text(CLEARANCE_NOTE);
+        partial += u32::from(note.is_some_and(|note| note.starts_with("followed to ")));
     }
     println!("{partial} rows are followed in part");
 }

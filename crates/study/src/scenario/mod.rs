@@ -27,8 +27,6 @@ pub(crate) use file::{AxesFile as Axes, ShapeFile};
 pub(crate) use model::{Comparison, Law, ModelSpec};
 pub use parse::{parse_toml, whole_number};
 
-use crate::folder;
-
 const PECK_2003: &str = include_str!("peck-2003.toml");
 
 /// Why a scenario is refused.
@@ -102,7 +100,7 @@ impl Scenario {
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let unread = |source| ScenarioError::Read { path: path.to_owned(), source };
         // One in the folder of a study may have been put aside by a command that was killed.
-        folder::restore(folder::folder_of(path))
+        gyradius_campaign::restore(gyradius_campaign::folder_of(path))
             .map_err(|error| unread(std::io::Error::other(error)))?;
         let text = read_text(path, limits::BYTES).map_err(unread)?;
         Self::from_toml(&text).map_err(|error| match error {

@@ -206,7 +206,7 @@ fn round_trip(text: &str) -> String {
     let resolved = s.to_toml();
     let again = Scenario::from_toml(&resolved).unwrap_or_else(|e| panic!("{e}\n{resolved}"));
     assert_eq!(again.to_toml(), resolved);
-    crate::runner::models(&s).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    crate::model::Model::all(&s).unwrap_or_else(|e| panic!("{e}\n{text}"));
     resolved
 }
 
@@ -300,7 +300,7 @@ fn every_model_can_be_written() {
             let text = with_model(kind.name(), &matched);
             let s = Scenario::from_toml(&text).unwrap();
             assert_eq!(Scenario::from_toml(&s.to_toml()).unwrap().to_toml(), s.to_toml());
-            if let Err(error) = crate::runner::models(&s) {
+            if let Err(error) = crate::model::Model::all(&s) {
                 assert!(error.to_string().starts_with("models.other: basilisk:"), "{error}");
             }
         }

@@ -30,7 +30,7 @@ use name::{Found, Name, look};
 use record::Record;
 
 /// What goes into a folder.
-pub(crate) struct Contents<'a> {
+pub struct Contents<'a> {
     /// What it is called, and its record after it.
     what: &'static str,
     /// The file that tells one from another, without which a folder is not whole.
@@ -46,7 +46,7 @@ pub(crate) struct Contents<'a> {
 impl<'a> Contents<'a> {
     /// `certain` are files that will be written, and folders, which end in `/`, so that what is in their way is found before the work
     /// begins; `same` tells whether a text of the file `mark` is that of what will be written.
-    pub(crate) fn new(
+    pub fn new(
         what: &'static str,
         mark: &'static str,
         certain: impl IntoIterator<Item = String>,
@@ -57,7 +57,7 @@ impl<'a> Contents<'a> {
     }
 
     /// The same as a part of what was written before, of which these files stay as they are.
-    pub(crate) fn keeping(self, kept: impl Fn(&str) -> bool + 'a) -> Self {
+    pub fn keeping(self, kept: impl Fn(&str) -> bool + 'a) -> Self {
         Self { kept: Box::new(kept), ..self }
     }
 }
@@ -70,7 +70,7 @@ impl fmt::Debug for Contents<'_> {
 
 /// A folder being prepared. Dropped before it is published, it leaves no trace.
 #[derive(Debug)]
-pub(crate) struct Folder<'a> {
+pub struct Folder<'a> {
     contents: &'a Contents<'a>,
     /// As it was given.
     place: PathBuf,
@@ -84,7 +84,7 @@ pub(crate) struct Folder<'a> {
 impl<'a> Folder<'a> {
     /// Checks that it may go to `place` and can be written there, before anything is
     /// computed, keeps others out, and first settles what a command before it left unfinished.
-    pub(crate) fn prepare(
+    pub fn prepare(
         place: &Path,
         contents: &'a Contents<'a>,
         force: bool,
@@ -125,14 +125,14 @@ impl<'a> Folder<'a> {
     }
 
     /// Writes a file, making the folders above it. It is in the draft until it is published.
-    pub(crate) fn write(&mut self, name: &str, content: &str) -> Result<(), FolderError> {
+    pub fn write(&mut self, name: &str, content: &str) -> Result<(), FolderError> {
         let mut file = self.create(name)?;
         file.write_all(content.as_bytes()).map_err(|error| self.failed(error.into()))
     }
 
     /// Opens a new file for writing, making the folders above it. It is in the draft until it is
     /// published.
-    pub(crate) fn create(&mut self, name: &str) -> Result<File, FolderError> {
+    pub fn create(&mut self, name: &str) -> Result<File, FolderError> {
         let name = Name::new(name).map_err(|error| self.failed(Problem::Name(error)))?;
         self.journal.create(&self.hidden, name).map_err(|problem| self.failed(problem))
     }
@@ -143,7 +143,7 @@ impl<'a> Folder<'a> {
 
     /// Puts the draft in place of the files of the one that was there, and of nothing else. If
     /// that fails half-way, what was there is put back.
-    pub(crate) fn publish(mut self) -> Result<PathBuf, FolderError> {
+    pub fn publish(mut self) -> Result<PathBuf, FolderError> {
         self.put().map_err(|problem| self.failed(problem))?;
         self.published = true;
         Ok(self.place.clone())
@@ -197,7 +197,7 @@ fn abandon(hidden: &Hidden, made: bool) {
 
 /// Puts one whole study in place if a command was killed while it replaced one by another, removes the
 /// draft of one that was killed before, and touches nothing else. For commands that read a folder.
-pub(crate) fn restore(place: &Path) -> Result<(), FolderError> {
+pub fn restore(place: &Path) -> Result<(), FolderError> {
     let refused = |problem: Problem| FolderError { path: place.to_owned(), problem };
     if !Hidden::is_in(place) {
         return Ok(());
@@ -216,7 +216,7 @@ pub(crate) fn restore(place: &Path) -> Result<(), FolderError> {
 
 /// As [`restore`], for the folder that a file is in, or for a folder and all those below it, through no
 /// link.
-pub(crate) fn restore_all(path: &Path) -> Result<(), FolderError> {
+pub fn restore_all(path: &Path) -> Result<(), FolderError> {
     if !path.is_dir() {
         return restore(folder_of(path));
     }
@@ -235,7 +235,7 @@ pub(crate) fn restore_all(path: &Path) -> Result<(), FolderError> {
 }
 
 /// The folder that a file is in.
-pub(crate) fn folder_of(file: &Path) -> &Path {
+pub fn folder_of(file: &Path) -> &Path {
     // The folder of a name without one is the current folder.
     match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -299,11 +299,25 @@ fn unobstructed<'n>(
 /// Why a folder cannot be used. Nothing of the user's has been touched.
 #[derive(Debug, thiserror::Error)]
 #[error("output folder {}: {problem}", path.display())]
-pub(crate) struct FolderError {
+pub struct FolderError {
     /// As it was given.
     pub(crate) path: PathBuf,
     /// What is wrong with it.
     pub(crate) problem: Problem,
+}
+
+impl FolderError {
+    /// The folder, as it was given.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What is wrong with it.
+    #[must_use]
+    pub fn problem(&self) -> String {
+        self.problem.to_string()
+    }
 }
 
 /// What is wrong with a folder.

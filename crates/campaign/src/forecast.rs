@@ -1,12 +1,14 @@
 //! How long a study will take, from the time of a few of its runs. No result depends on it.
 
-use gyradius_separation::Batch;
 use std::{
     fmt,
     time::{Duration, Instant},
 };
 
-use crate::{model::Model, scenario::Scenario};
+use crate::{
+    simulation::Simulation,
+    table::{Table, TableError},
+};
 
 /// Runs that are timed, of every model: one, and more while they are quick.
 const RUNS: [u64; 3] = [1, 8, 64];
@@ -22,14 +24,25 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    pub(crate) fn of(scenario: &Scenario, models: &[Model], threads: usize) -> Self {
-        let each = models.iter().map(|model| seconds_a_run(scenario, model)).sum::<f64>();
-        let seconds = each * scenario.runs() as f64 / threads.max(1) as f64;
-        Self {
-            runs: scenario.runs() * models.len() as u64,
+    /// Times a few runs of each of some simulations, of which so many are to be done.
+    ///
+    /// # Errors
+    /// A simulation writes rows that do not fit its columns.
+    pub fn of<S: Simulation>(
+        simulations: &[S],
+        runs: u64,
+        threads: usize,
+    ) -> Result<Self, TableError> {
+        let mut each = 0.0;
+        for simulation in simulations {
+            each += seconds_a_run(simulation, runs)?;
+        }
+        let seconds = each * runs as f64 / threads.max(1) as f64;
+        Ok(Self {
+            runs: runs * simulations.len() as u64,
             threads,
             time: Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX),
-        }
+        })
     }
 
     /// The time from the first run to the last, to a factor of two or so.
@@ -39,19 +52,20 @@ impl Forecast {
     }
 }
 
-fn seconds_a_run(scenario: &Scenario, model: &Model) -> f64 {
-    let mut batch = Batch::new(*scenario.settings());
+fn seconds_a_run<S: Simulation>(simulation: &S, most: u64) -> Result<f64, TableError> {
+    let mut worker = simulation.worker();
     let mut seconds = 0.0;
-    for runs in RUNS.into_iter().filter(|runs| *runs == 1 || *runs <= scenario.runs()) {
+    for runs in RUNS.into_iter().filter(|runs| *runs == 1 || *runs <= most) {
+        let mut rows = Table::new("", 0, simulation.columns())?;
         let start = Instant::now();
-        model.run(scenario, 0..runs, &mut batch);
+        simulation.run(0..runs, &mut worker, &mut rows)?;
         let time = start.elapsed();
         seconds = time.as_secs_f64() / runs as f64;
         if time > ENOUGH {
             break;
         }
     }
-    seconds
+    Ok(seconds)
 }
 
 /// In one line.

@@ -8,10 +8,17 @@ use parquet::{
 };
 use std::{fs::File, path::Path};
 
-use crate::column::Cell;
+use crate::cell::Cell;
 
-/// The cells of a run, by the names of their columns; none if the table has no such run.
-pub(crate) fn read(path: &Path, run: u64) -> Result<Option<Vec<(String, Cell)>>, ParquetError> {
+/// The cells of a run in a table that was written, by the names of their columns; none if the table has no
+/// such run.
+///
+/// # Errors
+/// The table cannot be read, or is not of this kind.
+pub fn read_row(
+    path: &Path,
+    run: u64,
+) -> Result<Option<Vec<(String, Cell<'static>)>>, ParquetError> {
     let file = File::open(path).map_err(|e| ParquetError::External(e.into()))?;
     let reader = SerializedFileReader::new(file)?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
@@ -34,7 +41,7 @@ pub(crate) fn read(path: &Path, run: u64) -> Result<Option<Vec<(String, Cell)>>,
 }
 
 /// The cell of a column in the place given.
-fn cell(reader: ColumnReader, place: usize) -> Result<Cell, ParquetError> {
+fn cell(reader: ColumnReader, place: usize) -> Result<Cell<'static>, ParquetError> {
     macro_rules! one {
         ($reader:expr, $cell:expr) => {{
             let mut reader = $reader;
@@ -49,8 +56,9 @@ fn cell(reader: ColumnReader, place: usize) -> Result<Cell, ParquetError> {
         ColumnReader::Int64ColumnReader(r) => one!(r, Cell::Integer),
         ColumnReader::DoubleColumnReader(r) => one!(r, Cell::Number),
         ColumnReader::ByteArrayColumnReader(r) => {
-            let text =
-                |bytes: ByteArray| Cell::Text(String::from_utf8_lossy(bytes.data()).into_owned());
+            let text = |bytes: ByteArray| {
+                Cell::Text(String::from_utf8_lossy(bytes.data()).into_owned().into())
+            };
             one!(r, text)
         }
         _ => return Err(ParquetError::General("a column of a type that no run table has".into())),

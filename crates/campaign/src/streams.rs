@@ -1,3 +1,5 @@
+//! Random streams: one for each run and purpose.
+
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use sha2::{Digest, Sha256};
 
@@ -7,10 +9,12 @@ use sha2::{Digest, Sha256};
 /// What run i draws depends on these four alone, never on threads, order or other purposes: every
 /// run can be replayed alone, and a new purpose shifts no other draw.
 #[derive(Clone, Debug)]
-pub(crate) struct Streams(ChaCha8Rng);
+pub struct Streams(ChaCha8Rng);
 
 impl Streams {
-    pub(crate) fn new(seed: u64, model: &str, purpose: &str) -> Self {
+    /// The streams of a purpose, as “payload inertia”, under a model in a campaign with a seed.
+    #[must_use]
+    pub fn new(seed: u64, model: &str, purpose: &str) -> Self {
         let mut hash = Sha256::new();
         hash.update(b"gyradius random stream 1\0");
         hash.update(seed.to_le_bytes());
@@ -22,7 +26,9 @@ impl Streams {
         Self(ChaCha8Rng::from_seed(hash.finalize().into()))
     }
 
-    pub(crate) fn run(&self, run: u64) -> ChaCha8Rng {
+    /// The generator of a run.
+    #[must_use]
+    pub fn run(&self, run: u64) -> ChaCha8Rng {
         let mut rng = self.0.clone();
         rng.set_stream(run);
         rng

@@ -4,13 +4,14 @@ use std::collections::HashMap;
 
 /// Numbers of runs, some of which have none: eight bytes and a bit each.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Numbers {
+pub struct Numbers {
     values: Vec<f64>,
     /// Whether the run has one, 64 runs a word.
     present: Vec<u64>,
 }
 
 impl Numbers {
+    /// That of the next run.
     pub(crate) fn push(&mut self, value: Option<f64>) {
         let (word, bit) = (self.values.len() / 64, self.values.len() % 64);
         if bit == 0 {
@@ -20,14 +21,25 @@ impl Numbers {
         self.values.push(value.unwrap_or_default());
     }
 
-    pub(crate) fn get(&self, run: usize) -> Option<f64> {
+    /// The number of the run in a place, from 0.
+    #[must_use]
+    pub fn get(&self, run: usize) -> Option<f64> {
         let value = *self.values.get(run)?;
         (self.present[run / 64] >> (run % 64) & 1 == 1).then_some(value)
     }
 
     /// The numbers of the runs that have one, in run order.
-    pub(crate) fn present(&self) -> impl Iterator<Item = f64> {
+    pub fn present(&self) -> impl Iterator<Item = f64> {
         (0..self.values.len()).filter_map(|run| self.get(run))
+    }
+
+    pub(crate) fn truncate(&mut self, runs: usize) {
+        self.values.truncate(runs);
+        self.present.truncate(runs.div_ceil(64));
+        // Bits are added where there are none.
+        if let (Some(last), rest @ 1..) = (self.present.last_mut(), runs % 64) {
+            *last &= (1 << rest) - 1;
+        }
     }
 
     pub(crate) fn append(&mut self, other: &Self) {
@@ -37,21 +49,23 @@ impl Numbers {
     }
 }
 
-/// Texts of runs, each kept once.
+/// Texts of runs, each kept once, and what kind each is.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Texts {
-    texts: Vec<String>,
+    /// Text and kind.
+    texts: Vec<(String, String)>,
+    /// By text, which tells its kind.
     places: HashMap<String, u32>,
     of_run: Vec<Option<u32>>,
 }
 
 impl Texts {
-    pub(crate) fn push(&mut self, text: Option<&str>) {
-        let place = text.map(|text| match self.places.get(text) {
+    pub(crate) fn push(&mut self, text: Option<(&str, &str)>) {
+        let place = text.map(|(text, kind)| match self.places.get(text) {
             Some(place) => *place,
             None => {
                 let place = self.texts.len() as u32;
-                self.texts.push(text.to_owned());
+                self.texts.push((text.to_owned(), kind.to_owned()));
                 self.places.insert(text.to_owned(), place);
                 place
             }
@@ -59,14 +73,24 @@ impl Texts {
         self.of_run.push(place);
     }
 
-    pub(crate) fn get(&self, run: usize) -> Option<&str> {
-        Some(&self.texts[(*self.of_run.get(run)?)? as usize])
+    pub(crate) fn get(&self, run: usize) -> Option<(&str, &str)> {
+        let (text, kind) = &self.texts[(*self.of_run.get(run)?)? as usize];
+        Some((text, kind))
+    }
+
+    /// The texts of the runs that have one, in run order.
+    pub(crate) fn present(&self) -> impl Iterator<Item = (&str, &str)> {
+        (0..self.of_run.len()).filter_map(|run| self.get(run))
     }
 
     pub(crate) fn append(&mut self, other: &Self) {
         for run in 0..other.of_run.len() {
             self.push(other.get(run));
         }
+    }
+
+    pub(crate) fn truncate(&mut self, runs: usize) {
+        self.of_run.truncate(runs);
     }
 }
 
@@ -87,14 +111,15 @@ mod tests {
                 let (mut some_numbers, mut some_texts) = (Numbers::default(), Texts::default());
                 for (number, text) in part {
                     some_numbers.push(*number);
-                    some_texts.push(text.as_deref());
+                    some_texts.push(text.as_deref().map(|text| (text, &text[..text.len().min(1)])));
                 }
                 numbers.append(&some_numbers);
                 texts.append(&some_texts);
             }
             for (run, (number, text)) in runs.iter().enumerate() {
                 prop_assert_eq!(numbers.get(run).map(f64::to_bits), number.map(f64::to_bits));
-                prop_assert_eq!(texts.get(run), text.as_deref());
+                let expected = text.as_deref().map(|text| (text, &text[..text.len().min(1)]));
+                prop_assert_eq!(texts.get(run), expected);
             }
             prop_assert_eq!(numbers.get(runs.len()), None);
             let present: Vec<u64> = runs.iter().filter_map(|(x, _)| x.map(f64::to_bits)).collect();

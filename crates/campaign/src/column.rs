@@ -1,0 +1,91 @@
+//! The columns of a run table: what they are called, what they hold, what they mean.
+
+use std::borrow::Cow;
+
+/// A column of a [`Table`](crate::Table).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    name: Cow<'static, str>,
+    kind: Kind,
+    unit: Option<Cow<'static, str>>,
+    meaning: Cow<'static, str>,
+    optional: bool,
+}
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Numbers, stored bit for bit.
+    Number,
+    /// Whole numbers.
+    Integer,
+    /// Text.
+    Text,
+    /// Yes or no.
+    Flag,
+}
+
+impl Column {
+    /// Numbers in a unit, `1` if they have none.
+    pub fn number(
+        name: impl Into<Cow<'static, str>>,
+        unit: impl Into<Cow<'static, str>>,
+        meaning: impl Into<Cow<'static, str>>,
+    ) -> Self {
+        Self { unit: Some(unit.into()), ..Self::new(name, Kind::Number, meaning) }
+    }
+
+    /// A column without a unit, which some runs may have nothing in.
+    pub fn new(
+        name: impl Into<Cow<'static, str>>,
+        kind: Kind,
+        meaning: impl Into<Cow<'static, str>>,
+    ) -> Self {
+        Self { name: name.into(), kind, unit: None, meaning: meaning.into(), optional: true }
+    }
+
+    /// The same, which every run has something in.
+    #[must_use]
+    pub fn required(self) -> Self {
+        Self { optional: false, ..self }
+    }
+
+    /// Its name in the table.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it holds.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Its unit, of numbers that have one.
+    #[must_use]
+    pub fn unit(&self) -> Option<&str> {
+        self.unit.as_deref()
+    }
+
+    /// What it means, in a sentence.
+    #[must_use]
+    pub fn meaning(&self) -> &str {
+        &self.meaning
+    }
+
+    /// Whether some runs have nothing in it.
+    #[must_use]
+    pub fn is_optional(&self) -> bool {
+        self.optional
+    }
+
+    /// The columns that every table begins with.
+    pub(crate) fn first() -> [Self; 3] {
+        [
+            Self::new("model", Kind::Text, "Name of the model.").required(),
+            Self::new("run", Kind::Integer, "Number of the run, from 0.").required(),
+            Self::new("status", Kind::Text, "`ok`, or the reason why the run failed.").required(),
+        ]
+    }
+}

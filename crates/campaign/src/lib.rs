@@ -1,0 +1,87 @@
+//! Monte Carlo of any simulation: random streams, runs on many threads, the run table, what it amounts to.
+//!
+//! A [`Simulation`] turns random draws into the columns of a [`Table`]. What a run writes depends on (seed,
+//! model, run) alone, because its random numbers come from [`Streams`] that are keyed by these and by a purpose:
+//! the same bits on any number of threads, and every run can be done again alone. A run that fails is a row
+//! with its reason. This crate knows no physics.
+//!
+//! ```
+//! use gyradius_campaign::{Cell, Column, Failure, Simulation, Streams, Table, TableError};
+//! use gyradius_campaign::{SampleSummary, run, threads};
+//! use rand_distr::{Distribution, Normal};
+//!
+//! /// How far a ball flies that is thrown with an uncertain velocity.
+//! struct Throw {
+//!     velocities: Streams,
+//! }
+//!
+//! impl Simulation for Throw {
+//!     type Worker = ();
+//!
+//!     fn columns(&self) -> Vec<Column> {
+//!         vec![
+//!             Column::number("velocity_m_per_s", "m/s", "Velocity, as drawn."),
+//!             Column::number("range_m", "m", "Where the ball lands."),
+//!         ]
+//!     }
+//!
+//!     fn worker(&self) {}
+//!
+//!     fn run(
+//!         &self,
+//!         runs: std::ops::Range<u64>,
+//!         _: &mut (),
+//!         rows: &mut Table,
+//!     ) -> Result<(), TableError> {
+//!         let law = Normal::new(10.0, 3.0).expect("3 is a standard deviation");
+//!         for run in runs {
+//!             let velocity: f64 = law.sample(&mut self.velocities.run(run));
+//!             let backward = || Failure::new("thrown backward", format!("thrown at {velocity} m/s"));
+//!             if velocity > 0.0 {
+//!                 rows.push(None, [velocity.into(), (velocity * velocity / 9.81).into()])?;
+//!             } else {
+//!                 rows.push(Some(backward()), [velocity.into(), Cell::Null])?;
+//!             }
+//!         }
+//!         Ok(())
+//!     }
+//! }
+//!
+//! let throw = Throw { velocities: Streams::new(7, "throw", "velocity") };
+//! let table = run(&throw, "throw", 1000, &threads(None)?, &|_done| {})?;
+//! let ranges: Vec<f64> = table.numbers("range_m").into_iter().flat_map(|n| n.present()).collect();
+//! let range = SampleSummary::new(&ranges, Default::default());
+//! assert!((range.mean.unwrap() - (100.0 + 9.0) / 9.81).abs() < 1.0);
+//! assert_eq!(table.len(), 1000);
+//! # Ok::<(), gyradius_campaign::CampaignError>(())
+//! ```
+
+mod cell;
+mod column;
+mod failure;
+mod folder;
+mod forecast;
+mod sample;
+mod share;
+mod simulation;
+mod stored;
+mod streams;
+mod table;
+mod values;
+
+pub use cell::Cell;
+pub use column::{Column, Kind};
+pub use failure::Failure;
+pub use folder::{Contents, Folder, FolderError, folder_of, restore, restore_all};
+pub use forecast::Forecast;
+pub use sample::SampleSummary;
+pub use share::{Share, counted};
+pub use simulation::{CampaignError, Progress, Simulation, run, threads};
+pub use stored::read_row;
+pub use streams::Streams;
+pub use table::{Row, Table, TableError};
+pub use values::Numbers;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,121 @@
+//! A simulation, and its runs on many threads.
+
+use rayon::prelude::*;
+use std::{
+    ops::Range,
+    sync::atomic::{AtomicU64, Ordering},
+};
+
+use crate::{
+    column::Column,
+    table::{Table, TableError},
+};
+
+/// Runs that a thread takes at a time: many for the lanes of a batch, few for other threads to be idle
+/// at the end.
+const TOGETHER: u64 = 64;
+/// Most threads that may be asked for.
+const MAX_THREADS: usize = 1024;
+
+/// Anything that turns random draws into the columns of a run table.
+///
+/// What run i writes must depend on i alone, and on nothing that other runs do: take its random numbers from
+/// [`Streams`](crate::Streams). Then results are the same bits on any number of threads, and every run can
+/// be done again alone.
+pub trait Simulation: Sync {
+    /// What a thread keeps from some runs to the next, such as a batch; `()` if nothing.
+    type Worker;
+
+    /// The columns that a run fills, which follow `model`, `run` and `status`.
+    fn columns(&self) -> Vec<Column>;
+
+    /// A worker for a thread that begins.
+    fn worker(&self) -> Self::Worker;
+
+    /// Does these runs and pushes a row for each of them, in their order. A run that fails is a row too, with
+    /// what it has and its [`Failure`](crate::Failure).
+    ///
+    /// # Errors
+    /// A row does not fit the columns.
+    fn run(
+        &self,
+        runs: Range<u64>,
+        worker: &mut Self::Worker,
+        rows: &mut Table,
+    ) -> Result<(), TableError>;
+}
+
+/// Told how many runs are done.
+pub type Progress<'a> = &'a (dyn Fn(u64) + Sync);
+
+/// Does the runs `0..runs` of a simulation on many threads. Rows come in run order.
+///
+/// # Errors
+/// The columns are refused, or the simulation writes rows that do not fit them, or not one for each run.
+pub fn run<S: Simulation>(
+    simulation: &S,
+    model: &str,
+    runs: u64,
+    threads: &rayon::ThreadPool,
+    progress: Progress<'_>,
+) -> Result<Table, CampaignError> {
+    let mut whole = Table::new(model, 0, simulation.columns())?;
+    let done = AtomicU64::new(0);
+    let part = |worker: &mut S::Worker, group: u64| {
+        let first = group * TOGETHER;
+        let last = (first + TOGETHER).min(runs);
+        let mut part = whole.from_run(first);
+        simulation.run(first..last, worker, &mut part)?;
+        if part.len() as u64 != last - first {
+            return Err(CampaignError::Rows { runs: first..last, rows: part.len() });
+        }
+        progress(done.fetch_add(last - first, Ordering::Relaxed) + last - first);
+        Ok(part)
+    };
+    let groups = (0..runs.div_ceil(TOGETHER)).into_par_iter();
+    let parts: Vec<Table> = threads.install(|| {
+        groups.map_init(|| simulation.worker(), part).collect::<Result<_, CampaignError>>()
+    })?;
+    for part in parts {
+        whole.append(part);
+    }
+    Ok(whole)
+}
+
+/// So many threads, or as many as the machine has.
+///
+/// # Errors
+/// The number is not between 1 and 1024, or they cannot be started.
+pub fn threads(number: Option<usize>) -> Result<rayon::ThreadPool, CampaignError> {
+    if let Some(number) = number.filter(|number| !(1..=MAX_THREADS).contains(number)) {
+        let problem = format!("{number}: it must be between 1 and {MAX_THREADS}");
+        return Err(CampaignError::Threads { problem });
+    }
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(number.unwrap_or(0))
+        .build()
+        .map_err(|e| CampaignError::Threads { problem: e.to_string() })
+}
+
+/// Why a campaign cannot be done.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CampaignError {
+    /// The columns or a row are refused.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The simulation wrote another number of rows than it was asked for.
+    #[error("runs {} to {}: {rows} rows, and there must be one for each run", runs.start, runs.end - 1)]
+    Rows {
+        /// The runs asked for.
+        runs: Range<u64>,
+        /// How many rows it wrote.
+        rows: usize,
+    },
+    /// The number of threads is out of range, or they cannot be started.
+    #[error("threads: {problem}")]
+    Threads {
+        /// What is wrong.
+        problem: String,
+    },
+}

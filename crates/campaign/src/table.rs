@@ -1,0 +1,493 @@
+//! The run table: what runs leave, by columns.
+
+use parquet::{
+    basic::{Compression, LogicalType, Repetition, Type as Physical},
+    data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type},
+    errors::ParquetError,
+    file::{
+        properties::WriterProperties,
+        writer::{SerializedFileWriter, SerializedRowGroupWriter},
+    },
+    schema::types::Type,
+};
+use std::{
+    borrow::Cow,
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+    io::Write,
+    ops::Range,
+    sync::Arc,
+};
+
+use crate::{
+    cell::Cell,
+    column::{Column, Kind},
+    failure::Failure,
+    values::{Numbers, Texts},
+};
+
+/// Rows of one row group: enough to compress well, little enough to read in part.
+const ROWS_PER_GROUP: usize = 131_072;
+
+/// The runs of one model, in run order.
+///
+/// The columns are `model`, `run` and `status`, and then those of the simulation. A run that failed is a row
+/// with its reason in `status`.
+#[derive(Clone, Debug)]
+pub struct Table {
+    model: String,
+    /// Number of the first run.
+    first: u64,
+    len: usize,
+    /// `model`, `run`, `status`, and those of the simulation.
+    columns: Arc<[Column]>,
+    /// One of each column of the simulation.
+    values: Vec<Values>,
+    failures: BTreeMap<usize, Failure>,
+}
+
+#[derive(Clone, Debug)]
+enum Values {
+    Numbers(Numbers),
+    Integers(Vec<Option<i64>>),
+    Texts(Texts),
+    Flags(Vec<Option<bool>>),
+}
+
+/// A run of a [`Table`].
+#[derive(Clone, Copy)]
+pub struct Row<'a> {
+    table: &'a Table,
+    place: usize,
+}
+
+/// Columns before those of the simulation.
+const OWN: usize = 3;
+
+impl Table {
+    /// A table for the runs of a model from the number `first` on, without any yet.
+    ///
+    /// # Errors
+    /// Two columns have the same name, or one has a name that a table begins with, or none.
+    pub fn new(model: &str, first: u64, columns: Vec<Column>) -> Result<Self, TableError> {
+        let mut names = BTreeSet::new();
+        let columns: Arc<[Column]> = Column::first().into_iter().chain(columns).collect();
+        for column in columns.iter() {
+            if column.name().is_empty() || !names.insert(column.name()) {
+                return Err(TableError::Name { column: column.name().to_owned() });
+            }
+        }
+        let values = columns[OWN..].iter().map(|column| Values::new(column.kind()));
+        let (model, values) = (model.to_owned(), values.collect());
+        Ok(Self { model, first, len: 0, columns, values, failures: BTreeMap::new() })
+    }
+
+    /// A table of the same model and columns for runs from another number on.
+    #[must_use]
+    pub fn from_run(&self, first: u64) -> Self {
+        let values = self.columns[OWN..].iter().map(|column| Values::new(column.kind()));
+        Self {
+            model: self.model.clone(),
+            first,
+            len: 0,
+            columns: Arc::clone(&self.columns),
+            values: values.collect(),
+            failures: BTreeMap::new(),
+        }
+    }
+
+    /// The next run: why it failed, if it did, and what it has in each column of the simulation, in their
+    /// order.
+    ///
+    /// # Errors
+    /// There are more or fewer cells than columns, or one does not go into its column. The table is as it was.
+    pub fn push<'c>(
+        &mut self,
+        failure: Option<Failure>,
+        cells: impl IntoIterator<Item = Cell<'c>>,
+    ) -> Result<(), TableError> {
+        let mut filled = 0;
+        let mut refused = None;
+        for cell in cells {
+            let Some(values) = self.values.get_mut(filled) else {
+                refused = Some(TableError::Cells { columns: self.values.len() });
+                break;
+            };
+            if !values.push(&cell)
+                || (cell == Cell::Null && !self.columns[OWN + filled].is_optional())
+            {
+                let column = self.columns[OWN + filled].name().to_owned();
+                refused = Some(TableError::Cell { column, cell: format!("{cell:?}") });
+                break;
+            }
+            filled += 1;
+        }
+        if refused.is_none() && filled < self.values.len() {
+            refused = Some(TableError::Cells { columns: self.values.len() });
+        }
+        if let Some(error) = refused {
+            for values in &mut self.values {
+                values.truncate(self.len);
+            }
+            return Err(error);
+        }
+        self.failures.extend(failure.map(|failure| (self.len, failure)));
+        self.len += 1;
+        Ok(())
+    }
+
+    /// Appends the runs of another table of the same columns, that come next.
+    pub(crate) fn append(&mut self, next: Self) {
+        for (values, more) in self.values.iter_mut().zip(next.values) {
+            values.append(more);
+        }
+        let failures = next.failures.into_iter();
+        self.failures.extend(failures.map(|(place, failure)| (self.len + place, failure)));
+        self.len += next.len;
+    }
+
+    /// Name of the model.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// How many runs it has.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether it has no runs.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// All columns, `model`, `run` and `status` first.
+    #[must_use]
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The run in a place, from 0, of [`len`](Self::len).
+    #[must_use]
+    pub fn row(&self, place: usize) -> Option<Row<'_>> {
+        (place < self.len).then_some(Row { table: self, place })
+    }
+
+    /// Its runs.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = Row<'_>> {
+        (0..self.len).map(|place| Row { table: self, place })
+    }
+
+    /// The runs that failed, and why.
+    pub fn failures(&self) -> impl ExactSizeIterator<Item = (u64, &Failure)> {
+        self.failures.iter().map(|(place, failure)| (self.first + *place as u64, failure))
+    }
+
+    /// The numbers in a column, one for each run, if it has numbers.
+    #[must_use]
+    pub fn numbers(&self, column: &str) -> Option<&Numbers> {
+        match self.column(column)? {
+            Values::Numbers(numbers) => Some(numbers),
+            Values::Integers(_) | Values::Texts(_) | Values::Flags(_) => None,
+        }
+    }
+
+    /// The numbers in a column of the runs that have one, in run order; none if it has no numbers.
+    #[must_use]
+    pub fn values(&self, column: &str) -> Option<Vec<f64>> {
+        Some(self.numbers(column)?.present().collect())
+    }
+
+    /// The flags in a column, one for each run; empty if it has no flags.
+    #[must_use]
+    pub fn flags(&self, column: &str) -> &[Option<bool>] {
+        match self.column(column) {
+            Some(Values::Flags(flags)) => flags,
+            Some(Values::Numbers(_) | Values::Integers(_) | Values::Texts(_)) | None => &[],
+        }
+    }
+
+    /// The texts in a column of the simulation with what kind they are, of the runs that have one, in run
+    /// order.
+    pub fn notes(&self, column: &str) -> impl Iterator<Item = (&str, &str)> {
+        let texts = match self.column(column) {
+            Some(Values::Texts(texts)) => Some(texts),
+            Some(Values::Numbers(_) | Values::Integers(_) | Values::Flags(_)) | None => None,
+        };
+        texts.into_iter().flat_map(Texts::present)
+    }
+
+    fn column(&self, column: &str) -> Option<&Values> {
+        let place = self.columns[OWN..].iter().position(|other| other.name() == column)?;
+        self.values.get(place)
+    }
+
+    /// Writes the table as Parquet. Numbers are stored as they are, bit for bit.
+    ///
+    /// # Errors
+    /// Writing fails.
+    pub fn write_parquet(&self, output: impl Write + Send) -> Result<(), ParquetError> {
+        let fields = self.columns.iter().map(|column| Ok(Arc::new(field(column)?)));
+        let fields = fields.collect::<Result<_, ParquetError>>()?;
+        let schema = Type::group_type_builder("run").with_fields(fields).build()?;
+        let properties =
+            WriterProperties::builder().set_compression(Compression::UNCOMPRESSED).build();
+        let mut writer = SerializedFileWriter::new(output, Arc::new(schema), Arc::new(properties))?;
+        for first in (0..self.len).step_by(ROWS_PER_GROUP) {
+            let places = first..(first + ROWS_PER_GROUP).min(self.len);
+            let mut group = writer.next_row_group()?;
+            self.write_own(&mut group, places.clone())?;
+            for (column, values) in self.columns[OWN..].iter().zip(&self.values) {
+                values.write(&mut group, column, places.clone())?;
+            }
+            group.close()?;
+        }
+        writer.close()?;
+        Ok(())
+    }
+
+    /// Writes `model`, `run` and `status`.
+    fn write_own<W: Write + Send>(
+        &self,
+        group: &mut SerializedRowGroupWriter<'_, W>,
+        places: Range<usize>,
+    ) -> Result<(), ParquetError> {
+        let [model, run, status] = Column::first();
+        let models = places.clone().map(|_| Some(ByteArray::from(self.model.as_str())));
+        write::<ByteArrayType, _>(group, &model, models.collect())?;
+        // There are fewer runs than 2⁶³.
+        let runs = places.clone().map(|place| Some((self.first + place as u64) as i64));
+        write::<Int64Type, _>(group, &run, runs.collect())?;
+        let of = |place| Row { table: self, place }.status().as_ref().into();
+        write::<ByteArrayType, _>(group, &status, places.map(|place| Some(of(place))).collect())
+    }
+}
+
+impl Values {
+    fn new(kind: Kind) -> Self {
+        match kind {
+            Kind::Number => Self::Numbers(Numbers::default()),
+            Kind::Integer => Self::Integers(Vec::new()),
+            Kind::Text => Self::Texts(Texts::default()),
+            Kind::Flag => Self::Flags(Vec::new()),
+        }
+    }
+
+    /// Adds a cell and says whether it goes there.
+    fn push(&mut self, cell: &Cell<'_>) -> bool {
+        match (self, cell) {
+            (Self::Numbers(numbers), Cell::Number(number)) => numbers.push(Some(*number)),
+            (Self::Numbers(numbers), Cell::Null) => numbers.push(None),
+            (Self::Integers(integers), Cell::Integer(integer)) => integers.push(Some(*integer)),
+            (Self::Integers(integers), Cell::Null) => integers.push(None),
+            (Self::Texts(texts), Cell::Text(text)) => texts.push(Some((text, text))),
+            (Self::Texts(texts), Cell::Note { kind, text }) => texts.push(Some((text, kind))),
+            (Self::Texts(texts), Cell::Null) => texts.push(None),
+            (Self::Flags(flags), Cell::Flag(flag)) => flags.push(Some(*flag)),
+            (Self::Flags(flags), Cell::Null) => flags.push(None),
+            (Self::Numbers(_) | Self::Integers(_) | Self::Texts(_) | Self::Flags(_), _) => {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn append(&mut self, next: Self) {
+        match (self, next) {
+            (Self::Numbers(numbers), Self::Numbers(more)) => numbers.append(&more),
+            (Self::Integers(integers), Self::Integers(more)) => integers.extend(more),
+            (Self::Texts(texts), Self::Texts(more)) => texts.append(&more),
+            (Self::Flags(flags), Self::Flags(more)) => flags.extend(more),
+            // Tables of the same columns have the same kinds.
+            (Self::Numbers(_) | Self::Integers(_) | Self::Texts(_) | Self::Flags(_), _) => {}
+        }
+    }
+
+    fn truncate(&mut self, len: usize) {
+        match self {
+            Self::Numbers(numbers) => numbers.truncate(len),
+            Self::Integers(integers) => integers.truncate(len),
+            Self::Texts(texts) => texts.truncate(len),
+            Self::Flags(flags) => flags.truncate(len),
+        }
+    }
+
+    fn cell(&self, place: usize) -> Cell<'_> {
+        match self {
+            Self::Numbers(numbers) => numbers.get(place).into(),
+            Self::Integers(integers) => {
+                integers.get(place).copied().flatten().map_or(Cell::Null, Cell::Integer)
+            }
+            Self::Texts(texts) => texts.get(place).map_or(Cell::Null, |(text, kind)| {
+                if text == kind {
+                    Cell::Text(text.into())
+                } else {
+                    Cell::Note { kind: kind.into(), text: text.into() }
+                }
+            }),
+            Self::Flags(flags) => {
+                flags.get(place).copied().flatten().map_or(Cell::Null, Cell::Flag)
+            }
+        }
+    }
+
+    fn write<W: Write + Send>(
+        &self,
+        group: &mut SerializedRowGroupWriter<'_, W>,
+        column: &Column,
+        places: Range<usize>,
+    ) -> Result<(), ParquetError> {
+        match self {
+            Self::Numbers(numbers) => {
+                let values = places.map(|place| numbers.get(place)).collect();
+                write::<DoubleType, _>(group, column, values)
+            }
+            Self::Integers(integers) => {
+                write::<Int64Type, _>(group, column, integers[places].to_vec())
+            }
+            Self::Texts(texts) => {
+                let values = places.map(|place| Some(texts.get(place)?.0.into())).collect();
+                write::<ByteArrayType, _>(group, column, values)
+            }
+            Self::Flags(flags) => write::<BoolType, _>(group, column, flags[places].to_vec()),
+        }
+    }
+}
+
+/// The column in Parquet.
+fn field(column: &Column) -> Result<Type, ParquetError> {
+    let (physical, logical) = match column.kind() {
+        Kind::Integer => (Physical::INT64, None),
+        Kind::Number => (Physical::DOUBLE, None),
+        Kind::Flag => (Physical::BOOLEAN, None),
+        Kind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+    };
+    let repetition = if column.is_optional() { Repetition::OPTIONAL } else { Repetition::REQUIRED };
+    Type::primitive_type_builder(column.name(), physical)
+        .with_repetition(repetition)
+        .with_logical_type(logical)
+        .build()
+}
+
+fn write<T: DataType, W: Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
+    column: &Column,
+    values: Vec<Option<T::T>>,
+) -> Result<(), ParquetError> {
+    let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
+    let values: Vec<T::T> = values.into_iter().flatten().collect();
+    if let Some(mut writer) = group.next_column()? {
+        let levels = column.is_optional().then_some(&levels[..]);
+        writer.typed::<T>().write_batch(&values, levels, None)?;
+        writer.close()?;
+    }
+    Ok(())
+}
+
+impl<'a> Row<'a> {
+    /// Its number, from 0.
+    #[must_use]
+    pub fn run(&self) -> u64 {
+        self.table.first + self.place as u64
+    }
+
+    /// `ok`, or why the run failed.
+    #[must_use]
+    pub fn status(&self) -> Cow<'a, str> {
+        self.failure().map_or("ok".into(), |failure| failure.message().into())
+    }
+
+    /// Why the run failed, if it did.
+    #[must_use]
+    pub fn failure(&self) -> Option<&'a Failure> {
+        self.table.failures.get(&self.place)
+    }
+
+    /// What stands in a column of the table; none if there is no such column.
+    #[must_use]
+    pub fn cell(&self, column: &str) -> Option<Cell<'a>> {
+        let place = self.table.columns.iter().position(|other| other.name() == column)?;
+        Some(self.cell_at(place))
+    }
+
+    /// The number in a column; none if there is none.
+    #[must_use]
+    pub fn number(&self, column: &str) -> Option<f64> {
+        self.table.numbers(column)?.get(self.place)
+    }
+
+    /// The text in a column of the simulation; none if there is none.
+    #[must_use]
+    pub fn text(&self, column: &str) -> Option<&'a str> {
+        match self.table.column(column)? {
+            Values::Texts(texts) => Some(texts.get(self.place)?.0),
+            Values::Numbers(_) | Values::Integers(_) | Values::Flags(_) => None,
+        }
+    }
+
+    /// The flag in a column; none if there is none.
+    #[must_use]
+    pub fn flag(&self, column: &str) -> Option<bool> {
+        self.table.flags(column).get(self.place).copied().flatten()
+    }
+
+    /// What stands in each column of the table, in their order.
+    pub fn cells(&self) -> impl Iterator<Item = (&'a Column, Cell<'a>)> {
+        let row = *self;
+        let columns = self.table.columns.iter().enumerate();
+        columns.map(move |(place, column)| (column, row.cell_at(place)))
+    }
+
+    fn cell_at(&self, column: usize) -> Cell<'a> {
+        match column {
+            0 => Cell::Text(self.table.model.as_str().into()),
+            1 => Cell::Integer(self.run() as i64),
+            2 => self.failure().map_or(Cell::Text("ok".into()), |failure| Cell::Note {
+                kind: failure.kind().into(),
+                text: failure.message().into(),
+            }),
+            other => self.table.values[other - OWN].cell(self.place),
+        }
+    }
+}
+
+/// Rows are the same if all their cells are, to the bit.
+impl PartialEq for Row<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cells().eq(other.cells())
+    }
+}
+
+impl fmt::Debug for Row<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_map().entries(self.cells().map(|(column, cell)| (column.name(), cell))).finish()
+    }
+}
+
+/// Why a table or a row of it is refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TableError {
+    /// Two columns have the same name, or one has none.
+    #[error("column {column:?}: it must have a name, which no other column has")]
+    Name {
+        /// The column.
+        column: String,
+    },
+    /// A row has more or fewer cells than there are columns.
+    #[error("a row must have {columns} cells, one for each column of the simulation")]
+    Cells {
+        /// How many there must be.
+        columns: usize,
+    },
+    /// A cell does not go into its column.
+    #[error("column {column:?}: {cell} does not go there")]
+    Cell {
+        /// The column.
+        column: String,
+        /// The cell.
+        cell: String,
+    },
+}
