@@ -4,6 +4,7 @@ use gyradius_campaign::Table;
 use gyradius_dispersion::ModelKind;
 use gyradius_report::percent;
 use gyradius_statistics::Interval;
+use rayon::prelude::*;
 
 use crate::{
     body::{Body, Entry},
@@ -260,8 +261,9 @@ fn reduces(summary: &Summary) -> Claim {
 fn shapes(summary: &Summary, tables: &[Table]) -> Claim {
     let mut findings = Vec::new();
     let mut parts = Vec::new();
+    let shapes: Vec<Shape> = tables.par_iter().map(Shape::of).collect();
     for comparison in &summary.comparisons {
-        let of = |name: &str| tables.iter().find(|t| t.model() == name).map(Shape::of);
+        let of = |name: &str| Some(&shapes[tables.iter().position(|t| t.model() == name)?]);
         let (Some(physical), Some(naive)) = (of(&comparison.physical), of(&comparison.naive))
         else {
             continue;

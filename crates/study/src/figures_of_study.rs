@@ -3,10 +3,12 @@
 use gyradius_campaign::Table;
 use gyradius_report::{AttitudeSpheres, Cloud, Figure, HistogramGrid, Panel, Picture, Series};
 use nalgebra::UnitQuaternion;
+use rayon::prelude::*;
 
 use crate::{
     body::{Body, Entry},
     column,
+    compare::EVERY_MODEL,
     quantity::Quantity,
     scenario::Scenario,
     summary::Summary,
@@ -19,8 +21,6 @@ const INERTIA_OF_PAYLOAD: &str = "figure-5-8-payload";
 const INERTIA_OF_STAGE: &str = "figure-5-8-stage";
 const ANGLES: &str = "figure-6-9";
 const CLEARANCE: &str = "clearance";
-/// Of all models of inertia.
-pub(crate) const EVERY_MODEL: &str = "figure-models";
 
 fn of_pair(name: &str, physical: &str, naive: &str) -> String {
     format!("{name}-{physical}-vs-{naive}")
@@ -45,8 +45,7 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[Table])
         Some(_) => format!("{what} ({number})"),
         None => what.to_owned(),
     };
-    let mut figures: Vec<Figure> = attitudes(scenario, tables, &numbered).into_iter().collect();
-    for comparison in scenario.comparisons() {
+    let pairs = scenario.comparisons().par_iter().flat_map(|comparison| {
         let (physical, naive) = (&tables[comparison.physical], &tables[comparison.naive]);
         let title = |what: &str| format!("{what}: {} and {}", physical.model(), naive.model());
         let grid = |name: &str, what: &str, quantities: &[Option<Quantity>], columns: usize| {
@@ -75,34 +74,32 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[Table])
                 picture: Picture::Histograms(HistogramGrid::new(&title(what), &panels, columns)),
             }
         };
-        figures.push(grid(
-            RATIO_AND_WOBBLE,
-            &numbered("Inertia ratio and wobble", "Figures 4 and 7"),
-            &[Some(Quantity::InertiaRatio), Some(Quantity::Wobble)],
-            2,
-        ));
-        figures.push(grid(
-            INERTIA_OF_PAYLOAD,
-            &numbered("Inertia of the payload, in matrix order", "Figures 5 and 8"),
-            &matrix_order(Body::Payload),
-            3,
-        ));
-        figures.push(grid(
-            INERTIA_OF_STAGE,
-            &numbered("Inertia of the stage, in matrix order", "Figures 5 and 8"),
-            &matrix_order(Body::Stage),
-            3,
-        ));
-        figures.push(grid(
-            ANGLES,
-            &numbered("Wobble, nutation and coning", "Figures 6 and 9"),
-            &[Some(Quantity::Wobble), Some(Quantity::Nutation), Some(Quantity::Cone)],
-            3,
-        ));
-    }
-    figures.extend(clearance(scenario, summary, tables));
-    figures.extend(summary.every_model.figure());
-    figures
+        let first = vec![Some(Quantity::InertiaRatio), Some(Quantity::Wobble)];
+        let angles = [Quantity::Wobble, Quantity::Nutation, Quantity::Cone].map(Some);
+        let inertia = |body: Body| {
+            let what = format!("Inertia of the {}, in matrix order", body.name());
+            (numbered(&what, "Figures 5 and 8"), matrix_order(body).to_vec())
+        };
+        let [(payload, of_payload), (stage, of_stage)] = Body::BOTH.map(inertia);
+        let figures = [
+            (RATIO_AND_WOBBLE, numbered("Inertia ratio and wobble", "Figures 4 and 7"), first, 2),
+            (INERTIA_OF_PAYLOAD, payload, of_payload, 3),
+            (INERTIA_OF_STAGE, stage, of_stage, 3),
+            (
+                ANGLES,
+                numbered("Wobble, nutation and coning", "Figures 6 and 9"),
+                angles.to_vec(),
+                3,
+            ),
+        ];
+        let figures = figures
+            .par_iter()
+            .map(|(name, what, quantities, columns)| grid(name, what, quantities, *columns));
+        figures.collect::<Vec<_>>()
+    });
+    let first = attitudes(scenario, tables, &numbered).into_iter();
+    let last = clearance(scenario, summary, tables).into_iter();
+    first.chain(pairs.collect::<Vec<_>>()).chain(last).chain(summary.every_model.figure()).collect()
 }
 
 /// How near the bodies come: a comparison a panel, or a model where nothing is compared.

@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 use crate::{
     CompareOptions, ModelComparison, Replay, Scenario, compare,
     model::Model,
-    replay, report,
-    study::{results, tables},
+    replay,
+    results::Pages,
+    study::{judge, tables},
 };
 
 /// Elements without content.
@@ -177,10 +178,10 @@ fn report_of(scenario: &Scenario) -> String {
     let models = Model::all(scenario).unwrap();
     let threads = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let tables = tables(scenario, &models, &threads, &|_| {}).unwrap();
-    let summary = results(scenario, &models, &tables).unwrap();
+    let summary = judge(scenario, &models, &tables).unwrap();
     // The end of a study on the terminal is made of the same.
     assert!(!summary.to_string().contains("[0.00") && !summary.to_string().contains("0 % ["));
-    report::html(scenario, &summary)
+    Pages::new(scenario, &summary).report().to_owned()
 }
 
 /// The paper's study with names that are markup, with what else can be told: outlines, dispersions.

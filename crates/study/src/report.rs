@@ -14,7 +14,12 @@ use crate::{
     summary::{ClearanceSummary, ComparisonSummary, ModelSummary, Summary},
 };
 
-pub(crate) fn html(scenario: &Scenario, summary: &Summary) -> String {
+/// The page, with the figures of the summary as they are drawn, in their order.
+pub(crate) fn html<'a>(
+    scenario: &Scenario,
+    summary: &Summary,
+    drawn: impl Iterator<Item = &'a str>,
+) -> String {
     let content = html! {
         (head(summary))
         (results(summary))
@@ -25,7 +30,7 @@ pub(crate) fn html(scenario: &Scenario, summary: &Summary) -> String {
         (far_lobe(summary))
         (dispersed(summary))
         (summary.every_model.markup())
-        (all_figures(&summary.figures))
+        (all_figures(&summary.figures, drawn))
         (inputs(scenario, summary))
     };
     page(&format!("gyradius study: {}", summary.scenario), "", &content)
@@ -442,13 +447,13 @@ fn dispersed(summary: &Summary) -> Markup {
     }
 }
 
-fn all_figures(figures: &[Figure]) -> Markup {
+fn all_figures<'a>(figures: &[Figure], drawn: impl Iterator<Item = &'a str>) -> Markup {
     html! {
         h2 { "Figures" }
-        @for figure in figures {
+        @for (figure, svg) in figures.iter().zip(drawn) {
             figure id=(figure.name) {
                 // Made by this program, every text in it escaped.
-                (PreEscaped(figure.svg()))
+                (PreEscaped(svg))
                 figcaption { (figure.caption) ". " code { (figure.file()) } }
             }
         }

@@ -2,7 +2,8 @@
 
 use gyradius_campaign::{Contents, Folder, FolderError, restore};
 use gyradius_formats::read_text;
-use gyradius_report::file_of;
+use gyradius_report::{Figure, file_of};
+use rayon::prelude::*;
 use serde_json::Value;
 use std::{
     io,
@@ -129,7 +130,11 @@ impl Results {
     /// The report, a page of HTML that needs nothing but itself.
     #[must_use]
     pub fn report(&self) -> String {
-        report::html(&self.scenario, &self.summary)
+        self.pages().report
+    }
+
+    fn pages(&self) -> Pages {
+        Pages::new(&self.scenario, &self.summary)
     }
 
     /// Makes the figures and the report again, in the study's folder or in another; returns the folder.
@@ -141,36 +146,43 @@ impl Results {
     /// Something in the study's folder was changed after the study, or the other folder holds something else
     /// and `force` is not set; something cannot be written. What was there stays as it was.
     pub fn write_report(&self, out: Option<&Path>, force: bool) -> Result<PathBuf, StudyError> {
-        let report = self.report();
+        let pages = self.pages();
         let names = figures_of_study::names(&self.scenario).into_iter().map(|name| file_of(&name));
         let certain = names.chain(["report.html", "figures/"].map(str::to_owned));
         let contents = match out {
-            Some(_) => Contents::new("report", "report.html", certain, |text| text == report),
+            Some(_) => Contents::new("report", "report.html", certain, |text| text == pages.report),
             None => Contents::new("study", "summary.json", certain, |_| true)
                 .keeping(|name| name != "report.html" && !name.starts_with("figures/")),
         };
         let mut folder = Folder::prepare(out.unwrap_or(&self.folder), &contents, force)?;
-        write_figures(&mut folder, &self.summary)?;
-        folder.write("report.html", &report)?;
+        pages.write(&mut folder)?;
         Ok(folder.publish()?)
     }
 }
 
-/// Writes the results and the report made from what a reader of the folder has; returns the results as read.
-pub(crate) fn write(
-    folder: &mut Folder<'_>,
-    scenario: &Scenario,
-    summary: &Summary,
-) -> Result<Summary, StudyError> {
-    folder.write("scenario.toml", &scenario.to_toml())?;
-    let written = serde_json::to_string_pretty(summary)? + "\n";
-    folder.write("summary.json", &written)?;
-    let summary: Summary = serde_json::from_str(&written)?;
-    write_figures(folder, &summary)?;
-    folder.write("report.html", &report::html(scenario, &summary))?;
-    Ok(summary)
+/// The figures drawn and the report made.
+pub(crate) struct Pages {
+    /// Files of the figures, and what is in them.
+    figures: Vec<(String, String)>,
+    report: String,
 }
 
-fn write_figures(folder: &mut Folder<'_>, summary: &Summary) -> Result<(), FolderError> {
-    summary.figures.iter().try_for_each(|figure| folder.write(&figure.file(), &figure.svg()))
+impl Pages {
+    /// From results that were read back.
+    pub(crate) fn new(scenario: &Scenario, summary: &Summary) -> Self {
+        let drawn = |figure: &Figure| (figure.file(), figure.svg());
+        let figures: Vec<_> = summary.figures.par_iter().map(drawn).collect();
+        let report = report::html(scenario, summary, figures.iter().map(|(_, svg)| svg.as_str()));
+        Self { figures, report }
+    }
+
+    #[cfg(test)]
+    pub(crate) fn report(&self) -> &str {
+        &self.report
+    }
+
+    pub(crate) fn write(&self, folder: &mut Folder<'_>) -> Result<(), FolderError> {
+        self.figures.iter().try_for_each(|(file, svg)| folder.write(file, svg))?;
+        folder.write("report.html", &self.report)
+    }
 }

@@ -4,6 +4,7 @@ use gyradius_campaign::{
 use gyradius_report::file_of;
 use gyradius_statistics::StatisticsError;
 use parquet::errors::ParquetError;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 use crate::{
@@ -11,6 +12,7 @@ use crate::{
     compare::Section,
     figures_of_study,
     model::{Model, Separations},
+    results::Pages,
 };
 
 /// Why a study could not be done. Nothing has been overwritten.
@@ -30,7 +32,7 @@ pub enum StudyError {
     },
     /// A run table cannot be written.
     #[error("cannot write the run table of {model}: {source}")]
-    Table {
+    RunTable {
         /// The model.
         model: String,
         /// Why.
@@ -109,15 +111,26 @@ impl Study {
         say(Forecast::of(&simulations, scenario.runs(), threads.current_num_threads())
             .map_err(CampaignError::from)?);
         let tables = tables(scenario, &models, &threads, progress)?;
-        let summary = threads.install(|| results(scenario, &models, &tables))?;
+        let summary = threads.install(|| judge(scenario, &models, &tables))?;
 
-        for table in &tables {
-            let file = folder.create(&format!("runs/{}/runs.parquet", table.model()))?;
-            table
-                .write_parquet(file)
-                .map_err(|source| StudyError::Table { model: table.model().to_owned(), source })?;
-        }
-        let summary = crate::results::write(&mut folder, scenario, &summary)?;
+        let files = tables.iter().map(|table| {
+            Ok((table, folder.create(&format!("runs/{}/runs.parquet", table.model()))?))
+        });
+        let files = files.collect::<Result<Vec<_>, FolderError>>()?;
+        threads.install(|| {
+            files.into_par_iter().try_for_each(|(table, file)| {
+                table.write_parquet(file).map_err(|source| StudyError::RunTable {
+                    model: table.model().to_owned(),
+                    source,
+                })
+            })
+        })?;
+        folder.write("scenario.toml", &scenario.to_toml())?;
+        let written = serde_json::to_string_pretty(&summary)? + "\n";
+        folder.write("summary.json", &written)?;
+        // The report is made from what a reader of the folder has.
+        let summary: Summary = serde_json::from_str(&written)?;
+        threads.install(|| Pages::new(scenario, &summary)).write(&mut folder)?;
         Ok(Self { folder: folder.publish()?, tables, summary })
     }
 
@@ -151,7 +164,7 @@ pub fn restore_studies(path: &Path) -> Result<(), StudyError> {
 }
 
 /// What the runs of a scenario amount to: every number, judgement and figure, before any page is made.
-pub(crate) fn results(
+pub(crate) fn judge(
     scenario: &Scenario,
     models: &[Model],
     tables: &[Table],

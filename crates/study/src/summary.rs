@@ -8,6 +8,7 @@ use gyradius_statistics::{
     Confidence, Deviation, Interval, Moments, SortedSample, StatisticsError,
 };
 use nalgebra::UnitQuaternion;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize, Serializer, ser::Error};
 use std::{borrow::Cow, collections::BTreeMap};
 
@@ -202,20 +203,20 @@ impl Summary {
         let nominal = nominal(scenario);
         let springs = scenario.separation().springs().len();
         let models = models
-            .iter()
+            .par_iter()
             .zip(tables)
             .map(|(model, table)| ModelSummary::new(scenario, model, table, confidence))
             .collect::<Result<Vec<_>, _>>()?;
         let comparisons = scenario
             .comparisons()
-            .iter()
+            .par_iter()
             .map(|c| {
                 let (physical, naive) = (&tables[c.physical], &tables[c.naive]);
                 ComparisonSummary {
                     title: c.title.clone(),
                     physical: physical.model().to_owned(),
                     naive: naive.model().to_owned(),
-                    ratios: Quantity::of(springs)
+                    ratios: all(springs)
                         .map(|q| Ratio::new(q, physical, naive, confidence))
                         .collect(),
                 }
@@ -245,6 +246,11 @@ impl Summary {
     pub(crate) fn nominal_value(&self, quantity: Quantity) -> Option<f64> {
         self.nominal.iter().find(|n| n.quantity == quantity).map(|n| n.value)
     }
+}
+
+/// All quantities, for many threads.
+fn all(springs: usize) -> impl IndexedParallelIterator<Item = Quantity> {
+    Quantity::of(springs).collect::<Vec<_>>().into_par_iter()
 }
 
 /// The columns, which are the same of every model.
@@ -322,7 +328,7 @@ impl ModelSummary {
             far_half,
             given_deviations_kg_m2: model.given_deviations(),
             releases: Releases::new(table, scenario.outlines().is_some(), confidence)?,
-            quantities: Quantity::of(scenario.separation().springs().len())
+            quantities: all(scenario.separation().springs().len())
                 .map(|q| QuantitySummary::new(q, table, confidence))
                 .collect(),
             dispersed: dispersed(scenario, table),

@@ -30,7 +30,7 @@ use std::{
 pub use options::CompareOptions;
 pub use reference::Reference;
 
-pub(crate) use section::Section;
+pub(crate) use section::{EVERY_MODEL, Section};
 
 use crate::{
     StudyError,

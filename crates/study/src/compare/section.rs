@@ -16,11 +16,10 @@ use super::{
     reference::Target,
     text::{Block, is_poor, kinds, matched, remarks},
 };
-use crate::{
-    figures_of_study::EVERY_MODEL,
-    scenario::{Axes, Scenario, UncertainBody},
-};
+use crate::scenario::{Axes, Scenario, UncertainBody};
 
+/// Name of the figure of all models of inertia.
+pub(crate) const EVERY_MODEL: &str = "figure-models";
 /// Enough for a share to a percent and a quantile to a few.
 const DRAWS: u64 = 2000;
 const SEPARATIONS: u64 = 150;

@@ -254,7 +254,9 @@ impl Scenario {
         Sha256::digest(self.to_toml()).iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
-    pub(crate) fn spin_axis(&self) -> &Unit<Vector3<f64>> {
+    /// The axis that the payload spins about, body axes.
+    #[must_use]
+    pub fn spin_axis(&self) -> &Unit<Vector3<f64>> {
         &self.spin_axis
     }
 
@@ -277,11 +279,15 @@ impl Scenario {
         &self.stage
     }
 
-    pub(crate) fn separation(&self) -> &Separation {
+    /// The separation of the nominal bodies.
+    #[must_use]
+    pub fn separation(&self) -> &Separation {
         &self.separation
     }
 
-    pub(crate) fn settings(&self) -> &Settings {
+    /// How it is integrated.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
