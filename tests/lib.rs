@@ -2,7 +2,7 @@
 //! Eq. 31 (with 0.075 where 0.75 is printed).
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
-use gyradius_dispersion::GaussianRoots;
+use gyradius_dispersion::ScalarRoots;
 use gyradius_inertia::{Inertia, InertiaMatrix};
 use gyradius_separation::{Body, Separation, Spring};
 use nalgebra::{Matrix4, Vector3, Vector4};
@@ -13,7 +13,7 @@ pub struct PaperBody {
     /// Its nominal inertia.
     pub nominal: Inertia,
     /// The law of the roots of its second moments.
-    pub roots: GaussianRoots,
+    pub roots: ScalarRoots,
     /// The law of its principal axes.
     pub axes: RadiallyConstrainedGaussian,
 }
@@ -27,7 +27,7 @@ impl PaperBody {
         let mean = nominal.principal_axes().attitude();
         Self {
             nominal,
-            roots: GaussianRoots::new(nominal.second_moments().roots(), variances).expect(valid),
+            roots: ScalarRoots::normal(nominal.second_moments().roots(), variances).expect(valid),
             axes: RadiallyConstrainedGaussian::new(mean, covariance).expect(valid),
         }
     }

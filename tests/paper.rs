@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_attitude::MeanHalf;
-use gyradius_dispersion::{EntryMoments, GaussianRoots, JacobianTwice, PrincipalDispersion};
+use gyradius_dispersion::{EntryMoments, JacobianTwice, PrincipalDispersion, ScalarRoots};
 use gyradius_inertia::Inertia;
 use gyradius_separation::Settings;
 use gyradius_statistics::Deviation;
@@ -136,7 +136,9 @@ fn central_values() {
 fn the_printed_variance_is_a_misprint() {
     let payload = PaperBody::payload();
     let i11 = |variance| {
-        let roots = GaussianRoots::new(payload.roots.mean(), [0.125, 0.1, variance]).unwrap();
+        let roots =
+            ScalarRoots::normal(payload.nominal.second_moments().roots(), [0.125, 0.1, variance])
+                .unwrap();
         let law = PrincipalDispersion::new(roots, payload.axes.clone());
         EntryMoments::of(&law).deviations()[0]
     };

@@ -6,8 +6,8 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_dispersion::{
-    DispersionModel, EntryMoments, EntrywiseGaussian, GaussianRoots, JacobianTwice, ModelKind,
-    PrincipalDispersion,
+    DispersionModel, EntryMoments, EntrywiseGaussian, JacobianTwice, ModelKind,
+    PrincipalDispersion, ScalarRoots,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix};
 use nalgebra::{Matrix4, Vector4};
@@ -16,10 +16,10 @@ use rand_distr::Distribution;
 use std::hint::black_box;
 
 /// Peck (2003), Table 1 and Eq. 30.
-fn payload() -> (InertiaMatrix, GaussianRoots, RadiallyConstrainedGaussian) {
+fn payload() -> (InertiaMatrix, ScalarRoots, RadiallyConstrainedGaussian) {
     let matrix = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0]).unwrap();
     let nominal = Inertia::try_from(matrix).unwrap();
-    let roots = GaussianRoots::new(nominal.second_moments().roots(), [0.125, 0.1, 0.075]).unwrap();
+    let roots = ScalarRoots::normal(nominal.second_moments().roots(), [0.125, 0.1, 0.075]).unwrap();
     let covariance = Matrix4::from_diagonal(&Vector4::new(2e-5, 6e-4, 6e-4, 0.6));
     let attitude = nominal.principal_axes().attitude();
     (matrix, roots, RadiallyConstrainedGaussian::new(attitude, covariance).unwrap())

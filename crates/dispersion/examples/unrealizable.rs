@@ -3,7 +3,7 @@
 //! `cargo run --release -p gyradius-dispersion --example unrealizable`
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
-use gyradius_dispersion::{EntryMoments, EntrywiseGaussian, GaussianRoots, PrincipalDispersion};
+use gyradius_dispersion::{EntryMoments, EntrywiseGaussian, PrincipalDispersion, ScalarRoots};
 use gyradius_inertia::{Inertia, InertiaMatrix};
 use nalgebra::{Matrix4, UnitQuaternion};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // K = k²: a root spread by half as much.
         let variances = roots.values().map(|k| (0.5e-2 * percent * k).powi(2));
         let principal =
-            PrincipalDispersion::new(GaussianRoots::new(roots, variances)?, tilts.clone());
+            PrincipalDispersion::new(ScalarRoots::normal(roots, variances)?, tilts.clone());
         let deviations = EntryMoments::of(&principal).deviations();
         let entrywise = EntrywiseGaussian::new(nominal, deviations)?;
 

@@ -5,8 +5,8 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::{
-    AxesLaw, CorrelatedRoots, EmpiricalRoots, FixedAttitude, GaussianRoots, IndependentRoots,
-    JacobianTwice, PrincipalDispersion, RootLaw, ScalarRoots, WithMoments,
+    AxesLaw, CorrelatedRoots, EmpiricalRoots, FixedAttitude, IndependentRoots, JacobianTwice,
+    PrincipalDispersion, RootLaw, ScalarRoots, WithMoments,
 };
 
 /// Draws made at a time: few enough for the first-level cache.
@@ -26,19 +26,28 @@ pub trait BatchRoots: Distribution<RootSecondMoments> {
     /// the shortest is left as it is. The values are those of [`sample`](Distribution::sample) one by one
     /// unless a law says otherwise.
     fn squares_into<R: Rng + ?Sized>(&self, rng: &mut R, columns: [&mut [f64]; 3]) {
-        let [first, second, third] = columns;
-        for ((a, b), c) in first.iter_mut().zip(second).zip(third) {
-            [*a, *b, *c] = self.sample(rng).squared().values();
-        }
+        squares_one_by_one(self, rng, columns);
     }
 }
 
-/// Normals of the first root for all, then of the second and the third: other values than one by one.
-impl BatchRoots for GaussianRoots {
+fn squares_one_by_one<L: Distribution<RootSecondMoments> + ?Sized, R: Rng + ?Sized>(
+    law: &L,
+    rng: &mut R,
+    [first, second, third]: [&mut [f64]; 3],
+) {
+    for ((a, b), c) in first.iter_mut().zip(second).zip(third) {
+        [*a, *b, *c] = law.sample(rng).squared().values();
+    }
+}
+
+/// Three normal laws are drawn root by root, the first for all, then the second and the third: other values
+/// than one by one.
+impl BatchRoots for ScalarRoots {
     fn squares_into<R: Rng + ?Sized>(&self, rng: &mut R, columns: [&mut [f64]; 3]) {
-        let (mean, deviations) = (self.mean().values(), self.deviations());
+        let Some(normal) = self.as_normal() else { return squares_one_by_one(self, rng, columns) };
         let length = columns.iter().map(|c| c.len()).min().unwrap_or(0);
-        for ((column, mean), deviation) in columns.into_iter().zip(mean).zip(deviations) {
+        for (column, [mean, variance]) in columns.into_iter().zip(normal) {
+            let deviation = variance.sqrt();
             for k in &mut column[..length] {
                 // Within range: the constructor leaves room for forty deviations.
                 let z: f64 = StandardNormal.sample(rng);
@@ -50,7 +59,6 @@ impl BatchRoots for GaussianRoots {
 }
 
 impl BatchRoots for CorrelatedRoots {}
-impl BatchRoots for ScalarRoots {}
 impl BatchRoots for EmpiricalRoots {}
 impl<L: Distribution<f64>> BatchRoots for IndependentRoots<L> {}
 
@@ -63,7 +71,6 @@ impl<L: BatchRoots> BatchRoots for WithMoments<L> {
 impl BatchRoots for RootLaw {
     fn squares_into<R: Rng + ?Sized>(&self, rng: &mut R, columns: [&mut [f64]; 3]) {
         match self {
-            Self::Gaussian(law) => law.squares_into(rng, columns),
             Self::CorrelatedGaussian(law) => law.squares_into(rng, columns),
             Self::Independent(law) => law.squares_into(rng, columns),
             Self::Empirical(law) => law.squares_into(rng, columns),
@@ -138,11 +145,11 @@ impl<K: BatchRoots, A: BatchAttitudes> PrincipalDispersion<K, A> {
     ///
     /// ```
     /// use gyradius_attitude::UniformAttitude;
-    /// use gyradius_dispersion::{GaussianRoots, PrincipalDispersion};
+    /// use gyradius_dispersion::{ScalarRoots, PrincipalDispersion};
     /// use gyradius_inertia::RootSecondMoments;
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     ///
-    /// let roots = GaussianRoots::new(RootSecondMoments::new([10.0, 20.0, 30.0])?, [0.5; 3])?;
+    /// let roots = ScalarRoots::normal(RootSecondMoments::new([10.0, 20.0, 30.0])?, [0.5; 3])?;
     /// let law = PrincipalDispersion::new(roots, UniformAttitude);
     /// let mut columns = vec![vec![0.0; 1000]; 6];
     /// let mut slices = columns.iter_mut().map(Vec::as_mut_slice);
@@ -248,12 +255,12 @@ mod tests {
         columns
     }
 
-    fn laws() -> (GaussianRoots, RadiallyConstrainedGaussian) {
+    fn laws() -> (ScalarRoots, RadiallyConstrainedGaussian) {
         let roots = RootSecondMoments::new([2.0, -1.0, 0.3]).unwrap();
         let mean = UnitQuaternion::from_euler_angles(0.3, 0.2, -0.5);
         let covariance = Matrix4::from_diagonal(&Vector4::new(0.02, 0.1, 0.3, 0.8));
         (
-            GaussianRoots::new(roots, [0.1, 0.2, 0.05]).unwrap(),
+            ScalarRoots::normal(roots, [0.1, 0.2, 0.05]).unwrap(),
             RadiallyConstrainedGaussian::new(mean, covariance).unwrap(),
         )
     }

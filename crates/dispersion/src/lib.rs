@@ -17,7 +17,7 @@
 //!
 //! ```
 //! use gyradius_attitude::RadiallyConstrainedGaussian;
-//! use gyradius_dispersion::{GaussianRoots, PrincipalDispersion};
+//! use gyradius_dispersion::{ScalarRoots, PrincipalDispersion};
 //! use gyradius_inertia::Inertia;
 //! use nalgebra::{Matrix3, Matrix4, Vector4};
 //! use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -31,7 +31,7 @@
 //! let axes = nominal.principal_axes();
 //! let covariance = Matrix4::from_diagonal(&Vector4::new(2e-5, 6e-4, 6e-4, 0.6));
 //! let law = PrincipalDispersion::new(
-//!     GaussianRoots::new(nominal.second_moments().roots(), [0.125, 0.1, 0.075])?,
+//!     ScalarRoots::normal(nominal.second_moments().roots(), [0.125, 0.1, 0.075])?,
 //!     RadiallyConstrainedGaussian::new(axes.attitude(), covariance)?,
 //! );
 //! let body: Inertia = law.sample(&mut ChaCha8Rng::seed_from_u64(2003));
@@ -86,9 +86,8 @@ pub use root_moments::{
     RootMoments, SecondMomentStatistics, SecondMomentStatisticsError, WithMoments,
 };
 pub use roots::{
-    CorrelatedRoots, CorrelatedRootsError, EmpiricalRoots, EmpiricalRootsError, GaussianRoots,
-    GaussianRootsError, IndependentRoots, IndependentRootsError, RootLaw, ScalarRoots,
-    ScalarRootsError,
+    CorrelatedRoots, CorrelatedRootsError, EmpiricalRoots, EmpiricalRootsError, IndependentRoots,
+    IndependentRootsError, RootLaw, ScalarRoots, ScalarRootsError,
 };
 pub use scalar::{ScalarLaw, ScalarLawError};
 pub use semidefinite::CovarianceError;

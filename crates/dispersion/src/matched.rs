@@ -340,19 +340,19 @@ fn turn(axes: &PrincipalAxes) -> SMatrix<f64, 6, 6> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::GaussianRoots;
+    use crate::ScalarRoots;
     use crate::entry_moments::tests::check_entries;
     use nalgebra::Matrix4;
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     use rand_distr::Distribution;
 
-    fn paper(spread: f64) -> PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian> {
+    fn paper(spread: f64) -> PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian> {
         let mean = InertiaMatrix::from_entries([5.0, 4.0, 3.0], [0.3, 0.2, -0.5]).unwrap();
         let mean = Inertia::try_from(mean).unwrap();
         let roots = mean.second_moments().roots();
         let variances = roots.values().map(|k| (0.5 * spread * k).powi(2));
         PrincipalDispersion::new(
-            GaussianRoots::new(roots, variances).unwrap(),
+            ScalarRoots::normal(roots, variances).unwrap(),
             RadiallyConstrainedGaussian::new(
                 mean.principal_axes().attitude(),
                 Matrix4::identity() * (0.25 * spread * spread),

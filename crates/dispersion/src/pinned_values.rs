@@ -112,12 +112,6 @@ fn roots(law: &RootLaw, rng: &mut ChaCha8Rng, found: &mut Vec<f64>) {
 
 pinned! {
     roots_are_pinned: RootLaw as RootLaw by itself, roots;
-    Gaussian: [GaussianRoots::new(mean(), [1.0, 2.0, 3.0]).unwrap().into()] => [
-        29.335846219367152, 40.81892958473242, 51.94983195950733, 31.099543093558484,
-        37.82761682370864, 50.1507570415386, 29.018512611368887, 37.469693196451566,
-        52.45348301851105, 870.2906003670337, 972.6984442028545, 1779.1156630341256,
-        1613.4027706516097, 2890.83204998594, 2573.230862026235,
-    ];
     CorrelatedGaussian: [
         CorrelatedRoots::new(mean(), Matrix3::from_fn(|i, j| if i == j { 2.0 } else { 1.0 }))
             .unwrap()
@@ -152,7 +146,12 @@ fn scalar_roots(law: &ScalarRoots, rng: &mut ChaCha8Rng, found: &mut Vec<f64>) {
 
 pinned! {
     independent_roots_are_pinned: ScalarRoots as Kind by independent, scalar_roots;
-    Normal: [ScalarRoots::new([30.0, 40.0, 50.0].map(|k| ScalarLaw::normal(k, 1.0).unwrap())).unwrap()] => [29.335846219367152, 40.57907066267858, 51.125736006696094, 31.099543093558484, 38.46389312470881, 50.087039618514545, 29.018512611368887, 38.210802900728446, 51.416519081189534, 870.2906003670337, 887.0940972490401, 1696.4607207803515, 1650.8764393110828, 2497.827418223467, 2656.4937359067912];
+    Normal: [ScalarRoots::normal(mean(), [1.0, 2.0, 3.0]).unwrap()] => [
+        29.335846219367152, 40.81892958473242, 51.94983195950733, 31.099543093558484,
+        37.82761682370864, 50.1507570415386, 29.018512611368887, 37.469693196451566,
+        52.45348301851105, 870.2906003670337, 972.6984442028545, 1779.1156630341256,
+        1613.4027706516097, 2890.83204998594, 2573.230862026235,
+    ];
     Uniform: [ScalarRoots::uniform(mean(), [1.0, 2.0, 3.0]).unwrap()] => [
         29.28272885863443, 41.9235859079182, 52.017516338635296, 31.545843403512155,
         38.491055652620815, 50.413115527809225, 28.650287230832717, 37.70683277329112,
@@ -278,7 +277,7 @@ fn correlated() -> CorrelatedEntries {
 pinned! {
     models_are_pinned: DispersionModel as DispersionModel by itself, model;
     Principal: [PrincipalDispersion::new(
-        GaussianRoots::new(mean(), [1.0, 2.0, 3.0]).unwrap(),
+        ScalarRoots::normal(mean(), [1.0, 2.0, 3.0]).unwrap(),
         paper(),
     ).into()] => [
         4362.494116077428, 3558.1646923020794, 2530.465044561994, -44.529857906008345,
@@ -360,7 +359,7 @@ fn the_rest_is_pinned() {
 
     // More rows than are drawn at a time.
     let law =
-        PrincipalDispersion::new(GaussianRoots::new(mean(), [1.0, 2.0, 3.0]).unwrap(), paper());
+        PrincipalDispersion::new(ScalarRoots::normal(mean(), [1.0, 2.0, 3.0]).unwrap(), paper());
     let mut columns = [[0.0; 130]; 6];
     law.sample_columns(&mut rng(), columns.each_mut().map(AsMut::as_mut)).unwrap();
     let rows: Vec<f64> = [0, 129].iter().flat_map(|i| columns.map(|c| c[*i])).collect();

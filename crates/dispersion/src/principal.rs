@@ -95,7 +95,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::GaussianRoots;
+    use crate::ScalarRoots;
     use gyradius_attitude::UniformAttitude;
     use proptest::prelude::*;
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -107,7 +107,7 @@ mod tests {
             variances in prop::array::uniform3(0.0..1e4f64),
             seed in 0..u64::MAX,
         ) {
-            let roots = GaussianRoots::new(RootSecondMoments::new(k).unwrap(), variances).unwrap();
+            let roots = ScalarRoots::normal(RootSecondMoments::new(k).unwrap(), variances).unwrap();
             let law = PrincipalDispersion::new(roots, UniformAttitude);
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             for _ in 0..100 {
@@ -119,8 +119,8 @@ mod tests {
 
     #[test]
     fn a_draw_is_made_of_its_parts() {
-        let roots =
-            GaussianRoots::new(RootSecondMoments::new([1.0, 2.0, 3.0]).unwrap(), [0.1; 3]).unwrap();
+        let roots = ScalarRoots::normal(RootSecondMoments::new([1.0, 2.0, 3.0]).unwrap(), [0.1; 3])
+            .unwrap();
         let law = PrincipalDispersion::new(roots, UniformAttitude);
         let draw: PrincipalDraw = law.sample(&mut ChaCha8Rng::seed_from_u64(1));
         let again =

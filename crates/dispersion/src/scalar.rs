@@ -28,6 +28,14 @@ pub enum ScalarLawError {
         /// The standard deviation.
         value: f64,
     },
+    /// A variance is not the square of the standard deviation.
+    #[error("variance = {value:?}: it must be the square of sigma, which is {sigma:?}")]
+    Variance {
+        /// The variance.
+        value: f64,
+        /// The standard deviation.
+        sigma: f64,
+    },
     /// The bounds are in the wrong order.
     #[error(
         "bounds from {low:?} to {high:?}: the second must not be below the first, and must be above it \
@@ -96,7 +104,7 @@ pub struct ScalarLaw(pub(crate) Kind);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
-    Normal { mean: f64, deviation: f64 },
+    Normal { mean: f64, deviation: f64, variance: f64 },
     Uniform { low: f64, high: f64 },
     Truncated(Truncated),
     Lognormal { mean: f64, deviation: f64, variance: f64, log_median: f64, log_deviation: f64 },
@@ -117,8 +125,13 @@ impl ScalarLaw {
     /// # Errors
     /// Either is not a number or too large, or the deviation negative.
     pub fn normal(mean: f64, sigma: f64) -> Result<Self, ScalarLawError> {
+        Self::normal_of(mean, sigma, sigma * sigma)
+    }
+
+    /// The same with the variance, which would lose its last digit as a root.
+    pub(crate) fn normal_of(mean: f64, sigma: f64, variance: f64) -> Result<Self, ScalarLawError> {
         let (mean, deviation) = (number("mean", mean)?, deviation(sigma)?);
-        Ok(Self(Kind::Normal { mean, deviation }))
+        Ok(Self(Kind::Normal { mean, deviation, variance }))
     }
 
     /// Uniform between two bounds.
@@ -207,7 +220,7 @@ impl ScalarLaw {
     #[must_use]
     pub fn at_score(&self, z: f64) -> f64 {
         match self.0 {
-            Kind::Normal { mean, deviation } => mean + deviation * z,
+            Kind::Normal { mean, deviation, .. } => mean + deviation * z,
             Kind::Uniform { low, high } => (low + (high - low) * below(z)).clamp(low, high),
             Kind::Truncated(law) => law.window.at_score(z),
             Kind::Lognormal { mean, log_deviation: s, .. } => mean * libm::exp(s * (z - 0.5 * s)),
@@ -220,8 +233,8 @@ impl ScalarLaw {
     pub fn cdf(&self, x: f64) -> f64 {
         let step = |at: f64| f64::from(u8::from(x >= at));
         match self.0 {
-            Kind::Normal { mean, deviation: 0.0 } => step(mean),
-            Kind::Normal { mean, deviation } => below((x - mean) / deviation),
+            Kind::Normal { mean, deviation: 0.0, .. } => step(mean),
+            Kind::Normal { mean, deviation, .. } => below((x - mean) / deviation),
             Kind::Uniform { low, high } if low == high => step(low),
             Kind::Uniform { low, high } => ((x - low) / (high - low)).clamp(0.0, 1.0),
             Kind::Truncated(law) => law.window.cdf(x),
@@ -265,6 +278,18 @@ impl ScalarLaw {
         }
     }
 
+    /// Mean and variance, if it is normal.
+    #[must_use]
+    pub fn as_normal(&self) -> Option<[f64; 2]> {
+        match self.0 {
+            Kind::Normal { mean, variance, .. } => Some([mean, variance]),
+            Kind::Uniform { .. }
+            | Kind::Truncated(_)
+            | Kind::Lognormal { .. }
+            | Kind::Bernoulli { .. } => None,
+        }
+    }
+
     /// What it is called in scenario files.
     #[must_use]
     pub fn name(&self) -> &'static str {
@@ -301,10 +326,7 @@ impl ScalarLaw {
     /// Mean and variance of the square.
     pub(crate) fn square_moments(&self) -> (f64, f64) {
         match self.0 {
-            Kind::Normal { mean: m, deviation } => {
-                let v = deviation * deviation;
-                (m * m + v, 2.0 * v * (2.0 * m * m + v))
-            }
+            Kind::Normal { mean: m, variance: v, .. } => (m * m + v, 2.0 * v * (2.0 * m * m + v)),
             Kind::Uniform { low, high } => {
                 let (c, h) = (0.5 * (low + high), 0.5 * (high - low));
                 (c * c + h * h / 3.0, 4.0 * h * h * (c * c / 3.0 + h * h / 45.0))
@@ -325,7 +347,7 @@ impl ScalarLaw {
     /// What no draw exceeds in magnitude, `far` standard deviations of what is normal in it taken for all.
     pub(crate) fn reach(&self, far: f64) -> f64 {
         match self.0 {
-            Kind::Normal { mean, deviation } => mean.abs() + far * deviation,
+            Kind::Normal { mean, deviation, .. } => mean.abs() + far * deviation,
             Kind::Uniform { low, high } => low.abs().max(high.abs()),
             Kind::Truncated(law) => law.mean.abs() + far * law.window.deviation(),
             Kind::Lognormal { log_median, log_deviation, .. } => {
@@ -343,6 +365,21 @@ impl Distribution<f64> for ScalarLaw {
     }
 }
 
+/// The variance where the square of the standard deviation has other bits.
+#[cfg(feature = "serde")]
+fn more(sigma: f64, variance: f64) -> Option<f64> {
+    (sigma * sigma != variance).then_some(variance)
+}
+
+/// The variance, which the square of the standard deviation is without its last bits.
+#[cfg(feature = "serde")]
+fn whole(sigma: f64, variance: Option<f64>) -> Result<f64, ScalarLawError> {
+    match variance {
+        Some(value) if value.sqrt() != sigma => Err(ScalarLawError::Variance { value, sigma }),
+        given => Ok(given.unwrap_or(sigma * sigma)),
+    }
+}
+
 /// The serialized form; bounds that are infinite are left out.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -351,6 +388,8 @@ enum Parameters {
     Normal {
         mean: f64,
         sigma: f64,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        variance: Option<f64>,
     },
     Uniform {
         low: f64,
@@ -367,6 +406,8 @@ enum Parameters {
     Lognormal {
         mean: f64,
         sigma: f64,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        variance: Option<f64>,
     },
     Bernoulli {
         probability: f64,
@@ -379,7 +420,9 @@ impl TryFrom<Parameters> for ScalarLaw {
 
     fn try_from(p: Parameters) -> Result<Self, Self::Error> {
         match p {
-            Parameters::Normal { mean, sigma } => Self::normal(mean, sigma),
+            Parameters::Normal { mean, sigma, variance } => {
+                Self::normal_of(mean, sigma, whole(sigma, variance)?)
+            }
             Parameters::Uniform { low, high } => Self::uniform(low, high),
             Parameters::TruncatedNormal { mean, sigma, low, high } => Self::truncated_normal(
                 mean,
@@ -387,7 +430,9 @@ impl TryFrom<Parameters> for ScalarLaw {
                 low.unwrap_or(f64::NEG_INFINITY),
                 high.unwrap_or(f64::INFINITY),
             ),
-            Parameters::Lognormal { mean, sigma } => Self::lognormal(mean, sigma),
+            Parameters::Lognormal { mean, sigma, variance } => {
+                Self::lognormal_of(mean, sigma, whole(sigma, variance)?)
+            }
             Parameters::Bernoulli { probability } => Self::bernoulli(probability),
         }
     }
@@ -397,14 +442,18 @@ impl TryFrom<Parameters> for ScalarLaw {
 impl From<ScalarLaw> for Parameters {
     fn from(law: ScalarLaw) -> Self {
         match law.0 {
-            Kind::Normal { mean, deviation: sigma } => Self::Normal { mean, sigma },
+            Kind::Normal { mean, deviation: sigma, variance } => {
+                Self::Normal { mean, sigma, variance: more(sigma, variance) }
+            }
             Kind::Uniform { low, high } => Self::Uniform { low, high },
             Kind::Truncated(law) => {
                 let [low, high] = law.window.bounds().map(|x| x.is_finite().then_some(x));
                 let sigma = law.window.deviation();
                 Self::TruncatedNormal { mean: law.mean, sigma, low, high }
             }
-            Kind::Lognormal { mean, deviation: sigma, .. } => Self::Lognormal { mean, sigma },
+            Kind::Lognormal { mean, deviation: sigma, variance, .. } => {
+                Self::Lognormal { mean, sigma, variance: more(sigma, variance) }
+            }
             Kind::Bernoulli { probability } => Self::Bernoulli { probability },
         }
     }

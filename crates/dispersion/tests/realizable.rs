@@ -8,8 +8,8 @@
 use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
 use gyradius_dispersion::{
     AnyBody, AxesLaw, CorrelatedRoots, DispersionModel, EmpiricalRoots, EntrywiseGaussian,
-    FixedAttitude, GaussianRoots, JacobianTwice, LogCholeskyGaussian, PrincipalDispersion,
-    RealizableOnly, RootLaw, ScalarRoots, Wishart,
+    FixedAttitude, JacobianTwice, LogCholeskyGaussian, PrincipalDispersion, RealizableOnly,
+    RootLaw, ScalarRoots, Wishart,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, RootSecondMoments};
 use nalgebra::{Matrix3, Matrix4, SMatrix, UnitQuaternion};
@@ -39,7 +39,7 @@ fn any_roots(rng: &mut impl Rng) -> RootLaw {
     let variances: [f64; 3] = std::array::from_fn(|i| (k[i] * power(rng, -6.0, 1.0)).powi(2));
     let mean = RootSecondMoments::new(k).unwrap();
     match rng.random_range(0..6) {
-        0 => GaussianRoots::new(mean, variances).unwrap().into(),
+        0 => ScalarRoots::normal(mean, variances).unwrap().into(),
         1 => ScalarRoots::uniform(mean, variances).unwrap().into(),
         2 => {
             let positive = k.map(|k| k.max(1e-300));

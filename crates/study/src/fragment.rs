@@ -1,7 +1,7 @@
 use gyradius_attitude::{RadiallyConstrainedGaussian, RcgError};
 use gyradius_dispersion::{
-    CorrelatedRoots, CorrelatedRootsError, GaussianRoots, GaussianRootsError, PrincipalDispersion,
-    RootLaw,
+    CorrelatedRoots, CorrelatedRootsError, PrincipalDispersion, RootLaw, ScalarRoots,
+    ScalarRootsError,
 };
 use gyradius_inertia::{Inertia, RealizabilityError};
 use nalgebra::{Matrix3, Matrix4};
@@ -29,7 +29,7 @@ pub enum FragmentError {
     Inertia(#[from] RealizabilityError),
     /// The variances of the roots do not read back.
     #[error(transparent)]
-    Roots(#[from] GaussianRootsError),
+    Roots(#[from] ScalarRootsError),
     /// The covariance of the roots does not read back.
     #[error(transparent)]
     CorrelatedRoots(#[from] CorrelatedRootsError),
@@ -68,13 +68,13 @@ pub enum FragmentError {
 ///
 /// ```
 /// use gyradius_attitude::RadiallyConstrainedGaussian;
-/// use gyradius_dispersion::{GaussianRoots, PrincipalDispersion};
+/// use gyradius_dispersion::{ScalarRoots, PrincipalDispersion};
 /// use gyradius_inertia::{Inertia, InertiaMatrix};
 /// use gyradius_study::{Fragment, FragmentBody};
 /// use nalgebra::Matrix3;
 ///
 /// let nominal = Inertia::try_from(InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0])?)?;
-/// let roots = GaussianRoots::new(nominal.second_moments().roots(), [0.125, 0.1, 0.075])?;
+/// let roots = ScalarRoots::normal(nominal.second_moments().roots(), [0.125, 0.1, 0.075])?;
 /// let axes = RadiallyConstrainedGaussian::from_rotation_covariance(
 ///     nominal.principal_axes().attitude(),
 ///     Matrix3::identity() * 1e-3,
@@ -121,7 +121,10 @@ impl Fragment {
     ) -> Result<Self, FragmentError> {
         let inertia: [[f64; 3]; 3] = (*nominal).into();
         let roots = match law.roots().clone().into() {
-            RootLaw::Gaussian(roots) => Roots::Variances(roots.variances()),
+            RootLaw::Independent(roots) => match roots.as_normal() {
+                Some(normal) => Roots::Variances(normal.map(|[_, variance]| variance)),
+                None => return Err(FragmentError::RootLaw),
+            },
             RootLaw::CorrelatedGaussian(roots) => {
                 let c = roots.covariance();
                 Roots::Covariance(std::array::from_fn(|i| std::array::from_fn(|j| c[(i, j)])))
@@ -136,7 +139,7 @@ impl Fragment {
         let read = Inertia::try_from(inertia)?;
         let mean = read.second_moments().roots();
         match fragment.roots {
-            Roots::Variances(v) => GaussianRoots::new(mean, v).map(|_| ())?,
+            Roots::Variances(v) => ScalarRoots::normal(mean, v).map(|_| ())?,
             Roots::Covariance(c) => {
                 CorrelatedRoots::new(mean, Matrix3::from_fn(|i, j| c[i][j])).map(|_| ())?;
             }
@@ -273,7 +276,7 @@ mod tests {
     use crate::{Scenario, scenario::Axes};
     use nalgebra::UnitQuaternion;
 
-    type Law = PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>;
+    type Law = PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian>;
 
     fn law(moments: [f64; 3], turn: UnitQuaternion<f64>) -> (Inertia, Law) {
         let nominal = Inertia::from_principal_moments(moments, &turn).unwrap();
@@ -283,7 +286,7 @@ mod tests {
             Matrix3::new(4e-4, 1e-4, 0.0, 1e-4, 1e-4, 0.0, 0.0, 0.0, 9e-4),
             0.01,
         );
-        let roots = GaussianRoots::new(roots, [0.1, 0.2, 0.0]).unwrap();
+        let roots = ScalarRoots::normal(roots, [0.1, 0.2, 0.0]).unwrap();
         (nominal, PrincipalDispersion::new(roots, axes.unwrap()))
     }
 
@@ -316,8 +319,8 @@ mod tests {
             let body = scenario.payload();
             assert_eq!(body.nominal(), &nominal);
             let read = body.principal(Axes::WholeSphere).unwrap();
-            let RootLaw::Gaussian(roots) = read.roots() else { panic!("{read:?}") };
-            assert_eq!(roots.variances(), law.roots().variances());
+            let RootLaw::Independent(roots) = read.roots() else { panic!("{read:?}") };
+            assert_eq!(roots.as_normal().unwrap().map(|n| n[1]), [0.1, 0.2, 0.0]);
             let axes = body.gaussian_axes().unwrap();
             assert_eq!(axes.covariance(), law.axes().covariance());
             assert!(axes.mean().angle_to(&law.axes().mean()) < 1e-12);
@@ -328,7 +331,7 @@ mod tests {
     fn correlated_roots_are_read_back_too() {
         let (nominal, law) = law([5000.0, 4000.0, 3000.0], UnitQuaternion::identity());
         let c = Matrix3::new(0.1, 0.05, -0.01, 0.05, 0.2, 0.1, -0.01, 0.1, 0.3);
-        let roots = CorrelatedRoots::new(law.roots().mean(), c).unwrap();
+        let roots = CorrelatedRoots::new(nominal.second_moments().roots(), c).unwrap();
         let law = PrincipalDispersion::new(roots, law.axes().clone());
         let fragment = Fragment::new(FragmentBody::Payload, &nominal, &law).unwrap();
         assert_eq!(fragment.root_variances(), None);
@@ -337,8 +340,7 @@ mod tests {
         let RootLaw::CorrelatedGaussian(roots) = read.roots() else { panic!("{read:?}") };
         assert_eq!(*roots.covariance(), c);
 
-        let uniform =
-            gyradius_dispersion::ScalarRoots::uniform(law.roots().mean(), [0.1; 3]).unwrap();
+        let uniform = ScalarRoots::uniform(nominal.second_moments().roots(), [0.1; 3]).unwrap();
         let law = PrincipalDispersion::new(uniform, law.axes().clone());
         let refused = Fragment::new(FragmentBody::Payload, &nominal, &law);
         assert_eq!(refused.unwrap_err(), FragmentError::RootLaw);

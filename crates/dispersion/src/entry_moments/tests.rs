@@ -2,22 +2,22 @@
 
 use super::*;
 use crate::{
-    AttitudeMoments, AxesLaw, CorrelatedRoots, FixedAttitude, GaussianRoots, JacobianTwice,
-    PrincipalDispersion, RootMoments, ScalarRoots,
+    AttitudeMoments, AxesLaw, CorrelatedRoots, FixedAttitude, JacobianTwice, PrincipalDispersion,
+    RootMoments, ScalarLaw, ScalarRoots,
 };
 use gyradius_attitude::{FisherBingham, MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
-use gyradius_inertia::{Inertia, InertiaMatrix};
+use gyradius_inertia::{Inertia, InertiaMatrix, RootSecondMoments};
 use nalgebra::{Matrix4, Vector4};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::Distribution;
 
-type Law = PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>;
+type Law = PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian>;
 
 fn law(moments: [f64; 3], products: [f64; 3], roots: [f64; 3], axes: [f64; 4]) -> Law {
     let nominal =
         Inertia::try_from(InertiaMatrix::from_entries(moments, products).unwrap()).unwrap();
     PrincipalDispersion::new(
-        GaussianRoots::new(nominal.second_moments().roots(), roots).unwrap(),
+        ScalarRoots::normal(nominal.second_moments().roots(), roots).unwrap(),
         RadiallyConstrainedGaussian::new(
             nominal.principal_axes().attitude(),
             Matrix4::from_diagonal(&Vector4::from(axes)),
@@ -80,7 +80,7 @@ pub(crate) fn check_entries<T: Into<InertiaMatrix>>(
 #[test]
 fn draws_agree_for_every_combination() {
     let wide = law([5.0, 4.0, 3.0], [0.3, 0.2, -0.5], [0.3, 0.1, 0.05], [0.02, 0.1, 0.3, 0.8]);
-    let k = wide.roots().mean();
+    let k = RootSecondMoments::new(wide.roots().laws().each_ref().map(ScalarLaw::mean)).unwrap();
     let spread = nalgebra::Vector3::new(0.3, 0.2, 0.1);
     let roots: [crate::RootLaw; 4] = [
         (*wide.roots()).into(),
@@ -122,11 +122,9 @@ fn wide_halves() {
 /// A law that has no mean attitude, and its uniform limit.
 #[test]
 fn fisher_bingham_axes() {
-    let roots = GaussianRoots::new(
-        gyradius_inertia::RootSecondMoments::new([1.0, 1.2, 0.5]).unwrap(),
-        [0.01, 0.02, 0.0],
-    )
-    .unwrap();
+    let roots =
+        ScalarRoots::normal(RootSecondMoments::new([1.0, 1.2, 0.5]).unwrap(), [0.01, 0.02, 0.0])
+            .unwrap();
     let precision = Matrix4::from_diagonal(&Vector4::new(1.0, -3.0, 2.0, 0.5));
     let axes = FisherBingham::new(precision, Vector4::new(0.3, 0.1, -0.5, 1.0)).unwrap();
     let law = PrincipalDispersion::new(roots, axes);
@@ -197,7 +195,7 @@ fn narrow_laws_keep_their_digits() {
 fn fixed_axes_leave_the_closed_form() {
     let law = law([5.0, 4.0, 3.0], [0.0; 3], [0.1, 0.2, 0.3], [1e-13; 4]);
     let moments = EntryMoments::of(&law);
-    let [v1, v2, v3] = law.roots().second_moment_variances();
+    let [v1, v2, v3] = law.roots().second_moment_statistics().variances();
     let expected = [v2 + v3, v1 + v3, v1 + v2];
     for (found, expected) in moments.deviations().iter().zip(expected) {
         assert!((found * found - expected).abs() < 1e-9, "{found} {expected}");

@@ -29,7 +29,7 @@ pub enum CorrelatedRootsError {
 /// # Definition
 /// k ~ N(k̄, C), C positive semidefinite; K_k = k_k². E K_i = k̄_i² + C_ii and
 /// Cov(K_i, K_j) = 4 k̄_i k̄_j C_ij + 2 C_ij². With a diagonal C it is
-/// [`GaussianRoots`](crate::GaussianRoots), but for the bits.
+/// [`ScalarRoots::normal`](crate::ScalarRoots::normal), but for the bits.
 ///
 /// A common cause moves all three: propellant, say, or the density of a casting.
 ///

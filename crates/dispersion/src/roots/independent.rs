@@ -96,7 +96,7 @@ impl<L: Distribution<f64>> Distribution<RootSecondMoments> for IndependentRoots<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{GaussianRoots, RootMoments, WithMoments, root_moments::tests::check_moments};
+    use crate::{RootMoments, ScalarRoots, WithMoments, root_moments::tests::check_moments};
     use rand_distr::Normal;
 
     #[test]
@@ -105,7 +105,7 @@ mod tests {
         let roots =
             IndependentRoots::new([normal(3.0, 0.5), normal(1.0, 1.0), normal(0.0, 2.0)]).unwrap();
         let mean = RootSecondMoments::new([3.0, 1.0, 0.0]).unwrap();
-        let ours = GaussianRoots::new(mean, [0.25, 1.0, 4.0]).unwrap();
+        let ours = ScalarRoots::normal(mean, [0.25, 1.0, 4.0]).unwrap();
         check_moments(&WithMoments::new(roots, ours.second_moment_statistics()), 51);
     }
 

@@ -4,10 +4,7 @@ use gyradius_inertia::RootSecondMoments;
 use rand::Rng;
 use rand_distr::Distribution;
 
-use crate::{
-    CorrelatedRoots, EmpiricalRoots, GaussianRoots, RootMoments, ScalarRoots,
-    SecondMomentStatistics,
-};
+use crate::{CorrelatedRoots, EmpiricalRoots, RootMoments, ScalarRoots, SecondMomentStatistics};
 
 /// Any of the laws of roots that this crate has, chosen at run time.
 ///
@@ -20,12 +17,10 @@ use crate::{
 )]
 #[non_exhaustive]
 pub enum RootLaw {
-    /// Independent Gaussians.
-    Gaussian(GaussianRoots),
-    /// Jointly Gaussian.
-    CorrelatedGaussian(CorrelatedRoots),
     /// Independent, each with a scalar law.
     Independent(ScalarRoots),
+    /// Jointly Gaussian.
+    CorrelatedGaussian(CorrelatedRoots),
     /// Observed triples.
     Empirical(EmpiricalRoots),
 }
@@ -33,9 +28,8 @@ pub enum RootLaw {
 macro_rules! each {
     ($self:expr, $law:ident => $body:expr) => {
         match $self {
-            RootLaw::Gaussian($law) => $body,
-            RootLaw::CorrelatedGaussian($law) => $body,
             RootLaw::Independent($law) => $body,
+            RootLaw::CorrelatedGaussian($law) => $body,
             RootLaw::Empirical($law) => $body,
         }
     };
@@ -63,12 +57,7 @@ macro_rules! from {
         }
     )*};
 }
-from!(
-    Gaussian(GaussianRoots),
-    CorrelatedGaussian(CorrelatedRoots),
-    Independent(ScalarRoots),
-    Empirical(EmpiricalRoots)
-);
+from!(Independent(ScalarRoots), CorrelatedGaussian(CorrelatedRoots), Empirical(EmpiricalRoots));
 
 #[cfg(test)]
 mod tests {
@@ -78,7 +67,7 @@ mod tests {
     #[test]
     fn draws_are_those_of_the_law_inside() {
         let mean = RootSecondMoments::new([1.0, 2.0, 3.0]).unwrap();
-        let inside = GaussianRoots::new(mean, [0.1; 3]).unwrap();
+        let inside = ScalarRoots::normal(mean, [0.1; 3]).unwrap();
         let law = RootLaw::from(inside);
         let mut rngs = [1, 1].map(ChaCha8Rng::seed_from_u64);
         for _ in 0..100 {

@@ -2,14 +2,12 @@
 
 mod correlated;
 mod empirical;
-mod gaussian;
 mod independent;
 mod law;
 mod scalar;
 
 pub use correlated::{CorrelatedRoots, CorrelatedRootsError};
 pub use empirical::{EmpiricalRoots, EmpiricalRootsError};
-pub use gaussian::{GaussianRoots, GaussianRootsError};
 pub use independent::{IndependentRoots, IndependentRootsError};
 pub use law::RootLaw;
 pub use scalar::{ScalarRoots, ScalarRootsError};

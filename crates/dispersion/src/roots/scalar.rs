@@ -62,6 +62,17 @@ impl ScalarRoots {
         Ok(Self { laws })
     }
 
+    /// Gaussian (Peck 2003, Eq. 10), from the means in √kg·m and the variances σ² in kg·m²; zero keeps a root
+    /// fixed. A root may come out negative; only its square matters.
+    ///
+    /// # Errors
+    /// A variance is negative or NaN, or roots could come out beyond 1e75 √kg·m.
+    pub fn normal(mean: RootSecondMoments, variances: [f64; 3]) -> Result<Self, ScalarRootsError> {
+        Self::each(mean, variances, |_, k, variance| {
+            ScalarLaw::normal_of(k, variance.sqrt(), variance)
+        })
+    }
+
     /// Uniform between k̄ ± √3 σ, from the means in √kg·m and the variances σ² in kg·m².
     ///
     /// # Errors
@@ -135,6 +146,13 @@ impl ScalarRoots {
     #[must_use]
     pub fn laws(&self) -> &[ScalarLaw; 3] {
         &self.laws
+    }
+
+    /// Mean in √kg·m and variance in kg·m² of each, if all three are normal.
+    #[must_use]
+    pub fn as_normal(&self) -> Option<[[f64; 2]; 3]> {
+        let [a, b, c] = self.laws.each_ref().map(ScalarLaw::as_normal);
+        Some([a?, b?, c?])
     }
 }
 
@@ -216,7 +234,6 @@ impl From<ScalarRoots> for Parameters {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::GaussianRoots;
     use crate::root_moments::tests::check_moments;
 
     const INF: f64 = f64::INFINITY;
@@ -260,7 +277,7 @@ mod tests {
         use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
         let (mean, deviations) = ([3.0, 1.0, 0.0], [0.5, 2.0, 1.25]);
         let variances = deviations.map(|s| s * s);
-        let gaussian = GaussianRoots::new(roots(mean), variances).unwrap();
+        let gaussian = ScalarRoots::normal(roots(mean), variances).unwrap();
         let normal = |i: usize| ScalarLaw::normal(mean[i], deviations[i]).unwrap();
         let scalar = ScalarRoots::new([normal(0), normal(1), normal(2)]).unwrap();
         assert_eq!(scalar.second_moment_statistics(), gaussian.second_moment_statistics());
@@ -319,9 +336,14 @@ mod tests {
     #[cfg(feature = "serde")]
     #[test]
     fn serde_goes_through_the_constructor() {
-        let law = ScalarRoots::uniform(roots([1.0, 2.0, 3.0]), [0.1, 0.2, 0.3]).unwrap();
+        let (mean, variances) = (roots([1.0, 2.0, 3.0]), [0.1, 0.2, 0.3]);
+        // The square of a root of 0.3 is not 0.3: a variance keeps its bits.
+        for law in [ScalarRoots::normal(mean, variances), ScalarRoots::lognormal(mean, variances)] {
+            let json = serde_json::to_string(&law.clone().unwrap()).unwrap();
+            assert_eq!(serde_json::from_str::<ScalarRoots>(&json).unwrap(), law.unwrap());
+        }
+        let law = ScalarRoots::uniform(mean, variances).unwrap();
         let json = serde_json::to_string(&law).unwrap();
-        assert_eq!(serde_json::from_str::<ScalarRoots>(&json).unwrap(), law);
         assert!(
             serde_json::from_str::<ScalarRoots>(&json.replace("\"high\":", "\"high\":1e9"))
                 .is_err()

@@ -10,7 +10,7 @@ mod root;
 mod tests;
 
 use gyradius_attitude::{FitError, RadiallyConstrainedGaussian};
-use gyradius_dispersion::{GaussianRoots, GaussianRootsError, PrincipalDispersion};
+use gyradius_dispersion::{PrincipalDispersion, ScalarRoots, ScalarRootsError};
 use gyradius_inertia::{Inertia, RootSecondMoments, SecondMoments};
 use nalgebra::{Matrix3, UnitQuaternion};
 
@@ -50,7 +50,7 @@ pub enum PrincipalFitError {
     Axes(#[from] FitError),
     /// The roots are out of range.
     #[error(transparent)]
-    Roots(#[from] GaussianRootsError),
+    Roots(#[from] ScalarRootsError),
 }
 
 /// How the principal axes of the samples were matched.
@@ -88,7 +88,7 @@ pub struct Matching {
 ///
 /// ```
 /// use gyradius_attitude::RadiallyConstrainedGaussian;
-/// use gyradius_dispersion::{GaussianRoots, PrincipalDispersion};
+/// use gyradius_dispersion::{ScalarRoots, PrincipalDispersion};
 /// use gyradius_estimation::PrincipalFit;
 /// use gyradius_inertia::{Inertia, RootSecondMoments};
 /// use nalgebra::{Matrix3, UnitQuaternion};
@@ -96,7 +96,7 @@ pub struct Matching {
 /// use rand_distr::Distribution;
 ///
 /// let truth = PrincipalDispersion::new(
-///     GaussianRoots::new(RootSecondMoments::new([30.0, 40.0, 50.0])?, [1.0, 2.0, 3.0])?,
+///     ScalarRoots::normal(RootSecondMoments::new([30.0, 40.0, 50.0])?, [1.0, 2.0, 3.0])?,
 ///     RadiallyConstrainedGaussian::from_rotation_covariance(
 ///         UnitQuaternion::identity(),
 ///         Matrix3::identity() * 1e-3,
@@ -120,7 +120,7 @@ pub struct PrincipalFit {
     axes: AxesFit,
     matching: Matching,
     deviations: [f64; 6],
-    law: PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>,
+    law: PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian>,
 }
 
 impl PrincipalFit {
@@ -164,8 +164,8 @@ impl PrincipalFit {
             flipped += usize::from(!g.swaps() && g.turn.angle() > 1e-6);
         }
         let mean = RootSecondMoments::new(roots.map(|r| r.mean()))
-            .map_err(|_| GaussianRootsError::Variance { axis: 1, value: f64::INFINITY })?;
-        let gaussian = GaussianRoots::new(mean, roots.map(|r| r.deviation() * r.deviation()))?;
+            .map_err(|_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY })?;
+        let gaussian = ScalarRoots::normal(mean, roots.map(|r| r.deviation() * r.deviation()))?;
         let law = PrincipalDispersion::new(gaussian, axes.law().clone());
         let matching =
             Matching { swapped, flipped, doubtful: matched.doubtful, converged: matched.converged };
@@ -214,7 +214,7 @@ impl PrincipalFit {
 
     /// The fitted law.
     #[must_use]
-    pub fn law(&self) -> &PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian> {
+    pub fn law(&self) -> &PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian> {
         &self.law
     }
 
@@ -252,10 +252,10 @@ fn fit(samples: &[Sample]) -> Result<Fitted, PrincipalFitError> {
     let size = sizes.into_iter().fold(0.0, f64::max);
     let roots = columns.each_ref().map(|c| RootFit::of(c, size));
     let axes = AxesFit::of(samples, &roots)?;
-    let out_of_range = |_| GaussianRootsError::Variance { axis: 1, value: f64::INFINITY };
+    let out_of_range = |_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY };
     let mean = SecondMoments::new(roots.map(|r| r.mean() * r.mean())).map_err(out_of_range)?;
     let nominal = Inertia::from_second_moments(mean, &axes.law().mean())
-        .map_err(|_| GaussianRootsError::Variance { axis: 1, value: f64::INFINITY })?;
+        .map_err(|_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY })?;
     Ok(Fitted { nominal, roots, axes })
 }
 

@@ -1,15 +1,16 @@
 use super::*;
+use gyradius_dispersion::ScalarLaw;
 use gyradius_inertia::InertiaMatrix;
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use rand::{Rng, RngExt};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::{ChiSquared, Distribution, StandardNormal, StudentT};
 
-type Law = PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>;
+type Law = PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian>;
 
 fn law(roots: [f64; 3], deviations: [f64; 3], mean: UnitQuaternion<f64>, turn: [f64; 3]) -> Law {
     PrincipalDispersion::new(
-        GaussianRoots::new(RootSecondMoments::new(roots).unwrap(), deviations.map(|s| s * s))
+        ScalarRoots::normal(RootSecondMoments::new(roots).unwrap(), deviations.map(|s| s * s))
             .unwrap(),
         RadiallyConstrainedGaussian::from_rotation_covariance(
             mean,
@@ -51,7 +52,8 @@ fn known_parameters_come_back_within_the_stated_errors() {
         swapped += fit.matching().swapped;
         // The truth in the order of the fit.
         let g = nearest(&truth.axes().mean(), &fit.axes().law().mean());
-        let (means, deviations) = (truth.roots().mean().values(), truth.roots().deviations());
+        let laws = truth.roots().laws().each_ref();
+        let (means, deviations) = (laws.map(ScalarLaw::mean), laws.map(ScalarLaw::deviation));
         let mut z = Vec::new();
         for (root, &old) in fit.roots().iter().zip(&g.order) {
             let errors = root.errors().unwrap();
@@ -247,7 +249,7 @@ fn the_verdict_has_its_size_for_any_law() {
             RadiallyConstrainedGaussian::new(mean, covariance).unwrap()
         };
         let mean = RootSecondMoments::new([40.0, 30.0, 20.0]).unwrap();
-        let law = PrincipalDispersion::new(GaussianRoots::new(mean, [1.0; 3]).unwrap(), axes);
+        let law = PrincipalDispersion::new(ScalarRoots::normal(mean, [1.0; 3]).unwrap(), axes);
         let n = [50, 200, 500][seed as usize % 3];
         let fit = PrincipalFit::new(&draws(&law, n, seed)).unwrap();
         let assessment = fit.assess(&mut rng);
@@ -425,7 +427,7 @@ fn the_papers_law_comes_back_with_its_second_lobe() {
     )
     .unwrap();
     let truth = PrincipalDispersion::new(
-        GaussianRoots::new(nominal.second_moments().roots(), [0.125, 0.1, 0.075]).unwrap(),
+        ScalarRoots::normal(nominal.second_moments().roots(), [0.125, 0.1, 0.075]).unwrap(),
         RadiallyConstrainedGaussian::new(
             nominal.principal_axes().attitude(),
             Matrix4::from_diagonal(&Vector4::new(2e-5, 6e-4, 6e-4, 0.6)),

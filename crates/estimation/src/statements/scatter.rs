@@ -4,7 +4,7 @@ use std::error::Error;
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_dispersion::{
-    CorrelatedRoots, EntryMoments, GaussianRoots, PrincipalDispersion, RootLaw,
+    CorrelatedRoots, EntryMoments, PrincipalDispersion, RootLaw, ScalarRoots,
     SecondMomentStatistics,
 };
 use gyradius_inertia::{Inertia, RootSecondMoments};
@@ -88,7 +88,7 @@ impl Body {
         let c = &scatter.roots;
         let independent = *c == Matrix3::from_diagonal(&c.diagonal());
         let roots: RootLaw = if independent {
-            GaussianRoots::new(self.roots, c.diagonal().into())?.into()
+            ScalarRoots::normal(self.roots, c.diagonal().into())?.into()
         } else {
             CorrelatedRoots::new(self.roots, *c)?.into()
         };

@@ -2,7 +2,7 @@
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_dispersion::{
-    DispersionModel, EntryMoments, GaussianRoots, ModelKind, PrincipalDispersion,
+    DispersionModel, EntryMoments, ModelKind, PrincipalDispersion, ScalarRoots,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, RootSecondMoments};
 use nalgebra::{Matrix3, SMatrix};
@@ -79,7 +79,7 @@ impl Reference {
 fn principal(
     nominal: &Inertia,
     level: f64,
-) -> Result<PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>, Box<dyn Error>> {
+) -> Result<PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian>, Box<dyn Error>> {
     let axes = nominal.principal_axes();
     let k = nominal.second_moments().values();
     let of_moments = [k[1].hypot(k[2]), k[0].hypot(k[2]), k[0].hypot(k[1])];
@@ -89,7 +89,7 @@ fn principal(
     // is real to u = 1.
     let square = 0.5 * relative * relative;
     let share = (1.0 - square).max(0.0).sqrt();
-    let roots = GaussianRoots::new(
+    let roots = ScalarRoots::normal(
         RootSecondMoments::new(k.map(|k| (k * share).sqrt()))?,
         k.map(|k| k * square / (1.0 + share)),
     )?;
@@ -191,6 +191,7 @@ fn second_moment_forms(r: &Matrix3<f64>) -> [nalgebra::SVector<f64, 6>; 6] {
 mod tests {
     use super::*;
     use gyradius_dispersion::KnownMoments;
+    use gyradius_dispersion::RootMoments;
 
     fn body(name: &str) -> NominalBody {
         NominalBody::read(name, &NominalBody::known(None).unwrap()).unwrap()
@@ -203,12 +204,12 @@ mod tests {
             let body = body(name);
             for level in [0.01, 0.2, 1.0] {
                 let law = principal(body.inertia(), level).unwrap();
-                let [v1, v2, v3] = law.roots().second_moment_variances();
+                let [v1, v2, v3] = law.roots().second_moment_statistics().variances();
                 let largest = (v2 + v3).max(v1 + v3).max(v1 + v2).sqrt();
                 let error = largest / (level * body.largest_moment()) - 1.0;
                 assert!(error.abs() < 1e-12, "{name} {level}: {error:e}");
                 let k = body.inertia().second_moments().values();
-                for (found, k) in law.roots().second_moment_means().iter().zip(k) {
+                for (found, k) in law.roots().second_moment_statistics().mean().iter().zip(k) {
                     assert!((found - k).abs() < 1e-9 * (1.0 + k), "{name} {level}");
                 }
             }

@@ -1,7 +1,7 @@
 use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
 use gyradius_dispersion::{
-    AxesLaw, CorrelatedRoots, EmpiricalRoots, FixedAttitude, GaussianRoots, JacobianTwice,
-    JacobianTwiceError, PrincipalDispersion, RootLaw, ScalarRoots, ScalarRootsError,
+    AxesLaw, CorrelatedRoots, EmpiricalRoots, FixedAttitude, JacobianTwice, JacobianTwiceError,
+    PrincipalDispersion, RootLaw, ScalarRoots, ScalarRootsError,
 };
 use gyradius_inertia::{Inertia, RootSecondMoments};
 use gyradius_separation::{Body, BodyState, MovingBody};
@@ -158,7 +158,7 @@ fn roots(
     };
     Ok(match file.roots {
         RootsFile::Gaussian => {
-            GaussianRoots::new(mean, variances()?).map_err(|e| refused(VARIANCE, &e))?.into()
+            ScalarRoots::normal(mean, variances()?).map_err(|e| refused(VARIANCE, &e))?.into()
         }
         RootsFile::CorrelatedGaussian => {
             let c = needed(place, COVARIANCE, law, file.root_second_moment_covariance_kg_m2)?;
