@@ -118,7 +118,7 @@ fn every_quantity_follows_its_law() {
     for (i, z) in [0.0, 0.0, 1.0].into_iter().enumerate() {
         let i1 = i + 1;
         laws.push((format!("payload_position_{i1}_m"), normal(z, 0.001)));
-        laws.push((format!("payload_velocity_{i1}_m_per_s"), velocity));
+        laws.push((format!("payload_velocity_{i1}_m_per_s"), velocity.clone()));
         laws.push((format!("payload_attitude_{i1}_deg"), normal(0.0, 0.1)));
         let rate = normal(0.0, [1e-3, 1e-3, 2e-3][i]);
         laws.push((format!("payload_angular_velocity_{i1}_rad_per_s"), rate));

@@ -46,7 +46,7 @@ const TABLE_2_STAGE: [f64; 6] = [24.1620, 8.8193, 27.298, 10.3127, 322.0596, 140
 
 /// The deviations of the entries over many draws, with their relative standard errors.
 fn deviations<A: Distribution<UnitQuaternion<f64>>>(body: &PaperBody, axes: A) -> [(f64, f64); 6] {
-    let law = PrincipalDispersion::new(body.roots, axes);
+    let law = PrincipalDispersion::new(body.roots.clone(), axes);
     let mut rng = ChaCha8Rng::seed_from_u64(2003);
     let mut entries: [Vec<f64>; 6] = Default::default();
     for _ in 0..DRAWS {

@@ -30,7 +30,7 @@ const BATCH: usize = 1024;
 
 fn inertia(c: &mut Criterion) {
     let (nominal, roots, axes) = payload();
-    let twice = PrincipalDispersion::new(roots, JacobianTwice::new(axes.clone()).unwrap());
+    let twice = PrincipalDispersion::new(roots.clone(), JacobianTwice::new(axes.clone()).unwrap());
     let principal = PrincipalDispersion::new(roots, axes);
     let entrywise = EntrywiseGaussian::new(nominal, EntryMoments::of(&principal).deviations());
     let entrywise = entrywise.unwrap();

@@ -302,11 +302,11 @@ mod tests {
     #[test]
     fn batches_have_the_moments_and_are_bodies() {
         let (roots, axes) = laws();
-        check("whole", &PrincipalDispersion::new(roots, axes.clone()), 1);
-        check("half", &PrincipalDispersion::new(roots, MeanHalf::new(axes.clone())), 2);
-        check("uniform", &PrincipalDispersion::new(roots, UniformAttitude), 3);
+        check("whole", &PrincipalDispersion::new(roots.clone(), axes.clone()), 1);
+        check("half", &PrincipalDispersion::new(roots.clone(), MeanHalf::new(axes.clone())), 2);
+        check("uniform", &PrincipalDispersion::new(roots.clone(), UniformAttitude), 3);
         let fixed = FixedAttitude::new(axes.mean());
-        check("fixed", &PrincipalDispersion::new(roots, fixed), 4);
+        check("fixed", &PrincipalDispersion::new(roots.clone(), fixed), 4);
         let law = RootLaw::from(uniform([[1.0, 2.0], [0.0, 0.0], [-1.0, 1.0]]));
         check("any", &PrincipalDispersion::new(law, AxesLaw::from(axes)), 5);
     }

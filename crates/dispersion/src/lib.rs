@@ -50,6 +50,7 @@ mod correlated_entries;
 mod correlation;
 mod entry_moments;
 mod entrywise;
+mod incomplete_beta;
 mod known_moments;
 mod log_cholesky;
 mod matched;
@@ -89,7 +90,7 @@ pub use roots::{
     CorrelatedRoots, CorrelatedRootsError, EmpiricalRoots, EmpiricalRootsError, IndependentRoots,
     IndependentRootsError, RootLaw, ScalarRoots, ScalarRootsError,
 };
-pub use scalar::{ScalarLaw, ScalarLawError};
+pub use scalar::{LawUnit, ScalarLaw, ScalarLawError, ScalarLawForm, ScalarLawFormError};
 pub use semidefinite::CovarianceError;
 pub use wishart::{Wishart, WishartError};
 

@@ -17,7 +17,6 @@ use crate::{
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "kebab-case")
 )]
-#[non_exhaustive]
 pub enum ModelKind {
     /// Second moments and axes (Peck 2003).
     Principal,
@@ -133,7 +132,6 @@ impl FromStr for ModelKind {
     derive(serde::Serialize, serde::Deserialize),
     serde(tag = "model", rename_all = "kebab-case")
 )]
-#[non_exhaustive]
 pub enum DispersionModel {
     /// Second moments and axes (Peck 2003).
     Principal(Box<PrincipalDispersion<RootLaw, AxesLaw>>),
@@ -198,7 +196,12 @@ impl DispersionModel {
         match self {
             Self::RealizableEntrywise(law) => Some(law.acceptance()),
             Self::RealizableCorrelatedEntries(law) => Some(law.acceptance()),
-            _ => None,
+            Self::Principal(_)
+            | Self::Entrywise(_)
+            | Self::CorrelatedEntries(_)
+            | Self::LogCholesky(_)
+            | Self::Wishart(_)
+            | Self::Basilisk(_) => None,
         }
     }
 }

@@ -124,7 +124,6 @@ impl TruncatedNormal {
     }
 
     /// The window.
-    #[cfg(feature = "serde")]
     pub(crate) fn bounds(&self) -> [f64; 2] {
         self.bounds
     }

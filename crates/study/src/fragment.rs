@@ -1,7 +1,7 @@
 use gyradius_attitude::{RadiallyConstrainedGaussian, RcgError};
 use gyradius_dispersion::{
-    CorrelatedRoots, CorrelatedRootsError, PrincipalDispersion, RootLaw, ScalarRoots,
-    ScalarRootsError,
+    CorrelatedRoots, CorrelatedRootsError, PrincipalDispersion, RootLaw, ScalarLaw, ScalarLawForm,
+    ScalarRoots, ScalarRootsError,
 };
 use gyradius_inertia::{Inertia, RealizabilityError};
 use nalgebra::{Matrix3, Matrix4};
@@ -33,8 +33,10 @@ pub enum FragmentError {
     /// The covariance of the roots does not read back.
     #[error(transparent)]
     CorrelatedRoots(#[from] CorrelatedRootsError),
-    /// The roots are not Gaussian.
-    #[error("roots: only Gaussian laws are written, correlated or not")]
+    /// The roots are samples of triples.
+    #[error(
+        "roots: samples of triples are not written; laws of single roots and Gaussian ones are"
+    )]
     RootLaw,
     /// The covariance of the axes does not read back.
     #[error("axes: {0}")]
@@ -106,13 +108,14 @@ struct Mass {
 enum Roots {
     Variances([f64; 3]),
     Covariance([[f64; 3]; 3]),
+    Laws(Box<[ScalarLaw; 3]>),
 }
 
 impl Fragment {
     /// Of a law about a nominal inertia.
     ///
     /// # Errors
-    /// The roots are not Gaussian, what a scenario would read is not allowed, or is another law: its
+    /// The roots are samples of triples, what a scenario would read is not allowed, or is another law: its
     /// mean axes are not the principal axes of the nominal inertia.
     pub fn new<K: Clone + Into<RootLaw>>(
         body: FragmentBody,
@@ -123,13 +126,13 @@ impl Fragment {
         let roots = match law.roots().clone().into() {
             RootLaw::Independent(roots) => match roots.as_normal() {
                 Some(normal) => Roots::Variances(normal.map(|[_, variance]| variance)),
-                None => return Err(FragmentError::RootLaw),
+                None => Roots::Laws(Box::new(roots.laws().clone())),
             },
             RootLaw::CorrelatedGaussian(roots) => {
                 let c = roots.covariance();
                 Roots::Covariance(std::array::from_fn(|i| std::array::from_fn(|j| c[(i, j)])))
             }
-            _ => return Err(FragmentError::RootLaw),
+            RootLaw::Empirical(_) => return Err(FragmentError::RootLaw),
         };
         let covariance = law.axes().covariance();
         let covariance = std::array::from_fn(|i| std::array::from_fn(|j| covariance[(i, j)]));
@@ -138,11 +141,13 @@ impl Fragment {
         // As a scenario reads it.
         let read = Inertia::try_from(inertia)?;
         let mean = read.second_moments().roots();
-        match fragment.roots {
-            Roots::Variances(v) => ScalarRoots::normal(mean, v).map(|_| ())?,
-            Roots::Covariance(c) => {
+        match &fragment.roots {
+            &Roots::Variances(v) => ScalarRoots::normal(mean, v).map(|_| ())?,
+            &Roots::Covariance(c) => {
                 CorrelatedRoots::new(mean, Matrix3::from_fn(|i, j| c[i][j])).map(|_| ())?;
             }
+            // Read as they are written, about no mean.
+            Roots::Laws(_) => {}
         }
         let mean = read.principal_axes().attitude();
         RadiallyConstrainedGaussian::new(mean, Matrix4::from_fn(|i, j| covariance[i][j]))?;
@@ -202,7 +207,7 @@ impl Fragment {
     pub fn root_variances(&self) -> Option<[f64; 3]> {
         match self.roots {
             Roots::Variances(v) => Some(v),
-            Roots::Covariance(_) => None,
+            Roots::Covariance(_) | Roots::Laws(_) => None,
         }
     }
 
@@ -210,7 +215,7 @@ impl Fragment {
     #[must_use]
     pub fn root_covariance(&self) -> Option<[[f64; 3]; 3]> {
         match self.roots {
-            Roots::Variances(_) => None,
+            Roots::Variances(_) | Roots::Laws(_) => None,
             Roots::Covariance(c) => Some(c),
         }
     }
@@ -239,13 +244,20 @@ impl fmt::Display for Fragment {
             writeln!(f, "    {row:?},")?;
         }
         writeln!(f, "]\n\n[{body}.dispersion]")?;
-        match self.roots {
+        match &self.roots {
             Roots::Variances(v) => writeln!(f, "root_second_moment_variance_kg_m2 = {v:?}")?,
             Roots::Covariance(c) => {
                 writeln!(f, "roots = \"correlated-gaussian\"")?;
                 writeln!(f, "root_second_moment_covariance_kg_m2 = [")?;
                 for row in c {
                     writeln!(f, "    {row:?},")?;
+                }
+                writeln!(f, "]")?;
+            }
+            Roots::Laws(laws) => {
+                writeln!(f, "roots = \"independent\"\nroot_second_moment_laws_sqrt_kg_m = [")?;
+                for law in laws.iter() {
+                    writeln!(f, "    {},", ScalarLawForm::from(law.clone()))?;
                 }
                 writeln!(f, "]")?;
             }
@@ -274,6 +286,7 @@ impl fmt::Display for Fragment {
 mod tests {
     use super::*;
     use crate::{Scenario, scenario::Axes};
+    use gyradius_dispersion::EmpiricalRoots;
     use nalgebra::UnitQuaternion;
 
     type Law = PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian>;
@@ -340,10 +353,40 @@ mod tests {
         let RootLaw::CorrelatedGaussian(roots) = read.roots() else { panic!("{read:?}") };
         assert_eq!(*roots.covariance(), c);
 
-        let uniform = ScalarRoots::uniform(nominal.second_moments().roots(), [0.1; 3]).unwrap();
-        let law = PrincipalDispersion::new(uniform, law.axes().clone());
+        let samples = EmpiricalRoots::from_values(&[[30.0, 40.0, 50.0]]).unwrap();
+        let law = PrincipalDispersion::new(samples, law.axes().clone());
         let refused = Fragment::new(FragmentBody::Payload, &nominal, &law);
         assert_eq!(refused.unwrap_err(), FragmentError::RootLaw);
+    }
+
+    /// Of any kind, to the bit.
+    #[test]
+    fn laws_of_single_roots_are_read_back() {
+        let (nominal, gaussian) = law([5000.0, 4000.0, 3000.0], UnitQuaternion::identity());
+        let k = nominal.second_moments().roots();
+        for roots in [
+            ScalarRoots::uniform(k, [0.1; 3]),
+            ScalarRoots::lognormal(k, [0.1; 3]),
+            ScalarRoots::truncated_normal(k, [0.3; 3], [[30.0, f64::INFINITY]; 3]),
+            ScalarRoots::new([
+                ScalarLaw::triangular(30.0, 31.0, 33.3).unwrap(),
+                ScalarLaw::beta(40.0, 1e2 / 3.0 + 10.0, 2.0, 0.7).unwrap(),
+                ScalarLaw::weibull(50.0, 0.1, 2.0).unwrap(),
+            ]),
+            ScalarRoots::new([
+                ScalarLaw::samples(&[54.0, 53.0, 53.1 / 3.0]).unwrap(),
+                ScalarLaw::normal(44.0, 0.3).unwrap(),
+                ScalarLaw::bernoulli(0.5).unwrap(),
+            ]),
+        ] {
+            let law = PrincipalDispersion::new(roots.unwrap(), gaussian.axes().clone());
+            let fragment = Fragment::new(FragmentBody::Payload, &nominal, &law).unwrap();
+            let scenario = Scenario::from_toml(&pasted(&fragment)).unwrap();
+            let read = scenario.payload().principal(Axes::WholeSphere).unwrap();
+            assert_eq!(*read.roots(), RootLaw::Independent(law.roots().clone()));
+            let again = Scenario::from_toml(&scenario.to_toml()).unwrap();
+            assert_eq!(again.to_toml(), scenario.to_toml());
+        }
     }
 
     #[test]

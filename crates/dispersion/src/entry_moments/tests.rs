@@ -83,7 +83,7 @@ fn draws_agree_for_every_combination() {
     let k = RootSecondMoments::new(wide.roots().laws().each_ref().map(ScalarLaw::mean)).unwrap();
     let spread = nalgebra::Vector3::new(0.3, 0.2, 0.1);
     let roots: [crate::RootLaw; 4] = [
-        (*wide.roots()).into(),
+        wide.roots().clone().into(),
         CorrelatedRoots::new(k, spread * spread.transpose()).unwrap().into(),
         ScalarRoots::uniform(k, [0.3, 0.1, 0.05]).unwrap().into(),
         ScalarRoots::lognormal(k, [0.3, 0.1, 0.05]).unwrap().into(),
@@ -113,7 +113,7 @@ fn wide_halves() {
     {
         let whole = law([5.0, 4.0, 3.0], [0.3, 0.2, -0.5], [0.01; 3], *axes);
         let half = MeanHalf::new(whole.axes().clone());
-        let law = PrincipalDispersion::new(*whole.roots(), half);
+        let law = PrincipalDispersion::new(whole.roots().clone(), half);
         let seed = 650 + i as u64;
         check_entries::<Inertia>("half", &EntryMoments::of(&law), &law, seed);
     }
@@ -127,12 +127,12 @@ fn fisher_bingham_axes() {
             .unwrap();
     let precision = Matrix4::from_diagonal(&Vector4::new(1.0, -3.0, 2.0, 0.5));
     let axes = FisherBingham::new(precision, Vector4::new(0.3, 0.1, -0.5, 1.0)).unwrap();
-    let law = PrincipalDispersion::new(roots, axes);
+    let law = PrincipalDispersion::new(roots.clone(), axes);
     check_entries::<Inertia>("Fisher-Bingham", &EntryMoments::of(&law), &law, 71);
 
     let flat = FisherBingham::new(Matrix4::zeros(), Vector4::zeros()).unwrap();
-    let flat = EntryMoments::of(&PrincipalDispersion::new(roots, flat));
-    let uniform = EntryMoments::of(&PrincipalDispersion::new(roots, UniformAttitude));
+    let flat = EntryMoments::of(&PrincipalDispersion::new(roots.clone(), flat));
+    let uniform = EntryMoments::of(&PrincipalDispersion::new(roots.clone(), UniformAttitude));
     for e in 0..6 {
         assert!((flat.mean()[e] - uniform.mean()[e]).abs() < 1e-12);
     }

@@ -15,7 +15,6 @@ use crate::{CorrelatedRoots, EmpiricalRoots, RootMoments, ScalarRoots, SecondMom
     derive(serde::Serialize, serde::Deserialize),
     serde(tag = "law", rename_all = "kebab-case")
 )]
-#[non_exhaustive]
 pub enum RootLaw {
     /// Independent, each with a scalar law.
     Independent(ScalarRoots),
@@ -68,7 +67,7 @@ mod tests {
     fn draws_are_those_of_the_law_inside() {
         let mean = RootSecondMoments::new([1.0, 2.0, 3.0]).unwrap();
         let inside = ScalarRoots::normal(mean, [0.1; 3]).unwrap();
-        let law = RootLaw::from(inside);
+        let law = RootLaw::from(inside.clone());
         let mut rngs = [1, 1].map(ChaCha8Rng::seed_from_u64);
         for _ in 0..100 {
             assert_eq!(law.sample(&mut rngs[0]), inside.sample(&mut rngs[1]));

@@ -38,7 +38,7 @@ use crate::{RootMoments, ScalarLaw, ScalarLawError, SecondMomentStatistics};
 /// assert!(EntryMoments::of(&law).mean()[0] > 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -158,7 +158,7 @@ impl ScalarRoots {
 
 impl RootMoments for ScalarRoots {
     fn second_moment_statistics(&self) -> SecondMomentStatistics {
-        let moments = self.laws.map(|law| law.square_moments());
+        let moments = self.laws.each_ref().map(ScalarLaw::square_moments);
         SecondMomentStatistics::independent(moments.map(|m| m.0), moments.map(|m| m.1))
     }
 }
@@ -329,7 +329,7 @@ mod tests {
         }
         assert!(ScalarRoots::lognormal(roots([1e74; 3]), [1e148; 3]).is_err());
         assert!(ScalarRoots::lognormal(roots([1e-150; 3]), [1e-304; 3]).is_ok());
-        let far = [ScalarLaw::normal(0.0, 1e74).unwrap(); 3];
+        let far = [(); 3].map(|()| ScalarLaw::normal(0.0, 1e74).unwrap());
         assert_eq!(ScalarRoots::new(far), Err(ScalarRootsError::Reach { axis: 1 }));
     }
 

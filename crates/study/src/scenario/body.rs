@@ -1,7 +1,7 @@
 use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
 use gyradius_dispersion::{
     AxesLaw, CorrelatedRoots, EmpiricalRoots, FixedAttitude, JacobianTwice, JacobianTwiceError,
-    PrincipalDispersion, RootLaw, ScalarRoots, ScalarRootsError,
+    PrincipalDispersion, RootLaw, ScalarLaw, ScalarRoots, ScalarRootsError,
 };
 use gyradius_inertia::{Inertia, RootSecondMoments};
 use gyradius_separation::{Body, BodyState, MovingBody};
@@ -10,6 +10,7 @@ use nalgebra::{Matrix3, Matrix4, Quaternion, UnitQuaternion};
 use super::{
     Axes, ScenarioError,
     file::{AxesLawFile, BodyFile, DispersionFile, RootsFile},
+    law,
 };
 
 /// A body in its state at the start, and how uncertain its inertia is.
@@ -120,6 +121,7 @@ const VARIANCE: &str = "root_second_moment_variance_kg_m2";
 const COVARIANCE: &str = "root_second_moment_covariance_kg_m2";
 const BOUNDS: &str = "root_second_moment_bounds_sqrt_kg_m";
 const SAMPLES: &str = "root_second_moment_samples_sqrt_kg_m";
+const LAWS: &str = "root_second_moment_laws_sqrt_kg_m";
 
 /// A field that a law needs.
 fn needed<T>(place: &str, field: &str, law: &str, value: Option<T>) -> Result<T, ScenarioError> {
@@ -139,6 +141,7 @@ fn roots(
         RootsFile::Uniform => ("roots = \"uniform\"", &[VARIANCE]),
         RootsFile::Lognormal => ("roots = \"lognormal\"", &[VARIANCE]),
         RootsFile::TruncatedGaussian => ("roots = \"truncated-gaussian\"", &[VARIANCE, BOUNDS]),
+        RootsFile::Independent => ("roots = \"independent\"", &[LAWS]),
         RootsFile::Empirical => ("roots = \"empirical\"", &[SAMPLES]),
     };
     for (field, given) in [
@@ -146,6 +149,7 @@ fn roots(
         (COVARIANCE, file.root_second_moment_covariance_kg_m2.is_some()),
         (BOUNDS, file.root_second_moment_bounds_sqrt_kg_m.is_some()),
         (SAMPLES, file.root_second_moment_samples_sqrt_kg_m.is_some()),
+        (LAWS, file.root_second_moment_laws_sqrt_kg_m.is_some()),
     ] {
         if given && !takes.contains(&field) {
             let problem = format!("{law} does not take it, but {}", takes.join(" and "));
@@ -180,6 +184,14 @@ fn roots(
                     refused(if variance { VARIANCE } else { BOUNDS }, &e)
                 })?
                 .into()
+        }
+        RootsFile::Independent => {
+            let forms = needed(place, LAWS, law, file.root_second_moment_laws_sqrt_kg_m.as_ref())?;
+            let law = |i: usize| {
+                ScalarLaw::try_from(forms[i].clone())
+                    .map_err(|e| law::refused(&format!("{place}.{LAWS}[{}]", i + 1), &e))
+            };
+            ScalarRoots::new([law(0)?, law(1)?, law(2)?]).map_err(|e| refused(LAWS, &e))?.into()
         }
         RootsFile::Empirical => {
             let samples = file.root_second_moment_samples_sqrt_kg_m.as_ref();

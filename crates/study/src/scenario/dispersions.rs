@@ -1,11 +1,11 @@
 //! What else is uncertain than the inertias, in the order in which it is drawn.
 
-use gyradius_dispersion::{Correlation, CorrelationError, ScalarLaw};
+use gyradius_dispersion::{Correlation, CorrelationError, LawUnit, ScalarLaw, ScalarLawForm};
 
 use super::{
     ScenarioError,
     file::{BodyFile, ScenarioFile, SpringFile},
-    law::{CHANGES, LawFile, Unit, VectorLawFile},
+    law::{self, VectorLawFile},
 };
 use crate::body::Body;
 
@@ -139,12 +139,12 @@ impl List {
     fn scalar(
         &mut self,
         place: &Place,
-        law: Option<&LawFile>,
+        law: Option<&ScalarLawForm>,
         nominal: f64,
         target: Target,
     ) -> Result<(), ScenarioError> {
         if let Some(law) = law {
-            let law = law.about(&place.field, nominal, Unit::OWN)?;
+            let law = law::about(law, &place.field, nominal, LawUnit::OWN)?;
             positive(&place.field, nominal, &law)?;
             self.push(&place.name, place.unit, nominal, law, target);
         }
@@ -155,8 +155,8 @@ impl List {
     fn either(
         &mut self,
         place: &Place,
-        law: Option<&LawFile>,
-        percent: (&str, Option<&LawFile>),
+        law: Option<&ScalarLawForm>,
+        percent: (&str, Option<&ScalarLawForm>),
         nominal: f64,
         target: Target,
     ) -> Result<(), ScenarioError> {
@@ -166,7 +166,7 @@ impl List {
                 Err(ScenarioError::field(field, problem))
             }
             (None, (field, Some(law))) => {
-                let law = law.about(field, nominal, Unit::percent_of(nominal))?;
+                let law = law::about(law, field, nominal, LawUnit::percent_of(nominal))?;
                 positive(field, nominal, &law)?;
                 self.push(&place.name, place.unit, nominal, law, target);
                 Ok(())
@@ -183,7 +183,7 @@ impl List {
         target: impl Fn(usize) -> Target,
     ) -> Result<(), ScenarioError> {
         let Some(law) = law else { return Ok(()) };
-        let law = law.about(&place.field, nominal, Unit::OWN)?;
+        let law = law.about(&place.field, nominal, LawUnit::OWN)?;
         let first = self.all.len();
         for (i, (law, nominal)) in law.laws.into_iter().zip(nominal).enumerate() {
             let name = format!("{}_{}", place.name, i + 1);
@@ -337,8 +337,8 @@ fn positive(field: &str, nominal: f64, law: &ScalarLaw) -> Result<(), ScenarioEr
         return Ok(());
     }
     let problem = format!(
-        "at least half of the draws would be negative: the nominal value is {nominal:?}, and {CHANGES}; \
-         laws \"lognormal\" (with a mean), \"uniform\" and \"truncated-normal\" need not be negative"
+        "at least half of the draws would be negative: the nominal value is {nominal:?}, and a law is of the \
+         change from it; laws \"lognormal\" (with a mean), \"uniform\" and \"truncated-normal\" need not be negative"
     );
     Err(ScenarioError::field(field, problem))
 }

@@ -1,11 +1,7 @@
-use gyradius_dispersion::{BasiliskDispersion, ModelKind};
+use gyradius_dispersion::{BasiliskDispersion, ModelKind, ScalarLawForm};
 use serde::{Deserialize, Serialize};
 
-use super::{
-    follows::Follows,
-    law::{LawFile, VectorLawFile},
-    parse,
-};
+use super::{follows::Follows, law::VectorLawFile, parse};
 
 /// A scenario as it stands in a TOML file, defaults filled in. Units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,14 +69,17 @@ pub(crate) struct DispersionFile {
     pub(crate) root_second_moment_bounds_sqrt_kg_m: Option<[[f64; 2]; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) root_second_moment_samples_sqrt_kg_m: Option<Vec<[f64; 3]>>,
+    /// Of the roots themselves, not of changes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) root_second_moment_laws_sqrt_kg_m: Option<[ScalarLawForm; 3]>,
     #[serde(default)]
     pub(crate) axes: AxesLawFile,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) axes_covariance: Option<[[f64; 4]; 4]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) mass_kg: Option<LawFile>,
+    pub(crate) mass_kg: Option<ScalarLawForm>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) mass_percent: Option<LawFile>,
+    pub(crate) mass_percent: Option<ScalarLawForm>,
     #[serde(default, skip_serializing_if = "Follows::not_at_all")]
     pub(crate) inertia_follows_mass: Follows,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -129,6 +128,7 @@ pub(crate) enum RootsFile {
     Uniform,
     Lognormal,
     TruncatedGaussian,
+    Independent,
     Empirical,
 }
 
@@ -210,15 +210,15 @@ pub(crate) struct SpringFile {
 #[serde(deny_unknown_fields)]
 pub(crate) struct SpringDispersionFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stiffness_n_per_m: Option<LawFile>,
+    pub(crate) stiffness_n_per_m: Option<ScalarLawForm>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stiffness_percent: Option<LawFile>,
+    pub(crate) stiffness_percent: Option<ScalarLawForm>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stroke_m: Option<LawFile>,
+    pub(crate) stroke_m: Option<ScalarLawForm>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stroke_percent: Option<LawFile>,
+    pub(crate) stroke_percent: Option<ScalarLawForm>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) friction_n: Option<LawFile>,
+    pub(crate) friction_n: Option<ScalarLawForm>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) line_of_action_deg: Option<VectorLawFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -226,7 +226,7 @@ pub(crate) struct SpringDispersionFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) stage_point_m: Option<VectorLawFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) start_s: Option<LawFile>,
+    pub(crate) start_s: Option<ScalarLawForm>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) late_probability: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -182,7 +182,7 @@ fn parameters(kind: ModelKind) -> (&'static [&'static str], &'static [&'static s
             &["diagonal_deviation_kg_m2", "angle_deviation_rad"],
             &["diagonal_deviation_kg_m2", "diagonal_bounds_kg_m2", "angle_deviation_rad"],
         ),
-        _ => (&[], &[]),
+        ModelKind::Principal => (&[], &[]),
     }
 }
 

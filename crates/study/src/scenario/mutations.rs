@@ -56,6 +56,16 @@ fn complete() -> Table {
         let at = text.find(before).unwrap();
         text.insert_str(at, more);
     }
+    let stage = "root_second_moment_variance_kg_m2 = [0.0067, 0.0067, 0.002]";
+    let laws = "roots = \"independent\"\nroot_second_moment_laws_sqrt_kg_m = [\
+                { law = \"triangular\", low = 31.0, mode = 31.6, high = 33.0 }, \
+                { law = \"beta\", low = 31.0, high = 33.0, alpha = 2.0, beta = 3.0 }, \
+                { law = \"samples\", samples = [75.4, 75.5, 75.7] }]\n\
+                mass_kg = { law = \"weibull\", low = -10.0, scale = 20.0, shape = 2.0 }\n\
+                position_m = [{ law = \"triangular\", low = -0.1, high = 0.2 }, { variance = 1e-4 }, \
+                { law = \"samples\", samples = [-0.1, 0.2] }]";
+    assert!(text.contains(stage));
+    text = text.replace(stage, laws);
     Scenario::from_toml(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     toml::from_str(&text).unwrap()
 }

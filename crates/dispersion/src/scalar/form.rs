@@ -1,0 +1,369 @@
+//! Scalar laws as they stand in files: in scenarios, fragments and JSON.
+
+use super::laws::DECLARATIONS;
+use super::parameters::{Given, Of, Value};
+use super::{ScalarLaw, ScalarLawError};
+
+/// A law of one number as it stands in a file: a number, which is the standard deviation of a normal law, or a
+/// table with `law` (`"normal"` if it is not given) and the keys of the law.
+///
+/// It is checked where it becomes a [`ScalarLaw`]: [`about`](Self::about) a nominal value, or by `try_from` where the
+/// numbers are those of the quantity itself.
+///
+/// ```
+/// use gyradius_dispersion::{LawUnit, ScalarLaw, ScalarLawForm};
+///
+/// let law: ScalarLawForm = serde_json::from_str(r#"{ "law": "triangular", "low": -1.0, "high": 2.0 }"#)?;
+/// assert_eq!(law.about(10.0, LawUnit::OWN)?, ScalarLaw::triangular(9.0, 10.0, 12.0)?);
+/// assert!(ScalarLaw::try_from(law).unwrap_err().to_string().contains("needs mode"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScalarLawForm {
+    law: &'static Declaration,
+    /// As given, in the order of the law's keys where it takes them.
+    values: Vec<(&'static str, Value)>,
+    /// Whether it is a number alone.
+    bare: bool,
+}
+
+/// What is declared of a law.
+pub(super) struct Declaration {
+    pub(super) name: &'static str,
+    pub(super) keys: &'static [super::parameters::Key],
+    pub(super) quantity: bool,
+    pub(super) read: fn(&Given) -> Result<ScalarLaw, ScalarLawError>,
+}
+
+impl PartialEq for Declaration {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl std::fmt::Debug for Declaration {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl Declaration {
+    fn key(&self, name: &str) -> Option<Of> {
+        self.keys.iter().find(|key| key.name == name).map(|key| key.of)
+    }
+
+    /// What it takes, in words.
+    fn takes(&self) -> String {
+        self.keys.iter().map(|key| key.name).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// What the numbers of a law about a nominal value are in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawUnit {
+    /// In the unit of the quantity itself.
+    size: f64,
+    /// The largest number that is taken.
+    most: f64,
+}
+
+impl LawUnit {
+    /// That of the quantity itself, with numbers up to 1e9.
+    pub const OWN: Self = Self { size: 1.0, most: 1e9 };
+
+    /// Percent of a nominal value, up to 1000.
+    #[must_use]
+    pub fn percent_of(nominal: f64) -> Self {
+        Self { size: 0.01 * nominal, most: 1000.0 }
+    }
+
+    /// In the unit of the quantity itself.
+    #[must_use]
+    pub fn size(self) -> f64 {
+        self.size
+    }
+
+    /// The largest number that is taken.
+    #[must_use]
+    pub fn most(self) -> f64 {
+        self.most
+    }
+}
+
+/// What `sigmas` may be, as in statements.
+const SIGMAS: [f64; 2] = [0.1, 10.0];
+
+/// What stands behind an error of values that are no numbers of the file.
+const CHANGES: &str = "sigma, mean, low and high are of the change from the nominal value";
+
+impl ScalarLawForm {
+    /// The law of a quantity with this nominal value, of which the numbers say the change in `unit`.
+    ///
+    /// # Errors
+    /// A key is missing or not one of the law's, or its value is not allowed.
+    pub fn about(&self, nominal: f64, unit: LawUnit) -> Result<ScalarLaw, ScalarLawFormError> {
+        if !self.law.quantity {
+            let problem = format!("{:?}: it is of an event, not of a quantity", self.law.name);
+            return Err(ScalarLawFormError { key: Some("law"), problem });
+        }
+        self.read(Some(nominal), unit).map_err(|mut error| {
+            if error.made {
+                error.inner.problem = format!("{}; {CHANGES}", error.inner.problem);
+            }
+            error.inner
+        })
+    }
+
+    /// The covariance of a vector, if that is all it says.
+    #[must_use]
+    pub fn covariance(&self) -> Option<[[f64; 3]; 3]> {
+        match self.values[..] {
+            [(_, Value::Matrix(covariance))] => Some(covariance),
+            [..] => None,
+        }
+    }
+
+    fn read(&self, nominal: Option<f64>, unit: LawUnit) -> Result<ScalarLaw, Refused> {
+        let refused = |key, problem: String| Refused {
+            inner: ScalarLawFormError { key: Some(key), problem },
+            made: false,
+        };
+        let law = self.law;
+        for (key, _) in &self.values {
+            match law.key(key) {
+                Some(Of::Matrix) => {
+                    let problem = "a covariance is for vectors, and for nothing beside it";
+                    return Err(refused(key, problem.to_owned()));
+                }
+                Some(_) => {}
+                None => {
+                    let problem = format!("law = {:?} takes {}, not {key}", law.name, law.takes());
+                    return Err(refused(key, problem));
+                }
+            }
+        }
+        let most = unit.most;
+        let checked = |key, value: f64, [low, high]: [f64; 2]| {
+            if self.bare && !(low..=high).contains(&value) {
+                let problem = format!("{value:?}: it must be between {low:?} and {high:?}");
+                return Err(Refused {
+                    inner: ScalarLawFormError { key: None, problem },
+                    made: false,
+                });
+            }
+            if (low..=high).contains(&value) {
+                return Ok(value);
+            }
+            let more = if key == "sigmas" {
+                ": how many standard deviations sigma stands for"
+            } else {
+                ""
+            };
+            Err(refused(key, format!("{value:?}: it must be between {low:?} and {high:?}{more}")))
+        };
+        let number = |key: &str| {
+            self.values.iter().find_map(|(name, value)| match value {
+                Value::Number(value) if *name == key => Some(*value),
+                Value::Number(_) | Value::List(_) | Value::Matrix(_) => None,
+            })
+        };
+        let (mut values, mut sigmas) = (Vec::new(), None);
+        let origin = nominal.unwrap_or(0.0);
+        for (key, value) in &self.values {
+            let place = |x: f64| checked(key, x, [-most, most]).map(|x| origin + x * unit.size);
+            let value = match (law.key(key), value) {
+                (Some(Of::Place), Value::Number(x)) => place(*x)?.into(),
+                (Some(Of::Size), Value::Number(x)) => {
+                    let x = checked(key, *x, [0.0, most])?;
+                    let share = if *key == "sigma" { number("sigmas").unwrap_or(1.0) } else { 1.0 };
+                    (x / share * unit.size).into()
+                }
+                (Some(Of::Square), Value::Number(x)) => {
+                    (checked(key, *x, [0.0, most * most])? * unit.size * unit.size).into()
+                }
+                (Some(Of::Sigmas), Value::Number(x)) => {
+                    sigmas = Some(checked(key, *x, SIGMAS)?);
+                    continue;
+                }
+                (Some(Of::Places), Value::List(all)) => {
+                    Value::List(all.iter().map(|x| place(*x)).collect::<Result<_, _>>()?)
+                }
+                (_, value) => value.clone(),
+            };
+            values.push((*key, value));
+        }
+        if sigmas.is_some() && number("sigma").is_none() {
+            return Err(refused("sigmas", "it goes with sigma, which is missing".to_owned()));
+        }
+        if let (Some(low), Some(high)) = (number("low"), number("high"))
+            && low > high
+        {
+            let problem = format!("{high:?}: it must not be below low, which is {low:?}");
+            return Err(refused("high", problem));
+        }
+        let given = Given { law: law.name, nominal, values };
+        (law.read)(&given).map_err(|error| {
+            let missing = matches!(error, ScalarLawError::Missing { .. });
+            let vector = missing && law.key("covariance").is_some();
+            let or = if vector { ", or, of a vector, covariance" } else { "" };
+            let problem = format!("{error}{or}");
+            let key = if self.bare { None } else { error.key() };
+            Refused { inner: ScalarLawFormError { key, problem }, made: !missing && !self.bare }
+        })
+    }
+}
+
+/// A refusal, and whether it is of values that are no numbers of the file.
+struct Refused {
+    inner: ScalarLawFormError,
+    made: bool,
+}
+
+/// Why what stands in a file is no law.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}{problem}", key.map(|key| format!("{key}: ")).unwrap_or_default())]
+pub struct ScalarLawFormError {
+    /// The key, if it is one alone.
+    pub key: Option<&'static str>,
+    /// The value and what is allowed.
+    pub problem: String,
+}
+
+/// The law whose numbers are those of the quantity itself.
+impl TryFrom<ScalarLawForm> for ScalarLaw {
+    type Error = ScalarLawFormError;
+
+    fn try_from(form: ScalarLawForm) -> Result<Self, Self::Error> {
+        form.read(None, LawUnit { size: 1.0, most: f64::INFINITY }).map_err(|error| error.inner)
+    }
+}
+
+impl From<ScalarLaw> for ScalarLawForm {
+    fn from(law: ScalarLaw) -> Self {
+        Self { law: law.declaration(), values: law.0.values(), bare: false }
+    }
+}
+
+/// As an inline table of TOML.
+impl std::fmt::Display for ScalarLawForm {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if let (true, [(_, Value::Number(sigma))]) = (self.bare, &self.values[..]) {
+            return write!(f, "{sigma:?}");
+        }
+        write!(f, "{{ law = {:?}", self.law.name)?;
+        for (key, value) in &self.values {
+            match value {
+                Value::Number(x) => write!(f, ", {key} = {x:?}")?,
+                Value::List(all) => write!(f, ", {key} = {all:?}")?,
+                Value::Matrix(rows) => write!(f, ", {key} = {rows:?}")?,
+            }
+        }
+        f.write_str(" }")
+    }
+}
+
+#[cfg(feature = "serde")]
+mod file {
+    use super::{DECLARATIONS, Declaration, Of, ScalarLawForm, Value};
+    use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
+    use serde::ser::{Serialize, SerializeMap, Serializer};
+    use std::fmt;
+
+    fn names(all: impl Iterator<Item = &'static str>) -> String {
+        let mut seen: Vec<String> = Vec::new();
+        for name in all.map(|name| format!("`{name}`")) {
+            if !seen.contains(&name) {
+                seen.push(name);
+            }
+        }
+        seen.join(", ")
+    }
+
+    /// The keys of all laws.
+    fn keys() -> impl Iterator<Item = &'static super::super::parameters::Key> {
+        DECLARATIONS.iter().flat_map(|law| law.keys)
+    }
+
+    impl<'de> Deserialize<'de> for &'static Declaration {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            let name = String::deserialize(deserializer)?;
+            DECLARATIONS.iter().find(|law| law.name == name).ok_or_else(|| {
+                let all = names(DECLARATIONS.iter().map(|law| law.name));
+                D::Error::custom(format!("unknown law `{name}`, expected one of {all}"))
+            })
+        }
+    }
+
+    struct FormVisitor;
+
+    impl<'de> Visitor<'de> for FormVisitor {
+        type Value = ScalarLawForm;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a standard deviation, or a table with law, sigma, sigmas, mean, low, high")
+        }
+
+        fn visit_f64<E>(self, sigma: f64) -> Result<ScalarLawForm, E> {
+            let values = vec![("sigma", sigma.into())];
+            Ok(ScalarLawForm { law: &DECLARATIONS[0], values, bare: true })
+        }
+
+        fn visit_i64<E: Error>(self, sigma: i64) -> Result<ScalarLawForm, E> {
+            self.visit_f64(sigma as f64)
+        }
+
+        fn visit_u64<E: Error>(self, sigma: u64) -> Result<ScalarLawForm, E> {
+            self.visit_f64(sigma as f64)
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<ScalarLawForm, A::Error> {
+            let (mut law, mut values) = (&DECLARATIONS[0], Vec::new());
+            while let Some(name) = map.next_key::<String>()? {
+                if name == "law" {
+                    law = map.next_value()?;
+                    continue;
+                }
+                let Some(key) = keys().find(|key| key.name == name) else {
+                    let all = names(std::iter::once("law").chain(keys().map(|key| key.name)));
+                    let problem = format!("unknown field `{name}`, expected one of {all}");
+                    return Err(A::Error::custom(problem));
+                };
+                let value = match key.of {
+                    Of::Place | Of::Size | Of::Square | Of::Sigmas | Of::Number => {
+                        Value::Number(map.next_value()?)
+                    }
+                    Of::Places => Value::List(map.next_value()?),
+                    Of::Matrix => Value::Matrix(map.next_value()?),
+                };
+                values.push((key.name, value));
+            }
+            let at = |name: &str| law.keys.iter().position(|key| key.name == name);
+            values.sort_by_key(|(name, _)| at(name));
+            Ok(ScalarLawForm { law, values, bare: false })
+        }
+    }
+
+    impl<'de> Deserialize<'de> for ScalarLawForm {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            deserializer.deserialize_any(FormVisitor)
+        }
+    }
+
+    impl Serialize for ScalarLawForm {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            if let (true, [(_, Value::Number(sigma))]) = (self.bare, &self.values[..]) {
+                return serializer.serialize_f64(*sigma);
+            }
+            let mut map = serializer.serialize_map(Some(1 + self.values.len()))?;
+            map.serialize_entry("law", self.law.name)?;
+            for (key, value) in &self.values {
+                match value {
+                    Value::Number(x) => map.serialize_entry(key, x)?,
+                    Value::List(all) => map.serialize_entry(key, all)?,
+                    Value::Matrix(rows) => map.serialize_entry(key, rows)?,
+                }
+            }
+            map.end()
+        }
+    }
+}
