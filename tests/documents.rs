@@ -1,8 +1,8 @@
 //! Tables in the documents are what the program finds.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use gyradius_dispersion::ModelKind;
-use gyradius_study::{CompareOptions, ModelComparison, Reference};
+use gyradius_dispersion::{ModelKind, ScalarLaw};
+use gyradius_study::{CompareOptions, ModelComparison, Reference, Scenario};
 use serde_json::Value;
 
 const PAGE: &str = include_str!("../docs/compare.md");
@@ -113,4 +113,32 @@ fn the_models_compare_as_the_page_says() {
     let kinds = vec![ModelKind::Entrywise, ModelKind::Basilisk];
     let found = compare(Reference::Entries, kinds);
     shares(&found, "`gyradius compare --reference entries`:", 8);
+}
+
+/// Every scalar law and each of its keys stand in the documents, and a scenario takes what they say.
+#[test]
+fn scalar_laws_are_written_as_the_page_says() {
+    let page = include_str!("../docs/scenario.md");
+    let laws = &page[page.find("A law is of the change from the nominal value").unwrap()..];
+    let table = laws.lines().skip_while(|line| !line.starts_with('|'));
+    let rows: Vec<&str> = table
+        .take_while(|line| line.starts_with('|'))
+        .filter_map(|line| line.split('`').nth(1))
+        .collect();
+    let scenario = Scenario::peck_2003().unwrap().to_toml();
+    let place = "[payload.dispersion]";
+    for row in &rows {
+        let text = scenario.replacen(place, &format!("{place}\nmass_kg = {row}"), 1);
+        Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{row}: {error}"));
+    }
+    let definitions = include_str!("../docs/models/dispersions.md").to_lowercase();
+    for (name, keys) in ScalarLaw::names() {
+        assert!(definitions.contains(&format!("\n| {}", name.replace('-', " "))), "{name}");
+        // What is not given by name: the default, and the law of late and failed springs.
+        if name != "normal" && name != "bernoulli" {
+            let named = |row: &&str| row.contains(&format!("law = {name:?}"));
+            assert!(rows.iter().any(named), "{name}");
+            assert!(keys.iter().all(|key| laws.contains(*key)), "{name}: {keys:?}");
+        }
+    }
 }

@@ -20,6 +20,15 @@ pub struct ColumnsError {
     pub lengths: [usize; 2],
 }
 
+/// The length that all columns have.
+pub(crate) fn common_length(columns: &[&mut [f64]; 6]) -> Result<usize, ColumnsError> {
+    let length = columns[0].len();
+    match columns.iter().map(|c| c.len()).find(|n| *n != length) {
+        Some(other) => Err(ColumnsError { lengths: [length, other] }),
+        None => Ok(length),
+    }
+}
+
 /// A law of roots that can draw the squares of many at a time.
 pub trait BatchRoots: Distribution<RootSecondMoments> {
     /// Fills three columns of one length with K₁, K₂, K₃ of independent draws, kg·m². What is beyond
@@ -163,10 +172,7 @@ impl<K: BatchRoots, A: BatchAttitudes> PrincipalDispersion<K, A> {
         rng: &mut R,
         mut columns: [&mut [f64]; 6],
     ) -> Result<(), ColumnsError> {
-        let length = columns[0].len();
-        if let Some(other) = columns.iter().map(|c| c.len()).find(|n| *n != length) {
-            return Err(ColumnsError { lengths: [length, other] });
-        }
+        let length = common_length(&columns)?;
         let mut squares = [[0.0; CHUNK]; 3];
         let mut attitudes = [UnitQuaternion::identity(); CHUNK];
         let mut start = 0;

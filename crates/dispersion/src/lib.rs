@@ -10,8 +10,8 @@
 //! * [`BasiliskDispersion`]: what a well-known simulator does.
 //! * [`AnyBody`]: every shape, size and attitude, for property tests and domain randomisation.
 //!
-//! All are [`Distribution`](rand_distr::Distribution)s; [`DispersionModel`] is any of them, chosen at
-//! run time and matched to the moments of another. [`EntryMoments`] are the mean and covariance of the
+//! All are [`Distribution`](rand_distr::Distribution)s and [`InertiaLaw`]s, as a law of your own can be;
+//! [`DispersionModel`] is any of them, chosen at run time and matched to the moments of another. [`EntryMoments`] are the mean and covariance of the
 //! six entries by quadrature or in closed form, not by sampling.
 //! [`sample_columns`](PrincipalDispersion::sample_columns) draws in bulk.
 //!
@@ -51,6 +51,7 @@ mod correlation;
 mod entry_moments;
 mod entrywise;
 mod incomplete_beta;
+mod inertia_law;
 mod known_moments;
 mod log_cholesky;
 mod matched;
@@ -77,6 +78,7 @@ pub use correlated_entries::CorrelatedEntries;
 pub use correlation::{Correlation, CorrelationError};
 pub use entry_moments::{EntryMoments, EntryMomentsError};
 pub use entrywise::{EntrywiseError, EntrywiseGaussian};
+pub use inertia_law::InertiaLaw;
 pub use known_moments::KnownMoments;
 pub use log_cholesky::{LogCholeskyGaussian, LogCholeskyGaussianError};
 pub use matched::{MatchError, Matched};

@@ -1,4 +1,4 @@
-use gyradius_inertia::{Inertia, InertiaMatrix};
+use gyradius_inertia::InertiaMatrix;
 use nalgebra::UnitQuaternion;
 use rand::Rng;
 use rand_distr::Distribution;
@@ -6,8 +6,8 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::{
-    AxesLaw, BasiliskDispersion, CorrelatedEntries, EntryMoments, EntrywiseGaussian, KnownMoments,
-    LogCholeskyGaussian, PrincipalDispersion, PrincipalDraw, RealizableOnly, RootLaw, Wishart,
+    AxesLaw, BasiliskDispersion, CorrelatedEntries, EntrywiseGaussian, LogCholeskyGaussian,
+    PrincipalDispersion, PrincipalDraw, RealizableOnly, RootLaw, Wishart,
 };
 
 /// The models of inertia uncertainty, by name.
@@ -175,53 +175,19 @@ impl DispersionModel {
             Self::Basilisk(_) => ModelKind::Basilisk,
         }
     }
-
-    /// Mean and covariance of the entries, where they are known: not for a law conditioned by rejection.
-    #[must_use]
-    pub fn entry_moments(&self) -> Option<EntryMoments> {
-        Some(match self {
-            Self::Principal(law) => law.entry_moments(),
-            Self::Entrywise(law) => law.entry_moments(),
-            Self::CorrelatedEntries(law) => law.entry_moments(),
-            Self::RealizableEntrywise(_) | Self::RealizableCorrelatedEntries(_) => return None,
-            Self::LogCholesky(law) => law.entry_moments(),
-            Self::Wishart(law) => law.entry_moments(),
-            Self::Basilisk(law) => law.entry_moments(),
-        })
-    }
-
-    /// The estimated share of draws that rejection keeps, where the model is one by rejection.
-    #[must_use]
-    pub fn acceptance(&self) -> Option<f64> {
-        match self {
-            Self::RealizableEntrywise(law) => Some(law.acceptance()),
-            Self::RealizableCorrelatedEntries(law) => Some(law.acceptance()),
-            Self::Principal(_)
-            | Self::Entrywise(_)
-            | Self::CorrelatedEntries(_)
-            | Self::LogCholesky(_)
-            | Self::Wishart(_)
-            | Self::Basilisk(_) => None,
-        }
-    }
 }
 
 impl Distribution<ModelDraw> for DispersionModel {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> ModelDraw {
-        let of = |inertia: Inertia| ModelDraw { inertia: inertia.into(), axes: None };
-        let matrix = |inertia: InertiaMatrix| ModelDraw { inertia, axes: None };
         match self {
-            Self::Principal(law) => {
-                let draw: PrincipalDraw = law.sample(rng);
-                ModelDraw { inertia: draw.inertia.into(), axes: Some(draw.axes) }
-            }
-            Self::Entrywise(law) => matrix(law.sample(rng)),
-            Self::CorrelatedEntries(law) => matrix(law.sample(rng)),
-            Self::RealizableEntrywise(law) => of(law.sample(rng)),
-            Self::RealizableCorrelatedEntries(law) => of(law.sample(rng)),
-            Self::LogCholesky(law) => of(law.sample(rng)),
-            Self::Wishart(law) => of(law.sample(rng)),
-            Self::Basilisk(law) => matrix(law.sample(rng)),
+            Self::Principal(law) => Distribution::<PrincipalDraw>::sample(&**law, rng).into(),
+            Self::Entrywise(law) => law.sample(rng).into(),
+            Self::CorrelatedEntries(law) => law.sample(rng).into(),
+            Self::RealizableEntrywise(law) => law.sample(rng).into(),
+            Self::RealizableCorrelatedEntries(law) => law.sample(rng).into(),
+            Self::LogCholesky(law) => law.sample(rng).into(),
+            Self::Wishart(law) => law.sample(rng).into(),
+            Self::Basilisk(law) => law.sample(rng).into(),
         }
     }
 }

@@ -151,6 +151,12 @@ impl ScalarLaw {
         DECLARATIONS.iter().map(move |law| (law.name, keys(law)))
     }
 
+    /// Which of its keys are of the change from the nominal value where it is read about one, in words.
+    #[must_use]
+    pub fn changes(&self) -> String {
+        self.declaration().changes()
+    }
+
     fn declaration(&self) -> &'static Declaration {
         let own = DECLARATIONS.iter().find(|law| law.name == self.name());
         own.unwrap_or(&DECLARATIONS[0])

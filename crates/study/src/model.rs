@@ -2,10 +2,10 @@
 
 use gyradius_campaign::{Column as RunColumn, Failure, Simulation, Streams, Table, TableError};
 use gyradius_dispersion::{
-    DispersionModel, EntrywiseGaussian, KnownMoments, ModelDraw, ModelKind, RealizableOnly,
+    DispersionModel, EntrywiseGaussian, InertiaLaw, KnownMoments, ModelDraw, ModelKind,
+    RealizableOnly,
 };
 use gyradius_separation::Batch;
-use rand_distr::Distribution;
 use std::ops::Range;
 
 use crate::{
@@ -20,6 +20,9 @@ use crate::{
 #[derive(Debug)]
 pub(crate) struct Model {
     name: String,
+    kind: ModelKind,
+    /// Of the six entries of payload and stage, if the law is entrywise.
+    given: Option<[[f64; 6]; 2]>,
     payload: BodyModel,
     stage: BodyModel,
     draws: Draws,
@@ -27,7 +30,7 @@ pub(crate) struct Model {
 
 #[derive(Debug)]
 struct BodyModel {
-    law: DispersionModel,
+    law: Box<dyn InertiaLaw>,
     streams: Streams,
 }
 
@@ -38,20 +41,33 @@ impl Model {
     }
 
     pub(crate) fn new(spec: &ModelSpec, scenario: &Scenario) -> Result<Self, ScenarioError> {
-        let body = |which: Body, body: &UncertainBody| {
-            let purpose = format!("{} inertia", which.name());
-            Ok(BodyModel {
-                law: law(spec, which, body, scenario).map_err(|error| {
-                    let problem = format!("the {}: {error}", which.name());
-                    ScenarioError::field(scenario.place(spec), problem)
-                })?,
-                streams: Streams::new(scenario.seed(), &spec.name, &purpose),
+        let law = |which: Body, body: &UncertainBody| {
+            law(spec, which, body, scenario).map_err(|error| {
+                let problem = format!("the {}: {error}", which.name());
+                ScenarioError::field(scenario.place(spec), problem)
             })
+        };
+        let payload = law(Body::Payload, scenario.payload())?;
+        let stage = law(Body::Stage, scenario.stage())?;
+        let given =
+            if let (DispersionModel::Entrywise(payload), DispersionModel::Entrywise(stage)) =
+                (&payload, &stage)
+            {
+                Some([payload.deviations(), stage.deviations()])
+            } else {
+                None
+            };
+        let body = |which: Body, law: DispersionModel| {
+            let purpose = format!("{} inertia", which.name());
+            let streams = Streams::new(scenario.seed(), &spec.name, &purpose);
+            BodyModel { law: Box::new(law), streams }
         };
         Ok(Self {
             name: spec.name.clone(),
-            payload: body(Body::Payload, scenario.payload())?,
-            stage: body(Body::Stage, scenario.stage())?,
+            kind: spec.law.kind(),
+            given,
+            payload: body(Body::Payload, payload),
+            stage: body(Body::Stage, stage),
             draws: Draws::new(scenario.seed(), &spec.name, scenario.dispersions()),
         })
     }
@@ -63,7 +79,7 @@ impl Model {
 
     /// Which model it is.
     pub(crate) fn kind(&self) -> ModelKind {
-        self.payload.law.kind()
+        self.kind
     }
 
     /// The estimated shares of draws for payload and stage that rejection keeps, where it rejects.
@@ -74,12 +90,7 @@ impl Model {
     /// The deviations of the six entries of payload and stage that the law was given, if it is
     /// entrywise.
     pub(crate) fn given_deviations(&self) -> Option<[[f64; 6]; 2]> {
-        match (&self.payload.law, &self.stage.law) {
-            (DispersionModel::Entrywise(payload), DispersionModel::Entrywise(stage)) => {
-                Some([payload.deviations(), stage.deviations()])
-            }
-            _ => None,
-        }
+        self.given
     }
 
     /// Draws the bodies of one run.
@@ -164,7 +175,7 @@ impl Simulation for Separations<'_> {
 
 impl BodyModel {
     fn draw(&self, run: u64) -> ModelDraw {
-        self.law.sample(&mut self.streams.run(run))
+        self.law.draw(&mut self.streams.run(run))
     }
 }
 

@@ -52,6 +52,14 @@ impl Declaration {
         self.keys.iter().find(|key| key.name == name).map(|key| key.of)
     }
 
+    /// Which of its keys are of the change from a nominal value, in words.
+    pub(super) fn changes(&self) -> String {
+        let of = [Of::Place, Of::Places, Of::Size, Of::Square];
+        let keys: Vec<_> =
+            self.keys.iter().filter(|key| of.contains(&key.of)).map(|key| key.name).collect();
+        format!("{}: of the change from the nominal value", keys.join(", "))
+    }
+
     /// What it takes, in words.
     fn takes(&self) -> String {
         self.keys.iter().map(|key| key.name).collect::<Vec<_>>().join(", ")
@@ -93,9 +101,6 @@ impl LawUnit {
 /// What `sigmas` may be, as in statements.
 const SIGMAS: [f64; 2] = [0.1, 10.0];
 
-/// What stands behind an error of values that are no numbers of the file.
-const CHANGES: &str = "sigma, mean, low and high are of the change from the nominal value";
-
 impl ScalarLawForm {
     /// The law of a quantity with this nominal value, of which the numbers say the change in `unit`.
     ///
@@ -108,7 +113,7 @@ impl ScalarLawForm {
         }
         self.read(Some(nominal), unit).map_err(|mut error| {
             if error.made {
-                error.inner.problem = format!("{}; {CHANGES}", error.inner.problem);
+                error.inner.problem = format!("{}; {}", error.inner.problem, self.law.changes());
             }
             error.inner
         })
@@ -129,28 +134,16 @@ impl ScalarLawForm {
             made: false,
         };
         let law = self.law;
-        for (key, _) in &self.values {
-            match law.key(key) {
-                Some(Of::Matrix) => {
-                    let problem = "a covariance is for vectors, and for nothing beside it";
-                    return Err(refused(key, problem.to_owned()));
-                }
-                Some(_) => {}
-                None => {
-                    let problem = format!("law = {:?} takes {}, not {key}", law.name, law.takes());
-                    return Err(refused(key, problem));
-                }
-            }
+        let mut given = Vec::new();
+        for (key, value) in &self.values {
+            let Some(of) = law.key(key) else {
+                let problem = format!("law = {:?} takes {}, not {key}", law.name, law.takes());
+                return Err(refused(key, problem));
+            };
+            given.push((*key, of, value));
         }
         let most = unit.most;
-        let checked = |key, value: f64, [low, high]: [f64; 2]| {
-            if self.bare && !(low..=high).contains(&value) {
-                let problem = format!("{value:?}: it must be between {low:?} and {high:?}");
-                return Err(Refused {
-                    inner: ScalarLawFormError { key: None, problem },
-                    made: false,
-                });
-            }
+        let checked = |key: &'static str, value: f64, [low, high]: [f64; 2]| {
             if (low..=high).contains(&value) {
                 return Ok(value);
             }
@@ -159,7 +152,9 @@ impl ScalarLawForm {
             } else {
                 ""
             };
-            Err(refused(key, format!("{value:?}: it must be between {low:?} and {high:?}{more}")))
+            let problem = format!("{value:?}: it must be between {low:?} and {high:?}{more}");
+            let key = if self.bare { None } else { Some(key) };
+            Err(Refused { inner: ScalarLawFormError { key, problem }, made: false })
         };
         let number = |key: &str| {
             self.values.iter().find_map(|(name, value)| match value {
@@ -167,33 +162,40 @@ impl ScalarLawForm {
                 Value::Number(_) | Value::List(_) | Value::Matrix(_) => None,
             })
         };
-        let (mut values, mut sigmas) = (Vec::new(), None);
         let origin = nominal.unwrap_or(0.0);
-        for (key, value) in &self.values {
+        let mut values = Vec::new();
+        for (key, of, value) in &given {
             let place = |x: f64| checked(key, x, [-most, most]).map(|x| origin + x * unit.size);
-            let value = match (law.key(key), value) {
-                (Some(Of::Place), Value::Number(x)) => place(*x)?.into(),
-                (Some(Of::Size), Value::Number(x)) => {
-                    let x = checked(key, *x, [0.0, most])?;
-                    let share = if *key == "sigma" { number("sigmas").unwrap_or(1.0) } else { 1.0 };
-                    (x / share * unit.size).into()
+            let value = match value {
+                Value::Matrix(_) => {
+                    let problem = "a covariance is for vectors, and for nothing beside it";
+                    return Err(refused(key, problem.to_owned()));
                 }
-                (Some(Of::Square), Value::Number(x)) => {
-                    (checked(key, *x, [0.0, most * most])? * unit.size * unit.size).into()
-                }
-                (Some(Of::Sigmas), Value::Number(x)) => {
-                    sigmas = Some(checked(key, *x, SIGMAS)?);
-                    continue;
-                }
-                (Some(Of::Places), Value::List(all)) => {
+                Value::List(all) => {
                     Value::List(all.iter().map(|x| place(*x)).collect::<Result<_, _>>()?)
                 }
-                (_, value) => value.clone(),
+                Value::Number(x) => match of {
+                    Of::Place | Of::Places => place(*x)?.into(),
+                    Of::Size => {
+                        let x = checked(key, *x, [0.0, most])?;
+                        let sigmas = number("sigmas").filter(|_| *key == "sigma");
+                        (x / sigmas.unwrap_or(1.0) * unit.size).into()
+                    }
+                    Of::Square => {
+                        (checked(key, *x, [0.0, most * most])? * unit.size * unit.size).into()
+                    }
+                    Of::Sigmas => {
+                        checked(key, *x, SIGMAS)?;
+                        if number("variance").is_some() {
+                            let problem = "it goes with sigma, not with variance";
+                            return Err(refused(key, problem.to_owned()));
+                        }
+                        continue;
+                    }
+                    Of::Number | Of::Matrix => (*x).into(),
+                },
             };
             values.push((*key, value));
-        }
-        if sigmas.is_some() && number("sigma").is_none() {
-            return Err(refused("sigmas", "it goes with sigma, which is missing".to_owned()));
         }
         if let (Some(low), Some(high)) = (number("low"), number("high"))
             && low > high
@@ -204,7 +206,7 @@ impl ScalarLawForm {
         let given = Given { law: law.name, nominal, values };
         (law.read)(&given).map_err(|error| {
             let missing = matches!(error, ScalarLawError::Missing { .. });
-            let vector = missing && law.key("covariance").is_some();
+            let vector = missing && error.key() == Some("sigma") && law.key("covariance").is_some();
             let or = if vector { ", or, of a vector, covariance" } else { "" };
             let problem = format!("{error}{or}");
             let key = if self.bare { None } else { error.key() };

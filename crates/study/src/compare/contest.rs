@@ -1,11 +1,10 @@
 //! One model about one body at one level.
 
 use gyradius_campaign::{Share, Streams, counted};
-use gyradius_dispersion::{ModelDraw, ModelKind};
+use gyradius_dispersion::ModelKind;
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::SpinMetrics;
 use gyradius_statistics::{Confidence, StatisticsError};
-use rand_distr::Distribution;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -72,10 +71,7 @@ impl Cell {
         match target.model(kind) {
             Err(problem) => cell.problem = Some(problem),
             Ok((model, matched)) => {
-                let draw = |run: u64| -> InertiaMatrix {
-                    let draw: ModelDraw = model.sample(&mut streams.run(run));
-                    draw.inertia
-                };
+                let draw = |run: u64| model.draw(&mut streams.run(run)).inertia;
                 let drawn: Vec<Drawn> = (0..size.draws)
                     .into_par_iter()
                     .map(|run| Drawn::new(&draw(run), scenario))
@@ -84,7 +80,7 @@ impl Cell {
                     .into_par_iter()
                     .map(|run| nutation(draw(run), scenario))
                     .collect();
-                let known = model.entry_moments();
+                let known = model.expected_moments();
                 let entries = || drawn.iter().map(|d| d.entries).collect::<Vec<_>>();
                 let fit = match known {
                     Some(moments) => Some(Fit::known(&moments, target.moments())),

@@ -2,12 +2,12 @@
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_dispersion::{
-    DispersionModel, EntryMoments, ModelKind, PrincipalDispersion, ScalarRoots,
+    DispersionModel, EntryMoments, InertiaLaw, ModelKind, PrincipalDispersion, ScalarRoots,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, RootSecondMoments};
 use nalgebra::{Matrix3, SMatrix};
 use serde::Serialize;
-use std::error::Error;
+use std::{error::Error, sync::Arc};
 
 use super::{body::NominalBody, fit::Fit};
 
@@ -63,8 +63,8 @@ impl Reference {
         let nominal = body.inertia();
         match self {
             Self::Principal => {
-                let law: DispersionModel = principal(nominal, level)?.into();
-                Ok(Target::of_law(law).ok_or("its moments are not known")?)
+                let law = principal(nominal, level)?;
+                Ok(Target::of_law(Arc::new(law)).ok_or("its moments are not known")?)
             }
             Self::Entries => {
                 let variance = (level * body.largest_moment()).powi(2);
@@ -103,13 +103,13 @@ fn principal(
 #[derive(Clone, Debug)]
 pub(crate) struct Target {
     moments: EntryMoments,
-    law: Option<DispersionModel>,
+    law: Option<Arc<dyn InertiaLaw>>,
 }
 
 impl Target {
     /// The moments of a law, where they are known.
-    pub(crate) fn of_law(law: DispersionModel) -> Option<Self> {
-        Some(Self { moments: law.entry_moments()?, law: Some(law) })
+    pub(crate) fn of_law(law: Arc<dyn InertiaLaw>) -> Option<Self> {
+        Some(Self { moments: law.expected_moments()?, law: Some(law) })
     }
 
     pub(crate) fn moments(&self) -> &EntryMoments {
@@ -117,9 +117,12 @@ impl Target {
     }
 
     /// The model of a kind, and what of the moments it was given.
-    pub(crate) fn model(&self, kind: ModelKind) -> Result<(DispersionModel, &'static str), String> {
-        if let Some(law) = self.law.as_ref().filter(|law| law.kind() == kind) {
-            return Ok((law.clone(), "the reference itself"));
+    pub(crate) fn model(
+        &self,
+        kind: ModelKind,
+    ) -> Result<(Arc<dyn InertiaLaw>, &'static str), String> {
+        if let Some(law) = self.law.as_ref().filter(|law| law.name() == kind.name()) {
+            return Ok((Arc::clone(law), "the reference itself"));
         }
         let matched = DispersionModel::matched(kind, &self.moments).map_err(|e| e.problem)?;
         let what = matched.what();
@@ -131,14 +134,14 @@ impl Target {
                 "a match to first order misses: the covariance comes out {} times too large",
                 gyradius_report::significant(1.0 + fit.covariance_off, 2)
             )),
-            _ => Ok((model, what)),
+            _ => Ok((Arc::new(model), what)),
         }
     }
 
     /// Why no law of bodies has these moments, where that can be shown: in the principal axes of the
     /// mean, E Σ_ab² must not exceed E Σ_aa Σ_bb, for Σ ⪰ 0.
     pub(crate) fn impossible(&self) -> Option<String> {
-        if self.law.as_ref().is_some_and(|law| law.kind().is_realizable_by_construction()) {
+        if self.law.as_ref().is_some_and(|law| law.is_realizable_by_construction()) {
             return None;
         }
         let [i11, i22, i33, i12, i13, i23] = self.moments.mean();

@@ -5,6 +5,7 @@ use gyradius_report::{Figure, Label, Picture, RangeGrid, RangePanel};
 use gyradius_statistics::StatisticsError;
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 use super::{
     BodyResult,
@@ -38,7 +39,7 @@ impl Section {
         let of = |name: &str, body: &UncertainBody, size| {
             let law = body.principal(Axes::WholeSphere).map_err(|e| e.to_string());
             let target = law.and_then(|law| {
-                Target::of_law(law.into()).ok_or_else(|| "its moments are not known".to_owned())
+                Target::of_law(Arc::new(law)).ok_or_else(|| "its moments are not known".to_owned())
             });
             let label = format!("study {name}");
             let levels = level(None, &label, target, &ModelKind::ALL, scenario, size, &|| {})?;

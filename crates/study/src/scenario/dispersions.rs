@@ -337,8 +337,9 @@ fn positive(field: &str, nominal: f64, law: &ScalarLaw) -> Result<(), ScenarioEr
         return Ok(());
     }
     let problem = format!(
-        "at least half of the draws would be negative: the nominal value is {nominal:?}, and a law is of the \
-         change from it; laws \"lognormal\" (with a mean), \"uniform\" and \"truncated-normal\" need not be negative"
+        "at least half of the draws would be negative: the nominal value is {nominal:?} ({}); laws \"lognormal\" \
+         (with a mean), \"uniform\" and \"truncated-normal\" need not be negative",
+        law.changes()
     );
     Err(ScenarioError::field(field, problem))
 }
