@@ -1,6 +1,5 @@
 //! Scalar laws as they stand in files: in scenarios, fragments and JSON.
 
-use super::laws::DECLARATIONS;
 use super::parameters::{Given, Of, Value};
 use super::{ScalarLaw, ScalarLawError};
 
@@ -11,12 +10,17 @@ use super::{ScalarLaw, ScalarLawError};
 /// numbers are those of the quantity itself.
 ///
 /// ```
+/// # #[cfg(feature = "serde")]
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// use gyradius_dispersion::{LawUnit, ScalarLaw, ScalarLawForm};
 ///
 /// let law: ScalarLawForm = serde_json::from_str(r#"{ "law": "triangular", "low": -1.0, "high": 2.0 }"#)?;
 /// assert_eq!(law.about(10.0, LawUnit::OWN)?, ScalarLaw::triangular(9.0, 10.0, 12.0)?);
 /// assert!(ScalarLaw::try_from(law).unwrap_err().to_string().contains("needs mode"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok(())
+/// # }
+/// # #[cfg(not(feature = "serde"))]
+/// # fn main() {}
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScalarLawForm {
@@ -266,7 +270,8 @@ impl std::fmt::Display for ScalarLawForm {
 
 #[cfg(feature = "serde")]
 mod file {
-    use super::{DECLARATIONS, Declaration, Of, ScalarLawForm, Value};
+    use super::{Declaration, Of, ScalarLawForm, Value};
+    use crate::scalar::laws::DECLARATIONS;
     use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
     use serde::ser::{Serialize, SerializeMap, Serializer};
     use std::fmt;

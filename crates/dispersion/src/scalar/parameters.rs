@@ -39,6 +39,8 @@ pub(crate) enum Of {
 pub(crate) enum Value {
     Number(f64),
     List(Vec<f64>),
+    /// Comes from files alone.
+    #[cfg_attr(not(feature = "serde"), allow(dead_code, reason = "no file is read"))]
     Matrix([[f64; 3]; 3]),
 }
 
