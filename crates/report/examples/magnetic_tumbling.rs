@@ -7,7 +7,7 @@
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_campaign::{Column, Failure, Simulation, Streams, Table, TableError, run, threads};
-use gyradius_dispersion::{GaussianRoots, PrincipalDispersion};
+use gyradius_dispersion::{PrincipalDispersion, ScalarRoots};
 use gyradius_inertia::{Inertia, InertiaMatrix};
 use gyradius_report::Overview;
 use nalgebra::{Matrix3, Matrix4, UnitQuaternion, Vector3, Vector4};
@@ -24,7 +24,7 @@ const STEP: f64 = 1.0;
 const LIMIT: f64 = 0.05;
 
 struct MagneticTumbling {
-    inertias: PrincipalDispersion<GaussianRoots, RadiallyConstrainedGaussian>,
+    inertias: PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian>,
     draws: Streams,
 }
 
@@ -36,7 +36,7 @@ impl MagneticTumbling {
         let nominal = InertiaMatrix::from_entries([0.041, 0.038, 0.011], [4e-4, -2e-4, 1e-4])?;
         let nominal = Inertia::try_from(nominal)?;
         let roots = nominal.second_moments().roots();
-        let roots = GaussianRoots::new(roots, roots.values().map(|root| 0.03 * root))?;
+        let roots = ScalarRoots::normal(roots, roots.values().map(|root| (0.03 * root).powi(2)))?;
         let spread = Vector4::new(spread_of_axes, spread_of_axes, spread_of_axes, 0.05);
         let axes = RadiallyConstrainedGaussian::new(
             nominal.principal_axes().attitude(),

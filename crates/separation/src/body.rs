@@ -122,6 +122,17 @@ pub struct BodyState {
 }
 
 impl BodyState {
+    /// The state of another point of the same rigid body, `point_m` from this one in body axes.
+    #[must_use]
+    pub fn of_point(&self, point_m: &Vector3<f64>) -> Self {
+        let speed = self.attitude * self.angular_velocity.cross(point_m);
+        Self {
+            position: self.position + self.attitude * point_m,
+            velocity: self.velocity + speed,
+            ..*self
+        }
+    }
+
     /// The same state, its attitude of unit norm to rounding.
     pub(crate) fn checked(mut self) -> Result<Self, BodyError> {
         let fields: [(&'static str, &[f64]); 3] = [

@@ -142,7 +142,7 @@ mod tests {
         assert!((split.stored_j() - 8.0).abs() < 1e-14, "{split:?}");
         let given = 0.5 * 800.0 * (0.1_f64 - 20.0 / 800.0).powi(2);
         assert!((split.total_j() - given).abs() < 1e-12, "{split:?}");
-        assert_eq!(outcome.release_order(), [[1]]);
+        assert_eq!(outcome.release_order(), [[0]]);
         assert_eq!(outcome.release_times().nth(1), Some(None));
     }
 

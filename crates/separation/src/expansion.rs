@@ -2,22 +2,19 @@
 //! Jorba & Zou 2005, doi:10.1080/10586458.2005.10128904): Cauchy's rule gives the coefficients of a
 //! product, and an equation of motion the next coefficient of what it is the derivative of.
 //!
-//! Everything is in payload axes. Springs act along the line between their points, so that the
-//! torques on the two bodies about a common point cancel: the torque on the stage about its mass
+//! Everything is in payload axes. Loads act on both bodies along one line, so that the torques on the two bodies about a common point cancel: the torque on the stage about its mass
 //! centre is −(ρ × F + T), ρ from the stage's mass centre to the payload's, F and T force and torque
 //! on the payload.
-
-use smallvec::SmallVec;
 
 use crate::{
     lanes::{Lanes, M3, WIDTH, add, scale, times},
     layout::{
-        ATTITUDE, INLINE_SPRINGS, INVERSE, OFFSET, ORDER, PAYLOAD_RATE, RELATIVE, STAGE_RATE,
-        STATE, STOPS, TERMS, VELOCITY, part,
+        ATTITUDE, INVERSE, OFFSET, ORDER, PAYLOAD_RATE, RELATIVE, STAGE_RATE, STATE, STOPS, TERMS,
+        VELOCITY, part,
     },
+    loads::LoadSeries,
     products::{Coefficients, Products, Row},
     root::inverse_root,
-    spring_series::SpringSeries,
     vector::{Four, Simd},
 };
 
@@ -33,7 +30,7 @@ pub(crate) struct Rotor {
 #[repr(align(64))]
 pub(crate) struct Expansion {
     pub(crate) terms: [Coefficients; TERMS],
-    pub(crate) springs: SmallVec<[SpringSeries; INLINE_SPRINGS]>,
+    pub(crate) loads: LoadSeries,
     pub(crate) payload: Rotor,
     pub(crate) stage: Rotor,
     /// 1 over what each entry of the state is measured by.
@@ -81,7 +78,7 @@ impl Expansion {
         let rotor = Rotor { inertia: [vector; 3], inverse: [vector; 3] };
         Self {
             terms: [Coefficients { state: [Lanes::ZERO; STATE], products: Products::ZERO }; TERMS],
-            springs: SmallVec::new(),
+            loads: LoadSeries::new(),
             payload: rotor,
             stage: rotor,
             inverse_scale: [Lanes::ZERO; STATE],
@@ -98,7 +95,7 @@ impl Expansion {
     /// Expands the motion about the state in `terms[0]`: this evaluates the equations of motion, for
     /// all coefficients at once.
     ///
-    /// A lane stops at a low degree if a spring lets go before its series ceases to be good. Whether
+    /// A lane stops at a low degree if a load ends before its series ceases to be good. Whether
     /// it does depends on nothing but the lane.
     #[inline(always)]
     pub(crate) fn expand<S: Simd>(&mut self, simd: S) {
@@ -111,12 +108,7 @@ impl Expansion {
                     x.0[lane] = 0.0;
                 }
             }
-            let beyond = self.order[lane]..top;
-            for springs in &mut self.springs {
-                for term in &mut springs.terms[beyond.clone()] {
-                    term.square.0[lane] = 0.0;
-                }
-            }
+            self.loads.forget(lane, self.order[lane]..top);
         }
         // As many sums at a time as there are registers for.
         const SUMS: usize = STATE / 2;
@@ -127,18 +119,7 @@ impl Expansion {
             }
             self.end[at..at + SUMS].copy_from_slice(&sum);
         }
-        let reach = self.reach;
-        for springs in &mut self.springs {
-            let (mut power, mut up, mut down) = (reach, Lanes::ZERO, Lanes::ZERO);
-            for term in &springs.terms[1..top] {
-                let term = term.square * power;
-                up += term.map(|x| if x > 0.0 { x } else { 0.0 });
-                down += term.map(|x| if x < 0.0 { x } else { 0.0 });
-                power = power * reach;
-            }
-            springs.upper = springs.terms[0].square + up;
-            springs.lower = springs.terms[0].square + down;
-        }
+        self.loads.bound(self.reach, top);
     }
 
     /// To the degrees that the lanes need, of which it returns the highest.
@@ -155,14 +136,14 @@ impl Expansion {
             let mut stops = [true; WIDTH];
             if stop < ORDER {
                 // The radius seldom grows much from one step to the next, and takes time to find.
-                stops = self.releases_within(before * (2.0 * stretch), stop);
+                stops = self.ends_within(before * (2.0 * stretch), stop);
                 if !stops.iter().zip(&under_way).any(|(stops, under_way)| *stops && *under_way) {
                     continue;
                 }
             }
             let radius = self.radius(stop);
             let reach = radius * stretch;
-            let ends = self.releases_within(reach, stop);
+            let ends = self.ends_within(reach, stop);
             for lane in 0..WIDTH {
                 if under_way[lane] && stops[lane] && (ends[lane] || stop == ORDER) {
                     under_way[lane] = false;
@@ -178,21 +159,10 @@ impl Expansion {
         ORDER
     }
 
-    /// Whether a spring reaches its free length by a time, as far as the coefficients below an order
-    /// tell.
+    /// Whether a load comes to its end by a time, as far as the coefficients below an order tell.
     #[inline(always)]
-    fn releases_within(&self, time: Lanes, order: usize) -> [bool; WIDTH] {
-        let mut released = Lanes::ZERO;
-        for springs in &self.springs {
-            let mut sum = Lanes::ZERO;
-            for term in springs.terms[..order].iter().rev() {
-                sum = sum * time + term.square;
-            }
-            let beyond = sum.zip(springs.free_length, |s, l| if s >= l * l { 1.0 } else { 0.0 });
-            let pushes = springs.stiffness.map(|k| if k == 0.0 { 0.0 } else { 1.0 });
-            released += beyond * pushes;
-        }
-        released.0.map(|x| x > 0.0)
+    fn ends_within(&mut self, time: Lanes, order: usize) -> [bool; WIDTH] {
+        self.loads.ends_within(time, order).0.map(|x| x > 0.0)
     }
 
     /// From the coefficients up to k of the state to those of order k + 1.
@@ -214,9 +184,7 @@ impl Expansion {
             times(&self.payload.inertia, &part(&newest.state, PAYLOAD_RATE)),
             times(&self.stage.inertia, &part(&newest.state, STAGE_RATE)),
         ];
-        for springs in &mut self.springs {
-            springs.stretch(simd, k, &arm, &rotation);
-        }
+        self.loads.stretch(simd, k, &arm, &rotation);
 
         let crosses = cauchy(simd, &self.terms[..=k], Products::crosses);
         let [offset, acceleration, payload_turn] = Products::of_crosses(&crosses);
@@ -225,12 +193,7 @@ impl Expansion {
         put(next, VELOCITY, &acceleration, 1.0);
         put(next, PAYLOAD_RATE, &payload_turn, 1.0);
 
-        let (mut force, mut torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
-        for springs in &mut self.springs {
-            let Some([push, moment]) = springs.push(simd, k) else { continue };
-            force = std::array::from_fn(|i| force[i] + push[i]);
-            torque = std::array::from_fn(|i| torque[i] + moment[i]);
-        }
+        let [force, torque] = self.loads.push(simd, k);
         self.terms[k].products.force = force;
         let next = &mut self.terms[k + 1].state;
         let acceleration = add(scale(force, self.inverse_mass), part(next, VELOCITY));

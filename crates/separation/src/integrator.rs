@@ -1,4 +1,4 @@
-//! Steps of several runs: how far the series are good, which spring lets go, and when.
+//! Steps of several runs: how far the series are good, which load ends, and when.
 
 use std::borrow::Borrow;
 
@@ -7,11 +7,8 @@ use crate::{
     expansion::{Expansion, Rotor},
     lanes::{Lanes, M3},
     layout::{ORDER, STATE, STOPS, TERMS},
-    polynomial::first_zero,
-    separation::TOUCHING,
-    spring_series::SpringSeries,
     state::{self, State},
-    track::{Fate, Track},
+    track::{Fate, Fates, Track},
     vector,
 };
 
@@ -21,10 +18,6 @@ const MAX_STEPS: u32 = 100_000;
 const UNDERFLOW: f64 = 1e-13;
 /// The square of a time that is this share of a step does not tell in the state.
 const TINY: f64 = 1e-9;
-/// A spring whose squared length stays below this share of that of its free length does not come to it,
-/// whatever the rounding.
-const NEAR: f64 = 1.0 - 1e-9;
-
 /// Several runs, one in each lane.
 #[derive(Debug)]
 pub(crate) struct Integrator {
@@ -59,28 +52,11 @@ impl Integrator {
         let run: &Separation = separation.borrow();
         let expansion = &mut self.expansion;
         expansion.busy[lane] = true;
-        while expansion.springs.len() < run.springs().len() {
-            expansion.springs.push(SpringSeries::new());
-        }
         let set = |to: &mut [Lanes], from: &[f64]| {
             for (to, from) in to.iter_mut().zip(from) {
                 to.0[lane] = *from;
             }
         };
-        // A run with fewer springs than there is room for has some that do not push.
-        for (i, series) in expansion.springs.iter_mut().enumerate() {
-            series.stiffness.0[lane] = 0.0;
-            if let Some(spring) = run.springs().get(i) {
-                if Fate::of(spring) == Fate::Pushing {
-                    series.stiffness.0[lane] = spring.stiffness_n_per_m();
-                }
-                series.free_length.0[lane] = run.free_lengths()[i];
-                for axis in 0..3 {
-                    series.payload_point[axis].0[lane] = spring.payload_point_m()[axis];
-                    series.stage_point[axis].0[lane] = spring.stage_point_m()[axis];
-                }
-            }
-        }
         let matrix = |to: &mut M3, from: &nalgebra::Matrix3<f64>| {
             for (row, from) in to.iter_mut().zip(from.row_iter()) {
                 for (to, from) in row.iter_mut().zip(from.iter()) {
@@ -98,9 +74,13 @@ impl Integrator {
         expansion.inverse_mass.0[lane] = run.inverse_reduced_mass();
         let scales = state::scales(run);
         set(&mut expansion.inverse_scale, &scales.map(|s| 1.0 / s));
+        let loads: Fates = run.loads().iter().map(Fate::of).collect();
+        expansion.loads.set(lane, run.loads());
+        for (i, fate) in loads.iter().enumerate() {
+            expansion.loads.act(i, lane, *fate == Fate::Acting);
+        }
         self.set_state(lane, &state::initial(run));
-        let springs = run.springs().iter().map(Fate::of).collect();
-        Track { time: 0.0, steps: 0, springs, time_scale: state::time_scale(&scales), separation }
+        Track { time: 0.0, steps: 0, loads, time_scale: state::time_scale(&scales), separation }
     }
 
     /// Leaves a lane without a run.
@@ -140,8 +120,8 @@ impl Integrator {
         track.check(&self.state(lane), &self.settings)
     }
 
-    /// Takes the run in a lane as far as its expansion is good, to the next release or start of a
-    /// spring, or to a time, whichever comes first. Returns the length of the step.
+    /// Takes the run in a lane as far as its expansion is good, to the next end or start of a
+    /// load, or to a time, whichever comes first. Returns the length of the step.
     pub(crate) fn advance<S: Borrow<Separation>>(
         &mut self,
         lane: usize,
@@ -163,16 +143,13 @@ impl Integrator {
         }
         let start = track.next_start();
         let h = reach.min(until.min(start) - track.time);
+        let order = self.expansion.order[lane];
         let mut first: Option<(f64, usize)> = None;
-        for i in track.pushing() {
-            let spring = &self.expansion.springs[i];
-            let free = spring.free_length.0[lane];
-            // Most come nowhere near. NaN does not pass.
-            if spring.upper.0[lane] < free * free {
-                continue;
-            }
-            let gap = self.gap(lane, i, h, 1.0, 0.0);
-            if let Some(x) = first_zero(self.known(lane, &gap))
+        for i in track.open() {
+            let events = self.expansion.loads.get(i);
+            // Most come nowhere near.
+            if events.may_end(lane)
+                && let Some(x) = events.end(lane, order, h)
                 && first.is_none_or(|(earliest, _)| x * h < earliest)
             {
                 first = Some((x * h, i));
@@ -181,11 +158,11 @@ impl Integrator {
         let run = track.separation.borrow();
         let mut taken = h;
         let mut next = match first {
-            Some((time, spring)) => {
+            Some((time, load)) => {
                 taken = time;
                 let (mut next, slope) = self.with_slope(lane, time);
                 // The series of the gap ends an order before that of the state.
-                let gap = state::gap(run, &next, spring);
+                let gap = run.loads().get(load).gap(&next);
                 let correction = -gap.value / gap.rate;
                 if time > 0.0 && correction.abs() <= 1e-3 * h {
                     taken = (time + correction).clamp(0.0, h);
@@ -200,43 +177,53 @@ impl Integrator {
             None if h == reach => self.expansion.end.map(|x| x.0[lane]),
             None => self.at(lane, h),
         };
-        for i in track.pushing().filter(|i| track.springs[*i] == Fate::Pushing) {
-            self.check_apart(lane, track, i, taken)?;
+        // Points that fly straight at each other: the equations of motion do not notice.
+        for i in track.open().filter(|i| track.loads[*i] == Fate::Acting) {
+            if let Some(x) = self.expansion.loads.get(i).loses_direction(lane, order, taken) {
+                return Err(self.lost_direction(lane, run, i, track.time + x * taken, x, taken));
+            }
         }
         state::normalize(&mut next);
         // No way out of the loop: it goes in vector lanes.
         if !next.iter().fold(true, |finite, x| finite & x.is_finite()) {
             return Err(self.failure(lane, track, reach));
         }
-        self.note_recompression(lane, track, taken);
-        let starts = first.is_none() && start <= until && h >= start - track.time;
-        track.time = if starts { start } else { track.time + taken };
-        if let Some((_, spring)) = first {
-            let run = track.separation.borrow();
-            for (i, fate) in track.springs.iter_mut().enumerate() {
-                // Springs that are as long to rounding let go together.
-                let free = || {
-                    let series = &self.expansion.springs[i];
-                    // Most come nowhere near.
-                    series.upper.0[lane] >= NEAR * series.free_length.0[lane].powi(2)
-                        && state::gap(run, &next, i).value >= -state::rounding(run, &next, i)
-                };
-                if fate.is_open() && (i == spring || free()) {
-                    fate.end(track.time);
-                    self.expansion.springs[i].stiffness.0[lane] = 0.0;
+        if taken > 0.0 {
+            // Loads that have ended and are pressed again.
+            for (i, fate) in track.loads.iter_mut().enumerate() {
+                if let Fate::Ended { pressed_again: again @ None, .. } = fate {
+                    let back = self.expansion.loads.get(i).comes_back(lane, order, taken);
+                    *again = back.map(|x| track.time + x * taken);
                 }
             }
         }
-        for (i, fate) in track.springs.iter_mut().enumerate() {
-            let run = track.separation.borrow();
-            let spring = &run.springs()[i];
-            if *fate == Fate::Waiting && spring.start_s().is_some_and(|start| start <= track.time) {
-                if !(state::line(&next, spring).norm() > TOUCHING * spring.stroke_m()) {
-                    let speed = -state::gap(run, &self.at(lane, 0.999 * taken), i).rate;
-                    return Err(RunError::PadsMeet { spring: i + 1, time: track.time, speed });
+        let starts = first.is_none() && start <= until && h >= start - track.time;
+        track.time = if starts { start } else { track.time + taken };
+        let loads = track.separation.borrow().loads();
+        if let Some((_, ends)) = first {
+            for (i, fate) in track.loads.iter_mut().enumerate() {
+                // Those that are at their ends to rounding end together.
+                let ended = || {
+                    let load = loads.get(i);
+                    // Most come nowhere near.
+                    self.expansion.loads.get(i).may_all_but_end(lane)
+                        && load.gap(&next).value >= -load.rounding(&next)
+                };
+                if fate.is_open() && (i == ends || ended()) {
+                    fate.end(track.time);
+                    self.expansion.loads.act(i, lane, false);
                 }
-                *fate = Fate::Pushing;
-                self.expansion.springs[i].stiffness.0[lane] = spring.stiffness_n_per_m();
+            }
+        }
+        for i in 0..track.loads.len() {
+            let load = loads.get(i);
+            if track.loads[i] == Fate::Waiting && load.start_s().is_some_and(|s| s <= track.time) {
+                if !load.can_start(&next) {
+                    let run = track.separation.borrow();
+                    return Err(self.lost_direction(lane, run, i, track.time, 1.0, taken));
+                }
+                track.loads[i] = Fate::Acting;
+                self.expansion.loads.act(i, lane, true);
             }
         }
         self.set_state(lane, &next);
@@ -264,6 +251,20 @@ impl Integrator {
             }
         }
         (sum, slope)
+    }
+
+    /// That the force of a load has lost its direction at a time, a share of a step that was taken.
+    fn lost_direction(
+        &self,
+        lane: usize,
+        run: &Separation,
+        load: usize,
+        time: f64,
+        share: f64,
+        taken: f64,
+    ) -> RunError {
+        let at = run.loads().get(load);
+        at.lost_direction(load, time, -at.gap(&self.at(lane, 0.999 * share * taken)).rate)
     }
 
     fn failure<S: Borrow<Separation>>(&self, lane: usize, track: &Track<S>, step: f64) -> RunError {

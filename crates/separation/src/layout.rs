@@ -18,8 +18,8 @@ pub(crate) const ATTITUDE: usize = 10;
 pub(crate) const PAYLOAD_RATE: usize = 14;
 pub(crate) const STAGE_RATE: usize = 17;
 
-/// Springs that a run holds without allocating.
-pub(crate) const INLINE_SPRINGS: usize = 8;
+/// Loads that a run holds without allocating.
+pub(crate) const INLINE_LOADS: usize = 8;
 
 /// 1/k.
 pub(crate) const INVERSE: [f64; TERMS] = {

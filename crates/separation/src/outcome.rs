@@ -35,10 +35,10 @@ impl Outcome {
     ) -> Self {
         let separation = track.separation.borrow();
         let (payload, stage) = state::bodies(separation, state, track.time);
-        let rounding = Rounding::new(separation, &track.springs, settings, track.steps);
+        let rounding = Rounding::new(separation, &track.loads, settings, track.steps);
         let start = [*separation.payload().state(), *separation.stage().state()];
         let stored = separation.stored_energy();
-        let (springs, steps) = (track.springs, track.steps);
+        let (springs, steps) = (track.loads, track.steps);
         Self { springs, payload, stage, start, stored, steps, rounding }
     }
 
@@ -57,11 +57,11 @@ impl Outcome {
     }
 
     /// The springs that were pressed below their free length again after they had let go, and while
-    /// others still pushed: number from 1, and when that began, s. They stay lost.
+    /// others still pushed: number from 0, and when that began, s. They stay lost.
     pub fn recompressed(&self) -> impl Iterator<Item = (usize, f64)> {
-        self.springs.iter().zip(1..).filter_map(|(fate, number)| match fate {
-            Fate::Released { recompressed, .. } => Some((number, (*recompressed)?)),
-            Fate::Failed | Fate::Waiting | Fate::Pushing | Fate::Missed { .. } => None,
+        self.springs.iter().enumerate().filter_map(|(spring, fate)| match fate {
+            Fate::Ended { pressed_again, .. } => Some((spring, (*pressed_again)?)),
+            Fate::Failed | Fate::Waiting | Fate::Acting | Fate::Missed { .. } => None,
         })
     }
 
@@ -131,12 +131,12 @@ impl Outcome {
         [of(&self.payload, &self.start[0]), of(&self.stage, &self.start[1])]
     }
 
-    /// The springs in the order in which they let go, from 1; those that let go at one time together.
+    /// The springs in the order in which they let go, numbered from 0; those that let go at one time together.
     /// One that never pushed has no place in it.
     #[must_use]
     pub fn release_order(&self) -> Vec<Vec<usize>> {
         let times =
-            self.release_times().zip(1..).filter_map(|(time, spring)| Some((time?, spring)));
+            self.release_times().enumerate().filter_map(|(spring, time)| Some((time?, spring)));
         let mut times: Vec<(f64, usize)> = times.collect();
         times.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let groups = times.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq());

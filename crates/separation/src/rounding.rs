@@ -1,6 +1,6 @@
 //! What the arithmetic of a run leaves of quantities whose parts cancel.
 
-use crate::{Separation, Settings, track::Fate};
+use crate::{Separation, Settings, load::Size, track::Fate};
 
 /// The size below which the payload's angular momentum and the relative velocity after a run are
 /// nothing but rounding, so that their directions mean nothing.
@@ -27,7 +27,7 @@ pub(crate) struct Rounding {
 impl Rounding {
     pub(crate) fn new(
         separation: &Separation,
-        springs: &[Fate],
+        loads: &[Fate],
         settings: &Settings,
         steps: u32,
     ) -> Self {
@@ -38,17 +38,14 @@ impl Rounding {
         let spin = inertia.norm() * payload.state().angular_velocity.norm();
         let speed = (payload.state().velocity - stage.state().velocity).norm();
         let mut rounding = Self { momentum: epsilon * spin, velocity: epsilon * speed };
-        let all = separation.springs().iter().zip(separation.free_lengths()).zip(springs);
-        for ((spring, free), fate) in all {
-            let (Some(release), Some(start)) = (fate.let_go(), spring.start_s()) else { continue };
-            let travel = spring.travel_m();
-            let distance = free - travel;
-            let arm = spring.payload_point_m().norm();
-            let reach = distance + arm + spring.stage_point_m().norm();
-            let impulse = spring.stiffness_n_per_m() * travel * (release - start);
+        for (load, fate) in separation.loads().iter().zip(loads) {
+            let (Some(release), Some(start)) = (fate.let_go(), load.start_s()) else { continue };
+            let Size { travel, force, arms, distance, .. } = load.size();
+            let reach = distance + arms[0] + arms[1];
+            let impulse = force * (release - start);
             let relative =
                 settings.relative_tolerance() + epsilon * (1.0 + reach / distance + reach / travel);
-            rounding.momentum += arm * impulse * relative;
+            rounding.momentum += arms[0] * impulse * relative;
             rounding.velocity += impulse * separation.inverse_reduced_mass() * relative;
         }
         rounding

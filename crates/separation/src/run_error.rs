@@ -6,11 +6,12 @@
 pub enum RunError {
     /// Springs are still in contact at the horizon.
     #[error(
-        "springs {springs:?} had not let go after {horizon:?} s: spring {} is {compression:e} m short \
-         of its free length and grows by {rate:e} m/s", .springs[0]
+        "springs {:?} had not let go after {horizon:?} s: spring {} is {compression:e} m short \
+         of its free length and grows by {rate:e} m/s",
+        .springs.iter().map(|spring| spring + 1).collect::<Vec<_>>(), .springs[0] + 1
     )]
     NotReleased {
-        /// The springs, from 1.
+        /// The springs, from 0.
         springs: Vec<usize>,
         /// The horizon, s.
         horizon: f64,
@@ -21,11 +22,11 @@ pub enum RunError {
     },
     /// The two points of a spring have come together, and its force has lost its direction.
     #[error(
-        "spring {spring}: its points meet at {time:?} s, closing at {speed:?} m/s: the line between them is \
-         the direction of the force"
+        "spring {}: its points meet at {time:?} s, closing at {speed:?} m/s: the line between them is \
+         the direction of the force", .spring + 1
     )]
     PadsMeet {
-        /// The spring, from 1.
+        /// The spring, from 0.
         spring: usize,
         /// When, s.
         time: f64,

@@ -1,17 +1,12 @@
 //! Two bodies and the springs between them, at the moment the clamp opens.
 
 use gyradius_inertia::InertiaMatrix;
-use nalgebra::Vector3;
-use std::sync::Arc;
 
-use crate::{Body, BodyError, BodyState, MovingBody, Spring};
-
-/// Pads nearer than this share of their stroke count as touching.
-pub(crate) const TOUCHING: f64 = 1e-6;
-
-/// Strokes shorter than this share of the distances that they are differences of have lost half of
-/// the digits of a double.
-const SHORTEST: f64 = 1e-7;
+use crate::{
+    Body, BodyError, MovingBody, Role, Spring, SpringError,
+    loads::Loads,
+    spring::{SHORTEST, SeatedSpring},
+};
 
 /// Why bodies and springs do not make a separation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -20,10 +15,18 @@ pub enum SeparationError {
     /// Something is wrong with a body or its state.
     #[error("{body}: {source}")]
     Body {
-        /// `payload` or `stage`.
-        body: &'static str,
+        /// Which of the two.
+        body: Role,
         /// What.
         source: BodyError,
+    },
+    /// The values of a spring make none.
+    #[error("spring {}: {source}", .spring + 1)]
+    Spring {
+        /// Which spring, from 0.
+        spring: usize,
+        /// What is wrong with it.
+        source: SpringError,
     },
     /// There is no spring.
     #[error("no springs: there must be at least one")]
@@ -33,13 +36,13 @@ pub enum SeparationError {
     NonePushes,
     /// The two points of a spring coincide at the start, which leaves its direction undefined.
     #[error(
-        "spring {spring}: its points are {distance:e} m apart at the start: they must be apart by \
+        "spring {}: its points are {distance:e} m apart at the start: they must be apart by \
          more than a millionth of the stroke ({stroke:?} m), for the line between them is the \
          direction of the force; touching pads have none, and nearly touching ones turn with the \
-         slightest motion"
+         slightest motion", .spring + 1
     )]
     TouchingPads {
-        /// Which spring, from 1.
+        /// Which spring, from 0.
         spring: usize,
         /// Distance of the points, m.
         distance: f64,
@@ -48,11 +51,11 @@ pub enum SeparationError {
     },
     /// A stroke is so short beside the body that rounding of positions would drown it.
     #[error(
-        "spring {spring}: its stroke of {stroke:e} m, less what friction takes of it, must be more than {SHORTEST:e} of its distance \
-         from the mass centres ({reach:?} m) for double precision to follow it"
+        "spring {}: its stroke of {stroke:e} m, less what friction takes of it, must be more than {SHORTEST:e} of its distance \
+         from the mass centres ({reach:?} m) for double precision to follow it", .spring + 1
     )]
     ShortStroke {
-        /// Which spring, from 1.
+        /// Which spring, from 0.
         spring: usize,
         /// Its stroke less friction over stiffness, m.
         stroke: f64,
@@ -68,8 +71,7 @@ pub enum SeparationError {
 pub struct Separation {
     payload: MovingBody,
     stage: MovingBody,
-    springs: Arc<[Spring]>,
-    free_lengths: Arc<[f64]>,
+    loads: Loads,
 }
 
 impl Separation {
@@ -90,29 +92,19 @@ impl Separation {
                 .map(|s| moving.body().moving(s))
                 .map_err(|source| SeparationError::Body { body, source })
         };
-        let (payload, stage) = (checked("payload", payload)?, checked("stage", stage)?);
+        let (payload, stage) = (checked(Role::Payload, payload)?, checked(Role::Stage, stage)?);
         if springs.is_empty() {
             return Err(SeparationError::NoSprings);
         }
         if !springs.iter().any(Spring::can_push) {
             return Err(SeparationError::NonePushes);
         }
-        let mut free_lengths = Vec::with_capacity(springs.len());
-        for (i, spring) in springs.iter().enumerate() {
-            let distance = spring_vector(payload.state(), stage.state(), spring).norm();
-            let stroke = spring.stroke_m();
-            if !(distance > TOUCHING * stroke) {
-                return Err(SeparationError::TouchingPads { spring: i + 1, distance, stroke });
-            }
-            let reach = distance + spring.payload_point_m().norm() + spring.stage_point_m().norm();
-            // One that never pushes only has its place.
-            let stroke = if spring.can_push() { spring.travel_m() } else { stroke };
-            if !(stroke > SHORTEST * reach) {
-                return Err(SeparationError::ShortStroke { spring: i + 1, stroke, reach });
-            }
-            free_lengths.push(distance + stroke);
-        }
-        Ok(Self { payload, stage, springs: springs.into(), free_lengths: free_lengths.into() })
+        let seated = springs
+            .iter()
+            .enumerate()
+            .map(|(i, spring)| SeatedSpring::new(i, *spring, payload.state(), stage.state()));
+        let springs = seated.collect::<Result<_, _>>()?;
+        Ok(Self { payload, stage, loads: Loads { springs } })
     }
 
     /// The same separation with other inertia matrices.
@@ -130,10 +122,9 @@ impl Separation {
                 .map_err(|source| SeparationError::Body { body: name, source })
         };
         Ok(Self {
-            payload: replace("payload", &self.payload, payload.into())?,
-            stage: replace("stage", &self.stage, stage.into())?,
-            springs: Arc::clone(&self.springs),
-            free_lengths: Arc::clone(&self.free_lengths),
+            payload: replace(Role::Payload, &self.payload, payload.into())?,
+            stage: replace(Role::Stage, &self.stage, stage.into())?,
+            loads: self.loads.clone(),
         })
     }
 
@@ -150,21 +141,23 @@ impl Separation {
     }
 
     /// The springs, in the order given.
-    #[must_use]
-    pub fn springs(&self) -> &[Spring] {
-        &self.springs
+    pub fn springs(&self) -> impl ExactSizeIterator<Item = &Spring> + Clone {
+        self.loads.springs.iter().map(SeatedSpring::spring)
     }
 
     /// Free length of each spring, m: where it ceases to push.
-    #[must_use]
-    pub fn free_lengths(&self) -> &[f64] {
-        &self.free_lengths
+    pub fn free_lengths(&self) -> impl ExactSizeIterator<Item = f64> {
+        self.loads.springs.iter().map(SeatedSpring::free_length_m)
     }
 
     /// Energy stored in the springs at the start, J.
     #[must_use]
     pub fn stored_energy(&self) -> f64 {
-        self.springs.iter().map(Spring::stored_energy).sum()
+        self.loads.stored_energy()
+    }
+
+    pub(crate) fn loads(&self) -> &Loads {
+        &self.loads
     }
 
     /// 1/m of the payload plus 1/m of the stage, 1/kg.
@@ -173,15 +166,11 @@ impl Separation {
     }
 }
 
-/// From the stage point to the payload point, inertial axes, m.
-fn spring_vector(payload: &BodyState, stage: &BodyState, spring: &Spring) -> Vector3<f64> {
-    (payload.position - stage.position) + payload.attitude * spring.payload_point_m()
-        - stage.attitude * spring.stage_point_m()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::BodyState;
+    use nalgebra::Vector3;
 
     fn body() -> Body {
         Body::new(1.0, InertiaMatrix::from_entries([1.0; 3], [0.0; 3]).unwrap()).unwrap()
@@ -198,19 +187,19 @@ mod tests {
         assert!(matches!(with(&[]), Err(SeparationError::NoSprings)));
         for gap in [0.0, 1e-9] {
             let error = with(&[spring(0.2), spring(gap)]).unwrap_err();
-            assert!(matches!(error, SeparationError::TouchingPads { spring: 2, .. }), "{error}");
+            assert!(matches!(error, SeparationError::TouchingPads { spring: 1, .. }), "{error}");
         }
         let stuck = spring(0.2).with_friction(0.1).unwrap();
         for none in [[stuck, stuck], [stuck, spring(0.2).never_pushing()]] {
             assert!(matches!(with(&none), Err(SeparationError::NonePushes)));
         }
-        assert_eq!(with(&[stuck, spring(0.2)]).unwrap().free_lengths()[1], 0.2 + 0.1);
+        assert_eq!(with(&[stuck, spring(0.2)]).unwrap().free_lengths().nth(1).unwrap(), 0.2 + 0.1);
         let nearly = spring(0.2).with_friction(0.1 * (1.0 - 1e-9)).unwrap();
-        assert!(matches!(with(&[nearly]), Err(SeparationError::ShortStroke { spring: 1, .. })));
+        assert!(matches!(with(&[nearly]), Err(SeparationError::ShortStroke { spring: 0, .. })));
         let short = Spring::new(1.0, 1e-8, Vector3::z() * -0.9, Vector3::z() * 0.9).unwrap();
-        assert!(matches!(with(&[short]), Err(SeparationError::ShortStroke { spring: 1, .. })));
+        assert!(matches!(with(&[short]), Err(SeparationError::ShortStroke { spring: 0, .. })));
         let ok = with(&[spring(1e-5)]).unwrap();
-        assert!((ok.free_lengths()[0] - 0.10001).abs() < 1e-15);
+        assert!((ok.free_lengths().next().unwrap() - 0.10001).abs() < 1e-15);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
-use crate::{MovingBody, Separation, energy::translations, layout::INLINE_SPRINGS, state};
+use crate::{MovingBody, Separation, energy::translations, layout::INLINE_LOADS, state};
 
 /// A spring at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,7 @@ pub struct Snapshot {
     time: f64,
     payload: MovingBody,
     stage: MovingBody,
-    springs: SmallVec<[SpringState; INLINE_SPRINGS]>,
+    springs: SmallVec<[SpringState; INLINE_LOADS]>,
 }
 
 impl Snapshot {
@@ -66,25 +66,9 @@ impl Snapshot {
         pushing: &[bool],
     ) -> Self {
         let (payload, stage) = state::bodies(separation, state, time);
-        let springs = separation.springs().iter().zip(separation.free_lengths()).zip(pushing);
-        let springs = springs.map(|((spring, free), &pushing)| {
-            // Not of the two positions, which may be large.
-            let line = state::line(state, spring);
-            let length = line.norm();
-            let compression = free - length;
-            let stiffness = if pushing { spring.stiffness_n_per_m() } else { 0.0 };
-            SpringState {
-                pushing,
-                length,
-                compression,
-                force: if pushing {
-                    payload.state().attitude * (line * (stiffness * compression / length))
-                } else {
-                    Vector3::zeros()
-                },
-                energy: 0.5 * stiffness * compression * compression,
-            }
-        });
+        let springs = separation.loads().iter().zip(pushing);
+        let springs =
+            springs.map(|(load, acts)| load.seen(state, &payload.state().attitude, *acts));
         let springs = springs.collect();
         Self { time, payload, stage, springs }
     }

@@ -1,6 +1,16 @@
 //! A spring between two bodies.
 
+mod events;
+mod parameter;
+mod seated;
+mod series;
+
 use nalgebra::Vector3;
+
+use crate::{BodyState, Role};
+
+pub use parameter::SpringParameter;
+pub(crate) use seated::{SHORTEST, SeatedSpring, TOUCHING};
 
 /// Errors of a spring's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -33,8 +43,8 @@ pub enum SpringError {
     /// An attachment point is not finite.
     #[error("{body} attachment point has entry {value}: it must be finite")]
     Point {
-        /// `payload` or `stage`.
-        body: &'static str,
+        /// On which body.
+        body: Role,
         /// The entry, m.
         value: f64,
     },
@@ -81,7 +91,7 @@ impl Spring {
         if !positive(stroke_m) {
             return Err(SpringError::Stroke { value: stroke_m });
         }
-        for (body, point) in [("payload", payload_point_m), ("stage", stage_point_m)] {
+        for (body, point) in [(Role::Payload, payload_point_m), (Role::Stage, stage_point_m)] {
             if let Some(&value) = point.iter().find(|x| !x.is_finite()) {
                 return Err(SpringError::Point { body, value });
             }
@@ -175,6 +185,14 @@ impl Spring {
         self.start.is_finite() && self.travel_m() > 0.0
     }
 
+    /// From the stage point to the payload point, in the axes of the states' positions, m: along it the
+    /// spring pushes the payload (Peck 2003, Eq. 29).
+    #[must_use]
+    pub fn line(&self, payload: &BodyState, stage: &BodyState) -> Vector3<f64> {
+        (payload.position - stage.position) + payload.attitude * self.payload_point
+            - stage.attitude * self.stage_point
+    }
+
     /// Energy stored at the start, ½kδ², J: before friction and latch have their part.
     #[must_use]
     pub fn stored_energy(&self) -> f64 {
@@ -240,7 +258,7 @@ mod tests {
         }
         let nan = Vector3::new(0.0, f64::NAN, 0.0);
         let error = Spring::new(1.0, 1.0, o, nan).unwrap_err();
-        assert!(matches!(error, SpringError::Point { body: "stage", .. }));
+        assert!(matches!(error, SpringError::Point { body: Role::Stage, .. }));
         let spring = Spring::new(2.0, 3.0, o, o).unwrap();
         assert_eq!(spring.stored_energy(), 9.0);
         for bad in [-1e-300, f64::NAN, f64::INFINITY] {

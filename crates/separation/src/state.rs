@@ -3,18 +3,12 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use crate::{
-    BodyState, MovingBody, Separation, Spring,
+    BodyState, MovingBody, Separation,
     layout::{ATTITUDE, OFFSET, PAYLOAD_RATE, RELATIVE, STAGE_RATE, STATE, VELOCITY, part},
+    load::Load,
 };
 
 pub(crate) type State = [f64; STATE];
-
-/// How far a spring is beyond its free length, m, and how fast it grows, m/s.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Gap {
-    pub(crate) value: f64,
-    pub(crate) rate: f64,
-}
 
 fn vector(state: &State, at: usize) -> Vector3<f64> {
     part::<_, 3>(state, at).into()
@@ -83,44 +77,29 @@ pub(crate) fn bodies(
     (payload.body().moving(payload_state), stage.body().moving(stage_state))
 }
 
-/// From the stage point of a spring to its payload point, payload axes, m.
-pub(crate) fn line(state: &State, spring: &Spring) -> Vector3<f64> {
-    vector(state, OFFSET) + spring.payload_point_m()
-        - quaternion(state, RELATIVE) * spring.stage_point_m()
+/// Payload and stage with respect to the stage's mass centre, in payload axes: position and velocity (of
+/// components that turn with the payload), attitude, and angular velocity in body axes.
+pub(crate) fn relative(state: &State) -> [BodyState; 2] {
+    let payload = BodyState {
+        position: vector(state, OFFSET),
+        velocity: vector(state, VELOCITY),
+        attitude: UnitQuaternion::identity(),
+        angular_velocity: vector(state, PAYLOAD_RATE),
+    };
+    let stage = BodyState {
+        attitude: quaternion(state, RELATIVE),
+        angular_velocity: vector(state, STAGE_RATE),
+        ..BodyState::default()
+    };
+    [payload, stage]
 }
 
-/// The gap of a spring.
-pub(crate) fn gap(separation: &Separation, state: &State, spring: usize) -> Gap {
-    let (points, free) = (&separation.springs()[spring], separation.free_lengths()[spring]);
-    let relative = quaternion(state, RELATIVE);
-    let (payload_rate, stage_rate) = (vector(state, PAYLOAD_RATE), vector(state, STAGE_RATE));
-    let (p, l) = (points.payload_point_m(), points.stage_point_m());
-    let line = line(state, points);
-    let velocity =
-        vector(state, VELOCITY) + payload_rate.cross(&p) - relative * stage_rate.cross(&l);
-    let length = line.norm();
-    Gap { value: length - free, rate: line.dot(&velocity) / length }
-}
-
-/// What rounding of coordinates makes of a gap, m: it is a difference and no more accurate than they
-/// are.
-pub(crate) fn rounding(separation: &Separation, state: &State, spring: usize) -> f64 {
-    let spring = &separation.springs()[spring];
-    let reach = vector(state, OFFSET).norm()
-        + spring.payload_point_m().norm()
-        + spring.stage_point_m().norm();
-    4.0 * f64::EPSILON * reach
-}
-
-/// The size of each entry of the state that the springs can bring about.
+/// The size of each entry of the state that the loads can bring about.
 pub(crate) fn scales(separation: &Separation) -> State {
-    let springs = separation.springs();
-    let length = springs.iter().map(Spring::stroke_m).fold(0.0, f64::max);
+    let sizes = || separation.loads().iter().map(Load::size);
+    let length = sizes().map(|size| size.stroke).fold(0.0, f64::max);
     let speed = (2.0 * separation.stored_energy() * separation.inverse_reduced_mass()).sqrt();
-    let arm = springs
-        .iter()
-        .flat_map(|s| [s.payload_point_m().norm(), s.stage_point_m().norm()])
-        .fold(length, f64::max);
+    let arm = sizes().flat_map(|size| size.arms).fold(length, f64::max);
     let mut scale = [length; STATE];
     scale[VELOCITY..RELATIVE].fill(speed);
     scale[RELATIVE..PAYLOAD_RATE].fill(length / arm);
@@ -128,7 +107,7 @@ pub(crate) fn scales(separation: &Separation) -> State {
     scale
 }
 
-/// A time in which the springs move the bodies a good part of the stroke, s.
+/// A time in which the loads move the bodies a good part of the stroke, s.
 pub(crate) fn time_scale(scale: &State) -> f64 {
     scale[OFFSET] / scale[VELOCITY]
 }

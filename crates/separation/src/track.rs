@@ -1,77 +1,68 @@
-//! A run under way, and what becomes of its springs.
+//! A run under way, and what becomes of its loads.
 
 use smallvec::SmallVec;
 use std::borrow::Borrow;
 
-use crate::{
-    RunError, Separation, Settings, Spring,
-    layout::INLINE_SPRINGS,
-    state::{self, State},
-};
+use crate::{RunError, Separation, Settings, layout::INLINE_LOADS, load::Load, state::State};
 
-/// What has become of one spring; times in s.
+/// What has become of one load; times in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Fate {
-    /// It never pushes.
+    /// It never acts.
     Failed,
     /// It has yet to start.
     Waiting,
-    Pushing,
-    /// It came to its free length before it started, and never pushed.
+    Acting,
+    /// It came to its end before it started, and never acted.
     Missed {
         time: f64,
     },
-    /// It let go, and was shorter than its free length again from a time on.
-    Released {
+    /// It acted to its end, and was pressed back from there from a time on.
+    Ended {
         time: f64,
-        recompressed: Option<f64>,
+        pressed_again: Option<f64>,
     },
 }
 
 impl Fate {
-    pub(crate) fn of(spring: &Spring) -> Self {
-        match spring.start_s() {
-            Some(start) if spring.can_push() => {
-                if start == 0.0 {
-                    Self::Pushing
-                } else {
-                    Self::Waiting
-                }
-            }
-            _ => Self::Failed,
+    pub(crate) fn of(load: &dyn Load) -> Self {
+        match load.start_s() {
+            None => Self::Failed,
+            Some(0.0) => Self::Acting,
+            Some(_) => Self::Waiting,
         }
     }
 
-    /// Comes to its free length.
+    /// Comes to its end.
     pub(crate) fn end(&mut self, time: f64) {
         match self {
             Self::Waiting => *self = Self::Missed { time },
-            Self::Pushing => *self = Self::Released { time, recompressed: None },
-            Self::Failed | Self::Missed { .. } | Self::Released { .. } => {}
+            Self::Acting => *self = Self::Ended { time, pressed_again: None },
+            Self::Failed | Self::Missed { .. } | Self::Ended { .. } => {}
         }
     }
 
-    /// Whether it pushes or will.
+    /// Whether it acts or will.
     pub(crate) fn is_open(&self) -> bool {
-        matches!(self, Self::Waiting | Self::Pushing)
+        matches!(self, Self::Waiting | Self::Acting)
     }
 
-    /// When it came to its free length, whether it pushed or not.
+    /// When it came to its end, whether it acted or not.
     pub(crate) fn ended(&self) -> Option<f64> {
         match self {
-            Self::Missed { time } | Self::Released { time, .. } => Some(*time),
-            Self::Failed | Self::Waiting | Self::Pushing => None,
+            Self::Missed { time } | Self::Ended { time, .. } => Some(*time),
+            Self::Failed | Self::Waiting | Self::Acting => None,
         }
     }
 
-    /// When it let go; none of one that never pushed.
+    /// When it let go; none of one that never acted.
     pub(crate) fn let_go(&self) -> Option<f64> {
-        self.ended().filter(|_| matches!(self, Self::Released { .. }))
+        self.ended().filter(|_| matches!(self, Self::Ended { .. }))
     }
 }
 
-/// What becomes of the springs, in their order.
-pub(crate) type Fates = SmallVec<[Fate; INLINE_SPRINGS]>;
+/// What becomes of the loads, in their order.
+pub(crate) type Fates = SmallVec<[Fate; INLINE_LOADS]>;
 
 /// A run under way in one lane.
 #[derive(Clone, Debug)]
@@ -79,37 +70,37 @@ pub(crate) struct Track<S> {
     pub(crate) separation: S,
     pub(crate) time: f64,
     pub(crate) steps: u32,
-    pub(crate) springs: Fates,
-    /// The time that the springs act, about.
+    pub(crate) loads: Fates,
+    /// The time that the loads act, about.
     pub(crate) time_scale: f64,
 }
 
 impl<S: Borrow<Separation>> Track<S> {
-    /// The springs that push or will.
-    pub(crate) fn pushing(&self) -> impl Iterator<Item = usize> {
-        let springs = self.springs.iter().enumerate();
-        springs.filter(|(_, fate)| fate.is_open()).map(|(i, _)| i)
+    /// The loads that act or will.
+    pub(crate) fn open(&self) -> impl Iterator<Item = usize> {
+        let loads = self.loads.iter().enumerate();
+        loads.filter(|(_, fate)| fate.is_open()).map(|(i, _)| i)
     }
 
-    /// When the next spring starts.
+    /// When the next load starts.
     pub(crate) fn next_start(&self) -> f64 {
-        let springs = self.separation.borrow().springs().iter().zip(&self.springs);
-        let starts =
-            springs.filter(|(_, fate)| **fate == Fate::Waiting).filter_map(|(s, _)| s.start_s());
+        let loads = self.separation.borrow().loads();
+        let waiting = self.loads.iter().enumerate().filter(|(_, fate)| **fate == Fate::Waiting);
+        let starts = waiting.filter_map(|(i, _)| loads.get(i).start_s());
         starts.fold(f64::INFINITY, f64::min)
     }
 
     pub(crate) fn all_released(&self) -> bool {
-        self.pushing().next().is_none()
+        self.open().next().is_none()
     }
 
-    /// That the springs have let go by the horizon.
+    /// That the loads have come to their ends by the horizon.
     pub(crate) fn check(&self, state: &State, settings: &Settings) -> Result<(), RunError> {
-        match self.pushing().next() {
-            Some(spring) if self.time >= settings.horizon_s() => {
-                let gap = state::gap(self.separation.borrow(), state, spring);
+        match self.open().next() {
+            Some(load) if self.time >= settings.horizon_s() => {
+                let gap = self.separation.borrow().loads().get(load).gap(state);
                 Err(RunError::NotReleased {
-                    springs: self.pushing().map(|i| i + 1).collect(),
+                    springs: self.open().collect(),
                     horizon: settings.horizon_s(),
                     compression: -gap.value,
                     rate: gap.rate,

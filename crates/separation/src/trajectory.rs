@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 use crate::{
     Outcome, RunError, Separation, Settings, Snapshot,
     integrator::Integrator,
-    layout::{INLINE_SPRINGS, ORDER, TERMS},
+    layout::{INLINE_LOADS, ORDER, TERMS},
     state::{self, State},
     track::Fate,
 };
@@ -20,8 +20,8 @@ pub struct Step {
     start: f64,
     duration: f64,
     series: [State; TERMS],
-    pushing: SmallVec<[bool; INLINE_SPRINGS]>,
-    released: SmallVec<[usize; INLINE_SPRINGS]>,
+    pushing: SmallVec<[bool; INLINE_LOADS]>,
+    released: SmallVec<[usize; INLINE_LOADS]>,
 }
 
 impl Step {
@@ -37,7 +37,7 @@ impl Step {
         self.start + self.duration
     }
 
-    /// The springs that let go at its end, from 1; none that never pushed.
+    /// The springs that let go at its end, numbered from 0; none that never pushed.
     #[must_use]
     pub fn released(&self) -> &[usize] {
         &self.released
@@ -118,12 +118,12 @@ impl Separation {
         while outcome.is_none() || track.time < end {
             integrator.expand();
             let (start, series) = (track.time, integrator.series(0));
-            let pushing: SmallVec<_> = track.springs.iter().map(|f| *f == Fate::Pushing).collect();
-            let before = track.springs.clone();
+            let pushing: SmallVec<_> = track.loads.iter().map(|f| *f == Fate::Acting).collect();
+            let before = track.loads.clone();
             let duration = integrator.advance(0, &mut track, end)?;
-            let released = track.springs.iter().zip(&before).enumerate();
+            let released = track.loads.iter().zip(&before).enumerate();
             let released = released.filter(|(_, (fate, was))| fate.let_go() != was.let_go());
-            let released = released.map(|(i, _)| i + 1).collect();
+            let released = released.map(|(i, _)| i).collect();
             let separation = self.clone();
             observer(&Step { separation, start, duration, series, pushing, released });
             let state = integrator.state(0);

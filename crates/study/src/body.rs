@@ -1,5 +1,8 @@
 //! The two bodies, and the entries of their inertia matrices.
 
+/// One of the two bodies.
+pub(crate) use gyradius_separation::Role as Body;
+
 /// An entry of a symmetric matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the names are the entries")]
@@ -15,22 +18,4 @@ pub enum Entry {
 impl Entry {
     /// All six, in the order of the run table.
     pub const ALL: [Self; 6] = [Self::I11, Self::I22, Self::I33, Self::I12, Self::I13, Self::I23];
-}
-
-/// One of the two bodies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Body {
-    Payload,
-    Stage,
-}
-
-impl Body {
-    pub(crate) const BOTH: [Self; 2] = [Self::Payload, Self::Stage];
-
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Payload => "payload",
-            Self::Stage => "stage",
-        }
-    }
 }

@@ -1,7 +1,7 @@
 //! Why a run failed.
 
 use gyradius_clearance::OutlineError;
-use gyradius_separation::{BodyError, RunError, SeparationError, SpringError};
+use gyradius_separation::{BodyError, RunError, SeparationError};
 use std::borrow::Cow;
 
 /// Why a run failed, with the numbers of the run.
@@ -11,14 +11,6 @@ pub enum Failure {
     /// What was drawn makes no separation.
     #[error(transparent)]
     Refused(#[from] SeparationError),
-    /// What was drawn makes no spring.
-    #[error("spring {spring}: {source}")]
-    Spring {
-        /// Its number, from 1.
-        spring: usize,
-        /// What is wrong with it.
-        source: SpringError,
-    },
     /// The separation does not come to an end.
     #[error(transparent)]
     Broken(#[from] RunError),
@@ -51,7 +43,9 @@ impl Failure {
                 };
                 return format!("{body}: {what}").into();
             }
-            Self::Spring { spring, .. } => return format!("spring {spring}: impossible").into(),
+            Self::Refused(SeparationError::Spring { spring, .. }) => {
+                return format!("spring {}: impossible", spring + 1).into();
+            }
             Self::Refused(SeparationError::NonePushes) => "no spring pushes",
             Self::Refused(SeparationError::TouchingPads { .. }) => "points of a spring touch",
             Self::Refused(SeparationError::ShortStroke { .. }) => "stroke too short",

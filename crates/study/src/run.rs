@@ -166,14 +166,14 @@ impl<'a> End<'a> {
     /// Springs from 1 in the order of their releases, `+` between those that let go together.
     pub(crate) fn release_order(&self) -> String {
         let together = |springs: &Vec<usize>| {
-            springs.iter().map(ToString::to_string).collect::<Vec<_>>().join("+")
+            springs.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join("+")
         };
         self.separated.release_order().iter().map(together).collect::<Vec<_>>().join(" ")
     }
 
     /// Springs from 1 that were pressed again after they had let go.
     pub(crate) fn recompressed(&self) -> String {
-        let springs = self.separated.recompressed().map(|(spring, _)| spring.to_string());
+        let springs = self.separated.recompressed().map(|(spring, _)| (spring + 1).to_string());
         springs.collect::<Vec<_>>().join(" ")
     }
 }

@@ -24,14 +24,14 @@ fn rotation(y: &State, at: usize) -> Matrix3<f64> {
 
 impl Problem<'_> {
     fn line(&self, y: &State, spring: usize) -> [Vector3<f64>; 3] {
-        let spring = &self.separation.springs()[spring];
+        let spring = self.separation.springs().nth(spring).unwrap();
         let (p, l) =
             (rotation(y, 6) * spring.payload_point_m(), rotation(y, 13) * spring.stage_point_m());
         [vector(y, 0) + p - l, p, l]
     }
 
     fn gap(&self, y: &State, spring: usize) -> f64 {
-        self.line(y, spring)[0].norm() - self.separation.free_lengths()[spring]
+        self.line(y, spring)[0].norm() - self.separation.free_lengths().nth(spring).unwrap()
     }
 }
 
@@ -41,11 +41,11 @@ impl ODE<f64, State> for Problem<'_> {
         let (rp, rl) = (rotation(y, 6), rotation(y, 13));
         let (mut force, mut tp, mut tl) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
         for &i in &self.active {
-            let spring = &self.separation.springs()[i];
+            let spring = self.separation.springs().nth(i).unwrap();
             let (p, l) = (rp * spring.payload_point_m(), rl * spring.stage_point_m());
             let line = vector(y, 0) + p - l;
             let length = line.norm();
-            let free = self.separation.free_lengths()[i];
+            let free = self.separation.free_lengths().nth(i).unwrap();
             let push = line * (spring.stiffness_n_per_m() * (free - length) / length);
             force += push;
             tp += p.cross(&push);

@@ -47,10 +47,10 @@ fn fixed_steps(separation: &Separation, h: f64, until: f64, located: bool) -> St
         state::normalize(&mut next);
         integrator.set_state(0, &next);
         track.time = end;
-        for (i, fate) in track.springs.iter_mut().enumerate() {
-            if fate.is_open() && state::gap(separation, &next, i).value >= 0.0 {
+        for (i, fate) in track.loads.iter_mut().enumerate() {
+            if fate.is_open() && separation.loads().get(i).gap(&next).value >= 0.0 {
                 fate.end(end);
-                integrator.expansion.springs[i].stiffness.0[0] = 0.0;
+                integrator.expansion.loads.act(i, 0, false);
             }
         }
     }

@@ -37,7 +37,7 @@ impl History {
         let end = steps.last().map_or(0.0, Step::end_s);
         let mut releases = Vec::new();
         for step in steps {
-            releases.extend(step.released().iter().map(|spring| (*spring, step.end_s())));
+            releases.extend(step.released().iter().map(|spring| (spring + 1, step.end_s())));
         }
         let last = releases.last().map_or(end, |(_, time)| *time);
         let most = MOST.min(NUMBERS / columns(springs.len()).len() as f64);
@@ -61,11 +61,12 @@ impl History {
             }
             for (spring, time) in &recompressed {
                 if (step.start_s()..step.end_s()).contains(time) {
-                    due.push((*time, format!("spring {spring} pressed again")));
+                    due.push((*time, format!("spring {} pressed again", spring + 1)));
                 }
             }
             if !step.released().is_empty() {
-                let names: Vec<_> = step.released().iter().map(ToString::to_string).collect();
+                let names: Vec<_> =
+                    step.released().iter().map(|spring| (spring + 1).to_string()).collect();
                 let plural = if names.len() > 1 { "s" } else { "" };
                 let event = format!("spring{plural} {} released", names.join(" and "));
                 due.push((step.end_s(), event));

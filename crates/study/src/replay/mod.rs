@@ -208,9 +208,10 @@ impl Replay {
             }
             result = Some(outcome);
         }
-        let springs = case.separation.as_ref().map_or(&[][..], Separation::springs);
+        let springs: Vec<_> =
+            case.separation.iter().flat_map(Separation::springs).copied().collect();
         let ended = result.as_ref().and_then(|result| result.as_ref().ok());
-        let history = History::new(&steps, springs, ended);
+        let history = History::new(&steps, &springs, ended);
         let simulation = Separations::new(scenario, &model);
         let mut own = Table::new(&spec.name, run, simulation.columns())?;
         let run = case.ended(scenario, result);

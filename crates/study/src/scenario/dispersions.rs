@@ -1,10 +1,13 @@
 //! What else is uncertain than the inertias, in the order in which it is drawn.
 
 use gyradius_dispersion::{Correlation, CorrelationError, LawUnit, ScalarLaw, ScalarLawForm};
+use gyradius_separation::{
+    BodyParameter, MovingBody, Parameter, Separation, Spring, SpringParameter, StackParameter,
+};
 
 use super::{
     ScenarioError,
-    file::{BodyFile, ScenarioFile, SpringFile},
+    file::{BodyFile, Given, ScenarioFile, SpringFile},
     law::{self, VectorLawFile},
 };
 use crate::body::Body;
@@ -20,43 +23,17 @@ pub(crate) struct Dispersed {
     pub(crate) target: Target,
 }
 
-/// What a number is of.
+/// What a number is of: a component, from 0, of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
-    Body(Body, BodyPart),
-    Stack(StackPart),
-    /// Which spring, from 0.
-    Spring(usize, SpringPart),
-}
-
-/// Components of vectors are numbered from 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum BodyPart {
-    Mass,
-    MassCentre(usize),
-    Position(usize),
-    Velocity(usize),
-    Attitude(usize),
-    AngularVelocity(usize),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum StackPart {
-    Attitude(usize),
-    AngularVelocity(usize),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SpringPart {
-    Stiffness,
-    Stroke,
-    Friction,
-    LineOfAction(usize),
-    PayloadPoint(usize),
-    StagePoint(usize),
-    Start,
-    Late,
-    Fails,
+    Body(Body, BodyParameter, usize),
+    Stack(StackParameter, usize),
+    /// Springs are numbered from 0.
+    Spring(usize, SpringParameter, usize),
+    /// Whether a spring starts late.
+    Late(usize),
+    /// Whether it never pushes.
+    Fails(usize),
 }
 
 /// All of them, and how they are correlated.
@@ -69,23 +46,19 @@ pub(crate) struct Dispersions {
 }
 
 impl Dispersions {
-    pub(crate) fn new(file: &ScenarioFile) -> Result<Self, ScenarioError> {
+    /// Of a scenario, and its separation without dispersions.
+    pub(crate) fn new(file: &ScenarioFile, separation: &Separation) -> Result<Self, ScenarioError> {
         let mut list = List::default();
-        for (body, file) in [(Body::Payload, &file.payload), (Body::Stage, &file.stage)] {
-            list.body(body, file)?;
-        }
+        list.body(Body::Payload, &file.payload, separation.payload())?;
+        list.body(Body::Stage, &file.stage, separation.stage())?;
         if let Some(stack) = file.stack.as_ref().and_then(|s| s.dispersion.as_ref()) {
-            let zero = [0.0; 3];
-            let target = |i| Target::Stack(StackPart::Attitude(i));
-            let place = Place::new("stack.dispersion.attitude_deg", "stack_attitude", "deg");
-            list.vector(&place, stack.attitude_deg.as_ref(), &zero, target)?;
-            let target = |i| Target::Stack(StackPart::AngularVelocity(i));
-            let place = "stack.dispersion.angular_velocity_rad_per_s";
-            let place = Place::new(place, "stack_angular_velocity", "rad_per_s");
-            list.vector(&place, stack.angular_velocity_rad_per_s.as_ref(), &zero, target)?;
+            for &parameter in StackParameter::ALL {
+                let target = |i| Target::Stack(parameter, i);
+                list.parameter("stack", "stack", parameter, stack.given(parameter), &(), target)?;
+            }
         }
-        for (i, spring) in file.springs.iter().enumerate() {
-            list.spring(i, spring)?;
+        for (i, (file, spring)) in file.springs.iter().zip(separation.springs()).enumerate() {
+            list.spring(i, file, spring)?;
         }
         let correlation = list.correlate(file)?;
         let follows = |body: &BodyFile| body.dispersion.inertia_follows_mass.share();
@@ -98,17 +71,12 @@ impl Dispersions {
     }
 }
 
-/// Where in the file, and what it is called.
+/// Where in the file, in its own unit and in percent, and what it is called.
 struct Place {
     field: String,
+    percent: String,
     name: String,
     unit: &'static str,
-}
-
-impl Place {
-    fn new(field: impl Into<String>, name: impl Into<String>, unit: &'static str) -> Self {
-        Self { field: field.into(), name: name.into(), unit }
-    }
 }
 
 /// The key of the correlations.
@@ -136,43 +104,56 @@ impl List {
         self.all.push(Dispersed { column, unit, nominal, law, target });
     }
 
-    fn scalar(
+    /// A parameter of what stands at a place of the file, and is called by a name.
+    fn parameter<P: Parameter>(
         &mut self,
-        place: &Place,
-        law: Option<&ScalarLawForm>,
-        nominal: f64,
-        target: Target,
+        place: &str,
+        name: &str,
+        parameter: P,
+        given: Given<'_>,
+        of: &P::Of,
+        target: impl Fn(usize) -> Target,
     ) -> Result<(), ScenarioError> {
-        if let Some(law) = law {
-            let law = law::about(law, &place.field, nominal, LawUnit::OWN)?;
-            positive(&place.field, nominal, &law)?;
-            self.push(&place.name, place.unit, nominal, law, target);
+        let (quantity, unit) = (parameter.name(), parameter.unit());
+        let place = Place {
+            field: format!("{place}.dispersion.{quantity}_{unit}"),
+            percent: format!("{place}.dispersion.{quantity}_percent"),
+            name: format!("{name}_{quantity}"),
+            unit,
+        };
+        let nominal = parameter.nominal(of);
+        match given {
+            Given::Number(law, percent) => {
+                nominal.iter().enumerate().try_for_each(|(i, nominal)| {
+                    self.number(&place, law, percent, *nominal, target(i))
+                })
+            }
+            Given::Vector(law) => self.vector(&place, law, &nominal, target),
         }
-        Ok(())
     }
 
     /// A number given in its unit or in percent.
-    fn either(
+    fn number(
         &mut self,
         place: &Place,
         law: Option<&ScalarLawForm>,
-        percent: (&str, Option<&ScalarLawForm>),
+        percent: Option<&ScalarLawForm>,
         nominal: f64,
         target: Target,
     ) -> Result<(), ScenarioError> {
-        match (law, percent) {
-            (Some(_), (field, Some(_))) => {
+        let (field, unit, law) = match (law, percent) {
+            (None, None) => return Ok(()),
+            (Some(_), Some(_)) => {
                 let problem = format!("there is {} already: one of the two says it", place.field);
-                Err(ScenarioError::field(field, problem))
+                return Err(ScenarioError::field(&place.percent, problem));
             }
-            (None, (field, Some(law))) => {
-                let law = law::about(law, field, nominal, LawUnit::percent_of(nominal))?;
-                positive(field, nominal, &law)?;
-                self.push(&place.name, place.unit, nominal, law, target);
-                Ok(())
-            }
-            (law, _) => self.scalar(place, law, nominal, target),
-        }
+            (Some(law), None) => (&place.field, LawUnit::OWN, law),
+            (None, Some(law)) => (&place.percent, LawUnit::percent_of(nominal), law),
+        };
+        let law = law::about(law, field, nominal, unit)?;
+        positive(field, nominal, &law)?;
+        self.push(&place.name, place.unit, nominal, law, target);
+        Ok(())
     }
 
     fn vector(
@@ -196,83 +177,51 @@ impl List {
         Ok(())
     }
 
-    fn body(&mut self, body: Body, file: &BodyFile) -> Result<(), ScenarioError> {
-        let name = body.name();
-        let of = |part| Target::Body(body, part);
-        let at = |field: &str| format!("{name}.dispersion.{field}");
-        let d = &file.dispersion;
-        let place = Place::new(at("mass_kg"), format!("{name}_mass"), "kg");
-        let percent = at("mass_percent");
-        let percent = (percent.as_str(), d.mass_percent.as_ref());
-        self.either(&place, d.mass_kg.as_ref(), percent, file.mass_kg, of(BodyPart::Mass))?;
+    fn body(
+        &mut self,
+        body: Body,
+        file: &BodyFile,
+        moving: &MovingBody,
+    ) -> Result<(), ScenarioError> {
+        let (name, d) = (body.name(), &file.dispersion);
+        for &parameter in BodyParameter::ALL {
+            let target = |i| Target::Body(body, parameter, i);
+            self.parameter(name, name, parameter, d.given(parameter), moving, target)?;
+        }
         if !d.inertia_follows_mass.not_at_all() && d.mass_kg.is_none() && d.mass_percent.is_none() {
             let problem = "the mass is not dispersed: it needs mass_kg or mass_percent";
-            return Err(ScenarioError::field(at("inertia_follows_mass"), problem));
+            let field = format!("{name}.dispersion.inertia_follows_mass");
+            return Err(ScenarioError::field(field, problem));
         }
-        let place = |field: &str, quantity: &str, unit| {
-            Place::new(at(field), format!("{name}_{quantity}"), unit)
-        };
-        let zero = [0.0; 3];
-        let p = place("mass_centre_m", "mass_centre", "m");
-        self.vector(&p, d.mass_centre_m.as_ref(), &zero, |i| of(BodyPart::MassCentre(i)))?;
-        let p = place("position_m", "position", "m");
-        let nominal = &file.position_m;
-        self.vector(&p, d.position_m.as_ref(), nominal, |i| of(BodyPart::Position(i)))?;
-        let p = place("velocity_m_per_s", "velocity", "m_per_s");
-        let nominal = &file.velocity_m_per_s;
-        self.vector(&p, d.velocity_m_per_s.as_ref(), nominal, |i| of(BodyPart::Velocity(i)))?;
-        let p = place("attitude_deg", "attitude", "deg");
-        self.vector(&p, d.attitude_deg.as_ref(), &zero, |i| of(BodyPart::Attitude(i)))?;
-        let p = place("angular_velocity_rad_per_s", "angular_velocity", "rad_per_s");
-        let (law, nominal) = (&d.angular_velocity_rad_per_s, &file.angular_velocity_rad_per_s);
-        self.vector(&p, law.as_ref(), nominal, |i| of(BodyPart::AngularVelocity(i)))
+        Ok(())
     }
 
-    fn spring(&mut self, spring: usize, file: &SpringFile) -> Result<(), ScenarioError> {
+    fn spring(
+        &mut self,
+        i: usize,
+        file: &SpringFile,
+        spring: &Spring,
+    ) -> Result<(), ScenarioError> {
         let Some(d) = &file.dispersion else { return Ok(()) };
-        let of = |part| Target::Spring(spring, part);
-        let at = |field: &str| format!("springs[{}].dispersion.{field}", spring + 1);
-        let place = |field: &str, quantity: &str, unit| {
-            Place::new(at(field), format!("spring_{}_{quantity}", spring + 1), unit)
-        };
-        let p = place("stiffness_n_per_m", "stiffness", "n_per_m");
-        let percent = at("stiffness_percent");
-        let percent = (percent.as_str(), d.stiffness_percent.as_ref());
-        let nominal = file.stiffness_n_per_m;
-        let law = d.stiffness_n_per_m.as_ref();
-        self.either(&p, law, percent, nominal, of(SpringPart::Stiffness))?;
-        let p = place("stroke_m", "stroke", "m");
-        let percent = at("stroke_percent");
-        let percent = (percent.as_str(), d.stroke_percent.as_ref());
-        self.either(&p, d.stroke_m.as_ref(), percent, file.stroke_m, of(SpringPart::Stroke))?;
-        let p = place("friction_n", "friction", "n");
-        let nominal = file.friction_n.unwrap_or(0.0);
-        self.scalar(&p, d.friction_n.as_ref(), nominal, of(SpringPart::Friction))?;
-        let p = place("line_of_action_deg", "line_of_action", "deg");
-        let law = d.line_of_action_deg.as_ref();
-        self.vector(&p, law, &[0.0; 2], |i| of(SpringPart::LineOfAction(i)))?;
-        let p = place("payload_point_m", "payload_point", "m");
-        let (law, nominal) = (d.payload_point_m.as_ref(), &file.payload_point_m);
-        self.vector(&p, law, nominal, |i| of(SpringPart::PayloadPoint(i)))?;
-        let p = place("stage_point_m", "stage_point", "m");
-        let (law, nominal) = (d.stage_point_m.as_ref(), &file.stage_point_m);
-        self.vector(&p, law, nominal, |i| of(SpringPart::StagePoint(i)))?;
-        let p = place("start_s", "start", "s");
-        let nominal = file.start_s.unwrap_or(0.0);
-        self.scalar(&p, d.start_s.as_ref(), nominal, of(SpringPart::Start))?;
+        let (place, name) = (format!("springs[{}]", i + 1), format!("spring_{}", i + 1));
+        for &parameter in SpringParameter::ALL {
+            let target = |component| Target::Spring(i, parameter, component);
+            self.parameter(&place, &name, parameter, d.given(parameter), spring, target)?;
+        }
+        let at = |field: &str| format!("{place}.dispersion.{field}");
         if d.late_probability.is_some() && d.start_s.is_none() {
             let problem = "it needs start_s, which says how late a late spring is";
             return Err(ScenarioError::field(at("late_probability"), problem));
         }
         let chances = [
-            ("late", d.late_probability, SpringPart::Late),
-            ("failure", d.failure_probability, SpringPart::Fails),
+            ("late", d.late_probability, Target::Late(i)),
+            ("failure", d.failure_probability, Target::Fails(i)),
         ];
-        for (name, probability, part) in chances {
+        for (chance, probability, target) in chances {
             if let Some(p) = probability {
-                let field = at(&format!("{name}_probability"));
+                let field = at(&format!("{chance}_probability"));
                 let law = ScalarLaw::bernoulli(p).map_err(|e| ScenarioError::field(field, e))?;
-                self.push(&format!("spring_{}_{name}", spring + 1), "", 0.0, law, of(part));
+                self.push(&format!("{name}_{chance}"), "", 0.0, law, target);
             }
         }
         Ok(())

@@ -1,4 +1,5 @@
 use gyradius_dispersion::{BasiliskDispersion, ModelKind, ScalarLawForm};
+use gyradius_separation::{BodyParameter, SpringParameter, StackParameter};
 use serde::{Deserialize, Serialize};
 
 use super::{follows::Follows, law::VectorLawFile, parse};
@@ -392,4 +393,53 @@ fn default_spin_axis() -> [f64; 3] {
 
 fn default_attitude() -> [f64; 4] {
     [0.0, 0.0, 0.0, 1.0]
+}
+
+/// What a file says of a parameter: a law of a number, in its unit or in percent, or of a vector.
+pub(crate) enum Given<'a> {
+    Number(Option<&'a ScalarLawForm>, Option<&'a ScalarLawForm>),
+    Vector(Option<&'a VectorLawFile>),
+}
+
+impl DispersionFile {
+    pub(crate) fn given(&self, parameter: BodyParameter) -> Given<'_> {
+        let vector = match parameter {
+            BodyParameter::Mass => {
+                return Given::Number(self.mass_kg.as_ref(), self.mass_percent.as_ref());
+            }
+            BodyParameter::MassCentre => &self.mass_centre_m,
+            BodyParameter::Position => &self.position_m,
+            BodyParameter::Velocity => &self.velocity_m_per_s,
+            BodyParameter::Attitude => &self.attitude_deg,
+            BodyParameter::AngularVelocity => &self.angular_velocity_rad_per_s,
+        };
+        Given::Vector(vector.as_ref())
+    }
+}
+
+impl StackDispersionFile {
+    pub(crate) fn given(&self, parameter: StackParameter) -> Given<'_> {
+        let vector = match parameter {
+            StackParameter::Attitude => &self.attitude_deg,
+            StackParameter::AngularVelocity => &self.angular_velocity_rad_per_s,
+        };
+        Given::Vector(vector.as_ref())
+    }
+}
+
+impl SpringDispersionFile {
+    pub(crate) fn given(&self, parameter: SpringParameter) -> Given<'_> {
+        let (number, percent) = match parameter {
+            SpringParameter::Stiffness => (&self.stiffness_n_per_m, &self.stiffness_percent),
+            SpringParameter::Stroke => (&self.stroke_m, &self.stroke_percent),
+            SpringParameter::Friction => (&self.friction_n, &None),
+            SpringParameter::Start => (&self.start_s, &None),
+            SpringParameter::LineOfAction => {
+                return Given::Vector(self.line_of_action_deg.as_ref());
+            }
+            SpringParameter::PayloadPoint => return Given::Vector(self.payload_point_m.as_ref()),
+            SpringParameter::StagePoint => return Given::Vector(self.stage_point_m.as_ref()),
+        };
+        Given::Number(number.as_ref(), percent.as_ref())
+    }
 }

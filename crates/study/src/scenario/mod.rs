@@ -13,7 +13,7 @@ mod sides;
 
 use gyradius_formats::read_text;
 use gyradius_separation::{
-    Separation, SeparationError, Settings, SettingsError, Spring, SpringError,
+    Role, Separation, SeparationError, Settings, SettingsError, Spring, SpringError,
 };
 use nalgebra::{Unit, Vector3};
 use sha2::{Digest, Sha256};
@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 pub(crate) use body::UncertainBody;
 use clearance::Outlines;
-pub(crate) use dispersions::{BodyPart, Dispersed, Dispersions, SpringPart, StackPart, Target};
+pub(crate) use dispersions::{Dispersed, Dispersions, Target};
 use file::ScenarioFile;
 pub(crate) use file::{AxesFile as Axes, ShapeFile};
 pub(crate) use model::{Comparison, Law, ModelSpec};
@@ -197,7 +197,7 @@ impl Scenario {
                     let field = if horizon { "horizon_s" } else { "relative_tolerance" };
                     ScenarioError::field(format!("integration.{field}"), e)
                 })?;
-        let dispersions = Dispersions::new(&file)?;
+        let dispersions = Dispersions::new(&file, &separation)?;
         let outlines = file.clearance.as_ref().map(Outlines::new).transpose()?;
         let models = model::check_models(&file.models, [&payload, &stage])?;
         let comparisons = model::check_comparisons(&file.comparisons, &models)?;
@@ -342,8 +342,8 @@ fn unit(vector: Vector3<f64>) -> Option<Unit<Vector3<f64>>> {
 
 /// The direction in which the springs push the payload at the start, late ones too, if they do not cancel.
 fn push(separation: &Separation) -> Option<Unit<Vector3<f64>>> {
-    let forces = separation.springs().iter().filter(|s| s.can_push()).map(|spring| {
-        let line = sides::line(separation, spring);
+    let forces = separation.springs().filter(|s| s.can_push()).map(|spring| {
+        let line = spring.line(separation.payload().state(), separation.stage().state());
         line * (spring.stiffness_n_per_m() * spring.travel_m() / line.norm())
     });
     let (sum, size) = forces
@@ -357,12 +357,12 @@ fn push(separation: &Separation) -> Option<Unit<Vector3<f64>>> {
 /// What does not go together, by its key.
 fn separation_error(error: SeparationError) -> ScenarioError {
     let (field, from) = match &error {
-        SeparationError::Body { body, .. } => ((*body).to_owned(), ""),
+        SeparationError::Body { body, .. } => (body.to_string(), ""),
         SeparationError::TouchingPads { spring, .. } => {
-            (format!("springs[{spring}].payload_point_m"), POINTS)
+            (format!("springs[{}].payload_point_m", spring + 1), POINTS)
         }
         SeparationError::ShortStroke { spring, .. } => {
-            (format!("springs[{spring}].stroke_m"), POINTS)
+            (format!("springs[{}].stroke_m", spring + 1), POINTS)
         }
         _ => ("springs".to_owned(), ""),
     };
@@ -380,7 +380,7 @@ fn spring_key(error: &SpringError) -> &'static str {
         SpringError::Stroke { .. } => "stroke_m",
         SpringError::Friction { .. } => "friction_n",
         SpringError::Start { .. } => "start_s",
-        SpringError::Point { body: "payload", .. } => "payload_point_m",
+        SpringError::Point { body: Role::Payload, .. } => "payload_point_m",
         _ => "stage_point_m",
     }
 }

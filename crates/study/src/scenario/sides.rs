@@ -1,20 +1,12 @@
 //! Whether the springs of a scenario push the bodies apart.
 
-use gyradius_separation::{Separation, Spring};
+use gyradius_separation::Separation;
 use nalgebra::{Unit, Vector3};
 
 use super::{ScenarioError, unit};
 
 /// A force that is more than 120° from a direction goes against it: cosines below this.
 const AGAINST: f64 = -0.5;
-
-/// From the stage point of a spring to its payload point at the start, inertial axes, m: along it the
-/// spring pushes the payload.
-pub(super) fn line(separation: &Separation, spring: &Spring) -> Vector3<f64> {
-    let (payload, stage) = (separation.payload().state(), separation.stage().state());
-    (payload.position - stage.position) + payload.attitude * spring.payload_point_m()
-        - stage.attitude * spring.stage_point_m()
-}
 
 /// That no spring pushes the payload through the stage, as a wrong sign of a point makes it do.
 ///
@@ -32,8 +24,9 @@ pub(super) fn check(
     let Some(away) = unit(between) else { return Ok(()) };
     let stated = stated.and_then(|direction| unit(direction.into()));
     let through = stated.or(together).filter(|direction| direction.dot(&away) < AGAINST);
-    for (i, spring) in separation.springs().iter().enumerate().filter(|(_, s)| s.can_push()) {
-        let Some(push) = unit(line(separation, spring)) else { continue };
+    for (i, spring) in separation.springs().enumerate().filter(|(_, s)| s.can_push()) {
+        let line = spring.line(separation.payload().state(), separation.stage().state());
+        let Some(push) = unit(line) else { continue };
         let against = |direction: &Unit<Vector3<f64>>| push.dot(direction) < AGAINST;
         let where_to = if against(&away) && stated.as_ref().is_none_or(against) {
             "through the stage, whose mass centre is on that side"

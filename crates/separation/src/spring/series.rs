@@ -1,8 +1,12 @@
 //! The series of springs, one of each run at a time.
 
+use std::ops::Range;
+
+use super::SeatedSpring;
 use crate::{
     lanes::{Lanes, M3, V3},
     layout::{INVERSE, TERMS},
+    load::Series,
     products::{cross, load},
     vector::{Four, Simd},
 };
@@ -20,11 +24,11 @@ const QUARTERS: [f64; 4 * TERMS] = {
 
 /// Coefficients of one order.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SpringTerm {
+pub(super) struct SpringTerm {
     /// From stage point to payload point, s.
     line: V3,
     /// s².
-    pub(crate) square: Lanes,
+    pub(super) square: Lanes,
     /// k L₀/|s|: less k, the force over the length.
     push: Lanes,
 }
@@ -33,15 +37,18 @@ pub(crate) struct SpringTerm {
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(crate) struct SpringSeries {
-    pub(crate) terms: [SpringTerm; TERMS],
-    /// Zero where a spring no longer pushes.
-    pub(crate) stiffness: Lanes,
-    pub(crate) free_length: Lanes,
-    pub(crate) payload_point: V3,
-    pub(crate) stage_point: V3,
+    pub(super) terms: [SpringTerm; TERMS],
+    /// Zero where a spring does not push.
+    pub(super) stiffness: Lanes,
+    /// The stiffness of those that push, and of those that do not.
+    pub(super) built: Lanes,
+    pub(super) stroke: Lanes,
+    pub(super) free_length: Lanes,
+    payload_point: V3,
+    stage_point: V3,
     /// What s² stays below and above as far as the series is good.
-    pub(crate) upper: Lanes,
-    pub(crate) lower: Lanes,
+    pub(super) upper: Lanes,
+    pub(super) lower: Lanes,
     /// Force over the length, of order 0.
     first_push: Lanes,
     /// 1/s² of order 0, zero for springs that do not push.
@@ -60,12 +67,16 @@ fn dot<S: Simd>(a: &[Four<S>; 3], b: &[Four<S>; 3]) -> Four<S> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-impl SpringSeries {
-    pub(crate) fn new() -> Self {
+impl Series for SpringSeries {
+    type Load = SeatedSpring;
+
+    fn new() -> Self {
         let (zero, vector) = (Lanes::ZERO, [Lanes::ZERO; 3]);
         Self {
             terms: [SpringTerm { line: vector, square: zero, push: zero }; TERMS],
             stiffness: zero,
+            built: zero,
+            stroke: zero,
             free_length: zero,
             payload_point: vector,
             stage_point: vector,
@@ -80,10 +91,20 @@ impl SpringSeries {
         }
     }
 
-    /// The coefficients of order k of the lines and of s², from those of where the stage's mass centre
-    /// is and of the rotation from stage to payload; and what else of order k waits for nothing.
+    fn set(&mut self, lane: usize, seated: &SeatedSpring) {
+        let spring = seated.spring();
+        self.built.0[lane] = spring.stiffness_n_per_m();
+        self.stroke.0[lane] = spring.stroke_m();
+        self.free_length.0[lane] = seated.free_length_m();
+        for axis in 0..3 {
+            self.payload_point[axis].0[lane] = spring.payload_point_m()[axis];
+            self.stage_point[axis].0[lane] = spring.stage_point_m()[axis];
+        }
+    }
+
+    /// Of the lines and of s².
     #[inline(always)]
-    pub(crate) fn stretch<S: Simd>(&mut self, simd: S, k: usize, offset: &V3, rotation: &M3) {
+    fn stretch<S: Simd>(&mut self, simd: S, k: usize, offset: &V3, rotation: &M3) {
         if k == 0 {
             self.lost = self.stiffness.0.iter().all(|s| *s == 0.0);
         }
@@ -105,10 +126,8 @@ impl SpringSeries {
         }
     }
 
-    /// The coefficients of order k of the forces on the payload, and of their moments about its mass
-    /// centre; none if all springs are lost.
     #[inline(always)]
-    pub(crate) fn push<S: Simd>(&mut self, simd: S, k: usize) -> Option<[V3; 2]> {
+    fn push<S: Simd>(&mut self, simd: S, k: usize) -> Option<[V3; 2]> {
         if self.lost {
             return None;
         }
@@ -134,6 +153,39 @@ impl SpringSeries {
         Some([force.map(Four::store), moment.map(Four::store)])
     }
 
+    #[inline(always)]
+    fn ends_within(&self, time: Lanes, order: usize) -> Lanes {
+        let mut sum = Lanes::ZERO;
+        for term in self.terms[..order].iter().rev() {
+            sum = sum * time + term.square;
+        }
+        let beyond = sum.zip(self.free_length, |s, l| if s >= l * l { 1.0 } else { 0.0 });
+        beyond * self.stiffness.map(|k| if k == 0.0 { 0.0 } else { 1.0 })
+    }
+
+    /// By the terms of s² that are positive, and by those that are negative.
+    #[inline(always)]
+    fn bound(&mut self, reach: Lanes, order: usize) {
+        let (mut power, mut up, mut down) = (reach, Lanes::ZERO, Lanes::ZERO);
+        for term in &self.terms[1..order] {
+            let term = term.square * power;
+            up += term.map(|x| if x > 0.0 { x } else { 0.0 });
+            down += term.map(|x| if x < 0.0 { x } else { 0.0 });
+            power = power * reach;
+        }
+        self.upper = self.terms[0].square + up;
+        self.lower = self.terms[0].square + down;
+    }
+
+    #[inline(always)]
+    fn forget(&mut self, lane: usize, orders: Range<usize>) {
+        for term in &mut self.terms[orders] {
+            term.square.0[lane] = 0.0;
+        }
+    }
+}
+
+impl SpringSeries {
     /// What goes into the coefficients of order k of s², of the force and of the slope that the push
     /// is found from, and waits for nothing.
     #[inline(always)]

@@ -1,0 +1,131 @@
+//! A spring in its place between the bodies.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::{Spring, SpringParameter, series::SpringSeries};
+use crate::{
+    BodyState, RunError, SeparationError, SpringState,
+    load::{Gap, Load, Size},
+    state::{self, State},
+};
+
+/// Points nearer than this share of the stroke count as touching.
+pub(crate) const TOUCHING: f64 = 1e-6;
+
+/// Strokes shorter than this share of the distances that they are differences of have lost half of
+/// the digits of a double.
+pub(crate) const SHORTEST: f64 = 1e-7;
+
+/// A spring whose free length is known: the distance of its points at the start plus its stroke, less what
+/// friction takes of that, where it ceases to push.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SeatedSpring {
+    spring: Spring,
+    free_length: f64,
+}
+
+impl SeatedSpring {
+    /// `number` is its place among the springs, from 0.
+    pub(crate) fn new(
+        number: usize,
+        spring: Spring,
+        payload: &BodyState,
+        stage: &BodyState,
+    ) -> Result<Self, SeparationError> {
+        let distance = spring.line(payload, stage).norm();
+        let stroke = spring.stroke_m();
+        if !(distance > TOUCHING * stroke) {
+            return Err(SeparationError::TouchingPads { spring: number, distance, stroke });
+        }
+        let reach = distance + spring.payload_point_m().norm() + spring.stage_point_m().norm();
+        // One that never pushes only has its place.
+        let stroke = if spring.can_push() { spring.travel_m() } else { stroke };
+        if !(stroke > SHORTEST * reach) {
+            return Err(SeparationError::ShortStroke { spring: number, stroke, reach });
+        }
+        Ok(Self { spring, free_length: distance + stroke })
+    }
+
+    pub(crate) fn spring(&self) -> &Spring {
+        &self.spring
+    }
+
+    pub(crate) fn free_length_m(&self) -> f64 {
+        self.free_length
+    }
+
+    /// From the stage point to the payload point, payload axes, m.
+    fn line(&self, state: &State) -> Vector3<f64> {
+        let [payload, stage] = state::relative(state);
+        self.spring.line(&payload, &stage)
+    }
+}
+
+impl Load for SeatedSpring {
+    type Parameter = SpringParameter;
+    type Series = SpringSeries;
+
+    fn start_s(&self) -> Option<f64> {
+        self.spring.start_s().filter(|_| self.spring.can_push())
+    }
+
+    fn can_start(&self, state: &State) -> bool {
+        self.line(state).norm() > TOUCHING * self.spring.stroke_m()
+    }
+
+    fn gap(&self, state: &State) -> Gap {
+        let [payload, stage] = state::relative(state);
+        let (p, l) = (self.spring.payload_point_m(), self.spring.stage_point_m());
+        let line = self.spring.line(&payload, &stage);
+        let velocity = payload.velocity + payload.angular_velocity.cross(&p)
+            - stage.attitude * stage.angular_velocity.cross(&l);
+        let length = line.norm();
+        Gap { value: length - self.free_length, rate: line.dot(&velocity) / length }
+    }
+
+    fn rounding(&self, state: &State) -> f64 {
+        let [payload, _] = state::relative(state);
+        let reach = payload.position.norm()
+            + self.spring.payload_point_m().norm()
+            + self.spring.stage_point_m().norm();
+        4.0 * f64::EPSILON * reach
+    }
+
+    fn lost_direction(&self, number: usize, time: f64, speed: f64) -> RunError {
+        RunError::PadsMeet { spring: number, time, speed }
+    }
+
+    fn stored_energy(&self) -> f64 {
+        self.spring.stored_energy()
+    }
+
+    fn size(&self) -> Size {
+        let (spring, travel) = (&self.spring, self.spring.travel_m());
+        Size {
+            stroke: spring.stroke_m(),
+            travel,
+            force: spring.stiffness_n_per_m() * travel,
+            arms: [spring.payload_point_m().norm(), spring.stage_point_m().norm()],
+            distance: self.free_length - travel,
+        }
+    }
+
+    fn seen(&self, state: &State, attitude: &UnitQuaternion<f64>, acts: bool) -> SpringState {
+        // Not of the two positions, which may be large.
+        let line = self.line(state);
+        let length = line.norm();
+        let compression = self.free_length - length;
+        let stiffness = if acts { self.spring.stiffness_n_per_m() } else { 0.0 };
+        SpringState {
+            pushing: acts,
+            length,
+            compression,
+            force: if acts {
+                attitude * (line * (stiffness * compression / length))
+            } else {
+                Vector3::zeros()
+            },
+            energy: 0.5 * stiffness * compression * compression,
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! Two bodies and their springs as they are mounted, off from their nominal places as one likes.
+
+use gyradius_inertia::{InertiaMatrix, MassProperties};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use crate::{
+    Body, BodyParameter, BodyState, MovingBody, Role, Separation, SeparationError, Spring,
+    SpringError, SpringParameter, StackParameter,
+};
+
+/// Payload and stage as they sit on each other, and the springs mounted between points of their
+/// structures: the builder of a [`Separation`] whose mass centres, attitudes, lines of action and the like
+/// differ from the nominal ones.
+///
+/// Mass centres move in structures that stay where they are, and so do the points that springs are attached
+/// to. A line of action turns about its stage point and keeps its length. The whole turns, and begins to turn,
+/// about the common mass centre as one rigid body.
+///
+/// ```
+/// use gyradius_inertia::Shape;
+/// use gyradius_separation::{BodyState, Role, Spring, Stack};
+/// use nalgebra::Vector3;
+///
+/// // Each body in a frame of its own, here with origin in the plane of separation.
+/// let payload = Shape::solid_box([1.0, 1.0, 2.0])?.of_mass(500.0)?;
+/// let payload = payload.translated(Vector3::new(0.01, 0.0, 1.0))?;
+/// let stage = Shape::sphere(0.5)?.of_mass(900.0)?.translated(Vector3::z() * -1.5)?;
+/// let up = |z| BodyState { position: Vector3::z() * z, ..BodyState::default() };
+/// let mut stack = Stack::new((&payload, up(0.1)), (&stage, up(0.0)));
+/// for (x, y) in [(0.4, 0.4), (-0.4, 0.4), (-0.4, -0.4), (0.4, -0.4)] {
+///     let point = Vector3::new(x, y, 0.0);
+///     stack = stack.with_spring(Spring::new(2e4, 0.05, point, point)?);
+/// }
+/// let separation = stack.separation()?;
+/// // Springs count their points from the mass centre, which is off the axis.
+/// let first = separation.springs().next().ok_or("a spring")?;
+/// assert!((first.payload_point_m().x - 0.39).abs() < 1e-12);
+/// assert_eq!(Role::Payload.to_string(), "payload");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Stack {
+    /// Payload and stage.
+    bodies: [Placed; 2],
+    /// Rotation and angular velocity of the whole, stage axes, rad and rad/s.
+    rotation: Vector3<f64>,
+    rate: Vector3<f64>,
+    springs: Vec<Mounted>,
+}
+
+/// A body in its place. Position and velocity are those of the origin of a frame in its structure.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    inertia: InertiaMatrix,
+    mass: f64,
+    /// From the origin of the frame to the mass centre, body axes, m.
+    centre: Vector3<f64>,
+    /// From the nominal attitude, body axes, rad.
+    rotation: Vector3<f64>,
+    state: BodyState,
+    nominal: BodyState,
+}
+
+/// A spring in its place, points from the origins of the bodies' frames.
+#[derive(Clone, Copy, Debug)]
+struct Mounted {
+    nominal: Spring,
+    stiffness: f64,
+    stroke: f64,
+    friction: f64,
+    /// Rotation of its line about two axes across it, rad.
+    tilt: [f64; 2],
+    payload_point: Vector3<f64>,
+    stage_point: Vector3<f64>,
+    start: f64,
+    fails: bool,
+}
+
+impl Stack {
+    /// Payload and stage, each in a frame of its own, and the states of those frames: where their origins
+    /// are and how they move. Points of springs are given in these frames.
+    #[must_use]
+    pub fn new(payload: (&MassProperties, BodyState), stage: (&MassProperties, BodyState)) -> Self {
+        let placed = |(properties, state): (&MassProperties, BodyState)| {
+            let inertia = *properties.inertia().as_inertia_matrix();
+            let centre = properties.mass_center_m();
+            Placed { centre, ..Placed::new(properties.mass_kg(), inertia, state) }
+        };
+        Self::of([placed(payload), placed(stage)])
+    }
+
+    fn of(bodies: [Placed; 2]) -> Self {
+        Self { bodies, rotation: Vector3::zeros(), rate: Vector3::zeros(), springs: Vec::new() }
+    }
+
+    /// The same with another spring.
+    #[must_use]
+    pub fn with_spring(mut self, spring: Spring) -> Self {
+        self.springs.push(Mounted::new(&spring));
+        self
+    }
+
+    /// Gives a body another inertia about its mass centre, kg·m².
+    pub fn set_inertia(&mut self, role: Role, inertia: impl Into<InertiaMatrix>) {
+        self.bodies[role as usize].inertia = inertia.into();
+    }
+
+    /// Gives a component of a parameter of a body another value, in the parameter's unit. Components count
+    /// from 0; one that there is not is left alone.
+    pub fn set_body(&mut self, role: Role, parameter: BodyParameter, component: usize, value: f64) {
+        let body = &mut self.bodies[role as usize];
+        match parameter {
+            BodyParameter::Mass => body.mass = value,
+            BodyParameter::MassCentre => put(&mut body.centre, component, value),
+            BodyParameter::Position => put(&mut body.state.position, component, value),
+            BodyParameter::Velocity => put(&mut body.state.velocity, component, value),
+            BodyParameter::Attitude => put(&mut body.rotation, component, value.to_radians()),
+            BodyParameter::AngularVelocity => {
+                put(&mut body.state.angular_velocity, component, value);
+            }
+        }
+    }
+
+    /// The same of the whole.
+    pub fn set_whole(&mut self, parameter: StackParameter, component: usize, value: f64) {
+        match parameter {
+            StackParameter::Attitude => put(&mut self.rotation, component, value.to_radians()),
+            StackParameter::AngularVelocity => put(&mut self.rate, component, value),
+        }
+    }
+
+    /// The same of a spring, numbered from 0.
+    pub fn set_spring(
+        &mut self,
+        spring: usize,
+        parameter: SpringParameter,
+        component: usize,
+        value: f64,
+    ) {
+        let Some(spring) = self.springs.get_mut(spring) else { return };
+        match parameter {
+            SpringParameter::Stiffness => spring.stiffness = value,
+            SpringParameter::Stroke => spring.stroke = value,
+            SpringParameter::Friction => spring.friction = value,
+            SpringParameter::LineOfAction => {
+                if let Some(angle) = spring.tilt.get_mut(component) {
+                    *angle = value.to_radians();
+                }
+            }
+            SpringParameter::PayloadPoint => put(&mut spring.payload_point, component, value),
+            SpringParameter::StagePoint => put(&mut spring.stage_point, component, value),
+            SpringParameter::Start => spring.start = value,
+        }
+    }
+
+    /// Lets a spring, numbered from 0, fail: it never pushes.
+    pub fn fail_spring(&mut self, spring: usize) {
+        if let Some(spring) = self.springs.get_mut(spring) {
+            spring.fails = true;
+        }
+    }
+
+    /// The separation that begins so.
+    ///
+    /// # Errors
+    /// A value makes no body or no spring, or bodies and springs make no separation.
+    pub fn separation(&self) -> Result<Separation, SeparationError> {
+        let body = |role: Role| {
+            let placed = &self.bodies[role as usize];
+            Body::new(placed.mass, placed.inertia)
+                .map_err(|source| SeparationError::Body { body: role, source })
+        };
+        let (payload, stage) = (body(Role::Payload)?, body(Role::Stage)?);
+        let mut states = self.bodies.each_ref().map(Placed::state);
+        let springs = self.springs.iter().enumerate().map(|(spring, mounted)| {
+            self.spring(mounted, &states)
+                .map_err(|source| SeparationError::Spring { spring, source })
+        });
+        let springs = springs.collect::<Result<Vec<_>, _>>()?;
+        self.move_whole(&mut states);
+        let [payload_state, stage_state] = states;
+        Separation::new(payload.moving(payload_state), stage.moving(stage_state), &springs)
+    }
+
+    /// A spring with its line turned about its stage point: where it then meets the payload, at the
+    /// same length, it pushes.
+    fn spring(
+        &self,
+        mounted: &Mounted,
+        [payload, stage]: &[BodyState; 2],
+    ) -> Result<Spring, SpringError> {
+        let [payload_centre, stage_centre] = self.bodies.each_ref().map(|body| body.centre);
+        let stage_point = mounted.stage_point - stage_centre;
+        let built = |point| Spring::new(mounted.stiffness, mounted.stroke, point, stage_point);
+        let point = mounted.payload_point - payload_centre;
+        let mut spring = built(point)?;
+        if mounted.tilt != [0.0; 2] {
+            let line = stage.attitude.inverse() * spring.line(payload, stage);
+            // Of the next axis, what is perpendicular to the line.
+            let axis = Vector3::ith((nearest_axis(&self.nominal_line(mounted)) + 1) % 3, 1.0);
+            let unit = normalized(&line);
+            let first = normalized(&(axis - unit * unit.dot(&axis)));
+            let second = unit.cross(&first);
+            let tilt = rotation(&(first * mounted.tilt[0] + second * mounted.tilt[1]));
+            let shift = stage.attitude * (tilt * line - line);
+            spring = built(point + payload.attitude.inverse() * shift)?;
+        }
+        let spring = spring.with_friction(mounted.friction)?.starting_at(mounted.start)?;
+        Ok(if mounted.fails { spring.never_pushing() } else { spring })
+    }
+
+    /// The line of a spring where everything is in its nominal place, stage axes.
+    fn nominal_line(&self, mounted: &Mounted) -> Vector3<f64> {
+        let [payload, stage] = self.bodies.each_ref().map(|body| &body.nominal);
+        stage.attitude.inverse() * mounted.nominal.line(payload, stage)
+    }
+
+    /// Turns both bodies about their common mass centre and sets them turning, as one rigid body.
+    fn move_whole(&self, states: &mut [BodyState; 2]) {
+        let zero = Vector3::zeros();
+        if self.rotation == zero && self.rate == zero {
+            return;
+        }
+        let masses = self.bodies.each_ref().map(|body| body.mass);
+        let total = masses[0] + masses[1];
+        let mean = |of: fn(&BodyState) -> Vector3<f64>| {
+            of(&states[0]) * (masses[0] / total) + of(&states[1]) * (masses[1] / total)
+        };
+        let (centre, velocity) = (mean(|s| s.position), mean(|s| s.velocity));
+        let axes = states[1].attitude;
+        let turned = rotation(&(axes * self.rotation));
+        let rate = turned * (axes * self.rate);
+        for state in states {
+            let arm = turned * (state.position - centre);
+            state.position = centre + arm;
+            state.velocity = velocity + turned * (state.velocity - velocity) + rate.cross(&arm);
+            state.attitude = turned * state.attitude;
+            state.angular_velocity += state.attitude.inverse() * rate;
+        }
+    }
+}
+
+impl From<&Separation> for Stack {
+    /// The frames of the bodies have their origins in the mass centres.
+    fn from(nominal: &Separation) -> Self {
+        let placed = |moving: &MovingBody| {
+            let body = moving.body();
+            Placed::new(body.mass_kg(), *body.inertia(), *moving.state())
+        };
+        let stack = Self::of([placed(nominal.payload()), placed(nominal.stage())]);
+        Self { springs: nominal.springs().map(Mounted::new).collect(), ..stack }
+    }
+}
+
+impl Placed {
+    fn new(mass: f64, inertia: InertiaMatrix, state: BodyState) -> Self {
+        let zero = Vector3::zeros();
+        Self { inertia, mass, centre: zero, rotation: zero, state, nominal: state }
+    }
+
+    /// The state of the mass centre.
+    fn state(&self) -> BodyState {
+        let attitude = self.state.attitude * rotation(&self.rotation);
+        BodyState { attitude, ..self.state }.of_point(&self.centre)
+    }
+}
+
+impl Mounted {
+    fn new(nominal: &Spring) -> Self {
+        Self {
+            nominal: *nominal,
+            stiffness: nominal.stiffness_n_per_m(),
+            stroke: nominal.stroke_m(),
+            friction: nominal.friction_n(),
+            tilt: [0.0; 2],
+            payload_point: nominal.payload_point_m(),
+            stage_point: nominal.stage_point_m(),
+            start: nominal.start_s().unwrap_or(0.0),
+            fails: nominal.start_s().is_none(),
+        }
+    }
+}
+
+fn put(vector: &mut Vector3<f64>, component: usize, value: f64) {
+    if let Some(entry) = vector.as_mut_slice().get_mut(component) {
+        *entry = value;
+    }
+}
+
+/// The axis that a direction is nearest to.
+fn nearest_axis(direction: &Vector3<f64>) -> usize {
+    let size = direction.abs();
+    if size.z >= size.x && size.z >= size.y { 2 } else { usize::from(size.y >= size.x) }
+}
+
+fn normalized(v: &Vector3<f64>) -> Vector3<f64> {
+    v.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
+}
+
+/// The rotation by a rotation vector, rad, of functions that are the same on every machine.
+fn rotation(vector: &Vector3<f64>) -> UnitQuaternion<f64> {
+    let half = 0.5 * vector.norm();
+    let (sin, cos) = libm::sincos(half);
+    let sinc = if half > 0.0 { sin / half } else { 1.0 };
+    let v = vector * (0.5 * sinc);
+    UnitQuaternion::new_normalize(Quaternion::new(cos, v.x, v.y, v.z))
+}
