@@ -142,10 +142,10 @@ impl Chart {
         let mut rest = out;
         while !rest.is_empty() {
             rng.fill(&mut batch.bits[..]);
-            vector::run(Propose { chart: self, batch: &mut batch });
+            pulp::Arch::new().dispatch(Propose { chart: self, batch: &mut batch });
             let kept = self.keep(rng, &mut batch).min(rest.len());
             let (next, later) = rest.split_at_mut(kept);
-            vector::run(Place { chart: self, batch: &batch, out: next });
+            pulp::Arch::new().dispatch(Place { chart: self, batch: &batch, out: next });
             rest = later;
         }
     }
@@ -220,9 +220,11 @@ struct Propose<'a> {
     batch: &'a mut Batch,
 }
 
-impl vector::Kernel for Propose<'_> {
+impl pulp::WithSimd for Propose<'_> {
+    type Output = ();
+
     #[inline(always)]
-    fn run(self) {
+    fn with_simd<S: pulp::Simd>(self, _: S) {
         let Batch { bits, u, v, h, place } = self.batch;
         vector::normals(bits, u);
         let (first, rest) = u.split_at_mut(CHUNK);
@@ -249,9 +251,11 @@ struct Place<'a> {
     out: &'a mut [UnitQuaternion<f64>],
 }
 
-impl vector::Kernel for Place<'_> {
+impl pulp::WithSimd for Place<'_> {
+    type Output = ();
+
     #[inline(always)]
-    fn run(self) {
+    fn with_simd<S: pulp::Simd>(self, _: S) {
         let [a, b, c, d] = &self.chart.columns;
         let Batch { u, h, .. } = self.batch;
         for (i, q) in self.out.iter_mut().enumerate() {

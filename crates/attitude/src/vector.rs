@@ -1,29 +1,10 @@
-//! Loops over arrays that the compiler turns into vector instructions.
+//! What loops over arrays are made of that the compiler turns into vector instructions.
 //!
-//! [`run`] compiles its kernel once for the baseline and once for the vector units that the machine
-//! may have, and picks at run time. The loops use sums, products, quotients, square roots and bits
+//! `pulp` compiles a kernel (`pulp::WithSimd`) once for the baseline and once for each of the vector units
+//! that a machine may have, and picks at run time. What a kernel calls must be inlined. The loops use sums, products, quotients, square roots and bits
 //! only, each correctly rounded and never fused, so that every machine gets the same values.
 
 use std::f64::consts::{FRAC_PI_2, LN_2};
-
-/// A loop that is compiled for every set of vector instructions. What it calls must be inlined.
-pub(crate) trait Kernel {
-    fn run(self);
-}
-
-/// Runs a kernel with the widest vector instructions there are.
-pub(crate) fn run<K: Kernel>(kernel: K) {
-    // A closure could not be marked to be inlined, and would be compiled for the baseline alone.
-    struct Inlined<K>(K);
-    impl<K: Kernel> pulp::WithSimd for Inlined<K> {
-        type Output = ();
-        #[inline(always)]
-        fn with_simd<S: pulp::Simd>(self, _: S) {
-            self.0.run();
-        }
-    }
-    pulp::Arch::new().dispatch(Inlined(kernel));
-}
 
 /// [1, 2) from the upper 52 bits.
 #[inline(always)]

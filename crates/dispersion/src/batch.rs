@@ -182,7 +182,7 @@ impl<K: BatchRoots, A: BatchAttitudes> PrincipalDispersion<K, A> {
             self.roots().squares_into(rng, [&mut a[..n], &mut b[..n], &mut c[..n]]);
             self.axes().attitudes_into(rng, &mut attitudes[..n]);
             let out = columns.each_mut().map(|column| &mut column[start..start + n]);
-            run(Assemble { squares: &squares, attitudes: &attitudes, out });
+            pulp::Arch::new().dispatch(Assemble { squares: &squares, attitudes: &attitudes, out });
             start += n;
         }
         Ok(())
@@ -236,10 +236,6 @@ impl pulp::WithSimd for Assemble<'_> {
             column.copy_from_slice(&values[..n]);
         }
     }
-}
-
-fn run(kernel: Assemble<'_>) {
-    pulp::Arch::new().dispatch(kernel);
 }
 
 #[cfg(test)]

@@ -3,10 +3,10 @@
 use std::borrow::Borrow;
 
 use crate::{
-    Outcome, RunError, Separation, Settings, integrator::Integrator, lanes::WIDTH, track::Track,
+    Outcome, RunError, Separation, Settings, integrator::Integrator, track::Track, vector::Machine,
 };
 
-/// Many separations, several at a time in vector lanes.
+/// Many separations, several at a time in vector lanes: eight where the machine has AVX-512, else four.
 ///
 /// Each lane has its own time and step; a lane whose run is over takes the next of the queue. An
 /// outcome holds the same bits as that of [`Separation::run`], whatever runs beside it. Does not
@@ -14,14 +14,26 @@ use crate::{
 #[derive(Debug)]
 pub struct Batch {
     settings: Settings,
-    integrator: Box<Integrator>,
+    integrator: Wide,
+}
+
+/// As wide as the machine's registers.
+#[derive(Debug)]
+enum Wide {
+    Four(Box<Integrator<4>>),
+    Eight(Box<Integrator<8>>),
 }
 
 impl Batch {
     /// For runs with the given settings.
     #[must_use]
     pub fn new(settings: Settings) -> Self {
-        Self { settings, integrator: Box::new(Integrator::new(settings)) }
+        let integrator = if Machine::new().has_eight() {
+            Wide::Eight(Box::new(Integrator::new(settings)))
+        } else {
+            Wide::Four(Box::new(Integrator::new(settings)))
+        };
+        Self { settings, integrator }
     }
 
     /// Runs the separations to their last releases. Each result is given with its place in the
@@ -32,31 +44,44 @@ impl Batch {
     pub fn run<S: Borrow<Separation>>(
         &mut self,
         queue: impl IntoIterator<Item = S>,
-        mut result: impl FnMut(usize, Result<Outcome, RunError>),
+        result: impl FnMut(usize, Result<Outcome, RunError>),
     ) {
-        let mut queue = queue.into_iter().enumerate();
-        let mut lanes: [Option<(usize, Track<S>)>; WIDTH] = [const { None }; WIDTH];
-        loop {
-            for (lane, slot) in lanes.iter_mut().enumerate() {
-                if slot.is_none() {
-                    *slot = queue.next().map(|(i, run)| (i, self.integrator.load(lane, run)));
-                }
-                if slot.is_none() {
-                    self.integrator.rest(lane);
-                }
+        match &mut self.integrator {
+            Wide::Four(integrator) => run(integrator, &self.settings, queue, result),
+            Wide::Eight(integrator) => run(integrator, &self.settings, queue, result),
+        }
+    }
+}
+
+/// In as many lanes as an integrator has.
+fn run<const W: usize, S: Borrow<Separation>>(
+    integrator: &mut Integrator<W>,
+    settings: &Settings,
+    queue: impl IntoIterator<Item = S>,
+    mut result: impl FnMut(usize, Result<Outcome, RunError>),
+) {
+    let mut queue = queue.into_iter().enumerate();
+    let mut lanes: [Option<(usize, Track<S>)>; W] = [const { None }; W];
+    loop {
+        for (lane, slot) in lanes.iter_mut().enumerate() {
+            if slot.is_none() {
+                *slot = queue.next().map(|(i, run)| (i, integrator.load(lane, run)));
             }
-            if lanes.iter().all(Option::is_none) {
-                return;
+            if slot.is_none() {
+                integrator.rest(lane);
             }
-            self.integrator.expand();
-            for (lane, slot) in lanes.iter_mut().enumerate() {
-                let Some((_, track)) = slot else { continue };
-                let stepped = self.integrator.step(lane, track);
-                let over = stepped.is_err() || track.all_released();
-                if over && let Some((i, track)) = slot.take() {
-                    let state = self.integrator.state(lane);
-                    result(i, stepped.map(|()| Outcome::new(track, &state, &self.settings)));
-                }
+        }
+        if lanes.iter().all(Option::is_none) {
+            return;
+        }
+        integrator.expand();
+        for (lane, slot) in lanes.iter_mut().enumerate() {
+            let Some((_, track)) = slot else { continue };
+            let stepped = integrator.step(lane, track);
+            let over = stepped.is_err() || track.all_released();
+            if over && let Some((i, track)) = slot.take() {
+                let state = integrator.state(lane);
+                result(i, stepped.map(|()| Outcome::new(track, &state, settings)));
             }
         }
     }
@@ -123,5 +148,23 @@ mod tests {
             });
         }
         batch.run(&all[..0], |_, _| panic!("nothing to run"));
+    }
+
+    /// Eight lanes on a machine without registers that long, and one, in arrays.
+    #[test]
+    fn outcomes_are_the_same_to_the_bit_in_any_number_of_lanes() {
+        fn all<const W: usize>(machine: Machine) -> Vec<String> {
+            let (settings, all) = (Settings::new(1e-13, 10.0).unwrap(), separations());
+            let mut integrator = Integrator::<W>::on(machine, settings);
+            let mut outcomes = vec![String::new(); all.len()];
+            run(&mut integrator, &settings, &all, |i, result| outcomes[i] = format!("{result:?}"));
+            outcomes
+        }
+        let four = all::<4>(Machine::new());
+        assert_eq!(four, all::<4>(Machine::BASELINE));
+        for machine in [Machine::new(), Machine::BASELINE] {
+            assert_eq!(four, all::<1>(machine));
+            assert_eq!(four, all::<8>(machine));
+        }
     }
 }

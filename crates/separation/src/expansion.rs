@@ -7,7 +7,7 @@
 //! on the payload.
 
 use crate::{
-    lanes::{Lanes, M3, WIDTH, add, scale, times},
+    lanes::{Lanes, M3, add, scale, times},
     layout::{
         ATTITUDE, INVERSE, OFFSET, ORDER, PAYLOAD_RATE, RELATIVE, STAGE_RATE, STATE, STOPS, TERMS,
         VELOCITY, part,
@@ -15,51 +15,51 @@ use crate::{
     loads::LoadSeries,
     products::{Coefficients, Products, Row},
     root::inverse_root,
-    vector::{Four, Simd},
+    vector::{Register, Simd},
 };
 
 /// What a body resists torques with.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rotor {
-    pub(crate) inertia: M3,
-    pub(crate) inverse: M3,
+pub(crate) struct Rotor<const W: usize> {
+    pub(crate) inertia: M3<W>,
+    pub(crate) inverse: M3<W>,
 }
 
 /// The series of a state and all that goes into it.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub(crate) struct Expansion {
-    pub(crate) terms: [Coefficients; TERMS],
-    pub(crate) loads: LoadSeries,
-    pub(crate) payload: Rotor,
-    pub(crate) stage: Rotor,
+pub(crate) struct Expansion<const W: usize> {
+    pub(crate) terms: [Coefficients<W>; TERMS],
+    pub(crate) loads: LoadSeries<W>,
+    pub(crate) payload: Rotor<W>,
+    pub(crate) stage: Rotor<W>,
     /// 1 over what each entry of the state is measured by.
-    pub(crate) inverse_scale: [Lanes; STATE],
+    pub(crate) inverse_scale: [Lanes<W>; STATE],
     /// The radius of convergence, s; zero before the first expansion.
-    pub(crate) radius: Lanes,
+    pub(crate) radius: Lanes<W>,
     /// The share of the radius that a step may take, for each degree to stop at.
     pub(crate) stretch: [f64; STOPS.len()],
     /// How far the series are good for, s.
-    pub(crate) reach: Lanes,
+    pub(crate) reach: Lanes<W>,
     /// The degrees that they have come to; coefficients beyond are left over.
-    pub(crate) order: [usize; WIDTH],
+    pub(crate) order: [usize; W],
     /// The state there.
-    pub(crate) end: Row,
+    pub(crate) end: Row<W>,
     /// 1/m of the payload plus 1/m of the stage.
-    pub(crate) inverse_mass: Lanes,
+    pub(crate) inverse_mass: Lanes<W>,
     /// Lanes that hold a run: the others wait for none and keep none waiting.
-    pub(crate) busy: [bool; WIDTH],
+    pub(crate) busy: [bool; W],
 }
 
 /// The coefficient of a product by Cauchy's rule, of the order that coefficients are given to. What
 /// waits for the newest of the second factor comes last.
 #[inline(always)]
-fn cauchy<S: Simd, const N: usize>(
+fn cauchy<S: Simd, const W: usize, const N: usize>(
     simd: S,
-    of: &[Coefficients],
-    term: impl Fn(S, &Coefficients, &Coefficients) -> [Four<S>; N],
-) -> [Four<S>; N] {
-    let mut sum = [Four::splat(simd, 0.0); N];
+    of: &[Coefficients<W>],
+    term: impl Fn(S, &Coefficients<W>, &Coefficients<W>) -> [Register<S>; N],
+) -> [Register<S>; N] {
+    let mut sum = [Register::splat(simd, 0.0); N];
     for (a, b) in of.iter().rev().zip(of) {
         sum = plus(sum, term(simd, a, b));
     }
@@ -67,11 +67,11 @@ fn cauchy<S: Simd, const N: usize>(
 }
 
 #[inline(always)]
-fn plus<S: Simd, const N: usize>(a: [Four<S>; N], b: [Four<S>; N]) -> [Four<S>; N] {
+fn plus<S: Simd, const N: usize>(a: [Register<S>; N], b: [Register<S>; N]) -> [Register<S>; N] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-impl Expansion {
+impl<const W: usize> Expansion<W> {
     #[inline(always)]
     pub(crate) fn new(stretch: [f64; STOPS.len()]) -> Self {
         let vector = [Lanes::ZERO; 3];
@@ -85,10 +85,10 @@ impl Expansion {
             radius: Lanes::ZERO,
             stretch,
             reach: Lanes::ZERO,
-            order: [ORDER; WIDTH],
+            order: [ORDER; W],
             end: [Lanes::ZERO; STATE],
             inverse_mass: Lanes::ZERO,
-            busy: [false; WIDTH],
+            busy: [false; W],
         }
     }
 
@@ -101,7 +101,7 @@ impl Expansion {
     pub(crate) fn expand<S: Simd>(&mut self, simd: S) {
         let top = self.expand_lanes(simd);
         let busy = self.busy;
-        for lane in (0..WIDTH).filter(|lane| busy[*lane]) {
+        for lane in (0..W).filter(|lane| busy[*lane]) {
             let beyond = self.order[lane] + 1..=top;
             for term in &mut self.terms[beyond] {
                 for x in &mut term.state {
@@ -133,7 +133,7 @@ impl Expansion {
                 self.expand_once(simd, k);
             }
             from = stop;
-            let mut stops = [true; WIDTH];
+            let mut stops = [true; W];
             if stop < ORDER {
                 // The radius seldom grows much from one step to the next, and takes time to find.
                 stops = self.ends_within(before * (2.0 * stretch), stop);
@@ -144,7 +144,7 @@ impl Expansion {
             let radius = self.radius(stop);
             let reach = radius * stretch;
             let ends = self.ends_within(reach, stop);
-            for lane in 0..WIDTH {
+            for lane in 0..W {
                 if under_way[lane] && stops[lane] && (ends[lane] || stop == ORDER) {
                     under_way[lane] = false;
                     self.radius.0[lane] = radius.0[lane];
@@ -161,7 +161,7 @@ impl Expansion {
 
     /// Whether a load comes to its end by a time, as far as the coefficients below an order tell.
     #[inline(always)]
-    fn ends_within(&mut self, time: Lanes, order: usize) -> [bool; WIDTH] {
+    fn ends_within(&mut self, time: Lanes<W>, order: usize) -> [bool; W] {
         self.loads.ends_within(time, order).0.map(|x| x > 0.0)
     }
 
@@ -202,16 +202,16 @@ impl Expansion {
         put(next, PAYLOAD_RATE, &times(&self.payload.inverse, &payload_turn), step);
 
         let gyration = cauchy(simd, &self.terms[..=k], Products::gyration);
-        let stage_turn = gyration.map(Four::store);
+        let stage_turn = gyration.map(Register::store);
         put(&mut self.terms[k + 1].state, STAGE_RATE, &stage_turn, 1.0);
 
-        let moment = cauchy(simd, &self.terms[..=k], Products::moment).map(Four::store);
+        let moment = cauchy(simd, &self.terms[..=k], Products::moment).map(Register::store);
         self.terms[k].products.reaction = add(moment, torque).map(|x| -x);
 
         let relative = Products::of_turn(&cauchy(simd, &self.terms[..=k], Products::relative));
         put(&mut self.terms[k + 1].state, RELATIVE, &relative, 0.5 * step);
 
-        let torque = cauchy(simd, &self.terms[..=k], Products::torque).map(Four::store);
+        let torque = cauchy(simd, &self.terms[..=k], Products::torque).map(Register::store);
         let next = &mut self.terms[k + 1].state;
         let stage_turn = add(torque, part(next, STAGE_RATE));
         put(next, STAGE_RATE, &times(&self.stage.inverse, &stage_turn), step);
@@ -220,7 +220,7 @@ impl Expansion {
     /// The radius of convergence as the last two coefficients up to an order tell it, each entry
     /// measured by its scale: of both, for series of even or odd functions have every other one.
     #[inline(always)]
-    fn radius(&self, order: usize) -> Lanes {
+    fn radius(&self, order: usize) -> Lanes<W> {
         let (mut last, mut previous) = (Lanes::ZERO, Lanes::ZERO);
         // NaN stays, which `f64::max` would pass over.
         let larger = |m: f64, x: f64| if x.abs() <= m { m } else { x.abs() };
@@ -237,7 +237,12 @@ impl Expansion {
 }
 
 #[inline(always)]
-fn put<const N: usize>(row: &mut [Lanes; STATE], at: usize, values: &[Lanes; N], factor: f64) {
+fn put<const W: usize, const N: usize>(
+    row: &mut Row<W>,
+    at: usize,
+    values: &[Lanes<W>; N],
+    factor: f64,
+) {
     for (x, v) in row[at..at + N].iter_mut().zip(values) {
         *x = *v * factor;
     }
@@ -245,10 +250,10 @@ fn put<const N: usize>(row: &mut [Lanes; STATE], at: usize, values: &[Lanes; N],
 
 /// The coefficients of order k of squares of the quaternion from stage to payload.
 #[inline(always)]
-fn squares<S: Simd>(simd: S, terms: &[Coefficients]) -> [Lanes; 9] {
+fn squares<S: Simd, const W: usize>(simd: S, terms: &[Coefficients<W>]) -> [Lanes<W>; 9] {
     let half = terms.len() / 2;
     let (low, high) = (&terms[..half], &terms[terms.len() - half..]);
-    let zero = [Four::splat(simd, 0.0); 9];
+    let zero = [Register::splat(simd, 0.0); 9];
     let mut pairs = zero;
     for (a, b) in low.iter().zip(high.iter().rev()) {
         pairs = plus(pairs, Products::squares(simd, a, b));
@@ -262,10 +267,10 @@ fn squares<S: Simd>(simd: S, terms: &[Coefficients]) -> [Lanes; 9] {
 
 /// The rotation matrix, from the coefficients of order k of squares of the quaternion.
 #[inline(always)]
-fn rotation(squares: &[Lanes; 9], k: usize) -> M3 {
+fn rotation<const W: usize>(squares: &[Lanes<W>; 9], k: usize) -> M3<W> {
     let [xx, yy, zz, xy, xz, yz, wx, wy, wz] = *squares;
     let one = Lanes::splat(if k == 0 { 1.0 } else { 0.0 });
-    let double = |x: Lanes| x + x;
+    let double = |x: Lanes<W>| x + x;
     [
         [one - double(yy + zz), double(xy - wz), double(xz + wy)],
         [double(xy + wz), one - double(xx + zz), double(yz - wx)],

@@ -7,14 +7,14 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// One number for each run.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lanes(pub(crate) [f64; WIDTH]);
+pub(crate) struct Lanes<const W: usize>(pub(crate) [f64; W]);
 
-impl Lanes {
-    pub(crate) const ZERO: Self = Self([0.0; WIDTH]);
+impl<const W: usize> Lanes<W> {
+    pub(crate) const ZERO: Self = Self([0.0; W]);
 
     #[inline(always)]
     pub(crate) fn splat(x: f64) -> Self {
-        Self([x; WIDTH])
+        Self([x; W])
     }
 
     // Loops, for the library's functions are not always inlined.
@@ -42,7 +42,7 @@ impl Lanes {
 
 macro_rules! lanewise {
     ($($operation:ident $method:ident $symbol:tt),*) => {$(
-        impl $operation for Lanes {
+        impl<const W: usize> $operation for Lanes<W> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
@@ -53,7 +53,7 @@ macro_rules! lanewise {
 }
 lanewise!(Add add +, Sub sub -, Mul mul *, Div div /);
 
-impl Mul<f64> for Lanes {
+impl<const W: usize> Mul<f64> for Lanes<W> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: f64) -> Self {
@@ -61,7 +61,7 @@ impl Mul<f64> for Lanes {
     }
 }
 
-impl Neg for Lanes {
+impl<const W: usize> Neg for Lanes<W> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -69,43 +69,46 @@ impl Neg for Lanes {
     }
 }
 
-impl AddAssign for Lanes {
+impl<const W: usize> AddAssign for Lanes<W> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl SubAssign for Lanes {
+impl<const W: usize> SubAssign for Lanes<W> {
     #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-/// Runs that are computed at a time.
-pub(crate) const WIDTH: usize = 4;
-
 /// A vector, and a matrix by rows.
-pub(crate) type V3 = [Lanes; 3];
-pub(crate) type M3 = [V3; 3];
+pub(crate) type V3<const W: usize> = [Lanes<W>; 3];
+pub(crate) type M3<const W: usize> = [V3<W>; 3];
 
 #[inline(always)]
-pub(crate) fn add<const N: usize>(a: [Lanes; N], b: [Lanes; N]) -> [Lanes; N] {
+pub(crate) fn add<const W: usize, const N: usize>(
+    a: [Lanes<W>; N],
+    b: [Lanes<W>; N],
+) -> [Lanes<W>; N] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
 #[inline(always)]
-pub(crate) fn scale<const N: usize>(a: [Lanes; N], s: Lanes) -> [Lanes; N] {
+pub(crate) fn scale<const W: usize, const N: usize>(
+    a: [Lanes<W>; N],
+    s: Lanes<W>,
+) -> [Lanes<W>; N] {
     a.map(|x| x * s)
 }
 
 #[inline(always)]
-pub(crate) fn dot(a: &V3, b: &V3) -> Lanes {
+pub(crate) fn dot<const W: usize>(a: &V3<W>, b: &V3<W>) -> Lanes<W> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]
-pub(crate) fn times(m: &M3, v: &V3) -> V3 {
+pub(crate) fn times<const W: usize>(m: &M3<W>, v: &V3<W>) -> V3<W> {
     [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v)]
 }

@@ -43,7 +43,7 @@ pub(crate) trait Load: std::fmt::Debug {
     where
         Self: Sized;
     /// Several of them, one in each lane.
-    type Series: Series<Load = Self>
+    type Series<const W: usize>: Series<W, Load = Self>
     where
         Self: Sized;
     /// When it begins to act, s; none if it never does.
@@ -66,22 +66,22 @@ pub(crate) trait Load: std::fmt::Debug {
 
 /// Loads of a kind, one for each lane, and their series. Everything is in payload axes; coefficients of an
 /// order must wait for no other coefficient of the state than those up to that order.
-pub(crate) trait Series: Events {
+pub(crate) trait Series<const W: usize>: Events {
     type Load;
     fn new() -> Self;
     /// Takes a load into a lane; it does not act yet.
     fn set(&mut self, lane: usize, load: &Self::Load);
     /// The geometry of order k, from the offset of the mass centres and the rotation from stage to payload;
     /// and what else of order k waits for nothing.
-    fn stretch<S: Simd>(&mut self, simd: S, k: usize, offset: &V3, rotation: &M3);
+    fn stretch<S: Simd>(&mut self, simd: S, k: usize, offset: &V3<W>, rotation: &M3<W>);
     /// The coefficients of order k of the forces on the payload and of their moments about its mass centre;
     /// none if no lane has one that acts. The stage feels the opposite along the same line.
-    fn push<S: Simd>(&mut self, simd: S, k: usize) -> Option<[V3; 2]>;
+    fn push<S: Simd>(&mut self, simd: S, k: usize) -> Option<[V3<W>; 2]>;
     /// In which lanes one that acts comes to its end within a time, as far as the coefficients below an
     /// order tell: one there, zero elsewhere.
-    fn ends_within(&self, time: Lanes, order: usize) -> Lanes;
+    fn ends_within(&self, time: Lanes<W>, order: usize) -> Lanes<W>;
     /// Notes how far they go within the reach of the series, from the coefficients below an order.
-    fn bound(&mut self, reach: Lanes, order: usize);
+    fn bound(&mut self, reach: Lanes<W>, order: usize);
     /// Leaves out the coefficients from an order to another, in a lane that stopped sooner.
     fn forget(&mut self, lane: usize, orders: std::ops::Range<usize>);
 }

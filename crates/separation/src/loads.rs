@@ -19,8 +19,8 @@ pub(crate) struct Loads {
 
 /// The series of the loads in all lanes.
 #[derive(Clone, Debug)]
-pub(crate) struct LoadSeries {
-    springs: SmallVec<[<SeatedSpring as Load>::Series; INLINE_LOADS]>,
+pub(crate) struct LoadSeries<const W: usize> {
+    springs: SmallVec<[<SeatedSpring as Load>::Series<W>; INLINE_LOADS]>,
 }
 
 /// Does the same to the series of every kind. Written out where it stands, for what vector instructions
@@ -54,8 +54,11 @@ impl Loads {
 
 /// Makes room for the loads of a run, and takes them into a lane. What a run has fewer of than there is
 /// room for does not act.
-fn set<S: Series, const N: usize>(series: &mut SmallVec<[S; N]>, lane: usize, loads: &[S::Load])
-where
+fn set<S: Series<W>, const W: usize, const N: usize>(
+    series: &mut SmallVec<[S; N]>,
+    lane: usize,
+    loads: &[S::Load],
+) where
     [S; N]: smallvec::Array<Item = S>,
 {
     while series.len() < loads.len() {
@@ -69,7 +72,7 @@ where
     }
 }
 
-impl LoadSeries {
+impl<const W: usize> LoadSeries<W> {
     pub(crate) fn new() -> Self {
         Self { springs: SmallVec::new() }
     }
@@ -88,13 +91,13 @@ impl LoadSeries {
     }
 
     #[inline(always)]
-    pub(crate) fn stretch<S: Simd>(&mut self, simd: S, k: usize, offset: &V3, rotation: &M3) {
+    pub(crate) fn stretch<S: Simd>(&mut self, simd: S, k: usize, offset: &V3<W>, rotation: &M3<W>) {
         each!(self, series => series.stretch(simd, k, offset, rotation));
     }
 
     /// The coefficients of order k of force and torque on the payload.
     #[inline(always)]
-    pub(crate) fn push<S: Simd>(&mut self, simd: S, k: usize) -> [V3; 2] {
+    pub(crate) fn push<S: Simd>(&mut self, simd: S, k: usize) -> [V3<W>; 2] {
         let (mut force, mut torque) = ([Lanes::ZERO; 3], [Lanes::ZERO; 3]);
         each!(self, series => if let Some([push, moment]) = series.push(simd, k) {
             force = std::array::from_fn(|i| force[i] + push[i]);
@@ -105,14 +108,14 @@ impl LoadSeries {
 
     /// In how many lanes something that acts ends within a time.
     #[inline(always)]
-    pub(crate) fn ends_within(&mut self, time: Lanes, order: usize) -> Lanes {
+    pub(crate) fn ends_within(&mut self, time: Lanes<W>, order: usize) -> Lanes<W> {
         let mut ended = Lanes::ZERO;
         each!(self, series => ended += series.ends_within(time, order));
         ended
     }
 
     #[inline(always)]
-    pub(crate) fn bound(&mut self, reach: Lanes, order: usize) {
+    pub(crate) fn bound(&mut self, reach: Lanes<W>, order: usize) {
         each!(self, series => series.bound(reach, order));
     }
 

@@ -8,7 +8,7 @@ impl Separation {
     /// # Errors
     /// A spring is not released within the horizon, or the integration cannot go on.
     pub fn run(&self, settings: &Settings) -> Result<Outcome, RunError> {
-        let mut integrator = Integrator::new(*settings);
+        let mut integrator = Integrator::<4>::new(*settings);
         let mut track = integrator.load(0, self);
         while !track.all_released() {
             integrator.expand();

@@ -111,7 +111,7 @@ impl Separation {
         if !(coast_s >= 0.0 && coast_s.is_finite()) {
             return Err(RunError::Coast { value: coast_s });
         }
-        let mut integrator = Integrator::new(*settings);
+        let mut integrator = Integrator::<4>::new(*settings);
         let mut track = integrator.load(0, self);
         let mut outcome: Option<Outcome> = None;
         let mut end = settings.horizon_s();

@@ -1,154 +1,77 @@
-//! Four numbers that go through the same operations in one instruction, where the machine has such.
+//! As many numbers as there are lanes, in a register where the machine has one that long.
+//!
+//! `pulp` is the layer of vector instructions: a kernel ([`pulp::WithSimd`]) is compiled for each set of
+//! them. Each operation is rounded in one way only and none is fused, so that every machine gets the same
+//! values, with any number of lanes.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use crate::lanes::{Lanes, WIDTH};
+pub(crate) use pulp::{Simd, WithSimd};
 
-/// Vector instructions. Each operation is rounded in one way only and none is fused, so that every
-/// machine gets the same values.
-pub(crate) trait Simd: Copy {
-    type Four: Copy;
-    fn load(self, x: [f64; WIDTH]) -> Self::Four;
-    fn store(self, x: Self::Four) -> [f64; WIDTH];
-    fn splat(self, x: f64) -> Self::Four;
-    fn add(self, a: Self::Four, b: Self::Four) -> Self::Four;
-    fn sub(self, a: Self::Four, b: Self::Four) -> Self::Four;
-    fn mul(self, a: Self::Four, b: Self::Four) -> Self::Four;
-    fn neg(self, a: Self::Four) -> Self::Four;
-}
+use crate::lanes::Lanes;
 
-/// What any machine can do.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Baseline;
-
-impl Simd for Baseline {
-    type Four = [f64; WIDTH];
-    #[inline(always)]
-    fn load(self, x: [f64; WIDTH]) -> Self::Four {
-        x
-    }
-    #[inline(always)]
-    fn store(self, x: Self::Four) -> [f64; WIDTH] {
-        x
-    }
-    #[inline(always)]
-    fn splat(self, x: f64) -> Self::Four {
-        [x; WIDTH]
-    }
-    #[inline(always)]
-    fn add(self, a: Self::Four, b: Self::Four) -> Self::Four {
-        std::array::from_fn(|i| a[i] + b[i])
-    }
-    #[inline(always)]
-    fn sub(self, a: Self::Four, b: Self::Four) -> Self::Four {
-        std::array::from_fn(|i| a[i] - b[i])
-    }
-    #[inline(always)]
-    fn mul(self, a: Self::Four, b: Self::Four) -> Self::Four {
-        std::array::from_fn(|i| a[i] * b[i])
-    }
-    #[inline(always)]
-    fn neg(self, a: Self::Four) -> Self::Four {
-        a.map(|x| -x)
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-impl Simd for pulp::x86::V3 {
-    type Four = pulp::f64x4;
-    #[inline(always)]
-    fn load(self, x: [f64; WIDTH]) -> Self::Four {
-        pulp::cast(x)
-    }
-    #[inline(always)]
-    fn store(self, x: Self::Four) -> [f64; WIDTH] {
-        pulp::cast(x)
-    }
-    #[inline(always)]
-    fn splat(self, x: f64) -> Self::Four {
-        pulp::Simd::splat_f64s(self, x)
-    }
-    #[inline(always)]
-    fn add(self, a: Self::Four, b: Self::Four) -> Self::Four {
-        pulp::Simd::add_f64s(self, a, b)
-    }
-    #[inline(always)]
-    fn sub(self, a: Self::Four, b: Self::Four) -> Self::Four {
-        pulp::Simd::sub_f64s(self, a, b)
-    }
-    #[inline(always)]
-    fn mul(self, a: Self::Four, b: Self::Four) -> Self::Four {
-        pulp::Simd::mul_f64s(self, a, b)
-    }
-    #[inline(always)]
-    fn neg(self, a: Self::Four) -> Self::Four {
-        pulp::Simd::neg_f64s(self, a)
-    }
-}
-
-/// Four numbers in a register.
+/// Lanes in a register of the instructions `S`, which has room for so many.
 #[derive(Clone, Copy)]
-pub(crate) struct Four<S: Simd>(S, S::Four);
+pub(crate) struct Register<S: Simd>(S, S::f64s);
 
-impl<S: Simd> Four<S> {
+impl<S: Simd> Register<S> {
     #[inline(always)]
-    pub(crate) fn load(simd: S, x: &Lanes) -> Self {
-        Self(simd, simd.load(x.0))
+    pub(crate) fn load<const W: usize>(simd: S, x: &Lanes<W>) -> Self {
+        Self(simd, S::as_simd_f64s(&x.0).0[0])
     }
 
     #[inline(always)]
     pub(crate) fn splat(simd: S, x: f64) -> Self {
-        Self(simd, simd.splat(x))
+        Self(simd, simd.splat_f64s(x))
     }
 
     #[inline(always)]
-    pub(crate) fn store(self) -> Lanes {
-        Lanes(self.0.store(self.1))
+    pub(crate) fn store<const W: usize>(self) -> Lanes<W> {
+        let mut lanes = Lanes::ZERO;
+        S::as_mut_simd_f64s(&mut lanes.0).0[0] = self.1;
+        lanes
     }
 }
 
-impl<S: Simd> Add for Four<S> {
+impl<S: Simd> Add for Register<S> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self(self.0, self.0.add(self.1, other.1))
+        Self(self.0, self.0.add_f64s(self.1, other.1))
     }
 }
 
-impl<S: Simd> Sub for Four<S> {
+impl<S: Simd> Sub for Register<S> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self(self.0, self.0.sub(self.1, other.1))
+        Self(self.0, self.0.sub_f64s(self.1, other.1))
     }
 }
 
-impl<S: Simd> Mul for Four<S> {
+impl<S: Simd> Mul for Register<S> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        Self(self.0, self.0.mul(self.1, other.1))
+        Self(self.0, self.0.mul_f64s(self.1, other.1))
     }
 }
 
-impl<S: Simd> Neg for Four<S> {
+impl<S: Simd> Neg for Register<S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0, self.0.neg(self.1))
+        Self(self.0, self.0.neg_f64s(self.1))
     }
-}
-
-/// A loop that is compiled for every set of vector instructions. What it calls must be inlined.
-pub(crate) trait Kernel {
-    fn run<S: Simd>(self, simd: S);
 }
 
 /// The vector instructions that this machine has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Machine {
     #[cfg(target_arch = "x86_64")]
-    avx2: Option<pulp::x86::V3>,
+    v3: Option<pulp::x86::V3>,
+    #[cfg(target_arch = "x86_64")]
+    v4: Option<pulp::x86::V4>,
 }
 
 impl Machine {
@@ -156,32 +79,45 @@ impl Machine {
     #[cfg(test)]
     pub(crate) const BASELINE: Self = Self {
         #[cfg(target_arch = "x86_64")]
-        avx2: None,
+        v3: None,
+        #[cfg(target_arch = "x86_64")]
+        v4: None,
     };
 
     pub(crate) fn new() -> Self {
         Self {
             #[cfg(target_arch = "x86_64")]
-            avx2: pulp::x86::V3::try_new(),
+            v3: pulp::x86::V3::try_new(),
+            #[cfg(target_arch = "x86_64")]
+            v4: pulp::x86::V4::try_new(),
         }
     }
 
-    /// Runs a kernel.
-    pub(crate) fn run<K: Kernel>(self, kernel: K) {
+    /// Whether it has registers of eight numbers (AVX-512). Four are no slower in arrays.
+    pub(crate) fn has_eight(self) -> bool {
         #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = self.avx2 {
-            // A closure could not be marked to be inlined, and would be compiled for the baseline.
-            struct Inlined<K>(K, pulp::x86::V3);
-            impl<K: Kernel> pulp::NullaryFnOnce for Inlined<K> {
-                type Output = ();
-                #[inline(always)]
-                fn call(self) {
-                    self.0.run(self.1);
-                }
-            }
-            simd.vectorize(Inlined(kernel, simd));
-            return;
+        return self.v4.is_some();
+        #[cfg(not(target_arch = "x86_64"))]
+        return false;
+    }
+
+    /// Runs a kernel of one, four or eight lanes, in arrays where no register is that long.
+    pub(crate) fn run<const W: usize>(self, kernel: impl WithSimd<Output = ()>) {
+        const { assert!(W == 1 || W == 4 || W == 8, "lanes that there are instructions for") };
+        if W == 1 {
+            return Simd::vectorize(pulp::Scalar, kernel);
         }
-        kernel.run(Baseline);
+        if W == 4 {
+            #[cfg(target_arch = "x86_64")]
+            if let Some(simd) = self.v3 {
+                return Simd::vectorize(simd, kernel);
+            }
+            return Simd::vectorize(pulp::Scalar256b, kernel);
+        }
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = self.v4 {
+            return Simd::vectorize(simd, kernel);
+        }
+        Simd::vectorize(pulp::Scalar512b, kernel);
     }
 }

@@ -62,7 +62,7 @@ impl UniformAttitude {
         let mut x = [[0.0; CHUNK]; 4];
         for chunk in out.chunks_mut(CHUNK) {
             rng.fill(bits.as_flattened_mut());
-            vector::run(Shoemake { bits: &bits, x: &mut x, out: chunk });
+            pulp::Arch::new().dispatch(Shoemake { bits: &bits, x: &mut x, out: chunk });
         }
     }
 }
@@ -74,9 +74,11 @@ struct Shoemake<'a> {
     out: &'a mut [UnitQuaternion<f64>],
 }
 
-impl vector::Kernel for Shoemake<'_> {
+impl pulp::WithSimd for Shoemake<'_> {
+    type Output = ();
+
     #[inline(always)]
-    fn run(self) {
+    fn with_simd<S: pulp::Simd>(self, _: S) {
         let [a, b, c, d, e] = self.bits;
         let [x, y, z, w] = self.x;
         for i in 0..CHUNK / 2 {

@@ -28,7 +28,7 @@ pub(super) fn turning(springs: bool) -> Separation {
 /// Steps of a given length to a time. Springs let go where they do, or, `located` not, at the end
 /// of the step in which they do.
 fn fixed_steps(separation: &Separation, h: f64, until: f64, located: bool) -> State {
-    let mut integrator = Integrator::new(Settings::default());
+    let mut integrator = Integrator::<4>::new(Settings::default());
     let mut track = integrator.load(0, separation);
     // Whatever the error, a step is taken.
     integrator.expansion.stretch = [0.0, 0.0, 1e9];

@@ -10,7 +10,7 @@ const RECOMPRESSED: f64 = 1e-9;
 /// whatever the rounding.
 const NEAR: f64 = 1.0 - 1e-9;
 
-impl Events for SpringSeries {
+impl<const W: usize> Events for SpringSeries<W> {
     fn act(&mut self, lane: usize, acts: bool) {
         self.stiffness.0[lane] = if acts { self.built.0[lane] } else { 0.0 };
     }
@@ -50,7 +50,7 @@ impl Events for SpringSeries {
     }
 }
 
-impl SpringSeries {
+impl<const W: usize> SpringSeries<W> {
     /// The square of a spring's length less that of its free length, times a sign, less an offset,
     /// as a polynomial on [0, 1] for [0, step].
     fn gap(&self, lane: usize, order: usize, step: f64, sign: f64, offset: f64) -> [f64; ORDER] {

@@ -63,7 +63,7 @@ impl SeatedSpring {
 
 impl Load for SeatedSpring {
     type Parameter = SpringParameter;
-    type Series = SpringSeries;
+    type Series<const W: usize> = SpringSeries<W>;
 
     fn start_s(&self) -> Option<f64> {
         self.spring.start_s().filter(|_| self.spring.can_push())

@@ -8,7 +8,7 @@ use crate::{
     layout::{INVERSE, TERMS},
     load::Series,
     products::{cross, load},
-    vector::{Four, Simd},
+    vector::{Register, Simd},
 };
 
 /// k/4.
@@ -24,50 +24,50 @@ const QUARTERS: [f64; 4 * TERMS] = {
 
 /// Coefficients of one order.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SpringTerm {
+pub(super) struct SpringTerm<const W: usize> {
     /// From stage point to payload point, s.
-    line: V3,
+    line: V3<W>,
     /// s².
-    pub(super) square: Lanes,
+    pub(super) square: Lanes<W>,
     /// k L₀/|s|: less k, the force over the length.
-    push: Lanes,
+    push: Lanes<W>,
 }
 
 /// As many springs as there are lanes, and their series.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub(crate) struct SpringSeries {
-    pub(super) terms: [SpringTerm; TERMS],
+pub(crate) struct SpringSeries<const W: usize> {
+    pub(super) terms: [SpringTerm<W>; TERMS],
     /// Zero where a spring does not push.
-    pub(super) stiffness: Lanes,
+    pub(super) stiffness: Lanes<W>,
     /// The stiffness of those that push, and of those that do not.
-    pub(super) built: Lanes,
-    pub(super) stroke: Lanes,
-    pub(super) free_length: Lanes,
-    payload_point: V3,
-    stage_point: V3,
+    pub(super) built: Lanes<W>,
+    pub(super) stroke: Lanes<W>,
+    pub(super) free_length: Lanes<W>,
+    payload_point: V3<W>,
+    stage_point: V3<W>,
     /// What s² stays below and above as far as the series is good.
-    pub(super) upper: Lanes,
-    pub(super) lower: Lanes,
+    pub(super) upper: Lanes<W>,
+    pub(super) lower: Lanes<W>,
     /// Force over the length, of order 0.
-    first_push: Lanes,
+    first_push: Lanes<W>,
     /// 1/s² of order 0, zero for springs that do not push.
-    inverse_square: Lanes,
+    inverse_square: Lanes<W>,
     /// Half of the push of order 0.
-    half_push: Lanes,
+    half_push: Lanes<W>,
     /// What there is of the sums of the order under way.
-    slope: Lanes,
-    force: V3,
+    slope: Lanes<W>,
+    force: V3<W>,
     /// That none of them pushes any more.
     lost: bool,
 }
 
 #[inline(always)]
-fn dot<S: Simd>(a: &[Four<S>; 3], b: &[Four<S>; 3]) -> Four<S> {
+fn dot<S: Simd>(a: &[Register<S>; 3], b: &[Register<S>; 3]) -> Register<S> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-impl Series for SpringSeries {
+impl<const W: usize> Series<W> for SpringSeries<W> {
     type Load = SeatedSpring;
 
     fn new() -> Self {
@@ -104,30 +104,30 @@ impl Series for SpringSeries {
 
     /// Of the lines and of s².
     #[inline(always)]
-    fn stretch<S: Simd>(&mut self, simd: S, k: usize, offset: &V3, rotation: &M3) {
+    fn stretch<S: Simd>(&mut self, simd: S, k: usize, offset: &V3<W>, rotation: &M3<W>) {
         if k == 0 {
             self.lost = self.stiffness.0.iter().all(|s| *s == 0.0);
         }
         let (square, slope, force) = self.known(simd, k);
         self.slope = slope.store();
-        self.force = force.map(Four::store);
+        self.force = force.map(Register::store);
         let (offset, point) = (load(simd, offset), load(simd, &self.stage_point));
         let mut line: [_; 3] =
             std::array::from_fn(|i| offset[i] - dot(&load(simd, &rotation[i]), &point));
         if k == 0 {
             let point = load(simd, &self.payload_point);
             line = std::array::from_fn(|i| line[i] + point[i]);
-            self.terms[0].line = line.map(Four::store);
+            self.terms[0].line = line.map(Register::store);
             self.terms[0].square = dot(&line, &line).store();
         } else {
-            self.terms[k].line = line.map(Four::store);
+            self.terms[k].line = line.map(Register::store);
             let ends = dot(&load(simd, &self.terms[0].line), &line);
             self.terms[k].square = (square + (ends + ends)).store();
         }
     }
 
     #[inline(always)]
-    fn push<S: Simd>(&mut self, simd: S, k: usize) -> Option<[V3; 2]> {
+    fn push<S: Simd>(&mut self, simd: S, k: usize) -> Option<[V3<W>; 2]> {
         if self.lost {
             return None;
         }
@@ -136,25 +136,27 @@ impl Series for SpringSeries {
         }
         let first = load(simd, &self.terms[0].line);
         let newest = &mut self.terms[k];
-        let before = Four::load(simd, &self.first_push);
+        let before = Register::load(simd, &self.first_push);
         let force = if k == 0 {
             first.map(|x| x * before)
         } else {
             // u = (s²)^(−1/2): s² u' = −½ (s²)' u.
-            let half = Four::load(simd, &self.half_push) * Four::splat(simd, k as f64);
-            let factor = Four::load(simd, &self.inverse_square) * Four::splat(simd, -INVERSE[k]);
-            let slope = Four::load(simd, &self.slope) + Four::load(simd, &newest.square) * half;
+            let half = Register::load(simd, &self.half_push) * Register::splat(simd, k as f64);
+            let factor =
+                Register::load(simd, &self.inverse_square) * Register::splat(simd, -INVERSE[k]);
+            let slope =
+                Register::load(simd, &self.slope) + Register::load(simd, &newest.square) * half;
             let push = slope * factor;
             newest.push = push.store();
             let (force, line) = (load(simd, &self.force), load(simd, &newest.line));
             std::array::from_fn(|i| (force[i] + line[i] * before) + first[i] * push)
         };
         let moment = cross(&load(simd, &self.payload_point), &force);
-        Some([force.map(Four::store), moment.map(Four::store)])
+        Some([force.map(Register::store), moment.map(Register::store)])
     }
 
     #[inline(always)]
-    fn ends_within(&self, time: Lanes, order: usize) -> Lanes {
+    fn ends_within(&self, time: Lanes<W>, order: usize) -> Lanes<W> {
         let mut sum = Lanes::ZERO;
         for term in self.terms[..order].iter().rev() {
             sum = sum * time + term.square;
@@ -165,7 +167,7 @@ impl Series for SpringSeries {
 
     /// By the terms of s² that are positive, and by those that are negative.
     #[inline(always)]
-    fn bound(&mut self, reach: Lanes, order: usize) {
+    fn bound(&mut self, reach: Lanes<W>, order: usize) {
         let (mut power, mut up, mut down) = (reach, Lanes::ZERO, Lanes::ZERO);
         for term in &self.terms[1..order] {
             let term = term.square * power;
@@ -185,12 +187,12 @@ impl Series for SpringSeries {
     }
 }
 
-impl SpringSeries {
+impl<const W: usize> SpringSeries<W> {
     /// What goes into the coefficients of order k of s², of the force and of the slope that the push
     /// is found from, and waits for nothing.
     #[inline(always)]
-    fn known<S: Simd>(&self, simd: S, k: usize) -> (Four<S>, Four<S>, [Four<S>; 3]) {
-        let zero = Four::splat(simd, 0.0);
+    fn known<S: Simd>(&self, simd: S, k: usize) -> (Register<S>, Register<S>, [Register<S>; 3]) {
+        let zero = Register::splat(simd, 0.0);
         let (mut square, mut slope, mut force) = (zero, zero, [zero; 3]);
         if k < 2 {
             return (square, slope, force);
@@ -213,7 +215,7 @@ impl SpringSeries {
                 let [push, pushed] = load(simd, &[a.push, b.push]);
                 force = std::array::from_fn(|x| force[x] + (push * other[x] + pushed * line[x]));
                 let weights = [down[down.len() - 2 - 2 * i], up[2 * i + 2]];
-                let [heavy, light] = weights.map(|w| Four::splat(simd, w));
+                let [heavy, light] = weights.map(|w| Register::splat(simd, w));
                 let [s, t] = load(simd, &[a.square, b.square]);
                 slope = slope + (s * pushed * heavy + t * push * light);
             }
@@ -224,10 +226,10 @@ impl SpringSeries {
             let line = load(simd, &middle.line);
             square = square + dot(&line, &line);
             if !self.lost {
-                let push = Four::load(simd, &middle.push);
+                let push = Register::load(simd, &middle.push);
                 force = std::array::from_fn(|x| force[x] + push * line[x]);
-                let weight = Four::splat(simd, QUARTERS[3 * k]);
-                slope = slope + Four::load(simd, &middle.square) * push * weight;
+                let weight = Register::splat(simd, QUARTERS[3 * k]);
+                slope = slope + Register::load(simd, &middle.square) * push * weight;
             }
         }
         (square, slope, force)
@@ -237,7 +239,7 @@ impl SpringSeries {
     #[inline(always)]
     fn start(&mut self) {
         // A lost spring may come to length zero.
-        let of = |x: Lanes| self.stiffness.zip(x, |k, x| if k == 0.0 { 0.0 } else { x });
+        let of = |x: Lanes<W>| self.stiffness.zip(x, |k, x| if k == 0.0 { 0.0 } else { x });
         let inverse = of(Lanes::splat(1.0) / self.terms[0].square.sqrt());
         self.inverse_square = inverse * inverse;
         let push = self.stiffness * (self.free_length * inverse);
