@@ -1,3 +1,5 @@
+//! The Fisher-Bingham law on the sphere S³: densities, normaliser, moments, draws.
+
 use nalgebra::{Complex, Matrix3, Matrix4, Quaternion, UnitQuaternion, Vector4};
 use rand::{Rng, RngExt};
 use rand_distr::Distribution;

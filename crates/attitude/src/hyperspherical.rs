@@ -1,3 +1,5 @@
+//! Hyperspherical angles of an attitude.
+
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::{PI, TAU};
 
@@ -53,19 +55,6 @@ impl HypersphericalAngles {
         Ok(Self(theta))
     }
 
-    /// The angles of a unit quaternion. At the poles, where angles are free, they are zero.
-    #[must_use]
-    pub fn of(q: &UnitQuaternion<f64>) -> Self {
-        let [x1, x2, x3, x4] = [q.i, q.j, q.k, q.w];
-        // atan2 of norms, not acos: accurate at the poles as well.
-        let planar = libm::hypot(x1, x2);
-        let azimuth = if planar == 0.0 { 0.0 } else { libm::atan2(x2, x1) };
-        // Adding 2π to a hair below zero rounds to 2π, which is 0.
-        let azimuth = if azimuth < 0.0 { (azimuth + TAU) % TAU } else { azimuth };
-        let polar = if planar == 0.0 && x3 == 0.0 { 0.0 } else { libm::atan2(planar, x3) };
-        Self([libm::atan2(libm::hypot(planar, x3), x4), polar, azimuth])
-    }
-
     /// θ₁, θ₂, θ₃ in rad.
     #[must_use]
     pub fn values(&self) -> [f64; 3] {
@@ -101,6 +90,20 @@ impl From<HypersphericalAngles> for [f64; 3] {
     }
 }
 
+impl From<&UnitQuaternion<f64>> for HypersphericalAngles {
+    /// The angles of a unit quaternion. At the poles, where angles are free, they are zero.
+    fn from(q: &UnitQuaternion<f64>) -> Self {
+        let [x1, x2, x3, x4] = [q.i, q.j, q.k, q.w];
+        // atan2 of norms, not acos: accurate at the poles as well.
+        let planar = libm::hypot(x1, x2);
+        let azimuth = if planar == 0.0 { 0.0 } else { libm::atan2(x2, x1) };
+        // Adding 2π to a hair below zero rounds to 2π, which is 0.
+        let azimuth = if azimuth < 0.0 { (azimuth + TAU) % TAU } else { azimuth };
+        let polar = if planar == 0.0 && x3 == 0.0 { 0.0 } else { libm::atan2(planar, x3) };
+        Self([libm::atan2(libm::hypot(planar, x3), x4), polar, azimuth])
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -109,11 +112,11 @@ mod tests {
 
     #[test]
     fn poles_and_out_of_range() {
-        assert_eq!(HypersphericalAngles::of(&UnitQuaternion::identity()).values(), [0.0; 3]);
+        assert_eq!(HypersphericalAngles::from(&UnitQuaternion::identity()).values(), [0.0; 3]);
         let opposite = UnitQuaternion::new_unchecked(-*UnitQuaternion::identity());
-        assert_eq!(HypersphericalAngles::of(&opposite).values(), [PI, 0.0, 0.0]);
+        assert_eq!(HypersphericalAngles::from(&opposite).values(), [PI, 0.0, 0.0]);
         let hair = UnitQuaternion::new_unchecked(Quaternion::new(0.0, 1.0, -1e-300, 0.0));
-        assert_eq!(HypersphericalAngles::of(&hair).values()[2], 0.0);
+        assert_eq!(HypersphericalAngles::from(&hair).values()[2], 0.0);
         for bad in [[-0.1, 1.0, 1.0], [1.0, 3.2, 1.0], [1.0, 1.0, 6.3], [f64::NAN, 1.0, 1.0]] {
             assert!(HypersphericalAngles::new(bad).is_err());
         }
@@ -127,7 +130,7 @@ mod tests {
             let x = nalgebra::Vector4::from(x);
             prop_assume!(x.norm() > 0.1);
             let q = UnitQuaternion::from_quaternion(Quaternion::from(x));
-            let angles = HypersphericalAngles::of(&q);
+            let angles = HypersphericalAngles::from(&q);
             prop_assert!(HypersphericalAngles::new(angles.values()).is_ok());
             prop_assert!((angles.quaternion().coords - q.coords).amax() < 1e-15);
         }

@@ -1,3 +1,5 @@
+//! Eigenvalues of small symmetric matrices that keep small ones relatively accurate.
+
 use nalgebra::SMatrix;
 
 /// Eigenvalues and eigenvectors (columns, det = +1) of a symmetric matrix by cyclic Jacobi

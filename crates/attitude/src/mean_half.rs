@@ -1,3 +1,5 @@
+//! The radially constrained Gaussian kept to the half sphere around its mean.
+
 use nalgebra::UnitQuaternion;
 use rand::Rng;
 use rand_distr::Distribution;

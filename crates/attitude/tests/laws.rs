@@ -112,7 +112,7 @@ fn wrong_draws_are_caught() {
     let doubled = worst_z(&wide, || {
         loop {
             let q = wide.sample(&mut rng);
-            if rng.random::<f64>() < HypersphericalAngles::of(&q).jacobian() {
+            if rng.random::<f64>() < HypersphericalAngles::from(&q).jacobian() {
                 return q;
             }
         }

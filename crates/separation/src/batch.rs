@@ -11,6 +11,30 @@ use crate::{
 /// Each lane has its own time and step; a lane whose run is over takes the next of the queue. An
 /// outcome holds the same bits as that of [`Separation::run`], whatever runs beside it. Does not
 /// allocate for up to eight springs but when it is made.
+///
+/// ```
+/// # use gyradius_inertia::InertiaMatrix;
+/// # use gyradius_separation::{Body, Separation, Spring};
+/// # use nalgebra::Vector3;
+/// # let inertia = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [0.0; 3])?;
+/// # let point = |z| Vector3::new(0.5, 0.0, z);
+/// # let spring = Spring::new(1e5, 0.1, point(-0.9), point(0.9))?;
+/// # let (payload, stage) = (Body::new(1e4, inertia)?, Body::new(4e3, inertia)?);
+/// # let separation =
+/// #     Separation::new(payload.at(Vector3::z()), stage.at(-Vector3::z()), &[spring])?;
+/// use gyradius_separation::{Batch, Settings};
+///
+/// let queue: Vec<_> = (0..10).map(|_| separation.clone()).collect();
+/// let mut speeds = vec![0.0; queue.len()];
+/// Batch::new(Settings::default()).run(&queue, |i, result| {
+///     if let Ok(outcome) = result {
+///         speeds[i] = outcome.relative_speed();
+///     }
+/// });
+/// let alone = separation.run(&Settings::default())?;
+/// assert!(speeds.iter().all(|speed| *speed == alone.relative_speed()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Batch {
     settings: Settings,

@@ -2,6 +2,7 @@
 
 use gyradius_inertia::InertiaMatrix;
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
+use std::fmt;
 
 use crate::{SpinMetrics, metrics::angle_of};
 
@@ -45,6 +46,17 @@ pub enum BodyError {
 ///
 /// The inertia need not be realizable: what unphysical matrices lead to is a question that this
 /// crate can be asked.
+///
+/// ```
+/// use gyradius_inertia::InertiaMatrix;
+/// use gyradius_separation::Body;
+///
+/// let inertia = InertiaMatrix::from_entries([5.0, 4.0, 3.0], [0.1, 0.0, 0.0])?;
+/// let body = Body::new(100.0, inertia)?;
+/// assert_eq!(body.to_string(), "100 kg, inertia 5, 4, 3, 0.1, 0, 0 kg·m²");
+/// assert!(Body::new(-1.0, inertia).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     mass: f64,
@@ -108,7 +120,25 @@ impl Body {
     }
 }
 
+impl fmt::Display for Body {
+    /// Mass, then I11, I22, I33, I12, I13, I23.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [xx, yy, zz, xy, xz, yz] = self.inertia.entries();
+        write!(f, "{} kg, inertia {xx}, {yy}, {zz}, {xy}, {xz}, {yz} kg·m²", self.mass)
+    }
+}
+
 /// Where a body is and how it moves; by default at rest at the origin, axes along the inertial ones.
+///
+/// ```
+/// use gyradius_separation::BodyState;
+/// use nalgebra::Vector3;
+///
+/// // A body that turns about its axis 3: a point on its axis 1 goes along axis 2.
+/// let state = BodyState { angular_velocity: Vector3::z() * 0.5, ..BodyState::default() };
+/// assert_eq!(state.of_point(&Vector3::x()).velocity, Vector3::y() * 0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyState {
     /// Mass centre, inertial axes, m.
@@ -155,6 +185,23 @@ impl BodyState {
 }
 
 /// A body and its state.
+///
+/// ```
+/// use gyradius_inertia::InertiaMatrix;
+/// use gyradius_separation::{Body, BodyState};
+/// use nalgebra::Vector3;
+///
+/// let inertia = InertiaMatrix::from_entries([2.0, 3.0, 4.0], [0.0; 3])?;
+/// let state = BodyState {
+///     velocity: Vector3::x(),
+///     angular_velocity: Vector3::z() * 0.5,
+///     ..BodyState::default()
+/// };
+/// let moving = Body::new(10.0, inertia)?.moving(state);
+/// assert_eq!(moving.momentum(), Vector3::x() * 10.0);
+/// assert_eq!(moving.kinetic_energy(), 5.0 + 0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingBody {
     body: Body,

@@ -9,6 +9,25 @@ use crate::MovingBody;
 /// Rotation is ½ωᵀIω. Each is the change from the start to the last release; the four sum, to
 /// rounding, to what the springs had stored, less what friction takes, what late springs give away under
 /// their latches and what failed ones keep. A body that was turning may have lost rotation.
+///
+/// ```
+/// # use gyradius_inertia::InertiaMatrix;
+/// # use gyradius_separation::{Body, Separation, Spring};
+/// # use nalgebra::Vector3;
+/// # let inertia = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [0.0; 3])?;
+/// # let point = |z| Vector3::new(0.5, 0.0, z);
+/// # let spring = Spring::new(1e5, 0.1, point(-0.9), point(0.9))?;
+/// # let (payload, stage) = (Body::new(1e4, inertia)?, Body::new(4e3, inertia)?);
+/// # let separation =
+/// #     Separation::new(payload.at(Vector3::z()), stage.at(-Vector3::z()), &[spring])?;
+/// use gyradius_separation::Settings;
+///
+/// let split = separation.run(&Settings::default())?.energy_split();
+/// assert!((split.total_j() / split.stored_j() - 1.0).abs() < 1e-12);
+/// // The lighter body takes more.
+/// assert!(split.stage_translation_j() > split.payload_translation_j());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EnergySplit {

@@ -13,6 +13,19 @@ use crate::nutation::Range;
 /// matched to (`InertiaMatrix::principal_axes`): for a spin about body axis 1 they are the moments about
 /// the principal axes near body axes 2 and 3, for one about axis 3 those near axes 1 and 2. Neither is
 /// the larger by definition. H = Iω and E are angular momentum and rotational energy.
+///
+/// ```
+/// use gyradius_inertia::InertiaMatrix;
+/// use gyradius_separation::SpinMetrics;
+/// use nalgebra::Vector3;
+///
+/// // The payload of Peck (2003), Table 1, spun about body axis 1.
+/// let inertia = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0])?;
+/// let metrics = SpinMetrics::new(&inertia, &(Vector3::x() * 0.1), &Vector3::x_axis());
+/// assert_eq!(format!("{:.3}", metrics.inertia_ratio()), "1.408");
+/// assert_eq!(format!("{:.3}", metrics.wobble().to_degrees()), "1.144");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SpinMetrics {

@@ -1,7 +1,7 @@
 //! What a separation leaves: the bodies after the last release, and what is told of them.
 
 use nalgebra::{Unit, Vector3};
-use std::borrow::Borrow;
+use std::{borrow::Borrow, fmt};
 
 use crate::{
     BodyState, EnergySplit, MovingBody, Separation, Settings, SpinMetrics,
@@ -13,6 +13,27 @@ use crate::{
 
 /// The two bodies at the release of the last spring, from where they move freely, and as they were at
 /// the start.
+///
+/// ```
+/// # use gyradius_inertia::InertiaMatrix;
+/// # use gyradius_separation::{Body, Separation, Spring};
+/// # use nalgebra::Vector3;
+/// # let inertia = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [0.0; 3])?;
+/// # let point = |z| Vector3::new(0.5, 0.0, z);
+/// # let spring = Spring::new(1e5, 0.1, point(-0.9), point(0.9))?;
+/// # let (payload, stage) = (Body::new(1e4, inertia)?, Body::new(4e3, inertia)?);
+/// # let separation =
+/// #     Separation::new(payload.at(Vector3::z()), stage.at(-Vector3::z()), &[spring])?;
+/// use gyradius_separation::Settings;
+///
+/// let outcome = separation.run(&Settings::default())?;
+/// println!("{outcome}");
+/// assert_eq!(outcome.release_order(), [[0]]);
+/// // The spring acts beside the mass centres, and tips the bodies about axis 2.
+/// let [payload, stage] = outcome.tip_off();
+/// assert!(payload.y < 0.0 && stage.y < 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     springs: Fates,
@@ -162,5 +183,18 @@ impl Outcome {
     #[must_use]
     pub fn steps(&self) -> u32 {
         self.steps
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [payload, stage] = self.tip_off().map(|rate| rate.norm());
+        write!(
+            f,
+            "free from {} s, parting at {} m/s, tip-off rates {payload} rad/s (payload) and {stage} rad/s \
+             (stage)",
+            self.release_time(),
+            self.relative_speed()
+        )
     }
 }

@@ -1,6 +1,7 @@
 //! Two bodies and the springs between them, at the moment the clamp opens.
 
 use gyradius_inertia::InertiaMatrix;
+use std::fmt;
 
 use crate::{
     Body, BodyError, MovingBody, Role, Spring, SpringError,
@@ -67,6 +68,23 @@ pub enum SeparationError {
 /// A payload, a stage and the springs between them, at the moment the clamp opens.
 ///
 /// Cheap to clone: the springs are shared.
+///
+/// ```
+/// # use gyradius_inertia::InertiaMatrix;
+/// # use gyradius_separation::{Body, Separation, Spring};
+/// # use nalgebra::Vector3;
+/// # let inertia = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [0.0; 3])?;
+/// # let point = |z| Vector3::new(0.5, 0.0, z);
+/// # let spring = Spring::new(1e5, 0.1, point(-0.9), point(0.9))?;
+/// # let (payload, stage) = (Body::new(1e4, inertia)?, Body::new(4e3, inertia)?);
+/// # let separation =
+/// #     Separation::new(payload.at(Vector3::z()), stage.at(-Vector3::z()), &[spring])?;
+/// println!("{separation}");
+/// assert!((separation.stored_energy() - 500.0).abs() < 1e-12);
+/// // The points are 0.2 m apart, and the stroke is 0.1 m.
+/// assert!(separation.free_lengths().all(|free| (free - 0.3).abs() < 1e-15));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Separation {
     payload: MovingBody,
@@ -163,6 +181,17 @@ impl Separation {
     /// 1/m of the payload plus 1/m of the stage, 1/kg.
     pub(crate) fn inverse_reduced_mass(&self) -> f64 {
         1.0 / self.payload.body().mass_kg() + 1.0 / self.stage.body().mass_kg()
+    }
+}
+
+impl fmt::Display for Separation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "payload: {}", self.payload.body())?;
+        write!(f, "stage: {}", self.stage.body())?;
+        for (i, spring) in self.springs().enumerate() {
+            write!(f, "\nspring {}: {spring}", i + 1)?;
+        }
+        Ok(())
     }
 }
 

@@ -19,6 +19,15 @@ pub enum SettingsError {
 }
 
 /// How to integrate.
+///
+/// ```
+/// use gyradius_separation::Settings;
+///
+/// let quick = Settings::new(1e-9, 10.0)?;
+/// assert!(quick.relative_tolerance() > Settings::default().relative_tolerance());
+/// assert!(Settings::new(0.0, 10.0).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -6,6 +6,26 @@ use smallvec::SmallVec;
 use crate::{MovingBody, Separation, energy::translations, layout::INLINE_LOADS, state};
 
 /// A spring at a moment.
+///
+/// ```
+/// # use gyradius_inertia::InertiaMatrix;
+/// # use gyradius_separation::{Body, Separation, Spring};
+/// # use nalgebra::Vector3;
+/// # let inertia = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [0.0; 3])?;
+/// # let point = |z| Vector3::new(0.5, 0.0, z);
+/// # let spring = Spring::new(1e5, 0.1, point(-0.9), point(0.9))?;
+/// # let (payload, stage) = (Body::new(1e4, inertia)?, Body::new(4e3, inertia)?);
+/// # let separation =
+/// #     Separation::new(payload.at(Vector3::z()), stage.at(-Vector3::z()), &[spring])?;
+/// use gyradius_separation::Settings;
+///
+/// let trajectory = separation.trajectory(&Settings::default(), 0.0)?;
+/// let spring = trajectory.at(0.0).ok_or("the start")?.springs()[0];
+/// assert!(spring.is_pushing());
+/// assert!((spring.force_n().z - 1e4).abs() < 1e-9);
+/// assert!((spring.energy_j() - 500.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringState {
     pub(crate) pushing: bool,
@@ -50,6 +70,27 @@ impl SpringState {
 }
 
 /// Bodies and springs at a moment.
+///
+/// ```
+/// # use gyradius_inertia::InertiaMatrix;
+/// # use gyradius_separation::{Body, Separation, Spring};
+/// # use nalgebra::Vector3;
+/// # let inertia = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [0.0; 3])?;
+/// # let point = |z| Vector3::new(0.5, 0.0, z);
+/// # let spring = Spring::new(1e5, 0.1, point(-0.9), point(0.9))?;
+/// # let (payload, stage) = (Body::new(1e4, inertia)?, Body::new(4e3, inertia)?);
+/// # let separation =
+/// #     Separation::new(payload.at(Vector3::z()), stage.at(-Vector3::z()), &[spring])?;
+/// use gyradius_separation::Settings;
+///
+/// let trajectory = separation.trajectory(&Settings::default(), 1.0)?;
+/// for time in [0.0, 0.05, 0.5] {
+///     let now = trajectory.at(time).ok_or("within the coast")?;
+///     assert!((now.energy_j() - 500.0).abs() < 1e-9);
+///     assert!(now.momentum().norm() < 1e-9);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot {
     time: f64,

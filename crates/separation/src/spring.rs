@@ -6,6 +6,7 @@ mod seated;
 mod series;
 
 use nalgebra::Vector3;
+use std::fmt;
 
 use crate::{BodyState, Role};
 
@@ -56,6 +57,18 @@ pub enum SpringError {
 /// At a compression x it pushes with k x − f, f the friction of its guide, which opposes the
 /// expansion, and is lost once that is zero. A late spring is held back by its latch, which rides
 /// on one of the bodies: it pushes from its start, with what compression is left by then.
+///
+/// ```
+/// use gyradius_separation::Spring;
+/// use nalgebra::Vector3;
+///
+/// let spring = Spring::new(1e5, 0.1, Vector3::z() * -0.9, Vector3::z() * 0.9)?;
+/// let rubbing = spring.with_friction(500.0)?.starting_at(0.01)?;
+/// assert!((rubbing.travel_m() - 0.095).abs() < 1e-15);
+/// assert_eq!(rubbing.to_string(), "100000 N/m, stroke 0.1 m, friction 500 N, starts at 0.01 s");
+/// assert_eq!(spring.never_pushing().start_s(), None);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -197,6 +210,20 @@ impl Spring {
     #[must_use]
     pub fn stored_energy(&self) -> f64 {
         0.5 * self.stiffness * self.stroke * self.stroke
+    }
+}
+
+impl fmt::Display for Spring {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} N/m, stroke {} m", self.stiffness, self.stroke)?;
+        if self.friction > 0.0 {
+            write!(f, ", friction {} N", self.friction)?;
+        }
+        match self.start_s() {
+            None => f.write_str(", never pushes"),
+            Some(0.0) => Ok(()),
+            Some(start) => write!(f, ", starts at {start} s"),
+        }
     }
 }
 

@@ -305,3 +305,113 @@ fn rotation(vector: &Vector3<f64>) -> UnitQuaternion<f64> {
     let v = vector * (0.5 * sinc);
     UnitQuaternion::new_normalize(Quaternion::new(cos, v.x, v.y, v.z))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Parameter, Settings};
+    use gyradius_inertia::Shape;
+    use proptest::prelude::*;
+
+    fn vector(range: f64) -> impl Strategy<Value = Vector3<f64>> {
+        prop::array::uniform3(-range..range).prop_map(Vector3::from)
+    }
+
+    fn near(a: &BodyState, b: &BodyState, shift: &Vector3<f64>) -> bool {
+        (a.position - b.position - shift).norm() < 1e-11
+            && (a.velocity - b.velocity).norm() < 1e-11
+            && (a.angular_velocity - b.angular_velocity).norm() < 1e-11
+            && a.attitude.angle_to(&b.attitude) < 1e-11
+    }
+
+    proptest! {
+        /// A separation does not know in which frames its bodies were described: wherever the origins of
+        /// the frames lie in the structures, the same bodies part in the same way.
+        #[test]
+        fn frames_of_bodies_do_not_matter(
+            origins in [vector(2.0), vector(2.0)],
+            centres in [vector(0.3), vector(0.3)],
+            rates in [vector(0.2), vector(0.2)],
+            turns in [vector(0.3), vector(0.3)],
+            sides in prop::collection::vec(vector(0.5), 1..5),
+        ) {
+            let outcome = |origins: [Vector3<f64>; 2]| {
+                let bodies: Vec<_> = (0..2).map(|i| {
+                    let shape = Shape::solid_box([1.0, 1.5, 2.0 + i as f64]).unwrap();
+                    let body = shape.of_mass(300.0 + 200.0 * i as f64).unwrap();
+                    let state = BodyState {
+                        position: Vector3::z() * (2.0 - 2.2 * i as f64),
+                        attitude: UnitQuaternion::from_scaled_axis(turns[i]),
+                        angular_velocity: rates[i],
+                        ..BodyState::default()
+                    };
+                    (body.translated(centres[i] - origins[i]).unwrap(), state.of_point(&origins[i]))
+                }).collect();
+                let mut stack = Stack::new((&bodies[0].0, bodies[0].1), (&bodies[1].0, bodies[1].1));
+                for side in &sides {
+                    let (low, high) = (Vector3::z() * -0.9, Vector3::z() * 1.0);
+                    let points = [side + low - origins[0], side + high - origins[1]];
+                    stack = stack.with_spring(Spring::new(4e4, 0.05, points[0], points[1]).unwrap());
+                }
+                stack.separation().unwrap().run(&Settings::default()).unwrap()
+            };
+            let (own, moved) = (outcome([Vector3::zeros(); 2]), outcome(origins));
+            prop_assert!((own.release_time() - moved.release_time()).abs() < 1e-11);
+            let zero = Vector3::zeros();
+            prop_assert!(near(own.payload().state(), moved.payload().state(), &zero));
+            prop_assert!(near(own.stage().state(), moved.stage().state(), &zero));
+        }
+
+        /// A stack in its nominal place is the separation that it was made from, to the bit, whatever its
+        /// springs; and every component of every parameter, set to its nominal value, leaves it there.
+        #[test]
+        fn nominal_values_change_nothing(
+            sides in prop::collection::vec((vector(0.5), 0..3_u32), 1..5),
+            place in vector(1.0),
+        ) {
+            let springs: Vec<_> = sides.iter().enumerate().map(|(i, (side, kind))| {
+                let points = [side - Vector3::z() * 0.9, side + Vector3::z() * 0.9];
+                let spring = Spring::new(3e4, 0.1, points[0], points[1]).unwrap();
+                match kind {
+                    1 => spring.with_friction(20.0).unwrap().starting_at(0.01).unwrap(),
+                    2 if i > 0 => spring.never_pushing(),
+                    _ => spring,
+                }
+            }).collect();
+            let inertia = InertiaMatrix::from_entries([50.0, 40.0, 30.0], [1.0, -2.0, 0.5]).unwrap();
+            let body = |mass| Body::new(mass, inertia).unwrap();
+            let nominal = Separation::new(
+                body(200.0).at(place + Vector3::z()),
+                body(90.0).at(place - Vector3::z()),
+                &springs,
+            ).unwrap();
+            let mut stack = Stack::from(&nominal);
+            for role in Role::BOTH {
+                let moving = if role == Role::Payload { nominal.payload() } else { nominal.stage() };
+                for &parameter in BodyParameter::ALL {
+                    for (i, value) in parameter.nominal(moving).into_iter().enumerate() {
+                        stack.set_body(role, parameter, i, value);
+                    }
+                }
+            }
+            for &parameter in StackParameter::ALL {
+                for (i, value) in parameter.nominal(&()).into_iter().enumerate() {
+                    stack.set_whole(parameter, i, value);
+                }
+            }
+            for (k, spring) in nominal.springs().enumerate() {
+                for &parameter in SpringParameter::ALL {
+                    for (i, value) in parameter.nominal(spring).into_iter().enumerate() {
+                        stack.set_spring(k, parameter, i, value);
+                    }
+                }
+            }
+            for found in [Stack::from(&nominal), stack] {
+                let found = found.separation().unwrap();
+                prop_assert!(found.springs().eq(nominal.springs()));
+                prop_assert!(found.free_lengths().eq(nominal.free_lengths()));
+                prop_assert_eq!((found.payload(), found.stage()), (nominal.payload(), nominal.stage()));
+            }
+        }
+    }
+}

@@ -14,6 +14,28 @@ use crate::{
 /// integration itself and as accurate as it anywhere in between.
 ///
 /// A step ends where its series ceases to be good or where a spring starts or lets go.
+///
+/// ```
+/// # use gyradius_inertia::InertiaMatrix;
+/// # use gyradius_separation::{Body, Separation, Spring};
+/// # use nalgebra::Vector3;
+/// # let inertia = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [0.0; 3])?;
+/// # let point = |z| Vector3::new(0.5, 0.0, z);
+/// # let spring = Spring::new(1e5, 0.1, point(-0.9), point(0.9))?;
+/// # let (payload, stage) = (Body::new(1e4, inertia)?, Body::new(4e3, inertia)?);
+/// # let separation =
+/// #     Separation::new(payload.at(Vector3::z()), stage.at(-Vector3::z()), &[spring])?;
+/// use gyradius_separation::Settings;
+///
+/// let mut times = vec![];
+/// separation.follow(&Settings::default(), 0.0, |step| {
+///     times.push(step.start_s());
+///     assert!(step.at(step.end_s()).payload().state().velocity.z > 0.0);
+/// })?;
+/// assert_eq!(times[0], 0.0);
+/// assert!(times.is_sorted());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Step {
     separation: Separation,
@@ -60,6 +82,24 @@ impl Step {
 }
 
 /// A whole separation: every step to the last release and on, if wished, through a coast.
+///
+/// ```
+/// # use gyradius_inertia::InertiaMatrix;
+/// # use gyradius_separation::{Body, Separation, Spring};
+/// # use nalgebra::Vector3;
+/// # let inertia = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [0.0; 3])?;
+/// # let point = |z| Vector3::new(0.5, 0.0, z);
+/// # let spring = Spring::new(1e5, 0.1, point(-0.9), point(0.9))?;
+/// # let (payload, stage) = (Body::new(1e4, inertia)?, Body::new(4e3, inertia)?);
+/// # let separation =
+/// #     Separation::new(payload.at(Vector3::z()), stage.at(-Vector3::z()), &[spring])?;
+/// use gyradius_separation::Settings;
+///
+/// let trajectory = separation.trajectory(&Settings::default(), 2.0)?;
+/// assert_eq!(trajectory.end_s(), trajectory.outcome().release_time() + 2.0);
+/// assert_eq!(trajectory.outcome(), &separation.run(&Settings::default())?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     steps: Vec<Step>,

@@ -1,3 +1,5 @@
+//! Fits against laws that are known.
+
 use super::{
     centered::{STATISTICS, Statistics},
     climb::Hill,

@@ -1,3 +1,5 @@
+//! The Gauss-Kronrod rule of 21 points.
+
 /// Points of an arc with the weights of the Kronrod rule and of the Gauss rule inside it.
 pub(crate) fn kronrod(low: f64, high: f64) -> impl Iterator<Item = (f64, f64, f64)> {
     /// Node, Kronrod weight, Gauss weight (QUADPACK's qk21).

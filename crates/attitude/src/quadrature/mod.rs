@@ -1,3 +1,5 @@
+//! Integrals over S³ by quadrature of the three angles.
+
 mod circle;
 mod kronrod;
 

@@ -1,3 +1,5 @@
+//! Integrals over the angles against closed forms and the contour integral.
+
 use super::*;
 use crate::HypersphericalAngles;
 use proptest::prelude::*;

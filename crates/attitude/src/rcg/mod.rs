@@ -1,3 +1,5 @@
+//! The radially constrained Gaussian: a Gaussian in four dimensions conditioned on unit length.
+
 use nalgebra::{Complex, Matrix3, Matrix4, UnitQuaternion, Vector4};
 use rand::Rng;
 use rand_distr::Distribution;

@@ -1,3 +1,5 @@
+//! The radially constrained Gaussian against reference values and its own invariants.
+
 use super::*;
 use nalgebra::Quaternion;
 use proptest::prelude::*;
@@ -231,7 +233,8 @@ fn draws_follow_the_density_and_wrong_ones_do_not() {
     let right = chi_squared(draws().take(N), &law);
     assert!(right < 72.0, "{right}");
     let mut rng = ChaCha8Rng::seed_from_u64(12);
-    let doubled = draws().filter(|q| rng.random::<f64>() < HypersphericalAngles::of(q).jacobian());
+    let doubled =
+        draws().filter(|q| rng.random::<f64>() < HypersphericalAngles::from(q).jacobian());
     assert!(chi_squared(doubled.take(N), &law) > 1000.0);
     let one_lobe = draws().filter(|q| law.in_mean_half(q));
     assert!(chi_squared(one_lobe.take(N), &law) > 1000.0);
@@ -273,7 +276,7 @@ const FAR_SHARE: f64 = 0.034_593_156_655_512_09;
 fn densities_are_consistent() {
     let law = paper();
     let q = UnitQuaternion::from_euler_angles(0.05, 0.01, -0.02);
-    let angles = HypersphericalAngles::of(&q);
+    let angles = HypersphericalAngles::from(&q);
     let by_angles = law.ln_density_of_angles(&angles) - angles.jacobian().ln();
     assert!((by_angles - law.ln_density(&q)).abs() < 1e-9);
     let sum = law.ln_density(&q).exp() + law.ln_density(&opposite(&q)).exp();

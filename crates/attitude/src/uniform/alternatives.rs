@@ -1,3 +1,5 @@
+//! Other ways to draw the uniform law: two discs, and rejection from a box.
+
 use nalgebra::{Quaternion, UnitQuaternion};
 use rand::{Rng, RngExt};
 use rand_distr::Distribution;

@@ -1,3 +1,5 @@
+//! An even grid of attitudes along a spiral.
+
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::{SQRT_2, TAU};
 
