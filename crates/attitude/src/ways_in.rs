@@ -128,7 +128,8 @@ impl RadiallyConstrainedGaussian {
 
 /// R_J: unit vectors of ∂x/∂θ₁, ∂x/∂θ₂, ∂x/∂θ₃ and of x itself, as columns.
 fn hyperspherical_axes(mean: &UnitQuaternion<f64>) -> Result<Matrix4<f64>, RcgError> {
-    let [(s1, c1), (s2, c2), (s3, c3)] = HypersphericalAngles::of(mean).values().map(libm::sincos);
+    let [(s1, c1), (s2, c2), (s3, c3)] =
+        HypersphericalAngles::from(mean).values().map(libm::sincos);
     if !(s1 > UNDEFINED && s2 > UNDEFINED) {
         return Err(RcgError::Pole { sines: [s1, s2] });
     }

@@ -2,9 +2,14 @@
 //! Jorba & Zou 2005, doi:10.1080/10586458.2005.10128904): Cauchy's rule gives the coefficients of a
 //! product, and an equation of motion the next coefficient of what it is the derivative of.
 //!
-//! Everything is in payload axes. Loads act on both bodies along one line, so that the torques on the two bodies about a common point cancel: the torque on the stage about its mass
-//! centre is −(ρ × F + T), ρ from the stage's mass centre to the payload's, F and T force and torque
-//! on the payload.
+//! Everything is in payload axes. Loads act on both bodies along one line, so that the torques on the
+//! two bodies about a common point cancel: the torque on the stage about its mass centre is
+//! −(ρ × F + T), ρ from the stage's mass centre to the payload's, F and T force and torque on the payload.
+//!
+//! With the angular momenta h = I ω, the angular rates ω_P and ω_L, and R from stage to payload,
+//!
+//! > ρ' = v + ρ × ω_P,  v' = F/μ + v × ω_P,  I_P ω_P' = T + h_P × ω_P,  I_L ω_L' = −Rᵀ(ρ × F + T) + h_L × ω_L,
+//! > 2q' = q ∘ ω_L − ω_P ∘ q (stage to payload),  2Q' = Q ∘ ω_P (payload to inertial).
 
 use crate::{
     lanes::{Lanes, M3, add, scale, times},

@@ -3,7 +3,7 @@
 use std::borrow::Borrow;
 
 use crate::{
-    RunError, Separation, Settings,
+    RunError, Separation, Settings, bodies,
     expansion::{Expansion, Rotor},
     lanes::{Lanes, M3},
     layout::{ORDER, STATE, STOPS, TERMS},
@@ -79,15 +79,15 @@ impl<const W: usize> Integrator<W> {
         rotor(&mut expansion.stage, run.stage().body());
         expansion.radius.0[lane] = 0.0;
         expansion.inverse_mass.0[lane] = run.inverse_reduced_mass();
-        let scales = state::scales(run);
+        let scales = bodies::scales(run);
         set(&mut expansion.inverse_scale, &scales.map(|s| 1.0 / s));
         let loads: Fates = run.loads().iter().map(Fate::of).collect();
         expansion.loads.set(lane, run.loads());
         for (i, fate) in loads.iter().enumerate() {
             expansion.loads.act(i, lane, *fate == Fate::Acting);
         }
-        self.set_state(lane, &state::initial(run));
-        Track { time: 0.0, steps: 0, loads, time_scale: state::time_scale(&scales), separation }
+        self.set_state(lane, &bodies::initial(run));
+        Track { time: 0.0, steps: 0, loads, time_scale: bodies::time_scale(&scales), separation }
     }
 
     /// Leaves a lane without a run.

@@ -40,6 +40,7 @@
 //! ```
 
 mod batch;
+mod bodies;
 mod body;
 mod energy;
 mod expansion;
@@ -79,8 +80,8 @@ pub use role::Role;
 pub use run_error::RunError;
 pub use separation::{Separation, SeparationError};
 pub use settings::{Settings, SettingsError};
-pub use snapshot::{Snapshot, SpringState};
-pub use spring::{Spring, SpringError, SpringParameter};
+pub use snapshot::Snapshot;
+pub use spring::{Spring, SpringError, SpringParameter, SpringState};
 pub use stack::Stack;
 pub use trajectory::{Step, Trajectory};
 

@@ -9,8 +9,9 @@
 use nalgebra::UnitQuaternion;
 
 use crate::{
-    Parameter, RunError, SpringState,
+    Parameter, RunError,
     lanes::{Lanes, M3, V3},
+    spring::SpringState,
     state::State,
     vector::Simd,
 };
@@ -40,10 +41,6 @@ pub(crate) struct Size {
 pub(crate) trait Load: std::fmt::Debug {
     /// What of it can be uncertain.
     type Parameter: Parameter
-    where
-        Self: Sized;
-    /// Several of them, one in each lane.
-    type Series<const W: usize>: Series<W, Load = Self>
     where
         Self: Sized;
     /// When it begins to act, s; none if it never does.

@@ -7,7 +7,7 @@ use crate::{
     lanes::{Lanes, M3, V3},
     layout::INLINE_LOADS,
     load::{Events, Load, Series},
-    spring::SeatedSpring,
+    spring::{SeatedSpring, SpringSeries},
     vector::Simd,
 };
 
@@ -20,7 +20,7 @@ pub(crate) struct Loads {
 /// The series of the loads in all lanes.
 #[derive(Clone, Debug)]
 pub(crate) struct LoadSeries<const W: usize> {
-    springs: SmallVec<[<SeatedSpring as Load>::Series<W>; INLINE_LOADS]>,
+    springs: SmallVec<[SpringSeries<W>; INLINE_LOADS]>,
 }
 
 /// Does the same to the series of every kind. Written out where it stands, for what vector instructions

@@ -4,10 +4,10 @@ use nalgebra::{Unit, Vector3};
 use std::{borrow::Borrow, fmt};
 
 use crate::{
-    BodyState, EnergySplit, MovingBody, Separation, Settings, SpinMetrics,
+    BodyState, EnergySplit, MovingBody, Separation, Settings, SpinMetrics, bodies,
     metrics::angle_of,
     rounding::Rounding,
-    state::{self, State},
+    state::State,
     track::{Fate, Fates, Track},
 };
 
@@ -55,7 +55,7 @@ impl Outcome {
         settings: &Settings,
     ) -> Self {
         let separation = track.separation.borrow();
-        let (payload, stage) = state::bodies(separation, state, track.time);
+        let (payload, stage) = bodies::bodies(separation, state, track.time);
         let rounding = Rounding::new(separation, &track.loads, settings, track.steps);
         let start = [*separation.payload().state(), *separation.stage().state()];
         let stored = separation.stored_energy();

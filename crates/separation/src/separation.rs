@@ -6,8 +6,12 @@ use std::fmt;
 use crate::{
     Body, BodyError, MovingBody, Role, Spring, SpringError,
     loads::Loads,
-    spring::{SHORTEST, SeatedSpring},
+    spring::{SeatedSpring, TOUCHING},
 };
+
+/// Strokes shorter than this share of the distances that they are differences of have lost half of
+/// the digits of a double.
+const SHORTEST: f64 = 1e-7;
 
 /// Why bodies and springs do not make a separation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -117,10 +121,19 @@ impl Separation {
         if !springs.iter().any(Spring::can_push) {
             return Err(SeparationError::NonePushes);
         }
-        let seated = springs
-            .iter()
-            .enumerate()
-            .map(|(i, spring)| SeatedSpring::new(i, *spring, payload.state(), stage.state()));
+        let seated = springs.iter().enumerate().map(|(i, spring)| {
+            let distance = spring.line(payload.state(), stage.state()).norm();
+            let stroke = spring.stroke_m();
+            if !(distance > TOUCHING * stroke) {
+                return Err(SeparationError::TouchingPads { spring: i, distance, stroke });
+            }
+            let reach = distance + spring.payload_point_m().norm() + spring.stage_point_m().norm();
+            let stroke = if spring.can_push() { spring.travel_m() } else { stroke };
+            if !(stroke > SHORTEST * reach) {
+                return Err(SeparationError::ShortStroke { spring: i, stroke, reach });
+            }
+            Ok(SeatedSpring::new(*spring, distance))
+        });
         let springs = seated.collect::<Result<_, _>>()?;
         Ok(Self { payload, stage, loads: Loads { springs } })
     }

@@ -4,6 +4,7 @@ mod events;
 mod parameter;
 mod seated;
 mod series;
+mod state;
 
 use nalgebra::Vector3;
 use std::fmt;
@@ -11,7 +12,9 @@ use std::fmt;
 use crate::{BodyState, Role};
 
 pub use parameter::SpringParameter;
-pub(crate) use seated::{SHORTEST, SeatedSpring, TOUCHING};
+pub(crate) use seated::{SeatedSpring, TOUCHING};
+pub(crate) use series::SpringSeries;
+pub use state::SpringState;
 
 /// Errors of a spring's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

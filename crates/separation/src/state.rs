@@ -1,40 +1,25 @@
-//! What a state that is integrated says of the two bodies.
+//! A state that is integrated, and what its entries say.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use crate::{
-    BodyState, MovingBody, Separation,
+    BodyState,
     layout::{ATTITUDE, OFFSET, PAYLOAD_RATE, RELATIVE, STAGE_RATE, STATE, VELOCITY, part},
-    load::Load,
 };
 
 pub(crate) type State = [f64; STATE];
 
-fn vector(state: &State, at: usize) -> Vector3<f64> {
+pub(crate) fn vector(state: &State, at: usize) -> Vector3<f64> {
     part::<_, 3>(state, at).into()
 }
 
-fn quaternion(state: &State, at: usize) -> UnitQuaternion<f64> {
+pub(crate) fn quaternion(state: &State, at: usize) -> UnitQuaternion<f64> {
     let [x, y, z, w] = part(state, at);
     UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))
 }
 
-fn put(state: &mut State, at: usize, values: &[f64]) {
+pub(crate) fn put(state: &mut State, at: usize, values: &[f64]) {
     state[at..at + values.len()].copy_from_slice(values);
-}
-
-/// The state to integrate from.
-pub(crate) fn initial(separation: &Separation) -> State {
-    let (payload, stage) = (separation.payload().state(), separation.stage().state());
-    let turn = payload.attitude.inverse();
-    let mut state = [0.0; STATE];
-    put(&mut state, OFFSET, (turn * (payload.position - stage.position)).as_slice());
-    put(&mut state, VELOCITY, (turn * (payload.velocity - stage.velocity)).as_slice());
-    put(&mut state, RELATIVE, (turn * stage.attitude).coords.as_slice());
-    put(&mut state, ATTITUDE, payload.attitude.coords.as_slice());
-    put(&mut state, PAYLOAD_RATE, payload.angular_velocity.as_slice());
-    put(&mut state, STAGE_RATE, stage.angular_velocity.as_slice());
-    state
 }
 
 /// Brings the quaternions back to unit norm.
@@ -44,37 +29,6 @@ pub(crate) fn normalize(state: &mut State) {
         let scale = 1.0 / (x * x + y * y + z * z + w * w).sqrt();
         put(state, at, &[x * scale, y * scale, z * scale, w * scale]);
     }
-}
-
-/// The two bodies in a state reached after `time`: the mass centre of the whole has moved
-/// uniformly.
-pub(crate) fn bodies(
-    separation: &Separation,
-    state: &State,
-    time: f64,
-) -> (MovingBody, MovingBody) {
-    let (payload, stage) = (separation.payload(), separation.stage());
-    let (mp, ml) = (payload.body().mass_kg(), stage.body().mass_kg());
-    let (fp, fl) = (mp / (mp + ml), ml / (mp + ml));
-    let velocity = payload.state().velocity * fp + stage.state().velocity * fl;
-    let position = payload.state().position * fp + stage.state().position * fl + velocity * time;
-    let attitude = quaternion(state, ATTITUDE);
-    let (offset, relative) = (attitude * vector(state, OFFSET), attitude * vector(state, VELOCITY));
-    let payload_state = BodyState {
-        position: position + offset * fl,
-        velocity: velocity + relative * fl,
-        attitude,
-        angular_velocity: vector(state, PAYLOAD_RATE),
-    };
-    let stage_state = BodyState {
-        position: position - offset * fp,
-        velocity: velocity - relative * fp,
-        attitude: UnitQuaternion::new_normalize(
-            (attitude * quaternion(state, RELATIVE)).into_inner(),
-        ),
-        angular_velocity: vector(state, STAGE_RATE),
-    };
-    (payload.body().moving(payload_state), stage.body().moving(stage_state))
 }
 
 /// Payload and stage with respect to the stage's mass centre, in payload axes: position and velocity (of
@@ -92,22 +46,4 @@ pub(crate) fn relative(state: &State) -> [BodyState; 2] {
         ..BodyState::default()
     };
     [payload, stage]
-}
-
-/// The size of each entry of the state that the loads can bring about.
-pub(crate) fn scales(separation: &Separation) -> State {
-    let sizes = || separation.loads().iter().map(Load::size);
-    let length = sizes().map(|size| size.stroke).fold(0.0, f64::max);
-    let speed = (2.0 * separation.stored_energy() * separation.inverse_reduced_mass()).sqrt();
-    let arm = sizes().flat_map(|size| size.arms).fold(length, f64::max);
-    let mut scale = [length; STATE];
-    scale[VELOCITY..RELATIVE].fill(speed);
-    scale[RELATIVE..PAYLOAD_RATE].fill(length / arm);
-    scale[PAYLOAD_RATE..].fill(speed / arm);
-    scale
-}
-
-/// A time in which the loads move the bodies a good part of the stroke, s.
-pub(crate) fn time_scale(scale: &State) -> f64 {
-    scale[OFFSET] / scale[VELOCITY]
 }

@@ -2,19 +2,15 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::{Spring, SpringParameter, series::SpringSeries};
+use super::{Spring, SpringParameter, SpringState};
 use crate::{
-    BodyState, RunError, SeparationError, SpringState,
+    RunError,
     load::{Gap, Load, Size},
     state::{self, State},
 };
 
 /// Points nearer than this share of the stroke count as touching.
 pub(crate) const TOUCHING: f64 = 1e-6;
-
-/// Strokes shorter than this share of the distances that they are differences of have lost half of
-/// the digits of a double.
-pub(crate) const SHORTEST: f64 = 1e-7;
 
 /// A spring whose free length is known: the distance of its points at the start plus its stroke, less what
 /// friction takes of that, where it ceases to push.
@@ -25,25 +21,11 @@ pub(crate) struct SeatedSpring {
 }
 
 impl SeatedSpring {
-    /// `number` is its place among the springs, from 0.
-    pub(crate) fn new(
-        number: usize,
-        spring: Spring,
-        payload: &BodyState,
-        stage: &BodyState,
-    ) -> Result<Self, SeparationError> {
-        let distance = spring.line(payload, stage).norm();
-        let stroke = spring.stroke_m();
-        if !(distance > TOUCHING * stroke) {
-            return Err(SeparationError::TouchingPads { spring: number, distance, stroke });
-        }
-        let reach = distance + spring.payload_point_m().norm() + spring.stage_point_m().norm();
+    /// A spring whose points are at a distance from each other at the start, m.
+    pub(crate) fn new(spring: Spring, distance: f64) -> Self {
         // One that never pushes only has its place.
-        let stroke = if spring.can_push() { spring.travel_m() } else { stroke };
-        if !(stroke > SHORTEST * reach) {
-            return Err(SeparationError::ShortStroke { spring: number, stroke, reach });
-        }
-        Ok(Self { spring, free_length: distance + stroke })
+        let stroke = if spring.can_push() { spring.travel_m() } else { spring.stroke_m() };
+        Self { spring, free_length: distance + stroke }
     }
 
     pub(crate) fn spring(&self) -> &Spring {
@@ -63,7 +45,6 @@ impl SeatedSpring {
 
 impl Load for SeatedSpring {
     type Parameter = SpringParameter;
-    type Series<const W: usize> = SpringSeries<W>;
 
     fn start_s(&self) -> Option<f64> {
         self.spring.start_s().filter(|_| self.spring.can_push())

@@ -1,4 +1,13 @@
 //! The series of springs, one of each run at a time.
+//!
+//! In payload axes the line of a spring is s = ρ + p − R l (Peck 2003, Eq. 29), ρ the offset of the mass centres, R the
+//! rotation from stage to payload, p and l the points. The force on the payload is (u − k) s with u = k L₀ (s²)^(−1/2). That
+//! power obeys s² u' = −½ (s²)' u, which gives its coefficients one after the other,
+//!
+//! > s₀² u_n = −(1/n) Σ_(j = 1 … n) (n − j/2) (s²)_j u_(n−j),
+//!
+//! so that no square root is taken but the first. Sums of two series that hold their own terms twice take each
+//! pair of orders j and n − j once.
 
 use std::ops::Range;
 
@@ -102,7 +111,7 @@ impl<const W: usize> Series<W> for SpringSeries<W> {
         }
     }
 
-    /// Of the lines and of s².
+    /// Of the lines, by Eq. 29, and of s²: what `known` has summed, and twice the ends of Cauchy's sum.
     #[inline(always)]
     fn stretch<S: Simd>(&mut self, simd: S, k: usize, offset: &V3<W>, rotation: &M3<W>) {
         if k == 0 {
@@ -140,7 +149,7 @@ impl<const W: usize> Series<W> for SpringSeries<W> {
         let force = if k == 0 {
             first.map(|x| x * before)
         } else {
-            // u = (s²)^(−1/2): s² u' = −½ (s²)' u.
+            // The recurrence of u: what `known` has summed, and the term j = k, k − k/2 times (s²)_k u_0.
             let half = Register::load(simd, &self.half_push) * Register::splat(simd, k as f64);
             let factor =
                 Register::load(simd, &self.inverse_square) * Register::splat(simd, -INVERSE[k]);
@@ -165,7 +174,8 @@ impl<const W: usize> Series<W> for SpringSeries<W> {
         beyond * self.stiffness.map(|k| if k == 0.0 { 0.0 } else { 1.0 })
     }
 
-    /// By the terms of s² that are positive, and by those that are negative.
+    /// A power of time grows with time: at any time within the reach, s² is at most its first coefficient
+    /// plus the terms that are positive at the end of the reach, and at least that plus the negative ones.
     #[inline(always)]
     fn bound(&mut self, reach: Lanes<W>, order: usize) {
         let (mut power, mut up, mut down) = (reach, Lanes::ZERO, Lanes::ZERO);
@@ -206,7 +216,7 @@ impl<const W: usize> SpringSeries<W> {
                 square = square + dot(&load(simd, &a.line), &load(simd, &b.line));
             }
         } else {
-            // Of order j: (2k − j)/2, and of order k − j.
+            // The weights k − j/2 of order j, and of order k − j.
             let (down, up) = (&QUARTERS[4 * k - 2 * pairs..4 * k], &QUARTERS[2 * k..4 * k]);
             for i in 0..pairs {
                 let (a, b) = (&low[i], &high[pairs - 1 - i]);
