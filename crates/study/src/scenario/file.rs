@@ -396,6 +396,7 @@ fn default_attitude() -> [f64; 4] {
 }
 
 /// What a file says of a parameter: a law of a number, in its unit or in percent, or of a vector.
+#[derive(Clone, Copy)]
 pub(crate) enum Given<'a> {
     Number(Option<&'a ScalarLawForm>, Option<&'a ScalarLawForm>),
     Vector(Option<&'a VectorLawFile>),
