@@ -10,7 +10,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{Scenario, ScenarioError, StudyError, Summary, figures_of_study, report};
+use crate::{Scenario, ScenarioError, Summary, figures_of_study, report};
 
 /// Largest `summary.json` that is read, far beyond any that is written.
 const BYTES: u64 = 1 << 30;
@@ -145,7 +145,7 @@ impl Results {
     /// # Errors
     /// Something in the study's folder was changed after the study, or the other folder holds something else
     /// and `force` is not set; something cannot be written. What was there stays as it was.
-    pub fn write_report(&self, out: Option<&Path>, force: bool) -> Result<PathBuf, StudyError> {
+    pub fn write_report(&self, out: Option<&Path>, force: bool) -> Result<PathBuf, ResultsError> {
         let pages = self.pages();
         let names = figures_of_study::names(&self.scenario).into_iter().map(|name| file_of(&name));
         let certain = names.chain(["report.html", "figures/"].map(str::to_owned));
