@@ -44,18 +44,18 @@ struct Cell {
 #[derive(Clone, Copy, Debug)]
 struct Target {
     lambda: [f64; 4],
-    center: [f64; 4],
+    centre: [f64; 4],
 }
 
 impl Cells {
     /// For exp(−½ Σ λ_j(y_j − c_j)²), whose integral over S³ is exp(ln_integral).
-    pub(crate) fn new(lambda: [f64; 4], center: [f64; 4], ln_integral: f64) -> Self {
+    pub(crate) fn new(lambda: [f64; 4], centre: [f64; 4], ln_integral: f64) -> Self {
         const ORDERS: [[usize; 4]; 6] =
             [[0, 1, 2, 3], [0, 2, 1, 3], [0, 3, 1, 2], [1, 2, 0, 3], [1, 3, 0, 2], [2, 3, 0, 1]];
         let integral = libm::exp(ln_integral);
         let mut trials = ORDERS.map(|order| {
             let target =
-                Target { lambda: order.map(|j| lambda[j]), center: order.map(|j| center[j]) };
+                Target { lambda: order.map(|j| lambda[j]), centre: order.map(|j| centre[j]) };
             let mut cover = Cover::new(target);
             cover.refine(TRIAL, integral / ENOUGH);
             (order, cover)
@@ -104,7 +104,7 @@ impl Cells {
 impl Target {
     fn ln_at(&self, y: [f64; 4]) -> f64 {
         let term = |j: usize| {
-            let d = y[j] - self.center[j];
+            let d = y[j] - self.centre[j];
             self.lambda[j] * d * d
         };
         -0.5 * (term(0) + term(1) + term(2) + term(3))
@@ -113,7 +113,7 @@ impl Target {
     /// An upper bound over a box, by the intervals of its coordinates.
     fn ln_bound(&self, y: [(f64, f64); 4]) -> f64 {
         let term = |j: usize| {
-            let d = (y[j].0 - self.center[j]).max(self.center[j] - y[j].1).max(0.0);
+            let d = (y[j].0 - self.centre[j]).max(self.centre[j] - y[j].1).max(0.0);
             self.lambda[j] * d * d
         };
         -0.5 * (term(0) + term(1) + term(2) + term(3))
@@ -166,7 +166,7 @@ impl Cover {
         // Eight deviations each side of the centre, as far as that is less than everything.
         let edges = |j: usize| {
             let reach = 8.0 / target.lambda[j].sqrt();
-            let around = [target.center[j] - reach, target.center[j], target.center[j] + reach];
+            let around = [target.centre[j] - reach, target.centre[j], target.centre[j] + reach];
             let mut edges = vec![-1.0, 1.0];
             edges.extend(around.into_iter().filter(|e| e.abs() < 1.0));
             edges.sort_by(f64::total_cmp);
@@ -330,9 +330,9 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::PI;
 
-    fn target(exponents: [f64; 4], center: [f64; 4]) -> Target {
-        let norm = center.iter().map(|c| c * c).sum::<f64>().sqrt().max(1e-3);
-        Target { lambda: exponents.map(|e| 10f64.powf(e)), center: center.map(|c| c / norm) }
+    fn target(exponents: [f64; 4], centre: [f64; 4]) -> Target {
+        let norm = centre.iter().map(|c| c * c).sum::<f64>().sqrt().max(1e-3);
+        Target { lambda: exponents.map(|e| 10f64.powf(e)), centre: centre.map(|c| c / norm) }
     }
 
     proptest! {
@@ -341,17 +341,17 @@ mod tests {
         #[test]
         fn boxes_cover_the_sphere_and_bound_the_density(
             exponents in prop::array::uniform4(-3.0..7.0f64),
-            center in prop::array::uniform4(-1.0..1.0f64),
+            centre in prop::array::uniform4(-1.0..1.0f64),
             points in prop::collection::vec(prop::array::uniform4(-1.0..1.0f64), 50),
         ) {
-            let target = target(exponents, center);
+            let target = target(exponents, centre);
             let mut cover = Cover::new(target);
             cover.refine(500, 0.0);
             let deviations = target.lambda.map(|l| 1.0 / l.sqrt());
             for (i, p) in points.into_iter().enumerate() {
                 // Half of the points where the density is not negligible.
                 let mut y: [f64; 4] = if i % 2 == 0 { p } else {
-                    std::array::from_fn(|j| target.center[j] + 3.0 * deviations[j] * p[j])
+                    std::array::from_fn(|j| target.centre[j] + 3.0 * deviations[j] * p[j])
                 };
                 let norm = y.iter().map(|x| x * x).sum::<f64>().sqrt();
                 prop_assume!(norm > 0.1);

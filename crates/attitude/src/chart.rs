@@ -64,20 +64,20 @@ impl Chart {
     pub(crate) fn new(
         axes: &Matrix4<f64>,
         lambda: [f64; 4],
-        center: [f64; 4],
+        centre: [f64; 4],
         ln_integral: f64,
         shift: f64,
     ) -> Option<Self> {
         // The coordinate to drop is the one whose mean is far from zero for its spread.
         let mut order = [0, 1, 2, 3];
-        let reach = |k: usize| center[k].abs() / lambda[k].sqrt();
+        let reach = |k: usize| centre[k].abs() / lambda[k].sqrt();
         order.sort_by(|&a, &b| reach(b).total_cmp(&reach(a)));
         let mut best: Option<(Problem, Proposal)> = None;
         for k in order {
             if best.as_ref().is_some_and(|(_, b)| b.ln_acceptance > -LN_2) {
                 break;
             }
-            let problem = Problem::new(lambda, center, ln_integral, k);
+            let problem = Problem::new(lambda, centre, ln_integral, k);
             if let Some(proposal) = problem.best_proposal(shift)
                 && best.as_ref().is_none_or(|(_, b)| b.ln_acceptance < proposal.ln_acceptance)
             {
@@ -372,17 +372,17 @@ struct Proposal {
 }
 
 impl Problem {
-    fn new(lambda: [f64; 4], center: [f64; 4], ln_integral: f64, dropped: usize) -> Self {
+    fn new(lambda: [f64; 4], centre: [f64; 4], ln_integral: f64, dropped: usize) -> Self {
         let kept = [1, 2, 3].map(|step| (dropped + step) % 4);
-        let square: f64 = lambda.iter().zip(center).map(|(l, c)| l * c * c).sum();
+        let square: f64 = lambda.iter().zip(centre).map(|(l, c)| l * c * c).sum();
         Self {
             dropped,
             kept,
             lambda: kept.map(|j| lambda[j]),
             floor: kept.iter().map(|&j| lambda[j]).fold(f64::INFINITY, f64::min),
-            linear: kept.map(|j| lambda[j] * center[j]),
+            linear: kept.map(|j| lambda[j] * centre[j]),
             dropped_lambda: lambda[dropped],
-            slope: lambda[dropped] * center[dropped],
+            slope: lambda[dropped] * centre[dropped],
             constant: -0.5 * square - ln_integral,
         }
     }
@@ -408,10 +408,10 @@ impl Problem {
     /// The largest h₀ whose belt may be left out.
     fn belt_edge(&self, smallest: f64) -> Option<f64> {
         let (precision, weight, front) = self.split(smallest);
-        let center: [f64; 3] = std::array::from_fn(|j| self.linear[j] / precision[j]);
+        let centre: [f64; 3] = std::array::from_fn(|j| self.linear[j] / precision[j]);
         let negligible = |h0: f64| {
             let sup = LN_2 + self.slope.abs() * h0 + (-0.5 * weight.bend * h0 * h0).max(0.0);
-            let distance = distance_to_sphere(&precision, &center, 1.0 - h0 * h0);
+            let distance = distance_to_sphere(&precision, &centre, 1.0 - h0 * h0);
             libm::log(4.0 * PI * h0) + sup + front - 0.5 * distance < LN_BELT
         };
         let (mut low, mut high) = (1e-3, 0.999);

@@ -29,7 +29,7 @@ const DEPTH: f64 = 41.0;
 pub(crate) struct Contour<const N: usize = 4> {
     /// θ_j c_j, c_j, and θ_j plus the saddle point.
     linear: [f64; N],
-    center: [f64; N],
+    centre: [f64; N],
     d: [f64; N],
     /// Distance from the saddle point, and weight.
     nodes: [(C64, C64); NODES],
@@ -40,9 +40,9 @@ pub(crate) struct Contour<const N: usize = 4> {
 impl<const N: usize> Contour<N> {
     /// For the density exp(−½ Σ λ_j (y_j − c_j)²) with λ_j > 0, on |y| = 1. `slack` is 1 − |c|², which
     /// the caller may know better than by that difference.
-    pub(crate) fn new(lambda: [f64; N], center: [f64; N], slack: f64) -> Self {
+    pub(crate) fn new(lambda: [f64; N], centre: [f64; N], slack: f64) -> Self {
         let theta = lambda.map(|l| 0.5 * l);
-        let k = Exponent::new(theta, center, slack);
+        let k = Exponent::new(theta, centre, slack);
         let path = Path::through(&k);
         let end = path.end(&k);
         let step = end / NODES as f64;
@@ -54,8 +54,8 @@ impl<const N: usize> Contour<N> {
         let ln_integral = k.at_saddle() + libm::log(2.0 * step / PI * sum);
         let nodes = nodes.map(|(u, w)| (u, w / sum));
         Self {
-            linear: std::array::from_fn(|j| theta[j] * center[j]),
-            center,
+            linear: std::array::from_fn(|j| theta[j] * centre[j]),
+            centre,
             d: k.d,
             nodes,
             ln_integral,
@@ -85,11 +85,11 @@ impl<const N: usize> Contour<N> {
     }
 
     /// The same with the mean of y − c, in which nothing cancels where y keeps to c.
-    pub(crate) fn nodes_about_center(&self) -> impl Iterator<Item = (C64, [C64; N], [C64; N])> {
+    pub(crate) fn nodes_about_centre(&self) -> impl Iterator<Item = (C64, [C64; N], [C64; N])> {
         let saddle = 0.5 * self.shift;
         self.nodes.iter().map(move |(u, w)| {
             let inverse = self.d.map(|d| inverse(u + d));
-            let offset = std::array::from_fn(|j| inverse[j] * (u + saddle) * -self.center[j]);
+            let offset = std::array::from_fn(|j| inverse[j] * (u + saddle) * -self.centre[j]);
             (*w, offset, inverse.map(|v| v * 0.5))
         })
     }
@@ -173,8 +173,8 @@ struct Exponent<const N: usize> {
 }
 
 impl<const N: usize> Exponent<N> {
-    fn new(theta: [f64; N], center: [f64; N], slack: f64) -> Self {
-        let square = center.map(|c| c * c);
+    fn new(theta: [f64; N], centre: [f64; N], slack: f64) -> Self {
+        let square = centre.map(|c| c * c);
         let floor = theta.into_iter().fold(f64::INFINITY, f64::min);
         let above = theta.map(|t| t - floor);
         let lift = saddle(&theta, &above, &square, slack);

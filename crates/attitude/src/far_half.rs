@@ -9,7 +9,7 @@
 use nalgebra::{Matrix3, Matrix4x3, Vector3, Vector4};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::{contour::Contour, fisher_bingham::centering_shift, jacobi, quadrature::kronrod};
+use crate::{contour::Contour, fisher_bingham::centring_shift, jacobi, quadrature::kronrod};
 
 const TOLERANCE: f64 = 1e-12;
 const MAX_ARCS: usize = 200;
@@ -19,8 +19,8 @@ const NOTHING: f64 = 60.0;
 const LN_SPHERE: f64 = 2.531_024_246_969_290_8;
 
 /// ln ∫ exp(−½ Σ λ(y − c)²) dS over the half y·c < 0 of S³, |c| = 1.
-pub(crate) fn ln_integral(lambda: [f64; 4], center: [f64; 4]) -> f64 {
-    let slices = Slices::new(lambda, center);
+pub(crate) fn ln_integral(lambda: [f64; 4], centre: [f64; 4]) -> f64 {
+    let slices = Slices::new(lambda, centre);
     let (peak, ln_peak, width) = slices.peak();
     // Arcs that grow with their distance from the peak.
     let mut ends = vec![FRAC_PI_2, PI, peak];
@@ -73,19 +73,19 @@ struct Slices {
 }
 
 impl Slices {
-    fn new(lambda: [f64; 4], center: [f64; 4]) -> Self {
+    fn new(lambda: [f64; 4], centre: [f64; 4]) -> Self {
         let mut order = [0, 1, 2, 3];
         order.sort_by(|&i, &j| lambda[i].total_cmp(&lambda[j]));
         let lambda = Vector4::from(order.map(|j| lambda[j]));
-        let center = Vector4::from(order.map(|j| center[j]));
-        let u = across(&center);
+        let centre = Vector4::from(order.map(|j| centre[j]));
+        let u = across(&centre);
         // Each column of U reaches one stiffer coordinate than the one before it, so that A is graded
         // and its small eigenvalues keep their digits.
         let a: Matrix3<f64> =
             Matrix3::from_fn(|i, j| (0..4).map(|k| u[(k, i)] * lambda[k] * u[(k, j)]).sum::<f64>());
         let (eigenvalues, axes) = jacobi::eigen(&a);
-        let spread = center.component_div(&lambda);
-        let kappa = 1.0 / center.dot(&spread);
+        let spread = centre.component_div(&lambda);
+        let kappa = 1.0 / centre.dot(&spread);
         let drift = axes.tr_mul(&u.tr_mul(&spread)) * kappa;
         Self { kappa, eigenvalues, drift }
     }
@@ -99,8 +99,8 @@ impl Slices {
         }
         let off = 1.0 - l;
         let lambda = self.eigenvalues.map(|a| a * r * r);
-        let center: [f64; 3] = (self.drift * (-off / r)).into();
-        let square = center.iter().map(|c| c * c).sum::<f64>();
+        let centre: [f64; 3] = (self.drift * (-off / r)).into();
+        let square = centre.iter().map(|c| c * c).sum::<f64>();
         // No point of the slice is nearer to s* than this.
         let gap = (square.sqrt() - 1.0).max(0.0);
         let stiffness = lambda.into_iter().fold(f64::INFINITY, f64::min);
@@ -109,15 +109,15 @@ impl Slices {
             return f64::NEG_INFINITY;
         }
         let slice = if square < 4.0 {
-            Contour::<3>::new(lambda, center, 1.0 - square).ln_integral()
+            Contour::<3>::new(lambda, centre, 1.0 - square).ln_integral()
         } else {
-            // The same linear term with a center on the slice, which is what the contour is made for.
-            let b: [f64; 3] = std::array::from_fn(|j| lambda[j] * center[j]);
-            let shift = centering_shift(lambda, b);
+            // The same linear term with a centre on the slice, which is what the contour is made for.
+            let b: [f64; 3] = std::array::from_fn(|j| lambda[j] * centre[j]);
+            let shift = centring_shift(lambda, b);
             let stiffer = lambda.map(|l| l + shift);
             let on: [f64; 3] = std::array::from_fn(|j| b[j] / stiffer[j]);
             let slack = 1.0 - on.iter().map(|c| c * c).sum::<f64>();
-            let product: f64 = (0..3).map(|j| center[j] * on[j]).sum();
+            let product: f64 = (0..3).map(|j| centre[j] * on[j]).sum();
             Contour::<3>::new(stiffer, on, slack).ln_integral() + 0.5 * shift * (1.0 - product)
         };
         slice + 2.0 * libm::log(r) + radial
@@ -183,11 +183,11 @@ mod tests {
     fn narrow_laws_have_no_far_half() {
         for exponent in 1..=14 {
             let lambda = 10f64.powi(exponent);
-            for center in [[0.0, 0.0, 0.0, 1.0], [0.5; 4], [0.6, 0.0, -0.8, 0.0]] {
-                let whole = Contour::new([lambda; 4], center, 0.0).ln_integral();
-                let share = (ln_integral([lambda; 4], center) - whole).exp();
+            for centre in [[0.0, 0.0, 0.0, 1.0], [0.5; 4], [0.6, 0.0, -0.8, 0.0]] {
+                let whole = Contour::new([lambda; 4], centre, 0.0).ln_integral();
+                let share = (ln_integral([lambda; 4], centre) - whole).exp();
                 // Half of the area is at least √2 away.
-                assert!(share <= (-0.9 * lambda).exp(), "{lambda:e} {center:?}: {share:e}");
+                assert!(share <= (-0.9 * lambda).exp(), "{lambda:e} {centre:?}: {share:e}");
             }
         }
     }
@@ -201,9 +201,9 @@ mod tests {
             for j in 0..3 {
                 lambda[(k + 1 + j) % 4] = 10f64.powf(e[j]);
             }
-            let mut center = [0.0; 4];
-            center[k] = 1.0;
-            let share = (ln_integral(lambda, center) - Contour::new(lambda, center, 0.0).ln_integral()).exp();
+            let mut centre = [0.0; 4];
+            centre[k] = 1.0;
+            let share = (ln_integral(lambda, centre) - Contour::new(lambda, centre, 0.0).ln_integral()).exp();
             prop_assert!((share - 0.5).abs() < 1e-11, "{lambda:?}: {share}");
         }
     }

@@ -85,7 +85,7 @@ pub struct FisherBingham {
     axes: Matrix4<f64>,
     /// The density in y is ∝ exp(−½ Σ λ(y − c)²), |c| ≤ 1, λ > 0.
     lambda: [f64; 4],
-    center: [f64; 4],
+    centre: [f64; 4],
     contour: Box<Contour>,
     /// ln of exp(−½xᵀPx + bᵀx) over exp(−½ Σ λ(y − c)²).
     ln_offset: f64,
@@ -138,29 +138,29 @@ impl FisherBingham {
         })?;
         let (eigenvalues, axes) = jacobi::eigen(&precision);
         let b: [f64; 4] = (axes.transpose() * linear).into();
-        let shift = centering_shift(eigenvalues, b);
+        let shift = centring_shift(eigenvalues, b);
         let lambda = eigenvalues.map(|p| p + shift);
-        let center: [f64; 4] = std::array::from_fn(|j| b[j] / lambda[j]);
-        let square: f64 = (0..4).map(|j| b[j] * center[j]).sum();
-        let slack = 1.0 - center.iter().map(|c| c * c).sum::<f64>();
-        Ok(Self::centered(axes, lambda, center, slack, 0.5 * (square + shift)))
+        let centre: [f64; 4] = std::array::from_fn(|j| b[j] / lambda[j]);
+        let square: f64 = (0..4).map(|j| b[j] * centre[j]).sum();
+        let slack = 1.0 - centre.iter().map(|c| c * c).sum::<f64>();
+        Ok(Self::centred(axes, lambda, centre, slack, 0.5 * (square + shift)))
     }
 
     /// From x = V y and the density ∝ exp(−½ Σ λ(y − c)²), with λ > 0, |c| ≤ 1 and `slack` = 1 − |c|².
-    pub(crate) fn centered(
+    pub(crate) fn centred(
         mut axes: Matrix4<f64>,
         lambda: [f64; 4],
-        mut center: [f64; 4],
+        mut centre: [f64; 4],
         slack: f64,
         ln_offset: f64,
     ) -> Self {
-        align(&mut axes, lambda, &mut center);
-        let contour = Box::new(Contour::new(lambda, center, slack));
+        align(&mut axes, lambda, &mut centre);
+        let contour = Box::new(Contour::new(lambda, centre, slack));
         let (mean, covariance) = contour.moments();
         Self {
             axes,
             lambda,
-            center,
+            centre,
             ln_offset,
             mean: axes * mean,
             second_moment: axes * (covariance + mean * mean.transpose()) * axes.transpose(),
@@ -174,7 +174,7 @@ impl FisherBingham {
     #[must_use]
     pub fn ln_density(&self, q: &UnitQuaternion<f64>) -> f64 {
         let y = self.axes.tr_mul(&q.coords);
-        let square: f64 = (0..4).map(|j| self.lambda[j] * (y[j] - self.center[j]).powi(2)).sum();
+        let square: f64 = (0..4).map(|j| self.lambda[j] * (y[j] - self.centre[j]).powi(2)).sum();
         -0.5 * square - self.contour.ln_integral()
     }
 
@@ -185,13 +185,13 @@ impl FisherBingham {
     }
 
     /// ln ∫ exp(−½ Σ λ(y − c)²) dS, which is what a law with a mean calls its normaliser.
-    pub(crate) fn ln_centered_normaliser(&self) -> f64 {
+    pub(crate) fn ln_centred_normaliser(&self) -> f64 {
         self.contour.ln_integral()
     }
 
     /// V, λ, c and the logarithm that exp(−½ Σ λ(y − c)²), x = V y, is to be offset by.
     pub(crate) fn eigenform(&self) -> (&Matrix4<f64>, [f64; 4], [f64; 4], f64) {
-        (&self.axes, self.lambda, self.center, self.ln_offset)
+        (&self.axes, self.lambda, self.centre, self.ln_offset)
     }
 
     /// The mean E x of the four coordinates, a vector inside the unit ball.
@@ -314,7 +314,7 @@ impl Distribution<UnitQuaternion<f64>> for FisherBingham {
                 let q: UnitQuaternion<f64> = UniformAttitude.sample(rng);
                 let y = q.coords;
                 let square: f64 =
-                    (0..4).map(|j| self.lambda[j] * (y[j] - self.center[j]).powi(2)).sum();
+                    (0..4).map(|j| self.lambda[j] * (y[j] - self.centre[j]).powi(2)).sum();
                 if rng.random::<f64>() < libm::exp(-0.5 * square - ln_bound) {
                     break self.axes * y;
                 }
@@ -328,20 +328,20 @@ impl Sampler {
     fn choose(law: &FisherBingham) -> Self {
         /// Proposals this good are not worth improving on.
         const GOOD: f64 = 0.6;
-        let (lambda, center, ln_integral) = (law.lambda, law.center, law.contour.ln_integral());
+        let (lambda, centre, ln_integral) = (law.lambda, law.centre, law.contour.ln_integral());
         // Σ λ(y − c)² ≥ min λ·(1 − |c|)² on the sphere.
         let lowest = lambda.into_iter().fold(f64::INFINITY, f64::min);
-        let gap = (1.0 - Vector4::from(center).norm()).max(0.0);
+        let gap = (1.0 - Vector4::from(centre).norm()).max(0.0);
         let ln_bound = -0.5 * lowest * gap * gap;
         let acceptance = libm::exp(ln_integral + UniformAttitude::LN_DENSITY - ln_bound).min(1.0);
         if acceptance > GOOD {
             return Self::Uniform { acceptance, ln_bound };
         }
-        let chart = Chart::new(&law.axes, lambda, center, ln_integral, law.contour.shift());
+        let chart = Chart::new(&law.axes, lambda, centre, ln_integral, law.contour.shift());
         if let Some(chart) = chart.filter(|c| c.acceptance() > GOOD) {
             return Self::Chart(Box::new(chart));
         }
-        Self::Cells(Cells::new(lambda, center, ln_integral))
+        Self::Cells(Cells::new(lambda, centre, ln_integral))
     }
 
     fn acceptance(&self) -> f64 {
@@ -363,18 +363,18 @@ impl Sampler {
 
 /// Turns the axes of equal eigenvalues until one of them carries all of the mean that lies in their
 /// span: which axes those are is free, and samplers do best where they are aligned.
-fn align(axes: &mut Matrix4<f64>, lambda: [f64; 4], center: &mut [f64; 4]) {
+fn align(axes: &mut Matrix4<f64>, lambda: [f64; 4], centre: &mut [f64; 4]) {
     for (i, j) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
-        let length = libm::hypot(center[i], center[j]);
+        let length = libm::hypot(centre[i], centre[j]);
         let equal = (lambda[i] - lambda[j]).abs() <= 4.0 * f64::EPSILON * lambda[i].max(lambda[j]);
-        if !equal || center[j] == 0.0 || length == 0.0 {
+        if !equal || centre[j] == 0.0 || length == 0.0 {
             continue;
         }
-        let (c, s) = (center[i] / length, center[j] / length);
+        let (c, s) = (centre[i] / length, centre[j] / length);
         let (a, b): (Vector4<f64>, Vector4<f64>) = (axes.column(i).into(), axes.column(j).into());
         axes.set_column(i, &(a * c + b * s));
         axes.set_column(j, &(b * c - a * s));
-        (center[i], center[j]) = (length, 0.0);
+        (centre[i], centre[j]) = (length, 0.0);
     }
 }
 
@@ -403,7 +403,7 @@ pub(crate) fn symmetric_part(
 
 /// μ that makes P + μ·1 positive definite and |(P + μ·1)⁻¹b| ≤ 1, equal to 1 where it can be: then
 /// the normaliser's exponent has no large terms to cancel.
-pub(crate) fn centering_shift<const N: usize>(eigenvalues: [f64; N], b: [f64; N]) -> f64 {
+pub(crate) fn centring_shift<const N: usize>(eigenvalues: [f64; N], b: [f64; N]) -> f64 {
     let floor = eigenvalues.into_iter().fold(f64::INFINITY, f64::min);
     // In d = μ + min P > 0.
     let square =
@@ -516,7 +516,7 @@ mod tests {
 
     /// Where |c| comes out a hair off one, that hair is real: E x₁ in 45 digits (mpmath).
     #[test]
-    fn a_center_near_the_sphere_is_not_taken_to_be_on_it() {
+    fn a_centre_near_the_sphere_is_not_taken_to_be_on_it() {
         let law = law(
             [
                 -16_136.289_772_996_175,

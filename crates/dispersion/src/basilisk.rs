@@ -175,7 +175,7 @@ impl KnownMoments for BasiliskDispersion {
         /// Nodes that are exact for polynomials of degree 4 in sine and cosine.
         const NODES: usize = 9;
         let (shift, variance) = self.diagonal_moments();
-        let center = self.nominal.matrix() + Matrix3::from_diagonal_element(shift);
+        let centre = self.nominal.matrix() + Matrix3::from_diagonal_element(shift);
         let angles: [f64; NODES] = std::array::from_fn(|j| TAU * j as f64 / NODES as f64);
         // Σ w f(θ) = E f under the Gaussian: E cos nθ = e^{−n²σ²/2}.
         let damping = |n: f64| libm::exp(-0.5 * (n * self.angle_deviation).powi(2));
@@ -188,7 +188,7 @@ impl KnownMoments for BasiliskDispersion {
             for j in 0..NODES {
                 for k in 0..NODES {
                     let c = direction_cosines([angles[i], angles[j], angles[k]]);
-                    let turned = c * center * c.transpose();
+                    let turned = c * centre * c.transpose();
                     nodes.push((weights[i] * weights[j] * weights[k], c, turned));
                 }
             }

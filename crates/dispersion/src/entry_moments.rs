@@ -102,13 +102,13 @@ impl EntryMoments {
         let sums: [f64; 21] = law.expect(|q| {
             let forms = real_forms(q);
             let entries = entries(&forms);
-            let centered: [f64; 6] = std::array::from_fn(|e| entries[e] - mean[e]);
+            let centred: [f64; 6] = std::array::from_fn(|e| entries[e] - mean[e]);
             let mut sums = [0.0; 21];
             for (n, (e, f)) in lower_triangle().enumerate() {
                 let own = |k: usize| {
                     (0..3).map(|l| spread[(k, l)] * forms[l][f]).sum::<f64>() * forms[k][e]
                 };
-                sums[n] = centered[e] * centered[f] + own(0) + own(1) + own(2);
+                sums[n] = centred[e] * centred[f] + own(0) + own(1) + own(2);
             }
             sums
         });
@@ -136,10 +136,10 @@ impl EntryMoments {
             let forms = forms(x);
             let entries = entries(&forms);
             let fourth = norm_squared(x) * norm_squared(x);
-            let centered: [C64; 6] = std::array::from_fn(|e| entries[e] - fourth * mean[e]);
+            let centred: [C64; 6] = std::array::from_fn(|e| entries[e] - fourth * mean[e]);
             let mut sums = [C64::new(0.0, 0.0); POLYNOMIALS];
             for (n, (e, f)) in lower_triangle().enumerate() {
-                sums[2 * n] = centered[e] * centered[f];
+                sums[2 * n] = centred[e] * centred[f];
                 sums[2 * n + 1] =
                     (0..3).map(|k| forms[6 * k + e] * forms[6 * k + f] * variances[k]).sum();
                 for &(k, l, c) in correlated.iter().flatten() {

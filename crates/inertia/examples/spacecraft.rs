@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ];
     println!("part           mass, kg        mass centre, m");
     for (name, part) in &parts {
-        let c = part.mass_center_m();
+        let c = part.mass_centre_m();
         println!("{name:12} {:9.3}   {:8.4} {:8.4} {:8.4}", part.mass_kg(), c.x, c.y, c.z);
     }
 
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 fn report(name: &str, body: &MassProperties) -> Result<(), Box<dyn std::error::Error>> {
-    let c = body.mass_center_m();
+    let c = body.mass_centre_m();
     let [i11, i22, i33, i12, i13, i23] = body.inertia().entries();
     println!("\n{name}: {:.3} kg, mass centre {:.4} {:.4} {:.4} m", body.mass_kg(), c.x, c.y, c.z);
     println!("  I₁₁ I₂₂ I₃₃, kg·m²   {i11:9.3} {i22:9.3} {i33:9.3}");

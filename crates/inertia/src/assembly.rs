@@ -17,7 +17,7 @@ impl MassProperties {
     /// use gyradius_inertia::MassProperties;
     ///
     /// let dumbbell = MassProperties::from_points([(1.0, [0.0; 3]), (3.0, [2.0, 0.0, 0.0])])?;
-    /// assert_eq!(dumbbell.mass_center_m().x, 1.5);
+    /// assert_eq!(dumbbell.mass_centre_m().x, 1.5);
     /// assert_eq!(dumbbell.inertia().entries(), [0.0, 3.0, 3.0, 0.0, 0.0, 0.0]);
     /// # Ok::<(), gyradius_inertia::MassPropertiesError>(())
     /// ```
@@ -44,13 +44,13 @@ impl MassProperties {
         bodies: impl IntoIterator<Item = B>,
     ) -> Result<Self, MassPropertiesError> {
         let mut own = Matrix3::zeros();
-        let mut centers = Vec::new();
+        let mut centres = Vec::new();
         for body in bodies {
             let body = body.borrow();
             own += body.inertia().matrix();
-            centers.push((body.mass_kg(), body.mass_center_m()));
+            centres.push((body.mass_kg(), body.mass_centre_m()));
         }
-        assembled(&centers, own)
+        assembled(&centres, own)
     }
 
     /// What is left when `part`, described in the same frame, is cut out.
@@ -73,11 +73,11 @@ impl MassProperties {
         if !(left > RELATIVE_TOLERANCE * whole) {
             return Err(MassPropertiesError::NothingLeft { whole, part: removed });
         }
-        let (center, own) = (self.mass_center_m(), self.inertia().matrix());
-        let d = center - part.mass_center_m();
+        let (centre, own) = (self.mass_centre_m(), self.inertia().matrix());
+        let d = centre - part.mass_centre_m();
         let lever = point_inertia(removed * (whole / left), &d);
-        let reach = center.norm()
-            + part.mass_center_m().norm()
+        let reach = centre.norm()
+            + part.mass_centre_m().norm()
             + (own.trace().max(0.0).sqrt() / whole.sqrt());
         // μ|d|² m_whole/m, 2μ|d|r and ε μ r²; mass times length first, which overflows last.
         let (mu, distance) = (removed * (whole / left), d.norm());
@@ -87,7 +87,7 @@ impl MassProperties {
             + (RELATIVE_TOLERANCE * mu * reach) * reach;
         let inertia = remainder(own - part.inertia().matrix() - lever, size)
             .map_err(MassPropertiesError::NotAPart)?;
-        Self::new(left, center + d * (removed / left), inertia)
+        Self::new(left, centre + d * (removed / left), inertia)
     }
 }
 
@@ -157,7 +157,7 @@ mod tests {
         let near = MassProperties::point(0.5, [0.5, 0.0, 0.0]).unwrap();
         // K₁ = 1 − 0.5·1/0.5·0.25 = 0.75.
         let left = ball.without(&near).unwrap();
-        assert_eq!(left.mass_center_m().x, -0.5);
+        assert_eq!(left.mass_centre_m().x, -0.5);
         assert_eq!(left.inertia().as_inertia_matrix().second_moment_matrix()[(0, 0)], 0.75);
     }
 
@@ -172,7 +172,7 @@ mod tests {
         // The way that loses it: about the origin and back.
         let about = pair.inertia_about([0.0; 3]).unwrap();
         let back =
-            MassProperties::from_inertia_about([0.0; 3], 8.0, pair.mass_center_m(), about).unwrap();
+            MassProperties::from_inertia_about([0.0; 3], 8.0, pair.mass_centre_m(), about).unwrap();
         assert!((back.inertia().entries()[1] - 1.5).abs() > 0.1);
     }
 
@@ -184,7 +184,7 @@ mod tests {
             let k = std::array::from_fn(|i| if flat[i] { 0.0 } else { k[i] });
             let inertia =
                 Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &axes.attitude());
-            MassProperties::new(body.mass_kg(), body.mass_center_m(), inertia.unwrap()).unwrap()
+            MassProperties::new(body.mass_kg(), body.mass_centre_m(), inertia.unwrap()).unwrap()
         })
     }
 
@@ -198,12 +198,12 @@ mod tests {
             prop_assert!(cloud.inertia().as_inertia_matrix().is_realizable());
             // About the definition's own mass centre, by nalgebra's solver.
             let mass: f64 = points.iter().map(|p| p.0).sum();
-            let center: Vector3<f64> =
+            let centre: Vector3<f64> =
                 points.iter().map(|(m, x)| Vector3::from(*x) * *m).sum::<Vector3<f64>>() / mass;
             let sigma: Matrix3<f64> = points
                 .iter()
                 .map(|(m, x)| {
-                    let d = Vector3::from(*x) - center;
+                    let d = Vector3::from(*x) - centre;
                     d * d.transpose() * *m
                 })
                 .sum();
@@ -212,7 +212,7 @@ mod tests {
             for (a, b) in sorted(expected).iter().zip(sorted(found)) {
                 prop_assert!((a - b).abs() <= 1e-12 * mass * 3e6, "{expected:?} {found:?}");
             }
-            prop_assert!((cloud.mass_center_m() - center).amax() < 1e-9);
+            prop_assert!((cloud.mass_centre_m() - centre).amax() < 1e-9);
         }
 
         #[test]
@@ -237,9 +237,9 @@ mod tests {
             let pose = Isometry3::from_parts((Vector3::from(t) * length * far).into(), q);
             let place = |body: &MassProperties, factor: f64| {
                 let k = body.inertia().matrix() * (factor * length * length);
-                let center = body.mass_center_m() * length;
+                let centre = body.mass_centre_m() * length;
                 let body = MassProperties::new(
-                    body.mass_kg() * factor, center, nearest(k).unwrap()).unwrap();
+                    body.mass_kg() * factor, centre, nearest(k).unwrap()).unwrap();
                 body.transformed(&pose).unwrap()
             };
             let (left, part) = (place(&left, mass), place(&part, mass * ratio));
@@ -250,8 +250,8 @@ mod tests {
             let found = found.unwrap();
             prop_assert!((found.mass_kg() - m).abs() <= 2.0 * f64::EPSILON * w);
             // The rounding of the mass centres times mass times arm, in the terms of the bodies.
-            let arm = (left.mass_center_m() - part.mass_center_m()).norm();
-            let (near, own) = (part.mass_center_m().norm() + arm, whole.inertia().matrix().trace());
+            let arm = (left.mass_centre_m() - part.mass_centre_m()).norm();
+            let (near, own) = (part.mass_centre_m().norm() + arm, whole.inertia().matrix().trace());
             let reach = 3.0 * near + (own / w).sqrt();
             let size = own + m * arm * arm * (1.0 + w / m) + 2.0 * p * arm * reach
                 + RELATIVE_TOLERANCE * p * (w / m) * reach * reach;
@@ -259,7 +259,7 @@ mod tests {
             prop_assert!(error <= RELATIVE_TOLERANCE * size, "{error:e} {size:e}");
 
             // What is not in it: a part aside, across the arm.
-            let across = Vector3::from(aside).cross(&(left.mass_center_m() - part.mass_center_m()));
+            let across = Vector3::from(aside).cross(&(left.mass_centre_m() - part.mass_centre_m()));
             prop_assume!(across.norm() > 0.0);
             // So far that the second moment along it is missed by a hundred times the bound.
             let direction = across.normalize();
@@ -273,7 +273,7 @@ mod tests {
                 / part.inertia().second_moments().values().into_iter().fold(f64::MAX, f64::min);
             prop_assume!(excess.is_finite());
             let heavy = Inertia::new(part.inertia().matrix() * excess).unwrap();
-            let heavy = MassProperties::new(p, part.mass_center_m(), heavy).unwrap();
+            let heavy = MassProperties::new(p, part.mass_centre_m(), heavy).unwrap();
             prop_assert!(whole.without(&heavy).is_err(), "{excess}");
         }
 
@@ -290,7 +290,7 @@ mod tests {
                 Ok(pair) => {
                     prop_assert!(moment >= f64::MIN_POSITIVE);
                     prop_assert_eq!(pair.inertia().entries(), [0.0, moment, moment, 0.0, 0.0, 0.0]);
-                    prop_assert_eq!(pair.mass_center_m().x, 0.5 * x);
+                    prop_assert_eq!(pair.mass_centre_m().x, 0.5 * x);
                 }
                 Err(MassPropertiesError::Lost { .. }) => prop_assert!(moment < f64::MIN_POSITIVE),
                 Err(error) => prop_assert!(moment > 1e306 || mass > 1021, "{}", error),
@@ -324,7 +324,7 @@ mod tests {
             prop_assert!((sum - about(&both)).amax() < 1e-13 * sum.amax());
             // The control: inertias added without their lever arms.
             let forgotten = a.inertia().matrix() + b.inertia().matrix();
-            let d = a.mass_center_m() - b.mass_center_m();
+            let d = a.mass_centre_m() - b.mass_centre_m();
             prop_assume!(d.norm() > 0.1);
             prop_assert!((forgotten - both.inertia().matrix()).amax() > 1e-4);
         }

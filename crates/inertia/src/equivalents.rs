@@ -9,7 +9,7 @@ use crate::{MassProperties, Shape, ShapeError};
 pub struct EquivalentSolid {
     shape: Shape,
     sizes: [f64; 3],
-    center: Vector3<f64>,
+    centre: Vector3<f64>,
     attitude: UnitQuaternion<f64>,
 }
 
@@ -23,8 +23,8 @@ impl EquivalentSolid {
         // Rooting first keeps K/m from overflowing or underflowing.
         let root = square.sqrt() / body.mass_kg().sqrt();
         let sizes = axes.second_moments().map(|k| root * k.max(0.0).sqrt());
-        let (center, attitude) = (body.mass_center_m(), axes.attitude());
-        Ok(Self { shape: shape(sizes)?, sizes, center, attitude })
+        let (centre, attitude) = (body.mass_centre_m(), axes.attitude());
+        Ok(Self { shape: shape(sizes)?, sizes, centre, attitude })
     }
 
     /// Sides of the box, or semi-axes of the ellipsoid, m.
@@ -49,7 +49,7 @@ impl EquivalentSolid {
     /// Where the solid lies: takes points of its own frame to the reference frame of the body.
     #[must_use]
     pub fn pose(&self) -> Isometry3<f64> {
-        Isometry3::from_parts(self.center.into(), self.attitude.inverse())
+        Isometry3::from_parts(self.centre.into(), self.attitude.inverse())
     }
 }
 

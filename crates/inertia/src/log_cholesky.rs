@@ -102,7 +102,7 @@ impl LogCholesky {
         if !(v11 > 0.0 && v22 > 0.0 && v33 > 0.0) {
             return Err(singular);
         }
-        let (mass, t) = (body.mass_kg(), body.mass_center_m());
+        let (mass, t) = (body.mass_kg(), body.mass_centre_m());
         let length = size.sqrt() / mass.sqrt();
         let alpha = 0.5 * libm::log(mass);
         let ln_length = 0.5 * libm::log(size) - alpha;
@@ -147,7 +147,7 @@ impl LogCholesky {
         // No coordinates are those of a point.
         check_lost(INERTIA, inertia_of(&sigma).amax())?;
         let inertia = nearest(inertia_of(&sigma)).map_err(MassPropertiesError::from)?;
-        Ok(MassProperties::new(point.mass_kg(), point.mass_center_m(), inertia)?)
+        Ok(MassProperties::new(point.mass_kg(), point.mass_centre_m(), inertia)?)
     }
 }
 

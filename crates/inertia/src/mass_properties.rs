@@ -52,7 +52,7 @@ pub enum MassPropertiesError {
     Inertia(#[from] RealizabilityError),
     /// The inertia about another point is smaller than the parallel axis term allows.
     #[error("less the parallel axis term, which leaves the inertia about the mass centre: {0}")]
-    AboutMassCenter(#[source] RealizabilityError),
+    AboutMassCentre(#[source] RealizabilityError),
     /// A sum of no bodies.
     #[error("no bodies to add: there must be at least one")]
     Empty,
@@ -87,7 +87,7 @@ impl From<InertiaMatrixError> for MassPropertiesError {
 /// let bus = Shape::solid_box([1.0, 1.0, 2.0])?.of_mass(300.0)?;
 /// let tank = Shape::sphere(0.3)?.of_mass(100.0)?.translated(Vector3::new(0.0, 0.0, 1.3))?;
 /// let craft = MassProperties::combined([bus, tank])?;
-/// assert!((craft.mass_center_m().z - 0.325).abs() < 1e-15);
+/// assert!((craft.mass_centre_m().z - 0.325).abs() < 1e-15);
 /// assert!((craft.without(&tank)?.inertia().matrix() - bus.inertia().matrix()).amax() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -99,7 +99,7 @@ impl From<InertiaMatrixError> for MassPropertiesError {
 )]
 pub struct MassProperties {
     mass: f64,
-    center: Vector3<f64>,
+    centre: Vector3<f64>,
     inertia: Inertia,
 }
 
@@ -110,13 +110,13 @@ impl MassProperties {
     /// The mass is not positive and finite, or a coordinate not finite or beyond [`MAX_LENGTH`].
     pub fn new(
         mass_kg: f64,
-        mass_center_m: impl Into<Vector3<f64>>,
+        mass_centre_m: impl Into<Vector3<f64>>,
         inertia: Inertia,
     ) -> Result<Self, MassPropertiesError> {
-        let center = mass_center_m.into();
+        let centre = mass_centre_m.into();
         check_mass(mass_kg)?;
-        check_vector("mass centre", &center)?;
-        Ok(Self { mass: mass_kg, center, inertia })
+        check_vector("mass centre", &centre)?;
+        Ok(Self { mass: mass_kg, centre, inertia })
     }
 
     /// A point mass (kg) at `position_m`.
@@ -136,22 +136,22 @@ impl MassProperties {
     ///
     /// # Errors
     /// As [`MassProperties::new`], or I_c is no body's
-    /// ([`AboutMassCenter`](MassPropertiesError::AboutMassCenter)).
+    /// ([`AboutMassCentre`](MassPropertiesError::AboutMassCentre)).
     pub fn from_inertia_about(
         point_m: impl Into<Vector3<f64>>,
         mass_kg: f64,
-        mass_center_m: impl Into<Vector3<f64>>,
+        mass_centre_m: impl Into<Vector3<f64>>,
         inertia: impl Into<InertiaMatrix>,
     ) -> Result<Self, MassPropertiesError> {
-        let (point, center, about) = (point_m.into(), mass_center_m.into(), inertia.into());
+        let (point, centre, about) = (point_m.into(), mass_centre_m.into(), inertia.into());
         check_mass(mass_kg)?;
         check_vector("point", &point)?;
-        check_vector("mass centre", &center)?;
-        let moved = point_inertia(mass_kg, &(center - point));
+        check_vector("mass centre", &centre)?;
+        let moved = point_inertia(mass_kg, &(centre - point));
         let size = about.matrix().amax().max(moved.amax());
         let inertia = remainder(about.matrix() - moved, size)
-            .map_err(MassPropertiesError::AboutMassCenter)?;
-        Self::new(mass_kg, center, inertia)
+            .map_err(MassPropertiesError::AboutMassCentre)?;
+        Self::new(mass_kg, centre, inertia)
     }
 
     /// Mass m, kg.
@@ -162,8 +162,8 @@ impl MassProperties {
 
     /// Mass centre c in the reference frame, m.
     #[must_use]
-    pub fn mass_center_m(&self) -> Vector3<f64> {
-        self.center
+    pub fn mass_centre_m(&self) -> Vector3<f64> {
+        self.centre
     }
 
     /// Inertia about the mass centre, axes parallel to the reference frame, kg·m².
@@ -183,7 +183,7 @@ impl MassProperties {
     ) -> Result<InertiaMatrix, MassPropertiesError> {
         let point = point_m.into();
         check_vector("point", &point)?;
-        let moved = point_inertia(self.mass, &(self.center - point));
+        let moved = point_inertia(self.mass, &(self.centre - point));
         Ok(InertiaMatrix::new(self.inertia.matrix() + moved)?)
     }
 
@@ -206,7 +206,7 @@ impl MassProperties {
         // First, because it judges the quaternion.
         let inertia = self.inertia.rotated(&pose.rotation)?;
         let rotation = UnitQuaternion::new_normalize(pose.rotation.into_inner());
-        Self::new(self.mass, rotation * self.center + pose.translation.vector, inertia)
+        Self::new(self.mass, rotation * self.centre + pose.translation.vector, inertia)
     }
 
     /// The same body turned about the origin: x becomes R x.
@@ -225,7 +225,7 @@ impl MassProperties {
         &self,
         translation_m: impl Into<Vector3<f64>>,
     ) -> Result<Self, MassPropertiesError> {
-        Self::new(self.mass, self.center + translation_m.into(), self.inertia)
+        Self::new(self.mass, self.centre + translation_m.into(), self.inertia)
     }
 
     /// The same shape, everywhere `factor` times as dense.
@@ -239,7 +239,7 @@ impl MassProperties {
         let mass = self.mass * factor;
         check_mass(mass).and_then(|()| check_lost("mass, kg", mass))?;
         let inertia = nearest(self.inertia.matrix() * factor)?;
-        Self::new(mass, self.center, self.kept(inertia)?)
+        Self::new(mass, self.centre, self.kept(inertia)?)
     }
 
     /// The same shape of another mass (kg).
@@ -255,7 +255,7 @@ impl MassProperties {
             // Masses at opposite ends of the range: I/m is not, being squares of lengths.
             own.map(|x| x / self.mass * mass_kg)
         };
-        Self::new(mass_kg, self.center, self.kept(nearest(scaled)?)?)
+        Self::new(mass_kg, self.centre, self.kept(nearest(scaled)?)?)
     }
 
     /// A scaled inertia, unless one that was not zero has lost its digits.
@@ -298,7 +298,7 @@ pub(crate) fn check_vector(
 #[serde(deny_unknown_fields)]
 struct Fields {
     mass_kg: f64,
-    mass_center_m: [f64; 3],
+    mass_centre_m: [f64; 3],
     inertia_kg_m2: Inertia,
 }
 
@@ -307,14 +307,14 @@ impl TryFrom<Fields> for MassProperties {
     type Error = MassPropertiesError;
 
     fn try_from(fields: Fields) -> Result<Self, MassPropertiesError> {
-        Self::new(fields.mass_kg, fields.mass_center_m, fields.inertia_kg_m2)
+        Self::new(fields.mass_kg, fields.mass_centre_m, fields.inertia_kg_m2)
     }
 }
 
 #[cfg(feature = "serde")]
 impl From<MassProperties> for Fields {
     fn from(body: MassProperties) -> Self {
-        Self { mass_kg: body.mass, mass_center_m: body.center.into(), inertia_kg_m2: body.inertia }
+        Self { mass_kg: body.mass, mass_centre_m: body.centre.into(), inertia_kg_m2: body.inertia }
     }
 }
 
@@ -342,7 +342,7 @@ pub(crate) mod tests {
     /// Largest difference of mass (kg), mass centre (m) and inertia (kg·m²).
     pub(crate) fn distance(a: &MassProperties, b: &MassProperties) -> f64 {
         let inertia = (a.inertia.matrix() - b.inertia.matrix()).amax();
-        (a.mass - b.mass).abs().max((a.center - b.center).amax()).max(inertia)
+        (a.mass - b.mass).abs().max((a.centre - b.centre).amax()).max(inertia)
     }
 
     /// Meriam & Kraige, *Engineering Mechanics: Dynamics*, App. D: a slender rod, m l²/12 about
@@ -363,7 +363,7 @@ pub(crate) mod tests {
         let about = InertiaMatrix::from_entries([1.0, 2.9, 3.5], [0.0; 3]).unwrap();
         let error =
             MassProperties::from_inertia_about([0.0; 3], 3.0, [1.0, 0.0, 0.0], about).unwrap_err();
-        assert!(matches!(error, MassPropertiesError::AboutMassCenter(_)));
+        assert!(matches!(error, MassPropertiesError::AboutMassCentre(_)));
         assert!(error.to_string().starts_with("less the parallel axis term"), "{error}");
     }
 
@@ -401,7 +401,7 @@ pub(crate) mod tests {
         ) {
             let about = body.inertia_about(point).unwrap();
             let back =
-                MassProperties::from_inertia_about(point, body.mass, body.center, about).unwrap();
+                MassProperties::from_inertia_about(point, body.mass, body.centre, about).unwrap();
             prop_assert!(distance(&body, &back) < 1e-13 * about.matrix().amax());
             // About no point is a moment of inertia smaller than about the mass centre.
             let rise = about.matrix().diagonal() - body.inertia.matrix().diagonal();
@@ -527,7 +527,7 @@ pub(crate) mod tests {
         let body = MassProperties::point(2.0, [1.0, 0.0, 0.5]).unwrap();
         let json = serde_json::to_string(&body).unwrap();
         assert!(
-            json.starts_with(r#"{"mass_kg":2.0,"mass_center_m":[1.0,0.0,0.5],"inertia_kg_m2":"#)
+            json.starts_with(r#"{"mass_kg":2.0,"mass_centre_m":[1.0,0.0,0.5],"inertia_kg_m2":"#)
         );
         assert_eq!(serde_json::from_str::<MassProperties>(&json).unwrap(), body);
         assert!(serde_json::from_str::<MassProperties>(&json.replace("2.0", "-2.0")).is_err());

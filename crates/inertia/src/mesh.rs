@@ -101,7 +101,7 @@ pub enum MeshError {
 /// let mesh = TriangleMesh::new(&corners, &faces)?;
 /// assert!((mesh.volume_m3() - 1.0 / 6.0).abs() < 1e-15);
 /// let body = mesh.of_density(2700.0)?;
-/// assert!((body.mass_kg() - 450.0).abs() < 1e-12 && (body.mass_center_m().x - 0.25).abs() < 1e-15);
+/// assert!((body.mass_kg() - 450.0).abs() < 1e-12 && (body.mass_centre_m().x - 0.25).abs() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -310,7 +310,7 @@ pub(crate) mod tests {
         let found = mesh.of_density(2.0).unwrap();
         let expected = Shape::solid_box([1.0, 2.0, 3.0]).unwrap().of_density(2.0).unwrap();
         assert_eq!(found.mass_kg(), 12.0);
-        assert_eq!(found.mass_center_m(), Vector3::zeros());
+        assert_eq!(found.mass_centre_m(), Vector3::zeros());
         assert!((found.inertia().matrix() - expected.inertia().matrix()).amax() < 1e-14);
     }
 
@@ -328,8 +328,8 @@ pub(crate) mod tests {
             let found = mesh.of_mass(12.0).unwrap();
             let expected = Shape::solid_box([1.0, 2.0, 3.0]).unwrap().of_mass(12.0).unwrap();
             assert!((found.inertia().matrix() - expected.inertia().matrix()).amax() < 1e-13);
-            let center = Vector3::new(distance + 0.5, 1.0 - distance, distance + 1.5);
-            assert_eq!(found.mass_center_m(), center);
+            let centre = Vector3::new(distance + 0.5, 1.0 - distance, distance + 1.5);
+            assert_eq!(found.mass_centre_m(), centre);
         }
     }
 
@@ -368,13 +368,13 @@ pub(crate) mod tests {
         let mut faces = FACES.to_vec();
         faces.extend(inside_out(&FACES).iter().map(|f| f.map(|i| i + 8)));
         let found = TriangleMesh::new(&vertices, &faces).unwrap().of_density(3.0).unwrap();
-        let of = |side: f64, center: [f64; 3]| {
+        let of = |side: f64, centre: [f64; 3]| {
             let solid = Shape::solid_box([side; 3]).unwrap().of_density(3.0).unwrap();
-            solid.translated(center).unwrap()
+            solid.translated(centre).unwrap()
         };
         let expected = of(2.0, [1.0; 3]).without(&of(0.5, [0.75, 0.75, 0.5])).unwrap();
         assert!((found.inertia().matrix() - expected.inertia().matrix()).amax() < 1e-13);
-        assert!((found.mass_center_m() - expected.mass_center_m()).amax() < 1e-15);
+        assert!((found.mass_centre_m() - expected.mass_centre_m()).amax() < 1e-15);
     }
 
     #[test]
@@ -502,8 +502,8 @@ pub(crate) mod tests {
                 faces.extend(faces.clone().iter().map(|face| face.map(|i| i + n)));
                 let k = crate::SecondMoments::new([length * length / 12.0, across, across]).unwrap();
                 let other = crate::Inertia::from_second_moments(k, &Default::default()).unwrap();
-                let center = [0.5 * length + 2.0 * radius, 0.0, 0.0];
-                let other = MassProperties::new(1.0, center, other).unwrap();
+                let centre = [0.5 * length + 2.0 * radius, 0.0, 0.0];
+                let other = MassProperties::new(1.0, centre, other).unwrap();
                 body = MassProperties::combined([body, other]).unwrap().with_mass(1.0).unwrap();
                 volume *= 2.0;
             }
@@ -523,8 +523,8 @@ pub(crate) mod tests {
             let Ok(found) = found else { return Ok(()) };
             prop_assert!((found.volume_m3() / volume - 1.0).abs() < bound, "{} {bound:e}", found.volume_m3() / volume - 1.0);
             let found = found.of_mass(1.0).unwrap();
-            let center = (found.mass_center_m() - expected.mass_center_m()).amax();
-            prop_assert!(center < bound * length + 4.0 * f64::EPSILON * reach, "{center:e}");
+            let centre = (found.mass_centre_m() - expected.mass_centre_m()).amax();
+            prop_assert!(centre < bound * length + 4.0 * f64::EPSILON * reach, "{centre:e}");
             let inertia = (found.inertia().matrix() - expected.inertia().matrix()).amax();
             prop_assert!(inertia < bound * length * length, "{inertia:e}");
         }
@@ -546,7 +546,7 @@ pub(crate) mod tests {
             let mean: Vector3<f64> = points.iter().map(|p| Vector3::from(*p)).sum::<Vector3<f64>>() / 4.0;
             let corners = points.map(|p| (1.0, p));
             let cloud = MassProperties::from_points(corners).unwrap();
-            prop_assert!((body.mass_center_m() - mean).amax() < 1e-14);
+            prop_assert!((body.mass_centre_m() - mean).amax() < 1e-14);
             prop_assert!((body.inertia().matrix() - cloud.inertia().matrix()).amax() < 1e-13);
 
             let pose = nalgebra::Isometry3::new(Vector3::from(t), Vector3::from(v));
@@ -554,7 +554,7 @@ pub(crate) mod tests {
             let moved = of(&moved).unwrap().of_mass(20.0).unwrap();
             let expected = body.transformed(&pose).unwrap();
             prop_assert!((moved.inertia().matrix() - expected.inertia().matrix()).amax() < 1e-11);
-            prop_assert!((moved.mass_center_m() - expected.mass_center_m()).amax() < 1e-11);
+            prop_assert!((moved.mass_centre_m() - expected.mass_centre_m()).amax() < 1e-11);
         }
 
         #[test]

@@ -12,7 +12,7 @@ pub(crate) struct Polyhedron {
     pub(crate) volume: f64,
     /// Whether the rounding of the vertices could have made the volume; then the rest means nothing.
     pub(crate) is_flat: bool,
-    center: Vector3<f64>,
+    centre: Vector3<f64>,
     /// Σ_c/m, m².
     sigma: Matrix3<f64>,
 }
@@ -31,8 +31,8 @@ impl Polyhedron {
         // coordinate over- or underflows; zero for subnormal sizes.
         let unit = f64::from_bits((high - low).max().to_bits() & 0x7FF0_0000_0000_0000);
         if unit == 0.0 {
-            let (center, sigma) = (low, Matrix3::zeros());
-            return Self { volume: 0.0, is_flat: true, center, sigma };
+            let (centre, sigma) = (low, Matrix3::zeros());
+            return Self { volume: 0.0, is_flat: true, centre, sigma };
         }
         let middle = low + (high - low) * 0.5;
         let about_middle = |corner: Vector3<f64>| {
@@ -45,12 +45,12 @@ impl Polyhedron {
         let rounding = (place + (high - low) * (4.0 * f64::EPSILON)) / unit;
         // Negated because of infinity times zero.
         let is_flat = !(sums.volume.value().abs() > 3.0 * rounding.dot(&sums.area));
-        let (center, sigma) =
-            if is_flat { (Vector3::zeros(), Matrix3::zeros()) } else { sums.center_and_sigma() };
+        let (centre, sigma) =
+            if is_flat { (Vector3::zeros(), Matrix3::zeros()) } else { sums.centre_and_sigma() };
         Self {
             volume: sums.volume.value() / 6.0 * unit * unit * unit,
             is_flat,
-            center: middle + center * unit,
+            centre: middle + centre * unit,
             sigma: sigma * unit * unit,
         }
     }
@@ -58,7 +58,7 @@ impl Polyhedron {
     /// The body of 1 kg, evenly filled.
     pub(crate) fn of_unit_mass(&self) -> Result<MassProperties, MassPropertiesError> {
         let matrix = inertia_of(&self.sigma);
-        MassProperties::new(1.0, self.center, remainder(matrix, matrix.amax())?)
+        MassProperties::new(1.0, self.centre, remainder(matrix, matrix.amax())?)
     }
 }
 
@@ -105,15 +105,15 @@ impl Sums {
     }
 
     /// The mass centre, and Σ_c/m about it.
-    fn center_and_sigma(&self) -> (Vector3<f64>, Matrix3<f64>) {
-        let center = self.first.map(|first| first.over(Double::from(4.0) * self.volume));
+    fn centre_and_sigma(&self) -> (Vector3<f64>, Matrix3<f64>) {
+        let centre = self.first.map(|first| first.over(Double::from(4.0) * self.volume));
         let mut sigma = Matrix3::zeros();
         for (second, (i, j)) in self.second.iter().zip(ENTRIES) {
             let about_origin = second.over(Double::from(20.0) * self.volume);
-            let entry = (about_origin - center[i] * center[j]).value();
+            let entry = (about_origin - centre[i] * centre[j]).value();
             (sigma[(i, j)], sigma[(j, i)]) = (entry, entry);
         }
-        (center.map(Double::value).into(), sigma)
+        (centre.map(Double::value).into(), sigma)
     }
 }
 
@@ -143,7 +143,7 @@ mod tests {
         let vertices = [[0.0; 3], [1e3, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let needle = Polyhedron::of(&vertices, &FACES);
         assert!((needle.volume * 6e-3 - 1.0).abs() < 1e-15, "{}", needle.volume);
-        assert_eq!(needle.center, Vector3::new(250.0, 0.25, 0.25));
+        assert_eq!(needle.centre, Vector3::new(250.0, 0.25, 0.25));
         // Σ_c/m of a tetrahedron is 1/20 of its corners' about their mean.
         assert!((needle.sigma[(0, 0)] / 37500.0 - 1.0).abs() < 1e-15);
         assert!((needle.sigma[(1, 1)] * 80.0 / 3.0 - 1.0).abs() < 1e-14, "{}", needle.sigma);
@@ -168,7 +168,7 @@ mod tests {
         let parts = [of(&body, &FACES), of(&speck, &FACES)];
         let expected = MassProperties::combined(parts).unwrap();
         let found = of(&all, &faces);
-        assert!((found.mass_center_m() - expected.mass_center_m()).amax() < 1e-10);
+        assert!((found.mass_centre_m() - expected.mass_centre_m()).amax() < 1e-10);
         let error = (found.inertia().matrix() - expected.inertia().matrix()).amax();
         assert!(error < 1e-9 * expected.inertia().matrix().amax(), "{error:e}");
     }

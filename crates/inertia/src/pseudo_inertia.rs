@@ -104,11 +104,11 @@ impl PseudoInertia {
         }
         let mass = symmetric[(3, 3)];
         let sigma: Matrix3<f64> = symmetric.fixed_view::<3, 3>(0, 0).into();
-        let center: Vector3<f64> = symmetric.fixed_view::<3, 1>(0, 3) / mass;
-        let point = MassProperties::point(mass, center)?;
-        let inertia = remainder(inertia_of(&(sigma - outer(mass, &center))), sigma.amax())
-            .map_err(MassPropertiesError::AboutMassCenter)?;
-        let body = MassProperties::new(mass, point.mass_center_m(), inertia)?;
+        let centre: Vector3<f64> = symmetric.fixed_view::<3, 1>(0, 3) / mass;
+        let point = MassProperties::point(mass, centre)?;
+        let inertia = remainder(inertia_of(&(sigma - outer(mass, &centre))), sigma.amax())
+            .map_err(MassPropertiesError::AboutMassCentre)?;
+        let body = MassProperties::new(mass, point.mass_centre_m(), inertia)?;
         Ok(Self { matrix: symmetric, body })
     }
 
@@ -117,11 +117,11 @@ impl PseudoInertia {
     /// # Errors
     /// An entry is too large.
     pub fn of(body: &MassProperties) -> Result<Self, PseudoInertiaError> {
-        let (mass, center) = (body.mass_kg(), body.mass_center_m());
+        let (mass, centre) = (body.mass_kg(), body.mass_centre_m());
         let own = body.inertia().as_inertia_matrix().second_moment_matrix();
         let mut matrix = Matrix4::zeros();
-        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&(own + outer(mass, &center)));
-        let first = center * mass;
+        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&(own + outer(mass, &centre)));
+        let first = centre * mass;
         for i in 0..3 {
             (matrix[(i, 3)], matrix[(3, i)]) = (first[i], first[i]);
         }
@@ -242,7 +242,7 @@ mod tests {
     fn serde_goes_through_the_constructor() {
         let json = "[[1.0,0.0,0.0,0.5],[0.0,1.0,0.0,0.0],[0.0,0.0,1.0,0.0],[0.5,0.0,0.0,2.0]]";
         let pseudo: PseudoInertia = serde_json::from_str(json).unwrap();
-        assert_eq!(pseudo.mass_properties().mass_center_m().x, 0.25);
+        assert_eq!(pseudo.mass_properties().mass_centre_m().x, 0.25);
         assert_eq!(serde_json::to_string(&pseudo).unwrap(), json);
         assert!(serde_json::from_str::<PseudoInertia>(&json.replace("2.0", "0.0")).is_err());
     }

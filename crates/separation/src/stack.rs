@@ -83,7 +83,7 @@ impl Stack {
     pub fn new(payload: (&MassProperties, BodyState), stage: (&MassProperties, BodyState)) -> Self {
         let placed = |(properties, state): (&MassProperties, BodyState)| {
             let inertia = *properties.inertia().as_inertia_matrix();
-            let centre = properties.mass_center_m();
+            let centre = properties.mass_centre_m();
             Placed { centre, ..Placed::new(properties.mass_kg(), inertia, state) }
         };
         Self::of([placed(payload), placed(stage)])

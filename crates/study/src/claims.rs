@@ -343,10 +343,10 @@ impl std::fmt::Display for Shape {
 /// 99.9 % interval, twelve distributions being looked at; none with too few values.
 fn dip(standard: impl Iterator<Item = f64>) -> Option<f64> {
     const Z: f64 = 3.29;
-    let (mut center, mut shoulders) = (0.0, 0.0);
+    let (mut centre, mut shoulders) = (0.0, 0.0);
     for z in standard {
         if z < 0.25 {
-            center += 1.0;
+            centre += 1.0;
         } else if (0.75..1.25).contains(&z) {
             shoulders += 1.0;
         }
@@ -355,8 +355,8 @@ fn dip(standard: impl Iterator<Item = f64>) -> Option<f64> {
         return None;
     }
     // The shoulders are twice as wide as the centre.
-    let ratio = 2.0 * f64::max(center, 0.5) / shoulders;
-    let error = (1.0 / f64::max(center, 0.5) + 1.0 / shoulders).sqrt();
+    let ratio = 2.0 * f64::max(centre, 0.5) / shoulders;
+    let error = (1.0 / f64::max(centre, 0.5) + 1.0 / shoulders).sqrt();
     Some(ratio * (Z * error).exp())
 }
 

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
 
 use super::{SMALLEST_VARIANCE, likelihood::Evaluation, point::turn_of_last_axis};
-use crate::{fisher_bingham::centering_shift, jacobi};
+use crate::{fisher_bingham::centring_shift, jacobi};
 
 /// The law is ∝ exp of a linear combination of w_i, −½ w_i² and −w_i w_j. As |v| = 1 one of the 14
 /// depends on the others.
@@ -33,7 +33,7 @@ impl Centered {
     pub(crate) fn new(axes: Matrix4<f64>, precisions: [f64; 4], b: [f64; 4]) -> Self {
         let floor = precisions.into_iter().fold(f64::INFINITY, f64::min);
         let above = precisions.map(|p| p - floor);
-        let shift = centering_shift(above, b);
+        let shift = centring_shift(above, b);
         let lambda = above.map(|p| p + shift);
         Self { axes, lambda, center: std::array::from_fn(|j| b[j] / lambda[j]) }
     }

@@ -248,7 +248,7 @@ fn model_moments(
     // The moment of w₁^a w₂^b w₃^c w₄^d has index 125 a + 25 b + 5 c + d.
     const PLACE: [usize; 4] = [125, 25, 5, 1];
     let mut moments = [0.0; 625];
-    for (weight, offset, variance) in contour.nodes_about_center() {
+    for (weight, offset, variance) in contour.nodes_about_centre() {
         let powers: [[C64; 5]; 4] = std::array::from_fn(|i| {
             let (m, c) = (offset[i] * roots[i], variance[i] * law.lambda[i]);
             let square = m * m;

@@ -20,7 +20,7 @@ pub(super) struct Point {
 #[derive(Clone, Debug)]
 pub(super) struct Circle {
     pub(super) lambda: [f64; 2],
-    pub(super) center: [f64; 2],
+    pub(super) centre: [f64; 2],
     /// |c| − 1 of all four, by which c is shortened.
     pub(super) excess: f64,
 }
@@ -38,7 +38,7 @@ pub(super) struct Maxima {
 
 impl Circle {
     pub(super) fn distance(&self) -> f64 {
-        libm::hypot(self.center[0], self.center[1])
+        libm::hypot(self.centre[0], self.centre[1])
     }
 
     /// The smaller deviation.
@@ -47,7 +47,7 @@ impl Circle {
     }
 
     pub(super) fn exponent(&self, r: f64, sin: f64, cos: f64) -> f64 {
-        let [a, b] = self.center.map(f64::abs);
+        let [a, b] = self.centre.map(f64::abs);
         // In this order: c·(1 − excess) would round to c.
         let u = (r * cos - a) + a * self.excess;
         let v = (r * sin - b) + b * self.excess;
@@ -61,7 +61,7 @@ impl Circle {
 
     /// The exponent on the circle is nowhere larger.
     pub(super) fn bound(&self, r: f64) -> f64 {
-        let gap = |j: usize| (self.center[j].abs() - r).max(0.0);
+        let gap = |j: usize| (self.centre[j].abs() - r).max(0.0);
         let off = r - self.distance();
         let ridges = self.lambda[0] * gap(0) * gap(0) + self.lambda[1] * gap(1) * gap(1);
         -0.5 * ridges.max(self.lambda[1] * off * off)
@@ -73,7 +73,7 @@ impl Circle {
     /// −B₁/B₀: two zeros if the centre lies inside the ellipse's evolute.
     pub(super) fn maxima(&self, r: f64) -> Maxima {
         let d = (self.lambda[0] - self.lambda[1]) * r;
-        let b = [self.lambda[0] * self.center[0].abs(), self.lambda[1] * self.center[1].abs()];
+        let b = [self.lambda[0] * self.centre[0].abs(), self.lambda[1] * self.centre[1].abs()];
         // Each in its own angle from the start of the quadrant's axis, with the signs of the terms.
         let zero = |signs: [f64; 3], low: f64, high: f64| {
             sign_change(r, [signs[0] * d, signs[1] * b[0], signs[2] * b[1]], low, high)
@@ -158,7 +158,7 @@ impl Circle {
         let density = libm::exp(self.exponent(r, sin, cos) - top);
         // Back to the quadrant of the true centre.
         let mirrored = |value: f64, c: f64| if c < 0.0 { -value } else { value };
-        Point { cos: mirrored(cos, self.center[0]), sin: mirrored(sin, self.center[1]), density }
+        Point { cos: mirrored(cos, self.centre[0]), sin: mirrored(sin, self.centre[1]), density }
     }
 
     /// Where the exponent, which falls between a maximum and a minimum, passes the floor.

@@ -74,8 +74,8 @@ impl RadiallyConstrainedGaussian {
     /// ```
     #[must_use]
     pub fn by_quadrature(&self) -> AngularQuadrature {
-        let (axes, lambda, center, _) = self.law().eigenform();
-        AngularQuadrature::new(Planes::new(axes, lambda, center, excess(center)), 0.0)
+        let (axes, lambda, centre, _) = self.law().eigenform();
+        AngularQuadrature::new(Planes::new(axes, lambda, centre, excess(centre)), 0.0)
     }
 }
 
@@ -85,8 +85,8 @@ impl FisherBingham {
     /// [`second_moment`](Self::second_moment) by another way.
     #[must_use]
     pub fn by_quadrature(&self) -> AngularQuadrature {
-        let (axes, lambda, center, ln_offset) = self.eigenform();
-        AngularQuadrature::new(Planes::new(axes, lambda, center, 0.0), ln_offset)
+        let (axes, lambda, centre, ln_offset) = self.eigenform();
+        AngularQuadrature::new(Planes::new(axes, lambda, centre, 0.0), ln_offset)
     }
 }
 
@@ -254,12 +254,12 @@ struct Scratch {
 impl Planes {
     /// For the density exp(−½ Σ λ(y − c)²), x = V y, with λ > 0 and |c| ≤ 1. A law with a mean means
     /// |c| = 1, whose rounding, `excess`, would count √λ times as much in C.
-    fn new(axes: &Matrix4<f64>, lambda: [f64; 4], center: [f64; 4], excess: f64) -> Self {
+    fn new(axes: &Matrix4<f64>, lambda: [f64; 4], centre: [f64; 4], excess: f64) -> Self {
         let mut order = [0, 1, 2, 3];
         order.sort_by(|&i, &j| lambda[j].total_cmp(&lambda[i]));
         let circle = |i: usize, j: usize| Circle {
             lambda: [lambda[order[i]], lambda[order[j]]],
-            center: [center[order[i]], center[order[j]]],
+            centre: [centre[order[i]], centre[order[j]]],
             excess,
         };
         let circles = [circle(0, 1), circle(2, 3)];
@@ -288,10 +288,10 @@ impl Planes {
         let [first, second] = &self.circles;
         let legs = |r: f64| ((1.0 - r) * (1.0 + r)).max(0.0).sqrt();
         let mut marks = vec![(libm::atan2(second.distance(), first.distance()), first.width())];
-        for r in [first.center[0].abs(), first.center[1].abs(), first.distance()] {
+        for r in [first.centre[0].abs(), first.centre[1].abs(), first.distance()] {
             marks.push((libm::atan2(legs(r), r), first.width()));
         }
-        for r in [second.center[0].abs(), second.center[1].abs(), second.distance()] {
+        for r in [second.centre[0].abs(), second.centre[1].abs(), second.distance()] {
             marks.push((libm::atan2(r, legs(r)), second.width()));
         }
         let mut ends: Vec<f64> = marks.iter().map(|mark| mark.0).collect();
@@ -409,9 +409,9 @@ impl Planes {
 }
 
 /// |c| − 1 for |c| near 1, to many digits.
-fn excess(center: [f64; 4]) -> f64 {
+fn excess(centre: [f64; 4]) -> f64 {
     let (mut sum, mut rest) = (-1.0, 0.0);
-    for c in center {
+    for c in centre {
         let square = c * c;
         let total = sum + square;
         let part = total - sum;

@@ -174,9 +174,9 @@ impl RadiallyConstrainedGaussian {
         axes: Matrix4<f64>,
     ) -> Self {
         let lambda = eigenvalues.map(|s| 1.0 / s);
-        let center = axes.tr_mul(&mean.coords);
+        let centre = axes.tr_mul(&mean.coords);
         let precision = axes * Matrix4::from_diagonal(&lambda.into()) * axes.transpose();
-        let law = FisherBingham::centered(axes, lambda, center.into(), 0.0, 0.0);
+        let law = FisherBingham::centred(axes, lambda, centre.into(), 0.0, 0.0);
         Self {
             mean,
             covariance,
@@ -240,7 +240,7 @@ impl RadiallyConstrainedGaussian {
     /// ln C = ln ∫ exp(−½ (x − m)ᵀ Σ⁻¹ (x − m)) dS over S³; the c of Peck (2003, Eq. 21) is 1/C.
     #[must_use]
     pub fn ln_normaliser(&self) -> f64 {
-        self.law.ln_centered_normaliser()
+        self.law.ln_centred_normaliser()
     }
 
     /// The logarithm of the density at q, with respect to surface measure on S³.
@@ -325,8 +325,8 @@ impl RadiallyConstrainedGaussian {
     /// ```
     #[must_use]
     pub fn far_half_share(&self) -> f64 {
-        let (_, lambda, center, _) = self.law.eigenform();
-        let share = libm::exp(far_half::ln_integral(lambda, center) - self.ln_normaliser());
+        let (_, lambda, centre, _) = self.law.eigenform();
+        let share = libm::exp(far_half::ln_integral(lambda, centre) - self.ln_normaliser());
         if share > 1.0 { 1.0 } else { share }
     }
 

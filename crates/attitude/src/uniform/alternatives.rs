@@ -35,7 +35,7 @@ pub struct ShoemakeUniform;
 pub struct BoxUniform;
 
 /// A uniform number in [−1, 1).
-fn centered<R: Rng + ?Sized>(rng: &mut R) -> f64 {
+fn centred<R: Rng + ?Sized>(rng: &mut R) -> f64 {
     2.0 * rng.random::<f64>() - 1.0
 }
 
@@ -47,7 +47,7 @@ impl Distribution<UnitQuaternion<f64>> for MarsagliaUniform {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> UnitQuaternion<f64> {
         let mut disc = || loop {
-            let (x, y) = (centered(rng), centered(rng));
+            let (x, y) = (centred(rng), centred(rng));
             let square = x * x + y * y;
             // The centre would be divided by.
             if square < 1.0 && square > 1e-30 {
@@ -76,7 +76,7 @@ impl Distribution<UnitQuaternion<f64>> for BoxUniform {
     #[inline]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> UnitQuaternion<f64> {
         loop {
-            let (x, y, z, w) = (centered(rng), centered(rng), centered(rng), centered(rng));
+            let (x, y, z, w) = (centred(rng), centred(rng), centred(rng), centred(rng));
             let square = x * x + y * y + z * z + w * w;
             if square <= 1.0 && square > 1e-16 {
                 let scale = 1.0 / square.sqrt();

@@ -36,7 +36,7 @@ struct Chart {
 
 #[derive(Clone, Copy)]
 struct Cell {
-    center: [f64; 3],
+    centre: [f64; 3],
     half: [f64; 3],
     values: [f64; INTEGRALS],
     errors: [f64; INTEGRALS],
@@ -54,14 +54,14 @@ impl<W: Fn(&[f64; 4]) -> f64> HalfSphere<W> {
             for j in 0..2 {
                 for k in 0..4 {
                     let (i, j, k) = (f64::from(i), f64::from(j), f64::from(k));
-                    let center = [(i + 0.5) / 3.0, j - 0.5, TAU * (k + 0.5) / 4.0];
-                    fresh.push((center, [1.0 / 6.0, 0.5, TAU / 8.0]));
+                    let centre = [(i + 0.5) / 3.0, j - 0.5, TAU * (k + 0.5) / 4.0];
+                    fresh.push((centre, [1.0 / 6.0, 0.5, TAU / 8.0]));
                 }
             }
         }
         loop {
-            for (center, half) in fresh.drain(..) {
-                let cell = found.integrate(center, half);
+            for (centre, half) in fresh.drain(..) {
+                let cell = found.integrate(centre, half);
                 found.boxes.push(cell);
             }
             let mut totals = [0.0; INTEGRALS];
@@ -91,9 +91,9 @@ impl<W: Fn(&[f64; 4]) -> f64> HalfSphere<W> {
                 let mut half = cell.half;
                 half[cell.split] *= 0.5;
                 for side in [-1.0, 1.0] {
-                    let mut center = cell.center;
-                    center[cell.split] += side * half[cell.split];
-                    fresh.push((center, half));
+                    let mut centre = cell.centre;
+                    centre[cell.split] += side * half[cell.split];
+                    fresh.push((centre, half));
                 }
             }
         }
@@ -117,9 +117,9 @@ impl<W: Fn(&[f64; 4]) -> f64> HalfSphere<W> {
         })
     }
 
-    fn integrate(&self, center: [f64; 3], half: [f64; 3]) -> Cell {
+    fn integrate(&self, centre: [f64; 3], half: [f64; 3]) -> Cell {
         let nothing = [0.0; INTEGRALS];
-        let mut cell = Cell { center, half, values: nothing, errors: nothing, split: 0 };
+        let mut cell = Cell { centre, half, values: nothing, errors: nothing, split: 0 };
         let mut coarse = nothing;
         let mut densities = [0.0; NODES];
         let volume: f64 = half.iter().product();
@@ -170,7 +170,7 @@ impl Chart {
 
     /// The density at a place of a box, each from −1 to 1, with respect to the box's coordinates; x, and w.
     fn node(&self, cell: &Cell, at: &[f64; 3]) -> (f64, [f64; 4], Vector3<f64>) {
-        let [t, c, phi] = std::array::from_fn(|i| cell.center[i] + cell.half[i] * at[i]);
+        let [t, c, phi] = std::array::from_fn(|i| cell.centre[i] + cell.half[i] * at[i]);
         let rest = 1.0 - t;
         let radius = t / rest;
         let across = ((1.0 - c) * (1.0 + c)).max(0.0).sqrt();

@@ -217,13 +217,13 @@ impl PrincipalFit {
         }
         let turns = self.turns();
         if let Some(observed) = omnibus(&turns) {
-            let center = self.center();
+            let centre = self.centre();
             let mut densities = Vec::new();
             let (p_value, least) = bootstrap(observed, n, &mut tick, || {
                 let samples: Vec<Sample> = (0..n)
                     .map(|_| {
                         let roots = self.law.roots().sample(rng).values().map(f64::abs);
-                        center.relabel(&Sample { roots, attitude: self.law.axes().sample(rng) })
+                        centre.relabel(&Sample { roots, attitude: self.law.axes().sample(rng) })
                     })
                     .collect();
                 if densities.len() < WORSE * n {
@@ -276,10 +276,10 @@ impl PrincipalFit {
             AxesFinding::FreeTurn { axis } => {
                 let k = axis - 1;
                 let direction = |q: &UnitQuaternion<f64>| q.inverse() * Vector3::ith(k, 1.0);
-                let center = direction(&mean);
+                let centre = direction(&mean);
                 let tilt = |s: &Sample| {
                     let a = direction(&s.attitude);
-                    let p = mean * (a * 1.0_f64.copysign(a.dot(&center)));
+                    let p = mean * (a * 1.0_f64.copysign(a.dot(&centre)));
                     Vector3::new(p[(k + 1) % 3], p[(k + 2) % 3], 0.0)
                 };
                 samples.iter().map(tilt).collect()
@@ -291,14 +291,14 @@ impl PrincipalFit {
         };
         // Directions that do not scatter are left out: those of the covariance, or all.
         let n = all.len() as f64;
-        let center = all.iter().sum::<Vector3<f64>>() / n;
+        let centre = all.iter().sum::<Vector3<f64>>() / n;
         let scatter: Matrix3<f64> =
-            all.iter().map(|t| (t - center) * (t - center).transpose()).sum::<Matrix3<f64>>() / n;
+            all.iter().map(|t| (t - centre) * (t - centre).transpose()).sum::<Matrix3<f64>>() / n;
         let eigen = scatter.symmetric_eigen();
         let largest = eigen.eigenvalues.max();
         (0..3)
             .filter(|i| eigen.eigenvalues[*i] > (1e-9 * largest).max(STILL * STILL))
-            .map(|i| all.iter().map(|t| (t - center).dot(&eigen.eigenvectors.column(i))).collect())
+            .map(|i| all.iter().map(|t| (t - centre).dot(&eigen.eigenvectors.column(i))).collect())
             .collect()
     }
 }

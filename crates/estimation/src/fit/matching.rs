@@ -23,7 +23,7 @@ pub(super) struct Matched {
 /// Mean and scatter of the samples under some labels: independent Gaussian roots, and a Gaussian
 /// of the vector part of q ⊗ m⁻¹, in principal axes.
 #[derive(Clone, Debug)]
-pub(super) struct Center {
+pub(super) struct Centre {
     pub(super) attitude: UnitQuaternion<f64>,
     mean: [f64; 3],
     weight: [f64; 3],
@@ -33,7 +33,7 @@ pub(super) struct Center {
     ln_scale: f64,
 }
 
-impl Center {
+impl Centre {
     pub(super) fn of(samples: &[Sample]) -> Self {
         let n = samples.len() as f64;
         let mut mean = [0.0; 3];
@@ -160,11 +160,11 @@ pub(super) fn matched(samples: &[Sample], mean_axes: &UnitQuaternion<f64>) -> Ma
 }
 
 fn iterate(mut samples: Vec<Sample>) -> (f64, Matched) {
-    let mut center = Center::of(&samples);
+    let mut centre = Centre::of(&samples);
     for _ in 0..ROUNDS {
         let (mut changed, mut doubtful) = (0, 0);
         for sample in &mut samples {
-            let (label, cost, next) = center.label(sample);
+            let (label, cost, next) = centre.label(sample);
             doubtful += usize::from(0.5 * (next - cost) < LN_DOUBT);
             if label != 0 {
                 *sample = sample.relabeled(&Relabeling::all()[label]);
@@ -173,12 +173,12 @@ fn iterate(mut samples: Vec<Sample>) -> (f64, Matched) {
         }
         if changed == 0 {
             // The scatter is that of the samples: their squared distances add up to a constant.
-            let height = -center.ln_scale;
+            let height = -centre.ln_scale;
             return (height, Matched { samples, doubtful, converged: true });
         }
-        center = Center::of(&samples);
+        centre = Centre::of(&samples);
     }
-    let height = -center.ln_scale;
+    let height = -centre.ln_scale;
     (height, Matched { samples, doubtful: 0, converged: false })
 }
 
@@ -244,10 +244,10 @@ mod tests {
                     ) * mean,
                 })
                 .collect();
-            let center = Center::of(&samples);
+            let centre = Centre::of(&samples);
             for s in &samples {
-                let all = s.relabeled(&Relabeling::all()[center.label(s).0]);
-                assert!(center.relabel(s).attitude.angle_to(&all.attitude) < 1e-12);
+                let all = s.relabeled(&Relabeling::all()[centre.label(s).0]);
+                assert!(centre.relabel(s).attitude.angle_to(&all.attitude) < 1e-12);
             }
         }
     }

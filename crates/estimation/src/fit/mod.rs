@@ -14,7 +14,7 @@ use gyradius_dispersion::{PrincipalDispersion, ScalarRoots, ScalarRootsError};
 use gyradius_inertia::{Inertia, RootSecondMoments, SecondMoments};
 use nalgebra::{Matrix3, UnitQuaternion};
 
-use matching::{Center, matched};
+use matching::{Centre, matched};
 use relabel::{Relabeling, Sample};
 
 pub use axes::{AxesFinding, AxesFit};
@@ -225,8 +225,8 @@ impl PrincipalFit {
         self.deviations
     }
 
-    fn center(&self) -> Center {
-        Center::of(&self.samples)
+    fn centre(&self) -> Centre {
+        Centre::of(&self.samples)
     }
 }
 

@@ -29,7 +29,7 @@ pub(super) enum Kind {
     ConeShell { radius_m: f64, height_m: f64 },
     Frustum { base_radius_m: f64, top_radius_m: f64, height_m: f64 },
     FrustumShell { base_radius_m: f64, top_radius_m: f64, height_m: f64 },
-    Torus { center_line_radius_m: f64, section_radius_m: f64 },
+    Torus { centre_line_radius_m: f64, section_radius_m: f64 },
 }
 
 /// K_k/m as a factor times the square of a length.
@@ -93,10 +93,10 @@ impl Kind {
                     Err(ShapeError::NoRadius)
                 }
             }
-            Self::Torus { center_line_radius_m: center, section_radius_m: section } => {
-                size("center_line_radius_m", center)?;
+            Self::Torus { centre_line_radius_m: centre, section_radius_m: section } => {
+                size("centre_line_radius_m", centre)?;
                 size("section_radius_m", section)?;
-                order("section_radius_m", section, "center_line_radius_m", center)
+                order("section_radius_m", section, "centre_line_radius_m", centre)
             }
         }
     }
@@ -133,7 +133,7 @@ impl Kind {
             Self::FrustumShell { base_radius_m: a, top_radius_m: b, height_m: h } => {
                 Measure::Area(PI * (a + b) * libm::hypot(h, a - b))
             }
-            Self::Torus { center_line_radius_m: a, section_radius_m: r } => {
+            Self::Torus { centre_line_radius_m: a, section_radius_m: r } => {
                 Measure::Volume(2.0 * PI * PI * a * r * r)
             }
         }
@@ -143,7 +143,7 @@ impl Kind {
     pub(super) fn distribution(&self) -> (f64, [Square; 3]) {
         let box_of = |sides: [f64; 3]| (0.0, sides.map(|side| (1.0 / 12.0, side)));
         // A shape of revolution: the squares across and along the axis.
-        let about = |center: f64, across: Square, along: Square| (center, [across, across, along]);
+        let about = |centre: f64, across: Square, along: Square| (centre, [across, across, along]);
         match *self {
             Self::SolidBox { sides_m } => box_of(sides_m),
             Self::Plate { sides_m: [a, b] } => box_of([a, b, 0.0]),
@@ -183,17 +183,17 @@ impl Kind {
                 let (aa, ab, bb) = (a * a, a * b, b * b);
                 let across = 0.15 * (aa * aa + ab * (aa + ab + bb) + bb * bb) / q;
                 let along = aa * aa + ab * (4.0 * aa + 10.0 * ab + 4.0 * bb) + bb * bb;
-                let center = 0.25 * (aa + 2.0 * ab + 3.0 * bb) / q * h;
-                about(center, (across, r), (0.0375 * along / (q * q), h))
+                let centre = 0.25 * (aa + 2.0 * ab + 3.0 * bb) / q * h;
+                about(centre, (across, r), (0.0375 * along / (q * q), h))
             }
             Self::FrustumShell { base_radius_m: a, top_radius_m: b, height_m: h } => {
                 let r = a.max(b);
                 let (a, b) = (a / r, b / r);
                 let along = (a * a + 4.0 * a * b + b * b) / (18.0 * (a + b) * (a + b));
-                let center = (a + 2.0 * b) / (3.0 * (a + b)) * h;
-                about(center, (0.25 * (a * a + b * b), r), (along, h))
+                let centre = (a + 2.0 * b) / (3.0 * (a + b)) * h;
+                about(centre, (0.25 * (a * a + b * b), r), (along, h))
             }
-            Self::Torus { center_line_radius_m: a, section_radius_m: r } => {
+            Self::Torus { centre_line_radius_m: a, section_radius_m: r } => {
                 let t = ratio(r, a);
                 about(0.0, (0.5 + 0.375 * t * t, a), (0.25, r))
             }

@@ -112,7 +112,7 @@ impl Measure {
 /// // An aluminium adapter, 2 mm thick.
 /// let adapter = Shape::frustum_shell(0.8, 0.6, 0.5)?.of_density(2700.0 * 0.002)?;
 /// assert!((adapter.mass_kg() - 12.79).abs() < 0.01);
-/// assert!((adapter.mass_center_m().z - 0.238).abs() < 0.001);
+/// assert!((adapter.mass_centre_m().z - 0.238).abs() < 0.001);
 /// # Ok::<(), gyradius_inertia::ShapeError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -176,7 +176,7 @@ constructors! {
     frustum_shell(base_radius_m: f64, top_radius_m: f64, height_m: f64) FrustumShell;
     /// A solid torus about axis 3: the radius of its centre line, and that of its cross-section,
     /// which is no larger. With a cross-section of zero, a thin hoop.
-    torus(center_line_radius_m: f64, section_radius_m: f64) Torus;
+    torus(centre_line_radius_m: f64, section_radius_m: f64) Torus;
 }
 
 impl Shape {

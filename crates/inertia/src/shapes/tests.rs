@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 /// Mass properties of unit mass as ten numbers: centre, Σ_c diagonal, and the products.
 fn numbers(body: &MassProperties) -> [f64; 9] {
-    let c = body.mass_center_m();
+    let c = body.mass_centre_m();
     let sigma = body.inertia().as_inertia_matrix().second_moment_matrix();
     let [.., i12, i13, i23] = body.inertia().entries();
     [c.x, c.y, c.z, sigma[(0, 0)], sigma[(1, 1)], sigma[(2, 2)], i12, i13, i23]
@@ -265,8 +265,8 @@ proptest! {
             let back = scaled.inertia().matrix().map(|x| x / scale / scale);
             let size = one.inertia().matrix().amax();
             prop_assert!((back - one.inertia().matrix()).amax() < 1e-13 * size);
-            let back = scaled.mass_center_m() / scale;
-            prop_assert!((back - one.mass_center_m()).amax() < 1e-14 * (a + b + c));
+            let back = scaled.mass_centre_m() / scale;
+            prop_assert!((back - one.mass_centre_m()).amax() < 1e-14 * (a + b + c));
         }
     }
 
