@@ -194,6 +194,23 @@ impl FisherBingham {
         (&self.axes, self.lambda, self.centre, self.ln_offset)
     }
 
+    /// A matrix P of the law: of all P + μ·1, which are the same law, the one that [`new`](Self::new) was
+    /// given.
+    #[must_use]
+    pub fn precision(&self) -> Matrix4<f64> {
+        let square: f64 = (0..4).map(|j| self.lambda[j] * self.centre[j].powi(2)).sum();
+        let shift = 2.0 * self.ln_offset - square;
+        let own = Vector4::from(self.lambda.map(|lambda| lambda - shift));
+        self.axes * Matrix4::from_diagonal(&own) * self.axes.transpose()
+    }
+
+    /// The vector b of the law.
+    #[must_use]
+    pub fn linear(&self) -> Vector4<f64> {
+        let own: [f64; 4] = std::array::from_fn(|j| self.lambda[j] * self.centre[j]);
+        self.axes * Vector4::from(own)
+    }
+
     /// The mean E x of the four coordinates, a vector inside the unit ball.
     #[must_use]
     pub fn mean_vector(&self) -> Vector4<f64> {
@@ -446,6 +463,36 @@ mod tests {
 
     fn law(p: [f64; 4], b: [f64; 4]) -> FisherBingham {
         FisherBingham::new(Matrix4::from_diagonal(&p.into()), b.into()).unwrap()
+    }
+
+    /// Any P and b, also far apart in size: those given come back, and they are the same law again.
+    #[test]
+    fn the_parameters_come_back() {
+        let mut runner = proptest::test_runner::TestRunner::deterministic();
+        let number = || (-1.0..1.0_f64, -3..6_i32).prop_map(|(x, order)| x * 10_f64.powi(order));
+        let entries = prop::collection::vec(number(), 14);
+        runner
+            .run(&entries, |x| {
+                let mut p = Matrix4::from_fn(|i, j| {
+                    x[4 * i.min(j) + i.max(j) - i.min(j) * (i.min(j) + 1) / 2]
+                });
+                p = 0.5 * (p + p.transpose());
+                let b = Vector4::new(x[10], x[11], x[12], x[13]);
+                let law = FisherBingham::new(p, b).unwrap();
+                let size = p.amax().max(b.amax()).max(1.0);
+                prop_assert!(
+                    (law.precision() - p).amax() < 1e-13 * size,
+                    "{p} {}",
+                    law.precision()
+                );
+                prop_assert!((law.linear() - b).amax() < 1e-13 * size);
+                let again = FisherBingham::new(law.precision(), law.linear()).unwrap();
+                let q = UnitQuaternion::from_euler_angles(x[0], x[3], x[7]);
+                let (one, other) = (law.ln_density(&q), again.ln_density(&q));
+                prop_assert!((one - other).abs() < 1e-11 * size, "{one} {other}");
+                Ok(())
+            })
+            .unwrap();
     }
 
     /// Every first and second moment of 200,000 draws against the contour, |z| < 4.5 over 126

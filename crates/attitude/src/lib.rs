@@ -35,6 +35,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod about_axis;
 mod cells;
 mod chart;
 mod contour;
@@ -50,6 +51,7 @@ mod uniform;
 mod vector;
 mod ways_in;
 
+pub use about_axis::AboutAxis;
 pub use fisher_bingham::{FisherBingham, FisherBinghamError, Method};
 pub use fit::{Convergence, Family, Fit, FitError, NoIntervals, RadialVariance};
 pub use hyperspherical::{HypersphericalAngles, HypersphericalError};

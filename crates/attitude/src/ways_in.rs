@@ -49,6 +49,29 @@ impl RadiallyConstrainedGaussian {
         Self::from_turns(mean, rotation_covariance_rad2, 1.0, radial_variance)
     }
 
+    /// Of small turns about the mean, from their covariance P in rad² alone: as
+    /// [`from_rotation_covariance`](Self::from_rotation_covariance) with a radial variance of 0.01, of which turns
+    /// that are small know nothing, and with which there is no second lobe.
+    ///
+    /// # Errors
+    /// As for [`from_rotation_covariance`](Self::from_rotation_covariance).
+    ///
+    /// ```
+    /// use gyradius_attitude::RadiallyConstrainedGaussian;
+    /// use nalgebra::{Matrix3, UnitQuaternion};
+    ///
+    /// let covariance = Matrix3::from_diagonal_element(2_f64.to_radians().powi(2));
+    /// let law = RadiallyConstrainedGaussian::of_small_rotations(UnitQuaternion::identity(), covariance)?;
+    /// assert!((law.rotation_covariance() / covariance[0] - Matrix3::identity()).amax() < 2e-3);
+    /// # Ok::<(), gyradius_attitude::RcgError>(())
+    /// ```
+    pub fn of_small_rotations(
+        mean: UnitQuaternion<f64>,
+        rotation_covariance_rad2: Matrix3<f64>,
+    ) -> Result<Self, RcgError> {
+        Self::from_rotation_covariance(mean, rotation_covariance_rad2, 0.01)
+    }
+
     /// From a covariance whose unit is `unit` rad².
     fn from_turns(
         mean: UnitQuaternion<f64>,

@@ -1,4 +1,6 @@
-use gyradius_attitude::{FisherBingham, MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
+use gyradius_attitude::{
+    AboutAxis, FisherBingham, MeanHalf, RadiallyConstrainedGaussian, UniformAttitude,
+};
 use gyradius_inertia::RootSecondMoments;
 use nalgebra::UnitQuaternion;
 use rand::Rng;
@@ -127,6 +129,7 @@ impl BatchAttitudes for MeanHalf {
 
 impl BatchAttitudes for JacobianTwice {}
 impl BatchAttitudes for FixedAttitude {}
+impl BatchAttitudes for AboutAxis {}
 
 impl BatchAttitudes for AxesLaw {
     fn attitudes_into<R: Rng + ?Sized>(&self, rng: &mut R, out: &mut [UnitQuaternion<f64>]) {

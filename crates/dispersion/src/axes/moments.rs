@@ -1,5 +1,6 @@
 use gyradius_attitude::{
-    AngularQuadrature, FisherBingham, MeanHalf, RadiallyConstrainedGaussian, UniformAttitude,
+    AboutAxis, AngularQuadrature, FisherBingham, MeanHalf, RadiallyConstrainedGaussian,
+    UniformAttitude,
 };
 use nalgebra::{Complex, SMatrix, UnitQuaternion};
 
@@ -77,6 +78,14 @@ impl AttitudeMoments for UniformAttitude {
     }
 }
 
+/// The covariance is a trigonometric polynomial of the angle, of degree four: nine equal steps are exact.
+impl AttitudeMoments for AboutAxis {
+    fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
+        let step = std::f64::consts::TAU / 9.0;
+        EntryMoments::by_quadrature(k, (0..9).map(|i| (1.0 / 9.0, self.at(step * f64::from(i)))))
+    }
+}
+
 /// One node.
 impl AttitudeMoments for FixedAttitude {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
@@ -132,7 +141,11 @@ impl AttitudeMoments for JacobianTwice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{Matrix4, Quaternion, Vector4};
+    use crate::{KnownMoments, PrincipalDispersion, ScalarRoots};
+    use gyradius_inertia::{Inertia, RootSecondMoments};
+    use nalgebra::{Matrix4, Quaternion, Unit, Vector3, Vector4};
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    use rand_distr::Distribution;
 
     /// The whole sphere's quadrature with any weight.
     struct Weighted<W>(AngularQuadrature, W);
@@ -181,5 +194,47 @@ mod tests {
         }
         // The two laws are not the same.
         assert!((half.covariance() - twice.covariance()).amax() > 0.1 * half.covariance().amax());
+    }
+
+    fn law(axis: Vector3<f64>, roots: [f64; 3]) -> PrincipalDispersion<ScalarRoots, AboutAxis> {
+        let roots = RootSecondMoments::new(roots).unwrap();
+        let mean = UnitQuaternion::from_euler_angles(0.3, -0.8, 1.1);
+        let axes = AboutAxis::new(mean, Unit::new_normalize(axis));
+        PrincipalDispersion::new(ScalarRoots::normal(roots, [0.01, 0.02, 0.03]).unwrap(), axes)
+    }
+
+    /// Of any angle about an axis: against draws, and where the axis is a principal one of a body with two equal
+    /// roots, against the same body at one angle.
+    #[test]
+    fn moments_about_a_known_axis_are_those_of_draws() {
+        const N: usize = 60_000;
+        for (i, axis) in
+            [[0.0, 0.0, 1.0], [1.0, 0.2, -0.4], [0.3, -0.9, 0.1]].into_iter().enumerate()
+        {
+            let law = law(axis.into(), [2.0, 3.0, 5.0]);
+            let (moments, mut rng) = (law.entry_moments(), ChaCha8Rng::seed_from_u64(i as u64));
+            let draws: Vec<[f64; 6]> =
+                (0..N).map(|_| Distribution::<Inertia>::sample(&law, &mut rng).entries()).collect();
+            for e in 0..6 {
+                let mean = draws.iter().map(|d| d[e]).sum::<f64>() / N as f64;
+                let square = draws.iter().map(|d| (d[e] - mean).powi(2)).sum::<f64>() / N as f64;
+                let deviation = moments.deviations()[e];
+                let z = (mean - moments.mean()[e]) / deviation * (N as f64).sqrt();
+                assert!(z.abs() < 4.5, "{axis:?} {e}: {z}");
+                assert!((square.sqrt() / deviation - 1.0).abs() < 0.03, "{axis:?} {e}");
+            }
+        }
+        let mean = UnitQuaternion::from_euler_angles(0.3, -0.8, 1.1);
+        let body = RootSecondMoments::new([2.0, 2.0, 5.0]).unwrap();
+        let still = ScalarRoots::normal(body, [0.0; 3]).unwrap();
+        // Body components of the third principal axis.
+        let axis = Unit::new_normalize(mean.inverse() * Vector3::z());
+        let free =
+            PrincipalDispersion::new(still.clone(), AboutAxis::new(mean, axis)).entry_moments();
+        let fixed = PrincipalDispersion::new(still, FixedAttitude::new(mean)).entry_moments();
+        for e in 0..6 {
+            assert!((free.mean()[e] - fixed.mean()[e]).abs() < 1e-12);
+            assert!(free.deviations()[e] < 1e-6);
+        }
     }
 }
