@@ -23,7 +23,8 @@ pub enum HypersphericalError {
     },
 }
 
-/// Hyperspherical angles Φ = (θ₁, θ₂, θ₃) of a unit quaternion (Peck 2003, Eq. 24):
+/// Hyperspherical angles Φ = (θ₁, θ₂, θ₃) of a unit quaternion (Peck 2003, Eq. 24, which is Eq. 13 in four
+/// dimensions):
 ///
 /// x₁ = sin θ₁ sin θ₂ cos θ₃, x₂ = sin θ₁ sin θ₂ sin θ₃, x₃ = sin θ₁ cos θ₂, x₄ = cos θ₁,
 ///
@@ -38,7 +39,7 @@ pub enum HypersphericalError {
 pub struct HypersphericalAngles([f64; 3]);
 
 impl HypersphericalAngles {
-    /// Takes θ₁, θ₂, θ₃ in rad.
+    /// Takes θ₁, θ₂, θ₃ in rad, in the ranges of Peck (2003, Eq. 14), ends included.
     ///
     /// # Errors
     /// An angle is NaN or out of its range.
@@ -68,7 +69,8 @@ impl HypersphericalAngles {
         UnitQuaternion::from_quaternion(Quaternion::new(c1, s1 * s2 * c3, s1 * s2 * s3, s1 * c2))
     }
 
-    /// The Jacobian determinant Δ = sin²θ₁ sin θ₂ between Φ and surface measure (Eq. 25, r = 1).
+    /// The Jacobian determinant Δ = sin²θ₁ sin θ₂ between Φ and surface measure (Peck 2003, Eq. 25, r = 1;
+    /// Eq. 16 in four dimensions).
     #[must_use]
     pub fn jacobian(&self) -> f64 {
         let (s1, s2) = (libm::sin(self.0[0]), libm::sin(self.0[1]));

@@ -134,7 +134,8 @@ impl RadiallyConstrainedGaussian {
 
     /// From the covariance Σ̄ of the hyperspherical angles and the radius, in the order
     /// (θ₁, θ₂, θ₃, r), lengths along the sphere: Σ = R_J Σ̄ R_Jᵀ (Peck 2003, Eq. 22-23), where the
-    /// columns of R_J are the unit vectors along which the angles and the radius grow.
+    /// columns of R_J are the unit vectors along which the angles and the radius grow: those of the
+    /// Jacobian matrix (Eq. 15), each divided by its length.
     ///
     /// # Errors
     /// sin θ₁ or sin θ₂ of the mean is zero, where some angle has no direction: the identity is such

@@ -62,7 +62,7 @@ impl Inertia {
     }
 
     /// Builds I_B = R(q)ᵀ I_P R(q) from principal moments and the attitude that takes body
-    /// components to principal components.
+    /// components to principal components (Peck 2003, Eq. 5-6).
     ///
     /// # Errors
     /// The moments are not finite or break the triangle inequality, or the attitude is not a unit

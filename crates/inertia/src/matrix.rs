@@ -71,7 +71,7 @@ pub(crate) fn rotation_matrix(
     ))
 }
 
-/// A finite, symmetric 3×3 matrix in the place of an inertia matrix, in kg·m².
+/// A finite, symmetric 3×3 matrix in the place of an inertia matrix (Peck 2003, Eq. 2), in kg·m².
 ///
 /// It need not belong to any body: that is what [`Inertia`](crate::Inertia) adds. Keep this type
 /// where matrices come from elsewhere and are yet to be judged, or where unphysical ones are kept
@@ -120,7 +120,7 @@ impl InertiaMatrix {
     }
 
     /// Takes the moments (I₁₁, I₂₂, I₃₃) and the products (I₁₂, I₁₃, I₂₃) of inertia, the products
-    /// as tensor entries: I₁₂ = −∫ x₁x₂ dm.
+    /// as tensor entries: I₁₂ = −∫ x₁x₂ dm, so that I = Σ I_ij b_i b_j (Peck 2003, Eq. 1).
     ///
     /// # Errors
     /// An entry is not finite or too large.

@@ -88,8 +88,8 @@ pub enum MeshError {
 
 /// A body of uniform density inside a closed surface of triangles.
 ///
-/// Volume, mass centre and second moments are sums of tetrahedra between each triangle and a point
-/// (Mirtich 1996, doi:10.1080/10867651.1996.10487458, gets the same from surface integrals). The
+/// Volume, mass centre and second moments, and with them the integrals of Peck (2003, Eq. 3-4), are sums
+/// of tetrahedra between each triangle and a point (Mirtich 1996, doi:10.1080/10867651.1996.10487458, gets the same from surface integrals). The
 /// point is the body's own centre, so that they are as good far from the origin as near it, up to
 /// the rounding of the vertices themselves.
 ///

@@ -69,7 +69,8 @@ pub enum SeparationError {
     },
 }
 
-/// A payload, a stage and the springs between them, at the moment the clamp opens.
+/// A payload, a stage and the springs between them, at the moment the clamp opens: what moves by Peck
+/// (2003, Eq. 28), with forces that push.
 ///
 /// Cheap to clone: the springs are shared.
 ///

@@ -57,7 +57,7 @@ pub enum SpringError {
 /// A massless linear spring between a point of the payload and a point of the stage, compressed at
 /// the start by its stroke.
 ///
-/// At a compression x it pushes with k x − f, f the friction of its guide, which opposes the
+/// At a compression x (Peck 2003, Eq. 29) it pushes with k x − f, f the friction of its guide, which opposes the
 /// expansion, and is lost once that is zero. A late spring is held back by its latch, which rides
 /// on one of the bodies: it pushes from its start, with what compression is left by then.
 ///

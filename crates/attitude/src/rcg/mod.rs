@@ -94,8 +94,8 @@ pub enum RcgError {
 /// The radially constrained Gaussian (RCG) on unit quaternions.
 ///
 /// # Definition
-/// A Gaussian N(m, Σ) in ℝ⁴, |m| = 1, conditioned on unit length (Nicewarner & Sanderson 1994,
-/// doi:10.1109/ROBOT.1994.351131; Peck 2003, Eq. 20-26):
+/// A Gaussian N(m, Σ) in ℝ⁴ (Peck 2003, Eq. 12), |m| = 1, conditioned on unit length (Eq. 18;
+/// Nicewarner & Sanderson 1994, doi:10.1109/ROBOT.1994.351131; Peck 2003, Eq. 20-26):
 ///
 /// f(x) = exp(−½ (x − m)ᵀ Σ⁻¹ (x − m)) / C, with respect to surface measure on S³,
 ///
@@ -237,7 +237,8 @@ impl RadiallyConstrainedGaussian {
         self.precision
     }
 
-    /// ln C = ln ∫ exp(−½ (x − m)ᵀ Σ⁻¹ (x − m)) dS over S³; the c of Peck (2003, Eq. 21) is 1/C.
+    /// ln C = ln ∫ exp(−½ (x − m)ᵀ Σ⁻¹ (x − m)) dS over S³; the c of Peck (2003, Eq. 21) is 1/C, and
+    /// f_r(1) (Eq. 19), the density of the Gaussian's radius at 1, is C/((2π)² √|Σ|).
     #[must_use]
     pub fn ln_normaliser(&self) -> f64 {
         self.law.ln_centred_normaliser()
@@ -265,7 +266,7 @@ impl RadiallyConstrainedGaussian {
     }
 
     /// The logarithm of the density of Φ with respect to dθ₁ dθ₂ dθ₃ (Peck 2003, Eq. 26): that on
-    /// S³ times the Jacobian determinant sin²θ₁ sin θ₂.
+    /// S³ times the Jacobian determinant sin²θ₁ sin θ₂ (Eq. 17 and 20).
     #[must_use]
     pub fn ln_density_of_angles(&self, angles: &HypersphericalAngles) -> f64 {
         self.ln_density(&angles.quaternion()) + libm::log(angles.jacobian())

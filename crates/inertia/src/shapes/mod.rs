@@ -101,7 +101,8 @@ impl Measure {
 /// The origin is the centre of the shape and axis 3 its axis of symmetry, except for cones,
 /// frustums and half spheres, whose origin is the centre of the base and which rise along +3.
 /// *Shells* are thin: their mass lies on the surface, evenly by area, without end caps or lids.
-/// Sizes may be zero: a box without height is a plate, a tube without hole a cylinder.
+/// Sizes may be zero: a box without height is a plate, a tube without hole a cylinder. The integrals
+/// over the mass (Peck 2003, Eq. 3-4) are closed forms.
 ///
 /// With feature `serde`, a table with the name of the constructor as `shape` and its arguments:
 /// `{ shape = "cylinder", radius_m = 0.5, height_m = 2.0 }`.

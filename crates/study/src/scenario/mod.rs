@@ -85,7 +85,7 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// The separation study of Peck (2003), under four models.
+    /// The separation study of Peck (2003: Table 1, Eq. 27, 30 and 31), under four models.
     ///
     /// # Errors
     /// None: the built-in file is tested. The signature is that of every other way in.
