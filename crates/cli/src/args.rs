@@ -1,3 +1,5 @@
+//! Verbs and flags of the program, with their help.
+
 use clap::{Args, Parser, Subcommand};
 use gyradius_study::{CompareOptions, ModelKind};
 use std::path::PathBuf;

@@ -1,3 +1,5 @@
+//! The progress bar.
+
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 

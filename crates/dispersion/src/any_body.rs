@@ -1,3 +1,5 @@
+//! The inertia of any body, for property tests and domain randomisation.
+
 use gyradius_attitude::UniformAttitude;
 use gyradius_inertia::{Inertia, MAX_SECOND_MOMENT, SecondMoments};
 use rand::{Rng, RngExt};

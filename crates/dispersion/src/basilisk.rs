@@ -1,3 +1,5 @@
+//! The dispersion of inertia in Basilisk's Monte Carlo.
+
 use gyradius_inertia::{InertiaMatrix, MAX_ENTRY};
 use nalgebra::{Matrix3, SMatrix};
 use rand::Rng;

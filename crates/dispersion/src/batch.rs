@@ -1,3 +1,5 @@
+//! Draws in batches, into columns.
+
 use gyradius_attitude::{
     AboutAxis, FisherBingham, MeanHalf, RadiallyConstrainedGaussian, UniformAttitude,
 };

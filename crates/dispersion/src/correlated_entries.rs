@@ -1,3 +1,5 @@
+//! Six jointly Gaussian entries.
+
 use gyradius_inertia::InertiaMatrix;
 use nalgebra::SMatrix;
 use rand::Rng;

@@ -1,3 +1,5 @@
+//! Correlation coefficients that belong together.
+
 use nalgebra::DMatrix;
 
 /// Rounding that an eigenvalue may carry: coefficients come from files with so many digits.

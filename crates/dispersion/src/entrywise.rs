@@ -1,3 +1,5 @@
+//! Six independent Gaussian entries.
+
 use gyradius_inertia::{InertiaMatrix, MAX_ENTRY};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};

@@ -1,3 +1,5 @@
+//! Gaussian log-Cholesky coordinates.
+
 use gyradius_inertia::{Inertia, LogCholesky, MassProperties};
 use nalgebra::{Matrix3, SMatrix, SVector};
 use rand::Rng;

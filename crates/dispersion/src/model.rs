@@ -1,3 +1,5 @@
+//! The models of inertia uncertainty, chosen at run time.
+
 use gyradius_inertia::InertiaMatrix;
 use nalgebra::UnitQuaternion;
 use rand::Rng;

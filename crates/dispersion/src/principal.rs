@@ -1,3 +1,5 @@
+//! Random principal moments about random principal axes.
+
 use gyradius_inertia::{Inertia, RootSecondMoments};
 use nalgebra::UnitQuaternion;
 use rand::Rng;

@@ -1,3 +1,5 @@
+//! A model of entries, conditioned on realizability.
+
 use gyradius_inertia::{Inertia, InertiaMatrix};
 use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::Distribution;

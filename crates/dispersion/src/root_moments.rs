@@ -1,3 +1,5 @@
+//! Mean and covariance of second mass moments, and of the laws of roots that have them.
+
 use gyradius_inertia::RootSecondMoments;
 use nalgebra::Matrix3;
 

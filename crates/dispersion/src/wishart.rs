@@ -1,3 +1,5 @@
+//! The model of maximum entropy: a Wishart law of the second moment matrix.
+
 use gyradius_inertia::Inertia;
 use nalgebra::{Matrix3, SMatrix};
 use rand::Rng;

@@ -1,3 +1,5 @@
+//! A body as a file gives it, and its entries.
+
 use nalgebra::Matrix3;
 
 use crate::BodyError;

@@ -1,3 +1,5 @@
+//! Why a file could not be read.
+
 use std::{
     fmt, io,
     path::{Path, PathBuf},

@@ -1,3 +1,5 @@
+//! The text of a file, with its lines, and what refuses the whole of it.
+
 use std::cell::OnceCell;
 
 use crate::FileProblem;

@@ -1,3 +1,5 @@
+//! Files and folders to be checked.
+
 use std::{
     collections::{HashMap, hash_map::Entry},
     fs,

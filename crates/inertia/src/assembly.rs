@@ -1,3 +1,5 @@
+//! Mass properties of many parts together.
+
 use std::borrow::Borrow;
 
 use nalgebra::{Matrix3, Vector3};

@@ -1,3 +1,5 @@
+//! Eigenvalues and eigenvectors of a symmetric 3×3 matrix in closed form.
+
 use nalgebra::{Matrix3, Vector3};
 
 /// Eigenvalues and eigenvectors (columns, det = +1) of a symmetric matrix.

@@ -1,3 +1,5 @@
+//! Solids of uniform density with given mass properties.
+
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use crate::{MassProperties, Shape, ShapeError};

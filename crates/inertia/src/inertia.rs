@@ -1,3 +1,5 @@
+//! The inertia of a rigid body that could be built.
+
 use nalgebra::{Matrix3, UnitQuaternion};
 
 use crate::{

@@ -1,3 +1,5 @@
+//! Log-Cholesky coordinates of mass properties.
+
 use nalgebra::Matrix3;
 
 use crate::mass_properties::{INERTIA, check_lost};

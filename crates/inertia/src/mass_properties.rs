@@ -1,3 +1,5 @@
+//! Mass, mass centre and inertia of a body.
+
 use nalgebra::{Isometry3, Matrix3, UnitQuaternion, Vector3};
 
 use crate::{

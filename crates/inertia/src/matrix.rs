@@ -1,3 +1,5 @@
+//! A symmetric matrix in the place of an inertia matrix.
+
 use nalgebra::{Matrix3, UnitQuaternion};
 
 use crate::{MAX_ENTRY, PrincipalAxes, RELATIVE_TOLERANCE};

@@ -1,3 +1,5 @@
+//! The body inside a closed surface of triangles.
+
 use std::collections::HashMap;
 
 use nalgebra::Vector3;

@@ -1,3 +1,5 @@
+//! Principal moments and axes, in a unique order and with unique signs.
+
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 use crate::eigen::{eigen, size};

@@ -1,3 +1,5 @@
+//! The pseudo-inertia of a body, 4×4.
+
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
 use crate::second_moment_matrix::{inertia_of, outer, remainder};

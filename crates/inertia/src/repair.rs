@@ -1,3 +1,5 @@
+//! A realizable inertia in place of a matrix that no body has.
+
 use nalgebra::Matrix3;
 
 use crate::{Inertia, InertiaMatrix, RealizabilityError, SecondMoments};

@@ -1,3 +1,5 @@
+//! Reasons why a matrix is not the inertia of any body.
+
 use nalgebra::Matrix3;
 use std::fmt;
 

@@ -1,3 +1,5 @@
+//! Second mass moments, their roots, and radii of gyration.
+
 use crate::MAX_ENTRY;
 
 /// Largest second moment, so that moments of inertia, which are sums of two, stay within

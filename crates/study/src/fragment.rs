@@ -1,3 +1,5 @@
+//! The part of a scenario that holds the uncertainty of one body.
+
 use gyradius_attitude::{RadiallyConstrainedGaussian, RcgError};
 use gyradius_dispersion::{
     CorrelatedRoots, CorrelatedRootsError, PrincipalDispersion, RootLaw, ScalarLaw, ScalarLawForm,

@@ -1,3 +1,5 @@
+//! A study: a scenario, run and reported into a folder.
+
 use gyradius_campaign::{
     CampaignError, Contents, Folder, FolderError, Forecast, Progress, Table, run, threads,
 };

@@ -1,3 +1,5 @@
+//! The short table that ends a study on the terminal.
+
 use gyradius_report::{optional, percent};
 use std::fmt::{self, Display, Formatter};
 

@@ -1,3 +1,5 @@
+//! The report of a fit as JSON.
+
 use gyradius_dispersion::EntryMoments;
 use gyradius_estimation::{Aspect, Assessment, AxesFinding, PrincipalFit, RootEstimate};
 use gyradius_study::Fragment;

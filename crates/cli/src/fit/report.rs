@@ -1,3 +1,5 @@
+//! The report of a fit as text.
+
 use gyradius_dispersion::EntryMoments;
 use gyradius_estimation::{Assessment, AxesFinding, PrincipalFit, RootEstimate};
 use gyradius_inertia::InertiaMatrix;

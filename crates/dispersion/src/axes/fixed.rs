@@ -1,3 +1,5 @@
+//! Principal axes that are known.
+
 use nalgebra::UnitQuaternion;
 use rand::Rng;
 use rand_distr::Distribution;

@@ -1,3 +1,5 @@
+//! The law of the principal axes behind Table 2 of Peck (2003).
+
 use gyradius_attitude::{FisherBingham, FisherBinghamError, RadiallyConstrainedGaussian};
 use nalgebra::{Matrix4, UnitQuaternion, Vector4};
 use rand::{Rng, RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};

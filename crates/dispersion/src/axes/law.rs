@@ -1,3 +1,5 @@
+//! A law of principal axes that is chosen at run time.
+
 use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
 use nalgebra::UnitQuaternion;
 use rand::Rng;

@@ -1,3 +1,5 @@
+//! The moments of a law of principal axes that the moments of the entries are made of.
+
 use gyradius_attitude::{
     AboutAxis, AngularQuadrature, FisherBingham, MeanHalf, RadiallyConstrainedGaussian,
     UniformAttitude,

@@ -1,3 +1,5 @@
+//! Jointly Gaussian roots of the second mass moments.
+
 use gyradius_inertia::RootSecondMoments;
 use nalgebra::{Matrix3, Vector3};
 use rand::Rng;

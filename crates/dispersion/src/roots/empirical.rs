@@ -1,3 +1,5 @@
+//! Roots of the second mass moments as they were observed.
+
 use gyradius_inertia::RootSecondMoments;
 use nalgebra::{Matrix3, Vector3};
 use rand::{Rng, RngExt};

@@ -1,3 +1,5 @@
+//! Independent roots of the second mass moments, of any laws.
+
 use gyradius_inertia::RootSecondMoments;
 use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::Distribution;

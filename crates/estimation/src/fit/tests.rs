@@ -1,3 +1,5 @@
+//! Tests of the fit of the paper's model to samples of an inertia.
+
 use super::*;
 use gyradius_dispersion::ScalarLaw;
 use gyradius_inertia::InertiaMatrix;

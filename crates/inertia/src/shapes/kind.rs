@@ -1,3 +1,5 @@
+//! The shapes, their sizes, and their integrals in closed form.
+
 use std::f64::consts::PI;
 
 use super::{Measure, ShapeError};

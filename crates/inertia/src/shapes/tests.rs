@@ -1,3 +1,5 @@
+//! Tests of the shapes against meshes, clouds of points and textbook moments.
+
 use super::*;
 use crate::mesh::tests::revolved;
 use nalgebra::Vector3;

@@ -1,3 +1,5 @@
+//! A body of a comparison.
+
 use gyradius_inertia::{Inertia, InertiaMatrix};
 
 use super::CompareError;

@@ -1,3 +1,5 @@
+//! How well a model matches the reference of a comparison.
+
 use gyradius_dispersion::EntryMoments;
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Deserializer, Serialize};

@@ -1,3 +1,5 @@
+//! What follows from a drawn inertia.
+
 use gyradius_statistics::{Confidence, Deviation, Interval, Moments, SortedSample};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;

@@ -1,3 +1,5 @@
+//! What to compare, and how many times.
+
 use gyradius_dispersion::ModelKind;
 use std::path::PathBuf;
 

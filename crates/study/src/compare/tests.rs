@@ -1,3 +1,5 @@
+//! Tests of the comparison of models.
+
 use super::*;
 use nalgebra::Matrix3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

@@ -1,3 +1,5 @@
+//! A body of a scenario, and how uncertain it is.
+
 use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
 use gyradius_dispersion::{
     AxesLaw, CorrelatedRoots, EmpiricalRoots, FixedAttitude, JacobianTwice, JacobianTwiceError,

@@ -1,3 +1,5 @@
+//! A scenario as it stands in a TOML file.
+
 use gyradius_dispersion::{BasiliskDispersion, ModelKind, ScalarLawForm};
 use gyradius_separation::{BodyParameter, SpringParameter, StackParameter};
 use serde::{Deserialize, Serialize};

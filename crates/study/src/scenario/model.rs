@@ -1,3 +1,5 @@
+//! A model of a scenario.
+
 use gyradius_dispersion::{
     BasiliskDispersion, BasiliskError, CorrelatedEntries, DispersionModel, EntrywiseGaussian,
     LogCholeskyGaussian, ModelKind, RealizableOnly, Wishart,

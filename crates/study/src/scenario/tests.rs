@@ -1,3 +1,5 @@
+//! Tests of scenario files: what they give, and what is refused.
+
 use super::*;
 
 fn error(from: &str, to: &str) -> String {
