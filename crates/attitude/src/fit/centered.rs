@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
 
-use super::{SMALLEST_VARIANCE, likelihood::Evaluation, point::turn_of_last_axis};
+use super::{SMALLEST_VARIANCE, climb::Evaluation};
 use crate::{fisher_bingham::centring_shift, jacobi};
 
 /// The law is ∝ exp of a linear combination of w_i, −½ w_i² and −w_i w_j. As |v| = 1 one of the 14
@@ -202,4 +202,14 @@ impl Centered {
         let b: [f64; 4] = std::array::from_fn(|j| values[j] * axes[(3, j)]);
         Self::new(frame * axes, values, b)
     }
+}
+
+/// The rotation in the plane of e₄ and m that takes e₄ to m, for m₄ > −1.
+pub(crate) fn turn_of_last_axis(m: &Vector4<f64>) -> Matrix4<f64> {
+    let mut sum = *m;
+    sum[3] += 1.0;
+    let mut turn = Matrix4::identity() - sum * sum.transpose() / sum[3];
+    let mut last = turn.column_mut(3);
+    last += m * 2.0;
+    turn
 }

@@ -2,8 +2,6 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::likelihood::Evaluation;
-
 /// Where the gain that the next step promises, in ln-likelihood of the whole sample, is below
 /// this, parameters are within 1e-4 of a standard error, and that step is still taken.
 const GAIN: f64 = 1e-9;
@@ -27,6 +25,16 @@ pub(crate) trait Hill<const N: usize> {
     fn survey(&self, place: &Self::Place) -> Evaluation<N>;
     /// The place at local coordinates `step`, if there is one.
     fn walk(&self, place: &Self::Place, step: &SVector<f64, N>) -> Option<Self::Place>;
+}
+
+/// Mean ln-likelihood an attitude, with respect to Haar measure of total one, and its derivatives.
+#[derive(Clone, Debug)]
+pub(crate) struct Evaluation<const N: usize> {
+    pub(crate) value: f64,
+    pub(crate) gradient: SVector<f64, N>,
+    pub(crate) hessian: SMatrix<f64, N, N>,
+    /// Covariance of the sufficient statistics under the law.
+    pub(crate) information: SMatrix<f64, N, N>,
 }
 
 /// Where a climb has ended.

@@ -1,8 +1,11 @@
 //! The likelihood of attitudes under exp(−½ xᵀPx + bᵀx), its gradient and its Hessian.
 
-use nalgebra::{Matrix4, SMatrix, SVector, UnitQuaternion, Vector4};
+use nalgebra::{Matrix4, SMatrix, UnitQuaternion, Vector4};
 
-use super::centered::{Centered, PAIRS, PRODUCTS, STATISTICS, Statistics};
+use super::{
+    centered::{Centered, PAIRS, PRODUCTS, STATISTICS, Statistics},
+    climb::Evaluation,
+};
 use crate::{
     contour::{C64, Contour},
     jacobi,
@@ -21,16 +24,6 @@ pub(crate) struct Sample {
     /// Root mean squares of the coordinates.
     pub(crate) scale: [f64; 4],
     points: Vec<Vector4<f64>>,
-}
-
-/// Mean ln-likelihood an attitude, with respect to Haar measure of total one, and its derivatives.
-#[derive(Clone, Debug)]
-pub(crate) struct Evaluation<const N: usize> {
-    pub(crate) value: f64,
-    pub(crate) gradient: SVector<f64, N>,
-    pub(crate) hessian: SMatrix<f64, N, N>,
-    /// Covariance of the sufficient statistics under the law.
-    pub(crate) information: SMatrix<f64, N, N>,
 }
 
 impl Sample {

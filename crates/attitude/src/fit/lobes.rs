@@ -2,10 +2,7 @@
 
 use nalgebra::{Matrix3, Matrix3x4, Matrix4, Vector3, Vector4};
 
-use super::{
-    likelihood::Sample,
-    point::{Point, turn_of_last_axis},
-};
+use super::{centered::turn_of_last_axis, likelihood::Sample, point::Point};
 use crate::jacobi;
 
 /// Rounds of expectation and maximisation after which equal lobes are told apart, and further ones.

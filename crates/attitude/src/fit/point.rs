@@ -4,9 +4,9 @@
 use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
 
 use super::{
-    centered::{Centered, PAIRS, PRODUCTS, STATISTICS, Statistics},
-    climb::{Hill, restrict},
-    likelihood::{Evaluation, Sample},
+    centered::{Centered, PAIRS, PRODUCTS, STATISTICS, Statistics, turn_of_last_axis},
+    climb::{Evaluation, Hill, restrict},
+    likelihood::Sample,
 };
 
 /// The least that a search for laws about an axis begins with for a precision, over the sample's.
@@ -323,16 +323,6 @@ impl Hill<STATISTICS> for Sheared<'_> {
     fn walk(&self, place: &Centered, step: &Statistics) -> Option<Centered> {
         place.sheared(step).filter(Centered::is_wide_enough)
     }
-}
-
-/// The rotation in the plane of e₄ and m that takes e₄ to m, for m₄ > −1.
-pub(crate) fn turn_of_last_axis(m: &Vector4<f64>) -> Matrix4<f64> {
-    let mut sum = *m;
-    sum[3] += 1.0;
-    let mut turn = Matrix4::identity() - sum * sum.transpose() / sum[3];
-    let mut last = turn.column_mut(3);
-    last += m * 2.0;
-    turn
 }
 
 fn embed(m: &Matrix3<f64>) -> Matrix4<f64> {

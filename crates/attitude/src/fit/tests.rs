@@ -2,8 +2,8 @@
 
 use super::{
     centered::{STATISTICS, Statistics},
-    climb::Hill,
-    likelihood::{Evaluation, Sample, root_lines},
+    climb::{Evaluation, Hill},
+    likelihood::{Sample, root_lines},
     point::{Point, TRIANGLE},
     *,
 };
