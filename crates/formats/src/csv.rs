@@ -5,7 +5,8 @@
 use crate::{
     Body, BodyError, FileProblem, MAX_BODIES, Products,
     body::{NAMES, Number, Reading},
-    text::{Refusal, Text},
+    error::Refusal,
+    text::Text,
 };
 
 /// Columns that are looked for: the six entries, the mass, the name.

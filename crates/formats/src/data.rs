@@ -14,8 +14,9 @@ use crate::{
     Body, BodyError, FileProblem, GapKind, MAX_BODIES, MAX_DEPTH, Products,
     body::{Number, Reading, shortened},
     csv,
+    error::Refusal,
     gap::Gaps,
-    text::{Refusal, Text},
+    text::Text,
 };
 
 /// A document is a table of a list of tables of a list of lists of numbers.

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{MAX_ATTRIBUTES, MAX_BODIES, MAX_DEPTH, text::Refusal};
+use crate::{MAX_ATTRIBUTES, MAX_BODIES, MAX_DEPTH};
 
 /// Why a file, as a whole, could not be read.
 #[derive(Debug)]
@@ -143,6 +143,20 @@ pub enum FileProblem {
         /// What was found, and what is read.
         message: String,
     },
+}
+
+/// A place in a text that refuses the whole file, and why.
+#[derive(Debug)]
+pub(crate) struct Refusal {
+    /// Line, from 1.
+    pub(crate) line: Option<usize>,
+    pub(crate) problem: FileProblem,
+}
+
+impl From<FileProblem> for Refusal {
+    fn from(problem: FileProblem) -> Self {
+        Self { line: None, problem }
+    }
 }
 
 /// Why the inertia of one body could not be read; its neighbours can.

@@ -9,10 +9,11 @@ use std::{
 use crate::{
     Bearing, Body, FileError, FileProblem, Format, Gap, MAX_BYTES, MAX_TOML_BYTES, Products, csv,
     data,
+    error::Refusal,
     gap::Gaps,
     kind::{all_extensions, is_generic, known_extension, not_read, sniffed},
     robots,
-    text::{Refusal, Text},
+    text::Text,
     xml::Tree,
 };
 

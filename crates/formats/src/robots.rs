@@ -3,8 +3,8 @@
 use crate::{
     Body, BodyError, FileProblem, Format, GapKind, MAX_BODIES, Products,
     body::{ENTRIES, NAMES, Number, Reading, shortened},
+    error::Refusal,
     gap::Gaps,
-    text::Refusal,
     xml::{MACROS, Node, Tree},
 };
 

@@ -2,23 +2,9 @@
 
 use std::cell::OnceCell;
 
-use crate::FileProblem;
+use crate::{FileProblem, error::Refusal};
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
-
-/// A place in a text that refuses the whole file, and why.
-#[derive(Debug)]
-pub(crate) struct Refusal {
-    /// Line, from 1.
-    pub(crate) line: Option<usize>,
-    pub(crate) problem: FileProblem,
-}
-
-impl From<FileProblem> for Refusal {
-    fn from(problem: FileProblem) -> Self {
-        Self { line: None, problem }
-    }
-}
 
 /// The bytes of a file as a text whose offsets are those of the bytes, but for the byte order mark.
 #[derive(Debug)]

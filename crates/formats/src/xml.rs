@@ -12,7 +12,8 @@ use std::borrow::Cow;
 use crate::{
     BodyError, FileProblem, MAX_ATTRIBUTES, MAX_DEPTH,
     body::{Number, shortened},
-    text::{Refusal, Text},
+    error::Refusal,
+    text::Text,
 };
 
 #[derive(Debug)]
