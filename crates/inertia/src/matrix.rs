@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion};
 
-use crate::{MAX_ENTRY, PrincipalAxes, RELATIVE_TOLERANCE};
+use crate::{MAX_ENTRY, RELATIVE_TOLERANCE};
 
 /// Why a matrix is not an [`InertiaMatrix`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -176,12 +176,6 @@ impl InertiaMatrix {
     pub fn rotated(&self, rotation: &UnitQuaternion<f64>) -> Result<Self, InertiaMatrixError> {
         let r = rotation_matrix(rotation)?;
         Self::new(r * self.0 * r.transpose())
-    }
-
-    /// Principal moments and axes; see [`PrincipalAxes`] for their order and signs.
-    #[must_use]
-    pub fn principal_axes(&self) -> PrincipalAxes {
-        PrincipalAxes::of(self)
     }
 
     /// Whether some distribution of non-negative mass has this inertia: min K_k ≥

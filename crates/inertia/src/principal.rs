@@ -71,6 +71,14 @@ impl PrincipalAxes {
     }
 }
 
+impl InertiaMatrix {
+    /// Principal moments and axes; see [`PrincipalAxes`] for their order and signs.
+    #[must_use]
+    pub fn principal_axes(&self) -> PrincipalAxes {
+        PrincipalAxes::of(self)
+    }
+}
+
 /// All moments distinct: the signed permutation of the eigenvectors nearest to the body axes, if no
 /// other is about as near.
 fn nearest(values: [f64; 3], v: &Matrix3<f64>) -> Option<([f64; 3], Matrix3<f64>)> {
