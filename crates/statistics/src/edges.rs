@@ -1,7 +1,7 @@
 //! Edges of histogram bins.
 
 use crate::quantile::lerp;
-use crate::{SortedSample, StatisticsError};
+use crate::{SortedSample, StatisticsError, error::MAX_BINS};
 
 /// Increasing edges of contiguous bins `[e₀, e₁), [e₁, e₂), … [e_{k−1}, e_k]`: the last bin holds
 /// its right edge too.
@@ -14,7 +14,7 @@ impl BinEdges {
     /// The most bins that [`uniform`](Self::uniform) and
     /// [`freedman_diaconis`](Self::freedman_diaconis) make. One far outlier would otherwise ask
     /// for millions.
-    pub const MAX_BINS: usize = 1000;
+    pub const MAX_BINS: usize = MAX_BINS;
 
     /// The edges given.
     ///

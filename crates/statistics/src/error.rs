@@ -1,5 +1,10 @@
 //! What can be wrong with a sample or a request.
 
+/// The most bins that are made at once.
+pub(crate) const MAX_BINS: usize = 1000;
+/// The most trials of a proportion.
+pub(crate) const MAX_TRIALS: u64 = 1_000_000_000;
+
 /// Why a summary was refused: what was wrong, the value, and what is allowed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -57,8 +62,7 @@ pub enum StatisticsError {
     },
     /// The counts make no proportion.
     #[error(
-        "{successes} successes in {trials} trials; trials must be 1 to {}, successes no more",
-        crate::Proportion::MAX_TRIALS
+        "{successes} successes in {trials} trials; trials must be 1 to {MAX_TRIALS}, successes no more"
     )]
     Proportion {
         /// The successes given.
@@ -67,7 +71,7 @@ pub enum StatisticsError {
         trials: u64,
     },
     /// The number of bins is out of range.
-    #[error("{bins} bins; there must be 1 to {}", crate::BinEdges::MAX_BINS)]
+    #[error("{bins} bins; there must be 1 to {MAX_BINS}")]
     Bins {
         /// The number of bins given.
         bins: usize,

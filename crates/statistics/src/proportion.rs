@@ -1,6 +1,6 @@
 //! A proportion and its exact interval.
 
-use crate::{Confidence, Interval, StatisticsError, law};
+use crate::{Confidence, Interval, StatisticsError, error::MAX_TRIALS, law};
 
 /// A number of successes in a number of independent trials.
 ///
@@ -22,7 +22,7 @@ pub struct Proportion {
 
 impl Proportion {
     /// The most trials, up to which the quantiles of the beta law are tested.
-    pub const MAX_TRIALS: u64 = 1_000_000_000;
+    pub const MAX_TRIALS: u64 = MAX_TRIALS;
 
     /// `successes` out of `trials`.
     ///
