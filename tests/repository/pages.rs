@@ -70,6 +70,25 @@ fn links_lead_somewhere() {
     }
 }
 
+/// Paths of the repository that a page writes as code.
+fn paths(page: &str) -> Vec<&str> {
+    let code = page.split('`').skip(1).step_by(2);
+    code.filter(|code| ["crates/", "tests/", "docs/", ".ci/"].iter().any(|f| code.starts_with(f)))
+        .collect()
+}
+
+#[test]
+fn paths_in_pages_for_contributors_exist() {
+    for page in ["CONTRIBUTING.md", "docs/architecture.md", "docs/reading-the-paper.md"] {
+        let text = read(page);
+        let paths = paths(&text);
+        assert!(paths.len() > 2, "{page}");
+        for path in paths {
+            assert!(root().join(path).exists(), "{page}: {path}");
+        }
+    }
+}
+
 #[test]
 fn every_page_is_linked_from_the_readme_or_from_one_that_is() {
     let mut seen = BTreeSet::new();
