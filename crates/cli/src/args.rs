@@ -4,6 +4,11 @@ use clap::{Args, Parser, Subcommand};
 use gyradius_study::{CompareOptions, ModelKind};
 use std::path::PathBuf;
 
+use crate::examples::{
+    CHECK_EXAMPLES, COMPARE_EXAMPLES, COMPLETIONS_EXAMPLES, EXAMPLES, EXIT_CODES, FIT_EXAMPLES,
+    MAN_EXAMPLES, MODEL_EXAMPLES, REPLAY_EXAMPLES, REPORT_EXAMPLES,
+};
+
 /// Uncertain rigid-body inertia: Monte Carlo studies of spacecraft separation.
 #[derive(Debug, Parser)]
 #[command(name = "gyradius", version, arg_required_else_help = true, after_help = EXIT_CODES)]
@@ -67,135 +72,27 @@ pub(crate) enum Command {
     /// spread. What was matched, and how far it is off, is shown with it.
     #[command(after_help = COMPARE_EXAMPLES)]
     Compare(CompareArgs),
+    /// Print a script that lets a shell complete verbs, flags and values
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    Completions(CompletionsArgs),
+    /// Print the manual page of the program, or of one verb
+    #[command(after_help = MAN_EXAMPLES)]
+    Man(ManArgs),
 }
 
-const EXIT_CODES: &str = "\
-Exit code: 0 if all went well, 1 if something was found (check, fit, study), 2 if what was asked
-cannot be done, with a message on standard error. A reader of the output that stops reading, as
-head does, is no error; a full disk behind it is.";
+#[derive(Args, Debug)]
+pub(crate) struct CompletionsArgs {
+    /// Which shell
+    #[arg(value_enum, value_name = "SHELL")]
+    pub(crate) shell: clap_complete::Shell,
+}
 
-const REPLAY_EXAMPLES: &str = "\
-Examples:
-  gyradius replay --run 1234
-      Run 1234 of the first model of target/study/peck-2003, into
-      target/replay/peck-2003/proposed-1234
-  gyradius replay --run 1234 --model naive --out odd-one
-      The same run of another model
-  gyradius replay /tmp/quick --run 7 --coast 60
-      A run of the study in /tmp/quick, and the minute after the last release
-  gyradius replay my-vehicle.toml --run 7
-      A run of a scenario file, which has no run table to be held against
-
-Exit code: 0, for a run that failed as it did in the study too; 2 if there is no such run, if it is not
-what the table says, or if something could not be read or written.";
-
-const REPORT_EXAMPLES: &str = "\
-Examples:
-  gyradius report /tmp/quick
-      The report and the figures of the study in /tmp/quick, in their places
-  gyradius report results/vehicle-a --out pages/vehicle-a
-      The same in another folder
-
-Exit code: 0 if the report was made; 2 if there is no study, if its files were changed after the study, or
-if something could not be read or written. What was there is then as it was.";
-
-const MODEL_EXAMPLES: &str = "\
-Examples:
-  gyradius model payload.toml
-      The report, as comments, and the fragment: all of it can be pasted into a scenario
-  gyradius model stage.toml --body stage -o fragment.toml
-      The report on the screen, report and fragment in a file
-
-The file:
-  [nominal]
-  inertia_kg_m2 = [[5000.0, 20.0, 2.0], [20.0, 4000.0, -50.0], [2.0, -50.0, 3000.0]]
-  mass_kg = 10000.0    # for mass in kg, and for centre
-  [moments]            # about body axes, whatever the cause
-  percent = 1.0        # or kg_m2; one number, or a list of three
-  sigmas = 1           # how many standard deviations ± stands for
-  [products]
-  kg_m2 = 50.0
-  sigmas = 3
-  [axes]               # turns about principal axes
-  deg = 2.0
-  sigmas = 3           # of = \"total\": the angle of the whole turn
-  [mass]
-  percent = 1.0        # or kg
-  sigmas = 3
-  [centre]
-  mm = 10.0
-  sigmas = 3           # arm_m = [0.0, 0.0, 1.5]: from where it was measured to the centre
-
-Exit code: 0, with warnings too; 2 if something could not be read or written.";
-
-const FIT_EXAMPLES: &str = "\
-Examples:
-  gyradius fit samples.csv
-      The report, as comments, and the fragment: all of it can be pasted into a scenario
-  gyradius fit samples.csv --body stage -o stage.toml
-      The report on the screen, report and fragment in a file
-  gyradius fit samples.json --format json > fit.json
-      Everything as one JSON object
-
-Files are read as by `gyradius check`: a CSV with a header ixx,iyy,izz,ixy,ixz,iyz (or i11…), or
-JSON or TOML; kg·m² unless the header says otherwise. At least 13 samples.
-
-Exit code: 0 if nothing speaks against the model, 1 if the samples do (the fragment is written
-all the same), 2 if something could not be read, fitted or written.";
-
-const COMPARE_EXAMPLES: &str = "\
-Examples:
-  gyradius compare
-      Every model on four bodies, from 1 to 50 % of the largest moment
-  gyradius compare --body 5000,4000,3000,20,2,-50 --levels 3,10 --out report
-      Another body, with page, tables and figures in the folder report
-  gyradius compare --scenario my-vehicle.toml --body payload
-      The payload of a scenario, in that scenario's separation
-  gyradius compare --reference entries --body slender-stage
-      Six independent deviations of that size instead, as in common practice
-  gyradius compare --models principal,entrywise --format csv > comparison.csv
-      Two models, for another program
-
-The same options and seed give the same numbers on any number of threads.
-
-Exit code: 0; 2 if something could not be read, done or written.";
-
-const CHECK_EXAMPLES: &str = "\
-Examples:
-  gyradius check robot.urdf
-      The bodies of one file that cannot exist
-  gyradius check robots/ parts.csv
-      All files below a folder, and a table
-  gyradius check --repair robot.urdf
-      Write robot.repaired.urdf beside it: the nearest possible inertias, all else as it was
-  xacro robot.urdf.xacro | gyradius check -
-      What another program writes
-  gyradius check --format json --all robots/ > inertias.json
-      Every body, for another program
-
-Folders are searched for .urdf .xacro .mjcf .sdf .world .xml .csv .toml .json. What may hold bodies and
-is not read (macros of xacro, included files, USD, .mjb) is passed over and named. Hidden files,
-*.repaired.* and caches are not looked at.
-
-Exit code: 1 if some bodies are impossible, whatever else could not be read; otherwise 2 if something
-could not be read, or no body was found; 0 if all bodies that were read are possible. 2 also if a copy
-could not be written.";
-
-const EXAMPLES: &str = "\
-Examples:
-  gyradius study
-      The study of Peck (2003): four models, 2,000 runs each, into target/study/peck-2003
-  gyradius study --runs 200 --out /tmp/quick
-      A quick look
-  gyradius study --scenario my-vehicle.toml --seed 7 --threads 4
-      Another vehicle. Start from the scenario.toml that any study writes
-  gyradius study --seed 8 --force
-      Replace the study in the folder by another one
-
-The same scenario, runs and seed give the same numbers on any number of threads.
-
-Exit code: 0; 1 if more runs of a model failed than --max-failed allows (the folder is written all the
-same); 2 if something could not be read, done or written.";
+#[derive(Args, Debug)]
+pub(crate) struct ManArgs {
+    /// Which verb [default: the program itself]
+    #[arg(value_name = "VERB")]
+    pub(crate) verb: Option<String>,
+}
 
 #[derive(Args, Debug)]
 pub(crate) struct StudyArgs {

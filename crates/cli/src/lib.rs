@@ -3,6 +3,7 @@
 mod args;
 mod check;
 mod compare;
+mod examples;
 mod fit;
 mod model;
 mod number;
@@ -10,6 +11,7 @@ mod output;
 mod progress;
 mod replay;
 mod report;
+mod shell;
 mod study;
 
 use args::{Cli, Command};
@@ -37,6 +39,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Replay(arguments) => replay::replay(arguments).map(done),
         Command::Study(arguments) => study::study(arguments),
         Command::Compare(arguments) => compare::compare(arguments).map(done).map_err(Into::into),
+        Command::Completions(arguments) => {
+            shell::completions(arguments).map(done).map_err(Into::into)
+        }
+        Command::Man(arguments) => shell::man(arguments).map(done).map_err(Into::into),
     };
     result.unwrap_or_else(|error| {
         complain(error);

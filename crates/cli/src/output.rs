@@ -71,7 +71,8 @@ pub(crate) fn print_json(text: &str) -> Result<(), String> {
     to_standard_output(&(visible_json(text.trim_end()) + "\n"))
 }
 
-fn to_standard_output(text: &str) -> Result<(), String> {
+/// A text of the program's own on standard output, as it is.
+pub(crate) fn to_standard_output(text: &str) -> Result<(), String> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
