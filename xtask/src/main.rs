@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    gyradius_cli::run(std::env::args_os())
+    gyradius::run(std::env::args_os())
 }

@@ -62,6 +62,9 @@ pub use uniform::{
     BoxUniform, MarsagliaUniform, ShoemakeUniform, UniformAttitude, super_fibonacci,
 };
 
+// Part of the interface, in the version that it takes and gives.
+pub use {nalgebra, rand, rand_distr};
+
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -96,7 +96,9 @@ fn manual_pages_name_every_verb_and_flag() {
     for verb in verbs() {
         assert!(page.contains(&format!("gyradius-{verb}(1)")), "no {verb}: {page}");
         let of_verb = plain(printed(&["man", &verb]));
-        assert!(of_verb.contains(&format!(".TH gyradius-{verb} 1")), "{of_verb}");
+        let version = env!("CARGO_PKG_VERSION");
+        let title = format!(".TH gyradius-{verb} 1  \"gyradius {version}\"");
+        assert!(of_verb.contains(&title), "no {title}: {of_verb}");
         for flag in flags(&verb) {
             assert!(of_verb.contains(&flag), "no {flag} of {verb}: {of_verb}");
         }

@@ -47,6 +47,9 @@ pub use statements::{
     ProductsStatement, StatedMass, StatedModel, StatementError, StatementWarning, Statements,
 };
 
+// Part of the interface, in the version that it takes and gives.
+pub use {nalgebra, rand, rand_distr};
+
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

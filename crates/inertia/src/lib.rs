@@ -74,6 +74,9 @@ pub const RELATIVE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
 /// Largest magnitude of an entry, so that no sum, rotation or trace of entries overflows.
 pub const MAX_ENTRY: f64 = f64::MAX / 64.0;
 
+// Part of the interface, in the version that it takes and gives.
+pub use nalgebra;
+
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

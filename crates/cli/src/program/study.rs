@@ -3,7 +3,7 @@
 use gyradius_study::{Forecast, Options, Scenario, Study};
 use std::{error::Error, fmt::Write, process::ExitCode, time::Duration};
 
-use crate::{
+use crate::program::{
     args::StudyArgs,
     number::short,
     output::{complain, print, say},

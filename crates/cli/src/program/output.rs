@@ -9,7 +9,7 @@ use std::{
     path::Path,
 };
 
-use crate::args::{BodyArg, Form, FragmentArgs};
+use crate::program::args::{BodyArg, Form, FragmentArgs};
 
 impl From<BodyArg> for FragmentBody {
     fn from(body: BodyArg) -> Self {

@@ -2,7 +2,7 @@
 
 use clap::CommandFactory;
 
-use crate::{
+use crate::program::{
     args::{Cli, CompletionsArgs, ManArgs},
     output::to_standard_output,
 };
@@ -29,7 +29,8 @@ pub(crate) fn man(arguments: &ManArgs) -> Result<(), String> {
         })?,
     };
     let mut page = Vec::new();
-    let rendered = clap_mangen::Man::new(command).render(&mut page);
+    let source = concat!("gyradius ", env!("CARGO_PKG_VERSION"));
+    let rendered = clap_mangen::Man::new(command).source(source).render(&mut page);
     rendered.map_err(|error| error.to_string())?;
     print(page)
 }

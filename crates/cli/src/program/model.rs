@@ -10,7 +10,7 @@ use gyradius_study::{Fragment, FragmentBody, FragmentError, parse_toml};
 use serde::{Deserialize, Serialize};
 use std::{error::Error, fmt::Write};
 
-use crate::{
+use crate::program::{
     args::ModelArgs,
     fit::{FragmentJson, wrapped},
     number::short,

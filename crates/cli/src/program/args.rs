@@ -4,7 +4,7 @@ use clap::{Args, Parser, Subcommand};
 use gyradius_study::{CompareOptions, ModelKind};
 use std::path::PathBuf;
 
-use crate::examples::{
+use crate::program::examples::{
     CHECK_EXAMPLES, COMPARE_EXAMPLES, COMPLETIONS_EXAMPLES, EXAMPLES, EXIT_CODES, FIT_EXAMPLES,
     MAN_EXAMPLES, MODEL_EXAMPLES, REPLAY_EXAMPLES, REPORT_EXAMPLES,
 };

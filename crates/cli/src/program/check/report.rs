@@ -11,7 +11,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{
+use crate::program::{
     REFUSED,
     args::{CheckArgs, RepairArg},
 };

@@ -13,7 +13,7 @@ use super::{
     Finding, Report, Status, harmless, place,
     report::{Repair, Repaired},
 };
-use crate::{args::CheckArgs, number::short};
+use crate::program::{args::CheckArgs, number::short};
 
 /// Widest name, and widest reason, that are not shortened or moved.
 const NAME: usize = 24;

@@ -3,7 +3,7 @@
 use gyradius_study::Replay;
 use std::{error::Error, path::Path};
 
-use crate::{args::ReplayArgs, output::print};
+use crate::program::{args::ReplayArgs, output::print};
 
 /// Where `gyradius study` writes if nothing else is said.
 pub(crate) const DEFAULT: &str = "target/study/peck-2003";

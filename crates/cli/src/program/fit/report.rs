@@ -6,7 +6,7 @@ use gyradius_inertia::InertiaMatrix;
 use std::fmt::Write;
 
 use super::{FitArgs, table::Table};
-use crate::number::{probability, short, with_error};
+use crate::program::number::{probability, short, with_error};
 
 /// Parameters with their errors, what to know of them, and the verdict.
 pub(super) fn text(

@@ -3,7 +3,7 @@
 use super::*;
 use toml::{Table, Value};
 
-const COMPLETE: &str = include_str!("../../tests/tables/payload.toml");
+const COMPLETE: &str = include_str!("../../../tests/tables/payload.toml");
 
 /// Files that say everything there is, in every unit, and each statement alone.
 fn files() -> Vec<Table> {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::io::{self, Write};
 
 use super::{Finding, Report, Status, report::Repaired};
-use crate::args::CheckArgs;
+use crate::program::args::CheckArgs;
 
 /// Grows when a field changes its meaning or goes; new fields may come without it.
 const SCHEMA: u32 = 1;

@@ -12,7 +12,7 @@ use std::{
     process::ExitCode,
 };
 
-use crate::{
+use crate::program::{
     REFUSED,
     args::{CheckArgs, Form},
     output::{complain, print, print_json},

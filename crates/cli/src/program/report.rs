@@ -3,7 +3,7 @@
 use gyradius_study::Results;
 use std::{error::Error, path::Path};
 
-use crate::{args::ReportArgs, output::print, replay::DEFAULT};
+use crate::program::{args::ReportArgs, output::print, replay::DEFAULT};
 
 /// Runs the verb.
 pub(crate) fn report(arguments: &ReportArgs) -> Result<(), Box<dyn Error>> {

@@ -2,7 +2,7 @@
 
 use gyradius_study::{CompareError, CompareOptions, ModelComparison, Reference, Scenario};
 
-use crate::{
+use crate::program::{
     args::{CompareArgs, CompareForm, ReferenceName},
     output::{print, print_json},
     progress,

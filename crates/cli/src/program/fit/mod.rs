@@ -11,7 +11,7 @@ use gyradius_study::Fragment;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use std::{error::Error, process::ExitCode};
 
-use crate::{
+use crate::program::{
     REFUSED,
     args::FitArgs,
     output::{self, complain},

@@ -1,0 +1,67 @@
+//! The command line of gyradius: flags, progress and messages. The science is in the crates below.
+
+mod args;
+mod check;
+mod compare;
+mod examples;
+mod fit;
+mod model;
+mod number;
+mod output;
+mod progress;
+mod replay;
+mod report;
+mod shell;
+mod study;
+
+use args::{Cli, Command};
+use clap::Parser;
+use output::{complain, say};
+use std::{error::Error, ffi::OsString, io, process::ExitCode};
+
+/// What the program returns when it was asked for something that cannot be done.
+const REFUSED: u8 = 2;
+
+/// Runs the program with the given arguments, the first of which is its name.
+///
+/// Returns 0, or 2 after a message on standard error; `check`, `fit` and `study` also return 1, for findings.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(error) => return not_run(&error),
+    };
+    let done = |()| ExitCode::SUCCESS;
+    let result: Result<ExitCode, Box<dyn Error>> = match &cli.command {
+        Command::Check(arguments) => return check::check(arguments),
+        Command::Fit(arguments) => return fit::fit(arguments),
+        Command::Model(arguments) => model::model(arguments).map(done),
+        Command::Report(arguments) => report::report(arguments).map(done),
+        Command::Replay(arguments) => replay::replay(arguments).map(done),
+        Command::Study(arguments) => study::study(arguments),
+        Command::Compare(arguments) => compare::compare(arguments).map(done).map_err(Into::into),
+        Command::Completions(arguments) => {
+            shell::completions(arguments).map(done).map_err(Into::into)
+        }
+        Command::Man(arguments) => shell::man(arguments).map(done).map_err(Into::into),
+    };
+    result.unwrap_or_else(|error| {
+        complain(error);
+        ExitCode::from(REFUSED)
+    })
+}
+
+/// Help and version, which are no errors, and what cannot be understood.
+fn not_run(error: &clap::Error) -> ExitCode {
+    if error.use_stderr() {
+        // Names of files may stand in it.
+        say(error.render().to_string().trim_end());
+        return ExitCode::from(REFUSED);
+    }
+    match error.print() {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            complain(format_args!("standard output: {error}"));
+            ExitCode::from(REFUSED)
+        }
+        _ => ExitCode::SUCCESS,
+    }
+}
