@@ -12,11 +12,14 @@ const REASONS: [(&str, &str); 11] = [
     ("crates/attitude/src/fit/mod.rs", "the fit as its users see it: families, results, errors"),
     ("crates/attitude/src/fit/tests.rs", "tests of one subject, which share laws and samples"),
     ("crates/cli/tests/check.rs", "tests of one verb, which share files"),
+    (
+        "crates/dispersion/src/scalar/laws.rs",
+        "every scalar law, with its pinned draws: the one list",
+    ),
     ("crates/formats/src/csv.rs", "one format, with tests"),
     ("crates/inertia/src/mass_properties.rs", "one type, with tests"),
     ("crates/inertia/src/mesh.rs", "240 lines of code, more of tests"),
     ("crates/inertia/src/report.rs", "one report, every fault of a matrix, with tests"),
-    ("crates/study/src/drawn.rs", "320 lines of code, with tests"),
     ("crates/study/src/scenario/tests.rs", "tests of one subject, one for each thing refused"),
 ];
 
