@@ -4,6 +4,7 @@
 mod arrows;
 mod circles;
 mod equations;
+mod facade;
 mod files;
 mod layout;
 mod pages;
