@@ -30,13 +30,13 @@
 //! Random inertia ([`dispersion`]), every draw of which some body has:
 //! ```
 //! use gyradius::campaign::Streams;
-//! use gyradius::dispersion::{FixedAttitude, GaussianRoots, PrincipalDispersion};
-//! use gyradius::inertia::{Inertia, RootSecondMoments};
+//! use gyradius::dispersion::{FixedAttitude, PrincipalDispersion, ScalarLaw, ScalarRoots};
+//! use gyradius::inertia::Inertia;
 //! use gyradius::{nalgebra::UnitQuaternion, rand_distr::Distribution};
 //!
-//! let roots = RootSecondMoments::new([31.6, 44.7, 54.8])?; // √kg·m
-//! let roots = GaussianRoots::new(roots, [0.125, 0.1, 0.075])?;
-//! let law = PrincipalDispersion::new(roots, FixedAttitude::new(UnitQuaternion::identity())?);
+//! let root = |mean, deviation| ScalarLaw::normal(mean, deviation); // √kg·m
+//! let roots = ScalarRoots::new([root(31.6, 0.35)?, root(44.7, 0.32)?, root(54.8, 0.27)?])?;
+//! let law = PrincipalDispersion::new(roots, FixedAttitude::new(UnitQuaternion::identity()));
 //! let drawn: Inertia = law.sample(&mut Streams::new(2003, "example", "payload inertia").run(0));
 //! assert!(drawn.as_inertia_matrix().is_realizable());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
