@@ -11,28 +11,6 @@ use crate::{
     tokens::{Token, tokens},
 };
 
-/// Circles that are allowed: crate, files and reason. Fewer files of one may be left.
-const ALLOWED: [(&str, &[&str], &str); 1] = [(
-    "study",
-    &[
-        "claims",
-        "compare",
-        "compare/body",
-        "compare/contest",
-        "compare/figures_of_models",
-        "compare/options",
-        "compare/reference",
-        "compare/section",
-        "compare/text",
-        "figures_of_study",
-        "report",
-        "results",
-        "study",
-        "summary",
-    ],
-    "a comparison of models fails as a study does, and the summary of a study holds a section of one",
-)];
-
 /// A module that is a file, by its path from the root of the crate.
 type Module = Vec<String>;
 
@@ -269,19 +247,15 @@ impl Crate {
 
 #[test]
 fn no_files_need_each_other() {
-    let mut allowed: Vec<_> = ALLOWED.to_vec();
     for name in crates() {
         let krate = Crate::read(&name);
-        for circle in krate.circles() {
-            let known = |(of, files, _): &(&str, &[&str], &str)| {
-                *of == name && circle.iter().all(|file| files.contains(&file.as_str()))
-            };
-            let count = allowed.len();
-            allowed.retain(|entry| !known(entry));
-            assert!(allowed.len() < count, "a circle in {name}:{}", krate.describe(&circle));
-        }
+        let circle = krate.circles().into_iter().next();
+        assert!(
+            circle.is_none(),
+            "a circle in {name}:{}",
+            krate.describe(&circle.unwrap_or_default())
+        );
     }
-    assert!(allowed.is_empty(), "mended, and to be taken from the list: {allowed:?}");
 }
 
 fn circles(sources: &[(&str, &str)]) -> Vec<String> {

@@ -20,6 +20,7 @@ mod claims;
 mod column;
 mod compare;
 mod drawn;
+mod error;
 mod failure;
 mod figures_of_study;
 mod fragment;
@@ -38,6 +39,7 @@ mod text;
 
 pub use body::Entry;
 pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
+pub use error::StudyError;
 pub use failure::Failure;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_campaign::{Cell, Column, Forecast, Progress, Row, Table};
@@ -47,7 +49,7 @@ pub use quantity::Quantity;
 pub use replay::{Replay, ReplayError};
 pub use results::{Results, ResultsError};
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
-pub use study::{Options, Study, StudyError, restore_studies};
+pub use study::{Options, Study, restore_studies};
 pub use summary::Summary;
 
 #[cfg(doctest)]

@@ -5,57 +5,16 @@ use gyradius_campaign::{
 };
 use gyradius_report::file_of;
 use gyradius_statistics::StatisticsError;
-use parquet::errors::ParquetError;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 use crate::{
-    Scenario, ScenarioError, Summary, claims,
+    Scenario, StudyError, Summary, claims,
     compare::Section,
     figures_of_study,
     model::{Model, Separations},
     results::Pages,
 };
-
-/// Why a study could not be done. Nothing has been overwritten.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum StudyError {
-    /// The scenario is refused.
-    #[error(transparent)]
-    Scenario(#[from] ScenarioError),
-    /// The output folder cannot be used.
-    #[error("output folder {}: {problem}", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// What is wrong with it.
-        problem: String,
-    },
-    /// A run table cannot be written.
-    #[error("cannot write the run table of {model}: {source}")]
-    RunTable {
-        /// The model.
-        model: String,
-        /// Why.
-        source: ParquetError,
-    },
-    /// The runs cannot be made on so many threads, or leave no rows.
-    #[error(transparent)]
-    Campaign(#[from] CampaignError),
-    /// The runs cannot be summarised.
-    #[error("cannot summarise the runs: {0}")]
-    Statistics(#[from] StatisticsError),
-    /// The summary cannot be put into JSON.
-    #[error("cannot write the summary: {0}")]
-    Json(#[from] serde_json::Error),
-}
-
-impl From<FolderError> for StudyError {
-    fn from(error: FolderError) -> Self {
-        Self::Folder { path: error.path().to_owned(), problem: error.problem() }
-    }
-}
 
 /// How to carry out a study.
 #[derive(Clone, Debug, Default)]
