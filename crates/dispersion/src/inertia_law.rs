@@ -16,7 +16,7 @@ use crate::{
 /// A law of the inertia of a body: what studies and comparisons of models draw from.
 ///
 /// Every law of this crate is one, and so can be a type of your own; a `Box<dyn InertiaLaw>` is any of them. The
-/// example `mixture` has one.
+/// example `mixture_study` of `gyradius-study` has one, and takes it through a study.
 ///
 /// ```
 /// use gyradius_dispersion::{AnyBody, InertiaLaw, Wishart};

@@ -10,7 +10,7 @@ use crate::{
     body::{Body, Entry},
     claim::{Claim, Verdict},
     quantity::Quantity,
-    scenario::Scenario,
+    scenario::{ModelLaw, Scenario},
     summary::{ComparisonSummary, ModelSummary, Summary},
 };
 
@@ -50,7 +50,7 @@ pub(crate) fn judge(scenario: &Scenario, summary: &Summary, tables: &[Table]) ->
 
 fn always_realizable(summary: &Summary) -> Claim {
     let physical: Vec<&ModelSummary> =
-        summary.models.iter().filter(|m| m.law == ModelKind::Principal).collect();
+        summary.models.iter().filter(|m| m.law == ModelLaw::Kind(ModelKind::Principal)).collect();
     let findings = physical.iter().map(|m| unrealizable(m)).collect();
     let parts: Vec<Verdict> = physical
         .iter()

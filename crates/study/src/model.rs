@@ -2,25 +2,24 @@
 
 use gyradius_campaign::{Column as RunColumn, Failure, Simulation, Streams, Table, TableError};
 use gyradius_dispersion::{
-    DispersionModel, EntrywiseGaussian, InertiaLaw, KnownMoments, ModelDraw, ModelKind,
-    RealizableOnly,
+    DispersionModel, EntrywiseGaussian, InertiaLaw, ModelDraw, ModelKind, RealizableOnly,
 };
 use gyradius_separation::Batch;
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
 use crate::{
     body::Body,
     column::Column,
     drawn::{self, Draws},
     run::{Case, Run},
-    scenario::{Law, ModelSpec, Scenario, ScenarioError, UncertainBody},
+    scenario::{Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
 };
 
 /// A model ready to draw: a law and its random streams for either body.
 #[derive(Debug)]
 pub(crate) struct Model {
     name: String,
-    kind: ModelKind,
+    law: ModelLaw,
     /// Of the six entries of payload and stage, if the law is entrywise.
     given: Option<[[f64; 6]; 2]>,
     payload: BodyModel,
@@ -30,7 +29,7 @@ pub(crate) struct Model {
 
 #[derive(Debug)]
 struct BodyModel {
-    law: Box<dyn InertiaLaw>,
+    law: Arc<dyn InertiaLaw>,
     streams: Streams,
 }
 
@@ -47,25 +46,17 @@ impl Model {
                 ScenarioError::field(scenario.place(spec), problem)
             })
         };
-        let payload = law(Body::Payload, scenario.payload())?;
-        let stage = law(Body::Stage, scenario.stage())?;
-        let given =
-            if let (DispersionModel::Entrywise(payload), DispersionModel::Entrywise(stage)) =
-                (&payload, &stage)
-            {
-                Some([payload.deviations(), stage.deviations()])
-            } else {
-                None
-            };
-        let body = |which: Body, law: DispersionModel| {
+        let (payload, payload_given) = law(Body::Payload, scenario.payload())?;
+        let (stage, stage_given) = law(Body::Stage, scenario.stage())?;
+        let body = |which: Body, law: Arc<dyn InertiaLaw>| {
             let purpose = format!("{} inertia", which.name());
             let streams = Streams::new(scenario.seed(), &spec.name, &purpose);
-            BodyModel { law: Box::new(law), streams }
+            BodyModel { law, streams }
         };
         Ok(Self {
             name: spec.name.clone(),
-            kind: spec.law.kind(),
-            given,
+            law: spec.law.named(),
+            given: payload_given.zip(stage_given).map(<[_; 2]>::from),
             payload: body(Body::Payload, payload),
             stage: body(Body::Stage, stage),
             draws: Draws::new(scenario.seed(), &spec.name, scenario.dispersions()),
@@ -77,9 +68,14 @@ impl Model {
         &self.name
     }
 
-    /// Which model it is.
-    pub(crate) fn kind(&self) -> ModelKind {
-        self.kind
+    /// Which law it has.
+    pub(crate) fn law(&self) -> ModelLaw {
+        self.law
+    }
+
+    /// Whether no draw can be unrealizable.
+    pub(crate) fn is_realizable_by_construction(&self) -> bool {
+        [&self.payload, &self.stage].iter().all(|body| body.law.is_realizable_by_construction())
     }
 
     /// The estimated shares of draws for payload and stage that rejection keeps, where it rejects.
@@ -179,32 +175,108 @@ impl BodyModel {
     }
 }
 
-/// The law of one body.
+/// The law of one body, and the deviations that it was given if it is entrywise.
 fn law(
     spec: &ModelSpec,
     which: Body,
     body: &UncertainBody,
     scenario: &Scenario,
-) -> Result<DispersionModel, Box<dyn std::error::Error>> {
-    match &spec.law {
-        Law::Principal(axes) => Ok(body.principal(*axes)?.into()),
+) -> Result<(Arc<dyn InertiaLaw>, Option<[f64; 6]>), Box<dyn std::error::Error>> {
+    let model = match &spec.law {
+        Law::Outside(said) => {
+            let name = said.as_ref().map_or_else(String::new, |said| match which {
+                Body::Payload => format!(" {:?}", said.payload),
+                Body::Stage => format!(" {:?}", said.stage),
+            });
+            let law = scenario.outside_law(spec, which).ok_or_else(|| {
+                format!(
+                    "its law{name} is a program's own, which no file holds: run or replay the study from that \
+                     program, which gives the law by Scenario::with_model"
+                )
+            })?;
+            return Ok((Arc::clone(law), None));
+        }
+        Law::Principal(axes) => body.principal(*axes)?.into(),
         Law::Given { kind, payload, stage } => match which {
-            Body::Payload => payload.model(*kind, body.nominal()),
-            Body::Stage => stage.model(*kind, body.nominal()),
+            Body::Payload => payload.model(*kind, body.nominal())?,
+            Body::Stage => stage.model(*kind, body.nominal())?,
         },
         Law::Matched { kind, to } => {
-            let other = scenario.models().iter().find(|m| m.name == *to).map(|m| &m.law);
-            let Some(Law::Principal(axes)) = other else {
-                return Err(format!("matched_to {to:?}: no such model").into());
-            };
-            let moments = body.principal(*axes)?.entry_moments();
+            let other = scenario.models().iter().find(|m| m.name == *to);
+            let other = other.filter(|m| matches!(m.law, Law::Principal(_) | Law::Outside(_)));
+            let other = other.ok_or_else(|| format!("matched_to {to:?}: no such model"))?;
+            let (other, _) = law(other, which, body, scenario)?;
+            let moments = other.expected_moments().ok_or_else(|| {
+                format!(
+                    "matched_to {to:?}: the moments of its law {:?} are not known",
+                    other.name()
+                )
+            })?;
             // The naive model knows the nominal body and how far its entries scatter, no more.
             let naive = || EntrywiseGaussian::new(*body.nominal(), moments.deviations());
-            Ok(match kind {
+            match kind {
                 ModelKind::Entrywise => naive()?.into(),
                 ModelKind::RealizableEntrywise => RealizableOnly::new(naive()?)?.into(),
                 kind => DispersionModel::matched(*kind, &moments)?.into_model(),
-            })
+            }
+        }
+    };
+    let given =
+        if let DispersionModel::Entrywise(law) = &model { Some(law.deviations()) } else { None };
+    Ok((Arc::new(model), given))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fmt::Write;
+    use toml::{Table as Toml, Value};
+
+    /// Every model of a scenario given from outside in its place, one after the other: it and those matched to it draw
+    /// the same bodies to the bit, and without the law it is refused.
+    #[test]
+    fn laws_from_outside_draw_what_the_scenarios_own_do() {
+        let mut text = Scenario::peck_2003().unwrap().to_toml();
+        for kind in ModelKind::ALL.into_iter().filter(|kind| *kind != ModelKind::Principal) {
+            let matched = "matched_to = \"proposed\"";
+            write!(text, "\n[[models]]\nname = \"{kind}\"\nlaw = \"{kind}\"\n{matched}\n").unwrap();
+        }
+        let mut table: Toml = toml::from_str(&text).unwrap();
+        let payload = table["payload"]["dispersion"].as_table_mut().unwrap();
+        payload.insert("mass_percent".to_owned(), 1.0.into());
+        payload.insert("inertia_follows_mass".to_owned(), true.into());
+        let scenario =
+            |table: &Toml| Scenario::from_toml(&toml::to_string(table).unwrap()).unwrap();
+        let built_in = scenario(&table);
+        let own = Model::all(&built_in).unwrap();
+        let draws = |scenario: &Scenario, models: &[Model]| -> Vec<String> {
+            let runs = models.iter().flat_map(|model| (0..20).map(move |run| (model, run)));
+            runs.map(|(model, run)| format!("{:?}", model.draw(scenario, run))).collect()
+        };
+        let expected = draws(&built_in, &own);
+        for (i, model) in own.iter().enumerate() {
+            let mut table = table.clone();
+            let only = [("name", model.name()), ("law", "outside")];
+            let only = only.map(|(key, value)| (key.to_owned(), Value::from(value)));
+            table["models"][i] = Value::Table(only.into_iter().collect());
+            let bare = scenario(&table);
+            let refused = Model::all(&bare).unwrap_err().to_string();
+            assert!(refused.contains("is a program's own"), "{refused}");
+
+            let (payload, stage) = (Arc::clone(&model.payload.law), Arc::clone(&model.stage.law));
+            let given = bare.with_model(model.name(), payload, stage).unwrap();
+            let models = Model::all(&given).unwrap();
+            assert!(draws(&given, &models) == expected, "{}", model.name());
+            assert_eq!(models[i].law(), ModelLaw::Outside);
+            let sound = model.is_realizable_by_construction();
+            assert_eq!(models[i].is_realizable_by_construction(), sound);
+            // What it says of itself reads back, and is refused without the law as before.
+            let read = Scenario::from_toml(&given.to_toml()).unwrap();
+            assert_eq!(read.fingerprint(), given.fingerprint());
+            assert_ne!(read.fingerprint(), built_in.fingerprint());
+            let refused = Model::all(&read).unwrap_err().to_string();
+            let name = format!("its law {:?} is a program's own", model.payload.law.name());
+            assert!(refused.contains(&name) && refused.starts_with("models["), "{refused}");
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
 use gyradius_campaign::{SampleSummary, Share, Table, counted};
-use gyradius_dispersion::ModelKind;
 use gyradius_report::Figure;
 use gyradius_statistics::{
     Confidence, Deviation, Interval, Moments, SortedSample, StatisticsError,
@@ -20,7 +19,7 @@ use crate::{
     model::Model,
     quantity::Quantity,
     run::Case,
-    scenario::{Dispersed, Scenario},
+    scenario::{Dispersed, ModelLaw, Scenario},
 };
 
 /// Every number that the report shows.
@@ -69,7 +68,7 @@ pub(crate) struct Nominal {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ModelSummary {
     pub(crate) name: String,
-    pub(crate) law: ModelKind,
+    pub(crate) law: ModelLaw,
     pub(crate) realizable_by_construction: bool,
     /// Estimated shares of draws for payload and stage that a law by rejection keeps.
     pub(crate) acceptance: Option<[f64; 2]>,
@@ -317,8 +316,8 @@ impl ModelSummary {
         };
         Ok(Self {
             name: table.model().to_owned(),
-            law: model.kind(),
-            realizable_by_construction: model.kind().is_realizable_by_construction(),
+            law: model.law(),
+            realizable_by_construction: model.is_realizable_by_construction(),
             acceptance: model.acceptance(),
             failed: failures.iter().map(|f| f.1).sum(),
             failures,

@@ -167,11 +167,19 @@ impl Replay {
             return Self::new(&Scenario::read(path)?, model, run, coast_s);
         }
         let results = Results::read(path)?;
-        let mut replay = Self::new(results.scenario(), model, run, coast_s)?;
-        let table = path.join(format!("runs/{}/runs.parquet", replay.model));
-        replay.compare(&table)?;
-        replay.table = Some(table);
-        Ok(replay)
+        Self::new(results.scenario(), model, run, coast_s)?.held_against(path)
+    }
+
+    /// Holds the row against that of the run table in the folder of a study, bit by bit: for a study with models of a
+    /// program's own, which [`open`](Self::open) cannot draw.
+    ///
+    /// # Errors
+    /// There is no such table, or it says otherwise.
+    pub fn held_against(mut self, folder: &Path) -> Result<Self, ReplayError> {
+        let table = folder.join(format!("runs/{}/runs.parquet", self.model));
+        self.compare(&table)?;
+        self.table = Some(table);
+        Ok(self)
     }
 
     /// Replays a run of a scenario.

@@ -1,6 +1,6 @@
 //! A scenario as it stands in a TOML file.
 
-use gyradius_dispersion::{BasiliskDispersion, ModelKind, ScalarLawForm};
+use gyradius_dispersion::{BasiliskDispersion, ModelKind, ScalarLawForm, UnknownModel};
 use gyradius_separation::{BodyParameter, SpringParameter, StackParameter};
 use serde::{Deserialize, Serialize};
 
@@ -244,11 +244,11 @@ pub(crate) struct IntegrationFile {
 }
 
 /// A model: its law, and for each body what the law needs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ModelFile {
     pub(crate) name: String,
-    pub(crate) law: ModelKind,
+    pub(crate) law: ModelLaw,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) axes: Option<AxesFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -281,6 +281,8 @@ pub(crate) struct ModelFile {
     pub(crate) stage_angle_deviation_rad: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) matched_to: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) outside: Option<OutsideFile>,
 }
 
 /// What a model file says of one body.
@@ -293,6 +295,50 @@ pub(crate) struct GivenFile {
     pub(crate) diagonal_deviation_kg_m2: Option<f64>,
     pub(crate) diagonal_bounds_kg_m2: Option<[f64; 2]>,
     pub(crate) angle_deviation_rad: Option<f64>,
+}
+
+/// The law of a model by its name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub(crate) enum ModelLaw {
+    /// One that a program gives, and that no file holds.
+    #[default]
+    Outside,
+    Kind(ModelKind),
+}
+
+const OUTSIDE: &str = "outside";
+
+impl TryFrom<String> for ModelLaw {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        if name == OUTSIDE {
+            return Ok(Self::Outside);
+        }
+        name.parse().map(Self::Kind).map_err(|error: UnknownModel| format!("{error}, {OUTSIDE}"))
+    }
+}
+
+impl From<ModelLaw> for String {
+    fn from(law: ModelLaw) -> Self {
+        match law {
+            ModelLaw::Outside => OUTSIDE.to_owned(),
+            ModelLaw::Kind(kind) => kind.name().to_owned(),
+        }
+    }
+}
+
+/// What a file can say of the laws of payload and stage that a program gave.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OutsideFile {
+    /// What the laws call themselves.
+    pub(crate) payload: String,
+    pub(crate) stage: String,
+    pub(crate) realizable_by_construction: bool,
+    /// SHA-256 of draws of both, by which other laws are told apart.
+    pub(crate) draws_sha256: String,
 }
 
 impl ModelFile {
@@ -322,7 +368,7 @@ impl ModelFile {
 
     /// With the defaults of its law filled in.
     pub(crate) fn fill(&mut self) {
-        if self.law == ModelKind::Basilisk && self.matched_to.is_none() {
+        if self.law == ModelLaw::Kind(ModelKind::Basilisk) && self.matched_to.is_none() {
             self.payload_diagonal_bounds_kg_m2.get_or_insert(BasiliskDispersion::NO_BOUNDS);
             self.stage_diagonal_bounds_kg_m2.get_or_insert(BasiliskDispersion::NO_BOUNDS);
         }

@@ -8,6 +8,7 @@ mod follows;
 mod law;
 mod limits;
 mod model;
+mod outside;
 mod parse;
 mod sides;
 
@@ -23,8 +24,9 @@ pub(crate) use body::UncertainBody;
 use clearance::Outlines;
 pub(crate) use dispersions::{Dispersed, Dispersions, Target};
 use file::ScenarioFile;
-pub(crate) use file::{AxesFile as Axes, ShapeFile};
+pub(crate) use file::{AxesFile as Axes, ModelLaw, ShapeFile};
 pub(crate) use model::{Comparison, Law, ModelSpec};
+use outside::OutsideLaws;
 pub use parse::{parse_toml, whole_number};
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
@@ -82,6 +84,8 @@ pub struct Scenario {
     outlines: Option<Outlines>,
     models: Vec<ModelSpec>,
     comparisons: Vec<Comparison>,
+    /// What no file holds.
+    outside: OutsideLaws,
 }
 
 impl Scenario {
@@ -214,6 +218,7 @@ impl Scenario {
             outlines,
             models,
             comparisons,
+            outside: OutsideLaws::default(),
         })
     }
 
@@ -248,7 +253,8 @@ impl Scenario {
     }
 
     /// SHA-256 of [`to_toml`](Self::to_toml), in hexadecimal: two studies with the same fingerprint
-    /// by the same version have the same results.
+    /// by the same version have the same results. Of a law from [`with_model`](Self::with_model) the file holds
+    /// a digest of its draws, so that this is then as sure as that the law always draws the same.
     #[must_use]
     pub fn fingerprint(&self) -> String {
         Sha256::digest(self.to_toml()).iter().map(|byte| format!("{byte:02x}")).collect()

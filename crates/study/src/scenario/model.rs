@@ -9,7 +9,7 @@ use nalgebra::SMatrix;
 
 use super::{
     ScenarioError, UncertainBody, check_name,
-    file::{AxesFile as Axes, ComparisonFile, GivenFile, ModelFile},
+    file::{AxesFile as Axes, ComparisonFile, GivenFile, ModelFile, ModelLaw, OutsideFile},
 };
 
 /// A model as the scenario describes it.
@@ -26,8 +26,10 @@ pub(crate) enum Law {
     Principal(Axes),
     /// Any other model with given parameters of payload and stage.
     Given { kind: ModelKind, payload: Box<Given>, stage: Box<Given> },
-    /// Any other model with the moments of a principal one.
+    /// Any other model with the moments of a principal one, or of one from outside.
     Matched { kind: ModelKind, to: String },
+    /// That of a program, and what the file says of it.
+    Outside(Option<OutsideFile>),
 }
 
 /// The parameters of a model for one body.
@@ -46,10 +48,21 @@ pub(crate) enum Given {
 }
 
 impl Law {
-    pub(crate) fn kind(&self) -> ModelKind {
+    pub(crate) fn named(&self) -> ModelLaw {
         match self {
-            Self::Principal(_) => ModelKind::Principal,
-            Self::Given { kind, .. } | Self::Matched { kind, .. } => *kind,
+            Self::Principal(_) => ModelLaw::Kind(ModelKind::Principal),
+            Self::Given { kind, .. } | Self::Matched { kind, .. } => ModelLaw::Kind(*kind),
+            Self::Outside(_) => ModelLaw::Outside,
+        }
+    }
+
+    /// Whether it can be the physical model of a comparison; what a file does not say is judged when the law is
+    /// there.
+    fn may_be_physical(&self) -> bool {
+        match (self, self.named()) {
+            (_, ModelLaw::Kind(kind)) => kind.is_realizable_by_construction(),
+            (Self::Outside(Some(said)), _) => said.realizable_by_construction,
+            (_, ModelLaw::Outside) => true,
         }
     }
 }
@@ -94,7 +107,6 @@ fn check_model(
     bodies: [&UncertainBody; 2],
 ) -> Result<ModelSpec, ScenarioError> {
     let place = place(index);
-    let kind = file.law;
     let field_error = |field: &str, problem: String| {
         Err(ScenarioError::field(format!("{place}.{field}"), problem))
     };
@@ -107,6 +119,23 @@ fn check_model(
         of("payload", &payload).into_iter().chain(of("stage", &stage)).filter(|f| f.2)
     };
 
+    let ModelLaw::Kind(kind) = file.law else {
+        let mut others = given().map(|(field, ..)| field);
+        let axes = file.axes.map(|_| "axes".to_owned());
+        let matched = file.matched_to.as_ref().map(|_| "matched_to".to_owned());
+        return match others.next().or(axes).or(matched) {
+            Some(field) => {
+                let problem = "law \"outside\" does not take it: a program gives the law by Scenario::with_model";
+                field_error(&field, problem.to_owned())
+            }
+            None => {
+                Ok(ModelSpec { name: file.name.clone(), law: Law::Outside(file.outside.clone()) })
+            }
+        };
+    };
+    if file.outside.is_some() {
+        return field_error("outside", format!("law \"{kind}\" does not take it"));
+    }
     if kind == ModelKind::Principal {
         let Some(axes) = file.axes else {
             return Err(ScenarioError::field(
@@ -145,7 +174,8 @@ fn check_model(
         if let Some((field, ..)) = given().next() {
             return field_error(&field, choice);
         }
-        if !all.iter().any(|m| m.name == *other && m.law == ModelKind::Principal) {
+        let known = [ModelLaw::Kind(ModelKind::Principal), ModelLaw::Outside];
+        if !all.iter().any(|m| m.name == *other && known.contains(&m.law)) {
             let problem = format!(
                 "{other:?}: it must name a model with law \"principal\", whose mean and deviations \
                  can be computed"
@@ -287,11 +317,10 @@ pub(crate) fn check_comparisons(
 ) -> Result<Vec<Comparison>, ScenarioError> {
     let find = |i: usize, role: &str, name: &str| {
         let fits = |m: &&ModelSpec| {
-            let kind = m.law.kind();
             if role == "physical" {
-                kind.is_realizable_by_construction()
+                m.law.may_be_physical()
             } else {
-                kind != ModelKind::Principal
+                m.law.named() != ModelLaw::Kind(ModelKind::Principal)
             }
         };
         let which = if role == "physical" {
