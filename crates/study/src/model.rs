@@ -175,13 +175,16 @@ impl BodyModel {
     }
 }
 
-/// The law of one body, and the deviations that it was given if it is entrywise.
+/// A law, and the deviations that it was given if it is entrywise.
+type BodyLaw = (Arc<dyn InertiaLaw>, Option<[f64; 6]>);
+
+/// The law of one body.
 fn law(
     spec: &ModelSpec,
     which: Body,
     body: &UncertainBody,
     scenario: &Scenario,
-) -> Result<(Arc<dyn InertiaLaw>, Option<[f64; 6]>), Box<dyn std::error::Error>> {
+) -> Result<BodyLaw, Box<dyn std::error::Error>> {
     let model = match &spec.law {
         Law::Outside(said) => {
             let name = said.as_ref().map_or_else(String::new, |said| match which {

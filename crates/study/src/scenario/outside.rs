@@ -100,8 +100,7 @@ fn other_laws(written: &OutsideFile, given: &OutsideFile) -> String {
         let OutsideFile { payload, stage, realizable_by_construction, draws_sha256 } = laws;
         let by_construction = if *realizable_by_construction { "" } else { "not " };
         format!(
-            "{payload:?} and {stage:?}, {by_construction}realizable by construction, with draws of the digest {:.12}",
-            draws_sha256
+            "{payload:?} and {stage:?}, {by_construction}realizable by construction, with draws of the digest {draws_sha256:.12}"
         )
     };
     format!("the laws were {}; those given now are {}", of(written), of(given))
