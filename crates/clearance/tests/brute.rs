@@ -3,12 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_clearance::{
-    Approach, Clearance, ClearanceSettings, Coast, FreeBody, Motion, MotionLimits, RigidState,
+    Approach, Clearance, ClearanceSettings, Coast, Motion, MotionLimits, RigidState,
 };
-use nalgebra::{Matrix3, UnitQuaternion};
-use parry3d_f64::math::{Pose, Vector};
-use parry3d_f64::query::details::distance_support_map_support_map;
-use parry3d_f64::shape::SupportMap;
+use nalgebra::UnitQuaternion;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestRunner};
@@ -348,51 +345,4 @@ fn deep_overlap_takes_few_looks() {
     let after = distance([&cube(1.0), &cube(0.9)], &coast.states(parted).unwrap());
     assert!(before < 1e-3 && (after - 1e-3).abs() < 1e-6, "{before} {after}");
     assert!(c.looks() < 600, "{}", c.looks());
-}
-
-/// A hull by its points, as GJK asks for it.
-struct Cloud(Vec<Vector>);
-
-impl SupportMap for Cloud {
-    fn local_support_point(&self, towards: Vector) -> Vector {
-        let along = |x: &&Vector| x.dot(towards);
-        *self.0.iter().max_by(|a, b| along(a).total_cmp(&along(b))).unwrap()
-    }
-}
-
-fn hull() -> impl Strategy<Value = Vec<V>> {
-    form().prop_filter_map("a hull", |form| match form {
-        Form::Hull(points) => Some(points),
-        Form::Points(_) | Form::Ring(..) => None,
-    })
-}
-
-proptest! {
-    /// Hulls of any dimension in any pose, at rest: as far apart as the GJK algorithm of `parry3d` says.
-    #[test]
-    fn hulls_at_rest_are_as_far_apart_as_another_library_says(
-        hulls in [hull(), hull()],
-        poses in [(vector(4.0), vector(3.0)), (vector(4.0), vector(3.0))],
-    ) {
-        let states = poses.map(|(position, turn)| RigidState {
-            position,
-            attitude: UnitQuaternion::from_scaled_axis(turn),
-            ..RigidState::default()
-        });
-        let cloud = |k: usize| {
-            let place = |x: &V| <[f64; 3]>::from(states[k].position + states[k].attitude * x);
-            Cloud(hulls[k].iter().map(|x| place(x).into()).collect())
-        };
-        let theirs = distance_support_map_support_map(&Pose::IDENTITY, &cloud(0), &cloud(1));
-        // Those that touch are mated, and count from when they have parted.
-        prop_assume!(theirs > 1e-6);
-        let bodies = states.map(|state| FreeBody::new(state, Matrix3::identity()).unwrap());
-        let mut rest = Coast::new(&bodies[0], &bodies[1], 0.0);
-        let [a, b] = hulls.map(|points| Form::Hull(points).outline());
-        let settings = ClearanceSettings::new(1e-10, 1e-8, 1e-3).unwrap();
-        let clearance = Clearance::new(&a, &b, &mut rest, 0.0, 1.0, &settings).unwrap();
-        let ours = clearance.closest().unwrap();
-        prop_assert!((ours.distance_m() - theirs).abs() < 1e-9, "{ours:?} {theirs}");
-        prop_assert!(ours.at_least_m() <= theirs + 1e-9, "{ours:?} {theirs}");
-    }
 }
