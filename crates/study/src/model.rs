@@ -110,34 +110,24 @@ impl Model {
 }
 
 /// The separations of a scenario with the bodies that a model draws.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Separations<'a> {
     scenario: &'a Scenario,
     model: &'a Model,
+    columns: Vec<Column>,
 }
 
 impl<'a> Separations<'a> {
     pub(crate) fn new(scenario: &'a Scenario, model: &'a Model) -> Self {
-        Self { scenario, model }
-    }
-
-    fn layout(&self) -> Vec<Column> {
-        let springs = self.scenario.separation().springs().len();
-        Column::all(springs, self.scenario.dispersions().columns().len())
+        let springs = scenario.separation().springs().len();
+        let columns = Column::all(springs, scenario.dispersions().all.len());
+        Self { scenario, model, columns }
     }
 
     /// Writes the row of a run that has ended.
     pub(crate) fn push(&self, run: &Run<'_>, rows: &mut Table) -> Result<(), TableError> {
-        self.push_as(&self.layout(), run, rows)
-    }
-
-    fn push_as(
-        &self,
-        layout: &[Column],
-        run: &Run<'_>,
-        rows: &mut Table,
-    ) -> Result<(), TableError> {
-        rows.push(run.failure().map(Failure::from), layout.iter().map(|column| column.cell(run)))
+        let cells = self.columns.iter().map(|column| column.cell(run));
+        rows.push(run.failure().map(Failure::from), cells)
     }
 }
 
@@ -146,7 +136,7 @@ impl Simulation for Separations<'_> {
 
     fn columns(&self) -> Vec<RunColumn> {
         let drawn = self.scenario.dispersions().columns();
-        self.layout().into_iter().map(|column| column.declaration(&drawn)).collect()
+        self.columns.iter().map(|column| column.declaration(&drawn)).collect()
     }
 
     fn worker(&self) -> Batch {
@@ -155,7 +145,7 @@ impl Simulation for Separations<'_> {
 
     /// Draws the bodies of several runs and separates them together, to the bits that each has alone.
     fn run(&self, runs: Range<u64>, batch: &mut Batch, rows: &mut Table) -> Result<(), TableError> {
-        let (scenario, layout) = (self.scenario, self.layout());
+        let scenario = self.scenario;
         let cases: Vec<Case> = runs.map(|run| self.model.draw(scenario, run)).collect();
         let sound = |i: &usize| cases[*i].separation.is_ok();
         let places: Vec<usize> = (0..cases.len()).filter(sound).collect();
@@ -163,7 +153,7 @@ impl Simulation for Separations<'_> {
         let queue = cases.iter().filter_map(|case| case.separation.as_ref().ok());
         batch.run(queue, |i, result| results[places[i]] = Some(result));
         for (case, result) in cases.iter().zip(results) {
-            self.push_as(&layout, &case.ended(scenario, result), rows)?;
+            self.push(&case.ended(scenario, result), rows)?;
         }
         Ok(())
     }
