@@ -1,7 +1,7 @@
 //! Intervals for a standard deviation.
 
-use crate::moments::Centred;
-use crate::{Confidence, Interval, Moments, SortedSample, StatisticsError, law};
+use crate::centred::{Centred, Powers, UnitSum};
+use crate::{Confidence, ExactSum, Interval, Moments, SortedSample, StatisticsError, law};
 
 impl Moments {
     /// Normal-theory interval for the standard deviation, `s·√((n−1)/χ²)` with the two quantiles
@@ -80,21 +80,55 @@ impl Deviation {
     /// [`StatisticsError::TooFew`] below five values, [`StatisticsError::Constant`] if the
     /// standard deviation is 0, and those of [`Moments::new`].
     pub fn new(sample: &[f64]) -> Result<Self, StatisticsError> {
-        let n = sample.len();
-        if n < 5 {
-            return Err(StatisticsError::TooFew { n, required: 5 });
+        if sample.len() < FEWEST {
+            return Err(StatisticsError::TooFew { n: sample.len(), required: FEWEST });
         }
-        let moments = Moments::new(sample)?;
+        Self::of_sorted(&SortedSample::new(sample)?)
+    }
+
+    /// As [`new`](Self::new), of a sample that is sorted already.
+    ///
+    /// # Errors
+    ///
+    /// As for [`new`](Self::new).
+    pub fn of_sorted(sample: &SortedSample) -> Result<Self, StatisticsError> {
+        let (values, n) = (sample.values(), sample.n());
+        if n < FEWEST {
+            return Err(StatisticsError::TooFew { n, required: FEWEST });
+        }
+        if sample.minimum() == sample.maximum() {
+            return Err(StatisticsError::Constant);
+        }
+        let sum: ExactSum = values.iter().copied().collect();
+        let n = n as u64;
+        let centred = Centred::new(&sum, n, sample.minimum(), sample.maximum());
+        let (mut powers, mut kept) = (Powers::default(), UnitSum::default());
+        values.iter().for_each(|x| powers.add(centred.map(*x)));
+        let cut = trimmed(n);
+        let middle = &values[cut as usize..(n - cut) as usize];
+        middle.iter().for_each(|x| kept.add(centred.map(*x)));
+        let range = (sample.minimum(), sample.maximum());
+        let moments = Moments::of_powers((n, sum.mean(n)), range, &centred, &powers)?;
+        Self::of_powers(&moments, &powers, kept.value())
+    }
+
+    /// Of moments and powers of deviations from the mean, and the sum of the deviations without those that
+    /// are [`trimmed`].
+    pub(crate) fn of_powers(
+        moments: &Moments,
+        powers: &Powers,
+        kept: f64,
+    ) -> Result<Self, StatisticsError> {
         let standard_deviation = moments.standard_deviation();
         if standard_deviation == 0.0 {
             return Err(StatisticsError::Constant);
         }
-        let centred = Centred::new(sample, moments.minimum(), moments.maximum());
-        let deviations: Vec<f64> = sample.iter().map(|&x| centred.map(x)).collect();
-        let trimmed_mean = trimmed_mean(&deviations)?;
-        let fourth: f64 = deviations.iter().map(|u| (u - trimmed_mean).powi(4)).sum();
-        let second: f64 = deviations.iter().map(|u| u * u).sum();
-        Ok(Self { n, standard_deviation, kurtosis: n as f64 * fourth / (second * second) })
+        let n = moments.n();
+        let [s2, s3, s4] = powers.values();
+        let m = kept / (n - 2 * trimmed(n as u64) as usize) as f64;
+        // Σ(u − m)⁴ with Σu = 0.
+        let fourth = s4 - 4.0 * m * s3 + 6.0 * m * m * s2 + n as f64 * m.powi(4);
+        Ok(Self { n, standard_deviation, kurtosis: n as f64 * fourth / (s2 * s2) })
     }
 
     /// Of samples that nobody drew.
@@ -152,13 +186,14 @@ impl Deviation {
     }
 }
 
-/// Mean without a share `1/(2√(n−4))` of the values at either end; the median of five.
-fn trimmed_mean(sample: &[f64]) -> Result<f64, StatisticsError> {
-    let sorted = SortedSample::new(sample)?;
-    let count = sample.len() as f64;
-    let cut = (count / (2.0 * (count - 4.0).sqrt())) as usize;
-    let kept = &sorted.values()[cut..sample.len() - cut];
-    Ok(kept.iter().sum::<f64>() / kept.len() as f64)
+/// The fewest values that have a kurtosis about a trimmed mean.
+pub(crate) const FEWEST: usize = 5;
+
+/// How many values a trimmed mean leaves out at either end, a share `1/(2√(n−4))`: the mean of five is their
+/// median.
+pub(crate) fn trimmed(n: u64) -> u64 {
+    let count = n as f64;
+    (count / (2.0 * (count - 4.0).sqrt())) as u64
 }
 
 #[cfg(test)]
@@ -195,10 +230,31 @@ mod tests {
         assert_bounds(interval, 0.12850300705893153, 3.113243536555837);
     }
 
+    proptest! {
+        /// Against the formula as it is documented, of values of any unit.
+        #[test]
+        fn the_kurtosis_is_about_the_trimmed_mean(
+            values in prop::collection::vec(prop_oneof![-1.0..1.0f64, -30.0..30.0f64], 5..200),
+            unit in -200..200i32,
+        ) {
+            let sample: Vec<f64> = values.iter().map(|x| x * 2f64.powi(unit)).collect();
+            let deviation = Deviation::new(&sample).unwrap();
+            let n = values.len() as f64;
+            let mean = values.iter().sum::<f64>() / n;
+            let mut sorted = values.clone();
+            sorted.sort_by(f64::total_cmp);
+            let cut = (n / (2.0 * (n - 4.0).sqrt())) as usize;
+            let kept = &sorted[cut..values.len() - cut];
+            let trimmed = kept.iter().sum::<f64>() / kept.len() as f64;
+            let sum = |about: f64, power| values.iter().map(|x| (x - about).powi(power)).sum::<f64>();
+            let kurtosis = n * sum(trimmed, 4) / sum(mean, 2).powi(2);
+            prop_assert!((deviation.kurtosis() / kurtosis - 1.0).abs() < 1e-12, "{kurtosis}");
+        }
+    }
+
     #[test]
     fn trimming_leaves_the_median_of_five() {
-        assert_eq!(trimmed_mean(&[9.0, 1.0, 2.0, 100.0, 4.0]), Ok(4.0));
-        assert_eq!(trimmed_mean(&[9.0, 1.0, 2.0, 100.0, 4.0, 5.0]), Ok(4.5));
+        assert_eq!((trimmed(5), trimmed(6), trimmed(1000)), (2, 2, 15));
     }
 
     #[test]

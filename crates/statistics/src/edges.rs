@@ -1,6 +1,6 @@
 //! Edges of histogram bins.
 
-use crate::quantile::lerp;
+use crate::quantile::between;
 use crate::{SortedSample, StatisticsError, error::MAX_BINS};
 
 /// Increasing edges of contiguous bins `[e₀, e₁), [e₁, e₂), … [e_{k−1}, e_k]`: the last bin holds
@@ -94,7 +94,7 @@ impl BinEdges {
 
     fn divide(lower: f64, upper: f64, bins: usize) -> Self {
         let mut edges: Vec<f64> =
-            (0..bins).map(|i| lerp(lower, upper, i as f64 / bins as f64)).collect();
+            (0..bins).map(|i| between(lower, upper, i as f64 / bins as f64)).collect();
         edges.push(upper);
         edges.dedup();
         Self(edges)

@@ -1,7 +1,8 @@
 //! The first four moments of a sample.
 
-use crate::StatisticsError;
+use crate::centred::{Centred, Powers};
 use crate::error::validate;
+use crate::{ExactSum, StatisticsError};
 
 /// Mean, standard deviation, skewness, kurtosis and range of a finite sample.
 ///
@@ -10,11 +11,11 @@ use crate::error::validate;
 /// ratios `g₁` and `b₂ = g₂ + 3` of Joanes & Gill (1998, doi:10.1111/1467-9884.00122): biased
 /// towards 0 and 3 in small samples of heavy-tailed laws, and `b₂ ≤ n` whatever the law.
 ///
-/// Two passes find the mean and its rounding residue, a third sums powers of deviations divided by
-/// the largest of them (a two-pass scheme in the sense of Chan, Golub & LeVeque 1983,
-/// doi:10.1080/00031305.1983.10483115). Data of huge mean and small spread lose no digit that
-/// they hold, and no sum overflows or underflows whatever their unit. Sums run in the order of the
-/// data.
+/// The mean is the [exact sum](crate::ExactSum) over `n`, rounded once. Powers of the deviations from it,
+/// divided by the largest of them, are summed exactly too (a two-pass scheme in the sense of Chan, Golub &
+/// LeVeque 1983, doi:10.1080/00031305.1983.10483115). Data of huge mean and small spread lose no digit that
+/// they hold, no sum overflows or underflows whatever their unit, and the moments are the same bits in
+/// whatever order the data come.
 ///
 /// ```
 /// use gyradius_statistics::Moments;
@@ -50,42 +51,52 @@ impl Moments {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
         let n = sample.len();
         if minimum == maximum {
-            // Rounding in the mean must not leave a spread behind.
-            return Ok(Self {
-                n,
-                mean: minimum,
-                standard_deviation: 0.0,
-                skewness: None,
-                kurtosis: None,
-                minimum,
-                maximum,
-            });
+            return Ok(Self::constant(n as u64, minimum));
         }
+        let sum: ExactSum = sample.iter().copied().collect();
+        let centred = Centred::new(&sum, n as u64, minimum, maximum);
+        let mut powers = Powers::default();
+        sample.iter().for_each(|x| powers.add(centred.map(*x)));
+        Self::of_powers((n as u64, sum.mean(n as u64)), (minimum, maximum), &centred, &powers)
+    }
 
-        let centred = Centred::new(sample, minimum, maximum);
-        let (mut s2, mut s3, mut s4) = (0.0, 0.0, 0.0);
-        for &x in sample {
-            let u = centred.map(x);
-            let square = u * u;
-            s2 += square;
-            s3 += square * u;
-            s4 += square * square;
-        }
-        let count = n as f64;
-        let standard_deviation = centred.unit * (s2 / (count - 1.0)).sqrt() / centred.scale;
+    /// Of number and mean, range, and powers of deviations of values that are not all the same.
+    pub(crate) fn of_powers(
+        (n, mean): (u64, f64),
+        (minimum, maximum): (f64, f64),
+        centred: &Centred,
+        powers: &Powers,
+    ) -> Result<Self, StatisticsError> {
+        let [s2, s3, s4] = powers.values();
+        let standard_deviation = centred.standard_deviation(s2, n);
         if standard_deviation.is_infinite() {
             return Err(StatisticsError::TooSpread { minimum, maximum });
         }
+        let count = n as f64;
         let m2 = s2 / count;
         Ok(Self {
-            n,
-            mean: ((centred.anchor + centred.residue) / centred.scale).clamp(minimum, maximum),
+            n: n as usize,
+            mean,
             standard_deviation,
             skewness: Some(s3 / count / (m2 * m2.sqrt())),
             kurtosis: Some(s4 / count / (m2 * m2)),
             minimum,
             maximum,
         })
+    }
+
+    /// Of so many equal values.
+    pub(crate) fn constant(n: u64, value: f64) -> Self {
+        Self {
+            n: n as usize,
+            mean: value,
+            // Rounding in the mean must not leave a spread behind.
+            standard_deviation: 0.0,
+            skewness: None,
+            kurtosis: None,
+            minimum: value,
+            maximum: value,
+        }
     }
 
     /// Number of values.
@@ -127,41 +138,6 @@ impl Moments {
     /// Largest value.
     pub fn maximum(&self) -> f64 {
         self.maximum
-    }
-}
-
-/// The map from a value to its deviation from the mean over the largest deviation.
-pub(crate) struct Centred {
-    /// Power of two that keeps sums finite and subnormal values exact.
-    scale: f64,
-    /// The mean of the scaled values as first summed.
-    anchor: f64,
-    /// What rounding left out of it.
-    residue: f64,
-    /// Largest deviation, scaled.
-    unit: f64,
-}
-
-impl Centred {
-    /// For a finite sample that is not constant.
-    pub(crate) fn new(sample: &[f64], minimum: f64, maximum: f64) -> Self {
-        let largest = maximum.max(-minimum);
-        let scale = match largest {
-            huge if huge > 2f64.powi(960) => 2f64.powi(-64),
-            tiny if tiny < 2f64.powi(-900) => 2f64.powi(128),
-            _ => 1.0,
-        };
-        let count = sample.len() as f64;
-        let anchor = sample.iter().map(|x| x * scale).sum::<f64>() / count;
-        let residue = sample.iter().map(|x| x * scale - anchor).sum::<f64>() / count;
-        let mut centred = Self { scale, anchor, residue, unit: 1.0 };
-        centred.unit = centred.map(minimum).abs().max(centred.map(maximum).abs());
-        centred
-    }
-
-    pub(crate) fn map(&self, x: f64) -> f64 {
-        // Two subtractions: the first is exact where the mean dwarfs the spread.
-        ((x * self.scale - self.anchor) - self.residue) / self.unit
     }
 }
 

@@ -70,10 +70,9 @@ impl SortedSample {
     }
 
     pub(crate) fn type_7(&self, p: f64) -> f64 {
-        let position = (self.n() - 1) as f64 * p;
-        let below = position as usize;
-        match self.0.get(below + 1) {
-            Some(&above) => lerp(self.0[below], above, position - below as f64),
+        let (below, share) = type_7_place(self.n() as u64, p);
+        match self.0.get(below as usize + 1) {
+            Some(&above) => between(self.0[below as usize], above, share),
             None => self.maximum(),
         }
     }
@@ -97,14 +96,8 @@ impl SortedSample {
         confidence: Confidence,
     ) -> Result<Interval, StatisticsError> {
         probability(p)?;
-        let (n, tail) = (self.n(), confidence.tail());
-        let rest = |k: usize| (n + 1 - k) as f64;
-        // 1-based ranks; P(B ≥ k) = I_p(k, n−k+1). The search is over ranks 1 to n.
-        let lower = first(n, |k| law::beta_cdf(rest(k), k as f64, 1.0 - p, p) > tail) - 1;
-        let upper = first(n, |k| law::beta_cdf(k as f64, rest(k), p, 1.0 - p) <= tail);
-        let at = |rank: usize, none: f64| {
-            rank.checked_sub(1).and_then(|i| self.0.get(i)).copied().unwrap_or(none)
-        };
+        let (lower, upper) = interval_ranks(self.n() as u64, p, confidence);
+        let at = |rank: Option<u64>, none: f64| rank.map_or(none, |rank| self.0[rank as usize]);
         Ok(Interval::ordered(at(lower, f64::NEG_INFINITY), at(upper, f64::INFINITY), confidence))
     }
 
@@ -128,11 +121,29 @@ fn probability(p: f64) -> Result<(), StatisticsError> {
     if (0.0..=1.0).contains(&p) { Ok(()) } else { Err(StatisticsError::Probability { value: p }) }
 }
 
+/// Where a quantile of type 7 of `n` values is: the rank below it, from 0, and its place from there to the next.
+pub(crate) fn type_7_place(n: u64, p: f64) -> (u64, f64) {
+    let position = n.saturating_sub(1) as f64 * p;
+    let below = position as u64;
+    (below, position - below as f64)
+}
+
+/// The ranks, from 0, of the values that bound a quantile of the law that `n` values were drawn from; none where
+/// no value is a bound.
+pub(crate) fn interval_ranks(n: u64, p: f64, confidence: Confidence) -> (Option<u64>, Option<u64>) {
+    let tail = confidence.tail();
+    let rest = |k: u64| (n + 1 - k) as f64;
+    // Ranks from 1; P(B ≥ k) = I_p(k, n−k+1). The search is over ranks 1 to n.
+    let lower = first(n, |k| law::beta_cdf(rest(k), k as f64, 1.0 - p, p) > tail) - 1;
+    let upper = first(n, |k| law::beta_cdf(k as f64, rest(k), p, 1.0 - p) <= tail);
+    (lower.checked_sub(1), (upper <= n).then(|| upper - 1))
+}
+
 /// The least of `1..=n` at which `reached` is true, or `n + 1`.
-fn first(n: usize, reached: impl Fn(usize) -> bool) -> usize {
+fn first(n: u64, reached: impl Fn(u64) -> bool) -> u64 {
     let (mut low, mut high) = (1, n + 1);
     while low < high {
-        let middle = usize::midpoint(low, high);
+        let middle = u64::midpoint(low, high);
         if reached(middle) {
             high = middle;
         } else {
@@ -143,7 +154,7 @@ fn first(n: usize, reached: impl Fn(usize) -> bool) -> usize {
 }
 
 /// From `a` at 0 to `b` at 1, never outside, for any finite `a ≤ b`.
-pub(crate) fn lerp(a: f64, b: f64, t: f64) -> f64 {
+pub(crate) fn between(a: f64, b: f64, t: f64) -> f64 {
     let span = b - a;
     let value =
         if span.is_finite() { a + t * span } else { 2.0 * (a / 2.0 + t * (b / 2.0 - a / 2.0)) };

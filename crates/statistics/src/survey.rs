@@ -1,0 +1,542 @@
+//! What a sample looks like, found in a few passes over its values: in flat memory, and exact.
+
+use std::collections::BTreeSet;
+
+use crate::centred::{Centred, Powers, UnitSum};
+use crate::deviation::{self, trimmed};
+use crate::quantile::{between, interval_ranks, type_7_place};
+use crate::selection::{Count, Selection, key};
+use crate::{Confidence, Deviation, ExactSum, Interval, Moments, SortedSample};
+
+/// Values of a sample that are kept, at most: of every so manieth run.
+const SAMPLE: u64 = 1 << 16;
+
+/// What a sample of any size looks like, found in passes over its values.
+///
+/// The values come in parts, of any size and in any order, as often as [`pass`](Self::pass) asks for them. What
+/// is found is what [`Moments`], [`Deviation`] and [`SortedSample`] find of the whole sample, to the bit: sums
+/// are exact, quantiles are order statistics found by counting and selection. The memory does not grow with the
+/// sample. Up to some ten thousands of values one pass is enough, up to millions three or four are.
+///
+/// ```
+/// use gyradius_statistics::{Confidence, Moments, Survey};
+///
+/// let values: Vec<f64> = (0..200_000_u32).map(|i| f64::from(i * 7919 % 200_003)).collect();
+/// let mut survey = Survey::new(values.len() as u64).quantiles([0.5, 0.95]);
+/// while let Some(empty) = survey.pass() {
+///     let mut whole = empty.clone();
+///     for (i, part) in values.chunks(1000).enumerate() {
+///         let mut pass = empty.clone();
+///         pass.extend((i as u64 * 1000..).zip(part.iter().copied()));
+///         whole.merge(pass);
+///     }
+///     survey.advance(whole);
+/// }
+/// assert_eq!(survey.moments(), Some(&Moments::new(&values)?));
+/// assert!((survey.quantile(0.5).unwrap() - 1e5).abs() < 100.0);
+/// # Ok::<(), gyradius_statistics::StatisticsError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Survey {
+    stride: u64,
+    quantiles: Vec<f64>,
+    intervals: Vec<(f64, Confidence)>,
+    /// None until the first pass is done.
+    known: Option<Known>,
+}
+
+/// What is known after the first pass.
+#[derive(Clone, Debug)]
+struct Known {
+    n: u64,
+    /// The smallest and the largest value, each with the first run that has it; none if there is no value.
+    range: Option<[(f64, u64); 2]>,
+    /// None if there is no value or one that is not finite.
+    finite: Option<Finite>,
+}
+
+#[derive(Clone, Debug)]
+struct Finite {
+    sum: ExactSum,
+    /// None if all values are the same.
+    centred: Option<Centred>,
+    powers: Option<Powers>,
+    /// The deviations of the values that a trimmed mean keeps.
+    middle: Option<f64>,
+    selection: Selection,
+    sample: SortedSample,
+    moments: Option<Moments>,
+    deviation: Option<Deviation>,
+}
+
+/// What is gathered from all values of a sample in one go.
+#[derive(Clone, Debug)]
+pub struct Pass(Gathered);
+
+#[derive(Clone, Debug)]
+enum Gathered {
+    First(Box<First>),
+    Later(Box<Later>),
+}
+
+#[derive(Clone, Debug)]
+struct First {
+    stride: u64,
+    n: u64,
+    finite: u64,
+    sum: ExactSum,
+    range: Option<[(f64, u64); 2]>,
+    sample: Vec<f64>,
+}
+
+#[derive(Clone, Debug)]
+struct Later {
+    powers: Option<(Centred, Powers)>,
+    count: Option<Count>,
+    middle: Option<Middle>,
+}
+
+/// The deviations between two order statistics.
+#[derive(Clone, Debug)]
+struct Middle {
+    centred: Centred,
+    /// Keys of the first and the last value that a trimmed mean keeps.
+    ends: (i64, i64),
+    up_to_first: u64,
+    below_last: u64,
+    between: UnitSum,
+}
+
+impl Survey {
+    /// Of a sample to which at most so many runs contribute, numbered from 0.
+    #[must_use]
+    pub fn new(runs: u64) -> Self {
+        let stride = runs.div_ceil(SAMPLE).max(1).next_power_of_two();
+        Self { stride, quantiles: Vec::new(), intervals: Vec::new(), known: None }
+    }
+
+    /// With the quantiles of these probabilities; those that are no probabilities are not found.
+    #[must_use]
+    pub fn quantiles(mut self, probabilities: impl IntoIterator<Item = f64>) -> Self {
+        self.quantiles.extend(probabilities.into_iter().filter(|p| (0.0..=1.0).contains(p)));
+        self
+    }
+
+    /// With an interval for the quantile of a probability.
+    #[must_use]
+    pub fn quantile_interval_at(mut self, probability: f64, confidence: Confidence) -> Self {
+        self.intervals
+            .extend((0.0..=1.0).contains(&probability).then_some((probability, confidence)));
+        self
+    }
+
+    /// What is to be gathered from all values next, empty; none if all is known.
+    #[must_use]
+    pub fn pass(&self) -> Option<Pass> {
+        let Some(known) = &self.known else {
+            let first = First {
+                stride: self.stride,
+                n: 0,
+                finite: 0,
+                sum: ExactSum::new(),
+                range: None,
+                sample: Vec::new(),
+            };
+            return Some(Pass(Gathered::First(Box::new(first))));
+        };
+        let finite = known.finite.as_ref()?;
+        let centred = finite.centred?;
+        let powers = finite.powers.is_none().then(|| (centred, Powers::default()));
+        let count = finite.selection.pass().cloned();
+        let middle = match (finite.middle, finite.ends(known.n)) {
+            (None, Some(ends)) => Some(Middle {
+                centred,
+                ends,
+                up_to_first: 0,
+                below_last: 0,
+                between: UnitSum::default(),
+            }),
+            (Some(_), _) | (None, None) => None,
+        };
+        let waits = powers.is_some() || count.is_some() || middle.is_some();
+        waits.then(|| Pass(Gathered::Later(Box::new(Later { powers, count, middle }))))
+    }
+
+    /// Takes up what was gathered from all values.
+    pub fn advance(&mut self, pass: Pass) {
+        match (pass.0, &mut self.known) {
+            (Gathered::First(first), known) => {
+                *known = Some(first.known(|n| {
+                    let cut = trimmed(n);
+                    let ends =
+                        if n < deviation::FEWEST as u64 { vec![] } else { vec![cut, n - cut - 1] };
+                    let places = self.quantiles.iter().map(|p| type_7_place(n, *p).0);
+                    let places = places.flat_map(|place| [place, place + 1]);
+                    let bounds = self.intervals.iter().flat_map(|(p, confidence)| {
+                        let (lower, upper) = interval_ranks(n, *p, *confidence);
+                        [lower, upper].into_iter().flatten()
+                    });
+                    places.chain(bounds).chain(ends).collect()
+                }));
+            }
+            (
+                Gathered::Later(later),
+                Some(Known { n, range: Some(range), finite: Some(finite) }),
+            ) => {
+                finite.advance(*later, *n, range.map(|(x, _)| x));
+            }
+            (Gathered::Later(_), _) => {}
+        }
+    }
+
+    /// Number of values, finite or not.
+    #[must_use]
+    pub fn n(&self) -> u64 {
+        self.known.as_ref().map_or(0, |known| known.n)
+    }
+
+    /// The smallest value and the first run that has it; none if there is no value, or one that is not finite.
+    #[must_use]
+    pub fn minimum(&self) -> Option<(f64, u64)> {
+        let known = self.known.as_ref()?;
+        known.finite.as_ref().and(known.range).map(|[minimum, _]| minimum)
+    }
+
+    /// The largest value and the first run that has it; none if there is no value, or one that is not finite.
+    #[must_use]
+    pub fn maximum(&self) -> Option<(f64, u64)> {
+        let known = self.known.as_ref()?;
+        known.finite.as_ref().and(known.range).map(|[_, maximum]| maximum)
+    }
+
+    /// The moments, where [`Moments::new`] has them.
+    #[must_use]
+    pub fn moments(&self) -> Option<&Moments> {
+        self.finite()?.moments.as_ref()
+    }
+
+    /// The standard deviation with its kurtosis, where [`Deviation::new`] has them.
+    #[must_use]
+    pub fn deviation(&self) -> Option<&Deviation> {
+        self.finite()?.deviation.as_ref()
+    }
+
+    /// A quantile that was asked for, as [`SortedSample::quantile`] has it.
+    #[must_use]
+    pub fn quantile(&self, p: f64) -> Option<f64> {
+        let n = self.n();
+        let (place, share) = type_7_place(n, p);
+        let below = self.at(place)?;
+        Some(if place + 1 < n { between(below, self.at(place + 1)?, share) } else { below })
+    }
+
+    /// An interval that was asked for, as [`SortedSample::quantile_interval`] has it.
+    #[must_use]
+    pub fn quantile_interval(&self, p: f64, confidence: Confidence) -> Option<Interval> {
+        self.finite()?;
+        let (lower, upper) = interval_ranks(self.n(), p, confidence);
+        let at = |rank: Option<u64>, none: f64| rank.map_or(Some(none), |rank| self.at(rank));
+        let (lower, upper) = (at(lower, f64::NEG_INFINITY)?, at(upper, f64::INFINITY)?);
+        Some(Interval::ordered(lower, upper, confidence))
+    }
+
+    /// The values of some runs, evenly spaced; of all runs if these are few.
+    #[must_use]
+    pub fn sample(&self) -> Option<&SortedSample> {
+        Some(&self.finite()?.sample)
+    }
+
+    fn finite(&self) -> Option<&Finite> {
+        self.known.as_ref()?.finite.as_ref()
+    }
+
+    fn at(&self, rank: u64) -> Option<f64> {
+        self.finite()?.selection.value(rank)
+    }
+}
+
+impl First {
+    fn add(&mut self, run: u64, x: f64) {
+        self.n += 1;
+        if !x.is_finite() {
+            return;
+        }
+        self.finite += 1;
+        self.sum.add(x);
+        self.stretch([(x, run); 2]);
+        if run.is_multiple_of(self.stride) {
+            self.sample.push(x);
+        }
+    }
+
+    /// Takes up a range. The order of the values tells −0 from 0, and the first of equal ones counts.
+    fn stretch(&mut self, [least, most]: [(f64, u64); 2]) {
+        let Some([low, high]) = &mut self.range else {
+            self.range = Some([least, most]);
+            return;
+        };
+        if least.0.total_cmp(&low.0).then(least.1.cmp(&low.1)).is_lt() {
+            *low = least;
+        }
+        if high.0.total_cmp(&most.0).then(most.1.cmp(&high.1)).is_lt() {
+            *high = most;
+        }
+    }
+
+    fn known(self, ranks: impl FnOnce(u64) -> BTreeSet<u64>) -> Known {
+        let Self { n, finite, sum, range, sample, .. } = self;
+        let known = |finite| Known { n, range, finite };
+        let Some([(minimum, _), (maximum, _)]) = range.filter(|_| finite == n) else {
+            return known(None);
+        };
+        // Where no run of those that are kept has a value.
+        let sample = if sample.is_empty() { vec![minimum] } else { sample };
+        let Ok(sample) = SortedSample::new(&sample) else { return known(None) };
+        let selection = Selection::new(n, &ranks(n), (minimum, maximum), sample.values());
+        let centred = (minimum < maximum).then(|| Centred::new(&sum, n, minimum, maximum));
+        let constant = centred.is_none() && n > 1;
+        let moments = constant.then(|| Moments::constant(n, minimum));
+        let mut finite = Finite {
+            sum,
+            centred,
+            powers: None,
+            middle: None,
+            selection,
+            sample,
+            moments,
+            deviation: None,
+        };
+        if finite.sample.n() as u64 == n
+            && let Some(centred) = centred
+        {
+            // The whole sample is here.
+            let (mut powers, mut middle) = (Powers::default(), None);
+            let values = finite.sample.values();
+            values.iter().for_each(|x| powers.add(centred.map(*x)));
+            if n >= deviation::FEWEST as u64 {
+                let (cut, mut kept) = (trimmed(n), UnitSum::default());
+                let values = &values[cut as usize..(n - cut) as usize];
+                values.iter().for_each(|x| kept.add(centred.map(*x)));
+                middle = Some(kept.value());
+            }
+            (finite.powers, finite.middle) = (Some(powers), middle);
+            finite.conclude(n, [minimum, maximum]);
+        }
+        known(Some(finite))
+    }
+}
+
+impl Finite {
+    /// Keys of the first and the last value that a trimmed mean keeps, once they are known.
+    fn ends(&self, n: u64) -> Option<(i64, i64)> {
+        let cut = (n >= deviation::FEWEST as u64).then(|| trimmed(n))?;
+        let at = |rank| self.selection.value(rank).map(key);
+        Some((at(cut)?, at(n - cut - 1)?))
+    }
+
+    fn advance(&mut self, later: Later, n: u64, range: [f64; 2]) {
+        if let Some((_, powers)) = later.powers {
+            self.powers = Some(powers);
+        }
+        if let Some(count) = later.count {
+            self.selection.advance(&count);
+        }
+        if let Some(middle) = later.middle {
+            self.middle = Some(middle.sum(n));
+        }
+        self.conclude(n, range);
+    }
+
+    /// What follows from what is known.
+    fn conclude(&mut self, n: u64, [minimum, maximum]: [f64; 2]) {
+        let (Some(centred), Some(powers)) = (&self.centred, &self.powers) else { return };
+        let number = (n, self.sum.mean(n));
+        self.moments = Moments::of_powers(number, (minimum, maximum), centred, powers).ok();
+        if let (Some(moments), Some(middle)) = (&self.moments, self.middle) {
+            self.deviation = Deviation::of_powers(moments, powers, middle).ok();
+        }
+    }
+}
+
+impl Middle {
+    #[inline]
+    fn add(&mut self, x: f64) {
+        let key = key(x);
+        let (first, last) = self.ends;
+        self.up_to_first += u64::from(key <= first);
+        self.below_last += u64::from(key < last);
+        if first < key && key < last {
+            self.between.add(self.centred.map(x));
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.up_to_first += other.up_to_first;
+        self.below_last += other.below_last;
+        self.between.merge(&other.between);
+    }
+
+    /// The sum of the deviations that a trimmed mean of `n` values keeps.
+    fn sum(&self, n: u64) -> f64 {
+        let cut = trimmed(n);
+        let (first, last) = self.ends;
+        let mut sum = self.between;
+        let mut add = |key, times: u64| {
+            let deviation = self.centred.map(crate::selection::number(key));
+            sum.add_times(deviation, times);
+        };
+        if first == last {
+            add(first, n - 2 * cut);
+        } else {
+            // Of equal values some may be left out.
+            add(first, self.up_to_first - cut);
+            add(last, n - cut - self.below_last);
+        }
+        sum.value()
+    }
+}
+
+impl Pass {
+    /// Takes up values, each with the number of its run.
+    pub fn extend(&mut self, values: impl IntoIterator<Item = (u64, f64)>) {
+        match &mut self.0 {
+            Gathered::First(first) => values.into_iter().for_each(|(run, x)| first.add(run, x)),
+            Gathered::Later(later) => {
+                let Later { powers, count, middle } = &mut **later;
+                for (_, x) in values {
+                    if let Some((centred, powers)) = powers {
+                        powers.add(centred.map(x));
+                    }
+                    if let Some(count) = count {
+                        count.add(x);
+                    }
+                    if let Some(middle) = middle {
+                        middle.add(x);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Takes up what another part of the same pass has gathered.
+    pub fn merge(&mut self, other: Self) {
+        match (&mut self.0, other.0) {
+            (Gathered::First(first), Gathered::First(other)) => {
+                first.n += other.n;
+                first.finite += other.finite;
+                first.sum.merge(&other.sum);
+                first.sample.extend(other.sample);
+                other.range.into_iter().for_each(|range| first.stretch(range));
+            }
+            (Gathered::Later(later), Gathered::Later(other)) => {
+                if let (Some((_, powers)), Some((_, more))) = (&mut later.powers, &other.powers) {
+                    powers.merge(more);
+                }
+                if let (Some(count), Some(more)) = (&mut later.count, &other.count) {
+                    count.merge(more);
+                }
+                if let (Some(middle), Some(more)) = (&mut later.middle, &other.middle) {
+                    middle.merge(more);
+                }
+            }
+            // Of another pass, which knows nothing of this one.
+            (Gathered::First(_) | Gathered::Later(_), _) => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A survey of the runs that have a value, in parts, the last first.
+    fn surveyed(runs: &[Option<f64>], part: usize, stride: u64) -> Survey {
+        let confidence = Confidence::default();
+        let mut survey = Survey::new(runs.len() as u64)
+            .quantiles([0.05, 0.5, 0.95, 0.0, 1.0])
+            .quantile_interval_at(0.95, confidence);
+        survey.stride = stride;
+        let mut passes = 0;
+        while let Some(empty) = survey.pass() {
+            let mut whole = empty.clone();
+            for (i, values) in runs.chunks(part).enumerate().rev() {
+                let mut pass = empty.clone();
+                let first = (i * part) as u64;
+                pass.extend((first..).zip(values).filter_map(|(run, x)| Some((run, (*x)?))));
+                whole.merge(pass);
+            }
+            survey.advance(whole);
+            passes += 1;
+            assert!(passes < 20);
+        }
+        survey
+    }
+
+    /// That it found what is found of the whole sample at once.
+    fn assert_same(survey: &Survey, runs: &[Option<f64>]) {
+        let values: Vec<f64> = runs.iter().flatten().copied().collect();
+        assert_eq!(survey.n(), values.len() as u64);
+        assert_eq!(survey.moments(), Moments::new(&values).ok().as_ref());
+        assert_eq!(survey.deviation(), Deviation::new(&values).ok().as_ref());
+        let sorted = SortedSample::new(&values).ok();
+        for p in [0.05, 0.5, 0.95, 0.0, 1.0] {
+            let expected = sorted.as_ref().map(|s| s.quantile(p).unwrap().to_bits());
+            assert_eq!(survey.quantile(p).map(f64::to_bits), expected, "{p}");
+        }
+        let confidence = Confidence::default();
+        let interval = sorted.as_ref().map(|s| s.quantile_interval(0.95, confidence).unwrap());
+        assert_eq!(survey.quantile_interval(0.95, confidence), interval);
+        let ends = |x: Option<(f64, u64)>| x.map(|(x, run)| (x.to_bits(), run));
+        let run = |x: f64| {
+            runs.iter().position(|y| y.map(f64::to_bits) == Some(x.to_bits())).unwrap() as u64
+        };
+        let at = |x: f64| (x.to_bits(), run(x));
+        assert_eq!(ends(survey.minimum()), sorted.as_ref().map(|s| at(s.minimum())));
+        assert_eq!(ends(survey.maximum()), sorted.as_ref().map(|s| at(s.maximum())));
+    }
+
+    proptest! {
+        /// Of any values, in any parts, whatever is kept of them.
+        #[test]
+        fn surveys_find_what_whole_samples_show(
+            runs in prop::collection::vec(
+                prop::option::weighted(0.9, prop_oneof![-1.0..1.0f64, Just(0.5), Just(-0.0), Just(0.0), any::<f64>()]),
+                0..120,
+            ),
+            unit in -1000..1000_i32,
+            part in 1..50_usize,
+            stride in 0..5_u32,
+        ) {
+            let half = unit / 2;
+            let scaled = |x: f64| x * 2f64.powi(half) * 2f64.powi(unit - half);
+            let runs: Vec<Option<f64>> = runs.into_iter().map(|x| x.map(scaled)).collect();
+            assert_same(&surveyed(&runs, part, 1 << stride), &runs);
+        }
+
+        /// Of larger samples, smooth, heavy-tailed and of few values.
+        #[test]
+        fn surveys_of_many_values(kind in 0..3_usize, seed in any::<u32>(), n in 1000..40_000_u32) {
+            let uniform = |i: u32| f64::from(i.wrapping_mul(2_654_435_761).wrapping_add(seed)) / 2f64.powi(32);
+            let value = |i: u32| match kind {
+                0 => uniform(i) + uniform(i.wrapping_mul(7)),
+                1 => 1.0 / (uniform(i) - 0.5),
+                _ => (uniform(i) * 4.0).floor(),
+            };
+            let runs: Vec<Option<f64>> = (0..n).map(|i| (i % 11 != 3).then(|| value(i))).collect();
+            assert_same(&surveyed(&runs, 1000, 64), &runs);
+        }
+    }
+
+    /// Many more values than are kept: the sample is evenly spaced, and few passes are made.
+    #[test]
+    fn large_samples_are_thinned() {
+        let runs: Vec<Option<f64>> = (0..300_000_u32)
+            .map(|i| Some(f64::from(i.wrapping_mul(2_654_435_761)) / 2f64.powi(32)))
+            .collect();
+        let survey = surveyed(&runs, 4096, Survey::new(300_000).stride);
+        assert_same(&survey, &runs);
+        assert_eq!(survey.sample().unwrap().n(), 37_500);
+    }
+}
