@@ -61,11 +61,13 @@ mod column;
 mod failure;
 mod folder;
 mod forecast;
+mod runs;
 mod sample;
 mod share;
 mod simulation;
 mod stored;
 mod streams;
+mod surveys;
 mod table;
 mod values;
 
@@ -74,11 +76,13 @@ pub use column::{Column, Kind};
 pub use failure::Failure;
 pub use folder::{Contents, Folder, FolderError, folder_of, restore, restore_all};
 pub use forecast::Forecast;
-pub use sample::SampleSummary;
+pub use runs::{Runs, RunsError};
+pub use sample::{SampleSummary, bounded};
 pub use share::{Share, counted};
 pub use simulation::{CampaignError, Progress, Simulation, run, threads};
 pub use stored::read_row;
 pub use streams::Streams;
+pub use surveys::Surveys;
 pub use table::{Row, Table, TableError};
 pub use values::Numbers;
 

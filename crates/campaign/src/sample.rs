@@ -1,6 +1,6 @@
 //! How a number is distributed over the runs that have one.
 
-use gyradius_statistics::{Confidence, Deviation, Interval, Moments, SortedSample};
+use gyradius_statistics::{Confidence, Interval, Moments, Survey};
 use serde::{Deserialize, Serialize};
 
 /// How a number is distributed over the runs that have one. What a sample cannot tell is none, and null in
@@ -39,27 +39,48 @@ impl SampleSummary {
     /// Of these numbers.
     #[must_use]
     pub fn new(values: &[f64], confidence: Confidence) -> Self {
-        let moments = Moments::new(values).ok();
-        let sorted = SortedSample::new(values).ok();
-        let robust = Deviation::new(values).ok();
-        let quantile = |p| sorted.as_ref().and_then(|s| s.quantile(p).ok());
+        let mut survey = surveyed(values.len() as u64, confidence);
+        while let Some(mut pass) = survey.pass() {
+            pass.extend((0..).zip(values.iter().copied()));
+            survey.advance(pass);
+        }
+        Self::of(&survey, confidence)
+    }
+
+    /// Of a survey of the numbers, with intervals of this confidence.
+    #[must_use]
+    pub fn of(survey: &Survey, confidence: Confidence) -> Self {
+        let moments = survey.moments();
         Self {
-            n: values.len() as u64,
-            mean: moments.map(|m| m.mean()),
+            n: survey.n(),
+            mean: moments.map(Moments::mean),
             mean_interval: moments.map(|m| m.mean_interval(confidence)),
-            deviation: moments.map(|m| m.standard_deviation()),
-            deviation_interval: robust.and_then(|d| d.interval(confidence).ok()),
-            minimum: sorted.as_ref().map(SortedSample::minimum),
-            p05: quantile(0.05),
-            median: quantile(0.5),
-            p95: quantile(0.95),
-            p95_interval: sorted
-                .as_ref()
-                .and_then(|s| s.quantile_interval(0.95, confidence).ok())
-                .filter(|i| i.lower().is_finite() && i.upper().is_finite()),
-            maximum: sorted.as_ref().map(SortedSample::maximum),
-            skewness: moments.and_then(|m| m.skewness()),
-            kurtosis: moments.and_then(|m| m.kurtosis()),
+            deviation: moments.map(Moments::standard_deviation),
+            deviation_interval: survey.deviation().and_then(|d| d.interval(confidence).ok()),
+            minimum: survey.minimum().map(|(x, _)| x),
+            p05: survey.quantile(0.05),
+            median: survey.quantile(0.5),
+            p95: survey.quantile(0.95),
+            p95_interval: bounded(survey.quantile_interval(0.95, confidence)),
+            maximum: survey.maximum().map(|(x, _)| x),
+            skewness: moments.and_then(Moments::skewness),
+            kurtosis: moments.and_then(Moments::kurtosis),
         }
     }
+}
+
+/// Probabilities of the quantiles that are found of every column of numbers, and of those with an interval.
+const QUANTILES: [f64; 6] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95];
+const INTERVALS: [f64; 2] = [0.01, 0.95];
+
+/// A survey of a column of so many runs.
+pub(crate) fn surveyed(runs: u64, confidence: Confidence) -> Survey {
+    let survey = Survey::new(runs).quantiles(QUANTILES);
+    INTERVALS.into_iter().fold(survey, |survey, p| survey.quantile_interval_at(p, confidence))
+}
+
+/// An interval if it has both bounds.
+#[must_use]
+pub fn bounded(interval: Option<Interval>) -> Option<Interval> {
+    interval.filter(|i| i.lower().is_finite() && i.upper().is_finite())
 }

@@ -152,6 +152,12 @@ impl Table {
         &self.model
     }
 
+    /// The number of the first run.
+    #[must_use]
+    pub fn first(&self) -> u64 {
+        self.first
+    }
+
     /// How many runs it has.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -218,6 +224,16 @@ impl Table {
             Some(Values::Numbers(_) | Values::Integers(_) | Values::Flags(_)) | None => None,
         };
         texts.into_iter().flat_map(Texts::present)
+    }
+
+    /// Of which kind the texts in a column of the simulation are, of the runs that have one.
+    pub(crate) fn kinds(&self, column: &str) -> impl Iterator<Item = (u64, &str)> {
+        let texts = match self.column(column) {
+            Some(Values::Texts(texts)) => Some(texts),
+            Some(Values::Numbers(_) | Values::Integers(_) | Values::Flags(_)) | None => None,
+        };
+        let kind = move |place: usize| Some((self.first + place as u64, texts?.get(place)?.1));
+        (0..self.len).filter_map(kind)
     }
 
     fn column(&self, column: &str) -> Option<&Values> {

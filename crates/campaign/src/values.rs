@@ -33,6 +33,17 @@ impl Numbers {
         (0..self.values.len()).filter_map(|run| self.get(run))
     }
 
+    /// The numbers of the runs that have one, with the runs from a first number on.
+    pub(crate) fn of_runs(&self, first: u64) -> impl Iterator<Item = (u64, f64)> {
+        let words = self.values.chunks(64).zip(&self.present);
+        (first..).step_by(64).zip(words).flat_map(|(first, (values, present))| {
+            let of = move |(i, value): (usize, &f64)| {
+                (present >> i & 1 == 1).then_some((first + i as u64, *value))
+            };
+            values.iter().enumerate().filter_map(of)
+        })
+    }
+
     pub(crate) fn truncate(&mut self, runs: usize) {
         self.values.truncate(runs);
         self.present.truncate(runs.div_ceil(64));

@@ -4,7 +4,7 @@ use gyradius_statistics::{BinEdges, Histogram, SortedSample};
 use serde::{Deserialize, Serialize};
 
 use crate::axis::Units;
-use crate::samples::Panel;
+use crate::samples::{Panel, Series};
 
 /// The histograms of one panel, in units that read well.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,20 +41,12 @@ const EDGE: f64 = 0.07;
 impl Binned {
     /// Counts on shared Freedman-Diaconis bins, `most` at most; `None` without a finite value.
     pub(crate) fn new(panel: &Panel<'_>, most: usize) -> Option<Self> {
-        let samples: Vec<Option<SortedSample>> = panel
-            .series
-            .iter()
-            .map(|series| {
-                let finite: Vec<f64> =
-                    series.values.iter().copied().filter(|x| x.is_finite()).collect();
-                SortedSample::new(&finite).ok()
-            })
-            .collect();
-        let fences = samples.iter().flatten().map(fence);
+        let samples: Vec<Option<&SortedSample>> = panel.series.iter().map(Series::sample).collect();
+        let fences = samples.iter().flatten().map(|sample| fence(sample));
         let (lower, upper) = fences.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
         let inside = |x: f64| lower <= x && x <= upper;
         let within =
-            samples.iter().flatten().flat_map(SortedSample::values).filter(|&&x| inside(x));
+            samples.iter().flatten().flat_map(|sample| sample.values()).filter(|&&x| inside(x));
         let (least, largest) =
             within.fold((upper, lower), |(a, b), &x| (f64::min(a, x), f64::max(b, x)));
         let units = Units::for_range(least, largest);
@@ -70,7 +62,7 @@ impl Binned {
         let bounds = (edges.values()[0], edges.values()[edges.bins()]);
         // Values are sorted: the farthest is the first or the last.
         let side = |outside: &dyn Fn(f64) -> bool, farthest: fn(&SortedSample) -> f64| {
-            let of = |sample: &Option<SortedSample>| {
+            let of = |sample: &Option<&SortedSample>| {
                 let Some(sample) = sample else { return Beyond::default() };
                 let count = sample.values().iter().filter(|&&x| outside(x)).count();
                 Beyond { count, extreme: farthest(sample) }
@@ -90,7 +82,7 @@ impl Binned {
         Some(Self {
             units,
             counts: kept.iter().map(|sample| counts(sample.as_ref(), &edges)).collect(),
-            finite: samples.iter().map(|s| s.as_ref().map_or(0, SortedSample::n)).collect(),
+            finite: samples.iter().map(|s| s.map_or(0, SortedSample::n)).collect(),
             below,
             above,
             nominal,
@@ -166,11 +158,9 @@ fn edges(samples: &[&SortedSample], nominal: Option<f64>, most: usize) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::Series;
 
     fn binned(samples: &[&[f64]], nominal: Option<f64>) -> Option<Binned> {
-        let series =
-            samples.iter().map(|values| Series { name: "", values, runs: values.len() }).collect();
+        let series = samples.iter().map(|values| Series::new("", values, values.len())).collect();
         Binned::new(&Panel { label: String::new(), series, nominal }, 50)
     }
 

@@ -170,11 +170,8 @@ mod tests {
 
     fn panel<'a>(values: &[&'a [f64]], nominal: Option<f64>) -> Option<Panel<'a>> {
         let names = ["one", "two", "two"];
-        let series = values.iter().zip(names).map(|(values, name)| Series {
-            name,
-            values,
-            runs: values.len(),
-        });
+        let series =
+            values.iter().zip(names).map(|(values, name)| Series::new(name, values, values.len()));
         Some(Panel { label: "wobble (deg)".to_owned(), series: series.collect(), nominal })
     }
 

@@ -15,7 +15,7 @@
 //! let wobble = [0.4, 0.6, 0.3, 0.5, 0.9, 0.7];
 //! let panel = Panel {
 //!     label: "wobble (deg)".to_owned(),
-//!     series: vec![Series { name: "measured", values: &wobble, runs: 6 }],
+//!     series: vec![Series::new("measured", &wobble, 6)],
 //!     nominal: Some(0.5),
 //! };
 //! let histograms = HistogramGrid::new("Wobble after separation", &[Some(panel)], 1);

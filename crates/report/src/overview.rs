@@ -139,8 +139,7 @@ fn figure(tables: &[Table], quantities: &[Quantity]) -> Option<Figure> {
     let mut panels = Vec::new();
     for (quantity, values) in shown.iter().zip(&values) {
         let series = tables.iter().zip(values);
-        let series =
-            series.map(|(table, values)| Series { name: table.model(), values, runs: table.len() });
+        let series = series.map(|(table, values)| Series::new(table.model(), values, table.len()));
         let (label, series) = (label(quantity), series.collect());
         panels.push(Some(Panel { label, series, nominal: None }));
     }

@@ -1,6 +1,5 @@
 //! One panel of histograms: axes, bars, notes.
 
-use gyradius_statistics::SortedSample;
 use serde::{Deserialize, Serialize};
 
 use crate::axis::{Spacing, Tick, Units, ticks, times};
@@ -79,16 +78,11 @@ pub(crate) struct CountedSeries {
 impl Counted {
     /// Counts for a plot of this width.
     pub(crate) fn new(panel: &Panel<'_>, width: f64) -> Self {
-        let series = |series: &Series<'_>| {
-            let finite: Vec<f64> =
-                series.values.iter().copied().filter(|x| x.is_finite()).collect();
-            let sample = SortedSample::new(&finite).ok();
-            CountedSeries {
-                name: series.name.to_owned(),
-                runs: series.runs,
-                values: series.values.len(),
-                quantiles: sample.map(|s| [s.minimum(), s.median(), s.maximum()]),
-            }
+        let series = |series: &Series<'_>| CountedSeries {
+            name: series.name.to_owned(),
+            runs: series.runs,
+            values: series.values,
+            quantiles: series.sample().map(|s| [s.minimum(), s.median(), s.maximum()]),
         };
         Self {
             label: panel.label.clone(),

@@ -51,6 +51,9 @@ struct Known {
     n: u64,
     /// The smallest and the largest value, each with the first run that has it; none if there is no value.
     range: Option<[(f64, u64); 2]>,
+    /// How many values are kept, and the finite ones of them.
+    sampled: u64,
+    sample: Option<SortedSample>,
     /// None if there is no value or one that is not finite.
     finite: Option<Finite>,
 }
@@ -64,7 +67,6 @@ struct Finite {
     /// The deviations of the values that a trimmed mean keeps.
     middle: Option<f64>,
     selection: Selection,
-    sample: SortedSample,
     moments: Option<Moments>,
     deviation: Option<Deviation>,
 }
@@ -86,6 +88,7 @@ struct First {
     finite: u64,
     sum: ExactSum,
     range: Option<[(f64, u64); 2]>,
+    sampled: u64,
     sample: Vec<f64>,
 }
 
@@ -140,6 +143,7 @@ impl Survey {
                 finite: 0,
                 sum: ExactSum::new(),
                 range: None,
+                sampled: 0,
                 sample: Vec::new(),
             };
             return Some(Pass(Gathered::First(Box::new(first))));
@@ -181,7 +185,7 @@ impl Survey {
             }
             (
                 Gathered::Later(later),
-                Some(Known { n, range: Some(range), finite: Some(finite) }),
+                Some(Known { n, range: Some(range), finite: Some(finite), .. }),
             ) => {
                 finite.advance(*later, *n, range.map(|(x, _)| x));
             }
@@ -240,10 +244,22 @@ impl Survey {
         Some(Interval::ordered(lower, upper, confidence))
     }
 
-    /// The values of some runs, evenly spaced; of all runs if these are few.
+    /// The finite values of some runs that are evenly spaced, of all runs if these are few.
     #[must_use]
     pub fn sample(&self) -> Option<&SortedSample> {
-        Some(&self.finite()?.sample)
+        self.known.as_ref()?.sample.as_ref()
+    }
+
+    /// How many values there are of those runs, finite or not.
+    #[must_use]
+    pub fn sampled(&self) -> u64 {
+        self.known.as_ref().map_or(0, |known| known.sampled)
+    }
+
+    /// The values of every so manieth run are kept.
+    #[must_use]
+    pub fn stride(&self) -> u64 {
+        self.stride
     }
 
     fn finite(&self) -> Option<&Finite> {
@@ -258,13 +274,15 @@ impl Survey {
 impl First {
     fn add(&mut self, run: u64, x: f64) {
         self.n += 1;
+        let kept = run.is_multiple_of(self.stride);
+        self.sampled += u64::from(kept);
         if !x.is_finite() {
             return;
         }
         self.finite += 1;
         self.sum.add(x);
         self.stretch([(x, run); 2]);
-        if run.is_multiple_of(self.stride) {
+        if kept {
             self.sample.push(x);
         }
     }
@@ -284,15 +302,14 @@ impl First {
     }
 
     fn known(self, ranks: impl FnOnce(u64) -> BTreeSet<u64>) -> Known {
-        let Self { n, finite, sum, range, sample, .. } = self;
-        let known = |finite| Known { n, range, finite };
+        let Self { n, finite, sum, range, sampled, sample, .. } = self;
+        let sample = SortedSample::new(&sample).ok();
+        let mut known = Known { n, range, sampled, sample, finite: None };
         let Some([(minimum, _), (maximum, _)]) = range.filter(|_| finite == n) else {
-            return known(None);
+            return known;
         };
-        // Where no run of those that are kept has a value.
-        let sample = if sample.is_empty() { vec![minimum] } else { sample };
-        let Ok(sample) = SortedSample::new(&sample) else { return known(None) };
-        let selection = Selection::new(n, &ranks(n), (minimum, maximum), sample.values());
+        let values = known.sample.as_ref().map_or(&[][..], SortedSample::values);
+        let selection = Selection::new(n, &ranks(n), (minimum, maximum), values);
         let centred = (minimum < maximum).then(|| Centred::new(&sum, n, minimum, maximum));
         let constant = centred.is_none() && n > 1;
         let moments = constant.then(|| Moments::constant(n, minimum));
@@ -302,16 +319,14 @@ impl First {
             powers: None,
             middle: None,
             selection,
-            sample,
             moments,
             deviation: None,
         };
-        if finite.sample.n() as u64 == n
+        if values.len() as u64 == n
             && let Some(centred) = centred
         {
             // The whole sample is here.
             let (mut powers, mut middle) = (Powers::default(), None);
-            let values = finite.sample.values();
             values.iter().for_each(|x| powers.add(centred.map(*x)));
             if n >= deviation::FEWEST as u64 {
                 let (cut, mut kept) = (trimmed(n), UnitSum::default());
@@ -322,7 +337,8 @@ impl First {
             (finite.powers, finite.middle) = (Some(powers), middle);
             finite.conclude(n, [minimum, maximum]);
         }
-        known(Some(finite))
+        known.finite = Some(finite);
+        known
     }
 }
 
@@ -424,6 +440,7 @@ impl Pass {
             (Gathered::First(first), Gathered::First(other)) => {
                 first.n += other.n;
                 first.finite += other.finite;
+                first.sampled += other.sampled;
                 first.sum.merge(&other.sum);
                 first.sample.extend(other.sample);
                 other.range.into_iter().for_each(|range| first.stretch(range));

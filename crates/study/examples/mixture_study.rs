@@ -172,7 +172,7 @@ mod tests {
         results.write_report(None, false).unwrap();
         assert_eq!(fs::read_to_string(folder.join("report.html")).unwrap(), report);
 
-        for table in one.tables().iter().filter(|t| t.model().contains("variants")) {
+        for table in one.tables().unwrap().iter().filter(|t| t.model().contains("variants")) {
             for row in table.rows().step_by(11) {
                 let again = replay(folder, table.model(), row.run()).unwrap();
                 assert!(again.row().cells().eq(row.cells()), "{} {}", table.model(), row.run());

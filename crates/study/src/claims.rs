@@ -1,6 +1,5 @@
 //! The paper's claims, judged by what the runs show.
 
-use gyradius_campaign::Table;
 use gyradius_dispersion::ModelKind;
 use gyradius_report::percent;
 use gyradius_statistics::Interval;
@@ -11,6 +10,7 @@ use crate::{
     claim::{Claim, Verdict},
     quantity::Quantity,
     scenario::{ModelLaw, Scenario},
+    seen::Seen,
     summary::{ComparisonSummary, ModelSummary, Summary},
 };
 
@@ -28,7 +28,7 @@ const ENOUGH_FOR_SHAPES: usize = 500;
 /// A skewness beyond this is one-sided; a Gaussian has none.
 pub(crate) const ONE_SIDED: f64 = 1.0;
 
-pub(crate) fn judge(scenario: &Scenario, summary: &Summary, tables: &[Table]) -> Vec<Claim> {
+pub(crate) fn judge(scenario: &Scenario, summary: &Summary, runs: &[Seen]) -> Vec<Claim> {
     let mut claims = vec![always_realizable(summary), naive_unphysical(summary)];
     claims.extend(central_values(scenario, summary));
     if summary.comparisons.is_empty() {
@@ -44,7 +44,7 @@ pub(crate) fn judge(scenario: &Scenario, summary: &Summary, tables: &[Table]) ->
         claims.push(spreads_more(summary, quantity, claim));
     }
     claims.push(reduces(summary));
-    claims.push(shapes(summary, tables));
+    claims.push(shapes(summary, runs));
     claims
 }
 
@@ -258,12 +258,12 @@ fn reduces(summary: &Summary) -> Claim {
     }
 }
 
-fn shapes(summary: &Summary, tables: &[Table]) -> Claim {
+fn shapes(summary: &Summary, runs: &[Seen]) -> Claim {
     let mut findings = Vec::new();
     let mut parts = Vec::new();
-    let shapes: Vec<Shape> = tables.par_iter().map(Shape::of).collect();
+    let shapes: Vec<Shape> = runs.par_iter().map(Shape::of).collect();
     for comparison in &summary.comparisons {
-        let of = |name: &str| Some(&shapes[tables.iter().position(|t| t.model() == name)?]);
+        let of = |name: &str| Some(&shapes[runs.iter().position(|seen| seen.model() == name)?]);
         let (Some(physical), Some(naive)) = (of(&comparison.physical), of(&comparison.naive))
         else {
             continue;
@@ -297,20 +297,21 @@ struct Shape {
 }
 
 impl Shape {
-    fn of(table: &Table) -> Self {
+    /// From the runs whose values are kept.
+    fn of(seen: &Seen) -> Self {
         let mut skewed = (Quantity::PayloadI11, 0.0_f64);
         let mut two_peaked: Option<(Quantity, f64)> = None;
         for quantity in
             Body::BOTH.into_iter().flat_map(|b| Entry::ALL.map(|e| Quantity::entry(b, e)))
         {
-            let values = quantity.in_table(table);
-            let Ok(moments) = gyradius_statistics::Moments::new(&values) else { continue };
+            let Some(survey) = seen.quantity(quantity) else { continue };
+            let Some((moments, sample)) = survey.moments().zip(survey.sample()) else { continue };
             let skewness = moments.skewness().unwrap_or(0.0);
             if skewness.abs() > skewed.1.abs() {
                 skewed = (quantity, skewness);
             }
             let standard = |x: &f64| ((x - moments.mean()) / moments.standard_deviation()).abs();
-            let dip = dip(values.iter().map(standard));
+            let dip = dip(sample.values().iter().map(standard));
             if dip.is_some_and(|d| d < two_peaked.map_or(1.0, |(_, other)| other)) {
                 two_peaked = dip.map(|d| (quantity, d));
             }

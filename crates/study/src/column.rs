@@ -113,18 +113,19 @@ fn axes_name(body: Body, component: usize) -> String {
     format!("{}_q{}", body.name(), component + 1)
 }
 
-/// The attitudes of the principal axes of a body as drawn, of the runs that have one.
-pub(crate) fn attitudes(table: &Table, body: Body) -> Vec<UnitQuaternion<f64>> {
+/// The attitudes of the principal axes of a body as drawn, each with its run, of the runs that have one.
+pub(crate) fn attitudes(table: &Table, body: Body) -> Vec<(u64, UnitQuaternion<f64>)> {
     let Some(components) =
-        (0..4).map(|i| table.values(&axes_name(body, i))).collect::<Option<Vec<_>>>()
+        (0..4).map(|i| table.numbers(&axes_name(body, i))).collect::<Option<Vec<_>>>()
     else {
         return Vec::new();
     };
-    let attitude = |i: usize| {
-        let [x, y, z, w] = [0, 1, 2, 3].map(|c: usize| components[c][i]);
-        UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
+    let attitude = |place: usize| {
+        let [x, y, z, w] = [0, 1, 2, 3].map(|c: usize| components[c].get(place));
+        let attitude = UnitQuaternion::new_unchecked(Quaternion::new(w?, x?, y?, z?));
+        Some((table.first() + place as u64, attitude))
     };
-    (0..components[0].len()).map(attitude).collect()
+    (0..table.len()).filter_map(attitude).collect()
 }
 
 #[cfg(test)]

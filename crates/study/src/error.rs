@@ -1,6 +1,6 @@
 //! Why a study could not be done.
 
-use gyradius_campaign::{CampaignError, FolderError};
+use gyradius_campaign::{CampaignError, FolderError, RunsError};
 use gyradius_statistics::StatisticsError;
 use parquet::errors::ParquetError;
 use std::path::PathBuf;
@@ -33,6 +33,9 @@ pub enum StudyError {
     /// The runs cannot be made on so many threads, or leave no rows.
     #[error(transparent)]
     Campaign(#[from] CampaignError),
+    /// Runs cannot be read.
+    #[error(transparent)]
+    Runs(#[from] RunsError),
     /// The runs cannot be summarised.
     #[error("cannot summarise the runs: {0}")]
     Statistics(#[from] StatisticsError),

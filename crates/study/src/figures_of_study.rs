@@ -1,16 +1,14 @@
 //! The figures of a study, numbered as in the paper.
 
-use gyradius_campaign::Table;
 use gyradius_report::{AttitudeSpheres, Cloud, Figure, HistogramGrid, Panel, Picture, Series};
-use nalgebra::UnitQuaternion;
 use rayon::prelude::*;
 
 use crate::{
     body::{Body, Entry},
-    column,
     compare::EVERY_MODEL,
     quantity::Quantity,
     scenario::Scenario,
+    seen::Seen,
     summary::Summary,
 };
 
@@ -39,35 +37,25 @@ pub(crate) fn names(scenario: &Scenario) -> Vec<String> {
     names
 }
 
-pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[Table]) -> Vec<Figure> {
+pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, runs: &[Seen]) -> Vec<Figure> {
     // Other vehicles have no figures of the paper to be compared with.
     let numbered = |what: &str, number: &str| match scenario.source() {
         Some(_) => format!("{what} ({number})"),
         None => what.to_owned(),
     };
     let pairs = scenario.comparisons().par_iter().flat_map(|comparison| {
-        let (physical, naive) = (&tables[comparison.physical], &tables[comparison.naive]);
+        let (physical, naive) = (&runs[comparison.physical], &runs[comparison.naive]);
         let title = |what: &str| format!("{what}: {} and {}", physical.model(), naive.model());
         let grid = |name: &str, what: &str, quantities: &[Option<Quantity>], columns: usize| {
-            let samples: Vec<Option<[Vec<f64>; 2]>> = quantities
-                .iter()
-                .map(|q| q.map(|q| [q.in_table(physical), q.in_table(naive)]))
-                .collect();
-            let panels: Vec<Option<Panel<'_>>> = quantities
-                .iter()
-                .zip(&samples)
-                .map(|(quantity, samples)| {
-                    let (quantity, [a, b]) = ((*quantity)?, samples.as_ref()?);
-                    Some(Panel {
-                        label: axis_label(quantity),
-                        series: vec![
-                            Series { name: physical.model(), values: a, runs: physical.len() },
-                            Series { name: naive.model(), values: b, runs: naive.len() },
-                        ],
-                        nominal: summary.nominal_value(quantity),
-                    })
+            let panel = |quantity: &Option<Quantity>| {
+                let quantity = (*quantity)?;
+                Some(Panel {
+                    label: axis_label(quantity),
+                    series: [physical, naive].map(|seen| series(seen, quantity)).to_vec(),
+                    nominal: summary.nominal_value(quantity),
                 })
-                .collect();
+            };
+            let panels: Vec<Option<Panel<'_>>> = quantities.iter().map(panel).collect();
             Figure {
                 name: of_pair(name, physical.model(), naive.model()),
                 caption: format!("{}. {}", comparison.title, title(what)),
@@ -97,31 +85,26 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, tables: &[Table])
             .map(|(name, what, quantities, columns)| grid(name, what, quantities, *columns));
         figures.collect::<Vec<_>>()
     });
-    let first = attitudes(scenario, tables, &numbered).into_iter();
-    let last = clearance(scenario, summary, tables).into_iter();
+    let first = attitudes(scenario, runs, &numbered).into_iter();
+    let last = clearance(scenario, summary, runs).into_iter();
     first.chain(pairs.collect::<Vec<_>>()).chain(last).chain(summary.every_model.figure()).collect()
 }
 
 /// How near the bodies come: a comparison a panel, or a model where nothing is compared.
-fn clearance(scenario: &Scenario, summary: &Summary, tables: &[Table]) -> Option<Figure> {
-    let samples: Vec<Vec<f64>> = tables.iter().map(|t| Quantity::Clearance.in_table(t)).collect();
+fn clearance(scenario: &Scenario, summary: &Summary, runs: &[Seen]) -> Option<Figure> {
+    let found = |i: &usize| runs[*i].quantity(Quantity::Clearance).is_some_and(|s| s.n() > 0);
     let compared = scenario.comparisons().iter().map(|c| vec![c.physical, c.naive]);
     let mut groups: Vec<Vec<usize>> = compared.collect();
     if groups.is_empty() {
-        groups = (0..tables.len()).map(|i| vec![i]).collect();
+        groups = (0..runs.len()).map(|i| vec![i]).collect();
     }
     let panels: Vec<Option<Panel<'_>>> = groups
         .into_iter()
-        .filter(|group| group.iter().any(|i| !samples[*i].is_empty()))
+        .filter(|group| group.iter().any(found))
         .map(|group| {
-            let series = |i: usize| Series {
-                name: tables[i].model(),
-                values: &samples[i],
-                runs: tables[i].len(),
-            };
             Some(Panel {
                 label: axis_label(Quantity::Clearance),
-                series: group.into_iter().map(series).collect(),
+                series: group.into_iter().map(|i| series(&runs[i], Quantity::Clearance)).collect(),
                 nominal: summary.nominal_value(Quantity::Clearance),
             })
         })
@@ -138,20 +121,14 @@ fn clearance(scenario: &Scenario, summary: &Summary, tables: &[Table]) -> Option
 /// Figure 1 for every model that draws attitudes.
 fn attitudes(
     scenario: &Scenario,
-    tables: &[Table],
+    runs: &[Seen],
     numbered: &impl Fn(&str, &str) -> String,
 ) -> Option<Figure> {
-    let drawn: Vec<(&Table, Vec<UnitQuaternion<f64>>)> = tables
-        .iter()
-        .map(|t| (t, column::attitudes(t, Body::Payload)))
-        .filter(|(_, attitudes)| !attitudes.is_empty())
-        .collect();
+    let drawn = runs.iter().filter(|seen| !seen.attitudes.is_empty());
     let mean = scenario.payload().mean_axes();
-    let clouds: Vec<Cloud<'_>> = drawn
-        .iter()
-        .map(|(table, attitudes)| Cloud { name: table.model(), attitudes, mean })
-        .collect();
-    if drawn.is_empty() {
+    let clouds: Vec<Cloud<'_>> =
+        drawn.map(|seen| Cloud { name: seen.model(), attitudes: &seen.attitudes, mean }).collect();
+    if clouds.is_empty() {
         return None;
     }
     let title = numbered("Principal axes of the payload", "Figure 1");
@@ -163,6 +140,11 @@ fn attitudes(
         ),
         picture: Picture::Attitudes(AttitudeSpheres::new(&title, &clouds)),
     })
+}
+
+/// The values of the runs that are kept of a model.
+fn series(seen: &Seen, quantity: Quantity) -> Series<'_> {
+    Series::surveyed(seen.model(), seen.quantity(quantity), seen.runs())
 }
 
 fn axis_label(quantity: Quantity) -> String {

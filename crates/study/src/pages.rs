@@ -7,7 +7,7 @@ use crate::{
     model::Model,
     replay,
     results::Pages,
-    study::{judge, tables},
+    study::{all_runs, judge},
 };
 
 /// Elements without content.
@@ -177,8 +177,8 @@ fn read(tag: &str) -> (String, Vec<(String, String)>) {
 fn report_of(scenario: &Scenario) -> String {
     let models = Model::all(scenario).unwrap();
     let threads = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let tables = tables(scenario, &models, &threads, &|_| {}).unwrap();
-    let summary = judge(scenario, &models, &tables).unwrap();
+    let runs = all_runs(scenario, &models, &threads, &|_| {}).unwrap();
+    let summary = judge(scenario, &models, &runs).unwrap();
     // The end of a study on the terminal is made of the same.
     assert!(!summary.to_string().contains("[0.00") && !summary.to_string().contains("0 % ["));
     Pages::new(scenario, &summary).report().to_owned()

@@ -1,10 +1,11 @@
 //! A study: a scenario, run and reported into a folder.
 
 use gyradius_campaign::{
-    CampaignError, Contents, Folder, FolderError, Forecast, Progress, Table, run, threads,
+    CampaignError, Contents, Folder, FolderError, Forecast, Progress, Runs, RunsError, Table, run,
+    threads,
 };
 use gyradius_report::file_of;
-use gyradius_statistics::StatisticsError;
+use gyradius_statistics::Confidence;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -14,6 +15,7 @@ use crate::{
     figures_of_study,
     model::{Model, Separations},
     results::Pages,
+    seen::Seen,
 };
 
 /// How to carry out a study.
@@ -31,7 +33,7 @@ pub struct Options {
 #[derive(Debug)]
 pub struct Study {
     folder: PathBuf,
-    tables: Vec<Table>,
+    runs: Vec<Runs>,
     summary: Summary,
 }
 
@@ -71,17 +73,17 @@ impl Study {
             models.iter().map(|model| Separations::new(scenario, model)).collect();
         say(Forecast::of(&simulations, scenario.runs(), threads.current_num_threads())
             .map_err(CampaignError::from)?);
-        let tables = tables(scenario, &models, &threads, progress)?;
-        let summary = threads.install(|| judge(scenario, &models, &tables))?;
+        let runs = all_runs(scenario, &models, &threads, progress)?;
+        let summary = threads.install(|| judge(scenario, &models, &runs))?;
 
-        let files = tables.iter().map(|table| {
-            Ok((table, folder.create(&format!("runs/{}/runs.parquet", table.model()))?))
-        });
+        let files = runs
+            .iter()
+            .map(|runs| Ok((runs, folder.create(&format!("runs/{}/runs.parquet", runs.model()))?)));
         let files = files.collect::<Result<Vec<_>, FolderError>>()?;
         threads.install(|| {
-            files.into_par_iter().try_for_each(|(table, file)| {
-                table.write_parquet(file).map_err(|source| StudyError::RunTable {
-                    model: table.model().to_owned(),
+            files.into_par_iter().try_for_each(|(runs, file)| {
+                runs.table()?.write_parquet(file).map_err(|source| StudyError::RunTable {
+                    model: runs.model().to_owned(),
                     source,
                 })
             })
@@ -92,7 +94,7 @@ impl Study {
         // The report is made from what a reader of the folder has.
         let summary: Summary = serde_json::from_str(&written)?;
         threads.install(|| Pages::new(scenario, &summary)).write(&mut folder)?;
-        Ok(Self { folder: folder.publish()?, tables, summary })
+        Ok(Self { folder: folder.publish()?, runs, summary })
     }
 
     /// Where it is.
@@ -103,8 +105,16 @@ impl Study {
 
     /// The runs, model by model.
     #[must_use]
-    pub fn tables(&self) -> &[Table] {
-        &self.tables
+    pub fn runs(&self) -> &[Runs] {
+        &self.runs
+    }
+
+    /// The run tables, model by model.
+    ///
+    /// # Errors
+    /// A block of them cannot be read.
+    pub fn tables(&self) -> Result<Vec<Table>, RunsError> {
+        self.runs.iter().map(Runs::table).collect()
     }
 
     /// What they amount to.
@@ -128,11 +138,15 @@ pub fn restore_studies(path: &Path) -> Result<(), StudyError> {
 pub(crate) fn judge(
     scenario: &Scenario,
     models: &[Model],
-    tables: &[Table],
-) -> Result<Summary, StatisticsError> {
-    let mut summary = Summary::new(scenario, models, tables, Section::new(scenario)?)?;
-    summary.claims = claims::judge(scenario, &summary, tables);
-    summary.figures = figures_of_study::of_study(scenario, &summary, tables);
+    runs: &[Runs],
+) -> Result<Summary, StudyError> {
+    let confidence = Confidence::default();
+    let seen = runs.iter().map(|runs| Seen::new(scenario, runs, confidence));
+    let seen = seen.collect::<Result<Vec<_>, _>>()?;
+    let columns = runs.first().map_or(&[][..], Runs::columns);
+    let mut summary = Summary::new(scenario, models, &seen, columns, Section::new(scenario)?)?;
+    summary.claims = claims::judge(scenario, &summary, &seen);
+    summary.figures = figures_of_study::of_study(scenario, &summary, &seen);
     Ok(summary)
 }
 
@@ -146,19 +160,20 @@ fn contents(scenario: &Scenario) -> Contents<'_> {
 }
 
 /// Runs every model of a scenario.
-pub(crate) fn tables(
+pub(crate) fn all_runs(
     scenario: &Scenario,
     models: &[Model],
     threads: &rayon::ThreadPool,
     progress: Progress<'_>,
-) -> Result<Vec<Table>, CampaignError> {
+) -> Result<Vec<Runs>, CampaignError> {
     let mut done = 0;
-    let mut tables = Vec::new();
+    let mut all = Vec::new();
     for model in models {
         let simulation = Separations::new(scenario, model);
         let progress = |runs| progress(done + runs);
-        tables.push(run(&simulation, model.name(), scenario.runs(), threads, &progress)?);
+        let table = run(&simulation, model.name(), scenario.runs(), threads, &progress)?;
+        all.push(Runs::from(table));
         done += scenario.runs();
     }
-    Ok(tables)
+    Ok(all)
 }

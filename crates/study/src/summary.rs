@@ -1,25 +1,21 @@
 //! Every number that the report shows.
 
-use gyradius_attitude::RadiallyConstrainedGaussian;
-use gyradius_campaign::{SampleSummary, Share, Table, counted};
+use gyradius_campaign::{Column, SampleSummary, Share, Surveys, bounded};
 use gyradius_report::Figure;
-use gyradius_statistics::{
-    Confidence, Deviation, Interval, Moments, SortedSample, StatisticsError,
-};
-use nalgebra::UnitQuaternion;
+use gyradius_statistics::{Confidence, Interval, Moments, StatisticsError, Survey};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize, Serializer, ser::Error};
-use std::{borrow::Cow, collections::BTreeMap};
+use std::borrow::Cow;
 
 use crate::{
-    body::Body,
     claim::Claim,
-    column::{CLEARANCE_NOTE, REALIZABLE, RECOMPRESSED, RELEASE_ORDER, attitudes},
+    column::{CLEARANCE_NOTE, REALIZABLE, RECOMPRESSED, RELEASE_ORDER},
     compare::Section,
     model::Model,
     quantity::Quantity,
     run::Case,
     scenario::{Dispersed, ModelLaw, Scenario},
+    seen::Seen,
 };
 
 /// Every number that the report shows.
@@ -195,7 +191,8 @@ impl Summary {
     pub(crate) fn new(
         scenario: &Scenario,
         models: &[Model],
-        tables: &[Table],
+        runs: &[Seen],
+        columns: &[Column],
         every_model: Section,
     ) -> Result<Self, StatisticsError> {
         let confidence = Confidence::default();
@@ -203,14 +200,14 @@ impl Summary {
         let springs = scenario.separation().springs().len();
         let models = models
             .par_iter()
-            .zip(tables)
-            .map(|(model, table)| ModelSummary::new(scenario, model, table, confidence))
+            .zip(runs)
+            .map(|(model, seen)| ModelSummary::new(scenario, model, seen, confidence))
             .collect::<Result<Vec<_>, _>>()?;
         let comparisons = scenario
             .comparisons()
             .par_iter()
             .map(|c| {
-                let (physical, naive) = (&tables[c.physical], &tables[c.naive]);
+                let (physical, naive) = (&runs[c.physical], &runs[c.naive]);
                 ComparisonSummary {
                     title: c.title.clone(),
                     physical: physical.model().to_owned(),
@@ -228,7 +225,7 @@ impl Summary {
             seed: scenario.seed(),
             runs_per_model: scenario.runs(),
             confidence: confidence.level(),
-            columns: columns(tables),
+            columns: columns.iter().map(ColumnSummary::new).collect(),
             nominal,
             models,
             comparisons,
@@ -236,6 +233,11 @@ impl Summary {
             every_model,
             figures: Vec::new(),
         })
+    }
+
+    /// Each model with how many of its runs failed, and how many there are.
+    pub fn failed(&self) -> impl Iterator<Item = (&str, u64, u64)> {
+        self.models.iter().map(|m| (m.name.as_str(), m.failed, m.unrealizable.of))
     }
 
     pub(crate) fn model(&self, name: &str) -> Option<&ModelSummary> {
@@ -252,15 +254,14 @@ fn all(springs: usize) -> impl IndexedParallelIterator<Item = Quantity> {
     Quantity::of(springs).collect::<Vec<_>>().into_par_iter()
 }
 
-/// The columns, which are the same of every model.
-fn columns(tables: &[Table]) -> Vec<ColumnSummary> {
-    let columns = tables.first().into_iter().flat_map(Table::columns);
-    let summary = |column: &gyradius_campaign::Column| ColumnSummary {
-        column: column.name().to_owned(),
-        unit: column.unit().map(|unit| unit.to_owned().into()),
-        meaning: column.meaning().to_owned(),
-    };
-    columns.map(summary).collect()
+impl ColumnSummary {
+    fn new(column: &Column) -> Self {
+        Self {
+            column: column.name().to_owned(),
+            unit: column.unit().map(|unit| unit.to_owned().into()),
+            meaning: column.meaning().to_owned(),
+        }
+    }
 }
 
 /// The run of the nominal bodies.
@@ -276,17 +277,17 @@ fn nominal(scenario: &Scenario) -> Vec<Nominal> {
         .collect()
 }
 
-fn dispersed(scenario: &Scenario, table: &Table) -> Vec<DispersedSummary> {
+fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {
     let summary = |d: &Dispersed| {
-        let moments = table.values(&d.column).and_then(|values| Moments::new(&values).ok());
+        let moments = seen.surveys.column(&d.column).and_then(Survey::moments);
         DispersedSummary {
             quantity: d.column.clone(),
             law: d.law.name().into(),
             nominal: d.nominal,
             law_mean: d.law.mean(),
             law_deviation: d.law.deviation(),
-            mean: moments.map(|m| m.mean()),
-            deviation: moments.map(|m| m.standard_deviation()),
+            mean: moments.map(Moments::mean),
+            deviation: moments.map(Moments::standard_deviation),
         }
     };
     scenario.dispersions().all.iter().map(summary).collect()
@@ -296,41 +297,33 @@ impl ModelSummary {
     fn new(
         scenario: &Scenario,
         model: &Model,
-        table: &Table,
+        seen: &Seen,
         confidence: Confidence,
     ) -> Result<Self, StatisticsError> {
-        let share = |count: usize| Share::new(count as u64, table.len() as u64, confidence);
-        let failures = counted(table.failures().map(|(_, failure)| failure.kind().to_owned()));
-        let drawn = Body::BOTH.map(|body| attitudes(table, body));
-        let draws_axes = !drawn[Body::Payload as usize].is_empty();
-        let far = |body: Body, law: &RadiallyConstrainedGaussian| {
-            let far = |q: &UnitQuaternion<f64>| !law.in_mean_half(q);
-            share(drawn[body as usize].iter().filter(|q| far(q)).count())
-        };
-        let laws = (scenario.payload().gaussian_axes(), scenario.stage().gaussian_axes());
-        let far_half = match laws {
-            (Some(payload), Some(stage)) if draws_axes => {
-                Some([far(Body::Payload, payload)?, far(Body::Stage, stage)?])
+        let share = |count: u64, of: u64| Share::new(count, of, confidence);
+        let failures = owned(seen.surveys.failures());
+        let far_half = match (seen.far, seen.drawn) {
+            ([Some(payload), Some(stage)], [of_payload, of_stage]) if of_payload > 0 => {
+                Some([share(payload, of_payload)?, share(stage, of_stage)?])
             }
             _ => None,
         };
+        let [unrealizable, _] = seen.surveys.flags(REALIZABLE);
         Ok(Self {
-            name: table.model().to_owned(),
+            name: seen.model().to_owned(),
             law: model.law(),
             realizable_by_construction: model.is_realizable_by_construction(),
             acceptance: model.acceptance(),
             failed: failures.iter().map(|f| f.1).sum(),
             failures,
-            unrealizable: share(
-                table.flags(REALIZABLE).iter().filter(|flag| **flag == Some(false)).count(),
-            )?,
+            unrealizable: share(unrealizable, seen.runs())?,
             far_half,
             given_deviations_kg_m2: model.given_deviations(),
-            releases: Releases::new(table, scenario.outlines().is_some(), confidence)?,
+            releases: Releases::new(&seen.surveys, scenario.outlines().is_some(), confidence)?,
             quantities: all(scenario.separation().springs().len())
-                .map(|q| QuantitySummary::new(q, table, confidence))
+                .map(|q| QuantitySummary::new(q, seen, confidence))
                 .collect(),
-            dispersed: dispersed(scenario, table),
+            dispersed: dispersed(scenario, seen),
         })
     }
 
@@ -343,22 +336,21 @@ impl ModelSummary {
 const ORDERS: usize = 12;
 
 impl Releases {
-    fn new(table: &Table, watched: bool, confidence: Confidence) -> Result<Self, StatisticsError> {
-        let mut counts = BTreeMap::<&str, u64>::new();
-        for (order, _) in table.notes(RELEASE_ORDER) {
-            *counts.entry(order).or_default() += 1;
-        }
-        let of = counts.values().sum();
-        let pressed = table.notes(RECOMPRESSED).count();
-        let recompressed =
-            if of == 0 { None } else { Some(Share::new(pressed as u64, of, confidence)?) };
-        let touching = Quantity::RecontactTime.in_table(table).len() as u64;
-        let recontact =
-            if of == 0 || !watched { None } else { Some(Share::new(touching, of, confidence)?) };
-        let clearance = if watched { ClearanceSummary::new(table, confidence) } else { None };
-        let mut counts: Vec<_> = counts.into_iter().collect();
-        // Stable: equal counts stay in the order of their names.
-        counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    fn new(
+        surveys: &Surveys,
+        watched: bool,
+        confidence: Confidence,
+    ) -> Result<Self, StatisticsError> {
+        let mut counts = surveys.texts(RELEASE_ORDER);
+        let of = counts.iter().map(|(_, count)| count).sum();
+        let share =
+            |count| if of == 0 { Ok(None) } else { Share::new(count, of, confidence).map(Some) };
+        let recompressed = share(surveys.texts(RECOMPRESSED).iter().map(|(_, count)| count).sum())?;
+        let touching = surveys.column(&Quantity::RecontactTime.column()).map_or(0, Survey::n);
+        let recontact = if watched { share(touching)? } else { None };
+        let clearance = if watched { ClearanceSummary::new(surveys, confidence) } else { None };
+        // Equal counts in the order of their names.
+        counts.sort_by_key(|(order, count)| (std::cmp::Reverse(*count), *order));
         let orders = counts.into_iter().take(ORDERS).map(|(order, count)| {
             Ok(Order { order: order.to_owned(), share: Share::new(count, of, confidence)? })
         });
@@ -372,54 +364,52 @@ impl Releases {
 }
 
 impl ClearanceSummary {
-    fn new(table: &Table, confidence: Confidence) -> Option<Self> {
-        let clearances = table.numbers(&Quantity::Clearance.column())?;
-        let of = |run: u64| Some((clearances.get(usize::try_from(run).ok()?)?, run));
-        let found: Vec<(f64, u64)> = (0..table.len() as u64).filter_map(of).collect();
-        let notes = counted(table.notes(CLEARANCE_NOTE).map(|(_, kind)| kind.to_owned()));
-        if found.is_empty() && notes.is_empty() {
+    fn new(surveys: &Surveys, confidence: Confidence) -> Option<Self> {
+        let clearances = surveys.column(&Quantity::Clearance.column())?;
+        let notes = owned(surveys.texts(CLEARANCE_NOTE));
+        if clearances.n() == 0 && notes.is_empty() {
             return None;
         }
-        let least = found.iter().copied().reduce(|a, b| if b.0 < a.0 { b } else { a });
-        let values: Vec<f64> = found.iter().map(|(clearance, _)| *clearance).collect();
-        let sorted = SortedSample::new(&values).ok();
-        let quantile = |p| sorted.as_ref().and_then(|s| s.quantile(p).ok());
-        let interval = sorted.as_ref().and_then(|s| s.quantile_interval(0.01, confidence).ok());
+        let least = clearances.minimum();
         Some(Self {
-            n: found.len() as u64,
+            n: clearances.n(),
             least_m: least.map(|(clearance, _)| clearance),
             run: least.map(|(_, run)| run),
-            p01_m: quantile(0.01),
-            p01_interval_m: interval.filter(|i| i.lower().is_finite() && i.upper().is_finite()),
-            p05_m: quantile(0.05),
+            p01_m: clearances.quantile(0.01),
+            p01_interval_m: bounded(clearances.quantile_interval(0.01, confidence)),
+            p05_m: clearances.quantile(0.05),
             notes,
         })
     }
 }
 
 impl QuantitySummary {
-    fn new(quantity: Quantity, table: &Table, confidence: Confidence) -> Self {
-        let sample = SampleSummary::new(&quantity.in_table(table), confidence);
-        Self { quantity, unit: quantity.unit().into(), sample }
+    fn new(quantity: Quantity, seen: &Seen, confidence: Confidence) -> Self {
+        let none = || SampleSummary::new(&[], confidence);
+        let sample = seen.quantity(quantity).map(|survey| SampleSummary::of(survey, confidence));
+        Self { quantity, unit: quantity.unit().into(), sample: sample.unwrap_or_else(none) }
     }
 }
 
 impl Ratio {
-    fn new(quantity: Quantity, physical: &Table, naive: &Table, confidence: Confidence) -> Self {
-        let (physical, naive) = (quantity.in_table(physical), quantity.in_table(naive));
-        let deviations = Deviation::new(&naive).ok().zip(Deviation::new(&physical).ok());
-        let moments = Moments::new(&naive).ok().zip(Moments::new(&physical).ok());
+    fn new(quantity: Quantity, physical: &Seen, naive: &Seen, confidence: Confidence) -> Self {
+        let both = naive.quantity(quantity).zip(physical.quantity(quantity));
+        let deviations = both.and_then(|(n, p)| n.deviation().zip(p.deviation()));
+        let moments = both.and_then(|(n, p)| n.moments().zip(p.moments()));
         Self {
             quantity,
-            deviation_ratio: deviations.as_ref().map(|(n, p)| n.ratio(p)),
+            deviation_ratio: deviations.map(|(n, p)| n.ratio(p)),
             deviation_ratio_interval: deviations
-                .as_ref()
                 .and_then(|(n, p)| n.ratio_interval(p, confidence).ok()),
             mean_difference: moments.map(|(n, p)| n.mean() - p.mean()),
             mean_difference_interval: moments
-                .map(|(n, p)| n.mean_difference_interval(&p, confidence)),
+                .map(|(n, p)| n.mean_difference_interval(p, confidence)),
         }
     }
+}
+
+fn owned(counts: Vec<(&str, u64)>) -> Vec<(String, u64)> {
+    counts.into_iter().map(|(kind, count)| (kind.to_owned(), count)).collect()
 }
 
 impl ComparisonSummary {

@@ -53,13 +53,10 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     print(&text)?;
 
     let mut code = ExitCode::SUCCESS;
-    for table in study.tables() {
-        let failed = table.failures().len();
-        if failed as f64 > arguments.max_failed * table.len() as f64 {
+    for (model, failed, runs) in study.summary().failed() {
+        if failed as f64 > arguments.max_failed * runs as f64 {
             complain(format_args!(
-                "{}: {failed} of {} runs failed, and --max-failed allows {} %",
-                table.model(),
-                table.len(),
+                "{model}: {failed} of {runs} runs failed, and --max-failed allows {} %",
                 short(100.0 * arguments.max_failed)
             ));
             code = ExitCode::from(FAILED);

@@ -1,0 +1,234 @@
+//! What the columns of a run table look like: found in passes over its blocks, in flat memory.
+
+use gyradius_statistics::{Confidence, Pass, Survey};
+use rayon::prelude::*;
+use std::{collections::BTreeMap, sync::Mutex};
+
+use crate::{
+    column::Kind,
+    runs::{Runs, RunsError},
+    sample::surveyed,
+    table::Table,
+};
+
+/// What the columns of the runs of a model look like.
+///
+/// The blocks are read a few times, on all threads. What is found is the same to the bit whatever their size and
+/// order.
+#[derive(Clone, Debug)]
+pub struct Surveys {
+    model: String,
+    numbers: Vec<(String, Survey)>,
+    counts: Counts,
+}
+
+/// How often there is a text of each kind, and in which run first.
+#[derive(Clone, Debug, Default)]
+struct Tally(BTreeMap<String, (u64, u64)>);
+
+/// What is counted beside the numbers.
+#[derive(Clone, Debug, Default)]
+struct Counts {
+    runs: u64,
+    texts: BTreeMap<String, Tally>,
+    flags: BTreeMap<String, [u64; 2]>,
+    failures: Tally,
+}
+
+impl Surveys {
+    /// Of some runs; intervals of quantiles have this confidence.
+    ///
+    /// # Errors
+    /// A block cannot be read.
+    pub fn new(runs: &Runs, confidence: Confidence) -> Result<Self, RunsError> {
+        Self::with(runs, confidence, |_| (), |()| {})
+    }
+
+    /// As [`new`](Self::new), and looks at every block once for whatever else is of interest; `merge` takes it up,
+    /// in any order.
+    ///
+    /// # Errors
+    /// A block cannot be read.
+    pub fn with<T: Send>(
+        runs: &Runs,
+        confidence: Confidence,
+        look: impl Fn(&Table) -> T + Sync,
+        mut merge: impl FnMut(T) + Send,
+    ) -> Result<Self, RunsError> {
+        let of_numbers = runs.columns().iter().filter(|column| column.kind() == Kind::Number);
+        let mut surveys = Self {
+            model: runs.model().to_owned(),
+            numbers: of_numbers
+                .map(|column| (column.name().to_owned(), surveyed(runs.end(), confidence)))
+                .collect(),
+            counts: Counts::default(),
+        };
+        let (first, mut all) = (surveys.passes(), Counts::default());
+        let gathered = Mutex::new((first.clone(), &mut all, &mut merge));
+        runs.scan(|block| {
+            let (passes, counts, seen) =
+                (surveys.gather(&first, block), Counts::of(block), look(block));
+            if let Ok(mut gathered) = gathered.lock() {
+                let (whole, all, merge) = &mut *gathered;
+                take_up(whole, passes);
+                all.merge(counts);
+                merge(seen);
+            }
+        })?;
+        // Nobody panics with the lock in hand.
+        if let Ok((whole, ..)) = gathered.into_inner() {
+            surveys.advance(whole);
+        }
+        surveys.counts = all;
+        loop {
+            let passes = surveys.passes();
+            if passes.iter().all(Option::is_none) {
+                return Ok(surveys);
+            }
+            let whole = Mutex::new(passes.clone());
+            runs.scan(|block| {
+                let part = surveys.gather(&passes, block);
+                if let Ok(mut whole) = whole.lock() {
+                    take_up(&mut whole, part);
+                }
+            })?;
+            if let Ok(whole) = whole.into_inner() {
+                surveys.advance(whole);
+            }
+        }
+    }
+
+    /// What is to be gathered next of each column of numbers.
+    fn passes(&self) -> Vec<Option<Pass>> {
+        self.numbers.iter().map(|(_, survey)| survey.pass()).collect()
+    }
+
+    /// What the passes gather of a block.
+    fn gather(&self, passes: &[Option<Pass>], block: &Table) -> Vec<Option<Pass>> {
+        let columns = self.numbers.par_iter().zip(passes);
+        let gather = |((name, _), empty): (&(String, Survey), &Option<Pass>)| {
+            let mut pass = empty.clone()?;
+            pass.extend(block.numbers(name)?.of_runs(block.first()));
+            Some(pass)
+        };
+        columns.map(gather).collect()
+    }
+
+    fn advance(&mut self, gathered: Vec<Option<Pass>>) {
+        self.numbers.par_iter_mut().zip(gathered).for_each(|((_, survey), pass)| {
+            if let Some(pass) = pass {
+                survey.advance(pass);
+            }
+        });
+    }
+
+    /// Name of the model.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// How many runs there are, those that failed too.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        self.counts.runs
+    }
+
+    /// What a column of numbers looks like; none if there is no such column.
+    #[must_use]
+    pub fn column(&self, column: &str) -> Option<&Survey> {
+        let (_, survey) = self.numbers.iter().find(|(name, _)| name == column)?;
+        Some(survey)
+    }
+
+    /// The kinds of texts in a column with how often each is there, in the order of the first runs that have
+    /// them.
+    #[must_use]
+    pub fn texts(&self, column: &str) -> Vec<(&str, u64)> {
+        self.counts.texts.get(column).map_or_else(Vec::new, Tally::in_order)
+    }
+
+    /// How many runs have `false` in a column of flags, and how many `true`.
+    #[must_use]
+    pub fn flags(&self, column: &str) -> [u64; 2] {
+        self.counts.flags.get(column).copied().unwrap_or_default()
+    }
+
+    /// The kinds of failures with how often each is there, in the order of the first runs that have them.
+    #[must_use]
+    pub fn failures(&self) -> Vec<(&str, u64)> {
+        self.counts.failures.in_order()
+    }
+}
+
+fn take_up(whole: &mut [Option<Pass>], part: Vec<Option<Pass>>) {
+    for (whole, part) in whole.iter_mut().zip(part) {
+        if let (Some(whole), Some(part)) = (whole, part) {
+            whole.merge(part);
+        }
+    }
+}
+
+impl Counts {
+    fn of(block: &Table) -> Self {
+        let mut counts = Self { runs: block.len() as u64, ..Self::default() };
+        for (run, failure) in block.failures() {
+            counts.failures.add(failure.kind(), run, 1);
+        }
+        for column in block.columns() {
+            match column.kind() {
+                Kind::Text => {
+                    let mut tally = Tally::default();
+                    for (run, kind) in block.kinds(column.name()) {
+                        tally.add(kind, run, 1);
+                    }
+                    counts.texts.insert(column.name().to_owned(), tally);
+                }
+                Kind::Flag => {
+                    let mut flags = [0; 2];
+                    for flag in block.flags(column.name()).iter().flatten() {
+                        flags[usize::from(*flag)] += 1;
+                    }
+                    counts.flags.insert(column.name().to_owned(), flags);
+                }
+                Kind::Number | Kind::Integer => {}
+            }
+        }
+        counts
+    }
+
+    fn merge(&mut self, other: Self) {
+        self.runs += other.runs;
+        self.failures.merge(&other.failures);
+        for (column, tally) in &other.texts {
+            self.texts.entry(column.clone()).or_default().merge(tally);
+        }
+        for (column, flags) in other.flags {
+            let own = self.flags.entry(column).or_default();
+            *own = [own[0] + flags[0], own[1] + flags[1]];
+        }
+    }
+}
+
+impl Tally {
+    fn add(&mut self, kind: &str, run: u64, count: u64) {
+        match self.0.get_mut(kind) {
+            Some((first, known)) => (*first, *known) = (run.min(*first), *known + count),
+            None => {
+                self.0.insert(kind.to_owned(), (run, count));
+            }
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        for (kind, (first, count)) in &other.0 {
+            self.add(kind, *first, *count);
+        }
+    }
+
+    fn in_order(&self) -> Vec<(&str, u64)> {
+        let mut kinds: Vec<_> = self.0.iter().collect();
+        kinds.sort_by_key(|(_, (first, _))| *first);
+        kinds.into_iter().map(|(kind, (_, count))| (kind.as_str(), *count)).collect()
+    }
+}
