@@ -30,7 +30,7 @@ fn tables(text: &str, runs: u64) -> Vec<Table> {
     let scenario = Scenario::from_toml(text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let options = Options { out: Some(scratch.path().join("s")), ..Options::default() };
     let study = Study::run(&scenario.with_runs(runs).unwrap(), &options, &|_| {}).unwrap();
-    study.tables().unwrap().to_vec()
+    study.tables().unwrap()
 }
 
 /// The columns of what else was drawn, which stand between these two.

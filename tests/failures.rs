@@ -22,7 +22,8 @@ fn runs_that_fail_are_rows_with_a_reason() {
     let text = paper().replace("[42.8518, 54.3897, 133.1674]", "[5000.0, 54.3897, 133.1674]");
     assert_ne!(text, paper());
     let (study, _scratch) = run(&text);
-    let naive = study.tables().unwrap().iter().find(|t| t.model() == "naive").unwrap();
+    let tables = study.tables().unwrap();
+    let naive = tables.iter().find(|t| t.model() == "naive").unwrap();
     let failed: Vec<_> = naive.rows().filter(|r| r.status() != "ok").collect();
     assert!((10..290).contains(&failed.len()), "{} failed", failed.len());
     for row in &failed {
@@ -48,7 +49,7 @@ fn runs_that_fail_are_rows_with_a_reason() {
 #[test]
 fn a_study_in_which_everything_fails_still_ends() {
     let (study, _scratch) = run(&paper().replace("horizon_s = 60.0", "horizon_s = 0.001"));
-    for table in study.tables().unwrap() {
+    for table in &study.tables().unwrap() {
         assert!(table.rows().all(|r| r.status().contains("had not let go after 0.001 s")));
     }
     assert!(study.summary().to_string().contains("300 of 300 runs failed"));
@@ -70,7 +71,8 @@ fn a_single_run_and_fixed_bodies_have_no_deviation() {
         .map(|line| format!("{line}\n"))
         .collect();
     let (study, _scratch) = run(&text);
-    let naive = study.tables().unwrap().iter().find(|t| t.model() == "naive").unwrap();
+    let tables = study.tables().unwrap();
+    let naive = tables.iter().find(|t| t.model() == "naive").unwrap();
     let wobble = Quantity::Wobble.in_table(naive);
     assert!(wobble.iter().all(|w| *w == wobble[0]));
 }
@@ -99,7 +101,7 @@ fn recontact_is_an_outcome() {
         paper().replacen("[payload]", &format!("{}[payload]", outlines(reach, plate)), 1)
     };
     let (study, _scratch) = run(&at(-5.0, 8.0));
-    for table in study.tables().unwrap() {
+    for table in &study.tables().unwrap() {
         assert!(table.rows().all(|r| r.status() == "ok"));
         let (clearance, touch) =
             (Quantity::Clearance.in_table(table), Quantity::RecontactTime.in_table(table));
@@ -114,7 +116,8 @@ fn recontact_is_an_outcome() {
 
     // A short arm over a small plate stays clear: they are nearest at the start of the coast.
     let (study, _scratch) = run(&at(-0.5, 1.0));
-    let table = &study.tables().unwrap()[0];
+    let tables = study.tables().unwrap();
+    let table = &tables[0];
     assert_eq!(Quantity::RecontactTime.in_table(table).len(), 0);
     let clearance = Quantity::Clearance.in_table(table);
     assert!(clearance.iter().all(|c| (0.5..1.0).contains(c)), "{clearance:?}");
@@ -153,7 +156,7 @@ fn an_outline_that_cannot_be_placed_fails_its_run() {
         1,
     );
     let (study, _scratch) = run(&text);
-    for table in study.tables().unwrap() {
+    for table in &study.tables().unwrap() {
         let failed: Vec<_> = table.rows().filter(|r| r.failure().is_some()).collect();
         assert!((50..250).contains(&failed.len()), "{}", failed.len());
         for row in failed {

@@ -180,7 +180,8 @@ fn ratios_of_deviations() {
     let options = Options { out: Some(scratch.path().join("study")), ..Options::default() };
     let study = Study::run(&scenario, &options, &|_| {}).unwrap();
     let deviation = |model: &str, quantity: Quantity| {
-        let table = study.tables().unwrap().iter().find(|t| t.model() == model).unwrap();
+        let tables = study.tables().unwrap();
+        let table = tables.iter().find(|t| t.model() == model).unwrap();
         Deviation::new(&quantity.in_table(table)).unwrap()
     };
     for (naive, physical, expected) in pairs {

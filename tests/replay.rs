@@ -24,7 +24,7 @@ fn rows_are_those_of_the_study_bit_for_bit() {
     let text = paper().replace("[42.8518, 54.3897, 133.1674]", "[5000.0, 54.3897, 133.1674]");
     let study = study(&text, 70, &out);
     let (mut failed, mut good) = (0, 0);
-    for table in study.tables().unwrap() {
+    for table in &study.tables().unwrap() {
         for run in [0, 1, 7, 63, 64, 69] {
             let replay = Replay::open(&out, Some(table.model()), run, 0.0).unwrap();
             let row = table.row(run as usize).unwrap();
@@ -39,7 +39,8 @@ fn rows_are_those_of_the_study_bit_for_bit() {
     let replay = Replay::open(&out, None, 3, 0.0).unwrap();
     assert_eq!(replay.model(), "proposed");
     // A failed run that never began has nothing to show, and says why.
-    let naive = study.tables().unwrap().iter().find(|t| t.model() == "naive").unwrap();
+    let tables = study.tables().unwrap();
+    let naive = tables.iter().find(|t| t.model() == "naive").unwrap();
     let run = naive.rows().find(|r| r.failure().is_some()).unwrap().run();
     let replay = Replay::open(&out, Some("naive"), run, 0.0).unwrap();
     assert!(replay.to_string().contains("status: payload: inertia with principal moments"));
@@ -73,7 +74,8 @@ fn a_replay_tells_what_was_drawn() {
         1,
     );
     let study = study(&text, 60, &out);
-    let table = &study.tables().unwrap()[0];
+    let tables = study.tables().unwrap();
+    let table = &tables[0];
     let mass = table.values("payload_mass_kg").unwrap();
     let centre = table.values("payload_mass_centre_3_m").unwrap();
     let failed = table.rows().position(|row| row.failure().is_some()).unwrap();
@@ -241,7 +243,7 @@ fn what_cannot_be_replayed_is_named() {
     assert!(of(scratch.path()).to_string().contains("it holds no study"));
 
     // A table that says otherwise in the last bit of a number, or is not there.
-    let table = out.join("runs/proposed/runs.parquet");
+    let table = out.join("runs/proposed/000000000-000000004.parquet");
     let bytes = fs::read(&table).unwrap();
     let wobble = Quantity::Wobble.in_row(&Replay::open(&out, None, 0, 0.0).unwrap().row()).unwrap();
     let at = bytes.windows(8).position(|w| w == wobble.to_le_bytes()).unwrap();

@@ -37,7 +37,13 @@ fn one_thread_and_two_write_the_same_bytes() {
     study(150, 2, &two);
     let (one, two) = (files(&one), files(&two));
     assert!(one.keys().eq(two.keys()));
-    for name in ["scenario.toml", "summary.json", "report.html", "runs/naive/runs.parquet"] {
+    for name in [
+        "scenario.toml",
+        "summary.json",
+        "report.html",
+        "campaign.json",
+        "runs/naive/000000000-000000149.parquet",
+    ] {
         assert!(one.contains_key(name), "{name} is missing");
     }
     for (name, bytes) in &one {
@@ -87,6 +93,7 @@ fn value_stability() {
     let study = study(2, 1, &scratch.path().join("study"));
     let found: Vec<(String, f64, f64)> = study
         .tables()
+        .unwrap()
         .iter()
         .map(|t| {
             let row = t.row(1).unwrap();

@@ -46,7 +46,8 @@ fn a_study_has_what_was_stated() {
         let scratch = tempfile::tempdir().unwrap();
         let options = Options { out: Some(scratch.path().join("s")), ..Options::default() };
         let study = Study::run(&scenario.with_runs(4_000).unwrap(), &options, &|_| {}).unwrap();
-        let table = &study.tables().unwrap()[0];
+        let tables = study.tables().unwrap();
+        let table = &tables[0];
         let deviation = |values: &[f64]| Moments::new(values).unwrap().standard_deviation();
         let near = |found: f64, expected: f64| {
             // Four standard errors of a deviation of 4,000 runs.

@@ -10,6 +10,7 @@ pub struct Column {
     unit: Option<Cow<'static, str>>,
     meaning: Cow<'static, str>,
     optional: bool,
+    kinds: bool,
 }
 
 /// What a column holds.
@@ -41,13 +42,44 @@ impl Column {
         kind: Kind,
         meaning: impl Into<Cow<'static, str>>,
     ) -> Self {
-        Self { name: name.into(), kind, unit: None, meaning: meaning.into(), optional: true }
+        Self {
+            name: name.into(),
+            kind,
+            unit: None,
+            meaning: meaning.into(),
+            optional: true,
+            kinds: false,
+        }
     }
 
     /// The same, which every run has something in.
     #[must_use]
     pub fn required(self) -> Self {
         Self { optional: false, ..self }
+    }
+
+    /// The same, of texts that are of kinds: the table gets another column that tells them.
+    #[must_use]
+    pub fn with_kinds(self) -> Self {
+        Self { kinds: self.kind == Kind::Text, ..self }
+    }
+
+    pub(crate) fn has_kinds(&self) -> bool {
+        self.kinds
+    }
+
+    /// The column that tells the kinds of the texts in this one.
+    pub(crate) fn kinds(&self) -> Self {
+        let meaning = format!("Of which kind `{}` is, without numbers.", self.name);
+        let column = Self::new(format!("{}_kind", self.name), Kind::Text, meaning);
+        if self.optional { column } else { column.required() }
+    }
+
+    /// The column that tells the kinds of failures.
+    pub(crate) fn status_kind() -> Self {
+        let [_, _, status] = Self::first();
+        let meaning = "`ok`, or the kind of the failure, without numbers.".into();
+        Self { meaning, ..status.kinds() }
     }
 
     /// Its name in the table.

@@ -28,18 +28,19 @@ impl Forecast {
     ///
     /// # Errors
     /// A simulation writes rows that do not fit its columns.
-    pub fn of<S: Simulation>(
-        simulations: &[S],
+    pub fn of<'a, S: Simulation + 'a>(
+        simulations: impl IntoIterator<Item = &'a S>,
         runs: u64,
         threads: usize,
     ) -> Result<Self, TableError> {
-        let mut each = 0.0;
+        let (mut each, mut count) = (0.0, 0);
         for simulation in simulations {
             each += seconds_a_run(simulation, runs)?;
+            count += 1;
         }
         let seconds = each * runs as f64 / threads.max(1) as f64;
         Ok(Self {
-            runs: runs * simulations.len() as u64,
+            runs: runs * count,
             threads,
             time: Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX),
         })

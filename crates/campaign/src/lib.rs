@@ -56,11 +56,13 @@
 //! # Ok::<(), gyradius_campaign::CampaignError>(())
 //! ```
 
+mod campaign;
 mod cell;
 mod column;
 mod failure;
 mod folder;
 mod forecast;
+mod identity;
 mod runs;
 mod sample;
 mod share;
@@ -71,11 +73,16 @@ mod surveys;
 mod table;
 mod values;
 
+pub use campaign::{Plan, run_missing};
 pub use cell::Cell;
 pub use column::{Column, Kind};
 pub use failure::Failure;
-pub use folder::{Contents, Folder, FolderError, folder_of, restore, restore_all};
+pub use folder::{
+    Block, Blocks, Contents, Folder, FolderError, MANIFEST, Manifest, folder_of, restore,
+    restore_all,
+};
 pub use forecast::Forecast;
+pub use identity::{Difference, Identity};
 pub use runs::{Runs, RunsError};
 pub use sample::{SampleSummary, bounded};
 pub use share::{Share, counted};

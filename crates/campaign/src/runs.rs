@@ -1,17 +1,46 @@
 //! The runs of a model, in blocks.
 
+use parquet::errors::ParquetError;
 use rayon::prelude::*;
+use std::{ops::Range, path::PathBuf};
 
 use crate::{column::Column, table::Table};
 
-/// The runs of a model, in blocks of consecutive runs.
+/// The runs of a model, in blocks of consecutive runs, some in memory and some on the disk.
 #[derive(Clone, Debug)]
 pub struct Runs {
-    blocks: Vec<Table>,
     empty: Table,
+    blocks: Vec<Block>,
+}
+
+#[derive(Clone, Debug)]
+enum Block {
+    Held(Table),
+    Stored { runs: Range<u64>, path: PathBuf },
 }
 
 impl Runs {
+    /// Of the model and columns of an empty table, with the runs of some files; those of them that are held need not
+    /// be read.
+    pub(crate) fn new(empty: &Table, files: Vec<(Range<u64>, PathBuf)>, held: Vec<Table>) -> Self {
+        let has = |runs: &Range<u64>| held.iter().any(|table| table.first() == runs.start);
+        let stored = files.into_iter().filter(|(runs, _)| !has(runs));
+        let mut blocks: Vec<Block> =
+            stored.map(|(runs, path)| Block::Stored { runs, path }).collect();
+        blocks.extend(held.into_iter().map(Block::Held));
+        blocks.sort_by_key(|block| block.range().start);
+        Self { empty: empty.from_run(0), blocks }
+    }
+
+    /// An empty table of the model, and the blocks that are in memory.
+    pub(crate) fn into_parts(self) -> (Table, Vec<Table>) {
+        let held = self.blocks.into_iter().filter_map(|block| match block {
+            Block::Held(table) => Some(table),
+            Block::Stored { .. } => None,
+        });
+        (self.empty, held.collect())
+    }
+
     /// Name of the model.
     #[must_use]
     pub fn model(&self) -> &str {
@@ -27,7 +56,7 @@ impl Runs {
     /// One more than the number of the last run.
     #[must_use]
     pub fn end(&self) -> u64 {
-        self.blocks.iter().map(|block| block.first() + block.len() as u64).max().unwrap_or(0)
+        self.blocks.iter().map(|block| block.range().end).max().unwrap_or(0)
     }
 
     /// All runs in one table.
@@ -35,8 +64,13 @@ impl Runs {
     /// # Errors
     /// A block cannot be read.
     pub fn table(&self) -> Result<Table, RunsError> {
-        let mut whole = self.empty.clone();
-        self.blocks.iter().for_each(|block| whole.append(block.clone()));
+        let mut whole = self.empty.from_run(self.blocks.first().map_or(0, |b| b.range().start));
+        for block in &self.blocks {
+            match block {
+                Block::Held(table) => whole.append(table.clone()),
+                Block::Stored { path, .. } => whole.append(self.read(path)?),
+            }
+        }
         Ok(whole)
     }
 
@@ -45,19 +79,41 @@ impl Runs {
     /// # Errors
     /// A block cannot be read.
     pub fn scan(&self, look: impl Fn(&Table) + Sync) -> Result<(), RunsError> {
-        self.blocks.par_iter().for_each(|block| look(block));
-        Ok(())
+        self.blocks.par_iter().try_for_each(|block| {
+            match block {
+                Block::Held(table) => look(table),
+                Block::Stored { path, .. } => look(&self.read(path)?),
+            }
+            Ok(())
+        })
+    }
+
+    fn read(&self, path: &PathBuf) -> Result<Table, RunsError> {
+        let read = self.empty.read_parquet(path);
+        read.map_err(|source| RunsError { path: path.clone(), source })
+    }
+}
+
+impl Block {
+    fn range(&self) -> Range<u64> {
+        match self {
+            Self::Held(table) => table.first()..table.first() + table.len() as u64,
+            Self::Stored { runs, .. } => runs.clone(),
+        }
     }
 }
 
 /// A table as the one block.
 impl From<Table> for Runs {
     fn from(table: Table) -> Self {
-        Self { empty: table.from_run(0), blocks: vec![table] }
+        Self::new(&table.from_run(0), Vec::new(), vec![table])
     }
 }
 
-/// Why blocks cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RunsError {}
+/// Why a block of runs cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {source}", path.display())]
+pub struct RunsError {
+    path: PathBuf,
+    source: ParquetError,
+}

@@ -8,6 +8,7 @@ use std::{
 
 use crate::{
     column::Column,
+    folder::FolderError,
     table::{Table, TableError},
 };
 
@@ -59,23 +60,35 @@ pub fn run<S: Simulation>(
     threads: &rayon::ThreadPool,
     progress: Progress<'_>,
 ) -> Result<Table, CampaignError> {
-    let mut whole = Table::new(model, 0, simulation.columns())?;
+    let empty = Table::new(model, 0, simulation.columns())?;
     let done = AtomicU64::new(0);
-    let part = |worker: &mut S::Worker, group: u64| {
-        let first = group * TOGETHER;
-        let last = (first + TOGETHER).min(runs);
-        let mut part = whole.from_run(first);
+    let more = |runs| progress(done.fetch_add(runs, Ordering::Relaxed) + runs);
+    threads.install(|| run_range(simulation, &empty, 0..runs, &more))
+}
+
+/// Does some runs of a simulation on the threads that this is called in. Rows come in run order; `more` is told of
+/// runs that are done.
+pub(crate) fn run_range<S: Simulation>(
+    simulation: &S,
+    empty: &Table,
+    runs: Range<u64>,
+    more: &(dyn Fn(u64) + Sync),
+) -> Result<Table, CampaignError> {
+    let part = |worker: &mut S::Worker, first: u64| {
+        let last = (first + TOGETHER).min(runs.end);
+        let mut part = empty.from_run(first);
         simulation.run(first..last, worker, &mut part)?;
         if part.len() as u64 != last - first {
             return Err(CampaignError::Rows { runs: first..last, rows: part.len() });
         }
-        progress(done.fetch_add(last - first, Ordering::Relaxed) + last - first);
+        more(last - first);
         Ok(part)
     };
-    let groups = (0..runs.div_ceil(TOGETHER)).into_par_iter();
-    let parts: Vec<Table> = threads.install(|| {
-        groups.map_init(|| simulation.worker(), part).collect::<Result<_, CampaignError>>()
-    })?;
+    let number = (runs.end - runs.start).div_ceil(TOGETHER);
+    let groups = (0..number).into_par_iter().map(|group| runs.start + group * TOGETHER);
+    let parts: Vec<Table> =
+        groups.map_init(|| simulation.worker(), part).collect::<Result<_, CampaignError>>()?;
+    let mut whole = empty.from_run(runs.start);
     for part in parts {
         whole.append(part);
     }
@@ -98,7 +111,7 @@ pub fn threads(number: Option<usize>) -> Result<rayon::ThreadPool, CampaignError
 }
 
 /// Why a campaign cannot be done.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CampaignError {
     /// The columns or a row are refused.
@@ -112,6 +125,12 @@ pub enum CampaignError {
         /// How many rows it wrote.
         rows: usize,
     },
+    /// A block of runs cannot be written.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// The campaign was told to stop. The blocks that were finished stay.
+    #[error("stopped; the runs of the blocks that were finished are kept")]
+    Stopped,
     /// The number of threads is out of range, or they cannot be started.
     #[error("threads: {problem}")]
     Threads {

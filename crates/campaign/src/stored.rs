@@ -1,29 +1,275 @@
-//! One row of a run table, without reading the rest.
+//! Run tables in Parquet: written, read back whole, and one row of them.
 
 use parquet::{
-    column::reader::ColumnReader,
-    data_type::ByteArray,
+    basic::{Compression, LogicalType, Repetition, Type as Physical},
+    column::reader::{ColumnReader, ColumnReaderImpl},
+    data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type},
     errors::ParquetError,
-    file::reader::{FileReader, SerializedFileReader},
+    file::{
+        properties::{EnabledStatistics, WriterProperties},
+        reader::{FileReader, SerializedFileReader},
+        writer::{SerializedFileWriter, SerializedRowGroupWriter},
+    },
+    schema::types::{ColumnPath, Type},
 };
-use std::{fs::File, path::Path};
+use std::{collections::BTreeMap, fs::File, io::Write, path::Path, sync::Arc};
 
-use crate::cell::Cell;
+use crate::{
+    cell::Cell,
+    column::{Column, Kind},
+    failure::Failure,
+    table::{OK, Source, Table, Values},
+};
 
-/// The cells of a run in a table that was written, by the names of their columns; none if the table has no
-/// such run.
+impl Table {
+    /// Writes the table as Parquet. Numbers are stored as they are, bit for bit.
+    ///
+    /// # Errors
+    /// Writing fails.
+    pub fn write_parquet(&self, output: impl Write + Send) -> Result<(), ParquetError> {
+        let fields = self.columns().iter().map(|column| Ok(Arc::new(field(column)?)));
+        let fields = fields.collect::<Result<_, ParquetError>>()?;
+        let schema = Type::group_type_builder("run").with_fields(fields).build()?;
+        // Numbers that were drawn are all different: no dictionary serves them.
+        let mut properties = WriterProperties::builder()
+            .set_compression(Compression::UNCOMPRESSED)
+            .set_statistics_enabled(EnabledStatistics::Chunk)
+            .set_dictionary_enabled(false);
+        for column in self.columns().iter().filter(|column| column.kind() == Kind::Text) {
+            let path = ColumnPath::from(column.name());
+            properties = properties.set_column_dictionary_enabled(path, true);
+        }
+        let properties = Arc::new(properties.build());
+        let mut writer = SerializedFileWriter::new(output, Arc::new(schema), properties)?;
+        if !self.is_empty() {
+            let mut group = writer.next_row_group()?;
+            for (column, source) in self.sources() {
+                self.write_column(&mut group, column, source)?;
+            }
+            group.close()?;
+        }
+        writer.close()?;
+        Ok(())
+    }
+
+    fn write_column<W: Write + Send>(
+        &self,
+        group: &mut SerializedRowGroupWriter<'_, W>,
+        column: &Column,
+        source: Source,
+    ) -> Result<(), ParquetError> {
+        let texts = |text: &dyn Fn(usize) -> Option<ByteArray>| (0..self.len()).map(text).collect();
+        let of_failures = |text: fn(&Failure) -> &str| {
+            texts(&|place| Some(self.failures.get(&place).map_or(OK, text).into()))
+        };
+        match source {
+            Source::Model => {
+                let model = ByteArray::from(self.model());
+                write::<ByteArrayType, _>(group, column, texts(&|_| Some(model.clone())))
+            }
+            Source::Run => {
+                // There are fewer runs than 2⁶³.
+                let runs = (0..self.len()).map(|place| Some((self.first() + place as u64) as i64));
+                write::<Int64Type, _>(group, column, runs.collect())
+            }
+            Source::Status => {
+                write::<ByteArrayType, _>(group, column, of_failures(Failure::message))
+            }
+            Source::StatusKind => {
+                write::<ByteArrayType, _>(group, column, of_failures(Failure::kind))
+            }
+            Source::Kind(place) => {
+                let Values::Texts(kinds) = &self.values[place] else { return Ok(()) };
+                let kinds = texts(&|run| Some(kinds.get(run)?.1.into()));
+                write::<ByteArrayType, _>(group, column, kinds)
+            }
+            Source::Value(place) => match &self.values[place] {
+                Values::Numbers(numbers) => match numbers.all() {
+                    Some(values) => write_all::<DoubleType, _>(group, column, values),
+                    None => {
+                        let values = (0..self.len()).map(|run| numbers.get(run)).collect();
+                        write::<DoubleType, _>(group, column, values)
+                    }
+                },
+                Values::Integers(integers) => {
+                    write::<Int64Type, _>(group, column, integers.clone())
+                }
+                Values::Texts(values) => {
+                    let values = texts(&|run| Some(values.get(run)?.0.into()));
+                    write::<ByteArrayType, _>(group, column, values)
+                }
+                Values::Flags(flags) => write::<BoolType, _>(group, column, flags.clone()),
+            },
+        }
+    }
+
+    /// Reads a table that was written, of the same model and columns as this one.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is not of these columns.
+    pub fn read_parquet(&self, path: &Path) -> Result<Self, ParquetError> {
+        let reader = open(path)?;
+        let schema = reader.metadata().file_metadata().schema_descr_ptr();
+        let places: BTreeMap<&str, usize> =
+            schema.columns().iter().enumerate().map(|(i, column)| (column.name(), i)).collect();
+        let wrong = |problem: String| ParquetError::General(problem);
+        let mut texts: BTreeMap<&str, Vec<Option<ByteArray>>> = BTreeMap::new();
+        let mut runs = Vec::new();
+        let mut whole = self.from_run(0);
+        for group in 0..reader.num_row_groups() {
+            let group = reader.get_row_group(group)?;
+            let rows = usize::try_from(group.metadata().num_rows())
+                .map_err(|_| wrong("a row group of no size".to_owned()))?;
+            for (column, source) in self.sources() {
+                let name = column.name();
+                let place = places.get(name).ok_or_else(|| wrong(format!("no column {name:?}")))?;
+                let other = || wrong(format!("column {name:?} is of another type"));
+                match (group.get_column_reader(*place)?, source) {
+                    (ColumnReader::Int64ColumnReader(reader), Source::Run) => {
+                        runs.extend(read(reader, rows)?.into_iter().flatten());
+                    }
+                    (ColumnReader::ByteArrayColumnReader(reader), _)
+                        if column.kind() == Kind::Text =>
+                    {
+                        texts.entry(name).or_default().extend(read(reader, rows)?);
+                    }
+                    (reader, Source::Value(place)) => match (reader, &mut whole.values[place]) {
+                        (ColumnReader::DoubleColumnReader(reader), Values::Numbers(numbers)) => {
+                            read(reader, rows)?.into_iter().for_each(|x| numbers.push(x));
+                        }
+                        (ColumnReader::Int64ColumnReader(reader), Values::Integers(integers)) => {
+                            integers.extend(read(reader, rows)?);
+                        }
+                        (ColumnReader::BoolColumnReader(reader), Values::Flags(flags)) => {
+                            flags.extend(read(reader, rows)?);
+                        }
+                        _ => return Err(other()),
+                    },
+                    _ => return Err(other()),
+                }
+            }
+        }
+        let first = runs.first().copied().unwrap_or_default();
+        let in_order = runs.iter().zip(first..).all(|(run, expected)| *run == expected);
+        let first = u64::try_from(first).ok().filter(|_| in_order);
+        let first = first.ok_or_else(|| wrong("its runs are not in order".to_owned()))?;
+        let text = |name: &str, run: usize| -> Option<String> {
+            let bytes = texts.get(name)?.get(run)?.as_ref()?;
+            Some(String::from_utf8_lossy(bytes.data()).into_owned())
+        };
+        if (0..runs.len()).any(|run| text("model", run).as_deref() != Some(self.model())) {
+            return Err(wrong(format!("it is not of the model {:?}", self.model())));
+        }
+        let [_, _, status] = Column::first();
+        for run in 0..runs.len() {
+            let kind = text(Column::status_kind().name(), run).unwrap_or_default();
+            if kind != OK {
+                let message = text(status.name(), run).unwrap_or_default();
+                whole.failures.insert(run, Failure::new(kind, message));
+            }
+        }
+        for (place, column) in self.of_simulation().iter().enumerate() {
+            if let Values::Texts(values) = &mut whole.values[place] {
+                let kinds = column.has_kinds().then(|| column.kinds().name().to_owned());
+                for run in 0..runs.len() {
+                    let value = text(column.name(), run);
+                    let kind = kinds.as_ref().and_then(|name| text(name, run));
+                    values
+                        .push(value.as_deref().map(|text| (text, kind.as_deref().unwrap_or(text))));
+                }
+            }
+        }
+        whole.begin(first, runs.len());
+        Ok(whole)
+    }
+}
+
+/// The column in Parquet.
+fn field(column: &Column) -> Result<Type, ParquetError> {
+    let (physical, logical) = match column.kind() {
+        Kind::Integer => (Physical::INT64, None),
+        Kind::Number => (Physical::DOUBLE, None),
+        Kind::Flag => (Physical::BOOLEAN, None),
+        Kind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+    };
+    let repetition = if column.is_optional() { Repetition::OPTIONAL } else { Repetition::REQUIRED };
+    Type::primitive_type_builder(column.name(), physical)
+        .with_repetition(repetition)
+        .with_logical_type(logical)
+        .build()
+}
+
+fn write<T: DataType, W: Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
+    column: &Column,
+    values: Vec<Option<T::T>>,
+) -> Result<(), ParquetError> {
+    let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
+    let values: Vec<T::T> = values.into_iter().flatten().collect();
+    write_levels::<T, W>(group, column, &values, &levels)
+}
+
+/// Values that every run has.
+fn write_all<T: DataType, W: Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
+    column: &Column,
+    values: &[T::T],
+) -> Result<(), ParquetError> {
+    write_levels::<T, W>(group, column, values, &vec![1; values.len()])
+}
+
+fn write_levels<T: DataType, W: Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
+    column: &Column,
+    values: &[T::T],
+    levels: &[i16],
+) -> Result<(), ParquetError> {
+    if let Some(mut writer) = group.next_column()? {
+        let levels = column.is_optional().then_some(levels);
+        writer.typed::<T>().write_batch(values, levels, None)?;
+        writer.close()?;
+    }
+    Ok(())
+}
+
+fn open(path: &Path) -> Result<SerializedFileReader<File>, ParquetError> {
+    SerializedFileReader::new(File::open(path).map_err(|e| ParquetError::External(e.into()))?)
+}
+
+/// All values of a column of so many rows.
+fn read<T: DataType>(
+    mut reader: ColumnReaderImpl<T>,
+    rows: usize,
+) -> Result<Vec<Option<T::T>>, ParquetError> {
+    let (mut levels, mut values) = (Vec::with_capacity(rows), Vec::with_capacity(rows));
+    let mut read = 0;
+    while read < rows {
+        let (more, ..) = reader.read_records(rows - read, Some(&mut levels), None, &mut values)?;
+        if more == 0 {
+            return Err(ParquetError::General("a column has fewer values than rows".to_owned()));
+        }
+        read += more;
+    }
+    // Of a column that every run has something in, there are no levels.
+    if levels.is_empty() {
+        return Ok(values.into_iter().map(Some).collect());
+    }
+    let mut values = values.into_iter();
+    Ok(levels.into_iter().map(|level| if level == 1 { values.next() } else { None }).collect())
+}
+
+/// The cells of a row of a table that was written, by the names of their columns, the first row being 0; none if the
+/// table has no such row.
 ///
 /// # Errors
 /// The table cannot be read, or is not of this kind.
 pub fn read_row(
     path: &Path,
-    run: u64,
+    row: u64,
 ) -> Result<Option<Vec<(String, Cell<'static>)>>, ParquetError> {
-    let file = File::open(path).map_err(|e| ParquetError::External(e.into()))?;
-    let reader = SerializedFileReader::new(file)?;
+    let reader = open(path)?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
-    // Rows are in run order.
-    let mut place = usize::try_from(run).unwrap_or(usize::MAX);
+    let mut place = usize::try_from(row).unwrap_or(usize::MAX);
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);

@@ -1,21 +1,9 @@
 //! The run table: what runs leave, by columns.
 
-use parquet::{
-    basic::{Compression, LogicalType, Repetition, Type as Physical},
-    data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type},
-    errors::ParquetError,
-    file::{
-        properties::WriterProperties,
-        writer::{SerializedFileWriter, SerializedRowGroupWriter},
-    },
-    schema::types::Type,
-};
 use std::{
     borrow::Cow,
     collections::{BTreeMap, BTreeSet},
-    fmt,
-    io::Write,
-    ops::Range,
+    fmt, iter,
     sync::Arc,
 };
 
@@ -26,28 +14,25 @@ use crate::{
     values::{Numbers, Texts},
 };
 
-/// Rows of one row group: enough to compress well, little enough to read in part.
-const ROWS_PER_GROUP: usize = 131_072;
-
 /// The runs of one model, in run order.
 ///
 /// The columns are `model`, `run` and `status`, and then those of the simulation. A run that failed is a row
-/// with its reason in `status`.
+/// with its reason in `status`. At the end are the kinds of texts that have kinds, `status_kind` first.
 #[derive(Clone, Debug)]
 pub struct Table {
     model: String,
     /// Number of the first run.
     first: u64,
     len: usize,
-    /// `model`, `run`, `status`, and those of the simulation.
+    /// `model`, `run`, `status`, those of the simulation, and kinds of texts.
     columns: Arc<[Column]>,
     /// One of each column of the simulation.
-    values: Vec<Values>,
-    failures: BTreeMap<usize, Failure>,
+    pub(crate) values: Vec<Values>,
+    pub(crate) failures: BTreeMap<usize, Failure>,
 }
 
 #[derive(Clone, Debug)]
-enum Values {
+pub(crate) enum Values {
     Numbers(Numbers),
     Integers(Vec<Option<i64>>),
     Texts(Texts),
@@ -62,7 +47,20 @@ pub struct Row<'a> {
 }
 
 /// Columns before those of the simulation.
-const OWN: usize = 3;
+pub(crate) const OWN: usize = 3;
+
+/// What a column of a table is filled from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    Model,
+    Run,
+    Status,
+    /// A column of the simulation, by its place.
+    Value(usize),
+    StatusKind,
+    /// The kinds of the texts in a column of the simulation.
+    Kind(usize),
+}
 
 impl Table {
     /// A table for the runs of a model from the number `first` on, without any yet.
@@ -71,27 +69,29 @@ impl Table {
     /// Two columns have the same name, or one has a name that a table begins with, or none.
     pub fn new(model: &str, first: u64, columns: Vec<Column>) -> Result<Self, TableError> {
         let mut names = BTreeSet::new();
-        let columns: Arc<[Column]> = Column::first().into_iter().chain(columns).collect();
+        let of_kinds = columns.iter().filter(|column| column.has_kinds()).map(Column::kinds);
+        let last: Vec<Column> = iter::once(Column::status_kind()).chain(of_kinds).collect();
+        let values = columns.iter().map(|column| Values::new(column.kind())).collect();
+        let columns: Arc<[Column]> =
+            Column::first().into_iter().chain(columns).chain(last).collect();
         for column in columns.iter() {
             if column.name().is_empty() || !names.insert(column.name()) {
                 return Err(TableError::Name { column: column.name().to_owned() });
             }
         }
-        let values = columns[OWN..].iter().map(|column| Values::new(column.kind()));
-        let (model, values) = (model.to_owned(), values.collect());
+        let model = model.to_owned();
         Ok(Self { model, first, len: 0, columns, values, failures: BTreeMap::new() })
     }
 
     /// A table of the same model and columns for runs from another number on.
     #[must_use]
     pub fn from_run(&self, first: u64) -> Self {
-        let values = self.columns[OWN..].iter().map(|column| Values::new(column.kind()));
         Self {
             model: self.model.clone(),
             first,
             len: 0,
             columns: Arc::clone(&self.columns),
-            values: values.collect(),
+            values: self.of_simulation().iter().map(|c| Values::new(c.kind())).collect(),
             failures: BTreeMap::new(),
         }
     }
@@ -136,6 +136,11 @@ impl Table {
         Ok(())
     }
 
+    /// Says where it begins and how many runs there are, after all columns have been filled.
+    pub(crate) fn begin(&mut self, first: u64, len: usize) {
+        (self.first, self.len) = (first, len);
+    }
+
     /// Appends the runs of another table of the same columns, that come next.
     pub(crate) fn append(&mut self, next: Self) {
         for (values, more) in self.values.iter_mut().zip(next.values) {
@@ -174,6 +179,21 @@ impl Table {
     #[must_use]
     pub fn columns(&self) -> &[Column] {
         &self.columns
+    }
+
+    /// Those that the simulation fills.
+    pub(crate) fn of_simulation(&self) -> &[Column] {
+        &self.columns[OWN..OWN + self.values.len()]
+    }
+
+    /// What each column is filled from.
+    pub(crate) fn sources(&self) -> impl Iterator<Item = (&Column, Source)> {
+        let values = (0..self.values.len()).map(Source::Value);
+        let of_kinds = self.of_simulation().iter().enumerate();
+        let kinds = of_kinds.filter(|(_, c)| c.has_kinds()).map(|(place, _)| Source::Kind(place));
+        let own = [Source::Model, Source::Run, Source::Status].into_iter();
+        let sources = own.chain(values).chain([Source::StatusKind]).chain(kinds);
+        self.columns.iter().zip(sources)
     }
 
     /// The run in a place, from 0, of [`len`](Self::len).
@@ -237,48 +257,8 @@ impl Table {
     }
 
     fn column(&self, column: &str) -> Option<&Values> {
-        let place = self.columns[OWN..].iter().position(|other| other.name() == column)?;
+        let place = self.of_simulation().iter().position(|other| other.name() == column)?;
         self.values.get(place)
-    }
-
-    /// Writes the table as Parquet. Numbers are stored as they are, bit for bit.
-    ///
-    /// # Errors
-    /// Writing fails.
-    pub fn write_parquet(&self, output: impl Write + Send) -> Result<(), ParquetError> {
-        let fields = self.columns.iter().map(|column| Ok(Arc::new(field(column)?)));
-        let fields = fields.collect::<Result<_, ParquetError>>()?;
-        let schema = Type::group_type_builder("run").with_fields(fields).build()?;
-        let properties =
-            WriterProperties::builder().set_compression(Compression::UNCOMPRESSED).build();
-        let mut writer = SerializedFileWriter::new(output, Arc::new(schema), Arc::new(properties))?;
-        for first in (0..self.len).step_by(ROWS_PER_GROUP) {
-            let places = first..(first + ROWS_PER_GROUP).min(self.len);
-            let mut group = writer.next_row_group()?;
-            self.write_own(&mut group, places.clone())?;
-            for (column, values) in self.columns[OWN..].iter().zip(&self.values) {
-                values.write(&mut group, column, places.clone())?;
-            }
-            group.close()?;
-        }
-        writer.close()?;
-        Ok(())
-    }
-
-    /// Writes `model`, `run` and `status`.
-    fn write_own<W: Write + Send>(
-        &self,
-        group: &mut SerializedRowGroupWriter<'_, W>,
-        places: Range<usize>,
-    ) -> Result<(), ParquetError> {
-        let [model, run, status] = Column::first();
-        let models = places.clone().map(|_| Some(ByteArray::from(self.model.as_str())));
-        write::<ByteArrayType, _>(group, &model, models.collect())?;
-        // There are fewer runs than 2⁶³.
-        let runs = places.clone().map(|place| Some((self.first + place as u64) as i64));
-        write::<Int64Type, _>(group, &run, runs.collect())?;
-        let of = |place| Row { table: self, place }.status().as_ref().into();
-        write::<ByteArrayType, _>(group, &status, places.map(|place| Some(of(place))).collect())
     }
 }
 
@@ -349,58 +329,6 @@ impl Values {
             }
         }
     }
-
-    fn write<W: Write + Send>(
-        &self,
-        group: &mut SerializedRowGroupWriter<'_, W>,
-        column: &Column,
-        places: Range<usize>,
-    ) -> Result<(), ParquetError> {
-        match self {
-            Self::Numbers(numbers) => {
-                let values = places.map(|place| numbers.get(place)).collect();
-                write::<DoubleType, _>(group, column, values)
-            }
-            Self::Integers(integers) => {
-                write::<Int64Type, _>(group, column, integers[places].to_vec())
-            }
-            Self::Texts(texts) => {
-                let values = places.map(|place| Some(texts.get(place)?.0.into())).collect();
-                write::<ByteArrayType, _>(group, column, values)
-            }
-            Self::Flags(flags) => write::<BoolType, _>(group, column, flags[places].to_vec()),
-        }
-    }
-}
-
-/// The column in Parquet.
-fn field(column: &Column) -> Result<Type, ParquetError> {
-    let (physical, logical) = match column.kind() {
-        Kind::Integer => (Physical::INT64, None),
-        Kind::Number => (Physical::DOUBLE, None),
-        Kind::Flag => (Physical::BOOLEAN, None),
-        Kind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
-    };
-    let repetition = if column.is_optional() { Repetition::OPTIONAL } else { Repetition::REQUIRED };
-    Type::primitive_type_builder(column.name(), physical)
-        .with_repetition(repetition)
-        .with_logical_type(logical)
-        .build()
-}
-
-fn write<T: DataType, W: Write + Send>(
-    group: &mut SerializedRowGroupWriter<'_, W>,
-    column: &Column,
-    values: Vec<Option<T::T>>,
-) -> Result<(), ParquetError> {
-    let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
-    let values: Vec<T::T> = values.into_iter().flatten().collect();
-    if let Some(mut writer) = group.next_column()? {
-        let levels = column.is_optional().then_some(&levels[..]);
-        writer.typed::<T>().write_batch(&values, levels, None)?;
-        writer.close()?;
-    }
-    Ok(())
 }
 
 impl<'a> Row<'a> {
@@ -413,7 +341,7 @@ impl<'a> Row<'a> {
     /// `ok`, or why the run failed.
     #[must_use]
     pub fn status(&self) -> Cow<'a, str> {
-        self.failure().map_or("ok".into(), |failure| failure.message().into())
+        self.failure().map_or(OK.into(), |failure| failure.message().into())
     }
 
     /// Why the run failed, if it did.
@@ -425,8 +353,8 @@ impl<'a> Row<'a> {
     /// What stands in a column of the table; none if there is no such column.
     #[must_use]
     pub fn cell(&self, column: &str) -> Option<Cell<'a>> {
-        let place = self.table.columns.iter().position(|other| other.name() == column)?;
-        Some(self.cell_at(place))
+        let (_, source) = self.table.sources().find(|(other, _)| other.name() == column)?;
+        Some(self.cell_from(source))
     }
 
     /// The number in a column; none if there is none.
@@ -453,22 +381,30 @@ impl<'a> Row<'a> {
     /// What stands in each column of the table, in their order.
     pub fn cells(&self) -> impl Iterator<Item = (&'a Column, Cell<'a>)> {
         let row = *self;
-        let columns = self.table.columns.iter().enumerate();
-        columns.map(move |(place, column)| (column, row.cell_at(place)))
+        self.table.sources().map(move |(column, source)| (column, row.cell_from(source)))
     }
 
-    fn cell_at(&self, column: usize) -> Cell<'a> {
-        match column {
-            0 => Cell::Text(self.table.model.as_str().into()),
-            1 => Cell::Integer(self.run() as i64),
-            2 => self.failure().map_or(Cell::Text("ok".into()), |failure| Cell::Note {
+    fn cell_from(&self, source: Source) -> Cell<'a> {
+        let failure = self.failure();
+        match source {
+            Source::Model => Cell::Text(self.table.model.as_str().into()),
+            Source::Run => Cell::Integer(self.run() as i64),
+            Source::Status => failure.map_or(Cell::Text(OK.into()), |failure| Cell::Note {
                 kind: failure.kind().into(),
                 text: failure.message().into(),
             }),
-            other => self.table.values[other - OWN].cell(self.place),
+            Source::Value(column) => self.table.values[column].cell(self.place),
+            Source::StatusKind => Cell::Text(failure.map_or(OK, Failure::kind).into()),
+            Source::Kind(column) => match self.table.values[column].cell(self.place) {
+                Cell::Note { kind, .. } => Cell::Text(kind),
+                other => other,
+            },
         }
     }
 }
+
+/// The status of a run that did not fail.
+pub(crate) const OK: &str = "ok";
 
 /// Rows are the same if all their cells are, to the bit.
 impl PartialEq for Row<'_> {

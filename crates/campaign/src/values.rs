@@ -28,6 +28,12 @@ impl Numbers {
         (self.present[run / 64] >> (run % 64) & 1 == 1).then_some(value)
     }
 
+    /// The numbers, if every run has one.
+    pub(crate) fn all(&self) -> Option<&[f64]> {
+        let count: u32 = self.present.iter().map(|word| word.count_ones()).sum();
+        (count as usize == self.values.len()).then_some(&self.values)
+    }
+
     /// The numbers of the runs that have one, in run order.
     pub fn present(&self) -> impl Iterator<Item = f64> {
         (0..self.values.len()).filter_map(|run| self.get(run))

@@ -62,7 +62,9 @@ impl Simulation for Everything {
 
     fn columns(&self) -> Vec<Column> {
         let columns = KINDS.into_iter().flat_map(|kind| {
-            let column = |name: &str| Column::new(format!("{name}_{kind:?}"), kind, "Something.");
+            let column = |name: &str| {
+                Column::new(format!("{name}_{kind:?}"), kind, "Something.").with_kinds()
+            };
             [column("some"), column("all").required()]
         });
         columns.collect()
@@ -105,7 +107,13 @@ proptest! {
             prop_assert_eq!(row.failure(), failure.as_ref());
             failed += usize::from(failure.is_some());
             let found: Vec<_> = row.cells().skip(3).map(|(_, cell)| cell).collect();
-            prop_assert_eq!(found, cells);
+            let kind = failure.as_ref().map_or("ok", Failure::kind).to_owned();
+            let kinds = cells[4..6].iter().map(|cell| match cell {
+                Cell::Note { kind, .. } => Cell::Text(kind.clone()),
+                other => other.clone(),
+            });
+            let expected = cells.iter().cloned().chain([Cell::Text(kind.into())]).chain(kinds);
+            prop_assert_eq!(found, expected.collect::<Vec<_>>());
         }
         prop_assert_eq!(table.failures().len(), failed);
     }
@@ -135,6 +143,9 @@ proptest! {
         let scratch = tempfile::tempdir().unwrap();
         let path = scratch.path().join("runs.parquet");
         std::fs::write(&path, &file).unwrap();
+        let whole = table.from_run(0).read_parquet(&path).unwrap();
+        prop_assert!(whole.rows().eq(table.rows()));
+        prop_assert!(whole.failures().eq(table.failures()));
         for row in table.rows() {
             let read = read_row(&path, row.run()).unwrap().unwrap();
             prop_assert!(read.iter().map(|(_, cell)| cell).eq(row.cells().map(|(_, cell)| cell).collect::<Vec<_>>().iter()));
@@ -142,6 +153,7 @@ proptest! {
         prop_assert!(read_row(&path, runs).unwrap().is_none());
         std::fs::write(&path, &file[..file.len() / 2]).unwrap();
         prop_assert!(read_row(&path, 0).is_err());
+        prop_assert!(table.from_run(0).read_parquet(&path).is_err());
     }
 
     /// A row that does not fit changes nothing: the rows after it are as if it had not been tried.

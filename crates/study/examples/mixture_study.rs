@@ -149,8 +149,8 @@ mod tests {
             "scenario.toml",
             "summary.json",
             "report.html",
-            "runs/two-variants/runs.parquet",
-            "runs/entries-of-variants/runs.parquet",
+            "runs/two-variants/000000000-000000059.parquet",
+            "runs/entries-of-variants/000000000-000000059.parquet",
         ];
         for file in files {
             let [a, b] = [&one, &three].map(|study| fs::read(study.folder().join(file)).unwrap());

@@ -83,7 +83,8 @@ impl Column {
                 Text,
                 "Why there is no clearance (all outlines are mated; the search failed), or not one of the \
                  whole coast (a body turns too far to be followed); none if there is nothing to say.",
-            ),
+            )
+            .with_kinds(),
         }
     }
 
@@ -137,7 +138,8 @@ mod tests {
     fn page() -> String {
         let drawn = ["payload_mass_kg".to_owned()];
         let mut page = "# The run table\n\n\
-            `runs/<model>/runs.parquet` holds one row a run, in run order. A half-written Parquet file is refused by readers; half a\n\
+            `runs/<model>/` holds one row a run, in Parquet files that are named by their first and last runs; pandas, polars and\n\
+            DuckDB open the folder as one table, in run order. A half-written Parquet file is refused by readers; half a\n\
             CSV is read without a word. What a failed run has drawn is there, and its outcomes are null; so is every number that has no\n\
             meaning for a run. Numbers are stored bit for bit.\n\n\
             Each spring has a `spring_…_release_s`, springs from 1. In the place of `payload_mass_kg` stands what else is\n\

@@ -43,14 +43,16 @@ pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
 pub use error::StudyError;
 pub use failure::Failure;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
-pub use gyradius_campaign::{Cell, Column, Forecast, Progress, Row, Runs, RunsError, Table};
+pub use gyradius_campaign::{
+    CampaignError, Cell, Column, Forecast, Progress, Row, Runs, RunsError, Table,
+};
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};
 pub use quantity::Quantity;
 pub use replay::{Replay, ReplayError};
 pub use results::{Results, ResultsError};
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
-pub use study::{Options, Study, restore_studies};
+pub use study::{Notice, Options, Study, restore_studies};
 pub use summary::Summary;
 
 #[cfg(doctest)]

@@ -176,8 +176,7 @@ fn read(tag: &str) -> (String, Vec<(String, String)>) {
 /// The report of a scenario, without its folder.
 fn report_of(scenario: &Scenario) -> String {
     let models = Model::all(scenario).unwrap();
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let runs = all_runs(scenario, &models, &threads, &|_| {}).unwrap();
+    let runs = all_runs(scenario, &models);
     let summary = judge(scenario, &models, &runs).unwrap();
     // The end of a study on the terminal is made of the same.
     assert!(!summary.to_string().contains("[0.00") && !summary.to_string().contains("0 % ["));

@@ -470,7 +470,7 @@ fn inputs(scenario: &Scenario, summary: &Summary) -> Markup {
             code { "gyradius study --scenario scenario.toml" } "."
         }
         p {
-            "Every run is a row of " code { "runs/<model>/runs.parquet" }
+            "Every run is a row of " code { "runs/<model>/" }
             ", every number of this page is in " code { "summary.json" } "."
         }
         details { summary { "scenario.toml" } pre { (scenario.to_toml()) } }

@@ -1,13 +1,19 @@
 //! A study: a scenario, run and reported into a folder.
 
+#[cfg(test)]
+use gyradius_campaign::run;
 use gyradius_campaign::{
-    CampaignError, Contents, Folder, FolderError, Forecast, Progress, Runs, RunsError, Table, run,
-    threads,
+    CampaignError, Contents, Folder, Forecast, Identity, MANIFEST, Plan, Progress, Runs, RunsError,
+    Table, run_missing, threads,
 };
 use gyradius_report::file_of;
 use gyradius_statistics::Confidence;
-use rayon::prelude::*;
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+    sync::{Arc, OnceLock, atomic::AtomicBool},
+};
+use toml::{Table as Toml, Value};
 
 use crate::{
     Scenario, StudyError, Summary, claims,
@@ -15,6 +21,7 @@ use crate::{
     figures_of_study,
     model::{Model, Separations},
     results::Pages,
+    scenario::parse_toml,
     seen::Seen,
 };
 
@@ -27,6 +34,28 @@ pub struct Options {
     pub threads: Option<usize>,
     /// Replace another study in the folder.
     pub force: bool,
+    /// Set from elsewhere to stop: blocks of runs that are finished stay, and the same study goes on.
+    pub stop: Option<Arc<AtomicBool>>,
+}
+
+/// Runs of a block: some tenths of a second of separations.
+const BLOCK_RUNS: u64 = 1 << 14;
+
+/// What a study says before its runs.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Notice {
+    /// How long the runs will take that are to be done.
+    Forecast(Forecast),
+    /// So many runs of all models are there already.
+    GoesOn {
+        /// Runs that are there.
+        done: u64,
+        /// Runs of all models.
+        of: u64,
+    },
+    /// A block of runs is not as it was written, and is done again.
+    Damaged(String),
 }
 
 /// A study carried out and written.
@@ -49,52 +78,69 @@ impl Study {
         options: &Options,
         progress: Progress<'_>,
     ) -> Result<Self, StudyError> {
-        Self::run_with_forecast(scenario, options, progress, &|_| {})
+        Self::run_with_notices(scenario, options, progress, &|_| {})
     }
 
-    /// As [`run`](Self::run), and says how long it will take before it begins.
+    /// As [`run`](Self::run), and says what there is to say before it begins.
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn run_with_forecast(
+    pub fn run_with_notices(
         scenario: &Scenario,
         options: &Options,
         progress: Progress<'_>,
-        say: &dyn Fn(Forecast),
+        say: &dyn Fn(Notice),
     ) -> Result<Self, StudyError> {
         let threads = threads(options.threads)?;
         let default = || Path::new("target/study").join(scenario.name());
         let place = options.out.clone().unwrap_or_else(default);
         let models = Model::all(scenario)?;
-        let contents = contents(scenario);
+        let simulations: Vec<(&str, Separations<'_>)> =
+            models.iter().map(|model| (model.name(), Separations::new(scenario, model))).collect();
+        let in_place = OnceLock::<BTreeSet<String>>::new();
+        let contents =
+            contents(scenario).keeping(|name| in_place.get().is_some_and(|all| all.contains(name)));
         let mut folder = Folder::prepare(&place, &contents, options.force)?;
+        let blocks =
+            folder.blocks(&identity(scenario), scenario.runs(), options.force, &threads)?;
+        let _ = in_place.set(blocks.published());
+        blocks.damaged().iter().for_each(|damage| say(Notice::Damaged(damage.clone())));
 
-        let simulations: Vec<_> =
-            models.iter().map(|model| Separations::new(scenario, model)).collect();
-        say(Forecast::of(&simulations, scenario.runs(), threads.current_num_threads())
-            .map_err(CampaignError::from)?);
-        let runs = all_runs(scenario, &models, &threads, progress)?;
-        let summary = threads.install(|| judge(scenario, &models, &runs))?;
-
-        let files = runs
+        let left: u64 = models
             .iter()
-            .map(|runs| Ok((runs, folder.create(&format!("runs/{}/runs.parquet", runs.model()))?)));
-        let files = files.collect::<Result<Vec<_>, FolderError>>()?;
-        threads.install(|| {
-            files.into_par_iter().try_for_each(|(runs, file)| {
-                runs.table()?.write_parquet(file).map_err(|source| StudyError::RunTable {
-                    model: runs.model().to_owned(),
-                    source,
-                })
-            })
-        })?;
+            .flat_map(|model| blocks.missing(model.name(), scenario.runs(), BLOCK_RUNS))
+            .map(|runs| runs.end - runs.start)
+            .sum();
+        let of = scenario.runs() * models.len() as u64;
+        if left < of {
+            say(Notice::GoesOn { done: of - left, of });
+        }
+        if left > 0 {
+            let timed = simulations.iter().map(|(_, simulation)| simulation);
+            let each = left.div_ceil(models.len() as u64);
+            let forecast = Forecast::of(timed, each, threads.current_num_threads());
+            say(Notice::Forecast(forecast.map_err(CampaignError::from)?));
+        }
+        let plan =
+            Plan { runs: scenario.runs(), block_runs: BLOCK_RUNS, stop: options.stop.as_deref() };
+        let done = threads.install(|| {
+            let runs = run_missing(&simulations, &blocks, plan, progress)?;
+            let summary = judge(scenario, &models, &runs)?;
+            Ok::<_, StudyError>((runs, summary))
+        });
+        let (runs, summary) = done.inspect_err(|_| blocks.abandon())?;
+
+        folder.adopt(&blocks, runs.first().map_or(&[][..], Runs::columns))?;
         folder.write("scenario.toml", &scenario.to_toml())?;
         let written = serde_json::to_string_pretty(&summary)? + "\n";
         folder.write("summary.json", &written)?;
         // The report is made from what a reader of the folder has.
         let summary: Summary = serde_json::from_str(&written)?;
         threads.install(|| Pages::new(scenario, &summary)).write(&mut folder)?;
-        Ok(Self { folder: folder.publish()?, runs, summary })
+        let folder = folder.publish()?;
+        blocks.settle()?;
+        let runs = runs.into_iter().map(|runs| blocks.in_place(&runs)).collect();
+        Ok(Self { folder, runs, summary })
     }
 
     /// Where it is.
@@ -152,28 +198,73 @@ pub(crate) fn judge(
 
 /// What a study writes, and the figures that it may write.
 fn contents(scenario: &Scenario) -> Contents<'_> {
-    let tables = scenario.model_names().map(|model| format!("runs/{model}/runs.parquet"));
+    let tables = scenario.model_names().map(|model| format!("runs/{model}/"));
     let figures = figures_of_study::names(scenario).into_iter().map(|name| file_of(&name));
-    let others = ["scenario.toml", "summary.json", "report.html", "figures/"].map(str::to_owned);
-    let same = |text: &str| text == scenario.to_toml();
-    Contents::new("study", "scenario.toml", tables.chain(figures).chain(others), same)
+    let others = [
+        "scenario.toml",
+        "summary.json",
+        "report.html",
+        "report.md",
+        "figures/",
+        "runs/",
+        MANIFEST,
+    ];
+    let others = others.map(str::to_owned);
+    let extends = |text: &str| {
+        // Fewer runs would take some away.
+        Scenario::from_toml(text).is_ok_and(|there| {
+            there.runs() <= scenario.runs()
+                && identity(scenario).difference(&identity(&there)).is_none()
+        })
+    };
+    let differs = |text: &str| {
+        let there = Scenario::from_toml(text).ok()?;
+        let difference = identity(scenario).difference(&identity(&there));
+        let fewer = || format!("runs is {} there and {} here", there.runs(), scenario.runs());
+        Some(difference.map_or_else(fewer, |difference| difference.to_string()))
+    };
+    Contents::new("study", "scenario.toml", tables.chain(figures).chain(others), extends)
+        .telling(differs)
+        .trusting(|name| name.starts_with("runs/"))
 }
 
-/// Runs every model of a scenario.
-pub(crate) fn all_runs(
-    scenario: &Scenario,
-    models: &[Model],
-    threads: &rayon::ThreadPool,
-    progress: Progress<'_>,
-) -> Result<Vec<Runs>, CampaignError> {
-    let mut done = 0;
-    let mut all = Vec::new();
-    for model in models {
-        let simulation = Separations::new(scenario, model);
-        let progress = |runs| progress(done + runs);
-        let table = run(&simulation, model.name(), scenario.runs(), threads, &progress)?;
-        all.push(Runs::from(table));
-        done += scenario.runs();
+/// What the runs of a scenario depend on.
+fn identity(scenario: &Scenario) -> Identity {
+    let mut fields = Vec::new();
+    if let Ok(table) = parse_toml::<Toml>(&scenario.to_toml()) {
+        flatten("", &Value::Table(table), &mut fields);
     }
-    Ok(all)
+    fields.retain(|(field, _)| field != "runs");
+    fields.push(("gyradius_version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()));
+    fields.push(("block_runs".to_owned(), BLOCK_RUNS.to_string()));
+    Identity::new(fields)
+}
+
+/// Every value in a table by the path to it.
+fn flatten(path: &str, value: &Value, fields: &mut Vec<(String, String)>) {
+    match value {
+        Value::Table(table) => {
+            for (key, value) in table {
+                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+                flatten(&path, value, fields);
+            }
+        }
+        Value::Array(values) if values.iter().any(Value::is_table) => {
+            for (i, value) in values.iter().enumerate() {
+                flatten(&format!("{path}[{i}]"), value, fields);
+            }
+        }
+        other => fields.push((path.to_owned(), other.to_string())),
+    }
+}
+
+/// Runs every model of a scenario, in memory.
+#[cfg(test)]
+pub(crate) fn all_runs(scenario: &Scenario, models: &[Model]) -> Vec<Runs> {
+    let threads = threads(Some(1)).unwrap();
+    let table = |model: &Model| {
+        let simulation = Separations::new(scenario, model);
+        run(&simulation, model.name(), scenario.runs(), &threads, &|_| {}).unwrap()
+    };
+    models.iter().map(|model| Runs::from(table(model))).collect()
 }

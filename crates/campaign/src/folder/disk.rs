@@ -37,6 +37,17 @@ pub(super) fn move_file(from: &Path, to: &Path) -> io::Result<()> {
     }
 }
 
+/// Gives a file a second name, or copies it where that cannot be; fails if anything is there.
+pub(super) fn link(from: &Path, to: &Path) -> io::Result<()> {
+    step("link", to)?;
+    match fs::hard_link(from, to) {
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists && is_free(to) => {
+            io::copy(&mut File::open(from)?, &mut create_file(to)?).map(|_| ())
+        }
+        other => other,
+    }
+}
+
 fn is_free(path: &Path) -> bool {
     fs::symlink_metadata(path).is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
 }

@@ -33,6 +33,8 @@ pub(super) struct Journal {
     file: File,
     /// Files of the draft.
     drafts: Vec<Name>,
+    /// Hashes of those that were whole before.
+    hashes: BTreeMap<Name, String>,
     replacement: Option<Replacement>,
     settled: bool,
 }
@@ -96,7 +98,14 @@ impl Journal {
         }
         let path = hidden.join(JOURNAL);
         let file = disk::create_file(&path)?;
-        let journal = Self { path, file, drafts: Vec::new(), replacement: None, settled: false };
+        let journal = Self {
+            path,
+            file,
+            drafts: Vec::new(),
+            hashes: BTreeMap::new(),
+            replacement: None,
+            settled: false,
+        };
         disk::sync_folder(&hidden.join(""))?;
         disk::sync_folder(hidden.place())?;
         disk::create_folder(&hidden.join(DRAFT))?;
@@ -108,8 +117,14 @@ impl Journal {
         let Some(lines) = read(hidden.place())? else { return Ok(None) };
         let path = hidden.join(JOURNAL);
         let file = OpenOptions::new().append(true).open(&path)?;
-        let mut journal =
-            Self { path, file, drafts: Vec::new(), replacement: None, settled: false };
+        let mut journal = Self {
+            path,
+            file,
+            drafts: Vec::new(),
+            hashes: BTreeMap::new(),
+            replacement: None,
+            settled: false,
+        };
         for line in lines {
             match line {
                 Line::Draft(name) => journal.drafts.push(name),
@@ -136,11 +151,31 @@ impl Journal {
         Ok(disk::create_file(&path)?)
     }
 
+    /// Links a file that is whole, and has a hash, into the draft; copies it where files cannot be linked.
+    pub(super) fn link(
+        &mut self,
+        hidden: &Hidden,
+        name: Name,
+        from: &Path,
+        hash: &str,
+    ) -> Result<(), Problem> {
+        self.append(&Line::Draft(name.clone()))?;
+        let draft = hidden.join(DRAFT);
+        make_folders(&draft, &name)?;
+        let to = name.below(&draft);
+        self.drafts.push(name.clone());
+        disk::link(from, &to)?;
+        self.hashes.insert(name, hash.to_owned());
+        Ok(())
+    }
+
     /// The files of the draft, and the folders that have to be made for them.
     pub(super) fn written(&self, hidden: &Hidden, old: &Record) -> Result<Record, Problem> {
         let (mut files, mut folders) = (BTreeMap::new(), BTreeSet::new());
         for name in &self.drafts {
-            files.insert(name.clone(), hash(&name.below(&hidden.join(DRAFT)))?);
+            let known = self.hashes.get(name).cloned();
+            let hash = known.map_or_else(|| hash(&name.below(&hidden.join(DRAFT))), Ok)?;
+            files.insert(name.clone(), hash);
             for above in name.folders() {
                 let there = fs::symlink_metadata(above.below(hidden.place())).is_ok();
                 if !there || old.folders().contains(&above) {

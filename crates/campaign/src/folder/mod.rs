@@ -9,6 +9,7 @@
 //!
 //! The record, the journal, the lock and the draft are in the hidden folder `.gyradius`.
 
+mod blocks;
 mod disk;
 mod hidden;
 mod journal;
@@ -24,10 +25,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
+pub use blocks::{Block, Blocks, MANIFEST, Manifest};
 use hidden::Hidden;
 use journal::{Journal, Left, Replacement};
 use name::{Found, Name, look};
 use record::Record;
+
+use crate::identity::Difference;
 
 /// What goes into a folder.
 pub struct Contents<'a> {
@@ -41,6 +45,10 @@ pub struct Contents<'a> {
     same: Box<dyn Fn(&str) -> bool + 'a>,
     /// Which files that were written before stay as they are.
     kept: Box<dyn Fn(&str) -> bool + 'a>,
+    /// In what another text of the mark differs.
+    differs: Box<dyn Fn(&str) -> Option<String> + 'a>,
+    /// Files that are checked when they are used, if the very same is there.
+    trusted: fn(&str) -> bool,
 }
 
 impl<'a> Contents<'a> {
@@ -53,7 +61,25 @@ impl<'a> Contents<'a> {
         same: impl Fn(&str) -> bool + 'a,
     ) -> Self {
         let certain = certain.into_iter().collect();
-        Self { what, mark, certain, same: Box::new(same), kept: Box::new(|_| false) }
+        Self {
+            what,
+            mark,
+            certain,
+            same: Box::new(same),
+            kept: Box::new(|_| false),
+            differs: Box::new(|_| None),
+            trusted: |_| false,
+        }
+    }
+
+    /// Tells in what another text of the mark differs, for the message that refuses it.
+    pub fn telling(self, differs: impl Fn(&str) -> Option<String> + 'a) -> Self {
+        Self { differs: Box::new(differs), ..self }
+    }
+
+    /// Leaves the check of these files to those who use them, if the very same is there.
+    pub fn trusting(self, trusted: fn(&str) -> bool) -> Self {
+        Self { trusted, ..self }
     }
 
     /// The same as a part of what was written before, of which these files stay as they are.
@@ -271,9 +297,15 @@ fn check(
     let text = || fs::read_to_string(mark.below(place));
     let same = known && text().is_ok_and(|text| (contents.same)(&text));
     if occupied && !same && !force {
-        return Err(Problem::Occupied { what: contents.what });
+        let difference = known.then(text).and_then(Result::ok);
+        let difference = difference.and_then(|text| (contents.differs)(&text));
+        return Err(match difference {
+            Some(difference) => Problem::Other { what: contents.what, difference },
+            None => Problem::Occupied { what: contents.what },
+        });
     }
-    unobstructed(place, record, files.iter().chain(record.names()))
+    let checked = record.names().filter(|name| !(same && (contents.trusted)(&name.to_string())));
+    unobstructed(place, record, files.iter().chain(checked))
 }
 
 /// That nothing is in the way of these files but what the record knows.
@@ -334,6 +366,20 @@ pub(crate) enum Problem {
          --force to replace what a {what} wrote there"
     )]
     Occupied { what: &'static str },
+    #[error(
+        "it already holds another {what}: {difference}; choose another folder with --out, or pass \
+         --force to replace what a {what} wrote there"
+    )]
+    Other { what: &'static str, difference: String },
+    #[error(
+        "it holds the finished runs of another campaign that was not completed: {difference}; choose another \
+         folder with --out, or pass --force to drop those runs"
+    )]
+    Unfinished { difference: Difference },
+    #[error(
+        "{name} cannot be written: {problem}. What was finished stays, and the same command goes on"
+    )]
+    Block { name: String, problem: String },
     #[error(
         "{name} in it was changed after it was written, and is not replaced; move it elsewhere or \
          choose another folder with --out"

@@ -141,7 +141,7 @@ pub(super) fn hash_of(text: &str) -> String {
     hex(Sha256::new_with_prefix(text))
 }
 
-fn hex(sha: Sha256) -> String {
+pub(super) fn hex(sha: Sha256) -> String {
     sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

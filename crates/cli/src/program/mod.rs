@@ -12,6 +12,7 @@ mod progress;
 mod replay;
 mod report;
 mod shell;
+mod signals;
 mod study;
 
 use args::{Cli, Command};

@@ -1,6 +1,6 @@
 //! `gyradius study`: a scenario run, its table, and the exit code.
 
-use gyradius_study::{Forecast, Options, Scenario, Study};
+use gyradius_study::{CampaignError, Notice, Options, Scenario, Study, StudyError};
 use std::{error::Error, fmt::Write, process::ExitCode, time::Duration};
 
 use crate::program::{
@@ -8,6 +8,7 @@ use crate::program::{
     number::short,
     output::{complain, print, say},
     progress,
+    signals::Signals,
 };
 
 /// What the program returns when too many runs failed.
@@ -27,17 +28,33 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     if let Some(seed) = arguments.seed {
         scenario = scenario.with_seed(seed)?;
     }
-    let options =
-        Options { out: arguments.out.clone(), threads: arguments.threads, force: arguments.force };
+    let signals = Signals::watch()?;
+    let options = Options {
+        out: arguments.out.clone(),
+        threads: arguments.threads,
+        force: arguments.force,
+        stop: Some(signals.stop()),
+    };
     let total = scenario.runs() * scenario.model_names().count() as u64;
-    let forecast = |forecast: Forecast| {
-        if forecast.time() > PATIENCE {
-            say(&forecast.to_string());
+    let notice = |notice: Notice| match notice {
+        Notice::Forecast(forecast) if forecast.time() > PATIENCE => say(&forecast.to_string()),
+        Notice::GoesOn { done, of } if done < of => {
+            say(&format!("{done} of {of} runs are finished already; going on"));
         }
+        Notice::Damaged(block) => say(&format!("{block}: its runs are done again")),
+        // What takes a moment is not worth a word.
+        _ => {}
     };
     let study = progress::show(total, "runs", |report| {
-        Study::run_with_forecast(&scenario, &options, report, &forecast)
-    })?;
+        Study::run_with_notices(&scenario, &options, report, &notice)
+    });
+    let study = match study {
+        Err(StudyError::Campaign(CampaignError::Stopped)) => {
+            complain("stopped: the runs that were finished are kept, and the same command goes on");
+            return Ok(signals.code());
+        }
+        other => other?,
+    };
 
     let mut text = String::new();
     // Writing to a string does not fail.

@@ -7,7 +7,9 @@ mod picture;
 mod short;
 mod words;
 
-use gyradius_campaign::{Row, Simulation, Table, TableError, folder_of, read_row, restore};
+use gyradius_campaign::{
+    MANIFEST, Manifest, Row, Simulation, Table, TableError, folder_of, read_row, restore,
+};
 use gyradius_clearance::Clearance;
 use gyradius_formats::{WriteError, must_write, write_file};
 use gyradius_separation::{RunError, Separation, Step};
@@ -72,6 +74,14 @@ pub enum ReplayError {
         path: PathBuf,
         /// Why.
         source: ParquetError,
+    },
+    /// What the study tells of its run tables cannot be read.
+    #[error("{}: {problem}", path.display())]
+    Manifest {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
     },
     /// The replay is not what the table says.
     #[error(
@@ -176,8 +186,17 @@ impl Replay {
     /// # Errors
     /// There is no such table, or it says otherwise.
     pub fn held_against(mut self, folder: &Path) -> Result<Self, ReplayError> {
-        let table = folder.join(format!("runs/{}/runs.parquet", self.model));
-        self.compare(&table)?;
+        let run = self.row().run();
+        let manifest = Manifest::read(folder).map_err(|error| ReplayError::Manifest {
+            path: folder.join(MANIFEST),
+            problem: error.to_string(),
+        })?;
+        let (file, row) = manifest.find(&self.model, run).ok_or_else(|| {
+            let problem = format!("it tells of no run {run} of {:?}", self.model);
+            ReplayError::Manifest { path: folder.join(MANIFEST), problem }
+        })?;
+        let table = folder.join(file);
+        self.compare(&table, row)?;
         self.table = Some(table);
         Ok(self)
     }
@@ -284,7 +303,7 @@ impl Replay {
     }
 
     /// Holds the row against that of a run table, bit by bit.
-    fn compare(&self, table: &Path) -> Result<(), ReplayError> {
+    fn compare(&self, table: &Path, row: u64) -> Result<(), ReplayError> {
         let unreadable = |source| ReplayError::Table { path: table.to_owned(), source };
         let differs = |column: &str, found: String, replayed: String| ReplayError::Differs {
             path: table.to_owned(),
@@ -292,7 +311,7 @@ impl Replay {
             table: found,
             replayed,
         };
-        let found = read_row(table, self.row().run()).map_err(unreadable)?;
+        let found = read_row(table, row).map_err(unreadable)?;
         let found = found
             .ok_or_else(|| unreadable(ParquetError::General("it has no such run".to_owned())))?;
         let columns = self.own.columns().len();

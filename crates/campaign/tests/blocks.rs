@@ -1,0 +1,300 @@
+//! Campaigns that are interrupted, extended, damaged and looked at again: always what one run of all would give.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use gyradius_campaign::{
+    Cell, Column, Contents, Failure, Folder, Identity, Kind, MANIFEST, Manifest, Plan, Runs,
+    SampleSummary, Simulation, Streams, Surveys, Table, TableError, run, run_missing, threads,
+};
+use gyradius_statistics::Confidence;
+use proptest::prelude::*;
+use rand::RngExt;
+use std::{
+    collections::BTreeSet,
+    fs,
+    ops::Range,
+    path::{Path, PathBuf},
+    sync::{
+        OnceLock,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+};
+
+/// Numbers, texts and flags from a seed; it counts the runs that it does.
+struct Cheap {
+    streams: Streams,
+    done: AtomicU64,
+}
+
+impl Cheap {
+    fn new(seed: u64) -> Self {
+        Self { streams: Streams::new(seed, "cheap", "all"), done: AtomicU64::new(0) }
+    }
+}
+
+impl Simulation for Cheap {
+    type Worker = ();
+
+    fn columns(&self) -> Vec<Column> {
+        vec![
+            Column::number("x", "m", "A number."),
+            Column::number("y", "s", "Another, of few values."),
+            Column::new("note", Kind::Text, "A note.").with_kinds(),
+            Column::new("flag", Kind::Flag, "A flag."),
+        ]
+    }
+
+    fn worker(&self) {}
+
+    fn run(&self, runs: Range<u64>, (): &mut (), rows: &mut Table) -> Result<(), TableError> {
+        for run in runs {
+            self.done.fetch_add(1, Ordering::Relaxed);
+            let mut rng = self.streams.run(run);
+            let (x, y): (f64, u8) = (rng.random(), rng.random_range(0..4));
+            let failure = (y == 3).then(|| Failure::new("three", format!("three at {x}")));
+            let y = if failure.is_some() { Cell::Null } else { Cell::Number(f64::from(y)) };
+            let note = Cell::Note {
+                kind: if x < 0.3 { "low" } else { "high" }.into(),
+                text: x.to_string().into(),
+            };
+            rows.push(failure, [Cell::Number(x), y, note, Cell::Flag(x < 0.5)])?;
+        }
+        Ok(())
+    }
+}
+
+/// A campaign of one model in a folder.
+struct Campaign {
+    place: PathBuf,
+    seed: u64,
+    block_runs: u64,
+}
+
+/// What came of a command.
+struct Done {
+    runs: Runs,
+    /// Runs that were simulated.
+    simulated: u64,
+    damaged: Vec<String>,
+}
+
+impl Campaign {
+    fn identity(&self) -> Identity {
+        let fields = [("seed", self.seed), ("block_runs", self.block_runs)];
+        Identity::new(fields.map(|(name, value)| (name.to_owned(), value.to_string())))
+    }
+
+    /// One command that is stopped after so many runs, if at all.
+    fn command(&self, runs: u64, stop_after: Option<u64>, force: bool) -> Result<Done, String> {
+        let text = format!("{} {runs}", self.seed);
+        let in_place = OnceLock::<BTreeSet<String>>::new();
+        let same = |there: &str| {
+            let (seed, there) = there.split_once(' ').unwrap();
+            seed == self.seed.to_string() && there.parse::<u64>().unwrap() <= runs
+        };
+        let certain = ["mark", MANIFEST, "runs/"].map(str::to_owned);
+        let contents = Contents::new("study", "mark", certain, same)
+            .keeping(|name| in_place.get().is_some_and(|all| all.contains(name)))
+            .trusting(|name| name.starts_with("runs/"));
+        let pool = threads(Some(2)).unwrap();
+        let mut folder =
+            Folder::prepare(&self.place, &contents, force).map_err(|e| e.to_string())?;
+        let blocks =
+            folder.blocks(&self.identity(), runs, force, &pool).map_err(|e| e.to_string())?;
+        in_place.set(blocks.published()).unwrap();
+        let damaged = blocks.damaged().to_vec();
+        let stop = AtomicBool::new(stop_after == Some(0));
+        let plan = Plan { runs, block_runs: self.block_runs, stop: Some(&stop) };
+        let simulations = [("cheap", Cheap::new(self.seed))];
+        let simulation = &simulations[0].1;
+        let progress = |_| {
+            let enough =
+                stop_after.is_some_and(|most| simulation.done.load(Ordering::Relaxed) >= most);
+            stop.fetch_or(enough, Ordering::Relaxed);
+        };
+        let done = pool.install(|| run_missing(&simulations, &blocks, plan, &progress));
+        let simulated = simulation.done.load(Ordering::Relaxed);
+        let done = done.inspect_err(|_| blocks.abandon()).map_err(|e| e.to_string())?;
+        folder.adopt(&blocks, done[0].columns()).map_err(|e| e.to_string())?;
+        folder.write("mark", &text).map_err(|e| e.to_string())?;
+        folder.publish().map_err(|e| e.to_string())?;
+        blocks.settle().map_err(|e| e.to_string())?;
+        Ok(Done { runs: blocks.in_place(&done[0]), simulated, damaged })
+    }
+
+    /// Every block that there is, finished or not.
+    fn files(&self) -> Vec<PathBuf> {
+        let mut files = Vec::new();
+        for folder in ["runs/cheap", ".gyradius/campaign/cheap"] {
+            for entry in fs::read_dir(self.place.join(folder)).into_iter().flatten() {
+                files.push(entry.unwrap().path());
+            }
+        }
+        files.sort();
+        files
+    }
+}
+
+fn whole(seed: u64, runs: u64) -> Table {
+    run(&Cheap::new(seed), "cheap", runs, &threads(Some(1)).unwrap(), &|_| {}).unwrap()
+}
+
+/// That the folder holds what one command would have written, however it came about.
+fn assert_whole(campaign: &Campaign, done: &Done, runs: u64) {
+    let expected = whole(campaign.seed, runs);
+    assert!(done.runs.table().unwrap().rows().eq(expected.rows()));
+    let manifest = Manifest::read(&campaign.place).unwrap();
+    let mut read = 0;
+    let empty = expected.from_run(0);
+    for row in expected.rows() {
+        let (file, place) = manifest.find("cheap", row.run()).unwrap();
+        if place == 0 {
+            let block = empty.read_parquet(&campaign.place.join(file)).unwrap();
+            assert_eq!(block.first(), row.run());
+            read += block.len() as u64;
+        }
+    }
+    assert_eq!((read, manifest.find("cheap", runs)), (runs, None));
+    assert!(!campaign.place.join(".gyradius/campaign").exists());
+    // What is seen of the blocks is what is seen of all at once.
+    let confidence = Confidence::default();
+    let of = |runs: &Runs| Surveys::new(runs, confidence).unwrap();
+    let (found, expected) = (of(&done.runs), of(&Runs::from(expected)));
+    for column in ["x", "y"] {
+        let summary = |s: &Surveys| SampleSummary::of(s.column(column).unwrap(), confidence);
+        assert_eq!(summary(&found), summary(&expected));
+    }
+    assert_eq!(found.texts("note"), expected.texts("note"));
+    assert_eq!((found.flags("flag"), found.runs()), (expected.flags("flag"), expected.runs()));
+    assert_eq!(found.failures(), expected.failures());
+}
+
+#[derive(Clone, Debug)]
+enum Event {
+    /// A command that is stopped after so many runs.
+    Stopped(u64),
+    /// A block is flipped in one byte, cut, or removed.
+    Damaged(prop::sample::Index, prop::sample::Index, u8),
+    /// More runs are asked for.
+    Extended(u64),
+    /// A command that is not stopped.
+    Finished,
+}
+
+fn event() -> impl Strategy<Value = Event> {
+    prop_oneof![
+        (0..200_u64).prop_map(Event::Stopped),
+        (any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..3_u8)
+            .prop_map(|(file, byte, how)| Event::Damaged(file, byte, how)),
+        (0..150_u64).prop_map(Event::Extended),
+        Just(Event::Finished),
+    ]
+}
+
+fn damage(path: &Path, byte: &prop::sample::Index, how: u8) {
+    let mut bytes = fs::read(path).unwrap();
+    let at = byte.index(bytes.len());
+    match how {
+        0 => bytes[at] ^= 0x10,
+        1 => bytes.truncate(at),
+        _ => return fs::remove_file(path).unwrap(),
+    }
+    // A new file, for blocks may share their content with another name.
+    fs::remove_file(path).unwrap();
+    fs::write(path, bytes).unwrap();
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Whatever happens between the first command and the last: what was finished and is sound is not done again, what is
+    /// damaged is named and done again, and at the end there is what one command would have written.
+    #[test]
+    fn campaigns_go_on_after_anything(
+        seed in 0..1000_u64,
+        mut runs in 1..300_u64,
+        block_runs in prop::sample::select(vec![1_u64, 16, 64, 128, 1024]),
+        events in prop::collection::vec(event(), 0..7),
+    ) {
+        let block_runs = if runs > 100 { block_runs.max(16) } else { block_runs };
+        let scratch = tempfile::tempdir().unwrap();
+        let campaign = Campaign { place: scratch.path().join("here"), seed, block_runs };
+        // Runs in sound blocks, and names of blocks that are not sound.
+        let (mut finished, mut broken) = (0, BTreeSet::new());
+        for event in events.into_iter().chain([Event::Finished]) {
+            let stop = match event {
+                Event::Extended(more) => {
+                    runs += more;
+                    continue;
+                }
+                Event::Damaged(file, byte, how) => {
+                    let files = campaign.files();
+                    if !files.is_empty() {
+                        let path = &files[file.index(files.len())];
+                        if path.exists() && broken.insert(path.clone()) {
+                            let name = path.file_stem().unwrap().to_str().unwrap();
+                            let (first, last) = name.split_once('-').unwrap();
+                            finished -= last.parse::<u64>().unwrap() - first.parse::<u64>().unwrap() + 1;
+                            damage(path, &byte, how);
+                        }
+                    }
+                    continue;
+                }
+                Event::Stopped(after) => Some(after),
+                Event::Finished => None,
+            };
+            match campaign.command(runs, stop, false) {
+                Ok(done) => {
+                    prop_assert_eq!(done.simulated, runs - finished);
+                    prop_assert_eq!(done.damaged.len(), broken.len(), "{:?}", done.damaged);
+                    assert_whole(&campaign, &done, runs);
+                }
+                Err(error) => {
+                    prop_assert!(stop.is_some() && error.contains("stopped"), "{}", error);
+                }
+            }
+            broken.clear();
+            let size = |path: &PathBuf| {
+                let (first, last) = path.file_stem().unwrap().to_str().unwrap().split_once('-').unwrap();
+                last.parse::<u64>().unwrap() + 1 - first.parse::<u64>().unwrap()
+            };
+            finished = campaign.files().iter().map(size).sum();
+        }
+        // Once more: nothing is left to do.
+        let done = campaign.command(runs, None, false).unwrap();
+        prop_assert_eq!(done.simulated, 0);
+        assert_whole(&campaign, &done, runs);
+    }
+}
+
+/// Blocks of another seed or another size are not gone on with, finished or not, unless that is asked for; fewer runs
+/// take none away.
+#[test]
+fn another_campaign_is_refused() {
+    let scratch = tempfile::tempdir().unwrap();
+    let place = scratch.path().join("here");
+    let campaign = |seed, block_runs| Campaign { place: place.clone(), seed, block_runs };
+    let message = |c: &Campaign, runs| c.command(runs, None, false).map(|_| ()).unwrap_err();
+    assert!(campaign(1, 64).command(300, Some(100), false).is_err());
+    let kept = campaign(1, 64).files();
+    assert!(!kept.is_empty());
+    for (other, runs, said) in [
+        (campaign(2, 64), 300, "seed is 1 there and 2 here"),
+        (campaign(1, 16), 300, "block_runs is 64 there and 16 here"),
+        (campaign(1, 64), 10, "and 10 here"),
+    ] {
+        let refused = message(&other, runs);
+        assert!(refused.contains(said), "{refused}");
+        assert_eq!(campaign(1, 64).files(), kept);
+    }
+    // A file of the user's in the folder of blocks is none, and stays.
+    let mine = place.join(".gyradius/campaign/cheap/mine.txt");
+    fs::write(&mine, "mine").unwrap();
+    let done = campaign(2, 16).command(40, None, true).unwrap();
+    assert_eq!(done.simulated, 40);
+    assert_eq!(fs::read_to_string(&mine).unwrap(), "mine");
+    assert_eq!(campaign(2, 16).command(50, None, false).unwrap().simulated, 10);
+    // Fewer, by force: only what does not go beyond.
+    let done = campaign(2, 16).command(41, None, true).unwrap();
+    assert_eq!(done.simulated, 1);
+    assert!(done.runs.table().unwrap().rows().eq(whole(2, 41).rows()));
+}
