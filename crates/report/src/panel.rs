@@ -394,11 +394,7 @@ mod tests {
                 series: samples
                     .iter()
                     .zip(&failed)
-                    .map(|(values, failed)| Series {
-                        name: "",
-                        values,
-                        runs: values.len() + failed,
-                    })
+                    .map(|(values, failed)| Series::new("", values, values.len() + failed))
                     .collect(),
                 nominal: [None, Some(4.3), Some(1e12)][round % 3],
             };

@@ -30,7 +30,7 @@ fn study(c: &mut Criterion) {
             b.iter(|| {
                 let scratch = tempfile::tempdir().unwrap();
                 let out = Some(scratch.path().join("study"));
-                let options = Options { out, threads: Some(threads), force: false };
+                let options = Options { out, threads: Some(threads), ..Options::default() };
                 Study::run(black_box(&scenario), &options, &|_| {}).unwrap()
             });
         });

@@ -134,7 +134,7 @@ mod tests {
     fn study(scenario: &Scenario, threads: usize) -> (TempDir, Study) {
         let place = TempDir::new().unwrap();
         let out = Some(place.path().join("study"));
-        let options = Options { out, threads: Some(threads), force: false };
+        let options = Options { out, threads: Some(threads), ..Options::default() };
         let study = Study::run(scenario, &options, &|_| {}).unwrap();
         (place, study)
     }

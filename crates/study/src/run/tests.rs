@@ -1,7 +1,7 @@
 //! Runs of scenarios with mated hulls and antennas, backward spins, late and failing springs.
 
 use super::*;
-use crate::{Quantity, Row, Table, column::CLEARANCE_NOTE, model::Model, study::tables};
+use crate::{Quantity, Row, Table, column::CLEARANCE_NOTE, model::Model, study::all_runs};
 
 /// The paper's bodies with solids that are in each other at the last release, other shapes as asked, and
 /// all that is dispersed.
@@ -29,9 +29,8 @@ fn rows(payload_shape: &str, spin: &str, springs: &str, coast: &str) -> (Scenari
     );
     let scenario = Scenario::from_toml(&text).unwrap();
     let models = Model::all(&scenario).unwrap();
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-    let tables = tables(&scenario, &models[..1], &threads, &|_| {}).unwrap();
-    (scenario, tables)
+    let runs = all_runs(&scenario, &models[..1]);
+    (scenario, runs.iter().map(|runs| runs.table().unwrap()).collect())
 }
 
 /// What must be true of every row, whatever was drawn.
