@@ -1,5 +1,4 @@
 //! What a separation cannot change, over bodies drawn from the paper's law.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_dispersion::PrincipalDispersion;
 use gyradius_inertia::Inertia;

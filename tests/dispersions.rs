@@ -1,6 +1,5 @@
 //! What is dispersed besides the inertias: drawn by its law, from its own stream, and put where it
 //! belongs.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_dispersion::ScalarLaw;
 use gyradius_statistics::Moments;

@@ -1,5 +1,4 @@
 //! Tables in the documents are what the program finds.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_dispersion::{ModelKind, ScalarLaw};
 use gyradius_study::{CompareOptions, ModelComparison, Reference, Scenario};

@@ -1,5 +1,4 @@
 //! Studies in which things go wrong.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_study::{Options, Quantity, Replay, Scenario, Study};
 use std::fs;

@@ -1,5 +1,4 @@
 //! The numbers that Peck (2003) prints, and those that an independent program finds for its laws.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_attitude::MeanHalf;
 use gyradius_dispersion::{EntryMoments, JacobianTwice, PrincipalDispersion, ScalarRoots};

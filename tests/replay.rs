@@ -1,5 +1,4 @@
 //! One run again: the same bits as in the study, and a history that keeps what physics keeps.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_study::{Options, Quantity, Replay, ReplayError, ResultsError, Scenario, Study};
 use std::{collections::HashMap, fs, path::Path};

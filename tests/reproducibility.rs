@@ -1,5 +1,4 @@
 //! The same scenario gives the same bits, however it is run.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_study::{Options, Quantity, Scenario, Study};
 use std::{collections::BTreeMap, fs, path::Path};

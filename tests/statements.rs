@@ -1,6 +1,5 @@
 //! From plain statements to the table of a study: mass, mass centre and inertia scatter as stated, and
 //! go together.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_estimation::{Amount, CentreStatement, MassStatement, MomentsStatement, Statements};
 use gyradius_inertia::{Inertia, InertiaMatrix};

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::files::{crates, read};
+use super::files::{crates, read};
 
 /// The folder of a package of the workspace.
 fn room(package: &str) -> Option<String> {

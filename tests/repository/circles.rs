@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::{
+use super::{
     files::{crates, files, read},
     tokens::{Token, tokens},
 };

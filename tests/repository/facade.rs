@@ -1,6 +1,6 @@
 //! The package `gyradius` shows every library, with an example of each.
 
-use crate::files::{crates, read};
+use super::files::{crates, read};
 
 /// What of the rooms a source does not show, or has no example of.
 fn missing(source: &str) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! The layout of source files: each says what it is, and none is long without a reason.
 
-use crate::files::{files, read};
+use super::files::{crates, files, read, root};
 
 /// Lines that a file may have.
 const LONG: usize = 500;
@@ -55,4 +55,38 @@ fn long_files_have_a_reason() {
     for (file, _) in REASONS {
         assert!(long.iter().any(|l| l == file), "{file} needs its reason no more");
     }
+}
+
+/// Modules that a folder of tests holds: files, and folders with a `mod.rs`.
+fn modules(folder: &str) -> Vec<String> {
+    let inside = files(folder, "rs").into_iter().map(|file| {
+        let inside = file.strip_prefix(&format!("{folder}/")).unwrap().strip_suffix(".rs").unwrap();
+        inside.strip_suffix("/mod").unwrap_or(inside).to_owned()
+    });
+    inside.filter(|name| !name.contains('/') && !["all", "lib"].contains(&name.as_str())).collect()
+}
+
+/// Each program of tests takes seconds to link, and a file that no program names is never run.
+#[test]
+fn the_tests_of_a_crate_are_one_program_which_names_every_file() {
+    let folders = crates().into_iter().map(|name| format!("crates/{name}/tests"));
+    let folders = folders.chain(["tests".to_owned()]).filter(|folder| root().join(folder).is_dir());
+    let mut named = 0;
+    for folder in folders {
+        let modules = modules(&folder);
+        let all = format!("{folder}/all.rs");
+        if root().join(&all).exists() {
+            let all = read(&all);
+            for module in modules {
+                assert!(
+                    all.contains(&format!("\nmod {module};\n")),
+                    "{folder}/all.rs has no mod {module}"
+                );
+                named += 1;
+            }
+        } else {
+            assert!(modules.len() <= 1, "{folder} has no all.rs, of which its files are modules");
+        }
+    }
+    assert!(named > 20);
 }

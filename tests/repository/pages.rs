@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::files::{crates, files, read, root};
+use super::files::{crates, files, read, root};
 
 /// The targets of a page's links, those of code apart.
 fn links(page: &str) -> Vec<&str> {

@@ -1,6 +1,5 @@
 //! Clearance against brute force: dense sampling in time, distances found in another way; and what happens
 //! where the bounds on the motion, on which the proofs stand, are too small.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_clearance::{
     Approach, Clearance, ClearanceSettings, Coast, Motion, MotionLimits, RigidState,
@@ -10,9 +9,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestRunner};
 
-#[path = "common/forms.rs"]
-mod forms;
-use forms::{Form, V, at_rest, body, distance, form, vector};
+use crate::forms::{Form, V, at_rest, body, distance, form, vector};
 
 /// Holds a clearance against samples of the motion: points are on the shapes and as far apart as said, and
 /// no sample, nor what it leads down to, is nearer than the bound.

@@ -1,5 +1,4 @@
 //! Clearance against closed forms and against dense sampling.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_clearance::{
     Approach, Clearance, ClearanceError, ClearanceSettings, Coast, FreeBody, Motion, MotionLimits,

@@ -1,15 +1,12 @@
 //! What is said of all pairs of shapes together, against dense sampling of every pair: contacts of any two,
 //! also of mated shapes, are clearance zero at the first of them in time.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_clearance::{
     Clearance, ClearanceSettings, Coast, Motion, Outline, Shape, ShapeClearance,
 };
 use proptest::prelude::*;
 
-#[path = "common/forms.rs"]
-mod forms;
-use forms::{Form, V, at_rest, body, nearest, vector};
+use crate::forms::{Form, V, at_rest, body, nearest, vector};
 
 /// Distance of two shapes at an instant: from points of a ring, or from all pieces, to the other shape.
 fn apart(forms: [&Form; 2], coast: &mut Coast, time: f64) -> f64 {

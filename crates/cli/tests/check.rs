@@ -1,5 +1,4 @@
 //! `gyradius check` as a user meets it: what it lists, what it writes, and how it ends.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use serde_json::Value;
 use std::{

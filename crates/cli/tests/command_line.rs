@@ -1,5 +1,4 @@
 //! The program as a user meets it: exit codes, messages, and what it leaves alone.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::{
     fs,

@@ -1,5 +1,4 @@
 //! `gyradius compare` as a user meets it.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::{
     fs,

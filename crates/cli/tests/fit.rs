@@ -1,6 +1,5 @@
 //! `gyradius fit` and `gyradius model` as a user meets them: what they say, what they write, how they
 //! end, and that a study runs with what they write.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use serde_json::Value;
 use std::{

@@ -1,6 +1,4 @@
 //! A study that is killed while it replaces another.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::{
     fs,

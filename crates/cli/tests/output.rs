@@ -1,6 +1,4 @@
 //! What every verb prints, where it goes and what the exit code says.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::{
     fs::{self, File},

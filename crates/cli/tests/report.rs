@@ -1,5 +1,4 @@
 //! `gyradius report`: the same bytes from the folder alone, and nothing touched that is not its own.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::{
     collections::BTreeMap,

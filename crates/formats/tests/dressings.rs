@@ -1,6 +1,5 @@
 //! Random bodies, written in every format and dressed in every way that files come in: each is read with
 //! its numbers, or its file says that something in it was not read.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_formats::{Bearing, InertiaFile, Products};
 use proptest::{prelude::*, sample::select};

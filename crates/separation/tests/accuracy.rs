@@ -1,9 +1,6 @@
 //! What the default settings promise, symmetries of the problem, and what becomes of bad ones.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::{differences, inertia, log_fit, moved, paper, relative, skewed};
+use crate::common::{differences, inertia, log_fit, moved, paper, relative, skewed};
 use gyradius_separation::{
     Batch, Body, BodyState, MovingBody, Outcome, RunError, Separation, Settings, Spring,
 };

@@ -1,9 +1,6 @@
 //! Springs against closed forms and conservation laws.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::{inertia, log_fit, paper, relative, skewed};
+use crate::common::{inertia, log_fit, paper, relative, skewed};
 use gyradius_separation::{Body, Separation, Settings, Snapshot, Spring};
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;

@@ -1,9 +1,6 @@
 //! Springs with friction, late ones and those that fail, against closed forms and conservation laws.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::{differences, inertia, moved, paper, relative, skewed};
+use crate::common::{differences, inertia, moved, paper, relative, skewed};
 use gyradius_separation::{Body, BodyState, RunError, Separation, Settings, Spring};
 use nalgebra::Vector3;
 use proptest::prelude::*;

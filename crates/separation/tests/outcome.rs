@@ -1,9 +1,6 @@
 //! What an outcome says, against closed forms.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::{inertia, paper, skewed};
+use crate::common::{inertia, moved, paper, skewed, tumbling};
 use gyradius_separation::{Batch, Body, BodyState, Separation, Settings, Spring};
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 
@@ -21,7 +18,7 @@ fn outcomes_keep_their_start() {
                 angular_velocity: s.angular_velocity + by * 0.01,
                 ..s
             };
-            common::moved(&of, state, &springs)
+            moved(&of, state, &springs)
         })
         .collect();
     let mut count = 0;
@@ -43,7 +40,7 @@ fn energy_splits_without_a_rest() {
         let rest = split.total_j() / split.stored_j() - 1.0;
         assert!(rest.abs() < 1e-12, "{rest:e}");
         // The same relative to any observer.
-        let boosted = common::moved(
+        let boosted = moved(
             &separation,
             |s| BodyState { velocity: s.velocity + Vector3::new(8.0, -4.0, 2.0), ..s },
             &separation.springs().copied().collect::<Vec<_>>(),
@@ -79,7 +76,7 @@ fn the_direction_of_separation_is_that_of_the_spring() {
     assert!((outcome.direction_error(&Vector3::z_axis()).unwrap() - expected).abs() < 1e-15);
     // The same with both bodies and the intention turned, and moving across.
     let turn = UnitQuaternion::from_euler_angles(0.4, -1.1, 2.0);
-    let turned = common::moved(
+    let turned = moved(
         &separation,
         |s| BodyState {
             position: turn * s.position,
@@ -147,7 +144,7 @@ fn momentum_points_where_it_pointed() {
         angular_velocity: Vector3::new(0.5, 3.0, 0.1),
         ..Default::default()
     };
-    let separation = common::tumbling([1.0, 1.4, 2.0], state);
+    let separation = tumbling([1.0, 1.4, 2.0], state);
     let before = separation.payload();
     let intended = Unit::new_normalize(before.inertial_spin_angular_momentum());
     assert_eq!(before.momentum_error(&intended).map(|e| e < 1e-15), Some(true));

@@ -1,5 +1,4 @@
 //! Whole separations against an independent program in 200-bit arithmetic.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::{Body, BodyState, MovingBody, Outcome, Separation, Settings, Spring};

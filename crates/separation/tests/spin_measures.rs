@@ -1,5 +1,4 @@
 //! Nutation against dense histories of the motion, and directions that rounding alone has made.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::{Body, BodyState, Separation, Settings, SpinMetrics, Spring};

@@ -1,9 +1,6 @@
 //! Free rotation against closed forms, and against the tumbling brick of NASA's check cases.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::{relative, tumbling};
+use crate::common::{relative, tumbling};
 use gyradius_separation::{BodyState, Settings};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::FRAC_PI_2;

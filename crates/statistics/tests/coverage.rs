@@ -4,9 +4,6 @@
 //! those at the nominal level. What is known to fall short is asserted to do so: the negative
 //! controls.
 
-// Helpers are not `#[test]` functions, which clippy.toml lets unwrap.
-#![allow(clippy::unwrap_used)]
-
 use gyradius_statistics::{Confidence, Deviation, GoodnessOfFit, Moments, SortedSample};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

@@ -1,6 +1,4 @@
 //! What the feature `serde` writes, and what it reads back.
-#![cfg(feature = "serde")]
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_statistics::{
     BinEdges, Confidence, Deviation, GoodnessOfFit, Histogram, Moments, Proportion, SortedSample,

@@ -1,5 +1,4 @@
 //! Shapes as the tests know them, and their distance found in another way than the program's.
-#![allow(dead_code, reason = "not every test uses everything")]
 
 use gyradius_clearance::{FreeBody, Outline, RigidState, Shape};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};

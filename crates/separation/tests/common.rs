@@ -1,6 +1,4 @@
 //! What several tests share.
-#![allow(dead_code, reason = "each test uses its part")]
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::{Body, BodyState, MovingBody, Outcome, Separation, Spring};

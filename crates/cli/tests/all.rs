@@ -1,0 +1,13 @@
+//! The program as its users meet it, one file for each side of it.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod check;
+mod command_line;
+mod compare;
+mod fit;
+#[cfg(unix)]
+mod killed;
+#[cfg(unix)]
+mod output;
+mod report;
+mod shell;

@@ -1,0 +1,12 @@
+//! The tests of the whole system, in one program, which is linked once.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod conservation;
+mod dispersions;
+mod documents;
+mod failures;
+mod paper;
+mod replay;
+mod repository;
+mod reproducibility;
+mod statements;
