@@ -1,5 +1,4 @@
 //! Campaigns that are interrupted, extended, damaged and looked at again: always what one run of all would give.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use gyradius_campaign::{
     Cell, Column, Contents, Failure, Folder, Identity, Kind, MANIFEST, Manifest, Plan, Runs,

@@ -1,5 +1,4 @@
 //! Simulations of every kind of column, held against plain lists; tables written and read back.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use bytes::Bytes;
 use gyradius_campaign::{
