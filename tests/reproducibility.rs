@@ -40,6 +40,7 @@ fn one_thread_and_two_write_the_same_bytes() {
         "scenario.toml",
         "summary.json",
         "report.html",
+        "report.md",
         "campaign.json",
         "runs/naive/000000000-000000149.parquet",
     ] {

@@ -67,13 +67,14 @@ fn a_study_leaves_its_folder_and_a_table() {
         "scenario.toml",
         "summary.json",
         "report.html",
+        "report.md",
         "campaign.json",
         "runs/naive/000000000-000000019.parquet",
     ] {
         assert!(folder.join(name).is_file(), "{name} is missing");
     }
     let leftovers = fs::read_dir(&folder).unwrap().count();
-    assert_eq!(leftovers, 7, "only what a study leaves behind");
+    assert_eq!(leftovers, 8, "only what a study leaves behind");
 }
 
 #[test]
@@ -229,9 +230,13 @@ fn a_file_where_a_folder_should_be_costs_nothing() {
     fs::write(&figures, "not a folder").unwrap();
     let message = shell.refused(&study);
     assert!(message.contains("figures in it is a file"), "{message}");
-    for name in
-        ["scenario.toml", "summary.json", "report.html", "runs/naive/000000000-000000004.parquet"]
-    {
+    for name in [
+        "scenario.toml",
+        "summary.json",
+        "report.html",
+        "report.md",
+        "runs/naive/000000000-000000004.parquet",
+    ] {
         assert!(shell.path().join("here").join(name).is_file(), "{name} is gone");
     }
 }

@@ -89,10 +89,15 @@ fn the_folder_is_whole_and_others_are_left_alone() {
         .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
         .collect();
     names.sort();
-    assert_eq!(names, [".gyradius", "compare.csv", "compare.html", "compare.json", "figures"]);
+    assert_eq!(
+        names,
+        [".gyradius", "compare.csv", "compare.html", "compare.json", "compare.md", "figures"]
+    );
     assert!(here.join("report/figures/compare-unrealizable.svg").is_file());
     let page = fs::read_to_string(here.join("report/compare.html")).unwrap();
     assert!(!page.contains("src=") && !page.contains("href="), "self-contained");
+    let text = fs::read_to_string(here.join("report/compare.md")).unwrap();
+    assert!(text.contains("](figures/compare-wobble.svg)") && !text.contains('<'), "{text}");
 
     // The same again is welcome, another is not, and by force replaces no file of others.
     fs::write(here.join("report/notes.txt"), "mine").unwrap();

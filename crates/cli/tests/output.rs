@@ -122,7 +122,8 @@ fn nothing_commands_the_terminal_or_a_page() {
     let output = shell.run(&["study", "--scenario", "titled.toml", "--out", "titled"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     harmless(&output.stdout, "stdout of a study");
-    let mut pages = vec![shell.path("titled/report.html")];
+    let mut pages =
+        ["html", "md"].map(|form| shell.path(&format!("titled/report.{form}"))).to_vec();
     let figures = fs::read_dir(shell.path("titled/figures")).unwrap();
     pages.extend(figures.map(|entry| entry.unwrap().path()));
     assert!(pages.len() > 3);

@@ -90,7 +90,9 @@ fn a_report_is_made_again_to_the_byte() {
         for gone in ["figures", "runs"] {
             fs::remove_dir_all(place.join(gone)).unwrap();
         }
-        fs::remove_file(place.join("report.html")).unwrap();
+        for page in ["report.html", "report.md"] {
+            fs::remove_file(place.join(page)).unwrap();
+        }
         fs::write(place.join("notes.txt"), "mine").unwrap();
         let again = gyradius(&["report", &folder], scratch.path());
         assert!(again.status.success(), "{}", said(&again));
@@ -108,6 +110,7 @@ fn a_report_is_made_again_to_the_byte() {
         let elsewhere = format!("{folder}-report");
         let arguments = ["report", two.to_str().unwrap(), "--out", &elsewhere];
         assert!(gyradius(&arguments, scratch.path()).status.success());
+        assert!(Path::new(&elsewhere).join("report.md").is_file());
         for (name, content) in files(Path::new(&elsewhere)) {
             assert!(name.starts_with(".gyradius/") || after[&name] == content, "{folder}: {name}");
         }

@@ -122,7 +122,7 @@ fn study(folder: &Path, runs: u64) -> Result<(), Box<dyn Error>> {
         assert!(alone.rows().eq(table.rows().skip(again as usize).take(1)), "the same bits");
         tables.push(table);
     }
-    fs::create_dir_all(folder)?;
+    fs::create_dir_all(folder.join("figures"))?;
     for (table, name) in tables.iter().zip(["known", "uncertain"]) {
         table.write_parquet(fs::File::create(folder.join(format!("{name}.parquet")))?)?;
     }
@@ -130,7 +130,9 @@ fn study(folder: &Path, runs: u64) -> Result<(), Box<dyn Error>> {
     fs::write(folder.join("summary.json"), serde_json::to_string_pretty(&overview)?)?;
     // Later, or on another machine:
     let read: Overview = serde_json::from_str(&fs::read_to_string(folder.join("summary.json"))?)?;
-    fs::write(folder.join("report.html"), read.page())?;
+    for (name, content) in read.document().files("report") {
+        fs::write(folder.join(name), content)?;
+    }
     Ok(())
 }
 
@@ -173,6 +175,8 @@ mod tests {
         study(&scratch, 60).unwrap();
         let page = fs::read_to_string(scratch.join("report.html")).unwrap();
         assert!(page.contains("axes uncertain") && page.contains("largest_rate_rad_per_s (rad/s)"));
+        let text = fs::read_to_string(scratch.join("report.md")).unwrap();
+        assert!(text.contains("axes uncertain") && text.contains("(figures/quantities.svg)"));
         assert!(scratch.join("known.parquet").is_file());
         fs::remove_dir_all(&scratch).unwrap();
     }

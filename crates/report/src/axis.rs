@@ -139,6 +139,29 @@ fn multiples(lower: f64, upper: f64, m: i32, k: i32) -> Vec<Tick> {
         .collect()
 }
 
+/// Ticks of a logarithmic axis between two common logarithms: decades, and 2 and 5 between them if there are few.
+pub(crate) fn decades([low, high]: [f64; 2]) -> Vec<Tick> {
+    let few = high - low < 2.5;
+    let mut ticks = Vec::new();
+    for decade in low.floor() as i32..=high.ceil() as i32 {
+        for m in [1.0_f64, 2.0, 5.0] {
+            let at = f64::from(decade) + m.log10();
+            if at < low - 1e-9 || at > high + 1e-9 || (m > 1.0 && !few) {
+                continue;
+            }
+            let label = if (-3..5).contains(&decade) {
+                significant(m * 10_f64.powi(decade), 1)
+            } else if m > 1.0 {
+                String::new()
+            } else {
+                format!("10{}", superscript(decade))
+            };
+            ticks.push(Tick { at, label });
+        }
+    }
+    ticks
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -201,5 +224,16 @@ mod tests {
                 assert!(units.of(x).abs() < 1e6, "{x}");
             }
         }
+    }
+
+    /// Found in a figure: ticks below an axis that starts at 2, and none at its foot.
+    #[test]
+    fn decades_lie_on_the_axis() {
+        let labels = |low: f64, high: f64| -> Vec<String> {
+            decades([low.log10(), high.log10()]).into_iter().map(|t| t.label).collect()
+        };
+        assert_eq!(labels(0.002, 0.1), ["0.002", "0.005", "0.01", "0.02", "0.05", "0.1"]);
+        assert_eq!(labels(20.0, 200.0), ["20", "50", "100", "200"]);
+        assert_eq!(labels(0.01, 100.0), ["0.01", "0.1", "1", "10", "100"]);
     }
 }

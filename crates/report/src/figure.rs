@@ -43,10 +43,11 @@ impl Figure {
         }
     }
 
-    /// Where it is written, from the folder of the results.
+    /// The figure drawn for a page.
     #[must_use]
-    pub fn file(&self) -> String {
-        file_of(&self.name)
+    pub fn drawn(&self) -> Drawing {
+        let (name, caption) = (self.name.clone(), self.caption.clone());
+        Drawing { name, caption, svg: self.svg() }
     }
 }
 
@@ -54,4 +55,18 @@ impl Figure {
 #[must_use]
 pub fn file_of(name: &str) -> String {
     format!("figures/{name}.svg")
+}
+
+/// A figure drawn: SVG that can stand alone or in a page, and what stands below it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Drawing {
+    pub(crate) name: String,
+    pub(crate) caption: String,
+    pub(crate) svg: String,
+}
+
+impl Drawing {
+    pub(crate) fn file(&self) -> String {
+        file_of(&self.name)
+    }
 }

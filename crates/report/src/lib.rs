@@ -3,8 +3,10 @@
 //! A [`Figure`] is data (bins and counts, attitudes, ranges, lines) that is written beside the other
 //! results, reads back, and is drawn as SVG from what was read: the same data give the same bytes. The files
 //! name no font to be loaded and hold no `id`, style sheet or script, so that several can be inlined in one
-//! page. Their natural size is in `width` and `height`; they shrink with a narrower page. A [`page()`] of HTML
-//! needs nothing but itself.
+//! page. Their natural size is in `width` and `height`; they shrink with a narrower page.
+//!
+//! A [`Document`] is a page as data: sections of words, tables and figures, written as HTML that needs nothing but
+//! itself and as Markdown. Characters are escaped in one place for each form.
 //!
 //! The SVG is written by hand: `plotters` rounds every coordinate to a whole pixel, writes one
 //! element per dot, and has neither title nor description for readers who cannot see the figure.
@@ -28,34 +30,44 @@
 mod axis;
 mod bins;
 mod curves;
+mod document;
 mod figure;
 mod histogram;
+mod html;
+mod inline;
 mod legend;
 mod lines;
+mod markdown;
 mod numbers;
 mod overview;
 mod page;
 mod panel;
 mod ranges;
+#[cfg(test)]
+mod read_back;
 mod samples;
 mod share;
 mod sphere;
 mod style;
 mod svg;
+mod table;
 mod text;
 mod visible;
 
 pub use curves::{Chart, Colours, Curve, time_charts};
-pub use figure::{Figure, Picture, file_of};
+pub use document::{Document, Section};
+pub use figure::{Drawing, Figure, Picture, file_of};
 pub use histogram::HistogramGrid;
+pub use inline::{Text, Tone};
 pub use lines::{Line, LineGrid, LinePanel, LinePoint, Range};
-pub use numbers::{below_hundred, interval, optional, significant};
-pub use overview::Overview;
+pub use numbers::{below_hundred, interval, optional, significant, with_unit};
+pub use overview::{Overview, spread};
 pub use page::page;
 pub use ranges::{Label, RangeGrid, RangePanel};
 pub use samples::{Panel, Series};
 pub use share::percent;
 pub use sphere::{AttitudeSpheres, Cloud};
+pub use table::{PageCell, PageTable, TableOf};
 pub use visible::{visible, visible_json};
 
 #[cfg(doctest)]

@@ -28,6 +28,11 @@ pub fn interval(interval: Option<Interval>, digits: usize) -> String {
     })
 }
 
+/// A label with its unit, if it has one.
+pub fn with_unit(label: &str, unit: &str) -> String {
+    if unit == "1" { label.to_owned() } else { format!("{label} ({unit})") }
+}
+
 /// A percentage with two digits of what is missing to a hundred.
 pub fn below_hundred(percent: f64) -> String {
     let missing = significant(100.0 - percent, 2);

@@ -2,13 +2,11 @@
 
 use gyradius_campaign::{Kind, SampleSummary, Share, Table, counted};
 use gyradius_statistics::{Confidence, StatisticsError};
-use maud::{Markup, PreEscaped, html};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Figure, HistogramGrid, Panel, Picture, Series,
-    numbers::{interval, optional},
-    page::page,
+    Document, Figure, HistogramGrid, PageCell, PageTable, Panel, Picture, Section, Series, Text,
+    numbers::{interval, optional, with_unit},
     share::percent,
 };
 
@@ -84,41 +82,38 @@ impl Overview {
         })
     }
 
-    /// Its figures.
+    /// The page.
     #[must_use]
-    pub fn figures(&self) -> &[Figure] {
-        &self.figures
+    pub fn document(&self) -> Document {
+        let mut lead = Text::default();
+        for (i, model) in self.models.iter().enumerate() {
+            let runs = if model.runs == 1 { "run" } else { "runs" };
+            let before = if i > 0 { "; " } else { "" };
+            lead = lead.plain(format!("{before}{} {runs} of ", model.runs)).strong(&model.name);
+        }
+        let percent = 100.0 * self.confidence.level();
+        let lead = lead.plain(format!(". Intervals have a confidence of {percent} %."));
+        let mut table = PageTable::of(&self.quantities).words("quantity", |q| {
+            let name = Text::default().code(&q.column).plain(with_unit("", &q.unit));
+            PageCell::from(name).line(Text::default().quiet(&q.meaning))
+        });
+        for (i, model) in self.models.iter().enumerate() {
+            table = table.numbers(model.name.as_str(), |q| spread(q.samples.get(i)));
+        }
+        let results = Section::new("Results")
+            .warnings(self.models.iter().filter_map(failures))
+            .paragraph(
+                "Mean ± standard deviation, and the range from the 5th to the 95th percentile.",
+            )
+            .table(table)
+            .figures(self.figures.iter().map(Figure::drawn));
+        Document::new(&self.title, &self.title, lead).section(results)
     }
+}
 
-    /// The page, of HTML that needs nothing but itself.
-    #[must_use]
-    pub fn page(&self) -> String {
-        let models: Vec<&str> = self.models.iter().map(|model| model.name.as_str()).collect();
-        let content = html! {
-            h1 { (self.title) }
-            p.lead {
-                @for (i, model) in self.models.iter().enumerate() {
-                    @if i > 0 { "; " }
-                    (model.runs) @if model.runs == 1 { " run" } @else { " runs" } " of " strong { (model.name) }
-                }
-                ". Intervals have a confidence of " (100.0 * self.confidence.level()) " %."
-            }
-            @for model in &self.models { (failures(model)) }
-            h2 { "Results" }
-            p { "Mean ± standard deviation, and the range from the 5th to the 95th percentile." }
-            div.wide { table.results {
-                thead { tr { th { "quantity" } @for name in models { th { (name) } } } }
-                tbody { @for quantity in &self.quantities { (row(quantity)) } }
-            } }
-            @for figure in &self.figures {
-                figure id=(figure.name) {
-                    // Made by this program, every text in it escaped.
-                    (PreEscaped(figure.svg()))
-                    figcaption { (figure.caption) "." }
-                }
-            }
-        };
-        page(&self.title, "", &content)
+impl Quantity {
+    fn label(&self) -> String {
+        with_unit(&self.column, &self.unit)
     }
 }
 
@@ -140,7 +135,7 @@ fn figure(tables: &[Table], quantities: &[Quantity]) -> Option<Figure> {
     for (quantity, values) in shown.iter().zip(&values) {
         let series = tables.iter().zip(values);
         let series = series.map(|(table, values)| Series::new(table.model(), values, table.len()));
-        let (label, series) = (label(quantity), series.collect());
+        let (label, series) = (quantity.label(), series.collect());
         panels.push(Some(Panel { label, series, nominal: None }));
     }
     (!panels.is_empty()).then(|| Figure {
@@ -150,52 +145,23 @@ fn figure(tables: &[Table], quantities: &[Quantity]) -> Option<Figure> {
     })
 }
 
-fn label(quantity: &Quantity) -> String {
-    match quantity.unit.as_str() {
-        "1" => quantity.column.clone(),
-        unit => format!("{} ({unit})", quantity.column),
-    }
+fn failures(model: &Model) -> Option<Text> {
+    let failed = model.failed.filter(|failed| failed.count > 0)?;
+    let kinds = model.failures.iter().take(5).map(|(kind, count)| format!("{count} × {kind}"));
+    let kinds = kinds.collect::<Vec<_>>().join("; ");
+    let share = format!("{}: {} of the runs failed", model.name, percent(&failed));
+    Some(Text::default().strong(share).plain(format!(" and have no results: {kinds}.")))
 }
 
-fn failures(model: &Model) -> Markup {
-    html! {
-        @if let Some(failed) = model.failed.filter(|failed| failed.count > 0) {
-            p.warning {
-                strong { (model.name) ": " (percent(&failed)) " of the runs failed" }
-                " and have no results: "
-                @for (i, (kind, count)) in model.failures.iter().take(5).enumerate() {
-                    @if i > 0 { "; " }
-                    (count) " × " (kind)
-                }
-                "."
-            }
-        }
-    }
-}
-
-fn row(quantity: &Quantity) -> Markup {
-    html! {
-        tr {
-            th scope="row" title=(quantity.meaning) { (label(quantity)) }
-            @for sample in &quantity.samples {
-                td {
-                    span title=[tip(interval(sample.mean_interval, 4))] { (optional(sample.mean, 4)) }
-                    " ± "
-                    span title=[tip(interval(sample.deviation_interval, 4))] {
-                        (optional(sample.deviation, 3))
-                    }
-                    br;
-                    small title=[tip(interval(sample.p95_interval, 4))] {
-                        (optional(sample.p05, 4)) " … " (optional(sample.p95, 4))
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn tip(text: String) -> Option<String> {
-    Some(text).filter(|text| !text.is_empty())
+/// Mean ± standard deviation, and below it the range from the 5th to the 95th percentile; the intervals of mean,
+/// deviation and 95th percentile are told where the pointer rests on them.
+#[must_use]
+pub fn spread(sample: Option<&SampleSummary>) -> PageCell {
+    let Some(s) = sample else { return PageCell::from("–") };
+    let line = Text::from(optional(s.mean, 4)).tip(interval(s.mean_interval, 4)).plain(" ± ");
+    let line = line.plain(optional(s.deviation, 3)).tip(interval(s.deviation_interval, 4));
+    let range = format!("{} … {}", optional(s.p05, 4), optional(s.p95, 4));
+    PageCell::from(line).line(Text::default().quiet(range).tip(interval(s.p95_interval, 4)))
 }
 
 #[cfg(test)]
@@ -241,8 +207,8 @@ mod tests {
             let read: Overview = serde_json::from_str(&text).unwrap();
             // Infinite means are null in JSON; whoever writes a page makes it from what is read.
             let again: Overview = serde_json::from_str(&serde_json::to_string(&read).unwrap()).unwrap();
-            prop_assert_eq!(again.page(), read.page());
-            let page = read.page();
+            prop_assert_eq!(again.document(), read.document());
+            let page = read.document().html();
             prop_assert!(!page.contains("<model &") && page.contains("&lt;model &amp; 0&gt;"));
             let failed = runs.iter().filter(|run| run.2).count();
             prop_assert_eq!(page.contains("of the runs failed"), failed > 0);

@@ -174,7 +174,7 @@ pub(crate) mod tests {
         assert_eq!(pairs.trim(), "");
     }
 
-    fn unescape(text: &str) -> String {
+    pub(crate) fn unescape(text: &str) -> String {
         let known = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\"")];
         let plain = known.iter().fold(text.to_owned(), |text, (from, to)| text.replace(from, to));
         assert_eq!(plain.matches('&').count(), plain.matches("&amp;").count());

@@ -149,6 +149,7 @@ mod tests {
             "scenario.toml",
             "summary.json",
             "report.html",
+            "report.md",
             "runs/two-variants/000000000-000000059.parquet",
             "runs/entries-of-variants/000000000-000000059.parquet",
         ];

@@ -50,7 +50,7 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, runs: &[Seen]) ->
             let panel = |quantity: &Option<Quantity>| {
                 let quantity = (*quantity)?;
                 Some(Panel {
-                    label: axis_label(quantity),
+                    label: quantity.label_with_unit(),
                     series: [physical, naive].map(|seen| series(seen, quantity)).to_vec(),
                     nominal: summary.nominal_value(quantity),
                 })
@@ -103,7 +103,7 @@ fn clearance(scenario: &Scenario, summary: &Summary, runs: &[Seen]) -> Option<Fi
         .filter(|group| group.iter().any(found))
         .map(|group| {
             Some(Panel {
-                label: axis_label(Quantity::Clearance),
+                label: Quantity::Clearance.label_with_unit(),
                 series: group.into_iter().map(|i| series(&runs[i], Quantity::Clearance)).collect(),
                 nominal: summary.nominal_value(Quantity::Clearance),
             })
@@ -145,13 +145,6 @@ fn attitudes(
 /// The values of the runs that are kept of a model.
 fn series(seen: &Seen, quantity: Quantity) -> Series<'_> {
     Series::surveyed(seen.model(), seen.quantity(quantity), seen.runs())
-}
-
-fn axis_label(quantity: Quantity) -> String {
-    match quantity.unit() {
-        "1" => quantity.label().into_owned(),
-        unit => format!("{} ({unit})", quantity.label()),
-    }
 }
 
 /// The upper triangle, symmetric entries omitted.

@@ -5,8 +5,7 @@ use std::collections::BTreeSet;
 use crate::{
     CompareOptions, ModelComparison, Replay, Scenario, compare,
     model::Model,
-    replay,
-    results::Pages,
+    replay, report,
     study::{all_runs, judge},
 };
 
@@ -180,7 +179,7 @@ fn report_of(scenario: &Scenario) -> String {
     let summary = judge(scenario, &models, &runs).unwrap();
     // The end of a study on the terminal is made of the same.
     assert!(!summary.to_string().contains("[0.00") && !summary.to_string().contains("0 % ["));
-    Pages::new(scenario, &summary).report().to_owned()
+    report::report(scenario, &summary).html()
 }
 
 /// The paper's study with names that are markup, with what else can be told: outlines, dispersions.

@@ -2,6 +2,7 @@
 //! it, what it means and how it follows from a run.
 
 use gyradius_campaign::{Row, Table};
+use gyradius_report::with_unit;
 use std::borrow::Cow;
 
 use crate::{
@@ -293,6 +294,11 @@ impl Quantity {
     #[must_use]
     pub fn label(self) -> Cow<'static, str> {
         self.numbered(self.declaration().label)
+    }
+
+    /// Its name in tables and figures with its unit, if it has one.
+    pub(crate) fn label_with_unit(self) -> String {
+        with_unit(&self.label(), self.unit())
     }
 
     /// Its unit.

@@ -1,107 +1,113 @@
-//! The report: one page of HTML that needs nothing but itself.
+//! The report of a study: what it says of separations and of the paper.
 
-use gyradius_report::{Figure, interval, optional, page, percent, significant};
+use gyradius_campaign::SampleSummary;
+use gyradius_report::{
+    Document, Figure, PageCell, PageTable, Section, Text, Tone, file_of, interval, optional,
+    percent, significant, spread,
+};
 use gyradius_statistics::Interval;
-use maud::{Markup, PreEscaped, html};
 use nalgebra::{Unit, Vector3};
+use rayon::prelude::*;
 
 use crate::{
     body::{Body, Entry},
-    claim::{Claim, Verdict},
+    claim::Verdict,
     claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED},
+    figures_of_study,
     quantity::Quantity,
     scenario::{Comparison, Scenario},
-    summary::{ClearanceSummary, ComparisonSummary, ModelSummary, Summary},
+    summary::{ClearanceSummary, ModelSummary, Summary},
 };
 
-/// The page, with the figures of the summary as they are drawn, in their order.
-pub(crate) fn html<'a>(
-    scenario: &Scenario,
-    summary: &Summary,
-    drawn: impl Iterator<Item = &'a str>,
-) -> String {
-    let content = html! {
-        (head(summary))
-        (results(summary))
-        (parting(scenario, summary))
-        (claims(summary))
-        (ratios(summary))
-        (deviations(scenario, summary))
-        (far_lobe(summary))
-        (dispersed(summary))
-        (summary.every_model.markup())
-        (all_figures(&summary.figures, drawn))
-        (inputs(scenario, summary))
-    };
-    page(&format!("gyradius study: {}", summary.scenario), "", &content)
+/// Its pages are called so.
+pub(crate) const NAME: &str = "report";
+
+/// What may be written of the report of a study, as files and folders.
+pub(crate) fn files(scenario: &Scenario) -> impl Iterator<Item = String> {
+    let figures = figures_of_study::names(scenario).into_iter().map(|name| file_of(&name));
+    figures.chain(Document::pages(NAME)).chain(["figures/".to_owned()])
 }
 
-fn head(summary: &Summary) -> Markup {
+/// The report, made from results that were read back.
+pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     let models: Vec<&str> = summary.models.iter().map(|m| m.name.as_str()).collect();
-    html! {
-        h1 { "Separation under inertia uncertainty" }
-        p.lead {
-            "Scenario " strong { (summary.scenario) } ": " (summary.runs_per_model)
-            " runs of each of the models " (models.join(", ")) ", seed " (summary.seed) ". "
-            "Intervals have a confidence of " (100.0 * summary.confidence) " %; p95 is the 95th percentile."
-        }
-    }
+    let lead = Text::from("Scenario ").strong(&summary.scenario).plain(format!(
+        ": {} runs of each of the models {}, seed {}. Intervals have a confidence of {} %; p95 is the 95th \
+         percentile.",
+        summary.runs_per_model,
+        models.join(", "),
+        summary.seed,
+        100.0 * summary.confidence
+    ));
+    let drawn: Vec<_> = summary.figures.par_iter().map(Figure::drawn).collect();
+    let title = format!("gyradius study: {}", summary.scenario);
+    Document::new(title, "Separation under inertia uncertainty", lead)
+        .section(results(summary))
+        .section(parting(scenario, summary))
+        .section(claims(summary))
+        .sections(ratios(summary))
+        .sections(deviations(scenario, summary))
+        .sections(far_lobe(summary))
+        .sections(dispersed(summary))
+        .sections(summary.every_model.section())
+        .section(Section::new("Figures").figures(drawn))
+        .section(inputs(scenario, summary))
 }
 
-fn results(summary: &Summary) -> Markup {
-    html! {
-        h2 { "What the payload does" }
-        div.wide { table.results {
-            thead {
-                tr {
-                    th rowspan="2" { "model" }
-                    th rowspan="2" { "unrealizable draws" }
-                    @for q in Quantity::behaviour() { th.group colspan="3" { (q.label()) (unit(q)) } }
-                }
-                tr {
-                    @for _ in Quantity::behaviour() { th { "mean" } th { "sd" } th { "p95" } }
-                }
+fn results(summary: &Summary) -> Section {
+    // None for the nominal bodies.
+    let rows: Vec<Option<&ModelSummary>> = summary.models.iter().map(Some).chain([None]).collect();
+    let mut table = PageTable::of(&rows)
+        .words("model", |model| model.map_or("nominal bodies", |m| m.name.as_str()))
+        .numbers("unrealizable draws", |model| {
+            model.map_or_else(|| "–".to_owned(), |m| percent(&m.unrealizable))
+        })
+        .quiet(Option::is_none);
+    for q in Quantity::behaviour() {
+        let of = |cell: fn(&SampleSummary) -> Text| {
+            move |model: &Option<&ModelSummary>| match model.map(|m| sample(m, q)) {
+                Some(Some(sample)) => cell(sample),
+                Some(None) => "–".into(),
+                None => Text::default(),
             }
-            tbody {
-                @for model in &summary.models {
-                    tr {
-                        th scope="row" { (model.name) }
-                        td { (percent(&model.unrealizable)) }
-                        @for q in Quantity::behaviour() {
-                            @let s = model.quantity(q);
-                            td.group { (optional(s.and_then(|s| s.sample.mean), 4)) }
-                            td title=[tip(s.and_then(|s| s.sample.deviation_interval), 4)] {
-                                (optional(s.and_then(|s| s.sample.deviation), 3))
-                            }
-                            td title=[tip(s.and_then(|s| s.sample.p95_interval), 4)] {
-                                (optional(s.and_then(|s| s.sample.p95), 4))
-                            }
-                        }
-                    }
-                }
-                tr.nominal {
-                    th scope="row" { "nominal bodies" }
-                    td { "–" }
-                    @for q in Quantity::behaviour() {
-                        td.group { (optional(summary.nominal_value(q), 4)) }
-                        td {} td {}
-                    }
-                }
-            }
-        } }
-        @for model in summary.models.iter().filter(|m| m.failed > 0) {
-            p.warning {
-                strong { (model.name) ": " (model.failed) " of " (summary.runs_per_model) " runs failed" }
-                " and are left out: "
-                @for (reason, count) in model.failures.iter().take(5) { (count) " × " (reason) "; " }
-                "see " code { "status" } " in the run table."
-            }
-        }
+        };
+        let heading = q.label_with_unit();
+        table = table
+            .numbers_of(&heading, "mean", |model| {
+                let of_model = |m: &ModelSummary| sample(m, q).and_then(|s| s.mean);
+                optional(model.map_or_else(|| summary.nominal_value(q), of_model), 4)
+            })
+            .numbers_of(
+                &heading,
+                "sd",
+                of(|s| number(s.deviation, 3, interval(s.deviation_interval, 4))),
+            )
+            .numbers_of(&heading, "p95", of(|s| number(s.p95, 4, interval(s.p95_interval, 4))));
     }
+    let failures = summary.models.iter().filter(|m| m.failed > 0).map(|model| {
+        let (name, failed, of) = (&model.name, model.failed, summary.runs_per_model);
+        let kinds = model.failures.iter().take(5);
+        let kinds: String = kinds.map(|(reason, count)| format!("{count} × {reason}; ")).collect();
+        Text::default()
+            .strong(format!("{name}: {failed} of {of} runs failed"))
+            .plain(format!(" and are left out: {kinds}see "))
+            .code("status")
+            .plain(" in the run table.")
+    });
+    Section::new("What the payload does").table(table).warnings(failures)
+}
+
+fn sample(model: &ModelSummary, quantity: Quantity) -> Option<&SampleSummary> {
+    model.quantity(quantity).map(|q| &q.sample)
+}
+
+/// A number, with its interval where the pointer rests on it.
+fn number(x: Option<f64>, digits: usize, interval: String) -> Text {
+    Text::from(optional(x, digits)).tip(interval)
 }
 
 /// How the bodies part, a quantity a row.
-fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
+fn parting(scenario: &Scenario, summary: &Summary) -> Section {
     let said = |direction: Option<&Unit<Vector3<f64>>>| {
         let entries = |d: &Unit<Vector3<f64>>| {
             let entries: Vec<_> =
@@ -110,116 +116,94 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Markup {
         };
         direction.map_or_else(|| "none, for the springs' forces cancel".to_owned(), entries)
     };
+    let clearance = scenario.outlines().map_or_else(String::new, |outlines| {
+        format!(
+            "Clearance: the smallest distance of the outlines in the {} s after the last release, 0 where any \
+             two of them touch. Outlines that touch at the last release are mated: they count only if they \
+             touch again after they have parted. ",
+            outlines.coast_s()
+        )
+    });
+    let reading = format!(
+        "Velocity of the mass centres from each other, and its angle to the intended direction {}; tip-off: change \
+         of the angular velocity, body axes; greatest nutation of the free motion that follows; angle of the \
+         payload's angular momentum to the intended direction {}. Directions are in inertial axes, and the same \
+         for all runs; where the scenario does not state them they are those of the undispersed bodies. Inertia \
+         ratio and nutation: I₁ is the moment about the principal axis nearest to the spin axis, I₂ and I₃ those \
+         about the next two in cyclic order, each principal axis having the number of the body axis that it is \
+         matched to; a nutation above 90° is of a backward spin. Angles of a payload whose angular momentum is no \
+         more than rounding are not told. {clearance}Mean ± standard deviation, and the range from the 5th to the \
+         95th percentile.",
+        said(scenario.separation_direction()),
+        said(Some(scenario.momentum_direction())),
+    );
     // What no run has is not asked.
-    let has = |q: &Quantity| {
-        summary.models.iter().any(|m| m.quantity(*q).is_some_and(|q| q.sample.n > 0))
-    };
-    let parting = Quantity::parting().into_iter().filter(has);
-    html! {
-        h2 { "How they part" }
-        p {
-            "Velocity of the mass centres from each other, and its angle to the intended direction "
-            (said(scenario.separation_direction())) "; tip-off: change of the angular velocity, body axes; "
-            "greatest nutation of the free motion that follows; angle of the payload's angular momentum "
-            "to the intended direction " (said(Some(scenario.momentum_direction())))
-            ". Directions are in inertial axes, and the same for all runs; where the scenario does not "
-            "state them they are those of the undispersed bodies. Inertia ratio and nutation: I₁ is the "
-            "moment about the principal axis nearest to the spin axis, I₂ and I₃ those about the next two "
-            "in cyclic order, each principal axis having the number of the body axis that it is matched to; "
-            "a nutation above 90° is of a backward spin. Angles of a payload whose angular momentum is no more "
-            "than rounding are not told. "
-            @if let Some(outlines) = scenario.outlines() {
-                "Clearance: the smallest distance of the outlines in the " (outlines.coast_s())
-                " s after the last release, 0 where any two of them touch. Outlines that touch at the last "
-                "release are mated: they count only if they touch again after they have parted. "
-            }
-            "Mean ± standard deviation, and the range from the 5th to the 95th "
-            "percentile."
-        }
-        div.wide { table.results {
-            thead {
-                tr {
-                    th { "quantity" }
-                    @for model in &summary.models { th { (model.name) } }
-                    th { "nominal bodies" }
-                }
-            }
-            tbody {
-                @for q in parting {
-                    tr {
-                        th scope="row" { (q.label()) (unit(q)) }
-                        @for model in &summary.models {
-                            @let s = model.quantity(q);
-                            td {
-                                span title=[tip(s.and_then(|s| s.sample.mean_interval), 4)] {
-                                    (optional(s.and_then(|s| s.sample.mean), 4))
-                                }
-                                " ± "
-                                span title=[tip(s.and_then(|s| s.sample.deviation_interval), 4)] {
-                                    (optional(s.and_then(|s| s.sample.deviation), 3))
-                                }
-                                br;
-                                small title=[tip(s.and_then(|s| s.sample.p95_interval), 4)] {
-                                    (optional(s.and_then(|s| s.sample.p05), 4)) " … "
-                                    (optional(s.and_then(|s| s.sample.p95), 4))
-                                }
-                            }
-                        }
-                        td { (optional(summary.nominal_value(q), 4)) }
-                    }
-                }
-            }
-        } }
-        @if summary.models.iter().any(|m| m.releases.recompressed.is_some()) {
-            h3 { "Springs and contact" }
-            ul {
-                @for model in &summary.models { @if let Some(pressed) = model.releases.recompressed {
-                    li {
-                        strong { (model.name) } ": let go in the order "
-                        @for (i, order) in model.releases.orders.iter().take(3).enumerate() {
-                            @if i > 0 { "; " }
-                            code { (order.order) } " in " (percent(&order.share)) " of the runs"
-                        }
-                        @if model.releases.orders.len() > 3 { "; others" }
-                        ". " (energy(model))
-                        @if let Some(clearance) = &model.releases.clearance { " " (nearest(clearance)) }
-                        @if let Some(touch) = model.releases.recontact {
-                            " The bodies touch again in " (percent(&touch)) " of the runs."
-                        }
-                        @if pressed.count > 0 {
-                            " A spring was pressed again after its release in "
-                            (percent(&pressed)) " of the runs."
-                        }
-                    }
-                } }
-            }
-        }
+    let has = |q: &Quantity| summary.models.iter().any(|m| sample(m, *q).is_some_and(|s| s.n > 0));
+    let parting: Vec<Quantity> = Quantity::parting().into_iter().filter(has).collect();
+    let mut table = PageTable::of(&parting).words("quantity", |q| q.label_with_unit());
+    for model in &summary.models {
+        table = table.numbers(&model.name, |q| spread(sample(model, *q)));
     }
+    let table = table.numbers("nominal bodies", |q| optional(summary.nominal_value(*q), 4));
+    let releases: Vec<Text> = summary.models.iter().filter_map(releases).collect();
+    let springs =
+        (!releases.is_empty()).then(|| Section::new("Springs and contact").list(releases));
+    Section::new("How they part").paragraph(reading).table(table).sections(springs)
+}
+
+/// How the springs of a model let go, and what comes of it; none if no run succeeds.
+fn releases(model: &ModelSummary) -> Option<Text> {
+    let releases = &model.releases;
+    let pressed = releases.recompressed?;
+    let mut text = Text::default().strong(&model.name).plain(": let go in the order ");
+    for (i, order) in releases.orders.iter().take(3).enumerate() {
+        let runs = format!(" in {} of the runs", percent(&order.share));
+        text = text.plain(if i > 0 { "; " } else { "" }).code(&order.order).plain(runs);
+    }
+    let others = if releases.orders.len() > 3 { "; others" } else { "" };
+    text = text.plain(format!("{others}. {}", energy(model)));
+    if let Some(clearance) = &releases.clearance {
+        text = text.plain(format!(" {}", nearest(clearance)));
+    }
+    if let Some(touch) = releases.recontact {
+        text = text.plain(format!(" The bodies touch again in {} of the runs.", percent(&touch)));
+    }
+    if pressed.count > 0 {
+        text = text.plain(format!(
+            " A spring was pressed again after its release in {} of the runs.",
+            percent(&pressed)
+        ));
+    }
+    Some(text)
 }
 
 /// How near the bodies come.
-fn nearest(clearance: &ClearanceSummary) -> Markup {
-    html! {
-        @if let (Some(least), Some(run)) = (clearance.least_m, clearance.run) {
-            "They come as near as " (significant(least, 4)) " m (run " (run) ")"
-            @if let Some(p01) = clearance.p01_m {
-                "; 99 % of the runs keep " (significant(p01, 4)) " m"
-                @if clearance.p01_interval_m.is_some() { " " (interval(clearance.p01_interval_m, 4)) }
-            }
-            @if let Some(p05) = clearance.p05_m { ", 95 % " (significant(p05, 4)) " m" }
-            "."
-        } @else {
-            "No run has a clearance."
+fn nearest(clearance: &ClearanceSummary) -> String {
+    let mut text = match (clearance.least_m, clearance.run) {
+        (Some(least), Some(run)) => {
+            format!("They come as near as {} m (run {run})", significant(least, 4))
         }
-        @for (note, count) in &clearance.notes {
-            " In " (count) @if *count == 1 { " run " } @else { " runs " } (note) "."
-        }
+        _ => "No run has a clearance".to_owned(),
+    };
+    if let Some(p01) = clearance.p01_m {
+        let p01 = format!("; 99 % of the runs keep {} m", significant(p01, 4));
+        let interval = interval(clearance.p01_interval_m, 4);
+        text.push_str(format!("{p01} {interval}").trim_end());
     }
+    if let Some(p05) = clearance.p05_m {
+        text.push_str(&format!(", 95 % {} m", significant(p05, 4)));
+    }
+    text.push('.');
+    for (note, count) in &clearance.notes {
+        let runs = if *count == 1 { "run" } else { "runs" };
+        text.push_str(&format!(" In {count} {runs} {note}."));
+    }
+    text
 }
 
 /// Where the energy of the springs goes, on the average.
 fn energy(model: &ModelSummary) -> String {
-    let mean = |q| model.quantity(q).and_then(|s| s.sample.mean);
+    let mean = |q| sample(model, q).and_then(|s| s.mean);
     let Some(whole) = mean(Quantity::SpringEnergy).filter(|whole| *whole > 0.0) else {
         return String::new();
     };
@@ -235,244 +219,176 @@ fn energy(model: &ModelSummary) -> String {
     )
 }
 
-/// What is told of a number where the pointer rests on it.
-fn tip(of: Option<Interval>, digits: usize) -> Option<String> {
-    of.is_some().then(|| interval(of, digits))
+fn claims(summary: &Summary) -> Section {
+    let reading = format!(
+        "Peck (2003) claims the following of physically realizable models and of independent Gaussian entries. \
+         “Considerably more” is taken as a deviation larger by at least {:.0} %, “less” as a mean lower by at \
+         least {} %, “the same” as within {} %, “one-sided” as a skewness beyond {}. A claim holds in a \
+         comparison if the whole interval is on its side of that line, and does not if the whole interval is on \
+         the other; else these runs cannot tell. What holds in one comparison and not, or not surely, in another \
+         holds in part.",
+        100.0 * (CONSIDERABLE - 1.0),
+        100.0 * LESS,
+        100.0 * IDENTICAL,
+        significant(ONE_SIDED, 1)
+    );
+    let table = PageTable::of(&summary.claims)
+        .words("claim", |c| c.claim.as_str())
+        .words("what this study finds", |c| -> PageCell {
+            c.findings.iter().map(Text::from).collect()
+        })
+        .words("verdict", |c| Text::default().badge(tone(c.verdict), c.verdict.words()));
+    Section::new("The paper's claims").paragraph(reading).table(table)
 }
 
-fn unit(quantity: Quantity) -> String {
-    match quantity.unit() {
-        "1" => String::new(),
-        unit => format!(" ({unit})"),
+fn tone(verdict: Verdict) -> Tone {
+    match verdict {
+        Verdict::Holds => Tone::Good,
+        Verdict::HoldsInPart => Tone::Part,
+        Verdict::DoesNotHold => Tone::Bad,
+        Verdict::NotTested => Tone::Open,
     }
 }
 
-fn claims(summary: &Summary) -> Markup {
-    html! {
-        h2 { "The paper's claims" }
-        p {
-            "Peck (2003) claims the following of physically realizable models and of independent "
-            "Gaussian entries. “Considerably more” is taken as a deviation larger by at least "
-            (format!("{:.0}", 100.0 * (CONSIDERABLE - 1.0))) " %, “less” as a mean lower by at least "
-            (100.0 * LESS) " %, “the same” as within " (100.0 * IDENTICAL)
-            " %, “one-sided” as a skewness beyond " (significant(ONE_SIDED, 1))
-            ". A claim holds in a comparison if the whole interval is on its side of that line, and "
-            "does not if the whole interval is on the other; else these runs cannot tell. What holds "
-            "in one comparison and not, or not surely, in another holds in part."
-        }
-        div.wide { table.claims {
-            thead { tr { th { "claim" } th { "what this study finds" } th { "verdict" } } }
-            tbody { @for claim in &summary.claims { (claim_row(claim)) } }
-        } }
+fn ratios(summary: &Summary) -> Option<Section> {
+    let mut table = PageTable::of(&summary.comparisons).words("comparison", |c| {
+        PageCell::from(&c.title)
+            .line(Text::default().quiet(format!("{} over {}", c.naive, c.physical)))
+    });
+    for q in Quantity::behaviour() {
+        table = table.numbers(q.label(), |c| {
+            let ratio = c.ratio(q);
+            estimate(
+                ratio.and_then(|r| r.deviation_ratio),
+                ratio.and_then(|r| r.deviation_ratio_interval),
+            )
+        });
     }
+    let section = Section::new("Variation under the naive models").paragraph(
+        "Deviation under the naive model over deviation under the physical one. The interval holds for \
+         distributions of any shape whose kurtosis the runs show; where the kurtosis is above 10 it covers the \
+         true ratio less often than it says.",
+    );
+    (!summary.comparisons.is_empty()).then(|| section.table(table))
 }
 
-fn claim_row(claim: &Claim) -> Markup {
-    let class = match claim.verdict {
-        Verdict::Holds => "holds",
-        Verdict::HoldsInPart => "in-part",
-        Verdict::DoesNotHold => "fails",
-        Verdict::NotTested => "untested",
-    };
-    html! {
-        tr {
-            td { (claim.claim) }
-            td { @for finding in &claim.findings { p { (finding) } } }
-            td { span class={ "verdict " (class) } { (claim.verdict.words()) } }
-        }
-    }
-}
-
-fn ratios(summary: &Summary) -> Markup {
-    html! {
-        @if !summary.comparisons.is_empty() {
-            h2 { "Variation under the naive models" }
-            p {
-                "Deviation under the naive model over deviation under the physical one. The interval "
-                "holds for distributions of any shape whose kurtosis the runs show; where the kurtosis "
-                "is above 10 it covers the true ratio less often than it says."
-            }
-            div.wide { table {
-                thead {
-                    tr {
-                        th { "comparison" }
-                        @for q in Quantity::behaviour() { th { (q.label()) } }
-                    }
-                }
-                tbody {
-                    @for c in &summary.comparisons {
-                        tr {
-                            th scope="row" { (c.title) br; small { (c.naive) " over " (c.physical) } }
-                            @for q in Quantity::behaviour() { td { (ratio(c, q)) } }
-                        }
-                    }
-                }
-            } }
-        }
-    }
-}
-
-fn ratio(comparison: &ComparisonSummary, quantity: Quantity) -> Markup {
-    let ratio = comparison.ratio(quantity);
-    html! {
-        (optional(ratio.and_then(|r| r.deviation_ratio), 4)) br;
-        small { (interval(ratio.and_then(|r| r.deviation_ratio_interval), 4)) }
-    }
+/// A number and its interval below it.
+fn estimate(x: Option<f64>, of: Option<Interval>) -> PageCell {
+    PageCell::from(optional(x, 4)).line(Text::default().quiet(interval(of, 4)))
 }
 
 /// Table 2: the deviations that a naive model was given beside those of the physical one.
-fn deviations(scenario: &Scenario, summary: &Summary) -> Markup {
-    html! {
-        @for comparison in scenario.comparisons() {
-            @let names: Vec<&str> = scenario.model_names().collect();
-            @if let (Some(physical), Some(naive)) = (
-                summary.model(names[comparison.physical]),
-                summary.model(names[comparison.naive]),
-            ) {
-                @if let Some(given) = naive.given_deviations_kg_m2 {
-                    @let table = scenario.source().map_or("", |_| " (Table 2)");
-                    (deviation_table(table, comparison, physical, naive, given))
-                }
-            }
-        }
-    }
+fn deviations(scenario: &Scenario, summary: &Summary) -> Vec<Section> {
+    let names: Vec<&str> = scenario.model_names().collect();
+    let table = scenario.source().map_or("", |_| " (Table 2)");
+    let section = |comparison: &Comparison| {
+        let physical = summary.model(names[comparison.physical])?;
+        let naive = summary.model(names[comparison.naive])?;
+        let given = naive.given_deviations_kg_m2?;
+        let reading = Text::from("Standard deviations in kg·m²: those of the runs of ")
+            .strong(&physical.name)
+            .plain(", and those that ")
+            .strong(&naive.name)
+            .plain(" was given.");
+        let heading = format!("Deviations of the entries{table}: {}", comparison.title);
+        let table = deviation_table(physical, naive, given);
+        Some(Section::new(heading).paragraph(reading).table(table))
+    };
+    scenario.comparisons().iter().filter_map(section).collect()
 }
 
 fn deviation_table(
-    table: &str,
-    comparison: &Comparison,
     physical: &ModelSummary,
     naive: &ModelSummary,
     given: [[f64; 6]; 2],
-) -> Markup {
-    html! {
-        h2 { "Deviations of the entries" (table) ": " (comparison.title) }
-        p {
-            "Standard deviations in kg·m²: those of the runs of " strong { (physical.name) }
-            ", and those that " strong { (naive.name) } " was given."
-        }
-        div.wide { table {
-            thead { tr {
-                th { "body" } th {}
-                @for entry in Entry::ALL { th { (Quantity::entry(Body::Payload, entry).label()) } }
-            } }
-            tbody {
-                @for (body, given) in Body::BOTH.into_iter().zip(given) {
-                    tr.first {
-                        th rowspan="3" scope="rowgroup" { (body.name()) }
-                        th scope="row" { (physical.name) }
-                        @for entry in Entry::ALL {
-                            @let q = physical.quantity(Quantity::entry(body, entry));
-                            td {
-                                (optional(q.and_then(|q| q.sample.deviation), 4)) br;
-                                small { (interval(q.and_then(|q| q.sample.deviation_interval), 4)) }
-                            }
-                        }
-                    }
-                    tr {
-                        th scope="row" { (naive.name) ", given" }
-                        @for value in given { td { (significant(value, 4)) } }
-                    }
-                    tr {
-                        th scope="row" { "given over found" }
-                        @for (entry, value) in Entry::ALL.into_iter().zip(given) {
-                            @let found = physical.quantity(Quantity::entry(body, entry)).and_then(|q| q.sample.deviation);
-                            td { (optional(found.filter(|f| *f > 0.0).map(|f| value / f), 3)) }
-                        }
-                    }
-                }
-            }
-        } }
+) -> PageTable {
+    #[derive(Clone, Copy)]
+    enum Row {
+        Found,
+        Given,
+        Ratio,
     }
+    let rows: Vec<(Body, Row)> = Body::BOTH
+        .into_iter()
+        .flat_map(|body| [Row::Found, Row::Given, Row::Ratio].map(|row| (body, row)))
+        .collect();
+    let mut table = PageTable::of(&rows)
+        .words("deviation", |(_, row)| match row {
+            Row::Found => physical.name.clone(),
+            Row::Given => format!("{}, given", naive.name),
+            Row::Ratio => "given over found".to_owned(),
+        })
+        .groups(|(body, _)| body.name().to_owned());
+    for (i, entry) in Entry::ALL.into_iter().enumerate() {
+        table = table.numbers(Quantity::entry(Body::Payload, entry).label(), |(body, row)| {
+            let found = sample(physical, Quantity::entry(*body, entry));
+            let deviation = found.and_then(|s| s.deviation);
+            let given = given[*body as usize][i];
+            match row {
+                Row::Found => estimate(deviation, found.and_then(|s| s.deviation_interval)),
+                Row::Given => significant(given, 4).into(),
+                Row::Ratio => optional(deviation.filter(|d| *d > 0.0).map(|d| given / d), 3).into(),
+            }
+        });
+    }
+    table.into()
 }
 
-fn far_lobe(summary: &Summary) -> Markup {
-    let lobes: Vec<_> =
-        summary.models.iter().filter_map(|m| Some((&m.name, m.far_half?))).collect();
-    html! {
-        @if lobes.iter().any(|(_, far)| far.iter().any(|s| s.count > 0)) {
-            h2 { "The second lobe" }
-            p {
-                "A quaternion and its negative are one attitude, but the radially constrained Gaussian "
-                "does not know it: where its covariance is wide along the mean, a second lobe of draws "
-                "lies in the half sphere away from the mean. As attitudes these lie about the "
-                em { "inverse" } " of the mean attitude. Axes of “mean-half” leave them out."
-            }
-            ul {
-                @for (name, [payload, stage]) in &lobes {
-                    li {
-                        strong { (name) } ": "
-                        (percent(payload)) " of the payload's draws, " (percent(stage)) " of the stage's."
-                    }
-                }
-            }
-        }
-    }
+fn far_lobe(summary: &Summary) -> Option<Section> {
+    let lobes = || summary.models.iter().filter_map(|m| Some((&m.name, m.far_half?)));
+    let reading = Text::from(
+        "A quaternion and its negative are one attitude, but the radially constrained Gaussian does not know it: \
+         where its covariance is wide along the mean, a second lobe of draws lies in the half sphere away from \
+         the mean. As attitudes these lie about the ",
+    )
+    .emphasis("inverse")
+    .plain(" of the mean attitude. Axes of “mean-half” leave them out.");
+    let items = lobes().map(|(name, [payload, stage])| {
+        let (payload, stage) = (percent(&payload), percent(&stage));
+        let shares = format!(": {payload} of the payload's draws, {stage} of the stage's.");
+        Text::default().strong(name).plain(shares)
+    });
+    lobes()
+        .any(|(_, far)| far.iter().any(|s| s.count > 0))
+        .then(|| Section::new("The second lobe").paragraph(reading).list(items))
 }
 
 /// What is uncertain besides the inertias.
-fn dispersed(summary: &Summary) -> Markup {
-    html! {
-        @if let Some(given) = summary.models.first().map(|m| &m.dispersed).filter(|d| !d.is_empty()) {
-            h2 { "What else was dispersed" }
-            p {
-                "Mean and standard deviation of the law of each quantity, and of what each model drew, in "
-                "the unit of its name. Every draw is in the run table."
-            }
-            div.wide { table {
-                thead { tr {
-                    th { "quantity" } th { "law" } th { "nominal" } th { "mean" } th { "sd" }
-                    @for model in &summary.models { th { "drawn by " (model.name) } }
-                } }
-                tbody {
-                    @for (i, d) in given.iter().enumerate() {
-                        tr {
-                            th scope="row" { code { (d.quantity) } }
-                            td { (d.law) }
-                            @for value in [d.nominal, d.law_mean, d.law_deviation] {
-                                td { (significant(value, 5)) }
-                            }
-                            @for model in &summary.models {
-                                @let drawn = model.dispersed.get(i);
-                                td {
-                                    (optional(drawn.and_then(|d| d.mean), 5)) " ± "
-                                    (optional(drawn.and_then(|d| d.deviation), 4))
-                                }
-                            }
-                        }
-                    }
-                }
-            } }
-        }
+fn dispersed(summary: &Summary) -> Option<Section> {
+    let given = summary.models.first().map(|m| &m.dispersed).filter(|d| !d.is_empty())?;
+    let rows: Vec<_> = given.iter().enumerate().collect();
+    let mut table = PageTable::of(&rows)
+        .words("quantity", |(_, d)| Text::default().code(&d.quantity))
+        .words("law", |(_, d)| d.law.as_ref())
+        .numbers("nominal", |(_, d)| significant(d.nominal, 5))
+        .numbers("mean", |(_, d)| significant(d.law_mean, 5))
+        .numbers("sd", |(_, d)| significant(d.law_deviation, 5));
+    for model in &summary.models {
+        table = table.numbers(format!("drawn by {}", model.name), |(i, _)| {
+            let drawn = model.dispersed.get(*i);
+            let (mean, deviation) = (drawn.and_then(|d| d.mean), drawn.and_then(|d| d.deviation));
+            format!("{} ± {}", optional(mean, 5), optional(deviation, 4))
+        });
     }
+    let reading = "Mean and standard deviation of the law of each quantity, and of what each model drew, in the \
+                   unit of its name. Every draw is in the run table.";
+    Some(Section::new("What else was dispersed").paragraph(reading).table(table))
 }
 
-fn all_figures<'a>(figures: &[Figure], drawn: impl Iterator<Item = &'a str>) -> Markup {
-    html! {
-        h2 { "Figures" }
-        @for (figure, svg) in figures.iter().zip(drawn) {
-            figure id=(figure.name) {
-                // Made by this program, every text in it escaped.
-                (PreEscaped(svg))
-                figcaption { (figure.caption) ". " code { (figure.file()) } }
-            }
-        }
-    }
-}
-
-fn inputs(scenario: &Scenario, summary: &Summary) -> Markup {
-    html! {
-        h2 { "What went in" }
-        p {
-            "Run by gyradius " (summary.gyradius_version) " from the scenario below, every default "
-            "spelled out; its SHA-256 is " code.hash { (summary.fingerprint) } ". "
-            "The same scenario gives the same numbers on any number of threads: "
-            code { "gyradius study --scenario scenario.toml" } "."
-        }
-        p {
-            "Every run is a row of " code { "runs/<model>/" }
-            ", every number of this page is in " code { "summary.json" } "."
-        }
-        details { summary { "scenario.toml" } pre { (scenario.to_toml()) } }
-    }
+fn inputs(scenario: &Scenario, summary: &Summary) -> Section {
+    let version = &summary.gyradius_version;
+    let origin = Text::from(format!(
+        "Run by gyradius {version} from the scenario below, every default spelled out; its SHA-256 is "
+    ))
+    .code(&summary.fingerprint)
+    .plain(". The same scenario gives the same numbers on any number of threads: ")
+    .code("gyradius study --scenario scenario.toml")
+    .plain(".");
+    let files = Text::from("Every run is a row of ")
+        .code("runs/<model>/")
+        .plain(", every number of this page is in ")
+        .code("summary.json")
+        .plain(".");
+    let text = Section::folded("scenario.toml").file("toml", scenario.to_toml());
+    Section::new("What went in").paragraph(origin).paragraph(files).sections([text])
 }

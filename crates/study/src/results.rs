@@ -2,15 +2,14 @@
 
 use gyradius_campaign::{Contents, Folder, FolderError, restore};
 use gyradius_formats::read_text;
-use gyradius_report::{Figure, file_of};
-use rayon::prelude::*;
+use gyradius_report::Document;
 use serde_json::Value;
 use std::{
     io,
     path::{Path, PathBuf},
 };
 
-use crate::{Scenario, ScenarioError, Summary, figures_of_study, report};
+use crate::{Scenario, ScenarioError, Summary, report};
 
 /// Largest `summary.json` that is read, far beyond any that is written.
 const BYTES: u64 = 1 << 30;
@@ -130,14 +129,10 @@ impl Results {
     /// The report, a page of HTML that needs nothing but itself.
     #[must_use]
     pub fn report(&self) -> String {
-        self.pages().report
+        report::report(&self.scenario, &self.summary).html()
     }
 
-    fn pages(&self) -> Pages {
-        Pages::new(&self.scenario, &self.summary)
-    }
-
-    /// Makes the figures and the report again, in the study's folder or in another; returns the folder.
+    /// Makes the figures and the report, as HTML and as Markdown, again, in the study's folder or in another; returns the folder.
     ///
     /// In the study's folder only the report and the figures are written, and only over those that the
     /// study wrote. A study is replaced by none of this.
@@ -146,43 +141,18 @@ impl Results {
     /// Something in the study's folder was changed after the study, or the other folder holds something else
     /// and `force` is not set; something cannot be written. What was there stays as it was.
     pub fn write_report(&self, out: Option<&Path>, force: bool) -> Result<PathBuf, ResultsError> {
-        let pages = self.pages();
-        let names = figures_of_study::names(&self.scenario).into_iter().map(|name| file_of(&name));
-        let certain = names.chain(["report.html", "figures/"].map(str::to_owned));
+        let report = report::report(&self.scenario, &self.summary);
+        let (page, pages) = (report.html(), Document::pages(report::NAME));
+        let certain = report::files(&self.scenario);
         let contents = match out {
-            Some(_) => Contents::new("report", "report.html", certain, |text| text == pages.report),
+            Some(_) => Contents::new("report", "report.html", certain, |text| text == page),
             None => Contents::new("study", "summary.json", certain, |_| true)
-                .keeping(|name| name != "report.html" && !name.starts_with("figures/")),
+                .keeping(|name| !name.starts_with("figures/") && !pages.iter().any(|p| p == name)),
         };
         let mut folder = Folder::prepare(out.unwrap_or(&self.folder), &contents, force)?;
-        pages.write(&mut folder)?;
+        for (name, content) in report.files(report::NAME) {
+            folder.write(&name, &content)?;
+        }
         Ok(folder.publish()?)
-    }
-}
-
-/// The figures drawn and the report made.
-pub(crate) struct Pages {
-    /// Files of the figures, and what is in them.
-    figures: Vec<(String, String)>,
-    report: String,
-}
-
-impl Pages {
-    /// From results that were read back.
-    pub(crate) fn new(scenario: &Scenario, summary: &Summary) -> Self {
-        let drawn = |figure: &Figure| (figure.file(), figure.svg());
-        let figures: Vec<_> = summary.figures.par_iter().map(drawn).collect();
-        let report = report::html(scenario, summary, figures.iter().map(|(_, svg)| svg.as_str()));
-        Self { figures, report }
-    }
-
-    #[cfg(test)]
-    pub(crate) fn report(&self) -> &str {
-        &self.report
-    }
-
-    pub(crate) fn write(&self, folder: &mut Folder<'_>) -> Result<(), FolderError> {
-        self.figures.iter().try_for_each(|(file, svg)| folder.write(file, svg))?;
-        folder.write("report.html", &self.report)
     }
 }

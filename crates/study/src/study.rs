@@ -6,7 +6,6 @@ use gyradius_campaign::{
     CampaignError, Contents, Folder, Forecast, Identity, MANIFEST, Plan, Progress, Runs, RunsError,
     Table, run_missing, threads,
 };
-use gyradius_report::file_of;
 use gyradius_statistics::Confidence;
 use std::{
     collections::BTreeSet,
@@ -20,7 +19,7 @@ use crate::{
     compare::Section,
     figures_of_study,
     model::{Model, Separations},
-    results::Pages,
+    report,
     scenario::parse_toml,
     seen::Seen,
 };
@@ -136,7 +135,10 @@ impl Study {
         folder.write("summary.json", &written)?;
         // The report is made from what a reader of the folder has.
         let summary: Summary = serde_json::from_str(&written)?;
-        threads.install(|| Pages::new(scenario, &summary)).write(&mut folder)?;
+        let report = threads.install(|| report::report(scenario, &summary));
+        for (name, content) in report.files(report::NAME) {
+            folder.write(&name, &content)?;
+        }
         let folder = folder.publish()?;
         blocks.settle()?;
         let runs = runs.into_iter().map(|runs| blocks.in_place(&runs)).collect();
@@ -199,17 +201,7 @@ pub(crate) fn judge(
 /// What a study writes, and the figures that it may write.
 fn contents(scenario: &Scenario) -> Contents<'_> {
     let tables = scenario.model_names().map(|model| format!("runs/{model}/"));
-    let figures = figures_of_study::names(scenario).into_iter().map(|name| file_of(&name));
-    let others = [
-        "scenario.toml",
-        "summary.json",
-        "report.html",
-        "report.md",
-        "figures/",
-        "runs/",
-        MANIFEST,
-    ];
-    let others = others.map(str::to_owned);
+    let others = ["scenario.toml", "summary.json", "runs/", MANIFEST].map(str::to_owned);
     let extends = |text: &str| {
         // Fewer runs would take some away.
         Scenario::from_toml(text).is_ok_and(|there| {
@@ -223,9 +215,14 @@ fn contents(scenario: &Scenario) -> Contents<'_> {
         let fewer = || format!("runs is {} there and {} here", there.runs(), scenario.runs());
         Some(difference.map_or_else(fewer, |difference| difference.to_string()))
     };
-    Contents::new("study", "scenario.toml", tables.chain(figures).chain(others), extends)
-        .telling(differs)
-        .trusting(|name| name.starts_with("runs/"))
+    Contents::new(
+        "study",
+        "scenario.toml",
+        tables.chain(report::files(scenario)).chain(others),
+        extends,
+    )
+    .telling(differs)
+    .trusting(|name| name.starts_with("runs/"))
 }
 
 /// What the runs of a scenario depend on.

@@ -23,13 +23,13 @@ pub(crate) enum Command {
     ///
     /// Draws the inertia of payload and stage under every model of the scenario, separates them,
     /// and writes a folder with the resolved scenario, the run tables (Parquet), summary.json, the
-    /// figures (SVG) and report.html.
+    /// figures (SVG) and the report, as report.html and as report.md.
     #[command(after_help = EXAMPLES)]
     Study(StudyArgs),
     /// Make the report and the figures of a study again, from its folder alone
     ///
     /// Reads scenario.toml and summary.json, and draws nothing and runs nothing: the same folder gives the
-    /// same report to the byte. Useful after files were deleted, for another place, or for a page of a
+    /// same report.html, report.md and figures to the byte. Useful after files were deleted, for another place, or for a page of a
     /// study whose run tables are kept elsewhere.
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),

@@ -8,6 +8,7 @@ use super::{BodyResult, LevelResult, ModelComparison, contest::Results, measure:
 /// Colour and dashes of a model: kept for conditioned twins, which are dashed.
 pub(super) fn pen(kind: ModelKind) -> (usize, bool) {
     match kind {
+        ModelKind::Principal => (0, false),
         ModelKind::Entrywise => (1, false),
         ModelKind::CorrelatedEntries => (3, false),
         ModelKind::RealizableEntrywise => (1, true),
@@ -15,8 +16,6 @@ pub(super) fn pen(kind: ModelKind) -> (usize, bool) {
         ModelKind::LogCholesky => (2, false),
         ModelKind::Wishart => (4, false),
         ModelKind::Basilisk => (5, false),
-        // The paper's, and models to come.
-        _ => (0, false),
     }
 }
 

@@ -17,7 +17,7 @@ mod text;
 
 use gyradius_campaign::{CampaignError, Contents, Folder, FolderError, Progress, Streams, threads};
 use gyradius_dispersion::ModelKind;
-use gyradius_report::file_of;
+use gyradius_report::{Document, file_of};
 use gyradius_statistics::StatisticsError;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -90,7 +90,7 @@ impl CompareError {
 /// The page of a comparison.
 #[cfg(test)]
 pub(crate) fn page_of(comparison: &ModelComparison) -> String {
-    comparison.page(&comparison.figures())
+    comparison.document().html()
 }
 
 /// Models of inertia uncertainty compared.
@@ -174,9 +174,9 @@ impl ModelComparison {
         let threads = threads(options.threads)?;
         let settings = Settings::new(&plan);
         let wanted = serde_json::to_value(&settings)?;
-        let certain = ["compare.html", "compare.csv", "compare.json", "figures/"];
+        let certain = ["compare.csv", "compare.json", "figures/"].map(str::to_owned);
         let figures = figures_of_models::names().into_iter().map(|name| file_of(&name));
-        let certain = certain.map(str::to_owned).into_iter().chain(figures);
+        let certain = certain.into_iter().chain(Document::pages(page::NAME)).chain(figures);
         let contents = Contents::new("comparison", "compare.json", certain, |text: &str| {
             serde_json::from_str::<serde_json::Value>(text)
                 .is_ok_and(|found| found.get("settings") == Some(&wanted))
@@ -200,11 +200,9 @@ impl ModelComparison {
     }
 
     fn write(&self, mut folder: Folder<'_>) -> Result<PathBuf, CompareError> {
-        let figures = self.figures();
-        for figure in &figures {
-            folder.write(&figure.file(), &figure.svg())?;
+        for (name, content) in self.document().files(page::NAME) {
+            folder.write(&name, &content)?;
         }
-        folder.write("compare.html", &self.page(&figures))?;
         folder.write("compare.csv", &self.to_csv())?;
         folder.write("compare.json", &self.to_json()?)?;
         Ok(folder.publish()?)

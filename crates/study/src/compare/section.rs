@@ -1,16 +1,17 @@
 //! The same comparison for the bodies of a study, at the uncertainty that its scenario gives them.
 
 use gyradius_dispersion::ModelKind;
-use gyradius_report::{Figure, Label, Picture, RangeGrid, RangePanel};
+use gyradius_report::{
+    self as page, Figure, Label, PageCell, PageTable, Picture, RangeGrid, RangePanel, Text,
+    with_unit,
+};
 use gyradius_statistics::StatisticsError;
-use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 use super::{
-    BodyResult,
+    BodyResult, LevelResult,
     body::NominalBody,
-    contest::Cell,
     level,
     measure::Measure,
     options::Size,
@@ -24,6 +25,8 @@ pub(crate) const EVERY_MODEL: &str = "figure-models";
 /// Enough for a share to a percent and a quantile to a few.
 const DRAWS: u64 = 2000;
 const SEPARATIONS: u64 = 150;
+/// What is told of the payload.
+const SHOWN: [Measure; 3] = [Measure::InertiaRatio, Measure::Wobble, Measure::Nutation];
 
 /// All models about payload and stage of a scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,10 +63,7 @@ impl Section {
         let payload = self.bodies.first()?;
         let level = payload.levels.first()?;
         let panel = |measure: Measure| RangePanel {
-            label: match measure.unit() {
-                "1" => measure.label().to_owned(),
-                unit => format!("{} ({unit})", measure.label()),
-            },
+            label: with_unit(measure.label(), measure.unit()),
             nominal: payload.nominal(measure),
             ranges: kinds(payload)
                 .into_iter()
@@ -81,7 +81,7 @@ impl Section {
                 hollow: is_poor(level.cell(kind)),
             })
             .collect();
-        let panels = [Measure::InertiaRatio, Measure::Wobble, Measure::Nutation].map(panel);
+        let panels = SHOWN.map(panel);
         let title = "Every model with the payload's mean and covariance";
         Some(Figure {
             name: EVERY_MODEL.to_owned(),
@@ -93,58 +93,49 @@ impl Section {
         })
     }
 
-    pub(crate) fn markup(&self) -> Markup {
-        let [payload, stage] = self.bodies.as_slice() else { return html! {} };
-        let level = |body: &BodyResult| body.levels.first().cloned();
-        let (Some(of_payload), Some(of_stage)) = (level(payload), level(stage)) else {
-            return html! {};
+    pub(crate) fn section(&self) -> Option<page::Section> {
+        let [payload, stage] = self.bodies.as_slice() else { return None };
+        let (of_payload, of_stage) = (payload.levels.first()?, stage.levels.first()?);
+        let reading = Text::from(format!(
+            "Every model that gyradius has, given the mean and the covariance that the scenario's dispersion gives \
+             the six entries of a body, as far as its kind can have them: {} draws of each; nutation from {} \
+             separations from the nominal stage. Numbers in brackets: the covariance is further off than that of \
+             a body known exactly (100 %), so not like for like. ",
+            self.draws, self.separations
+        ))
+        .code("gyradius compare")
+        .plain(" does this for other bodies and levels.");
+        let cell = |level: &'_ LevelResult, block: Block| {
+            let level = level.clone();
+            move |kind: &ModelKind| block.told(level.cell(*kind))
         };
-        html! {
-            h2 { "Other models of the same uncertainty" }
-            p {
-                "Every model that gyradius has, given the mean and the covariance that the scenario's "
-                "dispersion gives the six entries of a body, as far as its kind can have them: "
-                (self.draws) " draws of each; nutation from " (self.separations) " separations from the "
-                "nominal stage. Numbers in brackets: the covariance is further off than that of a body "
-                "known exactly (100 %), so not like for like. " code { "gyradius compare" } " does this for other bodies and levels."
-            }
-            div.wide { table.results {
-                thead { tr {
-                    th { "model" }
-                    th { "unrealizable: payload, %" }
-                    th { "stage, %" }
-                    @for measure in [Measure::InertiaRatio, Measure::Wobble, Measure::Nutation] {
-                        th { (measure.label()) br; (measure.headline().0) (unit(measure)) }
-                    }
-                    th { "covariance off: payload, %" }
-                    th { "stage, %" }
-                } }
-                tbody { @for kind in kinds(payload) {
-                    @let p = of_payload.cell(kind);
-                    @let s = of_stage.cell(kind);
-                    tr {
-                        th scope="row" title=(matched(payload, kind)) { (kind) }
-                        (td(Block::Unrealizable, p)) (td(Block::Unrealizable, s))
-                        (td(Block::Spread(Measure::InertiaRatio), p))
-                        (td(Block::Spread(Measure::Wobble), p))
-                        (td(Block::Spread(Measure::Nutation), p))
-                        (td(Block::CovarianceOff, p)) (td(Block::CovarianceOff, s))
-                    }
-                } }
-            } }
-            @for (body, remarks) in [payload, stage].map(|body| (body, remarks(body))) {
-                @for remark in remarks { p.warning { (body.name) ": " (remark) } }
-            }
+        let rows = kinds(payload);
+        let mut table = PageTable::of(&rows)
+            .words("model", |kind| Text::from(kind.name()).tip(matched(payload, *kind)))
+            .numbers("unrealizable: payload, %", cell(of_payload, Block::Unrealizable))
+            .numbers("stage, %", cell(of_stage, Block::Unrealizable));
+        for measure in SHOWN {
+            let label = PageCell::from(measure.label()).line(format!(
+                "{}{}",
+                measure.headline().0,
+                unit(measure)
+            ));
+            table = table.numbers(label, cell(of_payload, Block::Spread(measure)));
         }
+        let table = table
+            .numbers("covariance off: payload, %", cell(of_payload, Block::CovarianceOff))
+            .numbers("stage, %", cell(of_stage, Block::CovarianceOff));
+        let remarks = [payload, stage]
+            .map(|body| remarks(body).into_iter().map(|remark| format!("{}: {remark}", body.name)));
+        Some(
+            page::Section::new("Other models of the same uncertainty")
+                .paragraph(reading)
+                .table(table)
+                .warnings(remarks.into_iter().flatten()),
+        )
     }
 }
 
 fn unit(measure: Measure) -> String {
     if measure.unit() == "1" { String::new() } else { format!(", {}", measure.unit()) }
-}
-
-fn td(block: Block, cell: Option<&Cell>) -> Markup {
-    html! {
-        td { @if is_poor(cell) { "(" (block.cell(cell)) ")" } @else { (block.cell(cell)) } }
-    }
 }

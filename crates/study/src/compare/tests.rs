@@ -114,7 +114,7 @@ fn models_that_do_not_exist_are_told() {
     let naive = level.cell(ModelKind::Entrywise).unwrap().results.as_ref().unwrap();
     assert!(naive.failed_separations > 0);
     assert!(text.contains("separations failed"), "{text}");
-    assert!(comparison.page(&comparison.figures()).contains("no wishart"));
+    assert!(comparison.document().html().contains("no wishart"));
 }
 
 fn small() -> CompareOptions {

@@ -1,0 +1,150 @@
+//! Pages as HTML.
+
+use maud::{Markup, PreEscaped, html};
+
+use crate::{
+    document::{Block, Document, Section},
+    inline::{Style, Text, Tone},
+    page::page,
+    table::{Align, PageCell, PageColumn, PageTable},
+};
+
+pub(crate) fn html(document: &Document) -> String {
+    let content = html! {
+        h1 { (document.heading) }
+        p.lead { (text(&document.lead)) }
+        @for below in &document.sections { (section(below, 2)) }
+    };
+    page(&document.title, "", &content)
+}
+
+fn section(section: &Section, level: usize) -> Markup {
+    let heading = &section.heading;
+    let blocks = html! { @for part in &section.blocks { (block(part, level)) } };
+    html! {
+        @if section.folded {
+            details { summary { (heading) } (blocks) }
+        } @else {
+            @match level {
+                2 => h2 { (heading) },
+                3 => h3 { (heading) },
+                _ => h4 { (heading) },
+            }
+            (blocks)
+        }
+    }
+}
+
+fn block(block: &Block, level: usize) -> Markup {
+    html! {
+        @match block {
+            Block::Paragraph(words) => p { (text(words)) },
+            Block::Warning(words) => p.warning { (text(words)) },
+            Block::List(items) => ul { @for item in items { li { (text(item)) } } },
+            Block::Table(of) => div.wide { (table(of)) },
+            Block::Figure(figure) => figure id=(figure.name) {
+                // Made by this program, every text in it escaped.
+                (PreEscaped(&figure.svg))
+                figcaption { (figure.caption) ". " code { (figure.file()) } }
+            },
+            Block::File(_, text) => pre { (text) },
+            Block::Section(below) => (section(below, level + 1)),
+        }
+    }
+}
+
+fn text(text: &Text) -> Markup {
+    html! {
+        @for span in text.spans() {
+            @let (words, tip) = (&span.text, span.tip.as_ref());
+            @match span.style {
+                Style::Plain if tip.is_none() => (words),
+                Style::Plain => span title=[tip] { (words) },
+                Style::Strong => strong title=[tip] { (words) },
+                Style::Emphasis => em title=[tip] { (words) },
+                Style::Code => code title=[tip] { (words) },
+                Style::Quiet => small title=[tip] { (words) },
+                Style::Badge(tone) => span class={ "badge " (class(tone)) } title=[tip] { (words) },
+            }
+        }
+    }
+}
+
+fn class(tone: Tone) -> &'static str {
+    match tone {
+        Tone::Good => "good",
+        Tone::Part => "part",
+        Tone::Bad => "bad",
+        Tone::Open => "open",
+    }
+}
+
+fn table(table: &PageTable) -> Markup {
+    let columns = &table.columns;
+    let of_words = columns.iter().all(|column| column.align == Align::Left);
+    html! {
+        table class=[of_words.then_some("words")] {
+            thead { (head(columns)) }
+            @if table.rows.is_empty() { tbody {} }
+            @for rows in table.rows.chunk_by(|a, b| a.group == b.group) {
+                tbody {
+                    @if let Some(group) = rows.first().and_then(|row| row.group.as_ref()) {
+                        tr.group { th colspan=(columns.len()) scope="rowgroup" { (group) } }
+                    }
+                    @for row in rows {
+                        tr class=[row.quiet.then_some("quiet")] {
+                            @for (i, of) in row.cells.iter().enumerate() {
+                                @if i == 0 {
+                                    th scope="row" { (cell(of)) }
+                                } @else {
+                                    td class=[class_of(columns, i)] { (cell(of)) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// One row, or two where columns share a heading.
+fn head(columns: &[PageColumn]) -> Markup {
+    let shared = columns.iter().any(|column| column.group.is_some());
+    let groups = columns.chunk_by(|a, b| a.group.is_some() && a.group == b.group);
+    let below = columns.iter().enumerate().filter(|(_, column)| column.group.is_some());
+    html! {
+        tr {
+            @for group in groups {
+                @match &group[0] {
+                    PageColumn { group: Some(heading), .. } =>
+                        th.first colspan=(group.len()) scope="colgroup" { (heading) },
+                    column => th class=[left(column)] rowspan=[shared.then_some(2)] scope="col" { (cell(&column.label)) },
+                }
+            }
+        }
+        @if shared {
+            tr { @for (i, column) in below { th class=[class_of(columns, i)] scope="col" { (cell(&column.label)) } } }
+        }
+    }
+}
+
+fn left(column: &PageColumn) -> Option<&'static str> {
+    (column.align == Align::Left).then_some("left")
+}
+
+/// What is told apart: words, and the first of the columns that share a heading.
+fn class_of(columns: &[PageColumn], i: usize) -> Option<&'static str> {
+    let before = i.checked_sub(1).and_then(|before| columns[before].group.as_ref());
+    let first = columns[i].group.is_some() && columns[i].group.as_ref() != before;
+    left(&columns[i]).or(first.then_some("first"))
+}
+
+fn cell(cell: &PageCell) -> Markup {
+    html! {
+        @match cell.lines() {
+            [line] => (text(line)),
+            lines => @for line in lines { p { (text(line)) } },
+        }
+    }
+}
