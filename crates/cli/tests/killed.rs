@@ -1,4 +1,4 @@
-//! A study that is killed while it replaces another.
+//! Studies that are killed and stopped: while they run, and while they replace another.
 
 use std::{
     fs,
@@ -72,4 +72,88 @@ fn one_whole_study_survives_a_kill() {
         }
         assert!(!here.join(".gyradius/journal").exists(), "{round}");
     }
+}
+
+/// Killed, interrupted and terminated as soon as another block is finished: no block that was finished is done again,
+/// and at the end there is what a study that nobody disturbed leaves, byte by byte.
+#[test]
+fn a_study_goes_on_where_it_stopped() {
+    let scratch = tempfile::tempdir().unwrap();
+    let study = |out: &str, runs: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gyradius"));
+        command.current_dir(scratch.path()).args(["study", "--out", out, "--runs", runs]);
+        command.stdout(Stdio::null()).stderr(Stdio::piped());
+        command
+    };
+    let record = || {
+        let path = scratch.path().join("here/.gyradius/campaign/record");
+        let text = fs::read_to_string(path).unwrap_or_default();
+        text.lines().filter(|line| line.ends_with('}')).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let mut known: Vec<String> = Vec::new();
+    for (signal, code) in [("KILL", None), ("INT", Some(130)), ("TERM", Some(143))] {
+        let mut child = study("here", "17000").spawn().unwrap();
+        while record().len() <= known.len() {
+            assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+        let id = child.id().to_string();
+        assert!(Command::new("kill").args([format!("-{signal}"), id]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), code, "{signal}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(said.contains("the same command goes on"), code.is_some(), "{said}");
+        let now = record();
+        assert!(now.len() > known.len() && now.starts_with(&known), "{signal}");
+        known = now;
+    }
+    // Another seed does not go on with them.
+    let other = study("here", "17000").args(["--seed", "1"]).output().unwrap();
+    let said = String::from_utf8(other.stderr).unwrap();
+    assert!(
+        other.status.code() == Some(2) && said.contains("seed is 2003 there and 1 here"),
+        "{said}"
+    );
+
+    let last = study("here", "17000").output().unwrap();
+    let said = String::from_utf8(last.stderr).unwrap();
+    assert!(last.status.success() && said.contains("finished already; going on"), "{said}");
+    assert!(study("there", "17000").status().unwrap().success());
+    let (here, there) = (scratch.path().join("here"), scratch.path().join("there"));
+    let blocks = ["000000000-000016383", "000016384-000016999"].map(|name| {
+        ["proposed", "published", "naive", "naive-matched"]
+            .map(|model| format!("runs/{model}/{name}.parquet"))
+    });
+    for name in ["summary.json", "campaign.json", "report.html"]
+        .map(str::to_owned)
+        .iter()
+        .chain(blocks.as_flattened())
+    {
+        assert!(
+            fs::read(here.join(name)).unwrap() == fs::read(there.join(name)).unwrap(),
+            "{name}"
+        );
+    }
+
+    // A block that is changed and one that is gone are named, put aside and done again; more runs are added to those that
+    // are there.
+    let [first, second] = [&blocks[0][0], &blocks[1][3]];
+    let mut bytes = fs::read(here.join(first)).unwrap();
+    bytes[1000] ^= 1;
+    fs::write(here.join(first), &bytes).unwrap();
+    fs::remove_file(here.join(second)).unwrap();
+    let again = study("here", "17100").output().unwrap();
+    let said = String::from_utf8(again.stderr).unwrap();
+    assert!(
+        again.status.success() && said.contains(&format!("{first} is not as it was written")),
+        "{said}"
+    );
+    assert!(
+        said.contains(&format!("{second} is gone")) && said.contains(" of 68400 runs"),
+        "{said}"
+    );
+    assert!(fs::read(here.join(first)).unwrap() == fs::read(there.join(first)).unwrap());
+    let aside = here.join(".gyradius/damaged/proposed-000000000-000016383.parquet.1");
+    assert!(fs::read(aside).unwrap() == bytes);
+    assert!(here.join("runs/naive/000017000-000017099.parquet").is_file());
 }

@@ -175,7 +175,7 @@ fn meant_of(seen: &mut Vec<Seen>, section: &Section, level: usize) {
                         cells[0] = plain(&row.group.clone().unwrap_or_default());
                         rows.push(cells);
                     }
-                    rows.push(row.cells.iter().map(|of| cell(of)).collect());
+                    rows.push(row.cells.iter().map(cell).collect());
                 }
                 seen.push(Seen::Table(numbers, rows));
             }
@@ -333,12 +333,13 @@ fn elements(seen: &mut Vec<(&str, String)>, section: &Section, depth: usize) {
                 let (mut first, mut second) = (Vec::new(), Vec::new());
                 let mut group = None;
                 for column in &table.columns {
-                    if column.group.is_none() {
-                        first.push(("th", cell(&column.label)));
-                    } else {
-                        second.push(("th", cell(&column.label)));
-                        if column.group != group {
-                            first.push(("th", plain(column.group.as_ref().unwrap())));
+                    match &column.group {
+                        None => first.push(("th", cell(&column.label))),
+                        Some(heading) => {
+                            second.push(("th", cell(&column.label)));
+                            if column.group != group {
+                                first.push(("th", plain(heading)));
+                            }
                         }
                     }
                     group.clone_from(&column.group);

@@ -105,11 +105,12 @@ impl Study {
         let _ = in_place.set(blocks.published());
         blocks.damaged().iter().for_each(|damage| say(Notice::Damaged(damage.clone())));
 
-        let left: u64 = models
-            .iter()
-            .flat_map(|model| blocks.missing(model.name(), scenario.runs(), BLOCK_RUNS))
-            .map(|runs| runs.end - runs.start)
-            .sum();
+        let mut left = 0;
+        for model in &models {
+            let missing = blocks.missing(model.name(), scenario.runs(), BLOCK_RUNS);
+            folder.check_places(model.name(), &missing)?;
+            left += missing.iter().map(|runs| runs.end - runs.start).sum::<u64>();
+        }
         let of = scenario.runs() * models.len() as u64;
         if left < of {
             say(Notice::GoesOn { done: of - left, of });
@@ -248,7 +249,7 @@ fn flatten(path: &str, value: &Value, fields: &mut Vec<(String, String)>) {
         }
         Value::Array(values) if values.iter().any(Value::is_table) => {
             for (i, value) in values.iter().enumerate() {
-                flatten(&format!("{path}[{i}]"), value, fields);
+                flatten(&format!("{path}[{}]", i + 1), value, fields);
             }
         }
         other => fields.push((path.to_owned(), other.to_string())),

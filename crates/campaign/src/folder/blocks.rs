@@ -22,6 +22,7 @@ use super::{
     hidden::Hidden,
     name::{Found, HIDDEN, Name, hex, look, said},
     record::Record,
+    unobstructed,
 };
 use crate::{
     column::Column,
@@ -94,6 +95,18 @@ struct ManifestBlock {
 }
 
 impl Block {
+    /// Of some runs, before it is written.
+    fn of(model: &str, runs: &Range<u64>) -> Self {
+        Self {
+            model: model.to_owned(),
+            first_run: runs.start,
+            runs: runs.end - runs.start,
+            bytes: 0,
+            sha256: String::new(),
+            published: false,
+        }
+    }
+
     /// The runs.
     fn range(&self) -> Range<u64> {
         self.first_run..self.first_run + self.runs
@@ -159,6 +172,20 @@ impl Folder<'_> {
             self.hidden.record(self.contents.what).map_err(|problem| self.failed(problem))?;
         Blocks::open(&self.hidden, &record, (identity, runs, force), threads)
             .map_err(|problem| self.failed(problem))
+    }
+
+    /// That nothing is in the places of blocks of a model that are to be done, but what may be replaced.
+    ///
+    /// # Errors
+    /// Something is, which this program did not write.
+    pub fn check_places(&self, model: &str, missing: &[Range<u64>]) -> Result<(), FolderError> {
+        let check = || {
+            let (record, _) = self.hidden.record(self.contents.what)?;
+            let name = |runs: &Range<u64>| Name::new(&Block::of(model, runs).name());
+            let names = missing.iter().map(name).collect::<Result<Vec<_>, _>>()?;
+            unobstructed(self.hidden.place(), &record, &names)
+        };
+        check().map_err(|problem| self.failed(problem))
     }
 
     /// Puts the blocks that are not in their places there with the rest of the draft, and tells of all of them.
@@ -334,14 +361,8 @@ impl Blocks {
     }
 
     fn put(&self, table: &Table) -> Result<PathBuf, Problem> {
-        let mut block = Block {
-            model: table.model().to_owned(),
-            first_run: table.first(),
-            runs: table.len() as u64,
-            bytes: 0,
-            sha256: String::new(),
-            published: false,
-        };
+        let runs = table.first()..table.first() + table.len() as u64;
+        let mut block = Block::of(table.model(), &runs);
         let folder = self.folder.join(&block.model);
         match disk::create_folder(&folder) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
