@@ -25,7 +25,7 @@ const MAX_THREADS: usize = 1024;
 /// be done again alone.
 pub trait Simulation: Sync {
     /// What a thread keeps from some runs to the next, such as a batch; `()` if nothing.
-    type Worker;
+    type Worker: Send;
 
     /// The columns that a run fills, which follow `model`, `run` and `status`.
     fn columns(&self) -> Vec<Column>;
@@ -74,22 +74,29 @@ pub(crate) fn run_range<S: Simulation>(
     runs: Range<u64>,
     more: &(dyn Fn(u64) + Sync),
 ) -> Result<Table, CampaignError> {
-    let part = |worker: &mut S::Worker, first: u64| {
-        let last = (first + TOGETHER).min(runs.end);
-        let mut part = empty.from_run(first);
-        simulation.run(first..last, worker, &mut part)?;
-        if part.len() as u64 != last - first {
-            return Err(CampaignError::Rows { runs: first..last, rows: part.len() });
+    let do_some = |worker: &mut S::Worker, first: u64, rows: &mut Table| {
+        let (last, before) = ((first + TOGETHER).min(runs.end), rows.len());
+        simulation.run(first..last, worker, rows)?;
+        if (rows.len() - before) as u64 != last - first {
+            return Err(CampaignError::Rows { runs: first..last, rows: rows.len() - before });
         }
         more(last - first);
-        Ok(part)
+        Ok(())
     };
     let number = (runs.end - runs.start).div_ceil(TOGETHER);
     let groups = (0..number).into_par_iter().map(|group| runs.start + group * TOGETHER);
-    let parts: Vec<Table> =
-        groups.map_init(|| simulation.worker(), part).collect::<Result<_, CampaignError>>()?;
+    // Groups that a thread does one after the other share a worker and a table.
+    let begin = || Ok((simulation.worker(), None));
+    let parts = groups.fold(begin, |part, first| {
+        let (mut worker, rows) = part?;
+        let mut rows = rows.unwrap_or_else(|| empty.from_run(first));
+        do_some(&mut worker, first, &mut rows)?;
+        Ok((worker, Some(rows)))
+    });
+    let parts: Vec<Option<Table>> =
+        parts.map(|part| part.map(|(_, rows)| rows)).collect::<Result<_, CampaignError>>()?;
     let mut whole = empty.from_run(runs.start);
-    for part in parts {
+    for part in parts.into_iter().flatten() {
         whole.append(part);
     }
     Ok(whole)

@@ -60,8 +60,11 @@ impl Numbers {
     }
 
     pub(crate) fn append(&mut self, other: &Self) {
-        for run in 0..other.values.len() {
-            self.push(other.get(run));
+        if self.values.len().is_multiple_of(64) {
+            self.values.extend_from_slice(&other.values);
+            self.present.extend_from_slice(&other.present);
+        } else {
+            (0..other.values.len()).for_each(|run| self.push(other.get(run)));
         }
     }
 }
