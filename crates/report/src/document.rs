@@ -1,6 +1,6 @@
 //! Pages as data: sections of words, tables and figures, written as HTML and as Markdown.
 
-use crate::{Drawing, html, inline::Text, markdown, table::PageTable};
+use crate::{Drawing, inline::Text, table::PageTable};
 
 /// A page, of which every form is made.
 ///
@@ -68,18 +68,6 @@ impl Document {
     pub fn sections(mut self, sections: impl IntoIterator<Item = Section>) -> Self {
         self.sections.extend(sections);
         self
-    }
-
-    /// As HTML that needs nothing but itself, figures included.
-    #[must_use]
-    pub fn html(&self) -> String {
-        html::html(self)
-    }
-
-    /// As Markdown as GitHub reads it, without HTML in it; figures are files beside it.
-    #[must_use]
-    pub fn markdown(&self) -> String {
-        markdown::markdown(self)
     }
 
     /// The files that its forms are written to, under a name.

@@ -9,13 +9,17 @@ use crate::{
     table::{Align, PageCell, PageColumn, PageTable},
 };
 
-pub(crate) fn html(document: &Document) -> String {
-    let content = html! {
-        h1 { (document.heading) }
-        p.lead { (text(&document.lead)) }
-        @for below in &document.sections { (section(below, 2)) }
-    };
-    page(&document.title, "", &content)
+impl Document {
+    /// As HTML that needs nothing but itself, figures included.
+    #[must_use]
+    pub fn html(&self) -> String {
+        let content = html! {
+            h1 { (self.heading) }
+            p.lead { (text(&self.lead)) }
+            @for below in &self.sections { (section(below, 2)) }
+        };
+        page(&self.title, "", &content)
+    }
 }
 
 fn section(section: &Section, level: usize) -> Markup {

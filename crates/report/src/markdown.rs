@@ -7,13 +7,17 @@ use crate::{
     visible::visible,
 };
 
-pub(crate) fn markdown(document: &Document) -> String {
-    let mut out = format!("# {}\n", words(&document.heading, Place::Heading));
-    lines(&mut out, "", &inline(&document.lead, Place::Line));
-    for below in &document.sections {
-        section(&mut out, below, 2);
+impl Document {
+    /// As Markdown as GitHub reads it, without HTML in it; figures are files beside it.
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        let mut out = format!("# {}\n", words(&self.heading, Place::Heading));
+        lines(&mut out, "", &inline(&self.lead, Place::Line));
+        for below in &self.sections {
+            section(&mut out, below, 2);
+        }
+        out
     }
-    out
 }
 
 fn section(out: &mut String, section: &Section, level: usize) {
