@@ -2,7 +2,10 @@
 
 use parquet::errors::ParquetError;
 use rayon::prelude::*;
-use std::{ops::Range, path::PathBuf};
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+};
 
 use crate::{column::Column, table::Table};
 
@@ -88,9 +91,9 @@ impl Runs {
         })
     }
 
-    fn read(&self, path: &PathBuf) -> Result<Table, RunsError> {
+    fn read(&self, path: &Path) -> Result<Table, RunsError> {
         let read = self.empty.read_parquet(path);
-        read.map_err(|source| RunsError { path: path.clone(), source })
+        read.map_err(|source| RunsError { path: path.to_owned(), source })
     }
 }
 

@@ -12,6 +12,7 @@ use std::{
     collections::BTreeSet,
     fs::{self, File, OpenOptions},
     io::{self, BufWriter, Write},
+    iter,
     ops::Range,
     path::{Path, PathBuf},
     sync::Mutex,
@@ -341,7 +342,7 @@ impl Blocks {
         let mut missing = Vec::new();
         let mut next = 0;
         let finished = self.all().into_iter().filter(|block| block.model == model);
-        for done in finished.map(|block| block.range()).chain([runs..runs]) {
+        for done in finished.map(|block| block.range()).chain(iter::once(runs..runs)) {
             while next < done.start.min(runs) {
                 let end = ((next / block_runs + 1) * block_runs).min(done.start).min(runs);
                 missing.push(next..end);

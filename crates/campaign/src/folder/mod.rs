@@ -33,6 +33,9 @@ use record::Record;
 
 use crate::identity::Difference;
 
+/// Says in what a text differs from another.
+type Telling<'a> = Box<dyn Fn(&str) -> Option<String> + 'a>;
+
 /// What goes into a folder.
 pub struct Contents<'a> {
     /// What it is called, and its record after it.
@@ -46,7 +49,7 @@ pub struct Contents<'a> {
     /// Which files that were written before stay as they are.
     kept: Box<dyn Fn(&str) -> bool + 'a>,
     /// In what another text of the mark differs.
-    differs: Box<dyn Fn(&str) -> Option<String> + 'a>,
+    differs: Telling<'a>,
     /// Files that are checked when they are used, if the very same is there.
     trusted: fn(&str) -> bool,
 }
