@@ -297,3 +297,18 @@ fn another_campaign_is_refused() {
     assert_eq!(done.simulated, 1);
     assert!(done.runs.table().unwrap().rows().eq(whole(2, 41).rows()));
 }
+
+/// Finished runs that are dropped by force are gone for good, also if that command is stopped itself.
+#[test]
+fn what_is_dropped_by_force_does_not_come_back() {
+    let scratch = tempfile::tempdir().unwrap();
+    let campaign = Campaign { place: scratch.path().join("here"), seed: 3, block_runs: 16 };
+    assert!(campaign.command(300, Some(200), false).is_err());
+    assert!(campaign.files().len() > 1);
+    assert!(campaign.command(20, None, false).map(|_| ()).unwrap_err().contains("and 20 here"));
+    assert!(campaign.command(20, Some(0), true).is_err());
+    assert!(campaign.files().len() <= 2, "{:?}", campaign.files());
+    let done = campaign.command(20, None, false).unwrap();
+    assert!(done.damaged.is_empty() && done.simulated <= 20, "{:?}", done.damaged);
+    assert_whole(&campaign, &done, 20);
+}

@@ -167,14 +167,20 @@ fn another_study_is_not_overwritten_without_force() {
     let report = shell.path().join("here/report.html");
     let before = fs::read(&report).unwrap();
 
-    let message = shell.refused(&["study", "--runs", "6", "--out", "here"]);
-    assert!(message.contains("another study") && message.contains("--force"), "{message}");
+    for (flag, value, said) in [
+        ("--runs", "4", "runs is 5 there and 4 here"),
+        ("--seed", "7", "seed is 2003 there and 7 here"),
+    ] {
+        let message = shell.refused(&["study", "--out", "here", flag, value]);
+        assert!(message.contains("another study") && message.contains("--force"), "{message}");
+        assert!(message.contains(said), "{message}");
+    }
     assert_eq!(fs::read(&report).unwrap(), before, "nothing was overwritten");
 
     // The same study may be run again, and another one by force.
     assert!(shell.run(&["study", "--runs", "5", "--out", "here"]).status.success());
     assert_eq!(fs::read(&report).unwrap(), before, "the same study has the same report");
-    assert!(shell.run(&["study", "--runs", "6", "--out", "here", "--force"]).status.success());
+    assert!(shell.run(&["study", "--runs", "4", "--out", "here", "--force"]).status.success());
     assert_ne!(fs::read(&report).unwrap(), before);
 }
 

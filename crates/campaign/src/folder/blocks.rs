@@ -285,15 +285,33 @@ impl Blocks {
 
     /// Leaves out the blocks that go beyond so many runs, which `force` allows.
     fn limit(&self, runs: u64, force: bool) -> Result<(), Problem> {
-        let blocks = &mut self.locked().blocks;
-        let most = blocks.iter().map(|block| block.range().end).max().unwrap_or(0);
+        let mut state = self.locked();
+        let most = state.blocks.iter().map(|block| block.range().end).max().unwrap_or(0);
         if most > runs && !force {
             let said = |runs: u64| Some(runs.to_string());
             let field = "runs".to_owned();
             let difference = Difference { field, there: said(most), here: said(runs) };
             return Err(Problem::Unfinished { difference });
         }
-        blocks.retain(|block| block.range().end <= runs);
+        let beyond = |block: &Block| block.range().end > runs;
+        let (dropped, kept): (Vec<_>, Vec<_>) = state.blocks.drain(..).partition(beyond);
+        if dropped.iter().any(|block| !block.published) {
+            // The record first: a file that it does not tell of is none of the blocks.
+            let kept = kept.iter().filter(|block| !block.published).map(serde_json::to_string);
+            let lines = kept.collect::<Result<Vec<_>, _>>()?;
+            let (path, part) = (self.folder.join(RECORD), self.folder.join("record.part"));
+            disk::remove_file(&part)?;
+            let mut file = disk::create_file(&part)?;
+            file.write_all((lines.join("\n") + "\n").as_bytes())?;
+            disk::sync_file(&part)?;
+            disk::replace_file(&part, &path)?;
+            disk::sync_folder(&self.folder)?;
+            state.record = OpenOptions::new().append(true).open(&path)?;
+            for block in dropped.iter().filter(|block| !block.published) {
+                disk::remove_file(&self.path(block))?;
+            }
+        }
+        state.blocks = kept;
         Ok(())
     }
 
@@ -550,7 +568,7 @@ fn clear(folder: &Path) -> io::Result<()> {
         }
     }
     // The identity goes last: without it, nothing is known to be a block.
-    for name in [RECORD, "identity.part", IDENTITY] {
+    for name in [RECORD, "record.part", "identity.part", IDENTITY] {
         disk::remove_file(&folder.join(name))?;
     }
     disk::remove_folder(folder)

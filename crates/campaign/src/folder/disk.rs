@@ -37,6 +37,12 @@ pub(super) fn move_file(from: &Path, to: &Path) -> io::Result<()> {
     }
 }
 
+/// Moves a file to where an older one of the same is, in the folder that nobody else writes in.
+pub(super) fn replace_file(from: &Path, to: &Path) -> io::Result<()> {
+    step("replace", to)?;
+    fs::rename(from, to)
+}
+
 /// Gives a file a second name, or copies it where that cannot be; fails if anything is there.
 pub(super) fn link(from: &Path, to: &Path) -> io::Result<()> {
     step("link", to)?;
