@@ -125,7 +125,7 @@
 //! ```
 //! use gyradius::report::{HistogramGrid, Panel, Series};
 //!
-//! let series = vec![Series { name: "measured", values: &[0.4, 0.6, 0.3, 0.5], runs: 4 }];
+//! let series = vec![Series::new("measured", &[0.4, 0.6, 0.3, 0.5], 4)];
 //! let panel = Panel { label: "wobble (deg)".to_owned(), series, nominal: Some(0.5) };
 //! assert!(HistogramGrid::new("Wobble", &[Some(panel)], 1).svg().contains("<svg"));
 //! ```

@@ -6,7 +6,6 @@
 //! the record or is done again.
 
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::{
     collections::BTreeSet,
@@ -21,6 +20,7 @@ use std::{
 use super::{
     Folder, FolderError, Problem, disk,
     hidden::Hidden,
+    manifest::{Block, MANIFEST, Manifest},
     name::{Found, HIDDEN, Name, hex, look, said},
     record::Record,
     unobstructed,
@@ -36,9 +36,6 @@ const CAMPAIGN: &str = "campaign";
 const IDENTITY: &str = "identity.json";
 const RECORD: &str = "record";
 const DAMAGED: &str = "damaged";
-/// The file that tells of the blocks of a complete campaign.
-pub const MANIFEST: &str = "campaign.json";
-
 /// The blocks of a campaign in its folder.
 #[derive(Debug)]
 pub struct Blocks {
@@ -54,105 +51,6 @@ pub struct Blocks {
 struct State {
     blocks: Vec<Block>,
     record: File,
-}
-
-/// A block that is finished.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Block {
-    model: String,
-    first_run: u64,
-    runs: u64,
-    bytes: u64,
-    sha256: String,
-    /// Whether it is in its place.
-    #[serde(skip)]
-    published: bool,
-}
-
-/// What `campaign.json` tells.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Manifest {
-    gyradius_version: String,
-    /// What the runs depend on.
-    identity: Identity,
-    columns: Vec<ManifestColumn>,
-    blocks: Vec<ManifestBlock>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct ManifestColumn {
-    column: String,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    unit: Option<String>,
-    meaning: String,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct ManifestBlock {
-    file: String,
-    #[serde(flatten)]
-    block: Block,
-}
-
-impl Block {
-    /// Of some runs, before it is written.
-    fn of(model: &str, runs: &Range<u64>) -> Self {
-        Self {
-            model: model.to_owned(),
-            first_run: runs.start,
-            runs: runs.end - runs.start,
-            bytes: 0,
-            sha256: String::new(),
-            published: false,
-        }
-    }
-
-    /// The runs.
-    fn range(&self) -> Range<u64> {
-        self.first_run..self.first_run + self.runs
-    }
-
-    /// Whether a record that nobody has meddled with can tell of it.
-    fn is_sound(&self) -> bool {
-        let end = self.first_run.checked_add(self.runs);
-        let name = |end| format!("runs/{}/{:09}-{end:09}.parquet", self.model, self.first_run);
-        self.runs > 0 && end.is_some_and(|end| Name::new(&name(end)).is_ok())
-    }
-
-    /// Its file: the first run and the last one.
-    fn file(&self) -> String {
-        format!("{:09}-{:09}.parquet", self.first_run, self.range().end - 1)
-    }
-
-    /// Its place in the folder of a complete campaign.
-    fn name(&self) -> String {
-        format!("runs/{}/{}", self.model, self.file())
-    }
-}
-
-impl Manifest {
-    /// Reads that of the campaign in a folder.
-    ///
-    /// # Errors
-    /// There is none, or it is none.
-    pub fn read(folder: &Path) -> io::Result<Self> {
-        Ok(serde_json::from_slice(&fs::read(folder.join(MANIFEST))?)?)
-    }
-
-    /// The file of the block that has a run of a model, from the folder on, and the row of the run in it.
-    #[must_use]
-    pub fn find(&self, model: &str, run: u64) -> Option<(&str, u64)> {
-        let has = |b: &&ManifestBlock| b.block.model == model && b.block.range().contains(&run);
-        let found = self.blocks.iter().find(has)?;
-        Some((&found.file, run - found.block.first_run))
-    }
-
-    /// What the runs depend on.
-    #[must_use]
-    pub fn identity(&self) -> &Identity {
-        &self.identity
-    }
 }
 
 impl Folder<'_> {
@@ -201,8 +99,9 @@ impl Folder<'_> {
                 .link(&self.hidden, name, &path, &block.sha256)
                 .map_err(|problem| self.failed(problem))?;
         }
-        let text = serde_json::to_string_pretty(&blocks.manifest(columns))
-            .map_err(|error| self.failed(error.into()))?;
+        let text =
+            serde_json::to_string_pretty(&Manifest::new(&blocks.identity, columns, blocks.all()))
+                .map_err(|error| self.failed(error.into()))?;
         self.write(MANIFEST, &(text + "\n"))
     }
 }
@@ -438,21 +337,6 @@ impl Blocks {
         }
     }
 
-    fn manifest(&self, columns: &[Column]) -> Manifest {
-        let column = |column: &Column| ManifestColumn {
-            column: column.name().to_owned(),
-            unit: column.unit().map(str::to_owned),
-            meaning: column.meaning().to_owned(),
-        };
-        let block = |block: Block| ManifestBlock { file: block.name(), block };
-        Manifest {
-            gyradius_version: env!("CARGO_PKG_VERSION").to_owned(),
-            identity: self.identity.clone(),
-            columns: columns.iter().map(column).collect(),
-            blocks: self.all().into_iter().map(block).collect(),
-        }
-    }
-
     /// All blocks are in their places: removes what they were linked from.
     ///
     /// # Errors
@@ -526,9 +410,8 @@ fn published(place: &Path, record: &Record, identity: &Identity) -> Vec<Block> {
         matches!(look(place, &name), Ok(Found::File { hash }) if record.hash(&name) == Some(&hash))
     });
     let manifest = Manifest::read(place).ok().filter(|_| unchanged);
-    let manifest = manifest.filter(|manifest| manifest.identity.difference(identity).is_none());
-    let blocks = manifest.into_iter().flat_map(|manifest| manifest.blocks);
-    let blocks = blocks.map(|entry| Block { published: true, ..entry.block });
+    let manifest = manifest.filter(|manifest| manifest.identity().difference(identity).is_none());
+    let blocks = manifest.into_iter().flat_map(Manifest::into_blocks);
     blocks.filter(|block| block.is_sound() && known(&block.name(), &block.sha256)).collect()
 }
 

@@ -13,6 +13,7 @@ mod blocks;
 mod disk;
 mod hidden;
 mod journal;
+mod manifest;
 mod name;
 mod record;
 #[cfg(test)]
@@ -25,9 +26,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-pub use blocks::{Block, Blocks, MANIFEST, Manifest};
+pub use blocks::Blocks;
 use hidden::Hidden;
 use journal::{Journal, Left, Replacement};
+pub use manifest::{Block, MANIFEST, Manifest};
 use name::{Found, Name, look};
 use record::Record;
 

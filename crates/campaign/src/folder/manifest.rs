@@ -1,0 +1,130 @@
+//! What a complete campaign tells of itself: what it is, its columns, its blocks.
+
+use serde::{Deserialize, Serialize};
+use std::{fs, io, ops::Range, path::Path};
+
+use super::name::Name;
+use crate::{column::Column, identity::Identity};
+
+/// The file that tells of the blocks of a complete campaign.
+pub const MANIFEST: &str = "campaign.json";
+
+/// A block that is finished.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Block {
+    pub(super) model: String,
+    pub(super) first_run: u64,
+    pub(super) runs: u64,
+    pub(super) bytes: u64,
+    pub(super) sha256: String,
+    /// Whether it is in its place.
+    #[serde(skip)]
+    pub(super) published: bool,
+}
+
+/// What `campaign.json` tells.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    gyradius_version: String,
+    /// What the runs depend on.
+    identity: Identity,
+    columns: Vec<ManifestColumn>,
+    blocks: Vec<ManifestBlock>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct ManifestColumn {
+    column: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    unit: Option<String>,
+    meaning: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct ManifestBlock {
+    file: String,
+    #[serde(flatten)]
+    block: Block,
+}
+
+impl Block {
+    /// Of some runs, before it is written.
+    pub(super) fn of(model: &str, runs: &Range<u64>) -> Self {
+        Self {
+            model: model.to_owned(),
+            first_run: runs.start,
+            runs: runs.end - runs.start,
+            bytes: 0,
+            sha256: String::new(),
+            published: false,
+        }
+    }
+
+    /// The runs.
+    pub(super) fn range(&self) -> Range<u64> {
+        self.first_run..self.first_run + self.runs
+    }
+
+    /// Whether a record that nobody has meddled with can tell of it.
+    pub(super) fn is_sound(&self) -> bool {
+        let end = self.first_run.checked_add(self.runs);
+        let name = |end| format!("runs/{}/{:09}-{end:09}.parquet", self.model, self.first_run);
+        self.runs > 0 && end.is_some_and(|end| Name::new(&name(end)).is_ok())
+    }
+
+    /// Its file: the first run and the last one.
+    pub(super) fn file(&self) -> String {
+        format!("{:09}-{:09}.parquet", self.first_run, self.range().end - 1)
+    }
+
+    /// Its place in the folder of a complete campaign.
+    pub(super) fn name(&self) -> String {
+        format!("runs/{}/{}", self.model, self.file())
+    }
+}
+
+impl Manifest {
+    /// Of a campaign with these blocks.
+    pub(super) fn new(identity: &Identity, columns: &[Column], blocks: Vec<Block>) -> Self {
+        let column = |column: &Column| ManifestColumn {
+            column: column.name().to_owned(),
+            unit: column.unit().map(str::to_owned),
+            meaning: column.meaning().to_owned(),
+        };
+        let block = |block: Block| ManifestBlock { file: block.name(), block };
+        Self {
+            gyradius_version: env!("CARGO_PKG_VERSION").to_owned(),
+            identity: identity.clone(),
+            columns: columns.iter().map(column).collect(),
+            blocks: blocks.into_iter().map(block).collect(),
+        }
+    }
+
+    /// The blocks, which are in their places.
+    pub(super) fn into_blocks(self) -> impl Iterator<Item = Block> {
+        self.blocks.into_iter().map(|entry| Block { published: true, ..entry.block })
+    }
+
+    /// Reads that of the campaign in a folder.
+    ///
+    /// # Errors
+    /// There is none, or it is none.
+    pub fn read(folder: &Path) -> io::Result<Self> {
+        Ok(serde_json::from_slice(&fs::read(folder.join(MANIFEST))?)?)
+    }
+
+    /// The file of the block that has a run of a model, from the folder on, and the row of the run in it.
+    #[must_use]
+    pub fn find(&self, model: &str, run: u64) -> Option<(&str, u64)> {
+        let has = |b: &&ManifestBlock| b.block.model == model && b.block.range().contains(&run);
+        let found = self.blocks.iter().find(has)?;
+        Some((&found.file, run - found.block.first_run))
+    }
+
+    /// What the runs depend on.
+    #[must_use]
+    pub fn identity(&self) -> &Identity {
+        &self.identity
+    }
+}
