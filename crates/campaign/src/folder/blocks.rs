@@ -135,7 +135,8 @@ impl Blocks {
         begin(hidden, &folder, identity)?;
         let path = folder.join(RECORD);
         let mut blocks = published(hidden.place(), record, identity);
-        blocks.extend(recorded(&path)?);
+        let unfinished = recorded(&path)?;
+        blocks.extend(unfinished.clone());
         let record = OpenOptions::new().append(true).create(true).open(&path)?;
         let place = hidden.place().to_owned();
         let state = Mutex::new(State { blocks: Vec::new(), record });
@@ -143,6 +144,7 @@ impl Blocks {
         let mut opened = Self { place, folder, identity, state, damaged: Vec::new() };
         opened.verify(blocks, &hidden.join(DAMAGED), threads)?;
         opened.limit(runs, force)?;
+        opened.tidy(&unfinished)?;
         Ok(opened)
     }
 
@@ -192,12 +194,18 @@ impl Blocks {
             let difference = Difference { field, there: said(most), here: said(runs) };
             return Err(Problem::Unfinished { difference });
         }
-        let beyond = |block: &Block| block.range().end > runs;
-        let (dropped, kept): (Vec<_>, Vec<_>) = state.blocks.drain(..).partition(beyond);
-        if dropped.iter().any(|block| !block.published) {
+        state.blocks.retain(|block| block.range().end <= runs);
+        Ok(())
+    }
+
+    /// Removes what is recorded but not taken up: dropped, damaged, or in its place already.
+    fn tidy(&self, recorded: &[Block]) -> Result<(), Problem> {
+        let mut state = self.locked();
+        let kept: Vec<&Block> = state.blocks.iter().filter(|block| !block.published).collect();
+        let dropped: Vec<&Block> = recorded.iter().filter(|block| !kept.contains(block)).collect();
+        if !dropped.is_empty() {
             // The record first: a file that it does not tell of is none of the blocks.
-            let kept = kept.iter().filter(|block| !block.published).map(serde_json::to_string);
-            let lines = kept.collect::<Result<Vec<_>, _>>()?;
+            let lines = kept.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
             let (path, part) = (self.folder.join(RECORD), self.folder.join("record.part"));
             disk::remove_file(&part)?;
             let mut file = disk::create_file(&part)?;
@@ -205,12 +213,14 @@ impl Blocks {
             disk::sync_file(&part)?;
             disk::replace_file(&part, &path)?;
             disk::sync_folder(&self.folder)?;
-            state.record = OpenOptions::new().append(true).open(&path)?;
-            for block in dropped.iter().filter(|block| !block.published) {
-                disk::remove_file(&self.path(block))?;
+            let files: BTreeSet<PathBuf> = kept.iter().map(|block| self.path(block)).collect();
+            for path in dropped.iter().map(|block| self.path(block)) {
+                if !files.contains(&path) {
+                    disk::remove_file(&path)?;
+                }
             }
+            state.record = OpenOptions::new().append(true).open(&path)?;
         }
-        state.blocks = kept;
         Ok(())
     }
 
