@@ -94,7 +94,8 @@ impl Campaign {
         let contents = Contents::new("study", "mark", certain, same)
             .keeping(|name| in_place.get().is_some_and(|all| all.contains(name)))
             .trusting(|name| name.starts_with("runs/"));
-        let pool = threads(Some(2)).unwrap();
+        // Where it is to be stopped, one thread, which ends a block before the next: what is finished is certain.
+        let pool = threads(Some(if stop_after.is_some() { 1 } else { 2 })).unwrap();
         let mut folder =
             Folder::prepare(&self.place, &contents, force).map_err(|e| e.to_string())?;
         let blocks =

@@ -99,7 +99,8 @@ impl fmt::Debug for Contents<'_> {
     }
 }
 
-/// A folder being prepared. Dropped before it is published, it leaves no trace.
+/// A folder being prepared. Dropped before it is published, it leaves no trace but the blocks of runs that were
+/// finished.
 #[derive(Debug)]
 pub struct Folder<'a> {
     contents: &'a Contents<'a>,
