@@ -47,7 +47,7 @@ pub struct Row<'a> {
 }
 
 /// Columns before those of the simulation.
-pub(crate) const OWN: usize = 3;
+const OWN: usize = 3;
 
 /// What a column of a table is filled from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -87,6 +87,11 @@ impl Replacement {
 }
 
 impl Journal {
+    fn of(path: PathBuf, file: File) -> Self {
+        let (drafts, hashes) = (Vec::new(), BTreeMap::new());
+        Self { path, file, drafts, hashes, replacement: None, settled: false }
+    }
+
     /// Begins a draft.
     pub(super) fn start(hidden: &Hidden) -> Result<Self, Problem> {
         for name in [DRAFT, ASIDE] {
@@ -98,14 +103,7 @@ impl Journal {
         }
         let path = hidden.join(JOURNAL);
         let file = disk::create_file(&path)?;
-        let journal = Self {
-            path,
-            file,
-            drafts: Vec::new(),
-            hashes: BTreeMap::new(),
-            replacement: None,
-            settled: false,
-        };
+        let journal = Self::of(path, file);
         disk::sync_folder(&hidden.join(""))?;
         disk::sync_folder(hidden.place())?;
         disk::create_folder(&hidden.join(DRAFT))?;
@@ -117,14 +115,7 @@ impl Journal {
         let Some(lines) = read(hidden.place())? else { return Ok(None) };
         let path = hidden.join(JOURNAL);
         let file = OpenOptions::new().append(true).open(&path)?;
-        let mut journal = Self {
-            path,
-            file,
-            drafts: Vec::new(),
-            hashes: BTreeMap::new(),
-            replacement: None,
-            settled: false,
-        };
+        let mut journal = Self::of(path, file);
         for line in lines {
             match line {
                 Line::Draft(name) => journal.drafts.push(name),
@@ -143,12 +134,7 @@ impl Journal {
 
     /// Makes a file in the draft.
     pub(super) fn create(&mut self, hidden: &Hidden, name: Name) -> Result<File, Problem> {
-        self.append(&Line::Draft(name.clone()))?;
-        let draft = hidden.join(DRAFT);
-        make_folders(&draft, &name)?;
-        let path = name.below(&draft);
-        self.drafts.push(name);
-        Ok(disk::create_file(&path)?)
+        Ok(disk::create_file(&self.announce(hidden, name)?)?)
     }
 
     /// Links a file that is whole, and has a hash, into the draft; copies it where files cannot be linked.
@@ -159,14 +145,20 @@ impl Journal {
         from: &Path,
         hash: &str,
     ) -> Result<(), Problem> {
-        self.append(&Line::Draft(name.clone()))?;
-        let draft = hidden.join(DRAFT);
-        make_folders(&draft, &name)?;
-        let to = name.below(&draft);
-        self.drafts.push(name.clone());
+        let to = self.announce(hidden, name.clone())?;
         disk::link(from, &to)?;
         self.hashes.insert(name, hash.to_owned());
         Ok(())
+    }
+
+    /// Tells of a file before it is made in the draft, and where that will be.
+    fn announce(&mut self, hidden: &Hidden, name: Name) -> Result<PathBuf, Problem> {
+        self.append(&Line::Draft(name.clone()))?;
+        let draft = hidden.join(DRAFT);
+        make_folders(&draft, &name)?;
+        let path = name.below(&draft);
+        self.drafts.push(name);
+        Ok(path)
     }
 
     /// The files of the draft, and the folders that have to be made for them.
