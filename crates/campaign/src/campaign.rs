@@ -16,8 +16,8 @@ use crate::{
     table::Table,
 };
 
-/// Numbers that are kept in memory, so that small campaigns are not read again: 128 MiB.
-const HELD: u64 = 1 << 24;
+/// Numbers that are kept in memory, so that small campaigns are not read again: 64 MiB.
+const HELD: u64 = 1 << 23;
 
 /// How the runs of a campaign are done.
 #[derive(Clone, Copy, Debug)]
@@ -30,17 +30,22 @@ pub struct Plan<'a> {
     pub stop: Option<&'a AtomicBool>,
 }
 
+/// Looks at a block of the runs of a simulation, by its place among all.
+pub type Look<'a> = &'a (dyn Fn(usize, &Table) + Sync);
+
 /// Does the runs of some simulations that are in no block yet, each simulation being a model with a name. To be called
-/// in the threads that are to do it; `progress` is told how many runs of all models are done.
+/// in the threads that are to do it; `progress` is told how many runs of all models are done. `look` sees every block
+/// once, in any order: those that are done as soon as they are on the disk, the others as they are read.
 ///
 /// # Errors
-/// A simulation writes rows that do not fit its columns, or not one for each run; a block cannot be written; the
+/// A block that was there cannot be read; a simulation writes rows that do not fit its columns, or not one for each run; a block cannot be written; the
 /// campaign is stopped. Blocks that were finished stay.
 pub fn run_missing<S: Simulation>(
     simulations: &[(&str, S)],
     blocks: &Blocks,
     plan: Plan<'_>,
     progress: Progress<'_>,
+    look: Look<'_>,
 ) -> Result<Vec<Runs>, CampaignError> {
     let stopped = || plan.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
     let tables =
@@ -58,7 +63,10 @@ pub fn run_missing<S: Simulation>(
     }
     let room = AtomicU64::new(HELD);
     let mut all = Vec::new();
-    for (((_, simulation), empty), missing) in simulations.iter().zip(&tables).zip(missing) {
+    for (place, (((_, simulation), empty), missing)) in
+        simulations.iter().zip(&tables).zip(missing).enumerate()
+    {
+        blocks.runs(empty, Vec::new()).scan(|block| look(place, block))?;
         let held = Mutex::new(Vec::new());
         missing.into_par_iter().try_for_each(|runs| {
             if stopped() {
@@ -69,6 +77,7 @@ pub fn run_missing<S: Simulation>(
                 return Err(CampaignError::Stopped);
             }
             blocks.write(&table)?;
+            look(place, &table);
             let numbers = (table.len() * table.columns().len()) as u64;
             let fits = room
                 .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |room| {

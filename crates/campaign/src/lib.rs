@@ -73,7 +73,7 @@ mod surveys;
 mod table;
 mod values;
 
-pub use campaign::{Plan, run_missing};
+pub use campaign::{Look, Plan, run_missing};
 pub use cell::Cell;
 pub use column::{Column, Kind};
 pub use failure::Failure;
@@ -89,7 +89,7 @@ pub use share::{Share, counted};
 pub use simulation::{CampaignError, Progress, Simulation, run, threads};
 pub use stored::read_row;
 pub use streams::Streams;
-pub use surveys::Surveys;
+pub use surveys::{FirstLook, Surveys};
 pub use table::{Row, Table, TableError};
 pub use values::Numbers;
 

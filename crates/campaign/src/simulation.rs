@@ -9,6 +9,7 @@ use std::{
 use crate::{
     column::Column,
     folder::FolderError,
+    runs::RunsError,
     table::{Table, TableError},
 };
 
@@ -132,6 +133,9 @@ pub enum CampaignError {
         /// How many rows it wrote.
         rows: usize,
     },
+    /// A block of runs that was there cannot be read.
+    #[error(transparent)]
+    Runs(#[from] RunsError),
     /// A block of runs cannot be written.
     #[error(transparent)]
     Folder(#[from] FolderError),

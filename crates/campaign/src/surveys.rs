@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use std::{collections::BTreeMap, sync::Mutex};
 
 use crate::{
-    column::Kind,
+    column::{Column, Kind},
     runs::{Runs, RunsError},
     sample::surveyed,
     table::Table,
@@ -35,51 +35,51 @@ struct Counts {
     failures: Tally,
 }
 
-impl Surveys {
-    /// Of some runs; intervals of quantiles have this confidence.
-    ///
-    /// # Errors
-    /// A block cannot be read.
-    pub fn new(runs: &Runs, confidence: Confidence) -> Result<Self, RunsError> {
-        Self::with(runs, confidence, |_| (), |()| {})
-    }
+/// Surveys whose first look at the runs is under way.
+#[derive(Debug)]
+pub struct FirstLook {
+    surveys: Surveys,
+    empty: Vec<Option<Pass>>,
+    gathered: Mutex<(Vec<Option<Pass>>, Counts)>,
+}
 
-    /// As [`new`](Self::new), and looks at every block once for whatever else is of interest; `merge` takes it up,
-    /// in any order.
-    ///
-    /// # Errors
-    /// A block cannot be read.
-    pub fn with<T: Send>(
-        runs: &Runs,
-        confidence: Confidence,
-        look: impl Fn(&Table) -> T + Sync,
-        mut merge: impl FnMut(T) + Send,
-    ) -> Result<Self, RunsError> {
-        let of_numbers = runs.columns().iter().filter(|column| column.kind() == Kind::Number);
-        let mut surveys = Self {
-            model: runs.model().to_owned(),
+impl FirstLook {
+    /// Of the runs of a model, at most so many, in these columns; intervals of quantiles have this confidence.
+    #[must_use]
+    pub fn new(model: &str, columns: &[Column], runs: u64, confidence: Confidence) -> Self {
+        let of_numbers = columns.iter().filter(|column| column.kind() == Kind::Number);
+        let surveys = Surveys {
+            model: model.to_owned(),
             numbers: of_numbers
-                .map(|column| (column.name().to_owned(), surveyed(runs.end(), confidence)))
+                .map(|column| (column.name().to_owned(), surveyed(runs, confidence)))
                 .collect(),
             counts: Counts::default(),
         };
-        let (first, mut all) = (surveys.passes(), Counts::default());
-        let gathered = Mutex::new((first.clone(), &mut all, &mut merge));
-        runs.scan(|block| {
-            let (passes, counts, seen) =
-                (surveys.gather(&first, block), Counts::of(block), look(block));
-            if let Ok(mut gathered) = gathered.lock() {
-                let (whole, all, merge) = &mut *gathered;
-                take_up(whole, passes);
-                all.merge(counts);
-                merge(seen);
-            }
-        })?;
+        let empty = surveys.passes();
+        Self { surveys, gathered: Mutex::new((empty.clone(), Counts::default())), empty }
+    }
+
+    /// Looks at a block, once at each and in any order.
+    pub fn look(&self, block: &Table) {
+        let (passes, counts) = (self.surveys.gather(&self.empty, block), Counts::of(block));
         // Nobody panics with the lock in hand.
-        if let Ok((whole, ..)) = gathered.into_inner() {
-            surveys.advance(whole);
+        if let Ok(mut gathered) = self.gathered.lock() {
+            let (whole, all) = &mut *gathered;
+            take_up(whole, passes);
+            all.merge(counts);
         }
-        surveys.counts = all;
+    }
+
+    /// The surveys of the runs whose blocks have all been looked at, which are read again.
+    ///
+    /// # Errors
+    /// A block cannot be read.
+    pub fn finish(self, runs: &Runs) -> Result<Surveys, RunsError> {
+        let mut surveys = self.surveys;
+        if let Ok((whole, counts)) = self.gathered.into_inner() {
+            surveys.advance(whole);
+            surveys.counts = counts;
+        }
         loop {
             let passes = surveys.passes();
             if passes.iter().all(Option::is_none) {
@@ -96,6 +96,18 @@ impl Surveys {
                 surveys.advance(whole);
             }
         }
+    }
+}
+
+impl Surveys {
+    /// Of some runs; intervals of quantiles have this confidence.
+    ///
+    /// # Errors
+    /// A block cannot be read.
+    pub fn new(runs: &Runs, confidence: Confidence) -> Result<Self, RunsError> {
+        let first = FirstLook::new(runs.model(), runs.columns(), runs.end(), confidence);
+        runs.scan(|block| first.look(block))?;
+        first.finish(runs)
     }
 
     /// What is to be gathered next of each column of numbers.
@@ -179,8 +191,8 @@ impl Counts {
             match column.kind() {
                 Kind::Text => {
                     let mut tally = Tally::default();
-                    for (run, kind) in block.kinds(column.name()) {
-                        tally.add(kind, run, 1);
+                    for (kind, first, count) in block.kinds(column.name()) {
+                        tally.add(kind, first, count);
                     }
                     counts.texts.insert(column.name().to_owned(), tally);
                 }

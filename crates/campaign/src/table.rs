@@ -114,7 +114,7 @@ impl Table {
                 break;
             };
             if !values.push(&cell)
-                || (cell == Cell::Null && !self.columns[OWN + filled].is_optional())
+                || (matches!(cell, Cell::Null) && !self.columns[OWN + filled].is_optional())
             {
                 let column = self.columns[OWN + filled].name().to_owned();
                 refused = Some(TableError::Cell { column, cell: format!("{cell:?}") });
@@ -246,14 +246,15 @@ impl Table {
         texts.into_iter().flat_map(Texts::present)
     }
 
-    /// Of which kind the texts in a column of the simulation are, of the runs that have one.
-    pub(crate) fn kinds(&self, column: &str) -> impl Iterator<Item = (u64, &str)> {
+    /// The kinds of the texts in a column of the simulation, each with the first run that has such a text and how many
+    /// have.
+    pub(crate) fn kinds(&self, column: &str) -> impl Iterator<Item = (&str, u64, u64)> {
         let texts = match self.column(column) {
             Some(Values::Texts(texts)) => Some(texts),
             Some(Values::Numbers(_) | Values::Integers(_) | Values::Flags(_)) | None => None,
         };
-        let kind = move |place: usize| Some((self.first + place as u64, texts?.get(place)?.1));
-        (0..self.len).filter_map(kind)
+        let counted = texts.into_iter().flat_map(Texts::counted);
+        counted.map(|(kind, place, count)| (kind, self.first + place as u64, count))
     }
 
     fn column(&self, column: &str) -> Option<&Values> {
@@ -273,6 +274,7 @@ impl Values {
     }
 
     /// Adds a cell and says whether it goes there.
+    #[inline]
     fn push(&mut self, cell: &Cell<'_>) -> bool {
         match (self, cell) {
             (Self::Numbers(numbers), Cell::Number(number)) => numbers.push(Some(*number)),

@@ -12,6 +12,7 @@ pub struct Numbers {
 
 impl Numbers {
     /// That of the next run.
+    #[inline]
     pub(crate) fn push(&mut self, value: Option<f64>) {
         let (word, bit) = (self.values.len() / 64, self.values.len() % 64);
         if bit == 0 {
@@ -103,6 +104,21 @@ impl Texts {
         (0..self.of_run.len()).filter_map(|run| self.get(run))
     }
 
+    /// The kind of each text that runs have, with the place of the first of them and how many have it.
+    pub(crate) fn counted(&self) -> impl Iterator<Item = (&str, usize, u64)> {
+        let mut counted = vec![(0, 0); self.texts.len()];
+        for (run, place) in self.of_run.iter().enumerate() {
+            if let Some((first, count)) = place.map(|place| &mut counted[place as usize]) {
+                *first = if *count == 0 { run } else { *first };
+                *count += 1;
+            }
+        }
+        let counted = self.texts.iter().zip(counted);
+        counted.filter_map(|((_, kind), (first, count))| {
+            (count > 0).then_some((kind.as_str(), first, count))
+        })
+    }
+
     pub(crate) fn append(&mut self, other: &Self) {
         for run in 0..other.of_run.len() {
             self.push(other.get(run));
@@ -142,6 +158,20 @@ mod tests {
                 prop_assert_eq!(texts.get(run), expected);
             }
             prop_assert_eq!(numbers.get(runs.len()), None);
+            let mut counted: Vec<_> = texts.counted().collect();
+            counted.sort_by_key(|(_, first, _)| *first);
+            let mut expected: Vec<(&str, usize, u64)> = Vec::new();
+            let mut known: Vec<&str> = Vec::new();
+            for (run, text) in runs.iter().enumerate().filter_map(|(run, (_, text))| Some((run, text.as_deref()?))) {
+                match known.iter().position(|known| *known == text) {
+                    Some(place) => expected[place].2 += 1,
+                    None => {
+                        known.push(text);
+                        expected.push((&text[..text.len().min(1)], run, 1));
+                    }
+                }
+            }
+            prop_assert_eq!(counted, expected);
             let present: Vec<u64> = runs.iter().filter_map(|(x, _)| x.map(f64::to_bits)).collect();
             prop_assert_eq!(numbers.present().map(f64::to_bits).collect::<Vec<_>>(), present);
         }

@@ -8,12 +8,12 @@ use gyradius_statistics::Confidence;
 use proptest::prelude::*;
 use rand::RngExt;
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
     fs,
     ops::Range,
     path::{Path, PathBuf},
     sync::{
-        OnceLock,
+        Mutex, OnceLock,
         atomic::{AtomicBool, AtomicU64, Ordering},
     },
 };
@@ -111,9 +111,16 @@ impl Campaign {
                 stop_after.is_some_and(|most| simulation.done.load(Ordering::Relaxed) >= most);
             stop.fetch_or(enough, Ordering::Relaxed);
         };
-        let done = pool.install(|| run_missing(&simulations, &blocks, plan, &progress));
+        let seen = Mutex::new(BTreeMap::new());
+        let look = |_, block: &Table| {
+            let before = seen.lock().unwrap().insert(block.first(), block.len() as u64);
+            assert_eq!(before, None, "a block is looked at once");
+        };
+        let done = pool.install(|| run_missing(&simulations, &blocks, plan, &progress, &look));
         let simulated = simulation.done.load(Ordering::Relaxed);
         let done = done.inspect_err(|_| blocks.abandon()).map_err(|e| e.to_string())?;
+        let ends = |end, (first, len): (&u64, &u64)| (*first == end).then_some(first + len);
+        assert_eq!(seen.into_inner().unwrap().iter().try_fold(0, ends), Some(runs));
         folder.adopt(&blocks, done[0].columns()).map_err(|e| e.to_string())?;
         folder.write("mark", &text).map_err(|e| e.to_string())?;
         folder.publish().map_err(|e| e.to_string())?;

@@ -77,6 +77,12 @@ impl UnitSum {
         self.fine += other.fine;
     }
 
+    /// Takes away numbers that are among those added.
+    pub(crate) fn subtract(&mut self, other: &Self) {
+        self.coarse -= other.coarse;
+        self.fine -= other.fine;
+    }
+
     pub(crate) fn value(&self) -> f64 {
         // Whole multiples of 2⁻⁶⁰ go over to the first part, so that no digit is lost to the second rounding.
         let whole = self.coarse + (self.fine >> 60);

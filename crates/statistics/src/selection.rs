@@ -1,9 +1,14 @@
-//! Order statistics of values that are read in passes: exact, without sorting or keeping them.
+//! Order statistics of values that are read in passes, and sums of the deviations below them: exact, without sorting
+//! or keeping the values.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::centred::{Centred, UnitSum};
+
 /// Values that are kept between two edges, at most.
 const KEPT: usize = 8192;
+/// Parts of a bracket whose values are kept, at most.
+const KEPT_PARTS: f64 = 8.0;
 /// Parts that a range of too many values is divided into.
 const PARTS: u64 = 64;
 /// Standard deviations of a rank in a random sample that its bracket reaches to either side.
@@ -25,8 +30,9 @@ pub(crate) fn number(key: i64) -> f64 {
 #[derive(Clone, Debug)]
 pub(crate) struct Selection {
     n: u64,
-    /// Ranks from 0.
-    found: BTreeMap<u64, f64>,
+    centred: Option<Centred>,
+    /// By ranks from 0: the value, and the sum of the deviations of all values of lower ranks.
+    found: BTreeMap<u64, (f64, UnitSum)>,
     open: BTreeSet<u64>,
     /// Keys of the smallest and the largest value.
     ends: (i64, i64),
@@ -39,28 +45,49 @@ pub(crate) struct Selection {
 pub(crate) struct Count {
     /// Increasing keys; part `i` is from edge `i − 1` on to below edge `i`.
     edges: Vec<i64>,
-    counts: Vec<u64>,
-    /// Of the parts whose values are kept: as many as there is room for.
-    kept: BTreeMap<usize, Vec<i64>>,
+    parts: Vec<Part>,
+}
+
+/// The values between two edges.
+#[derive(Clone, Debug, Default)]
+struct Part {
+    count: u64,
+    /// Of their deviations.
+    sum: UnitSum,
+    /// As many as there is room for, if they are kept.
+    kept: Option<Vec<i64>>,
 }
 
 impl Selection {
-    /// Of `n` values from a smallest to a largest, of which a sorted sample is known.
-    pub(crate) fn new(n: u64, ranks: &BTreeSet<u64>, ends: (f64, f64), sample: &[f64]) -> Self {
+    /// Of `n` values from a smallest to a largest, all the same if there is no map to deviations; of them a sorted
+    /// sample is known.
+    pub(crate) fn new(
+        n: u64,
+        ranks: &BTreeSet<u64>,
+        ends: (f64, f64),
+        centred: Option<Centred>,
+        sample: &[f64],
+    ) -> Self {
         let mut selection = Self {
             n,
+            centred,
             found: BTreeMap::new(),
             open: ranks.iter().copied().filter(|rank| *rank < n).collect(),
             ends: (key(ends.0), key(ends.1)),
             next: Count::default(),
         };
-        if ends.0 == ends.1 {
-            selection.found = selection.open.iter().map(|rank| (*rank, ends.0)).collect();
+        if selection.ends.0 == selection.ends.1 {
+            let same = |rank: &u64| (*rank, (ends.0, UnitSum::default()));
+            selection.found = selection.open.iter().map(same).collect();
             selection.open.clear();
         } else if sample.len() as u64 == n {
-            let at = |rank: &u64| (*rank, sample[*rank as usize]);
-            selection.found = selection.open.iter().map(at).collect();
-            selection.open.clear();
+            let mut below = UnitSum::default();
+            for (rank, x) in (0..).zip(sample) {
+                if selection.open.remove(&rank) {
+                    selection.found.insert(rank, (*x, below));
+                }
+                below.add(centred.map_or(0.0, |centred| centred.map(*x)));
+            }
         } else {
             let ranges = selection.open.iter().map(|rank| selection.bracket(*rank, sample));
             selection.next = Count::new(&ranges.collect::<Vec<_>>());
@@ -87,7 +114,7 @@ impl Selection {
         if let Some(last) = edges.last_mut() {
             *last = last.saturating_add(1).min(self.ends.1 + 1);
         }
-        Range { edges, keeps: parts == 1.0 }
+        Range { edges, keeps: parts <= KEPT_PARTS }
     }
 
     /// What is to be counted next; none if all is known.
@@ -97,37 +124,54 @@ impl Selection {
 
     /// Takes up what was counted of all values.
     pub(crate) fn advance(&mut self, count: &Count) {
-        let mut below = 0;
+        let (mut below, mut sum) = (0, UnitSum::default());
         let mut ranges = Vec::new();
-        for (part, inside) in count.counts.iter().enumerate() {
-            let ranks = self.open.range(below..below + inside);
+        for (place, part) in count.parts.iter().enumerate() {
+            let ranks = self.open.range(below..below + part.count);
             let ranks: Vec<u64> = ranks.copied().collect();
             if !ranks.is_empty() {
-                let before = part.checked_sub(1).map(|i| count.edges[i]);
+                let before = place.checked_sub(1).map(|i| count.edges[i]);
                 let edges = (
                     before.unwrap_or(self.ends.0),
-                    count.edges.get(part).copied().unwrap_or(self.ends.1 + 1),
+                    count.edges.get(place).copied().unwrap_or(self.ends.1 + 1),
                 );
-                match count.values(part, edges) {
-                    Some(values) => {
-                        for rank in ranks {
-                            let place = (rank - below) as usize;
-                            let value = if values.len() == 1 { values[0] } else { values[place] };
-                            self.found.insert(rank, number(value));
-                            self.open.remove(&rank);
+                if let Some(values) = part.values(edges) {
+                    let (mut lower, mut added) = (sum, 0);
+                    for rank in ranks {
+                        for (value, times) in values.between(added, rank - below) {
+                            lower.add_times(self.deviation(value), times);
                         }
+                        added = rank - below;
+                        self.found.insert(rank, (number(values.at(added)), lower));
+                        self.open.remove(&rank);
                     }
-                    None => ranges.push(Range::of(edges, *inside)),
+                } else {
+                    ranges.push(Range::of(edges, part.count));
                 }
             }
-            below += inside;
+            below += part.count;
+            sum.merge(&part.sum);
         }
         self.next = Count::new(&ranges);
     }
 
-    /// The value of a rank from 0, if it was wanted and all is known.
+    fn deviation(&self, key: i64) -> f64 {
+        self.centred.map_or(0.0, |centred| centred.map(number(key)))
+    }
+
+    /// The value of a rank from 0, if it was wanted and is known.
     pub(crate) fn value(&self, rank: u64) -> Option<f64> {
-        self.found.get(&rank).copied()
+        self.found.get(&rank).map(|(value, _)| *value)
+    }
+
+    /// The sum of the deviations of the values from one rank to another, if both were wanted and are known.
+    pub(crate) fn deviations(&self, first: u64, last: u64) -> Option<f64> {
+        let (_, before) = self.found.get(&first)?;
+        let (value, up_to) = self.found.get(&last)?;
+        let mut sum = *up_to;
+        sum.add(self.deviation(key(*value)));
+        sum.subtract(before);
+        Some(sum.value())
     }
 }
 
@@ -163,23 +207,25 @@ impl Count {
     fn new(ranges: &[Range]) -> Self {
         let edges: BTreeSet<i64> = ranges.iter().flat_map(|range| range.edges.clone()).collect();
         let edges: Vec<i64> = edges.into_iter().collect();
-        let mut kept = BTreeMap::new();
+        let mut parts = vec![Part::default(); edges.len() + 1];
         for range in ranges.iter().filter(|range| range.keeps) {
             for pair in range.edges.windows(2) {
-                let parts = edges.partition_point(|edge| *edge <= pair[0])
+                let kept = edges.partition_point(|edge| *edge <= pair[0])
                     ..edges.partition_point(|edge| *edge < pair[1]) + 1;
-                kept.extend(parts.map(|part| (part, Vec::new())));
+                parts[kept].iter_mut().for_each(|part| part.kept = Some(Vec::new()));
             }
         }
-        Self { counts: vec![0; edges.len() + 1], edges, kept }
+        Self { edges, parts }
     }
 
+    /// Counts a value with its deviation.
     #[inline]
-    pub(crate) fn add(&mut self, x: f64) {
+    pub(crate) fn add(&mut self, x: f64, deviation: f64) {
         let key = key(x);
-        let part = self.edges.partition_point(|edge| *edge <= key);
-        self.counts[part] += 1;
-        if let Some(kept) = self.kept.get_mut(&part)
+        let part = &mut self.parts[self.edges.partition_point(|edge| *edge <= key)];
+        part.count += 1;
+        part.sum.add(deviation);
+        if let Some(kept) = &mut part.kept
             && kept.len() < KEPT
         {
             kept.push(key);
@@ -187,24 +233,53 @@ impl Count {
     }
 
     pub(crate) fn merge(&mut self, other: &Self) {
-        for (count, more) in self.counts.iter_mut().zip(&other.counts) {
-            *count += more;
+        for (part, more) in self.parts.iter_mut().zip(&other.parts) {
+            part.count += more.count;
+            part.sum.merge(&more.sum);
+            if let (Some(kept), Some(more)) = (&mut part.kept, &more.kept) {
+                let room = KEPT - kept.len();
+                kept.extend(more.iter().take(room));
+            }
         }
-        for (kept, more) in self.kept.values_mut().zip(other.kept.values()) {
-            let room = KEPT - kept.len();
-            kept.extend(more.iter().take(room));
+    }
+}
+
+/// Keys of the values of a part in order.
+enum Values {
+    /// All the same.
+    Same(i64),
+    Kept(Vec<i64>),
+}
+
+impl Part {
+    /// Its values, if all are known.
+    fn values(&self, (first, last): (i64, i64)) -> Option<Values> {
+        if last.abs_diff(first) == 1 {
+            return Some(Values::Same(first));
+        }
+        let kept = self.kept.as_ref().filter(|kept| kept.len() as u64 == self.count)?;
+        let mut values = kept.clone();
+        values.sort_unstable();
+        Some(Values::Kept(values))
+    }
+}
+
+impl Values {
+    fn at(&self, place: u64) -> i64 {
+        match self {
+            Self::Same(value) => *value,
+            Self::Kept(values) => values[place as usize],
         }
     }
 
-    /// The values of a part in order, or the one value that all of them are; none if not all are known.
-    fn values(&self, part: usize, (first, last): (i64, i64)) -> Option<Vec<i64>> {
-        if last.abs_diff(first) == 1 {
-            return Some(vec![first]);
+    /// The values from one place to before another, each with how many times it counts.
+    fn between(&self, first: u64, end: u64) -> Vec<(i64, u64)> {
+        match self {
+            Self::Same(value) => vec![(*value, end - first)],
+            Self::Kept(values) => {
+                values[first as usize..end as usize].iter().map(|value| (*value, 1)).collect()
+            }
         }
-        let kept = self.kept.get(&part).filter(|kept| kept.len() as u64 == self.counts[part])?;
-        let mut values = kept.clone();
-        values.sort_unstable();
-        Some(values)
     }
 }
 
@@ -214,8 +289,10 @@ mod tests {
 
     use super::*;
 
+    use crate::ExactSum;
+
     /// What selection finds, in how many passes, of values in parts.
-    fn select(values: &[f64], ranks: &BTreeSet<u64>, sample: &[f64]) -> (Vec<Option<f64>>, u32) {
+    fn select(values: &[f64], ranks: &BTreeSet<u64>, sample: &[f64]) -> (Selection, u32) {
         let mut sample = sample.to_vec();
         sample.sort_by(f64::total_cmp);
         let order = |a: &f64, b: &f64| a.total_cmp(b);
@@ -223,20 +300,32 @@ mod tests {
             values.iter().copied().min_by(order).unwrap_or(f64::NAN),
             values.iter().copied().max_by(order).unwrap_or(f64::NAN),
         );
-        let mut selection = Selection::new(values.len() as u64, ranks, ends, &sample);
+        let n = values.len() as u64;
+        let centred = centred(values, ends);
+        let mut selection = Selection::new(n, ranks, ends, centred, &sample);
         let mut passes = 0;
         while let Some(empty) = selection.pass() {
             let mut whole = empty.clone();
             for part in values.chunks(1000).rev() {
                 let mut count = empty.clone();
-                part.iter().for_each(|x| count.add(*x));
+                let deviation = |x: f64| centred.map_or(0.0, |centred| centred.map(x));
+                part.iter().for_each(|x| count.add(*x, deviation(*x)));
                 whole.merge(&count);
             }
             selection.advance(&whole);
             passes += 1;
             assert!(passes < 16);
         }
-        (ranks.iter().map(|rank| selection.value(*rank)).collect(), passes)
+        (selection, passes)
+    }
+
+    fn centred(values: &[f64], (minimum, maximum): (f64, f64)) -> Option<Centred> {
+        let sum: ExactSum = values.iter().copied().collect();
+        (minimum < maximum).then(|| Centred::new(&sum, values.len() as u64, minimum, maximum))
+    }
+
+    fn found(selection: &Selection, ranks: &BTreeSet<u64>) -> Vec<Option<f64>> {
+        ranks.iter().map(|rank| selection.value(*rank)).collect()
     }
 
     fn expected(values: &[f64], ranks: &BTreeSet<u64>) -> Vec<Option<f64>> {
@@ -288,12 +377,24 @@ mod tests {
                 }
                 _ => Vec::new(),
             };
-            let (found, _) = select(&values, &ranks, &sample);
-            prop_assert_eq!(bits(&found), bits(&expected(&values, &ranks)));
+            let (selection, _) = select(&values, &ranks, &sample);
+            prop_assert_eq!(bits(&found(&selection, &ranks)), bits(&expected(&values, &ranks)));
+            // The deviations between any two of the ranks, against adding those of the sorted values.
+            let mut sorted = values.clone();
+            sorted.sort_by(f64::total_cmp);
+            let within = ranks.iter().copied().filter(|rank| *rank < sorted.len() as u64);
+            let (first, last) = (within.clone().min(), within.max());
+            if let (Some(first), Some(last)) = (first, last) {
+                let mut sum = UnitSum::default();
+                if let Some(centred) = centred(&values, (sorted[0], sorted[sorted.len() - 1])) {
+                    sorted[first as usize..=last as usize].iter().for_each(|x| sum.add(centred.map(*x)));
+                }
+                prop_assert_eq!(selection.deviations(first, last), Some(sum.value()));
+            }
         }
     }
 
-    /// A sample of a million values finds its ranks in two passes.
+    /// A sample of a million values finds its ranks in one pass.
     #[test]
     fn few_passes_are_made() {
         let values: Vec<f64> = (0..1_000_000_u32)
@@ -303,8 +404,8 @@ mod tests {
         let ranks: BTreeSet<u64> =
             [50_000, 50_001, 500_000, 950_000, 949_500, 950_500, 999_999].into_iter().collect();
         let sample: Vec<f64> = values.iter().copied().step_by(16).collect();
-        let (found, passes) = select(&values, &ranks, &sample);
-        assert_eq!(found, expected(&values, &ranks));
-        assert!(passes <= 2, "{passes}");
+        let (selection, passes) = select(&values, &ranks, &sample);
+        assert_eq!(found(&selection, &ranks), expected(&values, &ranks));
+        assert!(passes <= 1, "{passes}");
     }
 }

@@ -2,21 +2,21 @@
 
 use std::collections::BTreeSet;
 
-use crate::centred::{Centred, Powers, UnitSum};
+use crate::centred::{Centred, Powers};
 use crate::deviation::{self, trimmed};
 use crate::quantile::{between, interval_ranks, type_7_place};
-use crate::selection::{Count, Selection, key};
+use crate::selection::{Count, Selection};
 use crate::{Confidence, Deviation, ExactSum, Interval, Moments, SortedSample};
 
 /// Values of a sample that are kept, at most: of every so manieth run.
-const SAMPLE: u64 = 1 << 16;
+const SAMPLE: u64 = 1 << 15;
 
 /// What a sample of any size looks like, found in passes over its values.
 ///
 /// The values come in parts, of any size and in any order, as often as [`pass`](Self::pass) asks for them. What
 /// is found is what [`Moments`], [`Deviation`] and [`SortedSample`] find of the whole sample, to the bit: sums
 /// are exact, quantiles are order statistics found by counting and selection. The memory does not grow with the
-/// sample. Up to some ten thousands of values one pass is enough, up to millions three or four are.
+/// sample. Up to some ten thousands of values one pass is enough, up to millions two are.
 ///
 /// ```
 /// use gyradius_statistics::{Confidence, Moments, Survey};
@@ -64,8 +64,6 @@ struct Finite {
     /// None if all values are the same.
     centred: Option<Centred>,
     powers: Option<Powers>,
-    /// The deviations of the values that a trimmed mean keeps.
-    middle: Option<f64>,
     selection: Selection,
     moments: Option<Moments>,
     deviation: Option<Deviation>,
@@ -94,20 +92,10 @@ struct First {
 
 #[derive(Clone, Debug)]
 struct Later {
-    powers: Option<(Centred, Powers)>,
+    /// None if all values are the same.
+    centred: Option<Centred>,
+    powers: Option<Powers>,
     count: Option<Count>,
-    middle: Option<Middle>,
-}
-
-/// The deviations between two order statistics.
-#[derive(Clone, Debug)]
-struct Middle {
-    centred: Centred,
-    /// Keys of the first and the last value that a trimmed mean keeps.
-    ends: (i64, i64),
-    up_to_first: u64,
-    below_last: u64,
-    between: UnitSum,
 }
 
 impl Survey {
@@ -149,21 +137,11 @@ impl Survey {
             return Some(Pass(Gathered::First(Box::new(first))));
         };
         let finite = known.finite.as_ref()?;
-        let centred = finite.centred?;
-        let powers = finite.powers.is_none().then(|| (centred, Powers::default()));
+        let centred = finite.centred;
+        let powers = (centred.is_some() && finite.powers.is_none()).then(Powers::default);
         let count = finite.selection.pass().cloned();
-        let middle = match (finite.middle, finite.ends(known.n)) {
-            (None, Some(ends)) => Some(Middle {
-                centred,
-                ends,
-                up_to_first: 0,
-                below_last: 0,
-                between: UnitSum::default(),
-            }),
-            (Some(_), _) | (None, None) => None,
-        };
-        let waits = powers.is_some() || count.is_some() || middle.is_some();
-        waits.then(|| Pass(Gathered::Later(Box::new(Later { powers, count, middle }))))
+        let waits = powers.is_some() || count.is_some();
+        waits.then(|| Pass(Gathered::Later(Box::new(Later { centred, powers, count }))))
     }
 
     /// Takes up what was gathered from all values.
@@ -309,32 +287,18 @@ impl First {
             return known;
         };
         let values = known.sample.as_ref().map_or(&[][..], SortedSample::values);
-        let selection = Selection::new(n, &ranks(n), (minimum, maximum), values);
         let centred = (minimum < maximum).then(|| Centred::new(&sum, n, minimum, maximum));
+        let selection = Selection::new(n, &ranks(n), (minimum, maximum), centred, values);
         let constant = centred.is_none() && n > 1;
         let moments = constant.then(|| Moments::constant(n, minimum));
-        let mut finite = Finite {
-            sum,
-            centred,
-            powers: None,
-            middle: None,
-            selection,
-            moments,
-            deviation: None,
-        };
+        let mut finite = Finite { sum, centred, powers: None, selection, moments, deviation: None };
         if values.len() as u64 == n
             && let Some(centred) = centred
         {
             // The whole sample is here.
-            let (mut powers, mut middle) = (Powers::default(), None);
+            let mut powers = Powers::default();
             values.iter().for_each(|x| powers.add(centred.map(*x)));
-            if n >= deviation::FEWEST as u64 {
-                let (cut, mut kept) = (trimmed(n), UnitSum::default());
-                let values = &values[cut as usize..(n - cut) as usize];
-                values.iter().for_each(|x| kept.add(centred.map(*x)));
-                middle = Some(kept.value());
-            }
-            (finite.powers, finite.middle) = (Some(powers), middle);
+            finite.powers = Some(powers);
             finite.conclude(n, [minimum, maximum]);
         }
         known.finite = Some(finite);
@@ -343,22 +307,12 @@ impl First {
 }
 
 impl Finite {
-    /// Keys of the first and the last value that a trimmed mean keeps, once they are known.
-    fn ends(&self, n: u64) -> Option<(i64, i64)> {
-        let cut = (n >= deviation::FEWEST as u64).then(|| trimmed(n))?;
-        let at = |rank| self.selection.value(rank).map(key);
-        Some((at(cut)?, at(n - cut - 1)?))
-    }
-
     fn advance(&mut self, later: Later, n: u64, range: [f64; 2]) {
-        if let Some((_, powers)) = later.powers {
+        if let Some(powers) = later.powers {
             self.powers = Some(powers);
         }
         if let Some(count) = later.count {
             self.selection.advance(&count);
-        }
-        if let Some(middle) = later.middle {
-            self.middle = Some(middle.sum(n));
         }
         self.conclude(n, range);
     }
@@ -368,47 +322,12 @@ impl Finite {
         let (Some(centred), Some(powers)) = (&self.centred, &self.powers) else { return };
         let number = (n, self.sum.mean(n));
         self.moments = Moments::of_powers(number, (minimum, maximum), centred, powers).ok();
-        if let (Some(moments), Some(middle)) = (&self.moments, self.middle) {
+        // The deviations of the values that a trimmed mean keeps.
+        let cut = (n >= deviation::FEWEST as u64).then(|| trimmed(n));
+        let middle = cut.and_then(|cut| self.selection.deviations(cut, n - cut - 1));
+        if let (Some(moments), Some(middle)) = (&self.moments, middle) {
             self.deviation = Deviation::of_powers(moments, powers, middle).ok();
         }
-    }
-}
-
-impl Middle {
-    #[inline]
-    fn add(&mut self, x: f64) {
-        let key = key(x);
-        let (first, last) = self.ends;
-        self.up_to_first += u64::from(key <= first);
-        self.below_last += u64::from(key < last);
-        if first < key && key < last {
-            self.between.add(self.centred.map(x));
-        }
-    }
-
-    fn merge(&mut self, other: &Self) {
-        self.up_to_first += other.up_to_first;
-        self.below_last += other.below_last;
-        self.between.merge(&other.between);
-    }
-
-    /// The sum of the deviations that a trimmed mean of `n` values keeps.
-    fn sum(&self, n: u64) -> f64 {
-        let cut = trimmed(n);
-        let (first, last) = self.ends;
-        let mut sum = self.between;
-        let mut add = |key, times: u64| {
-            let deviation = self.centred.map(crate::selection::number(key));
-            sum.add_times(deviation, times);
-        };
-        if first == last {
-            add(first, n - 2 * cut);
-        } else {
-            // Of equal values some may be left out.
-            add(first, self.up_to_first - cut);
-            add(last, n - cut - self.below_last);
-        }
-        sum.value()
     }
 }
 
@@ -418,18 +337,16 @@ impl Pass {
         match &mut self.0 {
             Gathered::First(first) => values.into_iter().for_each(|(run, x)| first.add(run, x)),
             Gathered::Later(later) => {
-                let Later { powers, count, middle } = &mut **later;
-                for (_, x) in values {
-                    if let Some((centred, powers)) = powers {
-                        powers.add(centred.map(x));
+                let Later { centred, powers, count } = &mut **later;
+                values.into_iter().for_each(|(_, x)| {
+                    let deviation = centred.map_or(0.0, |centred| centred.map(x));
+                    if let Some(powers) = powers {
+                        powers.add(deviation);
                     }
                     if let Some(count) = count {
-                        count.add(x);
+                        count.add(x, deviation);
                     }
-                    if let Some(middle) = middle {
-                        middle.add(x);
-                    }
-                }
+                });
             }
         }
     }
@@ -446,14 +363,11 @@ impl Pass {
                 other.range.into_iter().for_each(|range| first.stretch(range));
             }
             (Gathered::Later(later), Gathered::Later(other)) => {
-                if let (Some((_, powers)), Some((_, more))) = (&mut later.powers, &other.powers) {
+                if let (Some(powers), Some(more)) = (&mut later.powers, &other.powers) {
                     powers.merge(more);
                 }
                 if let (Some(count), Some(more)) = (&mut later.count, &other.count) {
                     count.merge(more);
-                }
-                if let (Some(middle), Some(more)) = (&mut later.middle, &other.middle) {
-                    middle.merge(more);
                 }
             }
             // Of another pass, which knows nothing of this one.

@@ -19,6 +19,7 @@ mod claim;
 mod claims;
 mod column;
 mod compare;
+mod csv;
 mod drawn;
 mod error;
 mod failure;

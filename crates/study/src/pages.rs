@@ -3,10 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::{
-    CompareOptions, ModelComparison, Replay, Scenario, compare,
-    model::Model,
-    replay, report,
-    study::{all_runs, judge},
+    CompareOptions, ModelComparison, Replay, Scenario, compare, model::Model, replay, report,
+    study::judged,
 };
 
 /// Elements without content.
@@ -175,8 +173,7 @@ fn read(tag: &str) -> (String, Vec<(String, String)>) {
 /// The report of a scenario, without its folder.
 fn report_of(scenario: &Scenario) -> String {
     let models = Model::all(scenario).unwrap();
-    let runs = all_runs(scenario, &models);
-    let summary = judge(scenario, &models, &runs).unwrap();
+    let summary = judged(scenario, &models);
     // The end of a study on the terminal is made of the same.
     assert!(!summary.to_string().contains("[0.00") && !summary.to_string().contains("0 % ["));
     report::report(scenario, &summary).html()

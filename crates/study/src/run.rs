@@ -4,6 +4,7 @@ use gyradius_clearance::{Approach, Clearance, ClearanceError};
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::{EnergySplit, Outcome as Separated, RunError, Separation, SpinMetrics};
 use nalgebra::{UnitQuaternion, Vector3};
+use std::fmt::Write;
 
 use crate::{body::Body, drawn, failure::Failure, scenario::Scenario};
 
@@ -165,10 +166,21 @@ impl<'a> End<'a> {
 
     /// Springs from 1 in the order of their releases, `+` between those that let go together.
     pub(crate) fn release_order(&self) -> String {
-        let together = |springs: &Vec<usize>| {
-            springs.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join("+")
-        };
-        self.separated.release_order().iter().map(together).collect::<Vec<_>>().join(" ")
+        let mut order = String::new();
+        for group in self.separated.release_order() {
+            for (i, spring) in group.iter().enumerate() {
+                let between = if i > 0 {
+                    "+"
+                } else if order.is_empty() {
+                    ""
+                } else {
+                    " "
+                };
+                // Writing into a text cannot fail.
+                let _ = write!(order, "{between}{}", spring + 1);
+            }
+        }
+        order
     }
 
     /// Springs from 1 that were pressed again after they had let go.

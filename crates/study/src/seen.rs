@@ -1,8 +1,9 @@
-//! What is seen of the runs of a model in one look at every block: its columns, and the attitudes that were drawn.
+//! What is seen of the runs of a model: its columns, and the attitudes that were drawn.
 
-use gyradius_campaign::{Runs, RunsError, Surveys, Table};
+use gyradius_campaign::{Column, FirstLook, Runs, RunsError, Surveys, Table};
 use gyradius_statistics::{Confidence, Survey};
 use nalgebra::UnitQuaternion;
+use std::sync::Mutex;
 
 use crate::{body::Body, column::attitudes, quantity::Quantity, scenario::Scenario};
 
@@ -21,7 +22,16 @@ pub(crate) struct Seen {
     pub(crate) attitudes: Vec<UnitQuaternion<f64>>,
 }
 
+/// What is seen of the runs of a model, block by block, while they are done.
+#[derive(Debug)]
+pub(crate) struct Looking<'a> {
+    scenario: &'a Scenario,
+    columns: FirstLook,
+    blocks: Mutex<Vec<Drawn>>,
+}
+
 /// The attitudes of a block.
+#[derive(Debug)]
 struct Drawn {
     first: u64,
     drawn: [u64; 2],
@@ -29,17 +39,27 @@ struct Drawn {
     kept: Vec<UnitQuaternion<f64>>,
 }
 
-impl Seen {
-    /// What is seen of some runs; intervals of quantiles have this confidence.
-    pub(crate) fn new(
-        scenario: &Scenario,
-        runs: &Runs,
-        confidence: Confidence,
-    ) -> Result<Self, RunsError> {
-        let stride = runs.end().div_ceil(ATTITUDES).max(1);
-        let mut blocks = Vec::new();
-        let look = |block: &Table| Drawn::new(scenario, block, stride);
-        let surveys = Surveys::with(runs, confidence, look, |drawn| blocks.push(drawn))?;
+impl<'a> Looking<'a> {
+    /// At the runs of a model of a scenario, in these columns.
+    pub(crate) fn new(scenario: &'a Scenario, model: &str, columns: &[Column]) -> Self {
+        let columns = FirstLook::new(model, columns, scenario.runs(), Confidence::default());
+        Self { scenario, columns, blocks: Mutex::default() }
+    }
+
+    /// Looks at a block, once at each and in any order.
+    pub(crate) fn look(&self, block: &Table) {
+        self.columns.look(block);
+        let stride = self.scenario.runs().div_ceil(ATTITUDES).max(1);
+        let drawn = Drawn::new(self.scenario, block, stride);
+        if let Ok(mut blocks) = self.blocks.lock() {
+            blocks.push(drawn);
+        }
+    }
+
+    /// What is seen once all blocks have been looked at; they are read again.
+    pub(crate) fn finish(self, runs: &Runs) -> Result<Seen, RunsError> {
+        let surveys = self.columns.finish(runs)?;
+        let mut blocks = self.blocks.into_inner().unwrap_or_default();
         blocks.sort_by_key(|drawn| drawn.first);
         let sum = |of: &dyn Fn(&Drawn) -> u64| blocks.iter().map(of).sum::<u64>();
         let drawn = [0, 1].map(|body: usize| sum(&|block| block.drawn[body]));
@@ -48,9 +68,11 @@ impl Seen {
             known(body).then(|| sum(&|block| block.far[body].unwrap_or_default()))
         });
         let attitudes = blocks.into_iter().flat_map(|block| block.kept).collect();
-        Ok(Self { surveys, drawn, far, attitudes })
+        Ok(Seen { surveys, drawn, far, attitudes })
     }
+}
 
+impl Seen {
     pub(crate) fn model(&self) -> &str {
         self.surveys.model()
     }

@@ -4,9 +4,8 @@
 use gyradius_campaign::run;
 use gyradius_campaign::{
     CampaignError, Contents, Folder, Forecast, Identity, MANIFEST, Plan, Progress, Runs, RunsError,
-    Table, run_missing, threads,
+    Simulation, Table, run_missing, threads,
 };
-use gyradius_statistics::Confidence;
 use std::{
     collections::BTreeSet,
     path::{Path, PathBuf},
@@ -21,7 +20,7 @@ use crate::{
     model::{Model, Separations},
     report,
     scenario::parse_toml,
-    seen::Seen,
+    seen::Looking,
 };
 
 /// How to carry out a study.
@@ -124,8 +123,10 @@ impl Study {
         let plan =
             Plan { runs: scenario.runs(), block_runs: BLOCK_RUNS, stop: options.stop.as_deref() };
         let done = threads.install(|| {
-            let runs = run_missing(&simulations, &blocks, plan, progress)?;
-            let summary = judge(scenario, &models, &runs)?;
+            let looks = looks(scenario, &simulations)?;
+            let look = |place: usize, block: &Table| looks[place].look(block);
+            let runs = run_missing(&simulations, &blocks, plan, progress, &look)?;
+            let summary = judge(scenario, &models, looks, &runs)?;
             Ok::<_, StudyError>((runs, summary))
         });
         let (runs, summary) = done.inspect_err(|_| blocks.abandon())?;
@@ -183,14 +184,26 @@ pub fn restore_studies(path: &Path) -> Result<(), StudyError> {
     Ok(gyradius_campaign::restore_all(path)?)
 }
 
+/// A look at the runs of each model.
+fn looks<'a>(
+    scenario: &'a Scenario,
+    simulations: &[(&str, Separations<'_>)],
+) -> Result<Vec<Looking<'a>>, CampaignError> {
+    let look = |(model, simulation): &(&str, Separations<'_>)| {
+        let table = Table::new(model, 0, simulation.columns())?;
+        Ok(Looking::new(scenario, model, table.columns()))
+    };
+    simulations.iter().map(look).collect()
+}
+
 /// What the runs of a scenario amount to: every number, judgement and figure, before any page is made.
 pub(crate) fn judge(
     scenario: &Scenario,
     models: &[Model],
+    looks: Vec<Looking<'_>>,
     runs: &[Runs],
 ) -> Result<Summary, StudyError> {
-    let confidence = Confidence::default();
-    let seen = runs.iter().map(|runs| Seen::new(scenario, runs, confidence));
+    let seen = looks.into_iter().zip(runs).map(|(look, runs)| look.finish(runs));
     let seen = seen.collect::<Result<Vec<_>, _>>()?;
     let columns = runs.first().map_or(&[][..], Runs::columns);
     let mut summary = Summary::new(scenario, models, &seen, columns, Section::new(scenario)?)?;
@@ -254,6 +267,16 @@ fn flatten(path: &str, value: &Value, fields: &mut Vec<(String, String)>) {
         }
         other => fields.push((path.to_owned(), other.to_string())),
     }
+}
+
+/// What the runs of a scenario amount to, made in memory.
+#[cfg(test)]
+pub(crate) fn judged(scenario: &Scenario, models: &[Model]) -> Summary {
+    let named = |model| (Model::name(model), Separations::new(scenario, model));
+    let simulations: Vec<_> = models.iter().map(named).collect();
+    let (looks, runs) = (looks(scenario, &simulations).unwrap(), all_runs(scenario, models));
+    looks.iter().zip(&runs).for_each(|(look, runs)| runs.scan(|block| look.look(block)).unwrap());
+    judge(scenario, models, looks, &runs).unwrap()
 }
 
 /// Runs every model of a scenario, in memory.
