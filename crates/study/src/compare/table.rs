@@ -1,92 +1,110 @@
 //! The comparison as CSV: one row for each model, body, level and measure.
 
-use std::fmt::Write;
+use std::borrow::Cow;
 
-use super::ModelComparison;
+use super::{ModelComparison, contest::Results, measure::Spread};
+use crate::csv;
 
-const HEADER: &str = "body,level_percent,reference,model,problem,matched,mean_off,covariance_off,\
-                      off_from_draws,acceptance,draws,unrealizable,unrealizable_share,\
-                      unrealizable_lower,unrealizable_upper,separations,failed_separations,measure,unit,\
-                      n,undefined,mean,deviation,p05,median,p95";
+const HEADER: [&str; 26] = [
+    "body",
+    "level_percent",
+    "reference",
+    "model",
+    "problem",
+    "matched",
+    "mean_off",
+    "covariance_off",
+    "off_from_draws",
+    "acceptance",
+    "draws",
+    "unrealizable",
+    "unrealizable_share",
+    "unrealizable_lower",
+    "unrealizable_upper",
+    "separations",
+    "failed_separations",
+    "measure",
+    "unit",
+    "n",
+    "undefined",
+    "mean",
+    "deviation",
+    "p05",
+    "median",
+    "p95",
+];
 
 impl ModelComparison {
     /// One row for each body, level, model and measure, in the columns of docs/compare.md; a model
     /// that cannot be made has one row with its reason. Numbers read back bit for bit.
     #[must_use]
     pub fn to_csv(&self) -> String {
-        let mut out = format!("{HEADER}\n");
+        let mut rows = vec![HEADER.map(Cow::Borrowed).to_vec()];
         for body in &self.bodies {
             for level in &body.levels {
-                let percent = level.level_percent.map_or_else(String::new, |p| p.to_string());
-                let place =
-                    format!("{},{percent},{}", quoted(&body.name), self.settings.reference.name());
-                if let Some(problem) = &level.problem {
-                    let _ = writeln!(out, "{place},,{}{}", quoted(problem), ",".repeat(21));
-                }
+                let place: [Cow<'_, str>; 3] = [
+                    body.name.as_str().into(),
+                    csv::number(level.level_percent),
+                    self.settings.reference.name().into(),
+                ];
+                let refused = |model: &str, problem: &str| {
+                    let mut row = place.to_vec();
+                    row.extend([model, problem].map(|text| Cow::Owned(text.to_owned())));
+                    row.resize(HEADER.len(), "".into());
+                    row
+                };
+                rows.extend(level.problem.as_ref().map(|problem| refused("", problem)));
                 for cell in &level.models {
-                    let place = format!("{place},{}", cell.model);
-                    let Some(r) = &cell.results else {
-                        let problem = cell.problem.as_deref().unwrap_or_default();
-                        let _ = writeln!(out, "{place},{}{}", quoted(problem), ",".repeat(21));
+                    let model = cell.model.to_string();
+                    let Some(results) = &cell.results else {
+                        rows.push(refused(&model, cell.problem.as_deref().unwrap_or_default()));
                         continue;
                     };
-                    let u = &r.unrealizable;
-                    let place = format!(
-                        "{place},,{},{},{},{},{},{},{},{},{},{},{},{}",
-                        quoted(&r.matched),
-                        r.fit.mean_off,
-                        r.fit.covariance_off,
-                        r.fit.from_draws,
-                        number(r.acceptance),
-                        u.of,
-                        u.count,
-                        u.share,
-                        u.interval.lower(),
-                        u.interval.upper(),
-                        r.separations,
-                        r.failed_separations,
-                    );
-                    for s in &r.spreads {
-                        let numbers =
-                            [s.mean, s.deviation, s.p05, s.median, s.p95].map(number).join(",");
-                        let _ = writeln!(
-                            out,
-                            "{place},{},{},{},{},{numbers}",
-                            s.measure.name(),
-                            s.unit,
-                            s.n,
-                            s.undefined
-                        );
+                    let mut start = place.to_vec();
+                    start.extend([model.into(), "".into()]);
+                    start.extend(results.fields());
+                    for spread in &results.spreads {
+                        rows.push(start.iter().cloned().chain(spread.fields()).collect());
                     }
                 }
             }
         }
-        out
+        csv::table(rows)
     }
 }
 
-fn number(x: Option<f64>) -> String {
-    x.map_or_else(String::new, |x| x.to_string())
-}
-
-/// A field that may hold commas.
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
+impl Results {
+    fn fields(&self) -> [Cow<'_, str>; 12] {
+        let (unrealizable, fit) = (&self.unrealizable, &self.fit);
+        [
+            (&*self.matched).into(),
+            fit.mean_off.to_string().into(),
+            fit.covariance_off.to_string().into(),
+            fit.from_draws.to_string().into(),
+            csv::number(self.acceptance),
+            unrealizable.of.to_string().into(),
+            unrealizable.count.to_string().into(),
+            unrealizable.share.to_string().into(),
+            unrealizable.interval.lower().to_string().into(),
+            unrealizable.interval.upper().to_string().into(),
+            self.separations.to_string().into(),
+            self.failed_separations.to_string().into(),
+        ]
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn fields_are_quoted_where_they_must_be() {
-        assert_eq!(quoted("payload"), "payload");
-        assert_eq!(quoted("1,2,3"), "\"1,2,3\"");
-        assert_eq!(quoted("a \"b\""), "\"a \"\"b\"\"\"");
-        assert_eq!(HEADER.split(',').count(), 26);
+impl Spread {
+    fn fields(&self) -> [Cow<'_, str>; 9] {
+        [
+            self.measure.name().into(),
+            (&*self.unit).into(),
+            self.n.to_string().into(),
+            self.undefined.to_string().into(),
+            csv::number(self.mean),
+            csv::number(self.deviation),
+            csv::number(self.p05),
+            csv::number(self.median),
+            csv::number(self.p95),
+        ]
     }
 }

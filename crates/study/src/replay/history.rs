@@ -2,7 +2,9 @@
 
 use gyradius_separation::{MovingBody, Outcome, Snapshot, Spring, SpringState, Step};
 use nalgebra::{Unit, Vector3};
-use std::fmt::Write;
+use std::{borrow::Cow, iter};
+
+use crate::csv;
 
 /// Rows on the even grid at most, and numbers in all of them.
 const MOST: f64 = 20_000.0;
@@ -110,23 +112,16 @@ impl History {
     /// The table: a row a moment, columns with units in their names.
     pub(crate) fn csv(&self, spin_axis: &Unit<Vector3<f64>>) -> String {
         let springs = self.moments.first().map_or(0, |m| m.now.springs().len());
-        let mut out = columns(springs).join(",");
-        out.push('\n');
-        for moment in &self.moments {
-            // Writing to a string does not fail.
-            let _ = write!(out, "{:?},{}", moment.now.time_s(), moment.event);
-            for value in self.values(&moment.now, spin_axis) {
-                match value {
-                    // As many digits as read back bit for bit.
-                    Some(value) => {
-                        let _ = write!(out, ",{value:?}");
-                    }
-                    None => out.push(','),
-                }
-            }
-            out.push('\n');
-        }
-        out
+        let header = columns(springs).into_iter().map(Cow::Owned).collect();
+        // As many digits as read back bit for bit, in powers of ten where these are shorter.
+        let number = |x: Option<f64>| Cow::Owned(x.map_or_else(String::new, |x| format!("{x:?}")));
+        let row = |moment| -> Vec<Cow<'_, str>> {
+            let Moment { now, event }: &Moment = moment;
+            let values = self.values(now, spin_axis).into_iter().map(number);
+            let first = [number(Some(now.time_s())), event.as_str().into()];
+            first.into_iter().chain(values).collect()
+        };
+        csv::table(iter::once(header).chain(self.moments.iter().map(row)))
     }
 
     fn values(&self, now: &Snapshot, spin_axis: &Unit<Vector3<f64>>) -> Vec<Option<f64>> {
