@@ -1,5 +1,6 @@
 //! The columns of a run table: what they are called, what they hold, what they mean.
 
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// A column of a [`Table`](crate::Table).
@@ -11,6 +12,18 @@ pub struct Column {
     meaning: Cow<'static, str>,
     optional: bool,
     kinds: bool,
+}
+
+/// What is told of a column in a file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ColumnSummary {
+    /// Its name in the table.
+    pub column: String,
+    /// Its unit, of numbers that have one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// What it means, in a sentence.
+    pub meaning: String,
 }
 
 /// What a column holds.
@@ -80,6 +93,16 @@ impl Column {
         let [_, _, status] = Self::first();
         let meaning = "`ok`, or the kind of the failure, without numbers.".into();
         Self { meaning, ..status.kinds() }
+    }
+
+    /// What is told of it.
+    #[must_use]
+    pub fn summary(&self) -> ColumnSummary {
+        ColumnSummary {
+            column: self.name.to_string(),
+            unit: self.unit.as_deref().map(str::to_owned),
+            meaning: self.meaning.to_string(),
+        }
     }
 
     /// Its name in the table.

@@ -75,7 +75,7 @@ mod values;
 
 pub use campaign::{Look, Plan, run_missing};
 pub use cell::Cell;
-pub use column::{Column, Kind};
+pub use column::{Column, ColumnSummary, Kind};
 pub use failure::Failure;
 pub use folder::{
     Block, Blocks, Contents, Folder, FolderError, MANIFEST, Manifest, folder_of, restore,

@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{column::Column, table::Table};
+use crate::{column::Column, stored::said, table::Table};
 
 /// The runs of a model, in blocks of consecutive runs, some in memory and some on the disk.
 #[derive(Clone, Debug)]
@@ -115,7 +115,7 @@ impl From<Table> for Runs {
 
 /// Why a block of runs cannot be read.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {source}", path.display())]
+#[error("{}: {}", path.display(), said(source))]
 pub struct RunsError {
     path: PathBuf,
     source: ParquetError,

@@ -17,8 +17,8 @@ use std::{collections::BTreeMap, fs::File, io::Write, path::Path, sync::Arc};
 use crate::{
     cell::Cell,
     column::{Column, Kind},
-    failure::Failure,
-    table::{OK, Source, Table, Values},
+    failure::{Failure, OK},
+    table::{Source, Table, Values},
 };
 
 impl Table {
@@ -230,6 +230,14 @@ fn write_levels<T: DataType, W: Write + Send>(
         writer.close()?;
     }
     Ok(())
+}
+
+/// What is wrong, without what only says that the library did not find it.
+pub(crate) fn said(error: &ParquetError) -> String {
+    match error {
+        ParquetError::External(cause) => cause.to_string(),
+        other => other.to_string(),
+    }
 }
 
 fn open(path: &Path) -> Result<SerializedFileReader<File>, ParquetError> {

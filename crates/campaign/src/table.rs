@@ -10,7 +10,7 @@ use std::{
 use crate::{
     cell::Cell,
     column::{Column, Kind},
-    failure::Failure,
+    failure::{Failure, OK},
     values::{Numbers, Texts},
 };
 
@@ -404,9 +404,6 @@ impl<'a> Row<'a> {
         }
     }
 }
-
-/// The status of a run that did not fail.
-pub(crate) const OK: &str = "ok";
 
 /// Rows are the same if all their cells are, to the bit.
 impl PartialEq for Row<'_> {

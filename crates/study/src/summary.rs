@@ -1,6 +1,6 @@
 //! Every number that the report shows.
 
-use gyradius_campaign::{Column, SampleSummary, Share, Surveys, bounded};
+use gyradius_campaign::{Column, ColumnSummary, SampleSummary, Share, Surveys, bounded};
 use gyradius_report::Figure;
 use gyradius_statistics::{Confidence, Interval, Moments, StatisticsError, Survey};
 use rayon::prelude::*;
@@ -40,15 +40,6 @@ pub struct Summary {
     /// What the figures show.
     #[serde(serialize_with = "a_line_each")]
     pub(crate) figures: Vec<Figure>,
-}
-
-/// A column of the run tables.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ColumnSummary {
-    pub(crate) column: String,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) unit: Option<Cow<'static, str>>,
-    pub(crate) meaning: String,
 }
 
 /// A quantity of the run without any dispersion.
@@ -225,7 +216,7 @@ impl Summary {
             seed: scenario.seed(),
             runs_per_model: scenario.runs(),
             confidence: confidence.level(),
-            columns: columns.iter().map(ColumnSummary::new).collect(),
+            columns: columns.iter().map(Column::summary).collect(),
             nominal,
             models,
             comparisons,
@@ -252,16 +243,6 @@ impl Summary {
 /// All quantities, for many threads.
 fn all(springs: usize) -> impl IndexedParallelIterator<Item = Quantity> {
     Quantity::of(springs).collect::<Vec<_>>().into_par_iter()
-}
-
-impl ColumnSummary {
-    fn new(column: &Column) -> Self {
-        Self {
-            column: column.name().to_owned(),
-            unit: column.unit().map(|unit| unit.to_owned().into()),
-            meaning: column.meaning().to_owned(),
-        }
-    }
 }
 
 /// The run of the nominal bodies.

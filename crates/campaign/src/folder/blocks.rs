@@ -29,6 +29,7 @@ use crate::{
     column::Column,
     identity::{Difference, Identity},
     runs::Runs,
+    stored,
     table::Table,
 };
 
@@ -303,7 +304,7 @@ impl Blocks {
         let mut file = Hashed { to: disk::create_file(&part)?, sha: Sha256::new(), bytes: 0 };
         let written = table
             .write_parquet(BufWriter::new(&mut file))
-            .map_err(|error| Problem::Block { name: block.name(), problem: error.to_string() })
+            .map_err(|error| Problem::Block { name: block.name(), problem: stored::said(&error) })
             .and_then(|()| Ok(disk::sync_file(&part)?));
         if let Err(problem) = written {
             let _ = disk::remove_file(&part);

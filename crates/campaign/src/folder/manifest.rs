@@ -4,7 +4,10 @@ use serde::{Deserialize, Serialize};
 use std::{fs, io, ops::Range, path::Path};
 
 use super::name::Name;
-use crate::{column::Column, identity::Identity};
+use crate::{
+    column::{Column, ColumnSummary},
+    identity::Identity,
+};
 
 /// The file that tells of the blocks of a complete campaign.
 pub const MANIFEST: &str = "campaign.json";
@@ -29,16 +32,8 @@ pub struct Manifest {
     gyradius_version: String,
     /// What the runs depend on.
     identity: Identity,
-    columns: Vec<ManifestColumn>,
+    columns: Vec<ColumnSummary>,
     blocks: Vec<ManifestBlock>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct ManifestColumn {
-    column: String,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    unit: Option<String>,
-    meaning: String,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -87,16 +82,11 @@ impl Block {
 impl Manifest {
     /// Of a campaign with these blocks.
     pub(super) fn new(identity: &Identity, columns: &[Column], blocks: Vec<Block>) -> Self {
-        let column = |column: &Column| ManifestColumn {
-            column: column.name().to_owned(),
-            unit: column.unit().map(str::to_owned),
-            meaning: column.meaning().to_owned(),
-        };
         let block = |block: Block| ManifestBlock { file: block.name(), block };
         Self {
             gyradius_version: env!("CARGO_PKG_VERSION").to_owned(),
             identity: identity.clone(),
-            columns: columns.iter().map(column).collect(),
+            columns: columns.iter().map(Column::summary).collect(),
             blocks: blocks.into_iter().map(block).collect(),
         }
     }
