@@ -109,7 +109,7 @@ fn the_models_compare_as_the_page_says() {
             }
         }
     }
-    let kinds = vec![ModelKind::Entrywise, ModelKind::Basilisk];
+    let kinds = vec![ModelKind::ENTRYWISE, ModelKind::Basilisk];
     let found = compare(Reference::Entries, kinds);
     shares(&found, "`gyradius compare --reference entries`:", 8);
 }

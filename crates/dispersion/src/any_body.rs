@@ -4,6 +4,9 @@ use gyradius_attitude::UniformAttitude;
 use gyradius_inertia::{Inertia, MAX_SECOND_MOMENT, SecondMoments};
 use rand::{Rng, RngExt};
 use rand_distr::Distribution;
+use std::borrow::Cow;
+
+use crate::{EntryMoments, InertiaLaw, ModelDraw};
 
 /// Why two numbers are not the range of an [`AnyBody`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -108,6 +111,25 @@ impl TryFrom<[f64; 2]> for AnyBody {
 impl From<AnyBody> for [f64; 2] {
     fn from(law: AnyBody) -> Self {
         law.traces()
+    }
+}
+
+impl InertiaLaw for AnyBody {
+    fn name(&self) -> Cow<'_, str> {
+        "any-body".into()
+    }
+
+    fn draw(&self, rng: &mut dyn Rng) -> ModelDraw {
+        let body: Inertia = self.sample(rng);
+        body.into()
+    }
+
+    fn is_realizable_by_construction(&self) -> bool {
+        true
+    }
+
+    fn expected_moments(&self) -> Option<EntryMoments> {
+        None
     }
 }
 

@@ -1,16 +1,19 @@
 //! The dispersion of inertia in Basilisk's Monte Carlo.
 
-use gyradius_inertia::{InertiaMatrix, MAX_ENTRY};
+use gyradius_inertia::{Inertia, InertiaMatrix, MAX_ENTRY};
 use nalgebra::{Matrix3, SMatrix};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::TAU;
 
 use crate::entry_moments::ENTRIES;
-use crate::{EntryMoments, KnownMoments, normal};
+use crate::named_model::{NamedModel, NoMatch, inertia_law};
+use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters, normal};
 
 /// Largest deviation and finite bound, so that draws stay in range.
 const MAX_DEVIATION: f64 = MAX_ENTRY / 1e3;
+/// Largest standard deviation of the angles by which they are matched, rad: beyond, turns say nothing of products.
+const MAX_TURN: f64 = 1.0;
 
 /// Why parameters are refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -234,6 +237,77 @@ impl Distribution<InertiaMatrix> for BasiliskDispersion {
                 return matrix;
             }
         }
+    }
+}
+
+inertia_law!(BasiliskDispersion, draws InertiaMatrix);
+
+impl NamedModel for BasiliskDispersion {
+    const NAME: &'static str = "basilisk";
+    const DESCRIPTION: &'static str = "Gaussian diagonal, then three Gaussian Euler angles";
+    const IS_REALIZABLE: bool = false;
+    const NEEDS: &'static [&'static str] = &["diagonal_deviation_kg_m2", "angle_deviation_rad"];
+
+    fn defaults() -> ModelParameters {
+        let diagonal_bounds_kg_m2 = Some(Self::NO_BOUNDS);
+        ModelParameters { diagonal_bounds_kg_m2, ..ModelParameters::default() }
+    }
+
+    fn about(nominal: &Inertia, given: &ModelParameters) -> Result<Self, ModelParameterError> {
+        const DIAGONAL: &str = "diagonal_deviation_kg_m2";
+        const ANGLE: &str = "angle_deviation_rad";
+        let diagonal =
+            given.diagonal_deviation_kg_m2.ok_or(ModelParameterError::missing(DIAGONAL))?;
+        let angle = given.angle_deviation_rad.ok_or(ModelParameterError::missing(ANGLE))?;
+        let bounds = given.diagonal_bounds_kg_m2.unwrap_or(Self::NO_BOUNDS);
+        Self::new(*nominal, diagonal, bounds, angle).map_err(|error| {
+            let key = match error {
+                BasiliskError::Bounds { .. } => "diagonal_bounds_kg_m2",
+                BasiliskError::Deviation { which: "angle", .. } => ANGLE,
+                BasiliskError::Deviation { .. } => DIAGONAL,
+            };
+            ModelParameterError::new(key, &error)
+        })
+    }
+
+    fn matched(
+        mean: InertiaMatrix,
+        moments: &EntryMoments,
+    ) -> Result<(Self, &'static str), NoMatch> {
+        const WHAT: &str = "nominal matrix; variances summed over moments and over products";
+        const STEPS: usize = 100;
+        let sums = |c: &SMatrix<f64, 6, 6>| {
+            let of = |range: std::ops::Range<usize>| range.map(|e| c[(e, e)]).sum::<f64>();
+            (of(0..3), of(3..6))
+        };
+        let (of_moments, products) = sums(moments.covariance());
+        let (mut diagonal, mut angle) = (of_moments / 3.0, 1e-4);
+        if products == 0.0 {
+            angle = 0.0;
+        }
+        let none = Self::NO_BOUNDS;
+        let rounding = 64.0 * f64::EPSILON * mean.matrix().amax().powi(2);
+        for _ in 0..STEPS {
+            let law = Self::new(mean, diagonal.sqrt(), none, angle)?;
+            let found = sums(law.entry_moments().covariance());
+            let close = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b + rounding;
+            if close(found.0, of_moments) && close(found.1, products) {
+                return Ok((law, WHAT));
+            }
+            diagonal = (diagonal + (of_moments - found.0) / 3.0).max(0.0);
+            if products > 0.0 {
+                if !(found.1 > 0.0) {
+                    break;
+                }
+                angle *= (products / found.1).sqrt().clamp(0.1, 10.0);
+            }
+            if angle > MAX_TURN {
+                break;
+            }
+        }
+        Err("no turn of the axes by small angles gives the products this spread: the moments of the body \
+             are too alike, or their own spread is smaller than the turns make it"
+            .into())
     }
 }
 

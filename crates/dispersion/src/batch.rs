@@ -8,6 +8,7 @@ use nalgebra::UnitQuaternion;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use crate::columns::{ColumnsError, common_length};
 use crate::{
     AxesLaw, CorrelatedRoots, EmpiricalRoots, FixedAttitude, IndependentRoots, JacobianTwice,
     PrincipalDispersion, RootLaw, ScalarRoots, WithMoments,
@@ -15,23 +16,6 @@ use crate::{
 
 /// Draws made at a time: few enough for the first-level cache.
 const CHUNK: usize = 128;
-
-/// The columns are not equally long.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("columns of {} and {} numbers: all six must be equally long", .lengths[0], .lengths[1])]
-pub struct ColumnsError {
-    /// Two lengths that differ.
-    pub lengths: [usize; 2],
-}
-
-/// The length that all columns have.
-pub(crate) fn common_length(columns: &[&mut [f64]; 6]) -> Result<usize, ColumnsError> {
-    let length = columns[0].len();
-    match columns.iter().map(|c| c.len()).find(|n| *n != length) {
-        Some(other) => Err(ColumnsError { lengths: [length, other] }),
-        None => Ok(length),
-    }
-}
 
 /// A law of roots that can draw the squares of many at a time.
 pub trait BatchRoots: Distribution<RootSecondMoments> {

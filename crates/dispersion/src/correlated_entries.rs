@@ -1,12 +1,17 @@
 //! Six jointly Gaussian entries.
 
-use gyradius_inertia::InertiaMatrix;
+use gyradius_inertia::{Inertia, InertiaMatrix};
 use nalgebra::SMatrix;
 use rand::Rng;
 use rand_distr::Distribution;
 
+use crate::named_model::{NamedModel, NoMatch, inertia_law};
+use crate::realizable_only::Conditionable;
 use crate::semidefinite::{Covariance, CovarianceError};
-use crate::{EntryMoments, KnownMoments};
+use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
+
+/// What files call the covariance.
+const KEY: &str = "covariance_kg2_m4";
 
 /// Largest variance, so that draws within forty deviations stay in range.
 const MAX_VARIANCE: f64 = 1e300;
@@ -76,6 +81,37 @@ impl Distribution<InertiaMatrix> for CorrelatedEntries {
             }
         }
     }
+}
+
+inertia_law!(CorrelatedEntries, draws InertiaMatrix);
+
+impl NamedModel for CorrelatedEntries {
+    const NAME: &'static str = "correlated-entries";
+    const DESCRIPTION: &'static str = "six jointly Gaussian entries";
+    const IS_REALIZABLE: bool = false;
+    const NEEDS: &'static [&'static str] = &[KEY];
+
+    fn about(nominal: &Inertia, given: &ModelParameters) -> Result<Self, ModelParameterError> {
+        let rows = given.covariance_kg2_m4.ok_or(ModelParameterError::missing(KEY))?;
+        Self::new(*nominal, SMatrix::from_fn(|i, j| rows[i][j]))
+            .map_err(|e| ModelParameterError::new(KEY, &e))
+    }
+
+    fn matched(
+        mean: InertiaMatrix,
+        moments: &EntryMoments,
+    ) -> Result<(Self, &'static str), NoMatch> {
+        const WHAT: &str = "mean and covariance of the six entries";
+        Ok((Self::new(mean, *moments.covariance())?, WHAT))
+    }
+}
+
+impl Conditionable for CorrelatedEntries {
+    const CONDITIONED_NAME: &'static str = "realizable-correlated-entries";
+    const CONDITIONED_DESCRIPTION: &'static str =
+        "six jointly Gaussian entries, impossible draws rejected";
+    const BEFORE_REJECTION: &'static str =
+        "mean and covariance of the six entries before rejection";
 }
 
 /// The serialized form.

@@ -1,8 +1,17 @@
 //! Six independent Gaussian entries.
 
-use gyradius_inertia::{InertiaMatrix, MAX_ENTRY};
+use gyradius_inertia::{Inertia, InertiaMatrix, MAX_ENTRY};
+use nalgebra::SMatrix;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
+use std::fmt::Display;
+
+use crate::named_model::{NamedModel, NoMatch, inertia_law};
+use crate::realizable_only::Conditionable;
+use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
+
+/// What files call the deviations.
+const KEY: &str = "deviation_kg_m2";
 
 /// Largest deviation, so that draws within forty of them stay in range.
 const MAX_DEVIATION: f64 = MAX_ENTRY / 1e3;
@@ -84,6 +93,66 @@ impl Distribution<InertiaMatrix> for EntrywiseGaussian {
                 return matrix;
             }
         }
+    }
+}
+
+impl KnownMoments for EntrywiseGaussian {
+    fn entry_moments(&self) -> EntryMoments {
+        let variances = self.deviations().map(|d| d * d);
+        EntryMoments::unchecked(self.mean(), SMatrix::<f64, 6, 6>::from_diagonal(&variances.into()))
+    }
+}
+
+inertia_law!(EntrywiseGaussian, draws InertiaMatrix);
+
+impl NamedModel for EntrywiseGaussian {
+    const NAME: &'static str = "entrywise";
+    const DESCRIPTION: &'static str = "six independent Gaussian entries";
+    const IS_REALIZABLE: bool = false;
+    const NEEDS: &'static [&'static str] = &[KEY];
+
+    fn about(nominal: &Inertia, given: &ModelParameters) -> Result<Self, ModelParameterError> {
+        let rows = given.deviation_kg_m2.ok_or(ModelParameterError::missing(KEY))?;
+        let refused = |problem: &dyn Display| ModelParameterError::new(KEY, problem);
+        let deviations = symmetric(&rows).map_err(|e| refused(&e))?;
+        Self::new(*nominal, deviations).map_err(|e| refused(&e))
+    }
+
+    fn matched(
+        mean: InertiaMatrix,
+        moments: &EntryMoments,
+    ) -> Result<(Self, &'static str), NoMatch> {
+        const WHAT: &str = "mean and deviations of the six entries, no correlation";
+        Ok((Self::new(mean, moments.deviations())?, WHAT))
+    }
+}
+
+impl Conditionable for EntrywiseGaussian {
+    const CONDITIONED_NAME: &'static str = "realizable-entrywise";
+    const CONDITIONED_DESCRIPTION: &'static str =
+        "six independent Gaussian entries, impossible draws rejected";
+    const BEFORE_REJECTION: &'static str =
+        "mean and deviations of the six entries before rejection";
+}
+
+/// The six entries of a symmetric matrix of deviations.
+fn symmetric(m: &[[f64; 3]; 3]) -> Result<[f64; 6], String> {
+    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+        let (upper, lower) = (m[i][j], m[j][i]);
+        if upper != lower && !(upper.is_nan() && lower.is_nan()) {
+            return Err(format!(
+                "entries ({}, {}) = {upper:?} and ({}, {}) = {lower:?}: the matrix must be symmetric",
+                i + 1,
+                j + 1,
+                j + 1,
+                i + 1
+            ));
+        }
+    }
+    let entries = [m[0][0], m[1][1], m[2][2], m[0][1], m[0][2], m[1][2]];
+    match entries.iter().find(|d| !(**d >= 0.0 && d.is_finite())) {
+        Some(bad) => Err(format!("{bad:?} kg·m²: deviations must be finite and not negative")),
+        None => Ok(entries),
     }
 }
 

@@ -1,13 +1,14 @@
 //! Gaussian log-Cholesky coordinates.
 
-use gyradius_inertia::{Inertia, LogCholesky, MassProperties};
+use gyradius_inertia::{Inertia, InertiaMatrix, LogCholesky, MassProperties};
 use nalgebra::{Matrix3, SMatrix, SVector};
 use rand::Rng;
 use rand_distr::Distribution;
 
+use crate::named_model::{NamedModel, NoMatch, inertia_law};
 use crate::second_moment_matrix::{body, inertia_covariance, inertia_map};
 use crate::semidefinite::{Covariance, CovarianceError};
-use crate::{EntryMoments, KnownMoments};
+use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
 
 /// Draws farther out than this many deviations have probability 1e-349.
 const FAR: f64 = 40.0;
@@ -201,8 +202,8 @@ impl Start {
     fn new(moments: &EntryMoments) -> Result<Self, LogCholeskyGaussianError> {
         let none = LogCholeskyGaussianError::NoMatch;
         let [i11, i22, i33, i12, i13, i23] = moments.mean();
-        let body = gyradius_inertia::InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23])
-            .map_err(|_| none)?;
+        let body =
+            InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23]).map_err(|_| none)?;
         let mean = coordinates(&Inertia::try_from(body).map_err(|_| none)?)?;
         let [d1, d2, d3, s12, s23, s13] = mean;
         let [v1, v2, v3] = [d1, d2, d3].map(libm::exp);
@@ -328,6 +329,34 @@ impl Distribution<Inertia> for LogCholeskyGaussian {
                 return body;
             }
         }
+    }
+}
+
+inertia_law!(LogCholeskyGaussian, draws Inertia);
+
+impl NamedModel for LogCholeskyGaussian {
+    const NAME: &'static str = "log-cholesky";
+    const DESCRIPTION: &'static str = "Gaussian log-Cholesky coordinates of the second moments";
+    const IS_REALIZABLE: bool = true;
+    const NEEDS: &'static [&'static str] = &["log_cholesky_covariance"];
+
+    fn about(nominal: &Inertia, given: &ModelParameters) -> Result<Self, ModelParameterError> {
+        const KEY: &str = "log_cholesky_covariance";
+        let rows = given.log_cholesky_covariance.ok_or(ModelParameterError::missing(KEY))?;
+        Self::about(nominal, SMatrix::from_fn(|i, j| rows[i][j]))
+            .map_err(|e| ModelParameterError::new(KEY, &e))
+    }
+
+    fn matched(
+        mean: InertiaMatrix,
+        moments: &EntryMoments,
+    ) -> Result<(Self, &'static str), NoMatch> {
+        if let Ok(law) = Self::matched(moments) {
+            return Ok((law, "mean and covariance of the six entries"));
+        }
+        Inertia::try_from(mean)?;
+        let law = Self::linearised(moments)?;
+        Ok((law, "mean and covariance of the six entries, to first order"))
     }
 }
 

@@ -4,6 +4,12 @@ use gyradius_inertia::{Inertia, RootSecondMoments};
 use nalgebra::UnitQuaternion;
 use rand::Rng;
 use rand_distr::Distribution;
+use std::{borrow::Cow, fmt::Debug};
+
+use crate::{AttitudeMoments, EntryMoments, InertiaLaw, KnownMoments, ModelDraw, RootMoments};
+
+/// What it is called.
+pub(crate) const NAME: &str = "principal";
 
 /// Random principal moments about random principal axes, independent of each other (Peck 2003).
 ///
@@ -91,6 +97,49 @@ where
                 return inertia;
             }
         }
+    }
+}
+
+impl From<PrincipalDraw> for ModelDraw {
+    fn from(draw: PrincipalDraw) -> Self {
+        Self { inertia: draw.inertia.into(), axes: Some(draw.axes) }
+    }
+}
+
+impl<K, A> InertiaLaw for PrincipalDispersion<K, A>
+where
+    K: RootMoments + Distribution<RootSecondMoments> + Debug + Send + Sync,
+    A: AttitudeMoments + Distribution<UnitQuaternion<f64>> + Debug + Send + Sync,
+{
+    fn name(&self) -> Cow<'_, str> {
+        NAME.into()
+    }
+
+    fn draw(&self, rng: &mut dyn Rng) -> ModelDraw {
+        let draw: PrincipalDraw = self.sample(rng);
+        draw.into()
+    }
+
+    fn is_realizable_by_construction(&self) -> bool {
+        true
+    }
+
+    fn expected_moments(&self) -> Option<EntryMoments> {
+        Some(EntryMoments::of(self))
+    }
+}
+
+impl EntryMoments {
+    /// Of any roots with known moments about axes from any law with known moments, by quadrature.
+    #[must_use]
+    pub fn of<K: RootMoments, A: AttitudeMoments>(law: &PrincipalDispersion<K, A>) -> Self {
+        law.axes().entry_moments(&law.roots().second_moment_statistics())
+    }
+}
+
+impl<K: RootMoments, A: AttitudeMoments> KnownMoments for PrincipalDispersion<K, A> {
+    fn entry_moments(&self) -> EntryMoments {
+        EntryMoments::of(self)
     }
 }
 

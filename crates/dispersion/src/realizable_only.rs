@@ -3,6 +3,10 @@
 use gyradius_inertia::{Inertia, InertiaMatrix};
 use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::Distribution;
+use std::borrow::Cow;
+
+use crate::named_model::{NamedModel, NoMatch};
+use crate::{EntryMoments, InertiaLaw, ModelDraw, ModelParameterError, ModelParameters};
 
 /// Trial draws, and how many of them must be bodies: fewer, and a draw costs more than a thousand.
 const TRIALS: u32 = 20_000;
@@ -97,6 +101,64 @@ impl<L: Distribution<InertiaMatrix>> Distribution<Inertia> for RealizableOnly<L>
                 return inertia;
             }
         }
+    }
+}
+
+/// Of any law: impossible draws are drawn again.
+impl<L: InertiaLaw + Distribution<InertiaMatrix>> InertiaLaw for RealizableOnly<L> {
+    fn name(&self) -> Cow<'_, str> {
+        format!("realizable-{}", self.law().name()).into()
+    }
+
+    fn draw(&self, rng: &mut dyn Rng) -> ModelDraw {
+        let draw: Inertia = self.sample(rng);
+        draw.into()
+    }
+
+    fn is_realizable_by_construction(&self) -> bool {
+        true
+    }
+
+    fn expected_moments(&self) -> Option<EntryMoments> {
+        None
+    }
+
+    fn acceptance(&self) -> Option<f64> {
+        Some(self.acceptance())
+    }
+}
+
+/// A model of entries that has a name of its own when it is conditioned.
+pub(crate) trait Conditionable: NamedModel + Distribution<InertiaMatrix> {
+    /// Its name then, in kebab case.
+    const CONDITIONED_NAME: &'static str;
+    /// What it is then, in a line.
+    const CONDITIONED_DESCRIPTION: &'static str;
+    /// Which of given moments it has before draws are rejected.
+    const BEFORE_REJECTION: &'static str;
+}
+
+/// The model inside in everything but its name and what becomes of draws that no body has.
+impl<L: Conditionable> NamedModel for RealizableOnly<L> {
+    const NAME: &'static str = L::CONDITIONED_NAME;
+    const DESCRIPTION: &'static str = L::CONDITIONED_DESCRIPTION;
+    const IS_REALIZABLE: bool = true;
+    const NEEDS: &'static [&'static str] = L::NEEDS;
+
+    fn defaults() -> ModelParameters {
+        L::defaults()
+    }
+
+    fn about(nominal: &Inertia, given: &ModelParameters) -> Result<Self, ModelParameterError> {
+        let spread = L::NEEDS.first().copied().unwrap_or("law");
+        Self::new(L::about(nominal, given)?).map_err(|e| ModelParameterError::new(spread, &e))
+    }
+
+    fn matched(
+        mean: InertiaMatrix,
+        moments: &EntryMoments,
+    ) -> Result<(Self, &'static str), NoMatch> {
+        Ok((Self::new(L::matched(mean, moments)?.0)?, L::BEFORE_REJECTION))
     }
 }
 

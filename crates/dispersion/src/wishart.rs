@@ -1,13 +1,14 @@
 //! The model of maximum entropy: a Wishart law of the second moment matrix.
 
-use gyradius_inertia::Inertia;
+use gyradius_inertia::{Inertia, InertiaMatrix};
 use nalgebra::{Matrix3, SMatrix};
 use rand::Rng;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 
 use crate::entry_moments::ENTRIES;
-use crate::second_moment_matrix::{body, inertia_covariance};
-use crate::{EntryMoments, KnownMoments};
+use crate::named_model::{NamedModel, NoMatch, inertia_law};
+use crate::second_moment_matrix::{body, inertia_covariance, inertia_map};
+use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
 
 /// Least dispersion that is told from none.
 const MIN_DELTA: f64 = 1e-7;
@@ -168,6 +169,36 @@ impl Distribution<Inertia> for Wishart {
                 return body;
             }
         }
+    }
+}
+
+inertia_law!(Wishart, draws Inertia);
+
+impl NamedModel for Wishart {
+    const NAME: &'static str = "wishart";
+    const DESCRIPTION: &'static str = "maximum-entropy (Wishart) second moments";
+    const IS_REALIZABLE: bool = true;
+    const NEEDS: &'static [&'static str] = &["delta"];
+
+    fn about(nominal: &Inertia, given: &ModelParameters) -> Result<Self, ModelParameterError> {
+        let delta = given.delta.ok_or(ModelParameterError::missing("delta"))?;
+        Self::new(*nominal, delta).map_err(|e| ModelParameterError::new("delta", &e))
+    }
+
+    fn matched(
+        mean: InertiaMatrix,
+        moments: &EntryMoments,
+    ) -> Result<(Self, &'static str), NoMatch> {
+        const WHAT: &str = "mean, and the mean square of the change of the second moments";
+        let mean = Inertia::try_from(mean)?;
+        let sigma = mean.as_inertia_matrix().second_moment_matrix();
+        let map = inertia_map().try_inverse().ok_or("no second moments")?;
+        let spread = map * moments.covariance() * map.transpose();
+        // Products count twice in the norm of a matrix.
+        let square: f64 = (0..6).map(|e| spread[(e, e)] * if e < 3 { 1.0 } else { 2.0 }).sum();
+        let size = sigma.norm_squared() + sigma.trace() * sigma.trace();
+        let delta = if square == 0.0 { 0.0 } else { 2.0 * (square / size).sqrt() };
+        Ok((Self::new(mean, delta)?, WHAT))
     }
 }
 

@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn a_mixture_goes_where_laws_go() {
         let moments = satellite(0.7).unwrap().expected_moments().unwrap();
-        for kind in [ModelKind::CorrelatedEntries, ModelKind::Wishart, ModelKind::LogCholesky] {
+        for kind in [ModelKind::CORRELATED_ENTRIES, ModelKind::Wishart, ModelKind::LogCholesky] {
             let model = DispersionModel::matched(kind, &moments).unwrap().into_model();
             let found = model.law().expected_moments().unwrap();
             for (a, b) in found.mean().iter().zip(moments.mean()) {

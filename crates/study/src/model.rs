@@ -1,9 +1,7 @@
 //! Inertia models ready to draw, and the runs that their draws make.
 
 use gyradius_campaign::{Column as RunColumn, Failure, Simulation, Streams, Table, TableError};
-use gyradius_dispersion::{
-    DispersionModel, EntrywiseGaussian, InertiaLaw, ModelDraw, ModelKind, RealizableOnly,
-};
+use gyradius_dispersion::{DispersionModel, InertiaLaw, ModelDraw, ModelKind, ModelParameters};
 use gyradius_separation::Batch;
 use std::{ops::Range, sync::Arc};
 
@@ -190,10 +188,13 @@ fn law(
             return Ok((Arc::clone(law), None));
         }
         Law::Principal(axes) => body.principal(*axes)?.into(),
-        Law::Given { kind, payload, stage } => match which {
-            Body::Payload => payload.model(*kind, body.nominal())?,
-            Body::Stage => stage.model(*kind, body.nominal())?,
-        },
+        Law::Given { kind, payload, stage } => {
+            let given = match which {
+                Body::Payload => payload,
+                Body::Stage => stage,
+            };
+            DispersionModel::about(*kind, body.nominal(), given).map_err(|error| error.problem)?
+        }
         Law::Matched { kind, to } => {
             let other = scenario.models().iter().find(|m| m.name == *to);
             let other = other.filter(|m| matches!(m.law, Law::Principal(_) | Law::Outside(_)));
@@ -205,12 +206,12 @@ fn law(
                     other.name()
                 )
             })?;
-            // The naive model knows the nominal body and how far its entries scatter, no more.
-            let naive = || EntrywiseGaussian::new(*body.nominal(), moments.deviations());
-            match kind {
-                ModelKind::Entrywise => naive()?.into(),
-                ModelKind::RealizableEntrywise => RealizableOnly::new(naive()?)?.into(),
-                kind => DispersionModel::matched(*kind, &moments)?.into_model(),
+            if let ModelKind::Entries { correlated: false, .. } = kind {
+                // The naive model knows the nominal body and how far its entries scatter, no more.
+                let given = ModelParameters::of_deviations(moments.deviations());
+                DispersionModel::about(*kind, body.nominal(), &given).map_err(|e| e.problem)?
+            } else {
+                DispersionModel::matched(*kind, &moments)?.into_model()
             }
         }
     };

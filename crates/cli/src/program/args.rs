@@ -293,9 +293,7 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_enum, default_value_t = ReferenceName::Principal)]
     pub(crate) reference: ReferenceName,
 
-    /// Models [default: all]: principal, entrywise, correlated-entries, realizable-entrywise,
-    /// realizable-correlated-entries, log-cholesky, wishart, basilisk
-    #[arg(long, value_name = "M,M,...", value_delimiter = ',')]
+    #[arg(long, value_name = "M,M,...", value_delimiter = ',', help = models())]
     pub(crate) models: Vec<ModelKind>,
 
     /// Draws of each model about each body at each level
@@ -376,6 +374,11 @@ fn share(text: &str) -> Result<f64, String> {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
         _ => Err("it must lie between 0 and 1, or between 0% and 100%".to_owned()),
     }
+}
+
+/// The help of `--models`.
+fn models() -> String {
+    format!("Models [default: all]: {}", ModelKind::ALL.map(ModelKind::name).join(", "))
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

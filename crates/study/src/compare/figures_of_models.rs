@@ -5,18 +5,22 @@ use gyradius_report::{Figure, Line, LineGrid, LinePanel, LinePoint, Picture, Ran
 
 use super::{BodyResult, LevelResult, ModelComparison, contest::Results, measure::Measure};
 
-/// Colour and dashes of a model: kept for conditioned twins, which are dashed.
+/// Colours of the kinds that are not conditioned, by their place among these; a further kind has that of its place.
+const COLOURS: [usize; 4] = [0, 1, 3, 2];
+
+/// Colour and dashes of a model: those that are conditioned have the colour of what they are made of, and dashes.
 pub(super) fn pen(kind: ModelKind) -> (usize, bool) {
-    match kind {
-        ModelKind::Principal => (0, false),
-        ModelKind::Entrywise => (1, false),
-        ModelKind::CorrelatedEntries => (3, false),
-        ModelKind::RealizableEntrywise => (1, true),
-        ModelKind::RealizableCorrelatedEntries => (3, true),
-        ModelKind::LogCholesky => (2, false),
-        ModelKind::Wishart => (4, false),
-        ModelKind::Basilisk => (5, false),
-    }
+    let (plain, dashed) = match kind {
+        ModelKind::Entries { correlated, realizable_only } => {
+            (ModelKind::Entries { correlated, realizable_only: false }, realizable_only)
+        }
+        plain => (plain, false),
+    };
+    let is_plain =
+        |kind: &ModelKind| !matches!(kind, ModelKind::Entries { realizable_only: true, .. });
+    let mut kinds = ModelKind::ALL.into_iter().filter(is_plain);
+    let place = kinds.position(|other| other == plain).unwrap_or(COLOURS.len());
+    (COLOURS.get(place).copied().unwrap_or(place), dashed)
 }
 
 /// What a figure says of itself.

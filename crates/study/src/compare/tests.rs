@@ -64,7 +64,7 @@ fn the_naive_model_is_as_bad_as_it_is() {
         bodies: vec!["slender-stage".into(), "bus".into()],
         reference: Reference::Entries,
         levels_percent: vec![1.0, 10.0],
-        models: vec![ModelKind::Entrywise, ModelKind::CorrelatedEntries],
+        models: vec![ModelKind::ENTRYWISE, ModelKind::CORRELATED_ENTRIES],
         draws: 20_000,
         separations: 0,
         ..CompareOptions::default()
@@ -75,14 +75,14 @@ fn the_naive_model_is_as_bad_as_it_is() {
         let expected = naive_share(moments, 0.1 * moments.into_iter().fold(0.0, f64::max));
         assert!((expected / about - 1.0).abs() < 0.1, "{expected}");
         // Without correlation the two are one law.
-        for kind in [ModelKind::Entrywise, ModelKind::CorrelatedEntries] {
+        for kind in [ModelKind::ENTRYWISE, ModelKind::CORRELATED_ENTRIES] {
             let (count, of) = share(&comparison, body, 1, kind);
             let error = (expected * (1.0 - expected) * (1.0 / of as f64 + 1e-5)).sqrt();
             let z = (count as f64 / of as f64 - expected) / error;
             assert!(z.abs() < 4.0, "{kind}: {z}");
         }
     }
-    assert_eq!(share(&comparison, 1, 0, ModelKind::Entrywise), (0, 20_000));
+    assert_eq!(share(&comparison, 1, 0, ModelKind::ENTRYWISE), (0, 20_000));
     // No law of bodies has the moments of the slender stage, and the comparison says so.
     let level = &comparison.bodies[0].levels[1];
     assert!(level.reference.as_ref().unwrap().impossible.is_some());
@@ -111,7 +111,7 @@ fn models_that_do_not_exist_are_told() {
     let row = csv.lines().find(|l| l.contains(",wishart,")).unwrap();
     assert!(row.contains("dispersion"), "{row}");
     // Draws that do not even turn are counted.
-    let naive = level.cell(ModelKind::Entrywise).unwrap().results.as_ref().unwrap();
+    let naive = level.cell(ModelKind::ENTRYWISE).unwrap().results.as_ref().unwrap();
     assert!(naive.failed_separations > 0);
     assert!(text.contains("separations failed"), "{text}");
     assert!(comparison.document().html().contains("no wishart"));

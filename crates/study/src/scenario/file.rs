@@ -1,10 +1,10 @@
 //! A scenario as it stands in a TOML file.
 
-use gyradius_dispersion::{BasiliskDispersion, ModelKind, ScalarLawForm, UnknownModel};
+use gyradius_dispersion::ScalarLawForm;
 use gyradius_separation::{BodyParameter, SpringParameter, StackParameter};
 use serde::{Deserialize, Serialize};
 
-use super::{follows::Follows, law::VectorLawFile, parse};
+use super::{follows::Follows, law::VectorLawFile, model_file::ModelFile, parse};
 
 /// A scenario as it stands in a TOML file, defaults filled in. Units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -241,161 +241,6 @@ pub(crate) struct SpringDispersionFile {
 pub(crate) struct IntegrationFile {
     pub(crate) relative_tolerance: f64,
     pub(crate) horizon_s: f64,
-}
-
-/// A model: its law, and for each body what the law needs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct ModelFile {
-    pub(crate) name: String,
-    pub(crate) law: ModelLaw,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) axes: Option<AxesFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) payload_deviation_kg_m2: Option<[[f64; 3]; 3]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) payload_covariance_kg2_m4: Option<[[f64; 6]; 6]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) payload_log_cholesky_covariance: Option<[[f64; 6]; 6]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) payload_delta: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) payload_diagonal_deviation_kg_m2: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) payload_diagonal_bounds_kg_m2: Option<[f64; 2]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) payload_angle_deviation_rad: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stage_deviation_kg_m2: Option<[[f64; 3]; 3]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stage_covariance_kg2_m4: Option<[[f64; 6]; 6]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stage_log_cholesky_covariance: Option<[[f64; 6]; 6]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stage_delta: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stage_diagonal_deviation_kg_m2: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stage_diagonal_bounds_kg_m2: Option<[f64; 2]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stage_angle_deviation_rad: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) matched_to: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) outside: Option<OutsideFile>,
-}
-
-/// What a model file says of one body.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GivenFile {
-    pub(crate) deviation_kg_m2: Option<[[f64; 3]; 3]>,
-    pub(crate) covariance_kg2_m4: Option<[[f64; 6]; 6]>,
-    pub(crate) log_cholesky_covariance: Option<[[f64; 6]; 6]>,
-    pub(crate) delta: Option<f64>,
-    pub(crate) diagonal_deviation_kg_m2: Option<f64>,
-    pub(crate) diagonal_bounds_kg_m2: Option<[f64; 2]>,
-    pub(crate) angle_deviation_rad: Option<f64>,
-}
-
-/// The law of a model by its name.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
-pub(crate) enum ModelLaw {
-    /// One that a program gives, and that no file holds.
-    #[default]
-    Outside,
-    Kind(ModelKind),
-}
-
-const OUTSIDE: &str = "outside";
-
-impl TryFrom<String> for ModelLaw {
-    type Error = String;
-
-    fn try_from(name: String) -> Result<Self, String> {
-        if name == OUTSIDE {
-            return Ok(Self::Outside);
-        }
-        name.parse().map(Self::Kind).map_err(|error: UnknownModel| format!("{error}, {OUTSIDE}"))
-    }
-}
-
-impl From<ModelLaw> for String {
-    fn from(law: ModelLaw) -> Self {
-        match law {
-            ModelLaw::Outside => OUTSIDE.to_owned(),
-            ModelLaw::Kind(kind) => kind.name().to_owned(),
-        }
-    }
-}
-
-/// What a file can say of the laws of payload and stage that a program gave.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct OutsideFile {
-    /// What the laws call themselves.
-    pub(crate) payload: String,
-    pub(crate) stage: String,
-    pub(crate) realizable_by_construction: bool,
-    /// SHA-256 of draws of both, by which other laws are told apart.
-    pub(crate) draws_sha256: String,
-}
-
-impl ModelFile {
-    pub(crate) fn payload(&self) -> GivenFile {
-        GivenFile {
-            deviation_kg_m2: self.payload_deviation_kg_m2,
-            covariance_kg2_m4: self.payload_covariance_kg2_m4,
-            log_cholesky_covariance: self.payload_log_cholesky_covariance,
-            delta: self.payload_delta,
-            diagonal_deviation_kg_m2: self.payload_diagonal_deviation_kg_m2,
-            diagonal_bounds_kg_m2: self.payload_diagonal_bounds_kg_m2,
-            angle_deviation_rad: self.payload_angle_deviation_rad,
-        }
-    }
-
-    pub(crate) fn stage(&self) -> GivenFile {
-        GivenFile {
-            deviation_kg_m2: self.stage_deviation_kg_m2,
-            covariance_kg2_m4: self.stage_covariance_kg2_m4,
-            log_cholesky_covariance: self.stage_log_cholesky_covariance,
-            delta: self.stage_delta,
-            diagonal_deviation_kg_m2: self.stage_diagonal_deviation_kg_m2,
-            diagonal_bounds_kg_m2: self.stage_diagonal_bounds_kg_m2,
-            angle_deviation_rad: self.stage_angle_deviation_rad,
-        }
-    }
-
-    /// With the defaults of its law filled in.
-    pub(crate) fn fill(&mut self) {
-        if self.law == ModelLaw::Kind(ModelKind::Basilisk) && self.matched_to.is_none() {
-            self.payload_diagonal_bounds_kg_m2.get_or_insert(BasiliskDispersion::NO_BOUNDS);
-            self.stage_diagonal_bounds_kg_m2.get_or_insert(BasiliskDispersion::NO_BOUNDS);
-        }
-    }
-}
-
-impl GivenFile {
-    /// Every field and whether it is there.
-    pub(crate) fn fields(&self) -> [(&'static str, bool); 7] {
-        [
-            ("deviation_kg_m2", self.deviation_kg_m2.is_some()),
-            ("covariance_kg2_m4", self.covariance_kg2_m4.is_some()),
-            ("log_cholesky_covariance", self.log_cholesky_covariance.is_some()),
-            ("delta", self.delta.is_some()),
-            ("diagonal_deviation_kg_m2", self.diagonal_deviation_kg_m2.is_some()),
-            ("diagonal_bounds_kg_m2", self.diagonal_bounds_kg_m2.is_some()),
-            ("angle_deviation_rad", self.angle_deviation_rad.is_some()),
-        ]
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum AxesFile {
-    WholeSphere,
-    MeanHalf,
-    JacobianTwice,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -8,6 +8,7 @@ mod follows;
 mod law;
 mod limits;
 mod model;
+mod model_file;
 mod outside;
 mod parse;
 mod sides;
@@ -24,8 +25,9 @@ pub(crate) use body::UncertainBody;
 use clearance::Outlines;
 pub(crate) use dispersions::{Dispersed, Dispersions, Target};
 use file::ScenarioFile;
-pub(crate) use file::{AxesFile as Axes, ModelLaw, ShapeFile};
+pub(crate) use file::ShapeFile;
 pub(crate) use model::{Comparison, Law, ModelSpec};
+pub(crate) use model_file::{AxesFile as Axes, ModelLaw};
 use outside::OutsideLaws;
 pub use parse::{parse_toml, whole_number};
 
@@ -148,7 +150,7 @@ impl Scenario {
     }
 
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
-        file.models.iter_mut().for_each(file::ModelFile::fill);
+        file.models.iter_mut().for_each(model_file::ModelFile::fill);
         check_name("name", &file.name)?;
         check_runs(file.runs)?;
         check_seed(file.seed)?;

@@ -1,15 +1,11 @@
 //! A model of a scenario.
 
-use gyradius_dispersion::{
-    BasiliskDispersion, BasiliskError, CorrelatedEntries, DispersionModel, EntrywiseGaussian,
-    LogCholeskyGaussian, ModelKind, RealizableOnly, Wishart,
-};
-use gyradius_inertia::Inertia;
-use nalgebra::SMatrix;
+use gyradius_dispersion::{DispersionModel, ModelKind, ModelParameterError, ModelParameters};
 
 use super::{
     ScenarioError, UncertainBody, check_name,
-    file::{AxesFile as Axes, ComparisonFile, GivenFile, ModelFile, ModelLaw, OutsideFile},
+    file::ComparisonFile,
+    model_file::{AxesFile as Axes, ModelFile, ModelLaw, OutsideFile},
 };
 
 /// A model as the scenario describes it.
@@ -25,26 +21,11 @@ pub(crate) enum Law {
     /// Roots and axes as payload.dispersion and stage.dispersion say.
     Principal(Axes),
     /// Any other model with given parameters of payload and stage.
-    Given { kind: ModelKind, payload: Box<Given>, stage: Box<Given> },
+    Given { kind: ModelKind, payload: Box<ModelParameters>, stage: Box<ModelParameters> },
     /// Any other model with the moments of a principal one, or of one from outside.
     Matched { kind: ModelKind, to: String },
     /// That of a program, and what the file says of it.
     Outside(Option<OutsideFile>),
-}
-
-/// The parameters of a model for one body.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Given {
-    /// Of I11, I22, I33, I12, I13, I23, kg·m².
-    Deviations([f64; 6]),
-    /// Of the same, (kg·m²)².
-    Covariance(SMatrix<f64, 6, 6>),
-    /// Of d1, d2, d3, s12, s23, s13.
-    LogCholesky(SMatrix<f64, 6, 6>),
-    /// Dispersion parameter.
-    Delta(f64),
-    /// Of the diagonal, kg·m², and of the angles, rad.
-    Basilisk { diagonal: f64, bounds: [f64; 2], angle: f64 },
 }
 
 impl Law {
@@ -110,17 +91,16 @@ fn check_model(
     let field_error = |field: &str, problem: String| {
         Err(ScenarioError::field(format!("{place}.{field}"), problem))
     };
-    let (payload, stage) = (file.payload(), file.stage());
     let given = || {
-        let of = |body: &str, given: &GivenFile| {
-            let body = body.to_owned();
-            given.fields().map(|(field, there)| (format!("{body}_{field}"), field, there))
+        let of = |body: &'static str, given: &ModelParameters| {
+            let keys: Vec<&str> = given.given().collect();
+            keys.into_iter().map(move |key| (format!("{body}_{key}"), key))
         };
-        of("payload", &payload).into_iter().chain(of("stage", &stage)).filter(|f| f.2)
+        of("payload", &file.payload).chain(of("stage", &file.stage))
     };
 
     let ModelLaw::Kind(kind) = file.law else {
-        let mut others = given().map(|(field, ..)| field);
+        let mut others = given().map(|(field, _)| field);
         let axes = file.axes.map(|_| "axes".to_owned());
         let matched = file.matched_to.as_ref().map(|_| "matched_to".to_owned());
         return match others.next().or(axes).or(matched) {
@@ -145,7 +125,7 @@ fn check_model(
         };
         let only = "law \"principal\" takes axes and nothing else: its variances are those of \
                     payload.dispersion and stage.dispersion";
-        if let Some((field, ..)) = given().next() {
+        if let Some((field, _)) = given().next() {
             return field_error(&field, only.to_owned());
         }
         if file.matched_to.is_some() {
@@ -162,16 +142,17 @@ fn check_model(
     if file.axes.is_some() {
         return field_error("axes", format!("law \"{kind}\" does not take it"));
     }
-    let (needs, takes) = parameters(kind);
+    let (needs, defaults) = (kind.needs(), kind.defaults());
+    let takes = |key: &str| needs.contains(&key) || defaults.given().any(|other| other == key);
     let choice = format!(
         "law \"{kind}\" needs either {}, or matched_to, and nothing else",
         needs.iter().map(|f| format!("payload_{f} and stage_{f}")).collect::<Vec<_>>().join(", ")
     );
-    if let Some((field, ..)) = given().find(|(_, field, _)| !takes.contains(field)) {
+    if let Some((field, _)) = given().find(|(_, key)| !takes(key)) {
         return field_error(&field, format!("{choice}; it does not take this"));
     }
     let law = if let Some(other) = &file.matched_to {
-        if let Some((field, ..)) = given().next() {
+        if let Some((field, _)) = given().next() {
             return field_error(&field, choice);
         }
         let known = [ModelLaw::Kind(ModelKind::Principal), ModelLaw::Outside];
@@ -184,131 +165,24 @@ fn check_model(
         }
         Law::Matched { kind, to: other.clone() }
     } else {
-        for (body, given) in [("payload", &payload), ("stage", &stage)] {
-            for need in needs {
-                if !given.fields().contains(&(*need, true)) {
-                    return field_error(&format!("{body}_{need}"), format!("missing: {choice}"));
-                }
+        for (body, given) in [("payload", &file.payload), ("stage", &file.stage)] {
+            if let Some(need) = needs.iter().find(|need| !given.given().any(|key| key == **need)) {
+                return field_error(&format!("{body}_{need}"), format!("missing: {choice}"));
             }
         }
-        let [p, s] = bodies.map(UncertainBody::nominal);
-        let payload = Box::new(check_given(kind, &format!("{place}.payload"), &payload, p)?);
-        let stage = Box::new(check_given(kind, &format!("{place}.stage"), &stage, s)?);
+        // Checked by making the models.
+        for (body, given, uncertain) in
+            [("payload", &file.payload, bodies[0]), ("stage", &file.stage, bodies[1])]
+        {
+            let wrong = |ModelParameterError { key, problem }| {
+                ScenarioError::field(format!("{place}.{body}_{key}"), problem)
+            };
+            DispersionModel::about(kind, uncertain.nominal(), given).map_err(wrong)?;
+        }
+        let [payload, stage] = [file.payload, file.stage].map(Box::new);
         Law::Given { kind, payload, stage }
     };
     Ok(ModelSpec { name: file.name.clone(), law })
-}
-
-/// The fields that a law needs, and those that it takes.
-fn parameters(kind: ModelKind) -> (&'static [&'static str], &'static [&'static str]) {
-    match kind {
-        ModelKind::Entrywise | ModelKind::RealizableEntrywise => {
-            (&["deviation_kg_m2"], &["deviation_kg_m2"])
-        }
-        ModelKind::CorrelatedEntries | ModelKind::RealizableCorrelatedEntries => {
-            (&["covariance_kg2_m4"], &["covariance_kg2_m4"])
-        }
-        ModelKind::LogCholesky => (&["log_cholesky_covariance"], &["log_cholesky_covariance"]),
-        ModelKind::Wishart => (&["delta"], &["delta"]),
-        ModelKind::Basilisk => (
-            &["diagonal_deviation_kg_m2", "angle_deviation_rad"],
-            &["diagonal_deviation_kg_m2", "diagonal_bounds_kg_m2", "angle_deviation_rad"],
-        ),
-        ModelKind::Principal => (&[], &[]),
-    }
-}
-
-/// What a law was given for one body, checked by making the model. `place` ends with the body's name.
-fn check_given(
-    kind: ModelKind,
-    place: &str,
-    file: &GivenFile,
-    nominal: &Inertia,
-) -> Result<Given, ScenarioError> {
-    let square = |m: &[[f64; 6]; 6]| SMatrix::from_fn(|i, j| m[i][j]);
-    let (field, given) = if let Some(m) = &file.deviation_kg_m2 {
-        let field = "deviation_kg_m2";
-        (field, Given::Deviations(entries(&format!("{place}_{field}"), m)?))
-    } else if let Some(m) = &file.covariance_kg2_m4 {
-        ("covariance_kg2_m4", Given::Covariance(square(m)))
-    } else if let Some(m) = &file.log_cholesky_covariance {
-        ("log_cholesky_covariance", Given::LogCholesky(square(m)))
-    } else if let Some(delta) = file.delta {
-        ("delta", Given::Delta(delta))
-    } else {
-        let bounds = file.diagonal_bounds_kg_m2.unwrap_or(BasiliskDispersion::NO_BOUNDS);
-        let diagonal = file.diagonal_deviation_kg_m2.unwrap_or(0.0);
-        let angle = file.angle_deviation_rad.unwrap_or(0.0);
-        let field = match BasiliskDispersion::new(*nominal, diagonal, bounds, angle) {
-            Err(BasiliskError::Bounds { .. }) => "diagonal_bounds_kg_m2",
-            Err(BasiliskError::Deviation { which: "angle", .. }) => "angle_deviation_rad",
-            _ => "diagonal_deviation_kg_m2",
-        };
-        (field, Given::Basilisk { diagonal, bounds, angle })
-    };
-    let made = given.model(kind, nominal);
-    made.map_err(|e| ScenarioError::field(format!("{place}_{field}"), e))?;
-    Ok(given)
-}
-
-impl Given {
-    /// The model of a kind with these parameters, about a nominal body.
-    pub(crate) fn model(
-        &self,
-        kind: ModelKind,
-        nominal: &Inertia,
-    ) -> Result<DispersionModel, Box<dyn std::error::Error>> {
-        Ok(match self {
-            Self::Deviations(deviations) => {
-                let law = EntrywiseGaussian::new(*nominal, *deviations)?;
-                if kind == ModelKind::RealizableEntrywise {
-                    RealizableOnly::new(law)?.into()
-                } else {
-                    law.into()
-                }
-            }
-            Self::Covariance(covariance) => {
-                let law = CorrelatedEntries::new(*nominal, *covariance)?;
-                if kind == ModelKind::RealizableCorrelatedEntries {
-                    RealizableOnly::new(law)?.into()
-                } else {
-                    law.into()
-                }
-            }
-            Self::LogCholesky(covariance) => {
-                LogCholeskyGaussian::about(nominal, *covariance)?.into()
-            }
-            Self::Delta(delta) => Wishart::new(*nominal, *delta)?.into(),
-            Self::Basilisk { diagonal, bounds, angle } => {
-                BasiliskDispersion::new(*nominal, *diagonal, *bounds, *angle)?.into()
-            }
-        })
-    }
-}
-
-/// The six entries of a symmetric matrix of deviations.
-fn entries(field: &str, m: &[[f64; 3]; 3]) -> Result<[f64; 6], ScenarioError> {
-    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-        let (upper, lower) = (m[i][j], m[j][i]);
-        if upper != lower && !(upper.is_nan() && lower.is_nan()) {
-            let problem = format!(
-                "entries ({}, {}) = {upper:?} and ({}, {}) = {lower:?}: the matrix must be symmetric",
-                i + 1,
-                j + 1,
-                j + 1,
-                i + 1
-            );
-            return Err(ScenarioError::field(field, problem));
-        }
-    }
-    let entries = [m[0][0], m[1][1], m[2][2], m[0][1], m[0][2], m[1][2]];
-    match entries.iter().find(|d| !(**d >= 0.0 && d.is_finite())) {
-        Some(bad) => {
-            let problem = format!("{bad:?} kg·m²: deviations must be finite and not negative");
-            Err(ScenarioError::field(field, problem))
-        }
-        None => Ok(entries),
-    }
 }
 
 pub(crate) fn check_comparisons(

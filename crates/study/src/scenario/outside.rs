@@ -6,10 +6,9 @@ use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, sync::Arc};
 
 use super::{
-    Scenario, ScenarioError,
-    file::{ModelFile, ModelLaw, OutsideFile},
-    limits,
+    Scenario, ScenarioError, limits,
     model::{ModelSpec, place},
+    model_file::{ModelFile, ModelLaw, OutsideFile},
 };
 use crate::body::Body;
 

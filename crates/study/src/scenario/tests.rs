@@ -309,6 +309,63 @@ fn every_model_can_be_written() {
     }
 }
 
+/// Of every kind of model, with every subset of the parameters that there are for either body: a scenario takes it if the
+/// subset has what the kind needs and nothing that it does not take, says again what it was given with the defaults
+/// filled in, and else names a key that is missing or too much.
+#[test]
+fn a_model_takes_what_its_kind_takes() {
+    use gyradius_dispersion::{ModelKind, ModelParameters};
+    let value = |key: &str| match key {
+        "deviation_kg_m2" => covariance(3, 10.0),
+        "covariance_kg2_m4" => covariance(6, 100.0),
+        "log_cholesky_covariance" => covariance(6, 1e-4),
+        "diagonal_bounds_kg_m2" => "[-100.0, 100.0]".to_owned(),
+        _ => "0.05".to_owned(),
+    };
+    let keys = ModelParameters::KEYS;
+    for kind in ModelKind::ALL {
+        let (needs, defaults) = (kind.needs(), kind.defaults());
+        let takes = |key: &str| needs.contains(&key) || defaults.given().any(|k| k == key);
+        for subset in 0..1_u32 << keys.len() {
+            let chosen: Vec<&str> =
+                (0..keys.len()).filter(|i| subset & (1 << i) != 0).map(|i| keys[i]).collect();
+            // All of them for one body, and then for the other only what is needed.
+            let lines = |body: &str, keys: &[&str]| -> String {
+                keys.iter().map(|key| format!("{body}_{key} = {}\n", value(key))).collect()
+            };
+            let [payload, stage] =
+                if subset % 2 == 0 { ["payload", "stage"] } else { ["stage", "payload"] };
+            let fields = lines(payload, &chosen) + &lines(stage, needs);
+            let axes = if kind == ModelKind::Principal { "axes = \"mean-half\"" } else { "" };
+            let text = with_model(kind.name(), &format!("{fields}{axes}"));
+            let fits = needs.iter().all(|k| chosen.contains(k)) && chosen.iter().all(|k| takes(k));
+            match Scenario::from_toml(&text) {
+                Ok(scenario) => {
+                    assert!(fits, "{text}");
+                    let resolved = scenario.to_toml();
+                    let last = resolved.split("[[models]]").last().unwrap();
+                    for body in [payload, stage] {
+                        for key in keys {
+                            let there = last.contains(&format!("{body}_{key} = "));
+                            assert_eq!(there, takes(key), "{body}_{key} in {last}");
+                        }
+                    }
+                    assert_eq!(Scenario::from_toml(&resolved).unwrap().to_toml(), resolved);
+                }
+                Err(error) => {
+                    assert!(!fits, "{error}\n{text}");
+                    let error = error.to_string();
+                    let named = keys.iter().any(|key| {
+                        let wrong = chosen.contains(key) != needs.contains(key);
+                        wrong && error.starts_with(&format!("models[5].{payload}_{key}: "))
+                    });
+                    assert!(named, "{error}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn bad_parameters_of_models_are_named() {
     let both =
