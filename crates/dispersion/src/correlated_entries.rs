@@ -5,6 +5,8 @@ use nalgebra::SMatrix;
 use rand::Rng;
 use rand_distr::Distribution;
 
+#[cfg(feature = "serde")]
+use crate::entry_moments::rows;
 use crate::named_model::{NamedModel, NoMatch, inertia_law};
 use crate::realizable_only::Conditionable;
 use crate::semidefinite::{Covariance, CovarianceError};
@@ -119,7 +121,7 @@ impl Conditionable for CorrelatedEntries {
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Parameters {
-    mean_kg_m2: [f64; 6],
+    mean_kg_m2: [[f64; 3]; 3],
     covariance_kg2_m4: [[f64; 6]; 6],
 }
 
@@ -128,8 +130,7 @@ impl TryFrom<Parameters> for CorrelatedEntries {
     type Error = Box<dyn std::error::Error>;
 
     fn try_from(p: Parameters) -> Result<Self, Self::Error> {
-        let [i11, i22, i33, i12, i13, i23] = p.mean_kg_m2;
-        let mean = InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23])?;
+        let mean = InertiaMatrix::try_from(p.mean_kg_m2)?;
         Ok(Self::new(mean, SMatrix::from_fn(|i, j| p.covariance_kg2_m4[i][j]))?)
     }
 }
@@ -139,7 +140,7 @@ impl From<CorrelatedEntries> for Parameters {
     fn from(law: CorrelatedEntries) -> Self {
         let c = law.covariance.matrix();
         Self {
-            mean_kg_m2: law.mean,
+            mean_kg_m2: rows(law.mean),
             covariance_kg2_m4: std::array::from_fn(|i| std::array::from_fn(|j| c[(i, j)])),
         }
     }

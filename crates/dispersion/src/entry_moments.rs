@@ -190,6 +190,11 @@ impl EntryMoments {
     }
 }
 
+/// The rows of a symmetric matrix of entries.
+pub(crate) fn rows([i11, i22, i33, i12, i13, i23]: [f64; 6]) -> [[f64; 3]; 3] {
+    [[i11, i12, i13], [i12, i22, i23], [i13, i23, i33]]
+}
+
 /// Why numbers are not a mean and a covariance of entries.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -6,6 +6,8 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::fmt::Display;
 
+#[cfg(feature = "serde")]
+use crate::entry_moments::rows;
 use crate::named_model::{NamedModel, NoMatch, inertia_law};
 use crate::realizable_only::Conditionable;
 use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
@@ -161,8 +163,8 @@ fn symmetric(m: &[[f64; 3]; 3]) -> Result<[f64; 6], String> {
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Parameters {
-    mean_kg_m2: [f64; 6],
-    deviation_kg_m2: [f64; 6],
+    mean_kg_m2: [[f64; 3]; 3],
+    deviation_kg_m2: [[f64; 3]; 3],
 }
 
 #[cfg(feature = "serde")]
@@ -170,16 +172,15 @@ impl TryFrom<Parameters> for EntrywiseGaussian {
     type Error = Box<dyn std::error::Error>;
 
     fn try_from(p: Parameters) -> Result<Self, Self::Error> {
-        let [i11, i22, i33, i12, i13, i23] = p.mean_kg_m2;
-        let mean = InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23])?;
-        Ok(Self::new(mean, p.deviation_kg_m2)?)
+        let mean = InertiaMatrix::try_from(p.mean_kg_m2)?;
+        Ok(Self::new(mean, symmetric(&p.deviation_kg_m2)?)?)
     }
 }
 
 #[cfg(feature = "serde")]
 impl From<EntrywiseGaussian> for Parameters {
     fn from(law: EntrywiseGaussian) -> Self {
-        Self { mean_kg_m2: law.mean, deviation_kg_m2: law.deviations }
+        Self { mean_kg_m2: rows(law.mean), deviation_kg_m2: rows(law.deviations) }
     }
 }
 

@@ -365,8 +365,8 @@ impl NamedModel for LogCholeskyGaussian {
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Parameters {
-    mean: [f64; 6],
-    covariance: [[f64; 6]; 6],
+    log_cholesky_mean: [f64; 6],
+    log_cholesky_covariance: [[f64; 6]; 6],
 }
 
 #[cfg(feature = "serde")]
@@ -374,7 +374,7 @@ impl TryFrom<Parameters> for LogCholeskyGaussian {
     type Error = LogCholeskyGaussianError;
 
     fn try_from(p: Parameters) -> Result<Self, Self::Error> {
-        Self::new(p.mean, SMatrix::from_fn(|i, j| p.covariance[i][j]))
+        Self::new(p.log_cholesky_mean, SMatrix::from_fn(|i, j| p.log_cholesky_covariance[i][j]))
     }
 }
 
@@ -383,8 +383,8 @@ impl From<LogCholeskyGaussian> for Parameters {
     fn from(law: LogCholeskyGaussian) -> Self {
         let c = law.covariance.matrix();
         Self {
-            mean: law.mean.into(),
-            covariance: std::array::from_fn(|i| std::array::from_fn(|j| c[(i, j)])),
+            log_cholesky_mean: law.mean.into(),
+            log_cholesky_covariance: std::array::from_fn(|i| std::array::from_fn(|j| c[(i, j)])),
         }
     }
 }

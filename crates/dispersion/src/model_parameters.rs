@@ -1,5 +1,7 @@
 //! What a file says of a model of inertia beside the nominal body.
 
+use crate::entry_moments::rows;
+
 /// The keys of all models, each with its type: a model takes some of them.
 macro_rules! parameters {
     ($($(#[$doc:meta])* $key:ident: $value:ty,)*) => {
@@ -83,9 +85,8 @@ parameters! {
 impl ModelParameters {
     /// The standard deviations of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃, kg·m², and nothing else.
     #[must_use]
-    pub fn of_deviations([i11, i22, i33, i12, i13, i23]: [f64; 6]) -> Self {
-        let rows = [[i11, i12, i13], [i12, i22, i23], [i13, i23, i33]];
-        Self { deviation_kg_m2: Some(rows), ..Self::default() }
+    pub fn of_deviations(deviations: [f64; 6]) -> Self {
+        Self { deviation_kg_m2: Some(rows(deviations)), ..Self::default() }
     }
 }
 
