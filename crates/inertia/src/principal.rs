@@ -26,6 +26,18 @@ pub struct PrincipalAxes {
 }
 
 impl PrincipalAxes {
+    /// The six orders in which three axes can be named, counted from 0, each with the sign of its permutation; the
+    /// first changes nothing. Axes stay right-handed if as many of them are reversed as the sign asks for: an even
+    /// number with 1, an odd one with −1.
+    pub const ORDERS: [([usize; 3], f64); 6] = [
+        ([0, 1, 2], 1.0),
+        ([1, 2, 0], 1.0),
+        ([2, 0, 1], 1.0),
+        ([0, 2, 1], -1.0),
+        ([2, 1, 0], -1.0),
+        ([1, 0, 2], -1.0),
+    ];
+
     pub(crate) fn of(inertia: &InertiaMatrix) -> Self {
         let (values, vectors) = eigen(inertia.matrix());
         let gap = RELATIVE_TOLERANCE * size(inertia.matrix());
@@ -108,7 +120,7 @@ fn nearest(values: [f64; 3], v: &Matrix3<f64>) -> Option<([f64; 3], Matrix3<f64>
 fn nearest_of_all(values: [f64; 3], v: &Matrix3<f64>) -> Option<([f64; 3], Matrix3<f64>)> {
     let mut best = ([0, 1, 2], [1.0; 3]);
     let (mut first, mut second) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-    for (order, parity) in PERMUTATIONS {
+    for (order, parity) in PrincipalAxes::ORDERS {
         let [a, b, c] = [v[(0, order[0])], v[(1, order[1])], v[(2, order[2])]];
         // With every diagonal entry positive, if that is a rotation; else the least of them is not.
         let mirrored = a.is_sign_negative() ^ b.is_sign_negative() ^ c.is_sign_negative();
@@ -139,20 +151,10 @@ fn nearest_of_all(values: [f64; 3], v: &Matrix3<f64>) -> Option<([f64; 3], Matri
     (first - second > TIE).then_some((order.map(|i| values[i]), columns))
 }
 
-/// Each permutation with the sign of its determinant; eigenvectors are a rotation.
-const PERMUTATIONS: [([usize; 3], f64); 6] = [
-    ([0, 1, 2], 1.0),
-    ([1, 2, 0], 1.0),
-    ([2, 0, 1], 1.0),
-    ([0, 2, 1], -1.0),
-    ([2, 1, 0], -1.0),
-    ([1, 0, 2], -1.0),
-];
-
 /// The same where a tie has to be settled.
 fn nearest_of_24(values: [f64; 3], v: &Matrix3<f64>, gap: f64) -> ([f64; 3], Matrix3<f64>) {
     let mut best: Option<([f64; 3], Matrix3<f64>)> = None;
-    for (order, parity) in PERMUTATIONS {
+    for (order, parity) in PrincipalAxes::ORDERS {
         for (s0, s1) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
             let signs = [s0, s1, parity * s0 * s1];
             let trace: f64 = (0..3).map(|i| signs[i] * v[(i, order[i])]).sum();

@@ -1,5 +1,6 @@
 //! The 24 right-handed ways to name and point the axes of one body.
 
+use gyradius_inertia::PrincipalAxes;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use std::sync::OnceLock;
 
@@ -16,17 +17,9 @@ impl Relabeling {
     pub(super) fn all() -> &'static [Self; 24] {
         static ALL: OnceLock<[Relabeling; 24]> = OnceLock::new();
         ALL.get_or_init(|| {
-            const ORDERS: [([usize; 3], f64); 6] = [
-                ([0, 1, 2], 1.0),
-                ([1, 2, 0], 1.0),
-                ([2, 0, 1], 1.0),
-                ([0, 2, 1], -1.0),
-                ([2, 1, 0], -1.0),
-                ([1, 0, 2], -1.0),
-            ];
             const SIGNS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
             std::array::from_fn(|i| {
-                let (order, parity) = ORDERS[i / 4];
+                let (order, parity) = PrincipalAxes::ORDERS[i / 4];
                 let [a, b] = SIGNS[i % 4];
                 let signs = [a, b, parity * a * b];
                 let matrix = Matrix3::from_fn(
