@@ -4,7 +4,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use gyradius_clearance::{
-    Clearance, ClearanceSettings, Coast, FreeBody, Outline, RigidState, Shape,
+    Clearance, ClearanceSettings, Coast, FreeBody, Outline, OutlineShape, RigidState,
 };
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use std::hint::black_box;
@@ -27,11 +27,11 @@ fn prism(sides: u32, radius: f64, bottom: f64, top: f64) -> Outline {
         V::new(radius * c, radius * s, z)
     };
     let points: Vec<V> = (0..sides).flat_map(|i| [corner(i, bottom), corner(i, top)]).collect();
-    Shape::hull(&points).unwrap().into()
+    OutlineShape::hull(&points).unwrap().into()
 }
 
 fn ring(z: f64, radius: f64) -> Outline {
-    Shape::ring(V::z() * z, V::z(), radius).unwrap().into()
+    OutlineShape::ring(V::z() * z, V::z(), radius).unwrap().into()
 }
 
 /// The last release of the separation of Peck (2003), Table 1, as `gyradius-separation` integrates it.

@@ -118,7 +118,7 @@ mod tests {
     use super::*;
     use crate::RigidState;
     use crate::motion::MotionLimits;
-    use crate::outline::{Kind, Shape};
+    use crate::outline::{Kind, OutlineShape};
     use crate::part::parts;
     use nalgebra::UnitQuaternion;
     use proptest::prelude::*;
@@ -170,7 +170,7 @@ mod tests {
                 (zero, turns[1], zero, rates[1].into()),
             ]);
             let hull: Vec<V> = hull.into_iter().map(V::from).collect();
-            let shapes = [Shape::ring(centre.into(), axis.into(), radius).unwrap(), Shape::hull(&hull).unwrap()];
+            let shapes = [OutlineShape::ring(centre.into(), axis.into(), radius).unwrap(), OutlineShape::hull(&hull).unwrap()];
             let Kind::Ring(ring) = shapes[0].kind() else { panic!() };
             let pair = RingAndHull { ring, ring_body, hull: &hull };
             let all = parts(&shapes[ring_body], &shapes[1 - ring_body]);

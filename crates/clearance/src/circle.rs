@@ -273,12 +273,12 @@ fn aside(normal: &Vector3<f64>, x: &Triple) -> Triple {
 mod tests {
     use super::*;
     use crate::RigidState;
-    use crate::outline::{Kind, Shape};
+    use crate::outline::{Kind, OutlineShape};
     use nalgebra::UnitQuaternion;
     use proptest::prelude::*;
 
     fn ring(centre: [f64; 3], axis: [f64; 3], radius: f64) -> Ring {
-        match Shape::ring(centre.into(), axis.into(), radius).unwrap().kind() {
+        match OutlineShape::ring(centre.into(), axis.into(), radius).unwrap().kind() {
             Kind::Ring(ring) => *ring,
             _ => unreachable!(),
         }

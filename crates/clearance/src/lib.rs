@@ -22,6 +22,9 @@ pub use coast::Coast;
 pub use error::ClearanceError;
 pub use free_body::{FreeBody, FreeBodyError};
 pub use motion::{Motion, MotionLimits};
-pub use outline::{Outline, OutlineError, Shape};
+pub use outline::{Outline, OutlineError, OutlineShape};
 pub use settings::{ClearanceSettings, ClearanceSettingsError};
 pub use state::RigidState;
+
+// Part of the interface, in the version that it takes and gives.
+pub use nalgebra;

@@ -58,12 +58,12 @@ pub(crate) enum Kind {
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "Fields", into = "Fields")
 )]
-pub struct Shape {
+pub struct OutlineShape {
     kind: Kind,
     radius: f64,
 }
 
-impl Shape {
+impl OutlineShape {
     /// Separate points, m.
     ///
     /// # Errors
@@ -153,10 +153,10 @@ impl Shape {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Vec<Shape>", into = "Vec<Shape>")
+    serde(try_from = "Vec<OutlineShape>", into = "Vec<OutlineShape>")
 )]
 pub struct Outline {
-    shapes: Arc<[Shape]>,
+    shapes: Arc<[OutlineShape]>,
 }
 
 impl Outline {
@@ -164,12 +164,12 @@ impl Outline {
     ///
     /// # Errors
     /// There are none, or they have more than 1,000 points together.
-    pub fn new(shapes: impl Into<Vec<Shape>>) -> Result<Self, OutlineError> {
-        let shapes: Vec<Shape> = shapes.into();
+    pub fn new(shapes: impl Into<Vec<OutlineShape>>) -> Result<Self, OutlineError> {
+        let shapes: Vec<OutlineShape> = shapes.into();
         if shapes.is_empty() {
             return Err(OutlineError::Empty { field: "outline" });
         }
-        let count = shapes.iter().map(Shape::count).sum();
+        let count = shapes.iter().map(OutlineShape::count).sum();
         if count > MOST_POINTS {
             return Err(OutlineError::TooManyPoints { count });
         }
@@ -178,14 +178,14 @@ impl Outline {
 
     /// Its shapes.
     #[must_use]
-    pub fn shapes(&self) -> &[Shape] {
+    pub fn shapes(&self) -> &[OutlineShape] {
         &self.shapes
     }
 
     /// Distance of its farthest point from the mass centre, m.
     #[must_use]
     pub fn bounding_radius_m(&self) -> f64 {
-        self.shapes.iter().map(Shape::bounding_radius_m).fold(0.0, f64::max)
+        self.shapes.iter().map(OutlineShape::bounding_radius_m).fold(0.0, f64::max)
     }
 
     /// The same outline about a mass centre that lies off the old one by `offset_m` (body axes, m).
@@ -201,22 +201,22 @@ impl Outline {
     }
 }
 
-impl TryFrom<Vec<Shape>> for Outline {
+impl TryFrom<Vec<OutlineShape>> for Outline {
     type Error = OutlineError;
 
-    fn try_from(shapes: Vec<Shape>) -> Result<Self, OutlineError> {
+    fn try_from(shapes: Vec<OutlineShape>) -> Result<Self, OutlineError> {
         Self::new(shapes)
     }
 }
 
-impl From<Outline> for Vec<Shape> {
+impl From<Outline> for Vec<OutlineShape> {
     fn from(outline: Outline) -> Self {
         outline.shapes.to_vec()
     }
 }
 
-impl From<Shape> for Outline {
-    fn from(shape: Shape) -> Self {
+impl From<OutlineShape> for Outline {
+    fn from(shape: OutlineShape) -> Self {
         Self { shapes: [shape].into() }
     }
 }
@@ -258,7 +258,7 @@ enum Fields {
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<Fields> for Shape {
+impl TryFrom<Fields> for OutlineShape {
     type Error = OutlineError;
 
     fn try_from(fields: Fields) -> Result<Self, OutlineError> {
@@ -274,8 +274,8 @@ impl TryFrom<Fields> for Shape {
 }
 
 #[cfg(feature = "serde")]
-impl From<Shape> for Fields {
-    fn from(shape: Shape) -> Self {
+impl From<OutlineShape> for Fields {
+    fn from(shape: OutlineShape) -> Self {
         let arrays = |p: &[Vector3<f64>]| p.iter().map(|&x| x.into()).collect();
         match &shape.kind {
             Kind::Points(p) => Self::PointsM(arrays(p)),
@@ -338,31 +338,34 @@ mod tests {
         for bad in [f64::NAN, f64::INFINITY, -1e7, 1e300] {
             let p = Vector3::new(0.0, bad, 0.0);
             assert!(matches!(
-                Shape::points(&[o, p]),
+                OutlineShape::points(&[o, p]),
                 Err(OutlineError::Coordinate { field: "points_m", .. })
             ));
             assert!(matches!(
-                Shape::hull(&[p]),
+                OutlineShape::hull(&[p]),
                 Err(OutlineError::Coordinate { field: "hull_m", .. })
             ));
             assert!(matches!(
-                Shape::ring(p, z, 1.0),
+                OutlineShape::ring(p, z, 1.0),
                 Err(OutlineError::Coordinate { field: "centre_m", .. })
             ));
-            assert!(matches!(Shape::ring(o, z, bad), Err(OutlineError::Radius { .. })));
+            assert!(matches!(OutlineShape::ring(o, z, bad), Err(OutlineError::Radius { .. })));
         }
         for bad in [0.0, f64::NAN, f64::INFINITY, 1e-200] {
             let axis = Vector3::new(0.0, bad, 0.0);
-            assert!(matches!(Shape::ring(o, axis, 1.0), Err(OutlineError::Axis { .. })), "{bad}");
+            assert!(
+                matches!(OutlineShape::ring(o, axis, 1.0), Err(OutlineError::Axis { .. })),
+                "{bad}"
+            );
         }
-        assert!(matches!(Shape::ring(o, z, 0.0), Err(OutlineError::Radius { .. })));
-        assert_eq!(Shape::hull(&[]), Err(OutlineError::Empty { field: "hull_m" }));
+        assert!(matches!(OutlineShape::ring(o, z, 0.0), Err(OutlineError::Radius { .. })));
+        assert_eq!(OutlineShape::hull(&[]), Err(OutlineError::Empty { field: "hull_m" }));
         assert_eq!(Outline::new([]), Err(OutlineError::Empty { field: "outline" }));
         assert!(matches!(
-            Shape::points(&[o; 1001]),
+            OutlineShape::points(&[o; 1001]),
             Err(OutlineError::TooManyPoints { count: 1001 })
         ));
-        let half = Shape::points(&[o; 600]).unwrap();
+        let half = OutlineShape::points(&[o; 600]).unwrap();
         assert!(matches!(
             Outline::new([half.clone(), half]),
             Err(OutlineError::TooManyPoints { count: 1200 })
@@ -371,9 +374,10 @@ mod tests {
 
     #[test]
     fn moving_the_mass_centre_moves_the_points_the_other_way() {
-        let outline: Outline = Shape::hull(&[Vector3::x(), Vector3::y()]).unwrap().into();
+        let outline: Outline = OutlineShape::hull(&[Vector3::x(), Vector3::y()]).unwrap().into();
         let moved = outline.about(Vector3::x()).unwrap();
-        let expected = Shape::hull(&[Vector3::zeros(), Vector3::new(-1.0, 1.0, 0.0)]).unwrap();
+        let expected =
+            OutlineShape::hull(&[Vector3::zeros(), Vector3::new(-1.0, 1.0, 0.0)]).unwrap();
         assert_eq!(moved.shapes(), [expected]);
         assert!(outline.about(Vector3::new(f64::NAN, 0.0, 0.0)).is_err());
     }
@@ -388,7 +392,7 @@ mod tests {
         ) {
             let axis = Vector3::from(a) * 10.0_f64.powi(scale);
             prop_assume!(Vector3::from(a).norm() > 1e-3);
-            let shape = Shape::ring(c.into(), axis, radius).unwrap();
+            let shape = OutlineShape::ring(c.into(), axis, radius).unwrap();
             let Kind::Ring(ring) = shape.kind() else { panic!() };
             let mut largest = 0.0_f64;
             for i in 0..720 {

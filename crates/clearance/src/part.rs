@@ -7,7 +7,7 @@ use crate::{
     circle::{Curve, CurveAndRing},
     convex::{Nearest, gap_along, nearest},
     motion::{Frame, MotionLimits},
-    outline::{Kind, Ring, Shape, farthest},
+    outline::{Kind, OutlineShape, Ring, farthest},
 };
 
 /// Most that a direction is turned over a span or an arc, rad.
@@ -52,7 +52,7 @@ pub(crate) struct Look {
 }
 
 /// All that has to be looked at for two shapes.
-pub(crate) fn parts<'a>(payload: &'a Shape, stage: &'a Shape) -> Vec<Part<'a>> {
+pub(crate) fn parts<'a>(payload: &'a OutlineShape, stage: &'a OutlineShape) -> Vec<Part<'a>> {
     let hulls = |kind: &'a Kind| -> Vec<&'a [Vector3<f64>]> {
         match kind {
             Kind::Points(p) => p.chunks(1).collect(),

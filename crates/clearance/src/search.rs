@@ -8,7 +8,7 @@ use crate::{
     arc::Arc,
     error::ClearanceError,
     motion::{Frame, Motion, MotionLimits},
-    outline::Shape,
+    outline::OutlineShape,
     part::{Look, Part, Seen, parts},
 };
 
@@ -79,8 +79,8 @@ pub(crate) struct Search<'a, M> {
 impl<'a, M: Motion> Search<'a, M> {
     pub(crate) fn new(
         motion: &'a mut M,
-        payload: &'a Shape,
-        stage: &'a Shape,
+        payload: &'a OutlineShape,
+        stage: &'a OutlineShape,
         tolerance: f64,
         touch: f64,
     ) -> Self {

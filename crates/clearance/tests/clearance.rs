@@ -2,7 +2,7 @@
 
 use gyradius_clearance::{
     Approach, Clearance, ClearanceError, ClearanceSettings, Coast, FreeBody, Motion, MotionLimits,
-    Outline, RigidState, Shape,
+    Outline, OutlineShape, RigidState,
 };
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -26,15 +26,15 @@ fn cuboid(half: [f64; 3]) -> Outline {
     let corners: Vec<V> = (0..8_u32)
         .map(|i| V::from_fn(|k, _| if i >> k & 1 == 0 { -half[k] } else { half[k] }))
         .collect();
-    Shape::hull(&corners).unwrap().into()
+    OutlineShape::hull(&corners).unwrap().into()
 }
 
 fn ring(centre: V, axis: V, radius: f64) -> Outline {
-    Shape::ring(centre, axis, radius).unwrap().into()
+    OutlineShape::ring(centre, axis, radius).unwrap().into()
 }
 
 fn points(p: &[V]) -> Outline {
-    Shape::points(p).unwrap().into()
+    OutlineShape::points(p).unwrap().into()
 }
 
 fn coasting(
@@ -299,7 +299,7 @@ fn mated_shapes_count_from_parting_and_recontact_is_found() {
         (ring(V::zeros(), V::z(), 0.6), ring(V::zeros(), V::z(), 0.6)),
         (cuboid([0.5; 3]), {
             let deck = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
-            Shape::hull(&deck.map(|[x, y]| V::new(x, y, -0.5))).unwrap().into()
+            OutlineShape::hull(&deck.map(|[x, y]| V::new(x, y, -0.5))).unwrap().into()
         }),
         (points(&[V::x(), V::y()]), points(&[V::x(), V::y()])),
     ];
@@ -374,7 +374,7 @@ fn mated_shapes_that_turn_and_stay_never_count() {
 #[test]
 fn mated_shapes_do_not_hide_the_others() {
     // Interface rings on each other, and a nozzle 5 cm from the wall of its well.
-    let shape = |c: V, r: f64| Shape::ring(c, V::z(), r).unwrap();
+    let shape = |c: V, r: f64| OutlineShape::ring(c, V::z(), r).unwrap();
     let payload = Outline::new([shape(V::zeros(), 0.8), shape(V::z() * -0.5, 0.3)]).unwrap();
     let stage = Outline::new([shape(V::zeros(), 0.8), shape(V::z() * -0.2, 0.35)]).unwrap();
     let moving = ball(V::zeros(), V::z() * 0.3, V::zeros());
@@ -427,14 +427,10 @@ fn outline() -> impl Strategy<Value = Outline> {
     let ring =
         (prop::array::uniform3(-0.5..0.5f64), prop::array::uniform3(-1.0..1.0f64), 0.1..1.5f64);
     prop_oneof![
-        cloud(1..8).prop_map(|p| Shape::points(&p).unwrap()),
-        cloud(1..14).prop_map(|p| Shape::hull(&p).unwrap()),
-        ring.prop_filter("axis", |r| V::from(r.1).norm() > 0.05).prop_map(|(c, a, r)| Shape::ring(
-            c.into(),
-            a.into(),
-            r
-        )
-        .unwrap()),
+        cloud(1..8).prop_map(|p| OutlineShape::points(&p).unwrap()),
+        cloud(1..14).prop_map(|p| OutlineShape::hull(&p).unwrap()),
+        ring.prop_filter("axis", |r| V::from(r.1).norm() > 0.05)
+            .prop_map(|(c, a, r)| OutlineShape::ring(c.into(), a.into(), r).unwrap()),
     ]
     .prop_map(Outline::from)
 }

@@ -1,6 +1,6 @@
 //! Shapes as the tests know them, and their distance found in another way than the program's.
 
-use gyradius_clearance::{FreeBody, Outline, RigidState, Shape};
+use gyradius_clearance::{FreeBody, Outline, OutlineShape, RigidState};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use proptest::prelude::*;
 
@@ -23,11 +23,11 @@ impl Form {
         }
     }
 
-    pub(crate) fn shape(&self) -> Shape {
+    pub(crate) fn shape(&self) -> OutlineShape {
         match self {
-            Self::Points(p) => Shape::points(p),
-            Self::Hull(p) => Shape::hull(p),
-            Self::Ring(c, a, r) => Shape::ring(*c, *a, *r),
+            Self::Points(p) => OutlineShape::points(p),
+            Self::Hull(p) => OutlineShape::hull(p),
+            Self::Ring(c, a, r) => OutlineShape::ring(*c, *a, *r),
         }
         .unwrap()
     }

@@ -2,7 +2,7 @@
 //! also of mated shapes, are clearance zero at the first of them in time.
 
 use gyradius_clearance::{
-    Clearance, ClearanceSettings, Coast, Motion, Outline, Shape, ShapeClearance,
+    Clearance, ClearanceSettings, Coast, Motion, Outline, OutlineShape, ShapeClearance,
 };
 use proptest::prelude::*;
 
@@ -124,7 +124,7 @@ proptest! {
         let moving = body([2.0, 2.5, 3.0], start, velocity, rates[0]);
         let turning = body([3.0, 2.5, 2.0], V::zeros(), V::zeros(), rates[1]);
         let settings = ClearanceSettings::default();
-        let outline = |forms: &[Form]| Outline::new(forms.iter().map(Form::shape).collect::<Vec<Shape>>());
+        let outline = |forms: &[Form]| Outline::new(forms.iter().map(Form::shape).collect::<Vec<OutlineShape>>());
         let (p, s) = (outline(&payload).unwrap(), outline(&stage).unwrap());
         let mut coast = Coast::new(&moving, &turning, 0.0);
         let c = Clearance::new(&p, &s, &mut coast, 0.0, UNTIL, &settings).unwrap();
@@ -189,7 +189,7 @@ proptest! {
 #[test]
 fn fast_turning_is_followed_as_far_as_it_goes() {
     let settings = ClearanceSettings::default();
-    let point = |x: V| Outline::from(Shape::points(&[x]).unwrap());
+    let point = |x: V| Outline::from(OutlineShape::points(&[x]).unwrap());
     let rate = V::z() * 12.0;
     for (speed, until, undecided, touches) in [
         // 600 s at 12 rad/s; 0.5 m/s takes the tip out of reach of the other before long.
@@ -202,7 +202,7 @@ fn fast_turning_is_followed_as_far_as_it_goes() {
         let moving = body([1.0, 1.0, 1.5], V::z() * 2.0, V::z() * speed, rate);
         let mut coast = Coast::new(&moving, &at_rest(), 0.0);
         let corners = [V::new(-0.5, -0.5, 0.0), V::new(0.5, -0.5, 0.0), V::y() * 0.5];
-        let plate = Shape::hull(&corners).unwrap();
+        let plate = OutlineShape::hull(&corners).unwrap();
         let (arm, plate) = (point(V::x() * 0.2), Outline::from(plate));
         let c = Clearance::new(&arm, &plate, &mut coast, 0.0, until, &settings).unwrap();
         assert_eq!(c.undecided_from_s().is_some(), undecided, "{speed}");

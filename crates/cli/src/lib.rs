@@ -72,7 +72,7 @@
 //! ```
 //! The smallest distance of two bodies in motion ([`clearance`]):
 //! ```
-//! use gyradius::clearance::{Clearance, ClearanceSettings, Coast, FreeBody, Outline, RigidState, Shape};
+//! use gyradius::clearance::{Clearance, ClearanceSettings, Coast, FreeBody, Outline, OutlineShape, RigidState};
 //! use gyradius::nalgebra::{Matrix3, Vector3};
 //!
 //! let state = |z: f64, speed: f64| RigidState {
@@ -82,7 +82,7 @@
 //! };
 //! let body = |state| FreeBody::new(state, Matrix3::identity());
 //! let (payload, stage) = (body(state(1.0, 0.3))?, body(state(-1.0, 0.0))?);
-//! let ring = |z: f64| Shape::ring(Vector3::z() * z, Vector3::z(), 0.5).map(Outline::from);
+//! let ring = |z: f64| OutlineShape::ring(Vector3::z() * z, Vector3::z(), 0.5).map(Outline::from);
 //! let clearance = Clearance::new(
 //!     &ring(-0.9)?,
 //!     &ring(0.9)?,

@@ -2,7 +2,7 @@
 
 use gyradius_clearance::{
     Clearance, ClearanceError, ClearanceSettings, Coast, FreeBody, Outline, OutlineError,
-    RigidState, Shape,
+    OutlineShape, RigidState,
 };
 use gyradius_separation::{MovingBody, Outcome};
 use nalgebra::Vector3;
@@ -104,13 +104,13 @@ fn free(moving: &MovingBody) -> FreeBody {
     }
 }
 
-fn shape(file: &ShapeFile) -> Result<Shape, OutlineError> {
+fn shape(file: &ShapeFile) -> Result<OutlineShape, OutlineError> {
     let vectors = |p: &[[f64; 3]]| p.iter().map(|x| Vector3::from(*x)).collect::<Vec<_>>();
     match file {
-        ShapeFile::PointsM(p) => Shape::points(&vectors(p)),
-        ShapeFile::HullM(p) => Shape::hull(&vectors(p)),
+        ShapeFile::PointsM(p) => OutlineShape::points(&vectors(p)),
+        ShapeFile::HullM(p) => OutlineShape::hull(&vectors(p)),
         ShapeFile::Ring { centre_m, axis, radius_m } => {
-            Shape::ring((*centre_m).into(), (*axis).into(), *radius_m)
+            OutlineShape::ring((*centre_m).into(), (*axis).into(), *radius_m)
         }
     }
 }
