@@ -97,6 +97,14 @@ pub struct FisherBingham {
     sampler: OnceLock<Sampler>,
 }
 
+/// Of the same exponent in the same coordinates, from which all else follows.
+impl PartialEq for FisherBingham {
+    fn eq(&self, other: &Self) -> bool {
+        let parts = |law: &Self| (law.axes, law.lambda, law.centre, law.ln_offset);
+        parts(self) == parts(other)
+    }
+}
+
 #[derive(Clone, Debug)]
 enum Sampler {
     Chart(Box<Chart>),

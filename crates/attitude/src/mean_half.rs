@@ -39,6 +39,12 @@ pub struct MeanHalf {
     far_share: OnceLock<f64>,
 }
 
+impl PartialEq for MeanHalf {
+    fn eq(&self, other: &Self) -> bool {
+        self.whole == other.whole
+    }
+}
+
 impl MeanHalf {
     /// Keeps `law` to the half sphere around its mean.
     #[must_use]

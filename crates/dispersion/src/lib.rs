@@ -102,6 +102,9 @@ pub use scalar::{LawUnit, ScalarLaw, ScalarLawError, ScalarLawForm, ScalarLawFor
 pub use semidefinite::CovarianceError;
 pub use wishart::{Wishart, WishartError};
 
+// Part of the interface, in the version that it takes and gives.
+pub use {nalgebra, rand, rand_distr};
+
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

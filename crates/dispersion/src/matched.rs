@@ -19,7 +19,7 @@ pub struct MatchError {
 }
 
 /// A model made to have given moments, as far as its kind can.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Matched {
     model: DispersionModel,
     what: &'static str,

@@ -57,7 +57,7 @@ macro_rules! models {
         ///
         /// Draws are those of the law inside, bit for bit. Built by its constructor and `into()`, or by name: with
         /// given parameters, [`about`](Self::about), or matched to given moments, [`matched`](Self::matched).
-        #[derive(Clone, Debug)]
+        #[derive(Clone, Debug, PartialEq)]
         #[cfg_attr(
             feature = "serde",
             derive(serde::Serialize, serde::Deserialize),

@@ -85,6 +85,9 @@ pub use spring::{Spring, SpringError, SpringParameter, SpringState};
 pub use stack::Stack;
 pub use trajectory::{Step, Trajectory};
 
+// Part of the interface, in the version that it takes and gives.
+pub use nalgebra;
+
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -74,6 +74,7 @@ pub enum FitError {
 
 /// Which laws a fit chooses among. Each contains those before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Family {
     /// The smallest of [`Bingham`](Self::Bingham), [`Aligned`](Self::Aligned) and
@@ -99,6 +100,7 @@ pub enum Family {
 /// What the attitudes say of the radial variance s = mᵀΣm, the variance of the Gaussian in ℝ⁴ along
 /// its mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum RadialVariance {
     /// It has an estimate, and a finite interval of values that the attitudes allow.
@@ -150,6 +152,7 @@ impl fmt::Display for RadialVariance {
 
 /// How the search for the maximum has ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Convergence {
     /// Whether a maximum was reached.
     pub converged: bool,
@@ -160,21 +163,26 @@ pub struct Convergence {
 }
 
 /// A law fitted to attitudes: see [`RadiallyConstrainedGaussian::fit`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fit {
     law: RadiallyConstrainedGaussian,
     family: Family,
     radial: RadialVariance,
     ln_likelihood: f64,
     bingham_ln_likelihood: f64,
+    #[cfg_attr(feature = "serde", serde(rename = "turn_covariance_rad2"))]
     turn_covariance: Matrix3<f64>,
     errors: Result<Errors, NoIntervals>,
     convergence: Convergence,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 struct Errors {
+    #[cfg_attr(feature = "serde", serde(rename = "mean_covariance_rad2"))]
     mean: Matrix3<f64>,
+    #[cfg_attr(feature = "serde", serde(rename = "turn_errors_rad2"))]
     turns: Matrix3<f64>,
 }
 

@@ -137,6 +137,14 @@ struct Principal {
     variances: [f64; 4],
 }
 
+/// Of the same mean, covariance and precision, from which all else follows.
+impl PartialEq for RadiallyConstrainedGaussian {
+    fn eq(&self, other: &Self) -> bool {
+        let parts = |law: &Self| (law.mean, law.covariance, law.precision);
+        parts(self) == parts(other)
+    }
+}
+
 impl RadiallyConstrainedGaussian {
     /// The law with mean attitude m and covariance Σ, rows and columns in the order of
     /// x = (x₁, x₂, x₃, x₄), scalar last.

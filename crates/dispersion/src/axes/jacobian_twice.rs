@@ -38,7 +38,7 @@ pub enum JacobianTwiceError {
 ///
 /// # Limits
 /// Laws of which not one proposal in fifty thousand is accepted are refused.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

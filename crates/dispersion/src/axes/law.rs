@@ -10,7 +10,7 @@ use crate::{AttitudeMoments, EntryMoments, FixedAttitude, JacobianTwice, SecondM
 /// Any of the laws of principal axes with known moments, chosen at run time.
 ///
 /// Draws are those of the law inside, bit for bit.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

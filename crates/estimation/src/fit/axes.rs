@@ -24,6 +24,7 @@ const LEAST_LOBE: f64 = 0.5;
 
 /// What the samples say of the principal axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum AxesFinding {
     /// All three angles have a mean and a scatter.
@@ -41,12 +42,16 @@ pub enum AxesFinding {
 }
 
 /// The law of the principal axes, fitted to attitudes of matched axes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct AxesFit {
     law: RadiallyConstrainedGaussian,
     finding: AxesFinding,
+    #[cfg_attr(feature = "serde", serde(rename = "turn_covariance_rad2"))]
     turn_covariance: Matrix3<f64>,
+    #[cfg_attr(feature = "serde", serde(rename = "turn_errors_rad2"))]
     turn_errors: Option<Matrix3<f64>>,
+    #[cfg_attr(feature = "serde", serde(rename = "mean_covariance_rad2"))]
     mean_covariance: Option<Matrix3<f64>>,
     radial: Option<RadialVariance>,
     converged: bool,

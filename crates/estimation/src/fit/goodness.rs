@@ -25,6 +25,7 @@ const STILL: f64 = 2e-5;
 
 /// What of the model a test looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Aspect {
     /// The distribution of one root.
@@ -59,6 +60,7 @@ impl fmt::Display for Aspect {
 
 /// One test of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FitTest {
     aspect: Aspect,
     p_value: f64,
@@ -87,6 +89,7 @@ impl FitTest {
 
 /// Whether the samples look like draws of the fitted model.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Assessment {
     tests: Vec<FitTest>,
 }

@@ -55,6 +55,7 @@ pub enum PrincipalFitError {
 
 /// How the principal axes of the samples were matched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Matching {
     /// Samples whose axes got another order than the nearest to the body axes.
     pub swapped: usize,
@@ -112,13 +113,17 @@ pub struct Matching {
 /// assert!(fit.assess(&mut rng).fits());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PrincipalFit {
+    #[cfg_attr(feature = "serde", serde(skip))]
     samples: Vec<Sample>,
+    #[cfg_attr(feature = "serde", serde(rename = "nominal_kg_m2"))]
     nominal: Inertia,
     roots: [RootFit; 3],
     axes: AxesFit,
     matching: Matching,
+    #[cfg_attr(feature = "serde", serde(rename = "entry_deviation_kg_m2"))]
     deviations: [f64; 6],
     law: PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian>,
 }

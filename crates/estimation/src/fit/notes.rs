@@ -13,6 +13,7 @@ const WIDE: f64 = 0.35;
 
 /// What a reader of a fit should know before using it. Written out by `Display`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum FitNote {
     /// Two principal moments are equal within their scatter, and what the axes do about it.
@@ -22,6 +23,7 @@ pub enum FitNote {
         /// Whether the turn about the third axis is undetermined.
         free: bool,
         /// Deviation of that turn otherwise, rad.
+        #[cfg_attr(feature = "serde", serde(rename = "turn_rad"))]
         turn: f64,
     },
     /// One turn of the axes is undetermined though no two moments are equal.

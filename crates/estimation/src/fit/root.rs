@@ -14,6 +14,7 @@ const FLAT: f64 = 1e-6;
 
 /// How a root of a second moment was fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum RootEstimate {
     /// The mean is many deviations from zero: the plain Gaussian of Peck (2003, Eq. 10).
@@ -28,9 +29,13 @@ pub enum RootEstimate {
 
 /// The maximum likelihood law N(k̄, σ²) of one root k = √K, from samples of |k|.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RootFit {
+    #[cfg_attr(feature = "serde", serde(rename = "mean_sqrt_kg_m"))]
     mean: f64,
+    #[cfg_attr(feature = "serde", serde(rename = "deviation_sqrt_kg_m"))]
     deviation: f64,
+    #[cfg_attr(feature = "serde", serde(rename = "errors_sqrt_kg_m"))]
     errors: Option<[f64; 2]>,
     law: RootEstimate,
 }

@@ -446,3 +446,30 @@ fn the_papers_law_comes_back_with_its_second_lobe() {
     }
     assert!(fit.assess(&mut ChaCha8Rng::seed_from_u64(1)).fits());
 }
+
+/// The same samples give the same fit, one more gives another; in JSON every number with a unit says it.
+#[test]
+fn fits_are_compared_and_written() {
+    let samples = draws(&hard(), 60, 5);
+    let fit = |n: usize| PrincipalFit::new(&samples[..n]).unwrap();
+    assert_eq!(fit(59), fit(59));
+    assert_ne!(fit(59), fit(60));
+    let assessed = |seed| fit(60).assess(&mut ChaCha8Rng::seed_from_u64(seed));
+    assert_eq!(assessed(1), assessed(1));
+    #[cfg(feature = "serde")]
+    {
+        let json = serde_json::to_value(fit(60)).unwrap();
+        let nominal = fit(60).nominal().entries();
+        assert_eq!(json["nominal_kg_m2"][1][2], nominal[5]);
+        for (root, fitted) in json["roots"].as_array().unwrap().iter().zip(fit(60).roots()) {
+            assert_eq!(root["mean_sqrt_kg_m"], fitted.mean());
+            assert_eq!(root["law"], "gaussian");
+        }
+        assert_eq!(json["axes"]["finding"], "determined");
+        assert!(json["axes"]["turn_covariance_rad2"].is_array() && json.get("samples").is_none());
+        // The law reads back.
+        let law: Law = serde_json::from_value(json["law"].clone()).unwrap();
+        assert_eq!(law.roots(), fit(60).law().roots());
+        assert!(serde_json::to_value(assessed(1)).unwrap()["tests"][0]["p_value"].is_number());
+    }
+}

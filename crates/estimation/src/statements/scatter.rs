@@ -34,8 +34,11 @@ pub(super) struct Body {
 
 /// Covariances of Gaussian roots in kg·m², and of rotations about the principal axes in rad².
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub(super) struct Scatter {
+    #[cfg_attr(feature = "serde", serde(rename = "root_covariance_kg_m2"))]
     pub(super) roots: Matrix3<f64>,
+    #[cfg_attr(feature = "serde", serde(rename = "rotation_covariance_rad2"))]
     pub(super) rotations: Matrix3<f64>,
 }
 

@@ -14,16 +14,22 @@ use super::{
 /// The inertia at the nominal mass has the law [`law_at_nominal_mass`](Self::law_at_nominal_mass); a
 /// stated mass multiplies it by [`StatedMass::factor`]. [`law`](Self::law) is the law of the inertia alone, the
 /// mass's part included.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StatedModel {
+    #[cfg_attr(feature = "serde", serde(rename = "nominal_kg_m2"))]
     nominal: Inertia,
     scatter: Scatter,
     at_nominal_mass: Law,
     law: Law,
     mass: Option<StatedMass>,
+    #[cfg_attr(feature = "serde", serde(rename = "mass_centre_m"))]
     centre: Option<[f64; 3]>,
+    #[cfg_attr(feature = "serde", serde(rename = "root_deviation_sqrt_kg_m"))]
     root_deviations: [f64; 3],
+    #[cfg_attr(feature = "serde", serde(rename = "rotation_rad"))]
     rotations: [f64; 3],
+    #[cfg_attr(feature = "serde", serde(rename = "stated_kg_m2"))]
     stated: [Option<f64>; 6],
     implied: EntryMoments,
     warnings: Vec<StatementWarning>,
@@ -31,8 +37,11 @@ pub struct StatedModel {
 
 /// A normal mass, and how the inertia goes with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StatedMass {
+    #[cfg_attr(feature = "serde", serde(rename = "relative_deviation"))]
     relative: f64,
+    #[cfg_attr(feature = "serde", serde(rename = "inertia_follows_mass"))]
     follows: f64,
 }
 

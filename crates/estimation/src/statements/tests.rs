@@ -406,3 +406,26 @@ proptest! {
         }
     }
 }
+
+/// The same statements make the same model, others another; in JSON every number with a unit says it.
+#[test]
+fn models_are_compared_and_written() {
+    let nominal = body([5000.0, 4000.0, 3000.0], [300.0, 200.0, -400.0]);
+    let model = |x: f64| {
+        let statements = Statements {
+            moments: percent(x),
+            products: products(60.0, 3.0),
+            ..Statements::default()
+        };
+        statements.model(&nominal, None).unwrap()
+    };
+    assert_eq!(model(1.0), model(1.0));
+    assert_ne!(model(1.0), model(1.5));
+    #[cfg(feature = "serde")]
+    {
+        let json = serde_json::to_value(model(1.0)).unwrap();
+        assert_eq!(json["nominal_kg_m2"][0][1], 300.0);
+        assert!((json["stated_kg_m2"][3].as_f64().unwrap() - 20.0).abs() < 1e-9, "{json}");
+        assert!(json["warnings"].is_array() && json["rotation_rad"].is_array());
+    }
+}

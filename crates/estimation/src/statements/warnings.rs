@@ -10,6 +10,7 @@ const NAMES: [&str; 6] = InertiaMatrix::ENTRY_NAMES;
 /// Contradictions among statements, and what they leave open. Written out by `Display`; deviations
 /// are standard deviations, entries in the order 11, 22, 33, 12, 13, 23 from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum StatementWarning {
     /// The model cannot give an entry the deviation that is stated.
@@ -17,8 +18,10 @@ pub enum StatementWarning {
         /// The entry.
         entry: usize,
         /// As stated, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "stated_kg_m2"))]
         stated: f64,
         /// As it comes out, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "implied_kg_m2"))]
         implied: f64,
         /// Why.
         because: MissedBecause,
@@ -30,8 +33,10 @@ pub enum StatementWarning {
         /// The moment of which the whole would ask the most.
         entry: usize,
         /// What the whole would be, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "alone_kg_m2"))]
         alone: f64,
         /// What is stated of it, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "stated_kg_m2"))]
         stated: f64,
     },
     /// The second moments are correlated, for independent ones do not have the stated deviations.
@@ -62,8 +67,10 @@ pub enum StatementWarning {
         /// The entry.
         entry: usize,
         /// What it does alone, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "alone_kg_m2"))]
         alone: f64,
         /// What is stated, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "stated_kg_m2"))]
         stated: f64,
     },
     /// The mass centre would move an entry of which nothing is stated by more or less than comes out.
@@ -71,15 +78,19 @@ pub enum StatementWarning {
         /// The entry.
         entry: usize,
         /// What it would be with the mass centre, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "wanted_kg_m2"))]
         wanted: f64,
         /// As it comes out, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "implied_kg_m2"))]
         implied: f64,
     },
     /// Axes and products limit the axes differently.
     AxesAndProducts {
         /// Turns about the principal axes by the one, rad.
+        #[cfg_attr(feature = "serde", serde(rename = "axes_rad"))]
         axes: [f64; 3],
         /// By the other, rad; infinite where products say nothing.
+        #[cfg_attr(feature = "serde", serde(rename = "products_rad"))]
         products: [f64; 3],
     },
     /// Two principal moments that differ by less than they scatter.
@@ -100,21 +111,25 @@ pub enum StatementWarning {
 
 /// Why an entry does not have the deviation that is stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum MissedBecause {
     /// The scatter of the axes moves it more.
     Axes {
         /// What that does alone, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "alone_kg_m2"))]
         alone: f64,
     },
     /// The scatter of the moments moves it more, about tilted axes.
     Moments {
         /// What that does alone, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "alone_kg_m2"))]
         alone: f64,
     },
     /// The mass moves it more.
     Mass {
         /// What that does alone, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "alone_kg_m2"))]
         alone: f64,
     },
     /// All of these together move it more.
