@@ -1,0 +1,109 @@
+//! Gaussians in log-Cholesky coordinates against their moments.
+
+use super::*;
+use crate::entry_moments::tests::check_entries;
+use gyradius_inertia::{InertiaMatrix, SecondMoments};
+use proptest::prelude::*;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+fn payload() -> Inertia {
+    let mean = InertiaMatrix::from_entries([5.0, 4.0, 3.0], [0.3, 0.2, -0.5]).unwrap();
+    Inertia::try_from(mean).unwrap()
+}
+
+/// A covariance without structure, of deviations about `size`.
+fn full(size: f64) -> SMatrix<f64, 6, 6> {
+    let f = SMatrix::<f64, 6, 6>::from_fn(|i, j| size * ((3 * i + 5 * j) as f64).sin() / 2.0);
+    f * f.transpose()
+}
+
+#[test]
+fn draws_have_the_moments() {
+    for (i, size) in [0.0, 1e-3, 0.1, 0.4].into_iter().enumerate() {
+        let law = LogCholeskyGaussian::about(&payload(), full(size)).unwrap();
+        let seed = 120 + i as u64;
+        check_entries::<Inertia>(&format!("{size}"), &law.entry_moments(), &law, seed);
+    }
+}
+
+/// The coordinates of the draws are the Gaussian that was asked for.
+#[test]
+fn coordinates_of_draws_are_gaussian() {
+    const N: usize = 50_000;
+    let covariance = full(0.3);
+    let law = LogCholeskyGaussian::about(&payload(), covariance).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(125);
+    let mut sum = SMatrix::<f64, 6, 6>::zeros();
+    for _ in 0..N {
+        let x = SVector::<f64, 6>::from(coordinates(&law.sample(&mut rng)).unwrap()) - law.mean;
+        sum += x * x.transpose();
+    }
+    for i in 0..6 {
+        for j in 0..6 {
+            let variance = covariance[(i, i)] * covariance[(j, j)] + covariance[(i, j)].powi(2);
+            let gap = sum[(i, j)] / N as f64 - covariance[(i, j)];
+            assert!((gap / (variance / N as f64).sqrt()).abs() < 4.0, "{i}{j}");
+        }
+    }
+}
+
+#[test]
+fn moments_of_entries_are_matched() {
+    // Moments that a law of another family has.
+    for delta in [0.01, 0.1, 0.3] {
+        let moments = crate::Wishart::new(payload(), delta).unwrap().entry_moments();
+        let found = LogCholeskyGaussian::matched(&moments).unwrap().entry_moments();
+        let gap = (found.covariance() - moments.covariance()).amax();
+        assert!(gap <= 1e-9 * moments.covariance().amax(), "{delta}: {gap}");
+        for e in 0..6 {
+            assert!((found.mean()[e] - moments.mean()[e]).abs() <= 5e-9);
+        }
+        // To first order it is near, and not there.
+        let near = LogCholeskyGaussian::linearised(&moments).unwrap().entry_moments();
+        let gap = (near.covariance() - moments.covariance()).amax();
+        let size = moments.covariance().amax();
+        assert!(gap > 1e-6 * size && gap < 10.0 * delta * size, "{delta}: {}", gap / size);
+    }
+    let far = EntryMoments::new(payload().entries(), full(20.0)).unwrap();
+    assert_eq!(LogCholeskyGaussian::matched(&far), Err(LogCholeskyGaussianError::NoMatch));
+}
+
+proptest! {
+    #[test]
+    fn no_draw_is_unrealizable(
+        mean in prop::array::uniform6(-3.0..3.0f64),
+        size in 0.0..2.0f64,
+        seed in 0..u64::MAX,
+    ) {
+        let law = LogCholeskyGaussian::new(mean, full(size)).unwrap();
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        for _ in 0..100 {
+            prop_assert!(law.sample(&mut rng).as_inertia_matrix().is_realizable());
+        }
+    }
+}
+
+#[test]
+fn bad_parameters_are_named() {
+    let error = LogCholeskyGaussian::new([0.0; 6], -full(1.0)).unwrap_err();
+    assert!(matches!(error, LogCholeskyGaussianError::Covariance(_)), "{error}");
+    let error = LogCholeskyGaussian::new([0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0], full(1.0));
+    assert!(error.unwrap_err().to_string().contains("d2"));
+    let error = LogCholeskyGaussian::new([0.0, 0.0, 0.0, 0.0, 0.0, 1e80], full(1.0));
+    assert!(error.unwrap_err().to_string().contains("s13"));
+    let wide = SMatrix::<f64, 6, 6>::identity() * 25.0;
+    assert!(LogCholeskyGaussian::new([0.0; 6], wide).unwrap_err().to_string().contains("d1"));
+    let plate = SecondMoments::new([1.0, 2.0, 0.0]).unwrap();
+    let plate = Inertia::from_second_moments(plate, &nalgebra::UnitQuaternion::identity()).unwrap();
+    let error = LogCholeskyGaussian::about(&plate, full(0.1)).unwrap_err();
+    assert!(error.to_string().contains("a plate"), "{error}");
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn serde_goes_through_the_constructor() {
+    let law = LogCholeskyGaussian::new([0.5; 6], SMatrix::identity()).unwrap();
+    let json = serde_json::to_string(&law).unwrap();
+    assert_eq!(serde_json::from_str::<LogCholeskyGaussian>(&json).unwrap(), law);
+    assert!(serde_json::from_str::<LogCholeskyGaussian>(&json.replace("[[1", "[[-1")).is_err());
+}
