@@ -45,9 +45,9 @@ pub struct Chart {
     pub until: f64,
 }
 
-/// Charts row by row in two columns, with marks (their numbers, and when) on all of them.
+/// Charts row by row in two columns, with marks (what they are called, and when) on all of them.
 #[must_use]
-pub fn time_charts(title: &str, charts: &[Chart], marks: &[(usize, f64)]) -> String {
+pub fn time_charts(title: &str, charts: &[Chart], marks: &[(String, f64)]) -> String {
     let scales: Vec<Scale> = charts.iter().map(Scale::new).collect();
     let room = scales.iter().map(Scale::room).fold(26.0, f64::max);
     let pitch = room + WIDTH + GUTTER;
@@ -120,7 +120,7 @@ fn shown(curve: &Curve, until: f64) -> impl Iterator<Item = (f64, f64)> {
     points.filter(move |(time, value)| *time <= until && value.is_finite())
 }
 
-fn draw(svg: &mut Svg, chart: &Chart, scale: &Scale, origin: (f64, f64), marks: &[(usize, f64)]) {
+fn draw(svg: &mut Svg, chart: &Chart, scale: &Scale, origin: (f64, f64), marks: &[(String, f64)]) {
     let (left, top) = origin;
     let base = top + HEIGHT;
     let until = if chart.until > 0.0 { chart.until } else { 1.0 };
@@ -188,31 +188,30 @@ fn draw(svg: &mut Svg, chart: &Chart, scale: &Scale, origin: (f64, f64), marks: 
     }
 }
 
-/// Dashed lines where springs let go, and their numbers: together where they have no room apart.
-fn releases(svg: &mut Svg, (left, top): (f64, f64), until: f64, marks: &[(usize, f64)]) {
+/// Dashed lines where loads let go, and which: together where they have no room apart.
+fn releases(svg: &mut Svg, (left, top): (f64, f64), until: f64, marks: &[(String, f64)]) {
     const ROOM: f64 = 12.0;
-    let mut groups: Vec<([f64; 2], Vec<usize>)> = Vec::new();
+    let mut groups: Vec<([f64; 2], Vec<&str>)> = Vec::new();
     let mut d = String::new();
-    for (spring, time) in marks.iter().filter(|(_, time)| *time <= until) {
+    for (load, time) in marks.iter().filter(|(_, time)| *time <= until) {
         let across = left + time / until * WIDTH;
         match groups.last_mut() {
-            Some(([_, last], springs)) if across - *last < ROOM => {
-                springs.push(*spring);
+            Some(([_, last], loads)) if across - *last < ROOM => {
+                loads.push(load);
                 if across - *last < 1.0 {
                     continue;
                 }
                 *last = across;
             }
-            _ => groups.push(([across; 2], vec![*spring])),
+            _ => groups.push(([across; 2], vec![load])),
         }
         d += &format!("M{} {}v{}", px(across), px(top), px(HEIGHT));
     }
     let pen = format!("stroke=\"{}\" stroke-width=\"0.8\" stroke-dasharray=\"3 3\"", style::AXIS);
     svg.path(&pen, &d);
     let mut free = f64::NEG_INFINITY;
-    for ([first, last], springs) in groups {
-        let names: Vec<_> = springs.iter().map(ToString::to_string).collect();
-        let name = fit(&names.join(", "), NOTE.size, 60.0);
+    for ([first, last], loads) in groups {
+        let name = fit(&loads.join(", "), NOTE.size, 60.0);
         let (at, half) = (0.5 * (first + last), 0.5 * width(&name, NOTE.size));
         if at - half > free {
             svg.text(at, top - 4.0, NOTE.at(Anchor::Middle), &name);
@@ -236,10 +235,18 @@ mod tests {
         }
     }
 
+    fn mark(load: usize, time: f64) -> (String, f64) {
+        (load.to_string(), time)
+    }
+
     #[test]
     fn charts_are_well_formed_and_small() {
         let charts = [chart(f64::sin), chart(|t| 1e-300 * t), chart(|_| 7.0), chart(|_| f64::NAN)];
-        let svg = time_charts("a <title>", &charts, &[(1, 0.3), (2, 0.301), (3, 14.0), (4, 17.0)]);
+        let svg = time_charts(
+            "a <title>",
+            &charts,
+            &[mark(1, 0.3), mark(2, 0.301), mark(3, 14.0), mark(4, 17.0)],
+        );
         let seen = read(&svg);
         for text in ["a <title>", "rate (deg/s)", "ω1", "1, 2", "3", "time (s)"] {
             assert!(seen.contains(text), "{text} is missing: {seen}");
@@ -253,8 +260,8 @@ mod tests {
         for extreme in [f64::MAX, f64::MIN, f64::INFINITY, 5e-324, 0.0, -0.0] {
             read(&time_charts("", &[chart(|t| extreme * (t - 1.0)), chart(|_| extreme)], &[]));
         }
-        read(&time_charts("", &[], &[(1, 0.0)]));
+        read(&time_charts("", &[], &[mark(1, 0.0)]));
         let empty = Chart { curves: Vec::new(), until: 0.0, ..chart(|t| t) };
-        read(&time_charts("", &[empty], &[(1, 0.0)]));
+        read(&time_charts("", &[empty], &[mark(1, 0.0)]));
     }
 }

@@ -5,7 +5,7 @@ use nalgebra::UnitQuaternion;
 use crate::{
     BodyState, MovingBody, Separation,
     layout::{ATTITUDE, OFFSET, PAYLOAD_RATE, RELATIVE, STAGE_RATE, STATE, VELOCITY},
-    load::Load,
+    load::Seated,
     state::{State, put, quaternion, vector},
 };
 
@@ -56,7 +56,7 @@ pub(crate) fn bodies(
 
 /// The size of each entry of the state that the loads can bring about.
 pub(crate) fn scales(separation: &Separation) -> State {
-    let sizes = || separation.loads().iter().map(Load::size);
+    let sizes = || separation.seated().iter().map(Seated::size);
     let length = sizes().map(|size| size.stroke).fold(0.0, f64::max);
     let speed = (2.0 * separation.stored_energy() * separation.inverse_reduced_mass()).sqrt();
     let arm = sizes().flat_map(|size| size.arms).fold(length, f64::max);

@@ -81,10 +81,10 @@ impl<const W: usize> Integrator<W> {
         expansion.inverse_mass.0[lane] = run.inverse_reduced_mass();
         let scales = bodies::scales(run);
         set(&mut expansion.inverse_scale, &scales.map(|s| 1.0 / s));
-        let loads: Fates = run.loads().iter().map(Fate::of).collect();
-        expansion.loads.set(lane, run.loads());
+        let loads: Fates = run.seated().iter().map(Fate::of).collect();
+        expansion.loads.set(lane, run.seated());
         for (i, fate) in loads.iter().enumerate() {
-            expansion.loads.act(i, lane, *fate == Fate::Acting);
+            expansion.loads.act(run.seated().slot(i), lane, *fate == Fate::Acting);
         }
         self.set_state(lane, &bodies::initial(run));
         Track { time: 0.0, steps: 0, loads, time_scale: bodies::time_scale(&scales), separation }
@@ -151,9 +151,11 @@ impl<const W: usize> Integrator<W> {
         let start = track.next_start();
         let h = reach.min(until.min(start) - track.time);
         let order = self.expansion.order[lane];
+        let run = track.separation.borrow();
+        let loads = run.seated();
         let mut first: Option<(f64, usize)> = None;
         for i in track.open() {
-            let events = self.expansion.loads.get(i);
+            let events = self.expansion.loads.get(loads.slot(i));
             // Most come nowhere near.
             if events.may_end(lane)
                 && let Some(x) = events.end(lane, order, h)
@@ -162,14 +164,13 @@ impl<const W: usize> Integrator<W> {
                 first = Some((x * h, i));
             }
         }
-        let run = track.separation.borrow();
         let mut taken = h;
         let mut next = match first {
             Some((time, load)) => {
                 taken = time;
                 let (mut next, slope) = self.with_slope(lane, time);
                 // The series of the gap ends an order before that of the state.
-                let gap = run.loads().get(load).gap(&next);
+                let gap = loads.get(load).gap(&next);
                 let correction = -gap.value / gap.rate;
                 if time > 0.0 && correction.abs() <= 1e-3 * h {
                     taken = (time + correction).clamp(0.0, h);
@@ -186,7 +187,8 @@ impl<const W: usize> Integrator<W> {
         };
         // Points that fly straight at each other: the equations of motion do not notice.
         for i in track.open().filter(|i| track.loads[*i] == Fate::Acting) {
-            if let Some(x) = self.expansion.loads.get(i).loses_direction(lane, order, taken) {
+            let events = self.expansion.loads.get(loads.slot(i));
+            if let Some(x) = events.loses_direction(lane, order, taken) {
                 return Err(self.lost_direction(lane, run, i, track.time + x * taken, x, taken));
             }
         }
@@ -199,26 +201,26 @@ impl<const W: usize> Integrator<W> {
             // Loads that have ended and are pressed again.
             for (i, fate) in track.loads.iter_mut().enumerate() {
                 if let Fate::Ended { pressed_again: again @ None, .. } = fate {
-                    let back = self.expansion.loads.get(i).comes_back(lane, order, taken);
+                    let events = self.expansion.loads.get(loads.slot(i));
+                    let back = events.comes_back(lane, order, taken);
                     *again = back.map(|x| track.time + x * taken);
                 }
             }
         }
         let starts = first.is_none() && start <= until && h >= start - track.time;
         track.time = if starts { start } else { track.time + taken };
-        let loads = track.separation.borrow().loads();
         if let Some((_, ends)) = first {
             for (i, fate) in track.loads.iter_mut().enumerate() {
                 // Those that are at their ends to rounding end together.
                 let ended = || {
                     let load = loads.get(i);
                     // Most come nowhere near.
-                    self.expansion.loads.get(i).may_all_but_end(lane)
+                    self.expansion.loads.get(loads.slot(i)).may_all_but_end(lane)
                         && load.gap(&next).value >= -load.rounding(&next)
                 };
                 if fate.is_open() && (i == ends || ended()) {
                     fate.end(track.time);
-                    self.expansion.loads.act(i, lane, false);
+                    self.expansion.loads.act(loads.slot(i), lane, false);
                 }
             }
         }
@@ -226,11 +228,10 @@ impl<const W: usize> Integrator<W> {
             let load = loads.get(i);
             if track.loads[i] == Fate::Waiting && load.start_s().is_some_and(|s| s <= track.time) {
                 if !load.can_start(&next) {
-                    let run = track.separation.borrow();
                     return Err(self.lost_direction(lane, run, i, track.time, 1.0, taken));
                 }
                 track.loads[i] = Fate::Acting;
-                self.expansion.loads.act(i, lane, true);
+                self.expansion.loads.act(loads.slot(i), lane, true);
             }
         }
         self.set_state(lane, &next);
@@ -270,8 +271,9 @@ impl<const W: usize> Integrator<W> {
         share: f64,
         taken: f64,
     ) -> RunError {
-        let at = run.loads().get(load);
-        at.lost_direction(load, time, -at.gap(&self.at(lane, 0.999 * share * taken)).rate)
+        let loads = run.seated();
+        let speed = -loads.get(load).gap(&self.at(lane, 0.999 * share * taken)).rate;
+        RunError::PadsMeet { load: loads.id(load), time, speed }
     }
 
     fn failure<S: Borrow<Separation>>(&self, lane: usize, track: &Track<S>, step: f64) -> RunError {

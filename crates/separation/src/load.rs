@@ -1,20 +1,215 @@
 //! What a load that the bodies exchange must tell: the one interface between a kind of load and all the
 //! rest.
 //!
-//! A kind of load has two types. One is the load in its place, which knows its energy, where a state
-//! stands with respect to its end, and how large it is ([`Load`]). The other holds as many of them as there
+//! A kind of load has three types. One is the load as it is described, and all that is told of it outside ([`Load`], and
+//! [`Kind`], by which the others are found). One is the load in its place, which knows its energy, where a state
+//! stands with respect to its end, and how large it is ([`Seated`]). The third holds as many of them as there
 //! are lanes, and their part in the series of the motion ([`Series`], and what of it concerns one lane
 //! alone, [`Events`]). `loads.rs` lists the kinds.
 
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector3};
+use smallvec::SmallVec;
+use std::fmt;
 
 use crate::{
-    Parameter, RunError,
+    BodyState, LoadState, Parameter,
     lanes::{Lanes, M3, V3},
-    spring::SpringState,
     state::State,
     vector::Simd,
 };
+
+/// A kind of load between a point of the payload and a point of the stage: what all the rest is told of it.
+///
+/// A scenario's keys, what of the load can be dispersed, its columns and its place in a [`Stack`](crate::Stack) follow
+/// from its parameters. The kinds that a separation takes are those of [`AnyLoad`](crate::AnyLoad).
+///
+/// ```
+/// use gyradius_separation::{Load, Parameter, Spring, SpringParameter};
+///
+/// // A spring of what its parameters are, all in a row.
+/// let value = |parameter, component| match parameter {
+///     SpringParameter::Stiffness => 1e5,
+///     SpringParameter::Stroke => 0.1,
+///     SpringParameter::StagePoint => [0.5, 0.0, 0.9][component],
+///     SpringParameter::PayloadPoint => [0.5, 0.0, -0.9][component],
+///     SpringParameter::Friction | SpringParameter::LineOfAction | SpringParameter::Start => 0.0,
+/// };
+/// let spring = Spring::from_values(value)?;
+/// assert_eq!(SpringParameter::Stroke.nominal(&spring), [0.1]);
+/// assert_eq!(Spring::KIND.to_string(), "spring");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub trait Load: Copy + PartialEq + fmt::Debug + fmt::Display + Send + Sync + 'static {
+    /// What of it can be uncertain.
+    type Parameter: Parameter<Of = Self>;
+    /// Why parameters make no load.
+    type Error: std::error::Error;
+    /// What it is called.
+    const KIND: LoadKind;
+    /// Where it is attached to payload and stage, from the origins of the bodies' frames, body axes.
+    const POINTS: [Self::Parameter; 2];
+    /// The rotation of its line about the stage point, if it has a line.
+    const LINE_OF_ACTION: Option<Self::Parameter>;
+    /// When it begins to act, if it can be late.
+    const START: Option<Self::Parameter>;
+
+    /// A load of the values of its parameters; components count from 0.
+    ///
+    /// # Errors
+    /// The values make none.
+    fn from_values(value: impl Fn(Self::Parameter, usize) -> f64) -> Result<Self, Self::Error>;
+    /// The parameter that is refused.
+    fn refused(error: &Self::Error) -> Self::Parameter;
+    /// The same load if it fails: it never acts.
+    #[must_use]
+    fn failed(self) -> Self;
+    /// When it begins to act, s; none if it fails.
+    fn start_s(&self) -> Option<f64>;
+    /// Whether it can push at all.
+    fn can_push(&self) -> bool;
+    /// The force with which it begins to push if it is not late, N.
+    fn force_n(&self) -> f64;
+    /// Attachments on payload and stage, from their mass centres, body axes, m.
+    fn points_m(&self) -> [Vector3<f64>; 2];
+}
+
+/// What a kind of load is called: one and several of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LoadKind {
+    name: &'static str,
+    plural: &'static str,
+}
+
+/// A load of a separation: its kind, and its number among those of the kind, from 0. Messages count from 1.
+///
+/// ```
+/// use gyradius_separation::{Load, LoadId, Spring};
+///
+/// let second = LoadId { kind: Spring::KIND, number: 1 };
+/// assert_eq!(second.to_string(), "spring 2");
+/// assert_eq!(second.column(), "spring_2");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LoadId {
+    /// Its kind.
+    pub kind: LoadKind,
+    /// Its number among those of its kind, from 0.
+    pub number: usize,
+}
+
+impl LoadKind {
+    pub(crate) const fn new(name: &'static str, plural: &'static str) -> Self {
+        Self { name, plural }
+    }
+
+    /// One of them, as in `spring`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.name
+    }
+
+    /// Several, as in `springs`: the key of a scenario.
+    #[must_use]
+    pub fn plural(self) -> &'static str {
+        self.plural
+    }
+}
+
+impl fmt::Display for LoadKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl LoadId {
+    /// How columns begin, as in `spring_2`.
+    #[must_use]
+    pub fn column(self) -> String {
+        format!("{}_{}", self.kind.name, self.number + 1)
+    }
+}
+
+impl fmt::Display for LoadId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.kind.name, self.number + 1)
+    }
+}
+
+/// Several loads, as in `springs [1, 2]`.
+pub(crate) fn named(loads: &[LoadId]) -> String {
+    let kinds = loads.chunk_by(|a, b| a.kind == b.kind).map(|of| {
+        let numbers: Vec<_> = of.iter().map(|load| load.number + 1).collect();
+        format!("{} {numbers:?}", of[0].kind.plural)
+    });
+    kinds.collect::<Vec<_>>().join(" and ")
+}
+
+/// From a point of the stage to one of the payload, given from the mass centres in body axes, in the axes of the
+/// states' positions, m (Peck 2003, Eq. 29).
+pub(crate) fn line(
+    [payload_point, stage_point]: [Vector3<f64>; 2],
+    payload: &BodyState,
+    stage: &BodyState,
+) -> Vector3<f64> {
+    (payload.position - stage.position) + payload.attitude * payload_point
+        - stage.attitude * stage_point
+}
+
+/// A kind of load as the integrator knows it.
+pub(crate) trait Kind: Load {
+    /// The load in its place.
+    type Seated: Seated<Described = Self> + Clone;
+    /// One of them in each lane.
+    type Series<const W: usize>: Series<W, Load = Self::Seated> + Clone + fmt::Debug;
+
+    /// Puts it in its place: between bodies in these states.
+    fn seat(&self, payload: &BodyState, stage: &BodyState) -> Result<Self::Seated, SeatError>;
+
+    /// The values of all its parameters, one after the other.
+    fn values(&self) -> Values {
+        let values = Self::Parameter::ALL
+            .iter()
+            .flat_map(|parameter| parameter.built(self).into_iter().take(parameter.components()));
+        values.collect()
+    }
+
+    /// The load of such values.
+    fn of_values(values: &[f64]) -> Result<Self, Self::Error> {
+        let value = |parameter, component| values.get(offset(parameter) + component).copied();
+        Self::from_values(|parameter, component| value(parameter, component).unwrap_or(f64::NAN))
+    }
+}
+
+/// Values of the parameters of a load, one after the other.
+pub(crate) type Values = SmallVec<[f64; 16]>;
+
+/// Where the values of a parameter begin among those of all.
+pub(crate) fn offset<P: Parameter>(parameter: P) -> usize {
+    let before = P::ALL.iter().take_while(|other| **other != parameter);
+    before.map(|other| other.components()).sum()
+}
+
+/// Where the values stand that place a load between the bodies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placing {
+    pub(crate) points: [usize; 2],
+    pub(crate) line_of_action: Option<usize>,
+}
+
+impl Placing {
+    pub(crate) fn of<L: Load>() -> Self {
+        Self { points: L::POINTS.map(offset), line_of_action: L::LINE_OF_ACTION.map(offset) }
+    }
+}
+
+/// Why a load does not act between two points, lengths in m.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum SeatError {
+    /// They coincide, which leaves its direction undefined.
+    Touching { distance: f64, stroke: f64 },
+    /// The stroke is drowned by the rounding of their positions.
+    ShortStroke { stroke: f64, reach: f64 },
+}
 
 /// How far a load is beyond its end, m, and how fast that grows, m/s.
 #[derive(Clone, Copy, Debug)]
@@ -38,9 +233,12 @@ pub(crate) struct Size {
 }
 
 /// A load in its place between the bodies.
-pub(crate) trait Load: std::fmt::Debug {
-    /// What of it can be uncertain.
-    type Parameter: Parameter
+pub(crate) trait Seated: fmt::Debug + Send + Sync {
+    type Described
+    where
+        Self: Sized;
+    /// As it was described.
+    fn load(&self) -> &Self::Described
     where
         Self: Sized;
     /// When it begins to act, s; none if it never does.
@@ -52,13 +250,11 @@ pub(crate) trait Load: std::fmt::Debug {
     /// What rounding of coordinates makes of a gap, m: it is a difference and no more accurate than they
     /// are.
     fn rounding(&self, state: &State) -> f64;
-    /// That it has lost its direction at a time, its points closing at a speed. `number` is its place.
-    fn lost_direction(&self, number: usize, time: f64, speed: f64) -> RunError;
     /// Energy that it holds at the start, J.
     fn stored_energy(&self) -> f64;
     fn size(&self) -> Size;
     /// What can be seen of it, given whether it acts and the payload's attitude.
-    fn seen(&self, state: &State, attitude: &UnitQuaternion<f64>, acts: bool) -> SpringState;
+    fn seen(&self, state: &State, attitude: &UnitQuaternion<f64>, acts: bool) -> LoadState;
 }
 
 /// Loads of a kind, one for each lane, and their series. Everything is in payload axes; coefficients of an

@@ -38,7 +38,7 @@ impl Rounding {
         let spin = inertia.norm() * payload.state().angular_velocity.norm();
         let speed = (payload.state().velocity - stage.state().velocity).norm();
         let mut rounding = Self { momentum: epsilon * spin, velocity: epsilon * speed };
-        for (load, fate) in separation.loads().iter().zip(loads) {
+        for (load, fate) in separation.seated().iter().zip(loads) {
             let (Some(release), Some(start)) = (fate.let_go(), load.start_s()) else { continue };
             let Size { travel, force, arms, distance, .. } = load.size();
             let reach = distance + arms[0] + arms[1];

@@ -1,33 +1,34 @@
 //! Why a separation could not be followed to its end.
 
+use crate::{LoadId, load::named};
+
 /// Why a separation could not be followed to its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// Springs are still in contact at the horizon.
+    /// Loads still act at the horizon.
     #[error(
-        "springs {:?} had not let go after {horizon:?} s: spring {} is {compression:e} m short \
-         of its free length and grows by {rate:e} m/s",
-        .springs.iter().map(|spring| spring + 1).collect::<Vec<_>>(), .springs[0] + 1
+        "{} had not let go after {horizon:?} s: {} is {compression:e} m short \
+         of its free length and grows by {rate:e} m/s", named(.loads), .loads[0]
     )]
     NotReleased {
-        /// The springs, from 0.
-        springs: Vec<usize>,
+        /// The loads.
+        loads: Vec<LoadId>,
         /// The horizon, s.
         horizon: f64,
-        /// How far the first of them is from its free length, m.
+        /// How far the first of them is from its end, m.
         compression: f64,
         /// How fast it grows, m/s.
         rate: f64,
     },
-    /// The two points of a spring have come together, and its force has lost its direction.
+    /// The two points of a load have come together, and its force has lost its direction.
     #[error(
-        "spring {}: its points meet at {time:?} s, closing at {speed:?} m/s: the line between them is \
-         the direction of the force", .spring + 1
+        "{load}: its points meet at {time:?} s, closing at {speed:?} m/s: the line between them is \
+         the direction of the force"
     )]
     PadsMeet {
-        /// The spring, from 0.
-        spring: usize,
+        /// The load.
+        load: LoadId,
         /// When, s.
         time: f64,
         /// How fast they came together, m/s.

@@ -1,19 +1,15 @@
-//! Two bodies and the springs between them, at the moment the clamp opens.
+//! Two bodies and the loads between them, at the moment the clamp opens.
 
 use gyradius_inertia::InertiaMatrix;
 use std::fmt;
 
 use crate::{
-    Body, BodyError, MovingBody, Role, Spring, SpringError,
+    AnyLoad, Body, BodyError, LoadError, LoadId, MovingBody, Role, Spring,
+    load::{SeatError, Seated},
     loads::Loads,
-    spring::{SeatedSpring, TOUCHING},
 };
 
-/// Strokes shorter than this share of the distances that they are differences of have lost half of
-/// the digits of a double.
-const SHORTEST: f64 = 1e-7;
-
-/// Why bodies and springs do not make a separation.
+/// Why bodies and loads do not make a separation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SeparationError {
@@ -25,30 +21,30 @@ pub enum SeparationError {
         /// What.
         source: BodyError,
     },
-    /// The values of a spring make none.
-    #[error("spring {}: {source}", .spring + 1)]
-    Spring {
-        /// Which spring, from 0.
-        spring: usize,
+    /// The values of a load make none.
+    #[error("{load}: {source}")]
+    Load {
+        /// Which load.
+        load: LoadId,
         /// What is wrong with it.
-        source: SpringError,
+        source: LoadError,
     },
-    /// There is no spring.
-    #[error("no springs: there must be at least one")]
-    NoSprings,
-    /// All springs fail, or none overcomes its friction.
-    #[error("none of the springs ever pushes: at least one must")]
+    /// There is no load.
+    #[error("no {}: there must be at least one", kinds(" and no "))]
+    NoLoads,
+    /// All loads fail, or none overcomes its friction.
+    #[error("none of the {} ever pushes: at least one must", kinds(" and "))]
     NonePushes,
-    /// The two points of a spring coincide at the start, which leaves its direction undefined.
+    /// The two points of a load coincide at the start, which leaves its direction undefined.
     #[error(
-        "spring {}: its points are {distance:e} m apart at the start: they must be apart by \
+        "{load}: its points are {distance:e} m apart at the start: they must be apart by \
          more than a millionth of the stroke ({stroke:?} m), for the line between them is the \
          direction of the force; touching pads have none, and nearly touching ones turn with the \
-         slightest motion", .spring + 1
+         slightest motion"
     )]
     TouchingPads {
-        /// Which spring, from 0.
-        spring: usize,
+        /// Which load.
+        load: LoadId,
         /// Distance of the points, m.
         distance: f64,
         /// Its stroke, m.
@@ -56,23 +52,28 @@ pub enum SeparationError {
     },
     /// A stroke is so short beside the body that rounding of positions would drown it.
     #[error(
-        "spring {}: its stroke of {stroke:e} m, less what friction takes of it, must be more than {SHORTEST:e} of its distance \
-         from the mass centres ({reach:?} m) for double precision to follow it", .spring + 1
+        "{load}: its stroke of {stroke:e} m, less what friction takes of it, must be more than 1e-7 of its distance \
+         from the mass centres ({reach:?} m) for double precision to follow it"
     )]
     ShortStroke {
-        /// Which spring, from 0.
-        spring: usize,
-        /// Its stroke less friction over stiffness, m.
+        /// Which load.
+        load: LoadId,
+        /// Its stroke less what friction takes of it, m.
         stroke: f64,
         /// Distance of its points from each other and from their mass centres, m.
         reach: f64,
     },
 }
 
-/// A payload, a stage and the springs between them, at the moment the clamp opens: what moves by Peck
+/// All kinds of loads, as in `springs`.
+fn kinds(between: &str) -> String {
+    AnyLoad::KINDS.iter().map(|kind| kind.plural()).collect::<Vec<_>>().join(between)
+}
+
+/// A payload, a stage and the loads between them, at the moment the clamp opens: what moves by Peck
 /// (2003, Eq. 28), with forces that push.
 ///
-/// Cheap to clone: the springs are shared.
+/// Cheap to clone: the loads are shared.
 ///
 /// ```
 /// # use gyradius_inertia::InertiaMatrix;
@@ -98,16 +99,16 @@ pub struct Separation {
 }
 
 impl Separation {
-    /// Puts bodies and springs together. The free length of each spring is the distance of its
+    /// Puts bodies and loads together: springs, or [`AnyLoad`]. The free length of each spring is the distance of its
     /// points in the given states plus its stroke, less what friction takes of that: where it ceases to
     /// push.
     ///
     /// # Errors
-    /// A state is not finite, there is no spring that pushes, or a spring's points touch.
-    pub fn new(
+    /// A state is not finite, there is no load that pushes, or a load's points touch.
+    pub fn new<L: Into<AnyLoad> + Copy>(
         payload: MovingBody,
         stage: MovingBody,
-        springs: &[Spring],
+        loads: &[L],
     ) -> Result<Self, SeparationError> {
         let checked = |body, moving: MovingBody| {
             let state = moving.state().checked();
@@ -116,27 +117,23 @@ impl Separation {
                 .map_err(|source| SeparationError::Body { body, source })
         };
         let (payload, stage) = (checked(Role::Payload, payload)?, checked(Role::Stage, stage)?);
-        if springs.is_empty() {
-            return Err(SeparationError::NoSprings);
+        let loads = || loads.iter().map(|load| (*load).into());
+        if loads().next().is_none() {
+            return Err(SeparationError::NoLoads);
         }
-        if !springs.iter().any(Spring::can_push) {
+        if !loads().any(|load: AnyLoad| load.can_push()) {
             return Err(SeparationError::NonePushes);
         }
-        let seated = springs.iter().enumerate().map(|(i, spring)| {
-            let distance = spring.line(payload.state(), stage.state()).norm();
-            let stroke = spring.stroke_m();
-            if !(distance > TOUCHING * stroke) {
-                return Err(SeparationError::TouchingPads { spring: i, distance, stroke });
+        let loads = Loads::new(loads(), payload.state(), stage.state());
+        let loads = loads.map_err(|(load, error)| match error {
+            SeatError::Touching { distance, stroke } => {
+                SeparationError::TouchingPads { load, distance, stroke }
             }
-            let reach = distance + spring.payload_point_m().norm() + spring.stage_point_m().norm();
-            let stroke = if spring.can_push() { spring.travel_m() } else { stroke };
-            if !(stroke > SHORTEST * reach) {
-                return Err(SeparationError::ShortStroke { spring: i, stroke, reach });
+            SeatError::ShortStroke { stroke, reach } => {
+                SeparationError::ShortStroke { load, stroke, reach }
             }
-            Ok(SeatedSpring::new(*spring, distance))
-        });
-        let springs = seated.collect::<Result<_, _>>()?;
-        Ok(Self { payload, stage, loads: Loads { springs } })
+        })?;
+        Ok(Self { payload, stage, loads })
     }
 
     /// The same separation with other inertia matrices.
@@ -172,23 +169,41 @@ impl Separation {
         &self.stage
     }
 
-    /// The springs, in the order given.
+    /// The loads, in the order given, and which they are.
+    pub fn loads(&self) -> impl ExactSizeIterator<Item = (LoadId, AnyLoad)> {
+        (0..self.loads.len()).map(|load| (self.loads.id(load), self.loads.described(load)))
+    }
+
+    /// Which load stands at a place among all, from 0; none if there are not so many.
+    #[must_use]
+    pub fn id(&self, place: usize) -> Option<LoadId> {
+        (place < self.loads.len()).then(|| self.loads.id(place))
+    }
+
+    /// The place of a load among all, from 0, if there is such a load.
+    #[must_use]
+    pub fn place(&self, load: LoadId) -> Option<usize> {
+        // No load comes before those of its kind that do.
+        (load.number..self.loads.len()).find(|place| self.loads.id(*place) == load)
+    }
+
+    /// The springs among them.
     pub fn springs(&self) -> impl ExactSizeIterator<Item = &Spring> + Clone {
-        self.loads.springs.iter().map(SeatedSpring::spring)
+        self.loads.springs().iter().map(Seated::load)
     }
 
     /// Free length of each spring, m: where it ceases to push.
     pub fn free_lengths(&self) -> impl ExactSizeIterator<Item = f64> {
-        self.loads.springs.iter().map(SeatedSpring::free_length_m)
+        self.loads.springs().iter().map(|spring| spring.free_length_m())
     }
 
-    /// Energy stored in the springs at the start, J.
+    /// Energy that the loads hold at the start, J.
     #[must_use]
     pub fn stored_energy(&self) -> f64 {
         self.loads.stored_energy()
     }
 
-    pub(crate) fn loads(&self) -> &Loads {
+    pub(crate) fn seated(&self) -> &Loads {
         &self.loads
     }
 
@@ -202,8 +217,8 @@ impl fmt::Display for Separation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "payload: {}", self.payload.body())?;
         write!(f, "stage: {}", self.stage.body())?;
-        for (i, spring) in self.springs().enumerate() {
-            write!(f, "\nspring {}: {spring}", i + 1)?;
+        for (id, load) in self.loads() {
+            write!(f, "\n{id}: {load}")?;
         }
         Ok(())
     }
@@ -212,11 +227,16 @@ impl fmt::Display for Separation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::BodyState;
+    use crate::{BodyState, Load};
     use nalgebra::Vector3;
 
     fn body() -> Body {
         Body::new(1.0, InertiaMatrix::from_entries([1.0; 3], [0.0; 3]).unwrap()).unwrap()
+    }
+
+    /// Springs count from 0.
+    fn id(number: usize) -> LoadId {
+        LoadId { kind: Spring::KIND, number }
     }
 
     #[test]
@@ -227,10 +247,13 @@ mod tests {
             Spring::new(1.0, 0.1, -half, half).unwrap()
         };
         let with = |springs: &[Spring]| Separation::new(body().at(up), body().at(down), springs);
-        assert!(matches!(with(&[]), Err(SeparationError::NoSprings)));
+        assert!(matches!(with(&[]), Err(SeparationError::NoLoads)));
         for gap in [0.0, 1e-9] {
             let error = with(&[spring(0.2), spring(gap)]).unwrap_err();
-            assert!(matches!(error, SeparationError::TouchingPads { spring: 1, .. }), "{error}");
+            assert!(
+                matches!(error, SeparationError::TouchingPads { load, .. } if load == id(1)),
+                "{error}"
+            );
         }
         let stuck = spring(0.2).with_friction(0.1).unwrap();
         for none in [[stuck, stuck], [stuck, spring(0.2).never_pushing()]] {
@@ -238,9 +261,15 @@ mod tests {
         }
         assert_eq!(with(&[stuck, spring(0.2)]).unwrap().free_lengths().nth(1).unwrap(), 0.2 + 0.1);
         let nearly = spring(0.2).with_friction(0.1 * (1.0 - 1e-9)).unwrap();
-        assert!(matches!(with(&[nearly]), Err(SeparationError::ShortStroke { spring: 0, .. })));
+        assert!(matches!(
+            with(&[nearly]),
+            Err(SeparationError::ShortStroke { load, .. }) if load == id(0)
+        ));
         let short = Spring::new(1.0, 1e-8, Vector3::z() * -0.9, Vector3::z() * 0.9).unwrap();
-        assert!(matches!(with(&[short]), Err(SeparationError::ShortStroke { spring: 0, .. })));
+        assert!(matches!(
+            with(&[short]),
+            Err(SeparationError::ShortStroke { load, .. }) if load == id(0)
+        ));
         let ok = with(&[spring(1e-5)]).unwrap();
         assert!((ok.free_lengths().next().unwrap() - 0.10001).abs() < 1e-15);
     }

@@ -1,14 +1,14 @@
-//! Bodies and springs at a moment.
+//! Bodies and loads at a moment.
 
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 use crate::{
-    MovingBody, Separation, SpringState, bodies, energy::translations, layout::INLINE_LOADS,
+    LoadState, MovingBody, Separation, bodies, energy::translations, layout::INLINE_LOADS,
     state::State,
 };
 
-/// Bodies and springs at a moment.
+/// Bodies and loads at a moment.
 ///
 /// ```
 /// # use gyradius_inertia::InertiaMatrix;
@@ -35,17 +35,15 @@ pub struct Snapshot {
     time: f64,
     payload: MovingBody,
     stage: MovingBody,
-    springs: SmallVec<[SpringState; INLINE_LOADS]>,
+    loads: SmallVec<[LoadState; INLINE_LOADS]>,
 }
 
 impl Snapshot {
     pub(crate) fn new(separation: &Separation, state: &State, time: f64, pushing: &[bool]) -> Self {
         let (payload, stage) = bodies::bodies(separation, state, time);
-        let springs = separation.loads().iter().zip(pushing);
-        let springs =
-            springs.map(|(load, acts)| load.seen(state, &payload.state().attitude, *acts));
-        let springs = springs.collect();
-        Self { time, payload, stage, springs }
+        let loads = separation.seated().iter().zip(pushing);
+        let seen = loads.map(|(load, acts)| load.seen(state, &payload.state().attitude, *acts));
+        Self { time, payload, stage, loads: seen.collect() }
     }
 
     /// Since the clamp opened, s.
@@ -66,17 +64,17 @@ impl Snapshot {
         &self.stage
     }
 
-    /// The springs, in their order.
+    /// The loads, in their order.
     #[must_use]
-    pub fn springs(&self) -> &[SpringState] {
-        &self.springs
+    pub fn loads(&self) -> &[LoadState] {
+        &self.loads
     }
 
-    /// Energy of both bodies and of the springs that push, J: conserved but for what a late spring
+    /// Energy of both bodies and of the loads that push, J: conserved but for what a late spring
     /// brings in when it starts.
     #[must_use]
     pub fn energy_j(&self) -> f64 {
-        let stored: f64 = self.springs.iter().map(SpringState::energy_j).sum();
+        let stored: f64 = self.loads.iter().map(LoadState::energy_j).sum();
         self.payload.kinetic_energy() + self.stage.kinetic_energy() + stored
     }
 

@@ -4,17 +4,18 @@ mod events;
 mod parameter;
 mod seated;
 mod series;
-mod state;
 
 use nalgebra::Vector3;
 use std::fmt;
 
-use crate::{BodyState, Role};
+use crate::{
+    BodyState, Load, LoadKind, Role,
+    load::{Kind, SeatError, line},
+};
 
 pub use parameter::SpringParameter;
-pub(crate) use seated::{SeatedSpring, TOUCHING};
-pub(crate) use series::SpringSeries;
-pub use state::SpringState;
+use seated::{SeatedSpring, TOUCHING};
+use series::SpringSeries;
 
 /// Errors of a spring's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -205,14 +206,88 @@ impl Spring {
     /// spring pushes the payload (Peck 2003, Eq. 29).
     #[must_use]
     pub fn line(&self, payload: &BodyState, stage: &BodyState) -> Vector3<f64> {
-        (payload.position - stage.position) + payload.attitude * self.payload_point
-            - stage.attitude * self.stage_point
+        line(self.points_m(), payload, stage)
     }
 
     /// Energy stored at the start, ½kδ², J: before friction and latch have their part.
     #[must_use]
     pub fn stored_energy(&self) -> f64 {
         0.5 * self.stiffness * self.stroke * self.stroke
+    }
+}
+
+impl Load for Spring {
+    type Parameter = SpringParameter;
+    type Error = SpringError;
+    const KIND: LoadKind = LoadKind::new("spring", "springs");
+    const POINTS: [SpringParameter; 2] =
+        [SpringParameter::PayloadPoint, SpringParameter::StagePoint];
+    const LINE_OF_ACTION: Option<SpringParameter> = Some(SpringParameter::LineOfAction);
+    const START: Option<SpringParameter> = Some(SpringParameter::Start);
+
+    fn from_values(value: impl Fn(SpringParameter, usize) -> f64) -> Result<Self, SpringError> {
+        let point = |parameter| Vector3::from_fn(|i, _| value(parameter, i));
+        let number = |parameter| value(parameter, 0);
+        Self::new(
+            number(SpringParameter::Stiffness),
+            number(SpringParameter::Stroke),
+            point(SpringParameter::PayloadPoint),
+            point(SpringParameter::StagePoint),
+        )?
+        .with_friction(number(SpringParameter::Friction))?
+        .starting_at(number(SpringParameter::Start))
+    }
+
+    fn refused(error: &SpringError) -> SpringParameter {
+        match error {
+            SpringError::Stiffness { .. } => SpringParameter::Stiffness,
+            SpringError::Stroke { .. } => SpringParameter::Stroke,
+            SpringError::Friction { .. } => SpringParameter::Friction,
+            SpringError::Start { .. } => SpringParameter::Start,
+            SpringError::Point { body, .. } => Self::POINTS[*body as usize],
+        }
+    }
+
+    fn failed(self) -> Self {
+        self.never_pushing()
+    }
+
+    fn start_s(&self) -> Option<f64> {
+        self.start_s()
+    }
+
+    fn can_push(&self) -> bool {
+        self.can_push()
+    }
+
+    fn force_n(&self) -> f64 {
+        self.stiffness * self.travel_m()
+    }
+
+    fn points_m(&self) -> [Vector3<f64>; 2] {
+        [self.payload_point, self.stage_point]
+    }
+}
+
+/// Strokes shorter than this share of the distances that they are differences of have lost half of
+/// the digits of a double.
+const SHORTEST: f64 = 1e-7;
+
+impl Kind for Spring {
+    type Seated = SeatedSpring;
+    type Series<const W: usize> = SpringSeries<W>;
+
+    fn seat(&self, payload: &BodyState, stage: &BodyState) -> Result<SeatedSpring, SeatError> {
+        let (distance, stroke) = (self.line(payload, stage).norm(), self.stroke);
+        if !(distance > TOUCHING * stroke) {
+            return Err(SeatError::Touching { distance, stroke });
+        }
+        let reach = distance + self.payload_point.norm() + self.stage_point.norm();
+        let stroke = if self.can_push() { self.travel_m() } else { stroke };
+        if !(stroke > SHORTEST * reach) {
+            return Err(SeatError::ShortStroke { stroke, reach });
+        }
+        Ok(SeatedSpring::new(*self, distance))
     }
 }
 

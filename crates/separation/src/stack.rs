@@ -1,18 +1,21 @@
-//! Two bodies and their springs as they are mounted, off from their nominal places as one likes.
+//! Two bodies and their loads as they are mounted, off from their nominal places as one likes.
 
 use gyradius_inertia::{InertiaMatrix, MassProperties};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use smallvec::SmallVec;
 
 use crate::{
-    Body, BodyParameter, BodyState, MovingBody, Role, Separation, SeparationError, Spring,
-    SpringError, SpringParameter, StackParameter,
+    AnyLoad, Body, BodyParameter, BodyState, LoadError, LoadId, LoadParameter, MovingBody, Role,
+    Separation, SeparationError, StackParameter,
+    layout::INLINE_LOADS,
+    load::{Placing, Values, line},
 };
 
-/// Payload and stage as they sit on each other, and the springs mounted between points of their
+/// Payload and stage as they sit on each other, and the loads mounted between points of their
 /// structures: the builder of a [`Separation`] whose mass centres, attitudes, lines of action and the like
 /// differ from the nominal ones.
 ///
-/// Mass centres move in structures that stay where they are, and so do the points that springs are attached
+/// Mass centres move in structures that stay where they are, and so do the points that loads are attached
 /// to. A line of action turns about its stage point and keeps its length. The whole turns, and begins to turn,
 /// about the common mass centre as one rigid body.
 ///
@@ -29,7 +32,7 @@ use crate::{
 /// let mut stack = Stack::new((&payload, up(0.1)), (&stage, up(0.0)));
 /// for (x, y) in [(0.4, 0.4), (-0.4, 0.4), (-0.4, -0.4), (0.4, -0.4)] {
 ///     let point = Vector3::new(x, y, 0.0);
-///     stack = stack.with_spring(Spring::new(2e4, 0.05, point, point)?);
+///     stack = stack.with_load(Spring::new(2e4, 0.05, point, point)?);
 /// }
 /// let separation = stack.separation()?;
 /// // Springs count their points from the mass centre, which is off the axis.
@@ -45,7 +48,7 @@ pub struct Stack {
     /// Rotation and angular velocity of the whole, stage axes, rad and rad/s.
     rotation: Vector3<f64>,
     rate: Vector3<f64>,
-    springs: Vec<Mounted>,
+    loads: Vec<Mounted>,
 }
 
 /// A body in its place. Position and velocity are those of the origin of a frame in its structure.
@@ -61,24 +64,19 @@ struct Placed {
     nominal: BodyState,
 }
 
-/// A spring in its place, points from the origins of the bodies' frames.
-#[derive(Clone, Copy, Debug)]
+/// A load in its place, points from the origins of the bodies' frames.
+#[derive(Clone, Debug)]
 struct Mounted {
-    nominal: Spring,
-    stiffness: f64,
-    stroke: f64,
-    friction: f64,
-    /// Rotation of its line about two axes across it, rad.
-    tilt: [f64; 2],
-    payload_point: Vector3<f64>,
-    stage_point: Vector3<f64>,
-    start: f64,
+    /// From its stage point to its payload point where everything is in its nominal place, stage axes, m.
+    nominal_line: Vector3<f64>,
+    nominal: AnyLoad,
+    values: Values,
     fails: bool,
 }
 
 impl Stack {
     /// Payload and stage, each in a frame of its own, and the states of those frames: where their origins
-    /// are and how they move. Points of springs are given in these frames.
+    /// are and how they move. Points of loads are given in these frames.
     #[must_use]
     pub fn new(payload: (&MassProperties, BodyState), stage: (&MassProperties, BodyState)) -> Self {
         let placed = |(properties, state): (&MassProperties, BodyState)| {
@@ -90,13 +88,20 @@ impl Stack {
     }
 
     fn of(bodies: [Placed; 2]) -> Self {
-        Self { bodies, rotation: Vector3::zeros(), rate: Vector3::zeros(), springs: Vec::new() }
+        Self { bodies, rotation: Vector3::zeros(), rate: Vector3::zeros(), loads: Vec::new() }
     }
 
-    /// The same with another spring.
+    /// The same with another load, a spring say.
     #[must_use]
-    pub fn with_spring(mut self, spring: Spring) -> Self {
-        self.springs.push(Mounted::new(&spring));
+    pub fn with_load(mut self, load: impl Into<AnyLoad>) -> Self {
+        let load = load.into();
+        let [payload, stage] = self.bodies.each_ref().map(|body| &body.nominal);
+        self.loads.push(Mounted {
+            nominal_line: stage.attitude.inverse() * load.line(payload, stage),
+            nominal: load,
+            values: load.values(),
+            fails: load.start_s().is_none(),
+        });
         self
     }
 
@@ -129,41 +134,32 @@ impl Stack {
         }
     }
 
-    /// The same of a spring, numbered from 0.
-    pub fn set_spring(
+    /// The same of a load, by its place among all, from 0. A parameter of another kind is left alone.
+    pub fn set_load(
         &mut self,
-        spring: usize,
-        parameter: SpringParameter,
+        load: usize,
+        parameter: impl Into<LoadParameter>,
         component: usize,
         value: f64,
     ) {
-        let Some(spring) = self.springs.get_mut(spring) else { return };
-        match parameter {
-            SpringParameter::Stiffness => spring.stiffness = value,
-            SpringParameter::Stroke => spring.stroke = value,
-            SpringParameter::Friction => spring.friction = value,
-            SpringParameter::LineOfAction => {
-                if let Some(angle) = spring.tilt.get_mut(component) {
-                    *angle = value.to_radians();
-                }
-            }
-            SpringParameter::PayloadPoint => put(&mut spring.payload_point, component, value),
-            SpringParameter::StagePoint => put(&mut spring.stage_point, component, value),
-            SpringParameter::Start => spring.start = value,
+        let Some(load) = self.loads.get_mut(load) else { return };
+        let place = load.nominal.place(parameter.into(), component);
+        if let Some(entry) = place.and_then(|place| load.values.get_mut(place)) {
+            *entry = value;
         }
     }
 
-    /// Lets a spring, numbered from 0, fail: it never pushes.
-    pub fn fail_spring(&mut self, spring: usize) {
-        if let Some(spring) = self.springs.get_mut(spring) {
-            spring.fails = true;
+    /// Lets a load, by its place among all, from 0, fail: it never acts.
+    pub fn fail_load(&mut self, load: usize) {
+        if let Some(load) = self.loads.get_mut(load) {
+            load.fails = true;
         }
     }
 
     /// The separation that begins so.
     ///
     /// # Errors
-    /// A value makes no body or no spring, or bodies and springs make no separation.
+    /// A value makes no body or no load, or bodies and loads make no separation.
     pub fn separation(&self) -> Result<Separation, SeparationError> {
         let body = |role: Role| {
             let placed = &self.bodies[role as usize];
@@ -172,47 +168,50 @@ impl Stack {
         };
         let (payload, stage) = (body(Role::Payload)?, body(Role::Stage)?);
         let mut states = self.bodies.each_ref().map(Placed::state);
-        let springs = self.springs.iter().enumerate().map(|(spring, mounted)| {
-            self.spring(mounted, &states)
-                .map_err(|source| SeparationError::Spring { spring, source })
-        });
-        let springs = springs.collect::<Result<Vec<_>, _>>()?;
+        let mut loads: SmallVec<[AnyLoad; INLINE_LOADS]> = SmallVec::new();
+        for mounted in &self.loads {
+            loads.push(self.load(mounted, &states).map_err(|source| {
+                let kind = mounted.nominal.kind();
+                let number = loads.iter().filter(|load| load.kind() == kind).count();
+                SeparationError::Load { load: LoadId { kind, number }, source }
+            })?);
+        }
         self.move_whole(&mut states);
         let [payload_state, stage_state] = states;
-        Separation::new(payload.moving(payload_state), stage.moving(stage_state), &springs)
+        Separation::new(payload.moving(payload_state), stage.moving(stage_state), &loads)
     }
 
-    /// A spring with its line turned about its stage point: where it then meets the payload, at the
+    /// A load with its line turned about its stage point: where it then meets the payload, at the
     /// same length, it pushes.
-    fn spring(
+    fn load(
         &self,
         mounted: &Mounted,
         [payload, stage]: &[BodyState; 2],
-    ) -> Result<Spring, SpringError> {
+    ) -> Result<AnyLoad, LoadError> {
+        let Placing { points, line_of_action } = mounted.nominal.placing();
+        let mut values = mounted.values.clone();
         let [payload_centre, stage_centre] = self.bodies.each_ref().map(|body| body.centre);
-        let stage_point = mounted.stage_point - stage_centre;
-        let built = |point| Spring::new(mounted.stiffness, mounted.stroke, point, stage_point);
-        let point = mounted.payload_point - payload_centre;
-        let mut spring = built(point)?;
-        if mounted.tilt != [0.0; 2] {
-            let line = stage.attitude.inverse() * spring.line(payload, stage);
+        let point = |at: usize| Vector3::from_fn(|i, _| mounted.values[at + i]);
+        let stage_point = point(points[1]) - stage_centre;
+        let mut point = point(points[0]) - payload_centre;
+        let tilt =
+            line_of_action.map_or([0.0; 2], |at| [mounted.values[at], mounted.values[at + 1]]);
+        let tilt = tilt.map(f64::to_radians);
+        if tilt != [0.0; 2] {
+            let line = stage.attitude.inverse() * line([point, stage_point], payload, stage);
             // Of the next axis, what is perpendicular to the line.
-            let axis = Vector3::ith((nearest_axis(&self.nominal_line(mounted)) + 1) % 3, 1.0);
+            let axis = Vector3::ith((nearest_axis(&mounted.nominal_line) + 1) % 3, 1.0);
             let unit = normalized(&line);
             let first = normalized(&(axis - unit * unit.dot(&axis)));
             let second = unit.cross(&first);
-            let tilt = rotation(&(first * mounted.tilt[0] + second * mounted.tilt[1]));
+            let tilt = rotation(&(first * tilt[0] + second * tilt[1]));
             let shift = stage.attitude * (tilt * line - line);
-            spring = built(point + payload.attitude.inverse() * shift)?;
+            point += payload.attitude.inverse() * shift;
         }
-        let spring = spring.with_friction(mounted.friction)?.starting_at(mounted.start)?;
-        Ok(if mounted.fails { spring.never_pushing() } else { spring })
-    }
-
-    /// The line of a spring where everything is in its nominal place, stage axes.
-    fn nominal_line(&self, mounted: &Mounted) -> Vector3<f64> {
-        let [payload, stage] = self.bodies.each_ref().map(|body| &body.nominal);
-        stage.attitude.inverse() * mounted.nominal.line(payload, stage)
+        for (at, point) in points.into_iter().zip([point, stage_point]) {
+            values[at..at + 3].copy_from_slice(point.as_slice());
+        }
+        mounted.nominal.of_values(&values, mounted.fails)
     }
 
     /// Turns both bodies about their common mass centre and sets them turning, as one rigid body.
@@ -248,7 +247,7 @@ impl From<&Separation> for Stack {
             Placed::new(body.mass_kg(), *body.inertia(), *moving.state())
         };
         let stack = Self::of([placed(nominal.payload()), placed(nominal.stage())]);
-        Self { springs: nominal.springs().map(Mounted::new).collect(), ..stack }
+        nominal.loads().fold(stack, |stack, (_, load)| stack.with_load(load))
     }
 }
 
@@ -262,22 +261,6 @@ impl Placed {
     fn state(&self) -> BodyState {
         let attitude = self.state.attitude * rotation(&self.rotation);
         BodyState { attitude, ..self.state }.of_point(&self.centre)
-    }
-}
-
-impl Mounted {
-    fn new(nominal: &Spring) -> Self {
-        Self {
-            nominal: *nominal,
-            stiffness: nominal.stiffness_n_per_m(),
-            stroke: nominal.stroke_m(),
-            friction: nominal.friction_n(),
-            tilt: [0.0; 2],
-            payload_point: nominal.payload_point_m(),
-            stage_point: nominal.stage_point_m(),
-            start: nominal.start_s().unwrap_or(0.0),
-            fails: nominal.start_s().is_none(),
-        }
     }
 }
 
@@ -309,7 +292,7 @@ fn rotation(vector: &Vector3<f64>) -> UnitQuaternion<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Parameter, Settings};
+    use crate::{Parameter, Settings, Spring, SpringParameter};
     use gyradius_inertia::Shape;
     use proptest::prelude::*;
 
@@ -351,7 +334,7 @@ mod tests {
                 for side in &sides {
                     let (low, high) = (Vector3::z() * -0.9, Vector3::z() * 1.0);
                     let points = [side + low - origins[0], side + high - origins[1]];
-                    stack = stack.with_spring(Spring::new(4e4, 0.05, points[0], points[1]).unwrap());
+                    stack = stack.with_load(Spring::new(4e4, 0.05, points[0], points[1]).unwrap());
                 }
                 stack.separation().unwrap().run(&Settings::default()).unwrap()
             };
@@ -402,7 +385,7 @@ mod tests {
             for (k, spring) in nominal.springs().enumerate() {
                 for &parameter in SpringParameter::ALL {
                     for (i, value) in parameter.nominal(spring).into_iter().enumerate() {
-                        stack.set_spring(k, parameter, i, value);
+                        stack.set_load(k, parameter, i, value);
                     }
                 }
             }

@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 use std::borrow::Borrow;
 
-use crate::{RunError, Separation, Settings, layout::INLINE_LOADS, load::Load, state::State};
+use crate::{RunError, Separation, Settings, layout::INLINE_LOADS, load::Seated, state::State};
 
 /// What has become of one load; times in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub(crate) enum Fate {
 }
 
 impl Fate {
-    pub(crate) fn of(load: &dyn Load) -> Self {
+    pub(crate) fn of(load: &dyn Seated) -> Self {
         match load.start_s() {
             None => Self::Failed,
             Some(0.0) => Self::Acting,
@@ -84,7 +84,7 @@ impl<S: Borrow<Separation>> Track<S> {
 
     /// When the next load starts.
     pub(crate) fn next_start(&self) -> f64 {
-        let loads = self.separation.borrow().loads();
+        let loads = self.separation.borrow().seated();
         let waiting = self.loads.iter().enumerate().filter(|(_, fate)| **fate == Fate::Waiting);
         let starts = waiting.filter_map(|(i, _)| loads.get(i).start_s());
         starts.fold(f64::INFINITY, f64::min)
@@ -98,9 +98,10 @@ impl<S: Borrow<Separation>> Track<S> {
     pub(crate) fn check(&self, state: &State, settings: &Settings) -> Result<(), RunError> {
         match self.open().next() {
             Some(load) if self.time >= settings.horizon_s() => {
-                let gap = self.separation.borrow().loads().get(load).gap(state);
+                let loads = self.separation.borrow().seated();
+                let gap = loads.get(load).gap(state);
                 Err(RunError::NotReleased {
-                    springs: self.open().collect(),
+                    loads: self.open().map(|load| loads.id(load)).collect(),
                     horizon: settings.horizon_s(),
                     compression: -gap.value,
                     rate: gap.rate,

@@ -2,7 +2,8 @@
 
 use crate::common::{differences, inertia, log_fit, moved, paper, relative, skewed};
 use gyradius_separation::{
-    Batch, Body, BodyState, MovingBody, Outcome, RunError, Separation, Settings, Spring,
+    Batch, Body, BodyState, Load, LoadId, MovingBody, Outcome, RunError, Separation, Settings,
+    Spring,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -143,7 +144,7 @@ fn a_spring_that_is_pressed_again_stays_lost() {
         panic!("{outcome:?}");
     };
     assert!(number == 1 && released[1] < time && time < released[0], "{released:?} {time}");
-    let at = |time: f64| trajectory.at(time).unwrap().springs()[1];
+    let at = |time: f64| trajectory.at(time).unwrap().loads()[1];
     assert!(at(time - 1e-6).compression_m() < 0.0 && at(time + 1e-6).compression_m() > 0.0);
     let later = at(0.5 * (time + released[0]));
     assert!(!later.is_pushing() && later.force_n() == Vector3::zeros());
@@ -160,7 +161,7 @@ fn time_can_be_reversed() {
         let middle = there.at(half).unwrap();
         let springs: Vec<_> = separation
             .springs()
-            .zip(middle.springs())
+            .zip(middle.loads())
             .map(|(s, now)| {
                 let (p, l) = (s.payload_point_m(), s.stage_point_m());
                 Spring::new(s.stiffness_n_per_m(), now.compression_m(), p, l).unwrap()
@@ -316,7 +317,8 @@ fn what_cannot_be_followed_is_said_to_be_so() {
         &[spring],
     );
     let error = closing.unwrap().run(&Settings::default()).unwrap_err();
-    let RunError::PadsMeet { spring: 0, time, speed } = error else { panic!("{error}") };
+    let RunError::PadsMeet { load, time, speed } = error else { panic!("{error}") };
+    assert_eq!(load, LoadId { kind: Spring::KIND, number: 0 });
     assert!((time - 0.02).abs() < 1e-4 && (speed - 10.0).abs() < 0.1, "{error}");
 
     let whirling = |rate: f64| {
@@ -333,10 +335,11 @@ fn what_cannot_be_followed_is_said_to_be_so() {
     let weak = Spring::new(1e-9, 0.1, Vector3::z() * -0.9, Vector3::z() * 0.9).unwrap();
     let weak = Separation::new(ball.at(Vector3::z()), ball.at(-Vector3::z()), &[weak]).unwrap();
     let error = weak.run(&Settings::default()).unwrap_err();
-    let RunError::NotReleased { springs, horizon, compression, rate } = &error else {
+    let RunError::NotReleased { loads, horizon, compression, rate } = &error else {
         panic!("{error}");
     };
-    assert_eq!((springs.as_slice(), *horizon), (&[0][..], 60.0));
+    assert_eq!((loads.as_slice(), *horizon), (&[load][..], 60.0));
+    assert!(error.to_string().starts_with("springs [1] had not let go after 60.0 s: spring 1 is "));
     assert!(*compression > 0.09 && *compression < 0.1 && *rate > 0.0, "{error}");
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
         let error = paper().trajectory(&Settings::default(), bad).unwrap_err();

@@ -36,7 +36,7 @@ fn coaxial_springs_are_an_oscillator() {
         // On the way: the force is k δ cos(rate·t).
         let trajectory = separation.trajectory(&Settings::default(), 1.0).unwrap();
         let time = 0.3 / rate;
-        let spring = trajectory.at(time).unwrap().springs()[0];
+        let spring = trajectory.at(time).unwrap().loads()[0];
         let expected = axis * (stiffnesses[0] * 0.2 * 0.3_f64.cos());
         assert!(relative(&spring.force_n(), &expected) < 1e-12);
     }

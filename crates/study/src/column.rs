@@ -2,6 +2,7 @@
 //! what a run writes into it.
 
 use gyradius_campaign::{Cell, Column as RunColumn, Kind, Table};
+use gyradius_separation::Separation;
 use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::{
@@ -30,10 +31,10 @@ pub(crate) const RECOMPRESSED: &str = "recompressed";
 pub(crate) const CLEARANCE_NOTE: &str = "clearance_note";
 
 impl Column {
-    /// All columns, in order, of a separation by so many springs in which so much else is drawn.
-    pub(crate) fn all(springs: usize, drawn: usize) -> Vec<Self> {
+    /// All columns, in order, of a separation by such loads in which so much else is drawn.
+    pub(crate) fn all(separation: &Separation, drawn: usize) -> Vec<Self> {
         let mut columns = Vec::new();
-        for quantity in Quantity::of(springs) {
+        for quantity in Quantity::of(separation) {
             columns.push(Self::Number(quantity));
             if quantity == Quantity::LAST_BEFORE_REALIZABLE {
                 columns.push(Self::Realizable);
@@ -97,7 +98,7 @@ impl Column {
             Self::Axes(body, i) => run.axes(body).map(|q| q.coords[i]).into(),
             Self::ReleaseOrder => text(run.end().map(End::release_order)),
             Self::Recompressed => {
-                text(run.end().map(End::recompressed).filter(|springs| !springs.is_empty()))
+                text(run.end().map(End::recompressed).filter(|loads| !loads.is_empty()))
             }
             Self::Drawn(i) => run.case.drawn.get(i).copied().into(),
             Self::ClearanceNote => {
@@ -132,6 +133,8 @@ pub(crate) fn attitudes(table: &Table, body: Body) -> Vec<(u64, UnitQuaternion<f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Scenario;
+    use gyradius_separation::{Load, LoadId, Spring};
     use std::fmt::Write;
 
     /// The page of the run table, from the declarations.
@@ -147,7 +150,13 @@ mod tests {
             [separation](models/separation.md), equation numbers are those of Peck (2003).\n\n\
             | column | unit | |\n|---|---|---|\n"
             .to_owned();
-        let own = Column::all(1, 1).into_iter().map(|column| column.declaration(&drawn));
+        let mut own = Column::all(Scenario::peck_2003().unwrap().separation(), 1);
+        // Of all springs the first.
+        let first = LoadId { kind: Spring::KIND, number: 0 };
+        own.retain(
+            |column| !matches!(column, Column::Number(Quantity::Release(load)) if *load != first),
+        );
+        let own = own.into_iter().map(|column| column.declaration(&drawn));
         let table = Table::new("", 0, own.collect()).unwrap();
         for column in table.columns() {
             let unit = column.unit().unwrap_or_default();

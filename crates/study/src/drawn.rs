@@ -2,7 +2,7 @@
 
 use gyradius_campaign::Streams;
 use gyradius_inertia::InertiaMatrix;
-use gyradius_separation::{BodyParameter, Separation, SpringParameter, Stack};
+use gyradius_separation::{BodyParameter, Separation, Stack};
 use nalgebra::Vector3;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -33,12 +33,12 @@ impl Draws {
         for (value, d) in values.iter_mut().zip(&dispersions.all) {
             *value = d.law.at_score(*value);
         }
-        // A spring that is not late starts as it should.
+        // A load that is not late starts as it should.
         for late in 0..values.len() {
-            if let Target::Late(spring) = dispersions.all[late].target
+            if let Target::Late(load, start) = dispersions.all[late].target
                 && values[late] == 0.0
             {
-                let start = Target::Spring(spring, SpringParameter::Start, 0);
+                let start = Target::Load(load, start, 0);
                 for (value, d) in values.iter_mut().zip(&dispersions.all) {
                     if d.target == start {
                         *value = d.nominal;
@@ -102,9 +102,9 @@ pub(crate) fn separation(
         match d.target {
             Target::Body(body, parameter, i) => stack.set_body(body, parameter, i, value),
             Target::Stack(parameter, i) => stack.set_whole(parameter, i, value),
-            Target::Spring(spring, parameter, i) => stack.set_spring(spring, parameter, i, value),
-            Target::Fails(spring) if value != 0.0 => stack.fail_spring(spring),
-            Target::Fails(_) | Target::Late(_) => {}
+            Target::Load(load, parameter, i) => stack.set_load(load, parameter, i, value),
+            Target::Fails(load) if value != 0.0 => stack.fail_load(load),
+            Target::Fails(_) | Target::Late(..) => {}
         }
     }
     stack.separation().map_err(Failure::from)

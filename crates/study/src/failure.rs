@@ -1,7 +1,7 @@
 //! Why a run failed.
 
 use gyradius_clearance::OutlineError;
-use gyradius_separation::{BodyError, RunError, SeparationError};
+use gyradius_separation::{AnyLoad, BodyError, RunError, SeparationError};
 use std::borrow::Cow;
 
 /// Why a run failed, with the numbers of the run.
@@ -43,15 +43,26 @@ impl Failure {
                 };
                 return format!("{body}: {what}").into();
             }
-            Self::Refused(SeparationError::Spring { spring, .. }) => {
-                return format!("spring {}: impossible", spring + 1).into();
+            Self::Refused(SeparationError::Load { load, .. }) => {
+                return format!("{load}: impossible").into();
             }
-            Self::Refused(SeparationError::NonePushes) => "no spring pushes",
-            Self::Refused(SeparationError::TouchingPads { .. }) => "points of a spring touch",
+            Self::Refused(SeparationError::NonePushes) => {
+                let kinds: Vec<_> = AnyLoad::KINDS.iter().map(|kind| kind.name()).collect();
+                return format!("no {} pushes", kinds.join(" or ")).into();
+            }
+            Self::Refused(SeparationError::TouchingPads { load, .. }) => {
+                return format!("points of a {} touch", load.kind).into();
+            }
             Self::Refused(SeparationError::ShortStroke { .. }) => "stroke too short",
             Self::Refused(_) => "separation refused",
-            Self::Broken(RunError::NotReleased { .. }) => "springs not released within the horizon",
-            Self::Broken(RunError::PadsMeet { .. }) => "points of a spring meet",
+            Self::Broken(RunError::NotReleased { loads, .. }) => {
+                let mut kinds: Vec<_> = loads.iter().map(|load| load.kind.plural()).collect();
+                kinds.dedup();
+                return format!("{} not released within the horizon", kinds.join(" and ")).into();
+            }
+            Self::Broken(RunError::PadsMeet { load, .. }) => {
+                return format!("points of a {} meet", load.kind).into();
+            }
             Self::Broken(RunError::StepUnderflow { .. }) => "step underflow",
             Self::Broken(RunError::TooManySteps { .. }) => "too many steps",
             Self::Broken(RunError::NotFinite { .. }) => "numbers out of range",

@@ -25,6 +25,7 @@ mod error;
 mod failure;
 mod figures_of_study;
 mod fragment;
+mod loads;
 mod model;
 #[cfg(test)]
 mod pages;

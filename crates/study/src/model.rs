@@ -117,8 +117,7 @@ pub(crate) struct Separations<'a> {
 
 impl<'a> Separations<'a> {
     pub(crate) fn new(scenario: &'a Scenario, model: &'a Model) -> Self {
-        let springs = scenario.separation().springs().len();
-        let columns = Column::all(springs, scenario.dispersions().all.len());
+        let columns = Column::all(scenario.separation(), scenario.dispersions().all.len());
         Self { scenario, model, columns }
     }
 

@@ -3,6 +3,7 @@
 
 use gyradius_campaign::{Row, Table};
 use gyradius_report::with_unit;
+use gyradius_separation::{AnyLoad, LoadId, LoadKind, Separation};
 use std::borrow::Cow;
 
 use crate::{
@@ -38,12 +39,12 @@ macro_rules! quantities {
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Quantity {
             $($(#[doc = $meaning])+ $name,)+
-            /// When a spring let go; none if it never pushed, a late one too. Springs from 0.
-            SpringRelease(usize),
+            /// When a load, a spring say, let go; none if it never pushed, a late one too.
+            Release(LoadId),
         }
 
         impl Quantity {
-            /// All but those of single springs, in the order of the run table.
+            /// All but those of single loads, in the order of the run table.
             pub const ALL: &'static [Self] = &[$(Self::$name),+];
 
             fn declaration(self) -> &'static Declaration {
@@ -58,13 +59,14 @@ macro_rules! quantities {
                             meaning: concat!($($meaning),+),
                         }
                     },)+
-                    Self::SpringRelease(_) => const {
+                    // With the load in the place of the braces.
+                    Self::Release(_) => const {
                         &Declaration {
-                            column: "spring_{}_release_s",
-                            label: "release of spring {}",
+                            column: "{}_release_s",
+                            label: "release of {}",
                             unit: "s",
                             shown: Table,
-                            meaning: " When the spring let go; none if it never pushed, a late one too.",
+                            meaning: " When the {} let go; none if it never pushed, a late one too.",
                         }
                     },
                 }
@@ -74,8 +76,9 @@ macro_rules! quantities {
             pub(crate) fn value(self, run: &Run<'_>) -> Option<f64> {
                 let of: fn(&Run<'_>) -> Option<f64> = match self {
                     $(Self::$name => $of,)+
-                    Self::SpringRelease(spring) => {
-                        return run.end()?.separated.release_times().nth(spring)?;
+                    Self::Release(load) => {
+                        let place = run.case.separation.as_ref().ok()?.place(load)?;
+                        return run.end()?.separated.release_times().nth(place)?;
                     }
                 };
                 of(run)
@@ -235,9 +238,10 @@ impl Quantity {
     /// The last one before `realizable` in the run table; the rest come after the attitudes.
     pub(crate) const LAST_BEFORE_REALIZABLE: Self = Self::InertiaRatio;
 
-    /// All of them, of a separation by so many springs.
-    pub fn of(springs: usize) -> impl Iterator<Item = Self> {
-        Self::ALL.iter().copied().chain((0..springs).map(Self::SpringRelease))
+    /// All of them, of a separation by such loads.
+    pub fn of(separation: &Separation) -> impl Iterator<Item = Self> {
+        let releases = separation.loads().map(|(load, _)| Self::Release(load));
+        Self::ALL.iter().copied().chain(releases)
     }
 
     /// What the paper's results are about.
@@ -263,7 +267,7 @@ impl Quantity {
     /// Name of the column in the run table, with its unit.
     #[must_use]
     pub fn column(self) -> Cow<'static, str> {
-        self.numbered(self.declaration().column)
+        self.of_load(self.declaration().column, LoadId::column)
     }
 
     /// Its values in a run table, in run order, of the runs that have one.
@@ -283,9 +287,14 @@ impl Quantity {
     pub fn of_column(column: &str) -> Option<Self> {
         let known = Self::ALL.iter().copied().find(|quantity| quantity.column() == column);
         let released = || {
-            let spring = column.strip_prefix("spring_")?.strip_suffix("_release_s")?;
-            let release = Self::SpringRelease(spring.parse::<usize>().ok()?.checked_sub(1)?);
-            (release.column() == column).then_some(release)
+            let load = column.strip_suffix("_release_s")?;
+            let of_kind = |kind: &LoadKind| {
+                let number = load.strip_prefix(kind.name())?.strip_prefix('_')?;
+                let number = number.parse::<usize>().ok()?.checked_sub(1)?;
+                Some(Self::Release(LoadId { kind: *kind, number }))
+            };
+            let mut releases = AnyLoad::KINDS.iter().filter_map(of_kind);
+            releases.find(|release| release.column() == column)
         };
         known.or_else(released)
     }
@@ -293,7 +302,7 @@ impl Quantity {
     /// What it is called in tables and figures.
     #[must_use]
     pub fn label(self) -> Cow<'static, str> {
-        self.numbered(self.declaration().label)
+        self.of_load(self.declaration().label, |load| load.to_string())
     }
 
     /// Its name in tables and figures with its unit, if it has one.
@@ -309,14 +318,14 @@ impl Quantity {
 
     /// What it means, in a sentence.
     #[must_use]
-    pub fn meaning(self) -> &'static str {
-        self.declaration().meaning.trim_start()
+    pub fn meaning(self) -> Cow<'static, str> {
+        self.of_load(self.declaration().meaning.trim_start(), |load| load.kind.to_string())
     }
 
-    fn numbered(self, name: &'static str) -> Cow<'static, str> {
+    fn of_load(self, text: &'static str, load: fn(LoadId) -> String) -> Cow<'static, str> {
         match self {
-            Self::SpringRelease(spring) => name.replace("{}", &(spring + 1).to_string()).into(),
-            _ => name.into(),
+            Self::Release(id) => text.replace("{}", &load(id)).into(),
+            _ => text.into(),
         }
     }
 }

@@ -6,7 +6,7 @@ use gyradius_separation::{EnergySplit, Outcome as Separated, RunError, Separatio
 use nalgebra::{UnitQuaternion, Vector3};
 use std::fmt::Write;
 
-use crate::{body::Body, drawn, failure::Failure, scenario::Scenario};
+use crate::{body::Body, drawn, failure::Failure, loads::Short, scenario::Scenario};
 
 /// What is drawn for a run.
 #[derive(Clone, Debug)]
@@ -164,11 +164,11 @@ impl<'a> End<'a> {
         self.watched.as_ref().and_then(ClearanceNote::new)
     }
 
-    /// Springs from 1 in the order of their releases, `+` between those that let go together.
+    /// Loads in the order of their releases, `+` between those that let go together.
     pub(crate) fn release_order(&self) -> String {
         let mut order = String::new();
         for group in self.separated.release_order() {
-            for (i, spring) in group.iter().enumerate() {
+            for (i, load) in group.iter().enumerate() {
                 let between = if i > 0 {
                     "+"
                 } else if order.is_empty() {
@@ -176,17 +176,21 @@ impl<'a> End<'a> {
                 } else {
                     " "
                 };
-                // Writing into a text cannot fail.
-                let _ = write!(order, "{between}{}", spring + 1);
+                if let Some(id) = self.scenario.separation().id(*load) {
+                    // Writing into a text cannot fail.
+                    let _ = write!(order, "{between}{}", Short(id));
+                }
             }
         }
         order
     }
 
-    /// Springs from 1 that were pressed again after they had let go.
+    /// Loads that were pressed again after they had let go.
     pub(crate) fn recompressed(&self) -> String {
-        let springs = self.separated.recompressed().map(|(spring, _)| (spring + 1).to_string());
-        springs.collect::<Vec<_>>().join(" ")
+        let separation = self.scenario.separation();
+        let loads = self.separated.recompressed();
+        let loads = loads.filter_map(|(place, _)| Some(Short(separation.id(place)?).to_string()));
+        loads.collect::<Vec<_>>().join(" ")
     }
 }
 

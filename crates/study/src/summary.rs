@@ -188,7 +188,6 @@ impl Summary {
     ) -> Result<Self, StatisticsError> {
         let confidence = Confidence::default();
         let nominal = nominal(scenario);
-        let springs = scenario.separation().springs().len();
         let models = models
             .par_iter()
             .zip(runs)
@@ -203,7 +202,7 @@ impl Summary {
                     title: c.title.clone(),
                     physical: physical.model().to_owned(),
                     naive: naive.model().to_owned(),
-                    ratios: all(springs)
+                    ratios: all(scenario)
                         .map(|q| Ratio::new(q, physical, naive, confidence))
                         .collect(),
                 }
@@ -241,8 +240,8 @@ impl Summary {
 }
 
 /// All quantities, for many threads.
-fn all(springs: usize) -> impl IndexedParallelIterator<Item = Quantity> {
-    Quantity::of(springs).collect::<Vec<_>>().into_par_iter()
+fn all(scenario: &Scenario) -> impl IndexedParallelIterator<Item = Quantity> {
+    Quantity::of(scenario.separation()).collect::<Vec<_>>().into_par_iter()
 }
 
 /// The run of the nominal bodies.
@@ -250,7 +249,7 @@ fn nominal(scenario: &Scenario) -> Vec<Nominal> {
     let case = Case::nominal(scenario);
     let result = scenario.separation().run(scenario.settings());
     let run = case.ended(scenario, Some(result));
-    Quantity::of(scenario.separation().springs().len())
+    Quantity::of(scenario.separation())
         .filter_map(|quantity| {
             let value = quantity.value(&run).filter(|value| value.is_finite())?;
             Some(Nominal { quantity, unit: quantity.unit().into(), value })
@@ -301,9 +300,7 @@ impl ModelSummary {
             far_half,
             given_deviations_kg_m2: model.given_deviations(),
             releases: Releases::new(&seen.surveys, scenario.outlines().is_some(), confidence)?,
-            quantities: all(scenario.separation().springs().len())
-                .map(|q| QuantitySummary::new(q, seen, confidence))
-                .collect(),
+            quantities: all(scenario).map(|q| QuantitySummary::new(q, seen, confidence)).collect(),
             dispersed: dispersed(scenario, seen),
         })
     }

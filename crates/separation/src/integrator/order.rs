@@ -48,9 +48,9 @@ fn fixed_steps(separation: &Separation, h: f64, until: f64, located: bool) -> St
         integrator.set_state(0, &next);
         track.time = end;
         for (i, fate) in track.loads.iter_mut().enumerate() {
-            if fate.is_open() && separation.loads().get(i).gap(&next).value >= 0.0 {
+            if fate.is_open() && separation.seated().get(i).gap(&next).value >= 0.0 {
                 fate.end(end);
-                integrator.expansion.loads.act(i, 0, false);
+                integrator.expansion.loads.act(separation.seated().slot(i), 0, false);
             }
         }
     }

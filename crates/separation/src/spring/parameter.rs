@@ -1,70 +1,23 @@
 //! What of a spring can be uncertain.
 
 use super::Spring;
-use crate::Parameter;
+use crate::parameter::parameters;
 
-/// What of a spring can be uncertain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SpringParameter {
+parameters! {
+    /// What of a spring can be uncertain.
+    SpringParameter of Spring;
     /// Stiffness.
-    Stiffness,
+    Stiffness: "stiffness", "n_per_m", 1, Always(1e12), |spring| [spring.stiffness_n_per_m()];
     /// Stroke: the initial compression.
-    Stroke,
+    Stroke: "stroke", "m", 1, Always(1e3), |spring| [spring.stroke_m()];
     /// Friction of its guide.
-    Friction,
+    Friction: "friction", "n", 1, OrZero(1e12), |spring| [spring.friction_n()];
     /// Rotation of its line about the stage point, about two axes across it.
-    LineOfAction,
+    LineOfAction: "line_of_action", "deg", 2, Never, |_| [0.0; 2];
     /// Attachment on the payload.
-    PayloadPoint,
+    PayloadPoint: "payload_point", "m", 3, Always(1e4), |spring| spring.payload_point_m().into();
     /// Attachment on the stage.
-    StagePoint,
+    StagePoint: "stage_point", "m", 3, Always(1e4), |spring| spring.stage_point_m().into();
     /// When it is let off.
-    Start,
-}
-
-impl Parameter for SpringParameter {
-    type Of = Spring;
-    const ALL: &'static [Self] = &[
-        Self::Stiffness,
-        Self::Stroke,
-        Self::Friction,
-        Self::LineOfAction,
-        Self::PayloadPoint,
-        Self::StagePoint,
-        Self::Start,
-    ];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Stiffness => "stiffness",
-            Self::Stroke => "stroke",
-            Self::Friction => "friction",
-            Self::LineOfAction => "line_of_action",
-            Self::PayloadPoint => "payload_point",
-            Self::StagePoint => "stage_point",
-            Self::Start => "start",
-        }
-    }
-
-    fn unit(self) -> &'static str {
-        match self {
-            Self::Stiffness => "n_per_m",
-            Self::Friction => "n",
-            Self::LineOfAction => "deg",
-            Self::Stroke | Self::PayloadPoint | Self::StagePoint => "m",
-            Self::Start => "s",
-        }
-    }
-
-    fn nominal(self, spring: &Spring) -> Vec<f64> {
-        match self {
-            Self::Stiffness => vec![spring.stiffness_n_per_m()],
-            Self::Stroke => vec![spring.stroke_m()],
-            Self::Friction => vec![spring.friction_n()],
-            Self::LineOfAction => vec![0.0; 2],
-            Self::PayloadPoint => spring.payload_point_m().as_slice().to_vec(),
-            Self::StagePoint => spring.stage_point_m().as_slice().to_vec(),
-            Self::Start => vec![spring.start_s().unwrap_or(0.0)],
-        }
-    }
+    Start: "start", "s", 1, OrZero(1e6), |spring| [spring.start_s().unwrap_or(0.0)];
 }

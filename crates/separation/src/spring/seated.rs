@@ -2,10 +2,10 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::{Spring, SpringParameter, SpringState};
+use super::Spring;
 use crate::{
-    RunError,
-    load::{Gap, Load, Size},
+    LoadState,
+    load::{Gap, Seated, Size},
     state::{self, State},
 };
 
@@ -28,10 +28,6 @@ impl SeatedSpring {
         Self { spring, free_length: distance + stroke }
     }
 
-    pub(crate) fn spring(&self) -> &Spring {
-        &self.spring
-    }
-
     pub(crate) fn free_length_m(&self) -> f64 {
         self.free_length
     }
@@ -43,8 +39,12 @@ impl SeatedSpring {
     }
 }
 
-impl Load for SeatedSpring {
-    type Parameter = SpringParameter;
+impl Seated for SeatedSpring {
+    type Described = Spring;
+
+    fn load(&self) -> &Spring {
+        &self.spring
+    }
 
     fn start_s(&self) -> Option<f64> {
         self.spring.start_s().filter(|_| self.spring.can_push())
@@ -72,10 +72,6 @@ impl Load for SeatedSpring {
         4.0 * f64::EPSILON * reach
     }
 
-    fn lost_direction(&self, number: usize, time: f64, speed: f64) -> RunError {
-        RunError::PadsMeet { spring: number, time, speed }
-    }
-
     fn stored_energy(&self) -> f64 {
         self.spring.stored_energy()
     }
@@ -91,13 +87,13 @@ impl Load for SeatedSpring {
         }
     }
 
-    fn seen(&self, state: &State, attitude: &UnitQuaternion<f64>, acts: bool) -> SpringState {
+    fn seen(&self, state: &State, attitude: &UnitQuaternion<f64>, acts: bool) -> LoadState {
         // Not of the two positions, which may be large.
         let line = self.line(state);
         let length = line.norm();
         let compression = self.free_length - length;
         let stiffness = if acts { self.spring.stiffness_n_per_m() } else { 0.0 };
-        SpringState {
+        LoadState {
             pushing: acts,
             length,
             compression,

@@ -15,7 +15,7 @@ use super::SeatedSpring;
 use crate::{
     lanes::{Lanes, M3, V3},
     layout::{INVERSE, TERMS},
-    load::Series,
+    load::{Seated, Series},
     products::{cross, load},
     vector::{Register, Simd},
 };
@@ -101,7 +101,7 @@ impl<const W: usize> Series<W> for SpringSeries<W> {
     }
 
     fn set(&mut self, lane: usize, seated: &SeatedSpring) {
-        let spring = seated.spring();
+        let spring = seated.load();
         self.built.0[lane] = spring.stiffness_n_per_m();
         self.stroke.0[lane] = spring.stroke_m();
         self.free_length.0[lane] = seated.free_length_m();

@@ -1,6 +1,6 @@
 //! The motion of a run, sampled, and as a table.
 
-use gyradius_separation::{MovingBody, Outcome, Snapshot, Spring, SpringState, Step};
+use gyradius_separation::{AnyLoad, LoadId, LoadState, MovingBody, Outcome, Snapshot, Step};
 use nalgebra::{Unit, Vector3};
 use std::{borrow::Cow, iter};
 
@@ -24,25 +24,32 @@ pub(crate) struct Moment {
 #[derive(Clone, Debug)]
 pub(crate) struct History {
     pub(crate) moments: Vec<Moment>,
-    /// Spring from 1 and when it let go, s, in the order of time.
-    pub(crate) releases: Vec<(usize, f64)>,
-    /// From when on no spring can push, s; none if the run fails before.
+    /// Which load let go and when, s, in the order of time.
+    pub(crate) releases: Vec<(LoadId, f64)>,
+    /// Which loads there are.
+    pub(crate) loads: Vec<LoadId>,
+    /// From when on no load can push, s; none if the run fails before.
     free: Option<f64>,
     /// An angular momentum of the payload up to this is rounding, kg·m²/s.
     rounding: f64,
 }
 
 impl History {
-    /// Of the steps of a run by springs, and its outcome if it ends well.
-    pub(crate) fn new(steps: &[Step], springs: &[Spring], outcome: Option<&Outcome>) -> Self {
+    /// Of the steps of a run by loads, and its outcome if it ends well.
+    pub(crate) fn new(
+        steps: &[Step],
+        loads: &[(LoadId, AnyLoad)],
+        outcome: Option<&Outcome>,
+    ) -> Self {
         let recompressed: Vec<_> = outcome.into_iter().flat_map(Outcome::recompressed).collect();
         let end = steps.last().map_or(0.0, Step::end_s);
+        let ids: Vec<LoadId> = loads.iter().map(|(id, _)| *id).collect();
         let mut releases = Vec::new();
         for step in steps {
-            releases.extend(step.released().iter().map(|spring| (spring + 1, step.end_s())));
+            releases.extend(step.released().iter().map(|place| (ids[*place], step.end_s())));
         }
         let last = releases.last().map_or(end, |(_, time)| *time);
-        let most = MOST.min(NUMBERS / columns(springs.len()).len() as f64);
+        let most = MOST.min(NUMBERS / columns(&ids).len() as f64);
         let interval = round(f64::max(last / PUSHING, end / most));
         let mut moments: Vec<Moment> = Vec::new();
         let mut next = 0_u32;
@@ -53,25 +60,22 @@ impl History {
                 due.push((f64::from(next) * interval, String::new()));
                 next += 1;
             }
-            for (i, spring) in springs.iter().enumerate() {
-                let start = spring.start_s().unwrap_or(0.0);
+            for (place, (id, load)) in loads.iter().enumerate() {
+                let start = load.start_s().unwrap_or(0.0);
                 let starts = start > 0.0 && (step.start_s()..step.end_s()).contains(&start);
                 // One that has come to its free length by then does not.
-                if starts && step.at(start).springs()[i].is_pushing() {
-                    due.push((start, format!("spring {} starts", i + 1)));
+                if starts && step.at(start).loads()[place].is_pushing() {
+                    due.push((start, format!("{id} starts")));
                 }
             }
-            for (spring, time) in &recompressed {
+            for (place, time) in &recompressed {
                 if (step.start_s()..step.end_s()).contains(time) {
-                    due.push((*time, format!("spring {} pressed again", spring + 1)));
+                    due.push((*time, format!("{} pressed again", ids[*place])));
                 }
             }
             if !step.released().is_empty() {
-                let names: Vec<_> =
-                    step.released().iter().map(|spring| (spring + 1).to_string()).collect();
-                let plural = if names.len() > 1 { "s" } else { "" };
-                let event = format!("spring{plural} {} released", names.join(" and "));
-                due.push((step.end_s(), event));
+                let released: Vec<_> = step.released().iter().map(|place| ids[*place]).collect();
+                due.push((step.end_s(), format!("{} released", together(&released))));
             } else if step.end_s() == end {
                 due.push((end, "end".to_owned()));
             }
@@ -94,6 +98,7 @@ impl History {
         Self {
             moments,
             releases,
+            loads: ids,
             free: outcome.map(Outcome::release_time),
             rounding: outcome.map_or(0.0, Outcome::momentum_rounding),
         }
@@ -104,15 +109,14 @@ impl History {
         self.moments.last().map_or(0.0, |m| m.now.time_s())
     }
 
-    /// From when on no spring can push, s; the end if some still do.
+    /// From when on no load can push, s; the end if some still do.
     pub(crate) fn pushing_s(&self) -> f64 {
         self.free.unwrap_or_else(|| self.end_s())
     }
 
     /// The table: a row a moment, columns with units in their names.
     pub(crate) fn csv(&self, spin_axis: &Unit<Vector3<f64>>) -> String {
-        let springs = self.moments.first().map_or(0, |m| m.now.springs().len());
-        let header = columns(springs).into_iter().map(Cow::Owned).collect();
+        let header = columns(&self.loads).into_iter().map(Cow::Owned).collect();
         // As many digits as read back bit for bit, in powers of ten where these are shorter.
         let number = |x: Option<f64>| Cow::Owned(x.map_or_else(String::new, |x| format!("{x:?}")));
         let row = |moment| -> Vec<Cow<'_, str>> {
@@ -131,9 +135,9 @@ impl History {
             values.extend(state.position.iter().chain(state.velocity.iter()));
             values.extend(state.attitude.coords.iter().chain(state.angular_velocity.iter()));
         }
-        for spring in now.springs() {
-            values.extend([spring.compression_m(), spring.force_n().norm()]);
-            values.extend(spring.force_n().iter());
+        for load in now.loads() {
+            values.extend([load.compression_m(), load.force_n().norm()]);
+            values.extend(load.force_n().iter());
         }
         values.extend(now.momentum().iter().chain(now.angular_momentum().iter()));
         values.extend(energies(now));
@@ -168,7 +172,18 @@ fn round(interval: f64) -> f64 {
     if rounded > 0.0 { rounded } else { f64::MIN_POSITIVE }
 }
 
-fn columns(springs: usize) -> Vec<String> {
+/// Loads that let go together, as in `springs 1 and 2`.
+fn together(loads: &[LoadId]) -> String {
+    let kinds = loads.chunk_by(|a, b| a.kind == b.kind).map(|of| {
+        let numbers: Vec<_> = of.iter().map(|load| (load.number + 1).to_string()).collect();
+        let kind = of[0].kind;
+        let name = if of.len() > 1 { kind.plural() } else { kind.name() };
+        format!("{name} {}", numbers.join(" and "))
+    });
+    kinds.collect::<Vec<_>>().join(" and ")
+}
+
+fn columns(loads: &[LoadId]) -> Vec<String> {
     let mut names = vec!["time_s".to_owned(), "event".to_owned()];
     for body in ["payload", "stage"] {
         let mut three = |what: &str, unit: &str| {
@@ -179,10 +194,10 @@ fn columns(springs: usize) -> Vec<String> {
         names.extend((1..=4).map(|i| format!("{body}_q{i}")));
         names.extend((1..=3).map(|i| format!("{body}_w{i}_rad_per_s")));
     }
-    for spring in 1..=springs {
-        names.push(format!("spring_{spring}_compression_m"));
-        names.push(format!("spring_{spring}_force_n"));
-        names.extend((1..=3).map(|i| format!("spring_{spring}_force_{i}_n")));
+    for load in loads.iter().map(|load| load.column()) {
+        names.push(format!("{load}_compression_m"));
+        names.push(format!("{load}_force_n"));
+        names.extend((1..=3).map(|i| format!("{load}_force_{i}_n")));
     }
     names.extend((1..=3).map(|i| format!("momentum_{i}_kg_m_per_s")));
     names.extend((1..=3).map(|i| format!("angular_momentum_{i}_kg_m2_per_s")));
@@ -200,10 +215,10 @@ fn columns(springs: usize) -> Vec<String> {
     names
 }
 
-/// Of the springs; of translation (relative to the common mass centre) and rotation of payload and
+/// Of the loads; of translation (relative to the common mass centre) and rotation of payload and
 /// stage, J.
 pub(crate) fn energies(now: &Snapshot) -> [f64; 5] {
-    let stored = now.springs().iter().map(SpringState::energy_j).sum();
+    let stored = now.loads().iter().map(LoadState::energy_j).sum();
     let [payload, stage] = now.translational_energies_j();
     let rotation = MovingBody::rotational_energy;
     [stored, payload, rotation(now.payload()), stage, rotation(now.stage())]

@@ -235,10 +235,9 @@ impl Replay {
             }
             result = Some(outcome);
         }
-        let springs: Vec<_> =
-            case.separation.iter().flat_map(Separation::springs).copied().collect();
+        let loads: Vec<_> = case.separation.iter().flat_map(Separation::loads).collect();
         let ended = result.as_ref().and_then(|result| result.as_ref().ok());
-        let history = History::new(&steps, &springs, ended);
+        let history = History::new(&steps, &loads, ended);
         let simulation = Separations::new(scenario, &model);
         let mut own = Table::new(&spec.name, run, simulation.columns())?;
         let run = case.ended(scenario, result);

@@ -15,8 +15,8 @@ const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");
 /// Moments shown: enough to be smooth, few enough for a small file.
 const FRAMES: usize = 260;
-/// Springs drawn at most.
-const SPRINGS: usize = 200;
+/// Loads drawn at most.
+const LOADS: usize = 200;
 
 pub(crate) fn html(replay: &Replay) -> String {
     let name = replay.scenario.name();
@@ -62,20 +62,20 @@ fn data(replay: &Replay) -> Value {
     let history = &replay.history;
     let frames: Vec<Value> = frames(replay).iter().map(|m| frame(replay, m)).collect();
     let separation = replay.case.separation.as_ref().ok();
-    let springs: Vec<Value> = separation
+    let loads: Vec<Value> = separation
         .iter()
-        .flat_map(|s| s.springs())
-        .take(SPRINGS)
-        .enumerate()
-        .map(|(i, spring)| {
-            let released = history.releases.iter().find(|(number, _)| *number == i + 1);
+        .flat_map(|s| s.loads())
+        .take(LOADS)
+        .map(|(id, load)| {
+            let released = history.releases.iter().find(|(released, _)| *released == id);
             // Of a run that fails some still push at its end.
             let pushes =
-                released.is_some() || (spring.can_push() && replay.row().failure().is_some());
+                released.is_some() || (load.can_push() && replay.row().failure().is_some());
+            let [payload, stage] = load.points_m();
             json!({
-                "p": short(spring.payload_point_m().as_slice()),
-                "s": short(spring.stage_point_m().as_slice()),
-                "from": spring.start_s().filter(|_| pushes).map(|s| short(&[s])[0].clone()),
+                "p": short(payload.as_slice()),
+                "s": short(stage.as_slice()),
+                "from": load.start_s().filter(|_| pushes).map(|s| short(&[s])[0].clone()),
                 "free": released.map(|(_, time)| short(&[*time])[0].clone()),
             })
         })
@@ -98,16 +98,16 @@ fn data(replay: &Replay) -> Value {
         "outlines": outlines,
         "closest": closest,
         "frames": frames,
-        "springs": springs,
+        "springs": loads,
         "boxes": bodies.map_or_else(Vec::new, Vec::from),
         "spin": short(replay.scenario.spin_axis().as_slice()),
-        "releases": history.releases.iter().take(SPRINGS).map(|(spring, time)| {
-            json!([spring, short(&[*time])[0]])
+        "releases": history.releases.iter().take(LOADS).map(|(load, time)| {
+            json!([load.number + 1, short(&[*time])[0]])
         }).collect::<Vec<_>>(),
     })
 }
 
-/// Moments to be shown: half of them while springs push.
+/// Moments to be shown: half of them while loads push.
 fn frames(replay: &Replay) -> Vec<&Moment> {
     let moments = &replay.history.moments;
     let until = 1.2 * replay.history.pushing_s();

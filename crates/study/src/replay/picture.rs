@@ -6,6 +6,7 @@ use super::{
     Replay,
     history::{Moment, energies},
 };
+use crate::loads::Short;
 use gyradius_report::{Chart, Colours, Curve, time_charts};
 
 /// How far beyond the last release the left half shows, relative.
@@ -30,9 +31,11 @@ pub(super) fn svg(replay: &Replay) -> String {
     let axis = replay.scenario.spin_axis();
     let nutation =
         || vec![curve("payload".to_owned(), &|m| history.nutation_deg(m.now.payload(), axis))];
-    let springs = history.moments.first().map_or(0, |m| m.now.springs().len());
-    let forces = (0..springs)
-        .map(|i| curve(format!("{}", i + 1), &move |m| Some(m.now.springs()[i].force_n().norm())))
+    let forces = history.loads.iter().enumerate();
+    let forces = forces
+        .map(|(i, load)| {
+            curve(Short(*load).to_string(), &move |m| Some(m.now.loads()[i].force_n().norm()))
+        })
         .collect();
     let kinds = ["springs", "payload moves", "payload turns", "stage moves", "stage turns"];
     let parts = |of: &[usize]| -> Vec<Curve> {
@@ -69,5 +72,7 @@ pub(super) fn svg(replay: &Replay) -> String {
     charts.push(chart("energy (J)", Colours::Series, parts(&[0, 1, 3]), near));
     charts.push(chart("energy of rotation (J)", Colours::Series, parts(&[2, 4]), near));
     let title = format!("{}: {}, run {}", replay.scenario.name(), replay.model, replay.row().run());
-    time_charts(&title, &charts, &history.releases)
+    let marks: Vec<_> =
+        history.releases.iter().map(|(load, time)| (Short(*load).to_string(), *time)).collect();
+    time_charts(&title, &charts, &marks)
 }

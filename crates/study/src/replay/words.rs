@@ -10,6 +10,7 @@ use super::Replay;
 use crate::{
     body::{Body, Entry},
     column::{CLEARANCE_NOTE, REALIZABLE, RECOMPRESSED},
+    loads::Short,
     quantity::Quantity,
 };
 
@@ -75,12 +76,15 @@ impl Display for Replay {
             };
         }
 
-        write!(f, "\nsprings")?;
-        let springs = self.case.separation.iter().flat_map(Separation::springs);
-        for (spring, number) in springs.zip(1..) {
-            let start = spring.start_s().filter(|start| *start > 0.0);
-            match Quantity::SpringRelease(number - 1).in_row(&row) {
-                None if spring.can_push() => {
+        let loads: Vec<_> = self.case.separation.iter().flat_map(Separation::loads).collect();
+        let mut kinds: Vec<_> = loads.iter().map(|(id, _)| id.kind.plural()).collect();
+        kinds.dedup();
+        write!(f, "\n{}", kinds.join(", "))?;
+        for (id, load) in loads {
+            let start = load.start_s().filter(|start| *start > 0.0);
+            let number = Short(id);
+            match Quantity::Release(id).in_row(&row) {
+                None if load.can_push() => {
                     write!(
                         f,
                         "\n  {number} comes to its free length before it starts, and never pushes"
@@ -94,11 +98,11 @@ impl Display for Replay {
                 }
             }
         }
-        for (spring, time) in &self.history.releases {
-            write!(f, "\n  {spring} lets go at {time:.9} s")?;
+        for (load, time) in &self.history.releases {
+            write!(f, "\n  {} lets go at {time:.9} s", Short(*load))?;
         }
-        for spring in row.text(RECOMPRESSED).into_iter().flat_map(str::split_whitespace) {
-            write!(f, "\n  {spring} is pressed again later, and stays lost")?;
+        for load in row.text(RECOMPRESSED).into_iter().flat_map(str::split_whitespace) {
+            write!(f, "\n  {load} is pressed again later, and stays lost")?;
         }
         writeln!(f)?;
         let value = |quantity: Quantity| optional(quantity.in_row(&row), 6);

@@ -2,13 +2,14 @@
 
 use gyradius_dispersion::{Correlation, CorrelationError, LawUnit, ScalarLaw, ScalarLawForm};
 use gyradius_separation::{
-    BodyParameter, MovingBody, Parameter, Separation, Spring, SpringParameter, StackParameter,
+    BodyParameter, LoadId, LoadParameter, MovingBody, Parameter, Separation, StackParameter,
 };
 
 use super::{
     ScenarioError,
-    file::{BodyFile, Given, ScenarioFile, SpringFile},
-    law::{self, VectorLawFile},
+    file::{BodyFile, ScenarioFile},
+    law::{self, GivenLaw, VectorLawFile},
+    load::{self, GivenLoad, Uncertain},
 };
 use crate::body::Body;
 
@@ -28,11 +29,11 @@ pub(crate) struct Dispersed {
 pub(crate) enum Target {
     Body(Body, BodyParameter, usize),
     Stack(StackParameter, usize),
-    /// Springs are numbered from 0.
-    Spring(usize, SpringParameter, usize),
-    /// Whether a spring starts late.
-    Late(usize),
-    /// Whether it never pushes.
+    /// Loads by their places, from 0.
+    Load(usize, LoadParameter, usize),
+    /// Whether a load starts late, and what then says when.
+    Late(usize, LoadParameter),
+    /// Whether it never acts.
     Fails(usize),
 }
 
@@ -54,11 +55,12 @@ impl Dispersions {
         if let Some(stack) = file.stack.as_ref().and_then(|s| s.dispersion.as_ref()) {
             for &parameter in StackParameter::ALL {
                 let target = |i| Target::Stack(parameter, i);
-                list.parameter("stack", "stack", parameter, stack.given(parameter), &(), target)?;
+                let uncertain = uncertain(parameter, &(), stack.given(parameter));
+                list.parameter("stack", "stack", &uncertain, target)?;
             }
         }
-        for (i, (file, spring)) in file.springs.iter().zip(separation.springs()).enumerate() {
-            list.spring(i, file, spring)?;
+        for (place, (id, given)) in file.loads().enumerate() {
+            list.load(place, id, given)?;
         }
         let correlation = list.correlate(file)?;
         let follows = |body: &BodyFile| body.dispersion.inertia_follows_mass.share();
@@ -105,30 +107,27 @@ impl List {
     }
 
     /// A parameter of what stands at a place of the file, and is called by a name.
-    fn parameter<P: Parameter>(
+    fn parameter(
         &mut self,
         place: &str,
         name: &str,
-        parameter: P,
-        given: Given<'_>,
-        of: &P::Of,
+        uncertain: &Uncertain<'_>,
         target: impl Fn(usize) -> Target,
     ) -> Result<(), ScenarioError> {
-        let (quantity, unit) = (parameter.name(), parameter.unit());
+        let Uncertain { name: quantity, unit, nominal, law } = uncertain;
         let place = Place {
             field: format!("{place}.dispersion.{quantity}_{unit}"),
-            percent: format!("{place}.dispersion.{quantity}_percent"),
+            percent: format!("{place}.dispersion.{}", load::percent(quantity)),
             name: format!("{name}_{quantity}"),
             unit,
         };
-        let nominal = parameter.nominal(of);
-        match given {
-            Given::Number(law, percent) => {
+        match law {
+            GivenLaw::Number(law, percent) => {
                 nominal.iter().enumerate().try_for_each(|(i, nominal)| {
-                    self.number(&place, law, percent, *nominal, target(i))
+                    self.number(&place, *law, *percent, *nominal, target(i))
                 })
             }
-            Given::Vector(law) => self.vector(&place, law, &nominal, target),
+            GivenLaw::Vector(law) => self.vector(&place, *law, nominal, target),
         }
     }
 
@@ -186,7 +185,8 @@ impl List {
         let (name, d) = (body.name(), &file.dispersion);
         for &parameter in BodyParameter::ALL {
             let target = |i| Target::Body(body, parameter, i);
-            self.parameter(name, name, parameter, d.given(parameter), moving, target)?;
+            let uncertain = uncertain(parameter, moving, d.given(parameter));
+            self.parameter(name, name, &uncertain, target)?;
         }
         if !d.inertia_follows_mass.not_at_all() && d.mass_kg.is_none() && d.mass_percent.is_none() {
             let problem = "the mass is not dispersed: it needs mass_kg or mass_percent";
@@ -196,35 +196,42 @@ impl List {
         Ok(())
     }
 
-    fn spring(
+    fn load(
         &mut self,
-        i: usize,
-        file: &SpringFile,
-        spring: &Spring,
+        load: usize,
+        id: LoadId,
+        given: &dyn GivenLoad,
     ) -> Result<(), ScenarioError> {
-        let Some(d) = &file.dispersion else { return Ok(()) };
-        let (place, name) = (format!("springs[{}]", i + 1), format!("spring_{}", i + 1));
-        for &parameter in SpringParameter::ALL {
-            let target = |component| Target::Spring(i, parameter, component);
-            self.parameter(&place, &name, parameter, d.given(parameter), spring, target)?;
+        let Some(d) = given.dispersion() else { return Ok(()) };
+        let (place, name) = (load::key(id), id.column());
+        for (parameter, uncertain) in &d.parameters {
+            let target = |component| Target::Load(load, *parameter, component);
+            self.parameter(&place, &name, uncertain, target)?;
         }
         let at = |field: &str| format!("{place}.dispersion.{field}");
-        if d.late_probability.is_some() && d.start_s.is_none() {
-            let problem = "it needs start_s, which says how late a late spring is";
-            return Err(ScenarioError::field(at("late_probability"), problem));
-        }
-        let chances = [
-            ("late", d.late_probability, Target::Late(i)),
-            ("failure", d.failure_probability, Target::Fails(i)),
-        ];
-        for (chance, probability, target) in chances {
-            if let Some(p) = probability {
-                let field = at(&format!("{chance}_probability"));
-                let law = ScalarLaw::bernoulli(p).map_err(|e| ScenarioError::field(field, e))?;
-                self.push(&format!("{name}_{chance}"), "", 0.0, law, target);
+        let mut chance = |chance: &str, probability: Option<f64>, target: Target| {
+            let Some(p) = probability else { return Ok(()) };
+            let field = at(&format!("{chance}_probability"));
+            let law = ScalarLaw::bernoulli(p).map_err(|e| ScenarioError::field(field, e))?;
+            self.push(&format!("{name}_{chance}"), "", 0.0, law, target);
+            Ok(())
+        };
+        if let (Some(_), Some(start)) = (d.late_probability, d.start) {
+            let said = |uncertain: &Uncertain<'_>| match uncertain.law {
+                GivenLaw::Number(law, percent) => law.or(percent).is_some(),
+                GivenLaw::Vector(law) => law.is_some(),
+            };
+            let start_of = d.parameters.iter().find(|(parameter, _)| *parameter == start);
+            if let Some((_, uncertain)) = start_of.filter(|(_, uncertain)| !said(uncertain)) {
+                let problem = format!(
+                    "it needs {}_{}, which says how late a late {} is",
+                    uncertain.name, uncertain.unit, id.kind
+                );
+                return Err(ScenarioError::field(at("late_probability"), problem));
             }
+            chance("late", d.late_probability, Target::Late(load, start))?;
         }
-        Ok(())
+        chance("failure", d.failure_probability, Target::Fails(load))
     }
 
     fn correlate(&mut self, file: &ScenarioFile) -> Result<Correlation, ScenarioError> {
@@ -278,6 +285,12 @@ impl List {
             ScenarioError::field(field, format!("{a:?} and {b:?}: {error}"))
         })
     }
+}
+
+/// A parameter of what is not a load.
+fn uncertain<'a, P: Parameter>(parameter: P, of: &P::Of, law: GivenLaw<'a>) -> Uncertain<'a> {
+    let (name, unit, nominal) = (parameter.name(), parameter.unit(), parameter.nominal(of));
+    Uncertain { name, unit, nominal, law }
 }
 
 /// That a law of what cannot be negative is not so more often than not.

@@ -1,10 +1,16 @@
 //! A scenario as it stands in a TOML file.
 
 use gyradius_dispersion::ScalarLawForm;
-use gyradius_separation::{BodyParameter, SpringParameter, StackParameter};
+use gyradius_separation::{BodyParameter, LoadId, Spring, StackParameter};
 use serde::{Deserialize, Serialize};
 
-use super::{follows::Follows, law::VectorLawFile, model_file::ModelFile, parse};
+use super::{
+    follows::Follows,
+    law::VectorLawFile,
+    load::{self, GivenLoad, LoadFile},
+    model_file::ModelFile,
+    parse,
+};
 
 /// A scenario as it stands in a TOML file, defaults filled in. Units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,12 +39,20 @@ pub(crate) struct ScenarioFile {
     pub(crate) source: Option<SourceFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) clearance: Option<ClearanceFile>,
-    pub(crate) springs: Vec<SpringFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) springs: Vec<LoadFile<Spring>>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) correlations: Vec<CorrelationFile>,
     pub(crate) models: Vec<ModelFile>,
     #[serde(default)]
     pub(crate) comparisons: Vec<ComparisonFile>,
+}
+
+impl ScenarioFile {
+    /// The loads between the bodies and which they are, kind by kind, in the order of the fields that hold them.
+    pub(crate) fn loads(&self) -> impl Iterator<Item = (LoadId, &dyn GivenLoad)> {
+        load::given(&self.springs)
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -195,48 +209,6 @@ impl TryFrom<ShapeTable> for ShapeFile {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct SpringFile {
-    pub(crate) stiffness_n_per_m: f64,
-    pub(crate) stroke_m: f64,
-    pub(crate) payload_point_m: [f64; 3],
-    pub(crate) stage_point_m: [f64; 3],
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) friction_n: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) start_s: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) dispersion: Option<SpringDispersionFile>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct SpringDispersionFile {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stiffness_n_per_m: Option<ScalarLawForm>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stiffness_percent: Option<ScalarLawForm>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stroke_m: Option<ScalarLawForm>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stroke_percent: Option<ScalarLawForm>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) friction_n: Option<ScalarLawForm>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) line_of_action_deg: Option<VectorLawFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) payload_point_m: Option<VectorLawFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stage_point_m: Option<VectorLawFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) start_s: Option<ScalarLawForm>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) late_probability: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) failure_probability: Option<f64>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct IntegrationFile {
     pub(crate) relative_tolerance: f64,
@@ -288,18 +260,11 @@ fn default_attitude() -> [f64; 4] {
     [0.0, 0.0, 0.0, 1.0]
 }
 
-/// What a file says of a parameter: a law of a number, in its unit or in percent, or of a vector.
-#[derive(Clone, Copy)]
-pub(crate) enum Given<'a> {
-    Number(Option<&'a ScalarLawForm>, Option<&'a ScalarLawForm>),
-    Vector(Option<&'a VectorLawFile>),
-}
-
 impl DispersionFile {
-    pub(crate) fn given(&self, parameter: BodyParameter) -> Given<'_> {
+    pub(crate) fn given(&self, parameter: BodyParameter) -> GivenLaw<'_> {
         let vector = match parameter {
             BodyParameter::Mass => {
-                return Given::Number(self.mass_kg.as_ref(), self.mass_percent.as_ref());
+                return GivenLaw::Number(self.mass_kg.as_ref(), self.mass_percent.as_ref());
             }
             BodyParameter::MassCentre => &self.mass_centre_m,
             BodyParameter::Position => &self.position_m,
@@ -307,33 +272,16 @@ impl DispersionFile {
             BodyParameter::Attitude => &self.attitude_deg,
             BodyParameter::AngularVelocity => &self.angular_velocity_rad_per_s,
         };
-        Given::Vector(vector.as_ref())
+        GivenLaw::Vector(vector.as_ref())
     }
 }
 
 impl StackDispersionFile {
-    pub(crate) fn given(&self, parameter: StackParameter) -> Given<'_> {
+    pub(crate) fn given(&self, parameter: StackParameter) -> GivenLaw<'_> {
         let vector = match parameter {
             StackParameter::Attitude => &self.attitude_deg,
             StackParameter::AngularVelocity => &self.angular_velocity_rad_per_s,
         };
-        Given::Vector(vector.as_ref())
-    }
-}
-
-impl SpringDispersionFile {
-    pub(crate) fn given(&self, parameter: SpringParameter) -> Given<'_> {
-        let (number, percent) = match parameter {
-            SpringParameter::Stiffness => (&self.stiffness_n_per_m, &self.stiffness_percent),
-            SpringParameter::Stroke => (&self.stroke_m, &self.stroke_percent),
-            SpringParameter::Friction => (&self.friction_n, &None),
-            SpringParameter::Start => (&self.start_s, &None),
-            SpringParameter::LineOfAction => {
-                return Given::Vector(self.line_of_action_deg.as_ref());
-            }
-            SpringParameter::PayloadPoint => return Given::Vector(self.payload_point_m.as_ref()),
-            SpringParameter::StagePoint => return Given::Vector(self.stage_point_m.as_ref()),
-        };
-        Given::Number(number.as_ref(), percent.as_ref())
+        GivenLaw::Vector(vector.as_ref())
     }
 }

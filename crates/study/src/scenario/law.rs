@@ -19,6 +19,13 @@ pub(crate) enum VectorLawFile {
     Each(Vec<ScalarLawForm>),
 }
 
+/// What a file says of a parameter: a law of a number, in its unit or in percent, or of a vector.
+#[derive(Clone, Copy)]
+pub(crate) enum GivenLaw<'a> {
+    Number(Option<&'a ScalarLawForm>, Option<&'a ScalarLawForm>),
+    Vector(Option<&'a VectorLawFile>),
+}
+
 struct VectorLawVisitor;
 
 impl<'de> Visitor<'de> for VectorLawVisitor {

@@ -1,8 +1,11 @@
 //! How much a scenario may ask for: enough for every vehicle, and little enough to come to an end.
 
+use gyradius_separation::{AnyLoad, BodyParameter, Parameter};
+
 use super::{
     ScenarioError,
     file::{ScenarioFile, ShapeFile},
+    load,
 };
 
 /// Bytes of the largest file that is read: a hundred thousand samples of roots.
@@ -11,8 +14,8 @@ pub(super) const BYTES: u64 = 16 << 20;
 /// Most runs of a model: what fits into memory.
 pub(super) const RUNS: u64 = 10_000_000;
 
-/// Most springs: each is a release in every run and a column of the run table.
-const SPRINGS: usize = 300;
+/// Most loads of a kind: each is a release in every run and a column of the run table.
+const LOADS: usize = 300;
 
 /// Most models.
 const MODELS: usize = 100;
@@ -24,41 +27,30 @@ const REACH: f64 = 1e4;
 /// Longest coast, s.
 pub(super) const COAST: f64 = 1e6;
 
-/// Numbers beyond which nothing that separates is, in the units of their keys. Beyond them the
-/// rounding of double precision would be larger than what is computed.
-const MASS: f64 = 1e12;
-const POSITION: f64 = 1e9;
-const VELOCITY: f64 = 1e6;
-const ANGULAR_VELOCITY: f64 = 1e4;
-const STIFFNESS: f64 = 1e12;
-const STROKE: f64 = 1e3;
-const POINT: f64 = 1e4;
-const FRICTION: f64 = 1e12;
-const START: f64 = 1e6;
-
 /// That a scenario does not ask for more.
 pub(super) fn check(file: &ScenarioFile) -> Result<(), ScenarioError> {
-    at_most("springs", file.springs.len(), SPRINGS)?;
+    for kind in AnyLoad::KINDS {
+        let count = file.loads().filter(|(load, _)| load.kind == *kind).count();
+        at_most(kind.plural(), count, LOADS)?;
+    }
     at_most("models", file.models.len(), MODELS)?;
     for (name, body) in [("payload", &file.payload), ("stage", &file.stage)] {
-        let numbers: [(&str, &[f64], f64); 4] = [
-            ("mass_kg", &[body.mass_kg], MASS),
-            ("position_m", &body.position_m, POSITION),
-            ("velocity_m_per_s", &body.velocity_m_per_s, VELOCITY),
-            ("angular_velocity_rad_per_s", &body.angular_velocity_rad_per_s, ANGULAR_VELOCITY),
+        let numbers: [(BodyParameter, &[f64]); 4] = [
+            (BodyParameter::Mass, &[body.mass_kg]),
+            (BodyParameter::Position, &body.position_m),
+            (BodyParameter::Velocity, &body.velocity_m_per_s),
+            (BodyParameter::AngularVelocity, &body.angular_velocity_rad_per_s),
         ];
-        sizes(name, &numbers)?;
+        for (parameter, values) in numbers {
+            if let Some(most) = parameter.given().most() {
+                size(name, &parameter.key(), values, most)?;
+            }
+        }
     }
-    for (i, spring) in file.springs.iter().enumerate() {
-        let numbers: [(&str, &[f64], f64); 6] = [
-            ("stiffness_n_per_m", &[spring.stiffness_n_per_m], STIFFNESS),
-            ("stroke_m", &[spring.stroke_m], STROKE),
-            ("payload_point_m", &spring.payload_point_m, POINT),
-            ("stage_point_m", &spring.stage_point_m, POINT),
-            ("friction_n", spring.friction_n.as_slice(), FRICTION),
-            ("start_s", spring.start_s.as_slice(), START),
-        ];
-        sizes(&format!("springs[{}]", i + 1), &numbers)?;
+    for (load, given) in file.loads() {
+        for (key, values, most) in given.sizes() {
+            size(&load::key(load), &key, &values, most)?;
+        }
     }
     if let Some(clearance) = &file.clearance {
         for (body, shapes) in [("payload", &clearance.payload), ("stage", &clearance.stage)] {
@@ -79,14 +71,12 @@ pub(super) fn check(file: &ScenarioFile) -> Result<(), ScenarioError> {
     Ok(())
 }
 
-/// That numbers are not beyond their limits. What is no number is refused where it is used.
-fn sizes(place: &str, numbers: &[(&str, &[f64], f64)]) -> Result<(), ScenarioError> {
-    for (key, values, most) in numbers {
-        if let Some(i) = values.iter().position(|x| x.abs() > *most) {
-            let index = if values.len() > 1 { format!("[{}]", i + 1) } else { String::new() };
-            let problem = format!("{:?}: it must be at most {most:e} in magnitude", values[i]);
-            return Err(ScenarioError::field(format!("{place}.{key}{index}"), problem));
-        }
+/// That numbers are not beyond their limit. What is no number is refused where it is used.
+fn size(place: &str, key: &str, values: &[f64], most: f64) -> Result<(), ScenarioError> {
+    if let Some(i) = values.iter().position(|x| x.abs() > most) {
+        let index = if values.len() > 1 { format!("[{}]", i + 1) } else { String::new() };
+        let problem = format!("{:?}: it must be at most {most:e} in magnitude", values[i]);
+        return Err(ScenarioError::field(format!("{place}.{key}{index}"), problem));
     }
     Ok(())
 }

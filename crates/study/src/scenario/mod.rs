@@ -7,6 +7,7 @@ mod file;
 mod follows;
 mod law;
 mod limits;
+mod load;
 mod model;
 mod model_file;
 mod outside;
@@ -14,9 +15,7 @@ mod parse;
 mod sides;
 
 use gyradius_formats::read_text;
-use gyradius_separation::{
-    Role, Separation, SeparationError, Settings, SettingsError, Spring, SpringError,
-};
+use gyradius_separation::{Separation, SeparationError, Settings, SettingsError};
 use nalgebra::{Unit, Vector3};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -70,7 +69,7 @@ impl ScenarioError {
     }
 }
 
-/// A study to be run: bodies with their uncertainty, springs, models, how many runs from which
+/// A study to be run: bodies with their uncertainty, loads, models, how many runs from which
 /// seed. Everything has been checked.
 #[derive(Clone, Debug)]
 pub struct Scenario {
@@ -167,21 +166,13 @@ impl Scenario {
         }
         let payload = UncertainBody::new("payload", &file.payload)?;
         let stage = UncertainBody::new("stage", &file.stage)?;
-        let springs = file
-            .springs
-            .iter()
-            .enumerate()
-            .map(|(i, s)| {
-                let (p, l) = (s.payload_point_m.into(), s.stage_point_m.into());
-                Spring::new(s.stiffness_n_per_m, s.stroke_m, p, l)
-                    .and_then(|spring| spring.with_friction(s.friction_n.unwrap_or(0.0)))
-                    .and_then(|spring| spring.starting_at(s.start_s.unwrap_or(0.0)))
-                    .map_err(|e| {
-                        ScenarioError::field(format!("springs[{}].{}", i + 1, spring_key(&e)), e)
-                    })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        let separation = Separation::new(*payload.moving(), *stage.moving(), &springs)
+        let loads = file.loads().map(|(id, given)| {
+            let refused =
+                |(key, error)| ScenarioError::field(format!("{}.{key}", load::key(id)), error);
+            given.load().map_err(refused)
+        });
+        let loads = loads.collect::<Result<Vec<_>, _>>()?;
+        let separation = Separation::new(*payload.moving(), *stage.moving(), &loads)
             .map_err(separation_error)?;
         let push = push(&separation);
         sides::check(&separation, file.separation_direction, push)?;
@@ -269,7 +260,7 @@ impl Scenario {
     }
 
     /// Where the payload's mass centre is meant to go from the stage's, inertial axes; none if not said
-    /// and the springs' forces cancel at the start.
+    /// and the loads' forces cancel at the start.
     pub(crate) fn separation_direction(&self) -> Option<&Unit<Vector3<f64>>> {
         self.separation_direction.as_ref()
     }
@@ -348,11 +339,11 @@ fn unit(vector: Vector3<f64>) -> Option<Unit<Vector3<f64>>> {
     Unit::try_new(scaled, 0.0).filter(|u| u.iter().all(|x| x.is_finite()))
 }
 
-/// The direction in which the springs push the payload at the start, late ones too, if they do not cancel.
+/// The direction in which the loads push the payload at the start, late ones too, if they do not cancel.
 fn push(separation: &Separation) -> Option<Unit<Vector3<f64>>> {
-    let forces = separation.springs().filter(|s| s.can_push()).map(|spring| {
-        let line = spring.line(separation.payload().state(), separation.stage().state());
-        line * (spring.stiffness_n_per_m() * spring.travel_m() / line.norm())
+    let forces = separation.loads().filter(|(_, load)| load.can_push()).map(|(_, load)| {
+        let line = load.line(separation.payload().state(), separation.stage().state());
+        line * (load.force_n() / line.norm())
     });
     let (sum, size) = forces
         .fold((Vector3::zeros(), 0.0), |(sum, size): (Vector3<f64>, f64), f| {
@@ -366,32 +357,20 @@ fn push(separation: &Separation) -> Option<Unit<Vector3<f64>>> {
 fn separation_error(error: SeparationError) -> ScenarioError {
     let (field, from) = match &error {
         SeparationError::Body { body, .. } => (body.to_string(), ""),
-        SeparationError::TouchingPads { spring, .. } => {
-            (format!("springs[{}].payload_point_m", spring + 1), POINTS)
+        SeparationError::TouchingPads { load, .. } => {
+            (format!("{}.payload_point_m", load::key(*load)), POINTS)
         }
-        SeparationError::ShortStroke { spring, .. } => {
-            (format!("springs[{}].stroke_m", spring + 1), POINTS)
+        SeparationError::ShortStroke { load, .. } => {
+            (format!("{}.stroke_m", load::key(*load)), POINTS)
         }
         _ => ("springs".to_owned(), ""),
     };
     ScenarioError::field(field, format!("{error}{from}"))
 }
 
-/// What the distances of a spring come from.
+/// What the distances of a load come from.
 const POINTS: &str = "; where its points are follows from payload_point_m, stage_point_m, and position_m and \
                       body_to_inertial of the bodies";
-
-/// The key of a spring that is wrong.
-fn spring_key(error: &SpringError) -> &'static str {
-    match error {
-        SpringError::Stiffness { .. } => "stiffness_n_per_m",
-        SpringError::Stroke { .. } => "stroke_m",
-        SpringError::Friction { .. } => "friction_n",
-        SpringError::Start { .. } => "start_s",
-        SpringError::Point { body: Role::Payload, .. } => "payload_point_m",
-        _ => "stage_point_m",
-    }
-}
 
 fn check_runs(runs: u64) -> Result<(), ScenarioError> {
     if (1..=limits::RUNS).contains(&runs) {

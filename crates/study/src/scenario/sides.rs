@@ -1,19 +1,19 @@
-//! Whether the springs of a scenario push the bodies apart.
+//! Whether the loads of a scenario push the bodies apart.
 
 use gyradius_separation::Separation;
 use nalgebra::{Unit, Vector3};
 
-use super::{ScenarioError, unit};
+use super::{ScenarioError, load, unit};
 
 /// A force that is more than 120° from a direction goes against it: cosines below this.
 const AGAINST: f64 = -0.5;
 
-/// That no spring pushes the payload through the stage, as a wrong sign of a point makes it do.
+/// That no load pushes the payload through the stage, as a wrong sign of a point makes it do.
 ///
-/// Such a spring pushes against the direction from the stage's mass centre to the payload's. A payload
-/// that leaves through a stage around it may have all its springs push that way: then the scenario
-/// states the `separation_direction`, and springs that go with it are right. There the wrong one is that which
-/// goes against it. Without a statement the direction is that of all the springs together, so that the
+/// Such a load pushes against the direction from the stage's mass centre to the payload's. A payload
+/// that leaves through a stage around it may have all its loads push that way: then the scenario
+/// states the `separation_direction`, and loads that go with it are right. There the wrong one is that which
+/// goes against it. Without a statement the direction is that of all the loads together, so that the
 /// resolved scenario, which states it, is judged the same.
 pub(super) fn check(
     separation: &Separation,
@@ -24,8 +24,8 @@ pub(super) fn check(
     let Some(away) = unit(between) else { return Ok(()) };
     let stated = stated.and_then(|direction| unit(direction.into()));
     let through = stated.or(together).filter(|direction| direction.dot(&away) < AGAINST);
-    for (i, spring) in separation.springs().enumerate().filter(|(_, s)| s.can_push()) {
-        let line = spring.line(separation.payload().state(), separation.stage().state());
+    for (id, load) in separation.loads().filter(|(_, load)| load.can_push()) {
+        let line = load.line(separation.payload().state(), separation.stage().state());
         let Some(push) = unit(line) else { continue };
         let against = |direction: &Unit<Vector3<f64>>| push.dot(direction) < AGAINST;
         let where_to = if against(&away) && stated.as_ref().is_none_or(against) {
@@ -35,17 +35,18 @@ pub(super) fn check(
         } else {
             continue;
         };
-        let point: [f64; 3] = spring.payload_point_m().into();
+        let point: [f64; 3] = load.points_m()[0].into();
         let entries: Vec<_> =
             push.iter().map(|x| format!("{}", (1e3 * x).round() / 1e3 + 0.0)).collect();
         let problem = format!(
-            "{point:?}: the payload point lies behind the stage point, so that the spring pushes the \
+            "{point:?}: the payload point lies behind the stage point, so that the {} pushes the \
              payload towards ({}) (inertial axes), {where_to}. Check the signs of payload_point_m and \
              stage_point_m, and position_m of the bodies; if the payload is to leave that way, state \
              separation_direction",
+            id.kind,
             entries.join(", ")
         );
-        let field = format!("springs[{}].payload_point_m", i + 1);
+        let field = format!("{}.payload_point_m", load::key(id));
         return Err(ScenarioError::field(field, problem));
     }
     Ok(())

@@ -1,8 +1,8 @@
-//! A spring at a moment.
+//! A load at a moment.
 
 use nalgebra::Vector3;
 
-/// A spring at a moment.
+/// A load at a moment.
 ///
 /// ```
 /// # use gyradius_inertia::InertiaMatrix;
@@ -17,14 +17,14 @@ use nalgebra::Vector3;
 /// use gyradius_separation::Settings;
 ///
 /// let trajectory = separation.trajectory(&Settings::default(), 0.0)?;
-/// let spring = trajectory.at(0.0).ok_or("the start")?.springs()[0];
+/// let spring = trajectory.at(0.0).ok_or("the start")?.loads()[0];
 /// assert!(spring.is_pushing());
 /// assert!((spring.force_n().z - 1e4).abs() < 1e-9);
 /// assert!((spring.energy_j() - 500.0).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpringState {
+pub struct LoadState {
     pub(crate) pushing: bool,
     pub(crate) length: f64,
     pub(crate) compression: f64,
@@ -32,7 +32,7 @@ pub struct SpringState {
     pub(crate) energy: f64,
 }
 
-impl SpringState {
+impl LoadState {
     /// Whether it has started and has not yet let go.
     #[must_use]
     pub fn is_pushing(&self) -> bool {
@@ -45,21 +45,21 @@ impl SpringState {
         self.length
     }
 
-    /// Free length less length, m, whether it pushes or not.
+    /// How far it is short of its end, m, whether it pushes or not: of a spring, free length less length.
     #[must_use]
     pub fn compression_m(&self) -> f64 {
         self.compression
     }
 
-    /// Force on the payload, inertial axes, N; that on the stage is its opposite. Zero once the
-    /// spring has let go, and before it starts.
+    /// Force on the payload, inertial axes, N; that on the stage is its opposite. Zero once it
+    /// has let go, and before it starts.
     #[must_use]
     pub fn force_n(&self) -> Vector3<f64> {
         self.force
     }
 
     /// Energy that it can still give, J: what friction will take of the stored energy left out. Zero
-    /// once the spring has let go, and before it starts.
+    /// once it has let go, and before it starts.
     #[must_use]
     pub fn energy_j(&self) -> f64 {
         self.energy
