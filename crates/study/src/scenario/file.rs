@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     follows::Follows,
-    law::VectorLawFile,
+    law::{GivenLaw, VectorLawFile},
     load::{self, GivenLoad, LoadFile},
     model_file::ModelFile,
     parse,

@@ -348,3 +348,124 @@ impl<E: Copy> Visitor<'_> for OneOf<'_, E> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Quantity, Scenario};
+    use gyradius_separation::AnyLoad;
+    use rand_chacha::{
+        ChaCha8Rng,
+        rand_core::{Rng, SeedableRng},
+    };
+    use toml::{Table, Value};
+
+    fn point(x: f64, z: f64) -> Value {
+        [x, 0.2, z].map(Value::from).to_vec().into()
+    }
+
+    /// The paper's bodies between loads of one kind.
+    fn with(kind: &str, loads: Vec<Table>) -> Result<Scenario, String> {
+        let mut file: Table = Scenario::peck_2003().unwrap().to_toml().parse().unwrap();
+        file.remove("springs");
+        file.insert(kind.to_owned(), loads.into_iter().map(Value::from).collect::<Vec<_>>().into());
+        Scenario::from_toml(&toml::to_string(&file).unwrap()).map_err(|error| error.to_string())
+    }
+
+    /// Of every kind there is: a load of what the messages say that it must be given is one of the separation's, has its
+    /// column, and is written as it is read.
+    #[test]
+    fn every_kind_is_read() {
+        for kind in AnyLoad::KINDS {
+            let mut load = Table::new();
+            let scenario = loop {
+                match with(kind.plural(), vec![load.clone(), load.clone()]) {
+                    Ok(scenario) => break scenario,
+                    Err(message) => {
+                        let missing = message.split("missing field `").nth(1);
+                        let missing = missing.and_then(|rest| rest.split('`').next());
+                        let key = missing.unwrap_or_else(|| panic!("{kind}: {message}"));
+                        let value = match key {
+                            "payload_point_m" => point(0.1, -0.9),
+                            "stage_point_m" => point(0.1, 0.9),
+                            _ => 0.1.into(),
+                        };
+                        assert!(load.insert(key.to_owned(), value).is_none(), "{message}");
+                    }
+                }
+            };
+            let ids: Vec<_> = scenario.separation().loads().map(|(id, _)| id.to_string()).collect();
+            assert_eq!(ids, [1, 2].map(|number| format!("{kind} {number}")));
+            let columns: Vec<_> = Quantity::of(scenario.separation()).map(|q| q.column()).collect();
+            assert!(columns.contains(&format!("{kind}_2_release_s").into()), "{columns:?}");
+            let again = Scenario::from_toml(&scenario.to_toml()).unwrap();
+            assert_eq!(again.fingerprint(), scenario.fingerprint());
+        }
+    }
+
+    /// Any of the keys of a spring that may be left out: those that are given, and no others, are drawn, in the order of the
+    /// run table, and are written as they are read.
+    #[test]
+    fn any_keys_of_a_dispersion_are_drawn() {
+        let law = |mean: f64| -> Value {
+            let law = [("law", "lognormal".into()), ("mean", mean.into()), ("sigma", 0.01.into())];
+            Value::Table(
+                law.map(|(key, value): (&str, Value)| (key.to_owned(), value))
+                    .into_iter()
+                    .collect(),
+            )
+        };
+        let all: [(&str, Value, &[&str]); 9] = [
+            ("stiffness_n_per_m", 10.0.into(), &["stiffness_n_per_m"]),
+            ("stroke_percent", 1.0.into(), &["stroke_m"]),
+            ("friction_n", law(1.0), &["friction_n"]),
+            ("line_of_action_deg", 0.1.into(), &["line_of_action_1_deg", "line_of_action_2_deg"]),
+            (
+                "payload_point_m",
+                0.01.into(),
+                &["payload_point_1_m", "payload_point_2_m", "payload_point_3_m"],
+            ),
+            (
+                "stage_point_m",
+                0.01.into(),
+                &["stage_point_1_m", "stage_point_2_m", "stage_point_3_m"],
+            ),
+            ("start_s", law(0.02), &["start_s"]),
+            ("late_probability", 0.5.into(), &["late"]),
+            ("failure_probability", 0.1.into(), &["failure"]),
+        ];
+        let mut generator = ChaCha8Rng::seed_from_u64(3);
+        for _ in 0..300 {
+            let chosen = generator.next_u64();
+            let given = || all.iter().enumerate().filter(|(i, _)| chosen >> i & 1 == 1);
+            let dispersion = given().map(|(_, (key, law, _))| ((*key).to_owned(), law.clone()));
+            let mut spring = Table::new();
+            spring.insert("stiffness_n_per_m".into(), 1e4.into());
+            spring.insert("stroke_m".into(), 0.1.into());
+            spring.insert("payload_point_m".into(), point(0.0, -0.9));
+            spring.insert("stage_point_m".into(), point(0.0, 0.9));
+            for (bit, key, value) in [(10, "friction_n", 2.0), (11, "start_s", 0.01)] {
+                if chosen >> bit & 1 == 1 {
+                    spring.insert(key.into(), value.into());
+                }
+            }
+            let plain = spring.clone();
+            spring.insert("dispersion".into(), Value::Table(dispersion.collect()));
+            let read = with("springs", vec![plain, spring]);
+            let has = |key: &str| given().any(|(_, (given, ..))| *given == key);
+            if has("late_probability") && !has("start_s") {
+                let message = read.unwrap_err();
+                assert!(
+                    message.starts_with("springs[2].dispersion.late_probability: "),
+                    "{message}"
+                );
+                continue;
+            }
+            let scenario = read.unwrap();
+            let names = given().flat_map(|(_, (.., names))| *names);
+            let names: Vec<_> = names.map(|name| format!("spring_2_{name}")).collect();
+            assert_eq!(scenario.dispersions().columns(), names);
+            let again = Scenario::from_toml(&scenario.to_toml()).unwrap();
+            assert_eq!(again.fingerprint(), scenario.fingerprint());
+        }
+    }
+}
