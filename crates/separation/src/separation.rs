@@ -7,6 +7,7 @@ use crate::{
     AnyLoad, Body, BodyError, LoadError, LoadId, MovingBody, Role, Spring,
     load::{SeatError, Seated},
     loads::Loads,
+    spring::SeatedSpring,
 };
 
 /// Why bodies and loads do not make a separation.
@@ -194,7 +195,7 @@ impl Separation {
 
     /// Free length of each spring, m: where it ceases to push.
     pub fn free_lengths(&self) -> impl ExactSizeIterator<Item = f64> {
-        self.loads.springs().iter().map(|spring| spring.free_length_m())
+        self.loads.springs().iter().map(SeatedSpring::free_length_m)
     }
 
     /// Energy that the loads hold at the start, J.

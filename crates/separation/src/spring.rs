@@ -14,7 +14,8 @@ use crate::{
 };
 
 pub use parameter::SpringParameter;
-use seated::{SeatedSpring, TOUCHING};
+pub(crate) use seated::SeatedSpring;
+use seated::TOUCHING;
 use series::SpringSeries;
 
 /// Errors of a spring's parameters.

@@ -395,7 +395,8 @@ mod tests {
             };
             let ids: Vec<_> = scenario.separation().loads().map(|(id, _)| id.to_string()).collect();
             assert_eq!(ids, [1, 2].map(|number| format!("{kind} {number}")));
-            let columns: Vec<_> = Quantity::of(scenario.separation()).map(|q| q.column()).collect();
+            let columns: Vec<_> =
+                Quantity::of(scenario.separation()).map(Quantity::column).collect();
             assert!(columns.contains(&format!("{kind}_2_release_s").into()), "{columns:?}");
             let again = Scenario::from_toml(&scenario.to_toml()).unwrap();
             assert_eq!(again.fingerprint(), scenario.fingerprint());
