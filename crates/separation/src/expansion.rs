@@ -223,7 +223,8 @@ impl<const W: usize> Expansion<W> {
     }
 
     /// The radius of convergence as the last two coefficients up to an order tell it, each entry
-    /// measured by its scale: of both, for series of even or odd functions have every other one.
+    /// measured by its scale: of both, for series of even or odd functions have every other one. No more than the loads
+    /// tell of theirs.
     #[inline(always)]
     fn radius(&self, order: usize) -> Lanes<W> {
         let (mut last, mut previous) = (Lanes::ZERO, Lanes::ZERO);
@@ -237,7 +238,9 @@ impl<const W: usize> Expansion<W> {
         let n = order as f64;
         last = last.map(|x| inverse_root(x, n));
         previous = previous.map(|x| inverse_root(x, n - 1.0));
-        last.zip(previous, |a, b| if a < b { a } else { b })
+        let radius = last.zip(previous, |a, b| if a < b { a } else { b });
+        // In this order, for NaN stays.
+        radius.zip(self.loads.radius(order), |a, b| if b < a { b } else { a })
     }
 }
 

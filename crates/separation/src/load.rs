@@ -270,6 +270,12 @@ pub(crate) trait Series<const W: usize>: Events {
     /// The coefficients of order k of the forces on the payload and of their moments about its mass centre;
     /// none if no lane has one that acts. The stage feels the opposite along the same line.
     fn push<S: Simd>(&mut self, simd: S, k: usize) -> Option<[V3<W>; 2]>;
+    /// How far its own series is good, from the coefficients below an order, s, where that can be less than the state's tells:
+    /// a force that is constant along a line moves the bodies by a polynomial, which has no end.
+    #[inline(always)]
+    fn radius(&self, _order: usize) -> Lanes<W> {
+        Lanes::splat(f64::INFINITY)
+    }
     /// In which lanes one that acts comes to its end within a time, as far as the coefficients below an
     /// order tell: one there, zero elsewhere.
     fn ends_within(&self, time: Lanes<W>, order: usize) -> Lanes<W>;

@@ -262,6 +262,16 @@ macro_rules! kinds {
                 ended
             }
 
+            /// How far the series of those that act are good.
+            #[inline(always)]
+            pub(crate) fn radius(&self, order: usize) -> Lanes<W> {
+                let mut radius = Lanes::splat(f64::INFINITY);
+                $(for series in &self.$kinds {
+                    radius = radius.zip(series.radius(order), |a, b| if b < a { b } else { a });
+                })+
+                radius
+            }
+
             #[inline(always)]
             pub(crate) fn bound(&mut self, reach: Lanes<W>, order: usize) {
                 $(for series in &mut self.$kinds {
