@@ -12,6 +12,7 @@ use std::{
 use crate::{
     folder::Blocks,
     runs::Runs,
+    shard::Shard,
     simulation::{CampaignError, Progress, Simulation, run_range},
     table::Table,
 };
@@ -26,15 +27,68 @@ pub struct Plan<'a> {
     pub runs: u64,
     /// Runs of a block.
     pub block_runs: u64,
+    /// Which of the blocks that are missing.
+    pub doing: Doing,
     /// Once it is true, blocks that are not finished are dropped.
     pub stop: Option<&'a AtomicBool>,
+}
+
+/// Which of the missing blocks of a campaign are done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Doing {
+    /// All.
+    #[default]
+    All,
+    /// Those of a shard.
+    Shard(Shard),
+    /// None: what is there is looked at.
+    Nothing,
+}
+
+impl Plan<'_> {
+    /// The runs of the model in a place among all that are in no block, and are to be done.
+    #[must_use]
+    pub fn missing(&self, blocks: &Blocks, place: usize, model: &str) -> Vec<Range<u64>> {
+        let mut missing = blocks.missing(model, self.runs, self.block_runs);
+        missing.retain(|runs| self.doing.does(self.block(place, runs.start)));
+        missing
+    }
+
+    /// The runs of so many models that are to be done if none is there.
+    #[must_use]
+    pub fn total(&self, models: usize) -> u64 {
+        let blocks =
+            (0..self.runs).step_by(usize::try_from(self.block_runs.max(1)).unwrap_or(usize::MAX));
+        let own = |place: usize| {
+            let own =
+                blocks.clone().filter(move |first| self.doing.does(self.block(place, *first)));
+            own.map(|first| self.block_runs.min(self.runs - first)).sum::<u64>()
+        };
+        (0..models).map(own).sum()
+    }
+
+    /// The place of a block among those of all models.
+    fn block(&self, place: usize, first: u64) -> u64 {
+        let runs = self.block_runs.max(1);
+        place as u64 * self.runs.div_ceil(runs) + first / runs
+    }
+}
+
+impl Doing {
+    fn does(self, block: u64) -> bool {
+        match self {
+            Self::All => true,
+            Self::Shard(shard) => shard.has(block),
+            Self::Nothing => false,
+        }
+    }
 }
 
 /// Looks at a block of the runs of a simulation, by its place among all.
 pub type Look<'a> = &'a (dyn Fn(usize, &Table) + Sync);
 
-/// Does the runs of some simulations that are in no block yet, each simulation being a model with a name. To be called
-/// in the threads that are to do it; `progress` is told how many runs of all models are done. `look` sees every block
+/// Does the planned runs of some simulations that are in no block yet, each simulation being a model with a name. To be called
+/// in the threads that are to do it; `progress` is told how many runs of all models are done. `look`, if there is one, sees every block
 /// once, in any order: those that are done as soon as they are on the disk, the others as they are read.
 ///
 /// # Errors
@@ -45,7 +99,7 @@ pub fn run_missing<S: Simulation>(
     blocks: &Blocks,
     plan: Plan<'_>,
     progress: Progress<'_>,
-    look: Look<'_>,
+    look: Option<Look<'_>>,
 ) -> Result<Vec<Runs>, CampaignError> {
     let stopped = || plan.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
     let tables =
@@ -53,10 +107,11 @@ pub fn run_missing<S: Simulation>(
     let tables = tables.collect::<Result<Vec<_>, _>>()?;
     let missing: Vec<Vec<Range<u64>>> = simulations
         .iter()
-        .map(|(name, _)| blocks.missing(name, plan.runs, plan.block_runs))
+        .enumerate()
+        .map(|(place, (name, _))| plan.missing(blocks, place, name))
         .collect();
     let left: u64 = missing.iter().flatten().map(|runs| runs.end - runs.start).sum();
-    let done = AtomicU64::new(plan.runs * simulations.len() as u64 - left);
+    let done = AtomicU64::new(plan.total(simulations.len()).saturating_sub(left));
     let more = |runs| progress(done.fetch_add(runs, Ordering::Relaxed) + runs);
     if left > 0 {
         more(0);
@@ -66,7 +121,9 @@ pub fn run_missing<S: Simulation>(
     for (place, (((_, simulation), empty), missing)) in
         simulations.iter().zip(&tables).zip(missing).enumerate()
     {
-        blocks.runs(empty, Vec::new()).scan(|block| look(place, block))?;
+        if let Some(look) = look {
+            blocks.runs(empty, Vec::new()).scan(|block| look(place, block))?;
+        }
         let held = Mutex::new(Vec::new());
         missing.into_par_iter().try_for_each(|runs| {
             if stopped() {
@@ -77,7 +134,9 @@ pub fn run_missing<S: Simulation>(
                 return Err(CampaignError::Stopped);
             }
             blocks.write(&table)?;
-            look(place, &table);
+            if let Some(look) = look {
+                look(place, &table);
+            }
             let numbers = (table.len() * table.columns().len()) as u64;
             let fits = room
                 .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |room| {

@@ -65,6 +65,7 @@ mod forecast;
 mod identity;
 mod runs;
 mod sample;
+mod shard;
 mod share;
 mod simulation;
 mod stored;
@@ -73,18 +74,19 @@ mod surveys;
 mod table;
 mod values;
 
-pub use campaign::{Look, Plan, run_missing};
+pub use campaign::{Doing, Look, Plan, run_missing};
 pub use cell::Cell;
 pub use column::{Column, ColumnSummary, Kind};
 pub use failure::Failure;
 pub use folder::{
-    Block, Blocks, Contents, Folder, FolderError, MANIFEST, Manifest, folder_of, restore,
-    restore_all,
+    Block, Blocks, Contents, Folder, FolderError, MANIFEST, Manifest, Shared, begun, folder_of,
+    missing_runs, restore, restore_all, told,
 };
 pub use forecast::Forecast;
 pub use identity::{Difference, Identity};
 pub use runs::{Runs, RunsError};
 pub use sample::{SampleSummary, bounded};
+pub use shard::{Shard, ShardError};
 pub use share::{Share, counted};
 pub use simulation::{CampaignError, Progress, Simulation, run, threads};
 pub use stored::read_row;

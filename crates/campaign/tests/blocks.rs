@@ -1,8 +1,9 @@
 //! Campaigns that are interrupted, extended, damaged and looked at again: always what one run of all would give.
 
 use gyradius_campaign::{
-    Cell, Column, Contents, Failure, Folder, Identity, Kind, MANIFEST, Manifest, Plan, Runs,
-    SampleSummary, Simulation, Streams, Surveys, Table, TableError, run, run_missing, threads,
+    Cell, Column, Contents, Doing, Failure, Folder, Identity, Kind, MANIFEST, Manifest, Plan, Runs,
+    SampleSummary, Shard, Shared, Simulation, Streams, Surveys, Table, TableError, run,
+    run_missing, threads,
 };
 use gyradius_statistics::Confidence;
 use proptest::prelude::*;
@@ -16,6 +17,7 @@ use std::{
         Mutex, OnceLock,
         atomic::{AtomicBool, AtomicU64, Ordering},
     },
+    thread,
 };
 
 /// Numbers, texts and flags from a seed; it counts the runs that it does.
@@ -82,28 +84,67 @@ impl Campaign {
         Identity::new(fields.map(|(name, value)| (name.to_owned(), value.to_string())))
     }
 
+    /// What is to be written of so many runs; files that are in their places stay.
+    fn contents<'a>(&self, runs: u64, in_place: &'a OnceLock<BTreeSet<String>>) -> Contents<'a> {
+        let seed = self.seed.to_string();
+        let same = move |there: &str| {
+            let (there_seed, there) = there.split_once(' ').unwrap();
+            there_seed == seed && there.parse::<u64>().unwrap() <= runs
+        };
+        let certain = ["mark", MANIFEST, "runs/"].map(str::to_owned);
+        Contents::new("study", "mark", certain, same)
+            .keeping(|name| in_place.get().is_some_and(|all| all.contains(name)))
+            .trusting(|name| name.starts_with("runs/"))
+    }
+
+    /// A command that does a shard on so many threads, and is stopped after so many runs, if at all; how many runs it
+    /// simulated.
+    fn shard(
+        &self,
+        runs: u64,
+        shard: Shard,
+        number: usize,
+        stop_after: Option<u64>,
+    ) -> Result<u64, String> {
+        let in_place = OnceLock::new();
+        let contents = self.contents(runs, &in_place);
+        let pool = threads(Some(number)).unwrap();
+        let folder = Shared::open(&self.place, &contents).map_err(|e| e.to_string())?;
+        let mark = format!("{} {runs}", self.seed);
+        let blocks = folder.blocks((&self.identity(), &mark), runs, shard, &pool);
+        let blocks = blocks.map_err(|e| e.to_string())?;
+        let stop = AtomicBool::new(stop_after == Some(0));
+        let (block_runs, doing) = (self.block_runs, Doing::Shard(shard));
+        let plan = Plan { runs, block_runs, doing, stop: Some(&stop) };
+        let simulations = [("cheap", Cheap::new(self.seed))];
+        let simulation = &simulations[0].1;
+        let progress = |_| {
+            let enough =
+                stop_after.is_some_and(|most| simulation.done.load(Ordering::Relaxed) >= most);
+            stop.fetch_or(enough, Ordering::Relaxed);
+        };
+        let done = pool.install(|| run_missing(&simulations, &blocks, plan, &progress, None));
+        done.map_err(|e| e.to_string())?;
+        Ok(simulation.done.load(Ordering::Relaxed))
+    }
+
     /// One command that is stopped after so many runs, if at all.
     fn command(&self, runs: u64, stop_after: Option<u64>, force: bool) -> Result<Done, String> {
         let text = format!("{} {runs}", self.seed);
         let in_place = OnceLock::<BTreeSet<String>>::new();
-        let same = |there: &str| {
-            let (seed, there) = there.split_once(' ').unwrap();
-            seed == self.seed.to_string() && there.parse::<u64>().unwrap() <= runs
-        };
-        let certain = ["mark", MANIFEST, "runs/"].map(str::to_owned);
-        let contents = Contents::new("study", "mark", certain, same)
-            .keeping(|name| in_place.get().is_some_and(|all| all.contains(name)))
-            .trusting(|name| name.starts_with("runs/"));
+        let contents = self.contents(runs, &in_place);
         // Where it is to be stopped, one thread, which ends a block before the next: what is finished is certain.
         let pool = threads(Some(if stop_after.is_some() { 1 } else { 2 })).unwrap();
         let mut folder =
             Folder::prepare(&self.place, &contents, force).map_err(|e| e.to_string())?;
-        let blocks =
-            folder.blocks(&self.identity(), runs, force, &pool).map_err(|e| e.to_string())?;
+        let blocks = folder
+            .blocks((&self.identity(), &text), runs, force, &pool)
+            .map_err(|e| e.to_string())?;
         in_place.set(blocks.published()).unwrap();
         let damaged = blocks.damaged().to_vec();
         let stop = AtomicBool::new(stop_after == Some(0));
-        let plan = Plan { runs, block_runs: self.block_runs, stop: Some(&stop) };
+        let (block_runs, doing) = (self.block_runs, Doing::All);
+        let plan = Plan { runs, block_runs, doing, stop: Some(&stop) };
         let simulations = [("cheap", Cheap::new(self.seed))];
         let simulation = &simulations[0].1;
         let progress = |_| {
@@ -116,7 +157,8 @@ impl Campaign {
             let before = seen.lock().unwrap().insert(block.first(), block.len() as u64);
             assert_eq!(before, None, "a block is looked at once");
         };
-        let done = pool.install(|| run_missing(&simulations, &blocks, plan, &progress, &look));
+        let done =
+            pool.install(|| run_missing(&simulations, &blocks, plan, &progress, Some(&look)));
         let simulated = simulation.done.load(Ordering::Relaxed);
         let done = done.inspect_err(|_| blocks.abandon()).map_err(|e| e.to_string())?;
         let ends = |end, (first, len): (&u64, &u64)| (*first == end).then_some(first + len);
@@ -183,6 +225,8 @@ enum Event {
     Damaged(prop::sample::Index, prop::sample::Index, u8),
     /// More runs are asked for.
     Extended(u64),
+    /// A command that does a shard, and is stopped after so many runs, if at all.
+    Shard(Shard, usize, Option<u64>),
     /// A command that is not stopped.
     Finished,
 }
@@ -193,6 +237,16 @@ fn event() -> impl Strategy<Value = Event> {
         (any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..3_u8)
             .prop_map(|(file, byte, how)| Event::Damaged(file, byte, how)),
         (0..150_u64).prop_map(Event::Extended),
+        (
+            1..5_u32,
+            any::<prop::sample::Index>(),
+            1..4_usize,
+            prop::option::weighted(0.3, 0..100_u64)
+        )
+            .prop_map(|(of, number, threads, stop)| {
+                let shard = Shard::new(number.index(of as usize) as u32 + 1, of).unwrap();
+                Event::Shard(shard, threads, stop)
+            }),
         Just(Event::Finished),
     ]
 }
@@ -210,8 +264,76 @@ fn damage(path: &Path, byte: &prop::sample::Index, how: u8) {
     fs::write(path, bytes).unwrap();
 }
 
+/// The runs in a file.
+fn range(path: &PathBuf) -> Range<u64> {
+    let (first, last) = path.file_stem().unwrap().to_str().unwrap().split_once('-').unwrap();
+    first.parse().unwrap()..last.parse::<u64>().unwrap() + 1
+}
+
+/// How many there are.
+fn size(path: &PathBuf) -> u64 {
+    range(path).end - range(path).start
+}
+
+/// Shards that are done at the same time, on any number of threads and in any numbers, leave the same files as one
+/// command.
+#[test]
+fn shards_at_the_same_time_are_one_campaign() {
+    let scratch = tempfile::tempdir().unwrap();
+    let campaign =
+        |name: String| Campaign { place: scratch.path().join(name), seed: 9, block_runs: 16 };
+    let runs = 1000;
+    let alone = campaign("alone".to_owned());
+    alone.command(runs, None, false).unwrap();
+    let content = |campaign: &Campaign| -> Vec<Vec<u8>> {
+        campaign.files().iter().map(|path| fs::read(path).unwrap()).collect()
+    };
+    for threads in [1, 2, 3, 8] {
+        for of in [1, 4, 7] {
+            let together = campaign(format!("{threads}-{of}"));
+            let simulated: u64 = thread::scope(|scope| {
+                let shards = (1..=of).map(|number| {
+                    let (together, shard) = (&together, Shard::new(number, of).unwrap());
+                    scope.spawn(move || together.shard(runs, shard, threads, None).unwrap())
+                });
+                let shards: Vec<_> = shards.collect();
+                shards.into_iter().map(|shard| shard.join().unwrap()).sum()
+            });
+            assert_eq!(simulated, runs, "each run once");
+            let done = together.command(runs, None, false).unwrap();
+            assert_eq!(done.simulated, 0);
+            assert_whole(&together, &done, runs);
+            assert!(content(&together) == content(&alone), "{threads} threads, {of} shards");
+        }
+    }
+}
+
+/// Two processes do not do the same shard, nobody puts together what is being done, and a shard waits for no one who has
+/// the folder alone.
+#[test]
+fn shards_are_held_by_one_process() {
+    let scratch = tempfile::tempdir().unwrap();
+    let campaign = Campaign { place: scratch.path().join("here"), seed: 4, block_runs: 16 };
+    let in_place = OnceLock::new();
+    let contents = campaign.contents(100, &in_place);
+    let pool = threads(Some(1)).unwrap();
+    let shared = Shared::open(&campaign.place, &contents).unwrap();
+    let open = |shard: &str| {
+        shared.blocks((&campaign.identity(), "4 100"), 100, shard.parse().unwrap(), &pool)
+    };
+    let first = open("1/2").unwrap();
+    let busy = "something else is being written there";
+    assert!(open("1/2").unwrap_err().to_string().contains(busy));
+    let second = open("2/2").unwrap();
+    assert!(campaign.command(100, None, false).map(|_| ()).unwrap_err().contains(busy));
+    drop((first, second));
+    open("1/2").unwrap();
+    drop(shared);
+    assert_eq!(campaign.command(100, None, false).unwrap().simulated, 100);
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(32))]
 
     /// Whatever happens between the first command and the last: what was finished and is sound is not done again, what is
     /// damaged is named and done again, and at the end there is what one command would have written.
@@ -225,8 +347,8 @@ proptest! {
         let block_runs = if runs > 100 { block_runs.max(16) } else { block_runs };
         let scratch = tempfile::tempdir().unwrap();
         let campaign = Campaign { place: scratch.path().join("here"), seed, block_runs };
-        // Runs in sound blocks, and names of blocks that are not sound.
-        let (mut finished, mut broken) = (0, BTreeSet::new());
+        // Runs in sound blocks, and what should be in the files that are not sound.
+        let (mut finished, mut broken) = (0, BTreeMap::new());
         for event in events.into_iter().chain([Event::Finished]) {
             let stop = match event {
                 Event::Extended(more) => {
@@ -237,34 +359,52 @@ proptest! {
                     let files = campaign.files();
                     if !files.is_empty() {
                         let path = &files[file.index(files.len())];
-                        if path.exists() && broken.insert(path.clone()) {
-                            let name = path.file_stem().unwrap().to_str().unwrap();
-                            let (first, last) = name.split_once('-').unwrap();
-                            finished -= last.parse::<u64>().unwrap() - first.parse::<u64>().unwrap() + 1;
+                        if path.exists() && !broken.contains_key(path) {
+                            broken.insert(path.clone(), fs::read(path).unwrap());
+                            finished -= size(path);
                             damage(path, &byte, how);
                         }
                     }
                     continue;
                 }
+                Event::Shard(shard, threads, stop) => {
+                    match campaign.shard(runs, shard, threads, stop) {
+                        Ok(simulated) => prop_assert!(simulated <= runs),
+                        Err(error) => prop_assert!(stop.is_some() && error.contains("stopped"), "{}", error),
+                    }
+                    // It does again what is gone or not of its length, if that is its own.
+                    broken.retain(|path, bytes| fs::read(path).ok().as_ref() != Some(bytes));
+                    let sound = |path: &&PathBuf| !broken.contains_key(*path);
+                    finished = campaign.files().iter().filter(sound).map(size).sum();
+                    continue;
+                }
                 Event::Stopped(after) => Some(after),
                 Event::Finished => None,
             };
+            // A block is damaged if no sound file holds it.
+            let name = |path: &PathBuf| path.file_name().unwrap().to_owned();
+            let all = campaign.files();
+            let sound: Vec<_> = all.iter().filter(|path| !broken.contains_key(*path)).map(range).collect();
+            let lost = |path: &&PathBuf| !sound.iter().any(|runs| runs.contains(&range(path).start));
+            let damaged: BTreeSet<_> = broken.keys().filter(lost).map(name).collect();
             match campaign.command(runs, stop, false) {
                 Ok(done) => {
                     prop_assert_eq!(done.simulated, runs - finished);
-                    prop_assert_eq!(done.damaged.len(), broken.len(), "{:?}", done.damaged);
+                    let told = |said: &String| Path::new(said.split(' ').next().unwrap()).file_name().unwrap().to_owned();
+                    prop_assert_eq!(done.damaged.iter().map(told).collect::<BTreeSet<_>>(), damaged);
                     assert_whole(&campaign, &done, runs);
+                    broken.clear();
                 }
                 Err(error) => {
                     prop_assert!(stop.is_some() && error.contains("stopped"), "{}", error);
                 }
             }
-            broken.clear();
-            let size = |path: &PathBuf| {
-                let (first, last) = path.file_stem().unwrap().to_str().unwrap().split_once('-').unwrap();
-                last.parse::<u64>().unwrap() + 1 - first.parse::<u64>().unwrap()
-            };
-            finished = campaign.files().iter().map(size).sum();
+            // Only what is in its place is told of until it is done again.
+            broken.retain(|path, bytes| {
+                path.parent().unwrap().ends_with("runs/cheap") && fs::read(path).ok().as_ref() != Some(bytes)
+            });
+            let sound = |path: &&PathBuf| !broken.contains_key(*path);
+            finished = campaign.files().iter().filter(sound).map(size).sum();
         }
         // Once more: nothing is left to do.
         let done = campaign.command(runs, None, false).unwrap();

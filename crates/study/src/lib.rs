@@ -36,6 +36,7 @@ mod results;
 mod run;
 mod scenario;
 mod seen;
+mod shards;
 mod study;
 mod summary;
 mod text;
@@ -46,7 +47,7 @@ pub use error::StudyError;
 pub use failure::Failure;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_campaign::{
-    CampaignError, Cell, Column, Forecast, Progress, Row, Runs, RunsError, Table,
+    CampaignError, Cell, Column, Forecast, Progress, Row, Runs, RunsError, Shard, ShardError, Table,
 };
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};
@@ -54,8 +55,9 @@ pub use quantity::Quantity;
 pub use replay::{Replay, ReplayError};
 pub use results::{Results, ResultsError};
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
+pub use shards::{ModelStatus, Status, is_begun, planned_runs, run_shard};
 pub use study::{Notice, Options, Study, restore_studies};
-pub use summary::Summary;
+pub use summary::{Missing, Summary};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -39,6 +39,14 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         summary.seed,
         100.0 * summary.confidence
     ));
+    let lead = match summary.missing.as_slice() {
+        [] => lead,
+        missing => {
+            let runs: Vec<String> = missing.iter().map(ToString::to_string).collect();
+            lead.strong(" Not all runs are done.")
+                .plain(format!(" These are missing: {}.", runs.join(", ")))
+        }
+    };
     let drawn: Vec<_> = summary.figures.par_iter().map(Figure::drawn).collect();
     let title = format!("gyradius study: {}", summary.scenario);
     Document::new(title, "Separation under inertia uncertainty", lead)

@@ -3,11 +3,14 @@
 #[cfg(test)]
 use gyradius_campaign::run;
 use gyradius_campaign::{
-    CampaignError, Contents, Folder, Forecast, Identity, MANIFEST, Plan, Progress, Runs, RunsError,
-    Simulation, Table, run_missing, threads,
+    Blocks, CampaignError, Contents, Doing, Folder, Forecast, Identity, MANIFEST, Plan, Progress,
+    Runs, RunsError, Simulation, Table, begun, run_missing, threads,
 };
+use rayon::ThreadPool;
 use std::{
     collections::BTreeSet,
+    fs,
+    ops::Range,
     path::{Path, PathBuf},
     sync::{Arc, OnceLock, atomic::AtomicBool},
 };
@@ -21,6 +24,7 @@ use crate::{
     report,
     scenario::parse_toml,
     seen::Looking,
+    summary::Missing,
 };
 
 /// How to carry out a study.
@@ -37,7 +41,7 @@ pub struct Options {
 }
 
 /// Runs of a block: some tenths of a second of separations.
-const BLOCK_RUNS: u64 = 1 << 14;
+pub(crate) const BLOCK_RUNS: u64 = 1 << 14;
 
 /// What a study says before its runs.
 #[derive(Clone, Debug)]
@@ -89,50 +93,88 @@ impl Study {
         progress: Progress<'_>,
         say: &dyn Fn(Notice),
     ) -> Result<Self, StudyError> {
+        Self::carry_out(scenario, options, Doing::All, progress, say)
+    }
+
+    /// Puts together what is there of a study whose runs are not all done, in its folder: the study, if nothing is
+    /// missing, and else summary and report of the runs that are there, which say what is missing.
+    ///
+    /// # Errors
+    /// Nothing was begun in the folder, or there are models without any run; a shard is at work.
+    pub fn put_together(
+        folder: &Path,
+        options: &Options,
+        say: &dyn Fn(Notice),
+    ) -> Result<Self, StudyError> {
+        let none = || StudyError::Folder {
+            path: folder.to_owned(),
+            problem: "it holds no study that was begun".to_owned(),
+        };
+        let scenario = Scenario::from_toml(&begun(folder).ok_or_else(none)?)?;
+        let options = Options { out: Some(folder.to_owned()), ..options.clone() };
+        Self::carry_out(&scenario, &options, Doing::Nothing, &|_| {}, say)
+    }
+
+    fn carry_out(
+        scenario: &Scenario,
+        options: &Options,
+        doing: Doing,
+        progress: Progress<'_>,
+        say: &dyn Fn(Notice),
+    ) -> Result<Self, StudyError> {
         let threads = threads(options.threads)?;
-        let default = || Path::new("target/study").join(scenario.name());
-        let place = options.out.clone().unwrap_or_else(default);
+        let place = options.place(scenario);
         let models = Model::all(scenario)?;
-        let simulations: Vec<(&str, Separations<'_>)> =
-            models.iter().map(|model| (model.name(), Separations::new(scenario, model))).collect();
+        let simulations = simulations(scenario, &models);
         let in_place = OnceLock::<BTreeSet<String>>::new();
         let contents =
             contents(scenario).keeping(|name| in_place.get().is_some_and(|all| all.contains(name)));
         let mut folder = Folder::prepare(&place, &contents, options.force)?;
-        let blocks =
-            folder.blocks(&identity(scenario), scenario.runs(), options.force, &threads)?;
+        let text = scenario.to_toml();
+        let begun = (&identity(scenario), text.as_str());
+        let blocks = folder.blocks(begun, scenario.runs(), options.force, &threads)?;
         let _ = in_place.set(blocks.published());
         blocks.damaged().iter().for_each(|damage| say(Notice::Damaged(damage.clone())));
 
+        let plan = plan(scenario, options, doing);
+        let all = Plan { doing: Doing::All, ..plan };
         let mut left = 0;
-        for model in &models {
-            let missing = blocks.missing(model.name(), scenario.runs(), BLOCK_RUNS);
+        for (at, model) in models.iter().enumerate() {
+            let missing = all.missing(&blocks, at, model.name());
             folder.check_places(model.name(), &missing)?;
-            left += missing.iter().map(|runs| runs.end - runs.start).sum::<u64>();
+            left += count(&missing);
         }
         let of = scenario.runs() * models.len() as u64;
-        if left < of {
+        if left == 0
+            && let Some(study) = Self::finished(&folder, &text, &simulations, &blocks)?
+        {
+            return Ok(study);
+        }
+        if left < of && doing == Doing::All {
             say(Notice::GoesOn { done: of - left, of });
         }
-        if left > 0 {
-            let timed = simulations.iter().map(|(_, simulation)| simulation);
-            let each = left.div_ceil(models.len() as u64);
-            let forecast = Forecast::of(timed, each, threads.current_num_threads());
-            say(Notice::Forecast(forecast.map_err(CampaignError::from)?));
+        if left > 0 && doing == Doing::All {
+            say(Notice::Forecast(forecast(&simulations, left, &threads)?));
         }
-        let plan =
-            Plan { runs: scenario.runs(), block_runs: BLOCK_RUNS, stop: options.stop.as_deref() };
         let done = threads.install(|| {
             let looks = looks(scenario, &simulations)?;
             let look = |place: usize, block: &Table| looks[place].look(block);
-            let runs = run_missing(&simulations, &blocks, plan, progress, &look)?;
-            let summary = judge(scenario, &models, looks, &runs)?;
-            Ok::<_, StudyError>((runs, summary))
+            let runs = run_missing(&simulations, &blocks, plan, progress, Some(&look))?;
+            if let Some(none) = runs.iter().find(|runs| runs.end() == 0) {
+                let problem = format!("there are no runs of the model {} yet", none.model());
+                return Err(StudyError::Folder { path: place.clone(), problem });
+            }
+            let mut summary = judge(scenario, &models, looks, &runs)?;
+            summary.missing = gaps(&blocks, scenario);
+            Ok((runs, summary))
         });
         let (runs, summary) = done.inspect_err(|_| blocks.abandon())?;
 
-        folder.adopt(&blocks, runs.first().map_or(&[][..], Runs::columns))?;
-        folder.write("scenario.toml", &scenario.to_toml())?;
+        let complete = summary.missing.is_empty();
+        if complete {
+            folder.adopt(&blocks, runs.first().map_or(&[][..], Runs::columns))?;
+        }
+        folder.write("scenario.toml", &text)?;
         let written = serde_json::to_string_pretty(&summary)? + "\n";
         folder.write("summary.json", &written)?;
         // The report is made from what a reader of the folder has.
@@ -142,9 +184,36 @@ impl Study {
             folder.write(&name, &content)?;
         }
         let folder = folder.publish()?;
-        blocks.settle()?;
+        if complete {
+            blocks.settle()?;
+        }
         let runs = runs.into_iter().map(|runs| blocks.in_place(&runs)).collect();
         Ok(Self { folder, runs, summary })
+    }
+
+    /// The study in a folder, if all of it is there as it was written.
+    fn finished(
+        folder: &Folder<'_>,
+        text: &str,
+        simulations: &[(&str, Separations<'_>)],
+        blocks: &Blocks,
+    ) -> Result<Option<Self>, StudyError> {
+        if !(blocks.all_in_place() && folder.is_whole(text)?) {
+            return Ok(None);
+        }
+        let place = folder.place().to_owned();
+        let read = fs::read_to_string(place.join("summary.json")).ok();
+        let summary = read.and_then(|text| serde_json::from_str::<Summary>(&text).ok());
+        let Some(summary) = summary.filter(|summary| summary.missing.is_empty()) else {
+            return Ok(None);
+        };
+        let runs = simulations.iter().map(|(model, simulation)| {
+            let empty = Table::new(model, 0, simulation.columns())?;
+            Ok(blocks.runs(&empty, Vec::new()))
+        });
+        let runs = runs.collect::<Result<_, CampaignError>>()?;
+        blocks.settle()?;
+        Ok(Some(Self { folder: place, runs, summary }))
     }
 
     /// Where it is.
@@ -184,6 +253,52 @@ pub fn restore_studies(path: &Path) -> Result<(), StudyError> {
     Ok(gyradius_campaign::restore_all(path)?)
 }
 
+impl Options {
+    /// The folder that a study of a scenario goes to.
+    pub(crate) fn place(&self, scenario: &Scenario) -> PathBuf {
+        let default = || Path::new("target/study").join(scenario.name());
+        self.out.clone().unwrap_or_else(default)
+    }
+}
+
+/// The separations of each model, by its name.
+pub(crate) fn simulations<'a>(
+    scenario: &'a Scenario,
+    models: &'a [Model],
+) -> Vec<(&'a str, Separations<'a>)> {
+    models.iter().map(|model| (model.name(), Separations::new(scenario, model))).collect()
+}
+
+/// How the runs of a scenario are done.
+pub(crate) fn plan<'a>(scenario: &Scenario, options: &'a Options, doing: Doing) -> Plan<'a> {
+    Plan { runs: scenario.runs(), block_runs: BLOCK_RUNS, doing, stop: options.stop.as_deref() }
+}
+
+/// How many runs there are in some ranges.
+pub(crate) fn count(ranges: &[Range<u64>]) -> u64 {
+    ranges.iter().map(|runs| runs.end - runs.start).sum()
+}
+
+/// How long so many runs of all models will take.
+pub(crate) fn forecast(
+    simulations: &[(&str, Separations<'_>)],
+    left: u64,
+    threads: &ThreadPool,
+) -> Result<Forecast, CampaignError> {
+    let timed = simulations.iter().map(|(_, simulation)| simulation);
+    let each = left.div_ceil(simulations.len() as u64);
+    Ok(Forecast::of(timed, each, threads.current_num_threads())?)
+}
+
+/// The runs of each model that are missing, where any are.
+fn gaps(blocks: &Blocks, scenario: &Scenario) -> Vec<Missing> {
+    let of_model = |model: &str| {
+        let ranges = blocks.missing(model, scenario.runs(), u64::MAX);
+        ranges.into_iter().map(|runs| Missing::new(model, runs)).collect::<Vec<_>>()
+    };
+    scenario.model_names().flat_map(of_model).collect()
+}
+
 /// A look at the runs of each model.
 fn looks<'a>(
     scenario: &'a Scenario,
@@ -213,7 +328,7 @@ pub(crate) fn judge(
 }
 
 /// What a study writes, and the figures that it may write.
-fn contents(scenario: &Scenario) -> Contents<'_> {
+pub(crate) fn contents(scenario: &Scenario) -> Contents<'_> {
     let tables = scenario.model_names().map(|model| format!("runs/{model}/"));
     let others = ["scenario.toml", "summary.json", "runs/", MANIFEST].map(str::to_owned);
     let extends = |text: &str| {
@@ -240,7 +355,7 @@ fn contents(scenario: &Scenario) -> Contents<'_> {
 }
 
 /// What the runs of a scenario depend on.
-fn identity(scenario: &Scenario) -> Identity {
+pub(crate) fn identity(scenario: &Scenario) -> Identity {
     let mut fields = Vec::new();
     if let Ok(table) = parse_toml::<Toml>(&scenario.to_toml()) {
         flatten("", &Value::Table(table), &mut fields);
@@ -272,8 +387,7 @@ fn flatten(path: &str, value: &Value, fields: &mut Vec<(String, String)>) {
 /// What the runs of a scenario amount to, made in memory.
 #[cfg(test)]
 pub(crate) fn judged(scenario: &Scenario, models: &[Model]) -> Summary {
-    let named = |model| (Model::name(model), Separations::new(scenario, model));
-    let simulations: Vec<_> = models.iter().map(named).collect();
+    let simulations = simulations(scenario, models);
     let (looks, runs) = (looks(scenario, &simulations).unwrap(), all_runs(scenario, models));
     looks.iter().zip(&runs).for_each(|(look, runs)| runs.scan(|block| look.look(block)).unwrap());
     judge(scenario, models, looks, &runs).unwrap()

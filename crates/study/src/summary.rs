@@ -5,7 +5,7 @@ use gyradius_report::Figure;
 use gyradius_statistics::{Confidence, Interval, Moments, StatisticsError, Survey};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize, Serializer, ser::Error};
-use std::borrow::Cow;
+use std::{borrow::Cow, fmt, ops::Range};
 
 use crate::{
     claim::Claim,
@@ -27,6 +27,9 @@ pub struct Summary {
     pub(crate) fingerprint: String,
     pub(crate) seed: u64,
     pub(crate) runs_per_model: u64,
+    /// Runs that are not done, where not all are.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) missing: Vec<Missing>,
     /// Of every interval.
     pub(crate) confidence: f64,
     /// Of the run tables.
@@ -40,6 +43,41 @@ pub struct Summary {
     /// What the figures show.
     #[serde(serialize_with = "a_line_each")]
     pub(crate) figures: Vec<Figure>,
+}
+
+/// Runs of a model that are not done.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Missing {
+    pub(crate) model: String,
+    pub(crate) first_run: u64,
+    pub(crate) runs: u64,
+}
+
+impl Missing {
+    pub(crate) fn new(model: &str, runs: Range<u64>) -> Self {
+        let (first_run, runs) = (runs.start, runs.end - runs.start);
+        Self { model: model.to_owned(), first_run, runs }
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// The runs.
+    #[must_use]
+    pub fn range(&self) -> Range<u64> {
+        self.first_run..self.first_run + self.runs
+    }
+}
+
+/// How many there are, and which, from the first to the last.
+impl fmt::Display for Missing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let last = self.first_run + self.runs - 1;
+        write!(f, "{} of {} ({} to {last})", self.runs, self.model, self.first_run)
+    }
 }
 
 /// A quantity of the run without any dispersion.
@@ -214,6 +252,7 @@ impl Summary {
             fingerprint: scenario.fingerprint(),
             seed: scenario.seed(),
             runs_per_model: scenario.runs(),
+            missing: Vec::new(),
             confidence: confidence.level(),
             columns: columns.iter().map(Column::summary).collect(),
             nominal,
@@ -223,6 +262,30 @@ impl Summary {
             every_model,
             figures: Vec::new(),
         })
+    }
+
+    /// The name of the scenario.
+    #[must_use]
+    pub fn scenario(&self) -> &str {
+        &self.scenario
+    }
+
+    /// The seed of all random numbers.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Runs of each model, those that are missing too.
+    #[must_use]
+    pub fn runs_per_model(&self) -> u64 {
+        self.runs_per_model
+    }
+
+    /// The runs that are not done; none of a complete study.
+    #[must_use]
+    pub fn missing(&self) -> &[Missing] {
+        &self.missing
     }
 
     /// Each model with how many of its runs failed, and how many there are.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::{
     collections::BTreeSet,
-    fs::{self, File, OpenOptions},
+    fs::{self, File},
     io::{self, BufWriter, Write},
     iter,
     ops::Range,
@@ -18,32 +18,38 @@ use std::{
 };
 
 use super::{
-    Folder, FolderError, Problem, disk,
+    Contents, Folder, FolderError, Problem,
+    area::Area,
+    disk,
     hidden::Hidden,
     manifest::{Block, MANIFEST, Manifest},
-    name::{Found, HIDDEN, Name, hex, look, said},
+    name::{Found, Name, hex, look},
     record::Record,
+    shared::Shared,
     unobstructed,
 };
 use crate::{
     column::Column,
     identity::{Difference, Identity},
     runs::Runs,
+    shard::Shard,
     stored,
     table::Table,
 };
 
-const CAMPAIGN: &str = "campaign";
-const IDENTITY: &str = "identity.json";
-const RECORD: &str = "record";
 const DAMAGED: &str = "damaged";
+
 /// The blocks of a campaign in its folder.
 #[derive(Debug)]
 pub struct Blocks {
     place: PathBuf,
     /// Where the blocks of an unfinished campaign are.
-    folder: PathBuf,
+    area: Area,
     identity: Identity,
+    /// Which share this is of; others are done by other processes at the same time.
+    shard: Option<Shard>,
+    /// Where finished blocks are told of.
+    record: PathBuf,
     state: Mutex<State>,
     damaged: Vec<String>,
 }
@@ -57,21 +63,24 @@ struct State {
 impl Folder<'_> {
     /// The blocks of a campaign of so many runs a model that are finished, each of which was read and is as it was
     /// written; those that are not, are put aside. `force` drops the blocks of another campaign that was not
-    /// completed, and those that go beyond the runs.
+    /// completed, and those that go beyond the runs. `mark` is a text from which the campaign can be gone on with: see
+    /// [`begun`].
     ///
     /// # Errors
     /// There are blocks of another campaign, or they cannot be read or put aside.
     pub fn blocks(
         &self,
-        identity: &Identity,
+        (identity, mark): (&Identity, &str),
         runs: u64,
         force: bool,
         threads: &rayon::ThreadPool,
     ) -> Result<Blocks, FolderError> {
-        let (record, _) =
-            self.hidden.record(self.contents.what).map_err(|problem| self.failed(problem))?;
-        Blocks::open(&self.hidden, &record, (identity, runs, force), threads)
-            .map_err(|problem| self.failed(problem))
+        let open = || {
+            let (record, _) = self.hidden.record(self.contents.what)?;
+            let opened = Blocks::open(&self.hidden, (identity, mark), None, force)?;
+            opened.take_up(&self.hidden, &record, (runs, force), threads)
+        };
+        open().map_err(|problem| self.failed(problem))
     }
 
     /// That nothing is in the places of blocks of a model that are to be done, but what may be replaced.
@@ -107,80 +116,179 @@ impl Folder<'_> {
     }
 }
 
+impl Shared {
+    /// The blocks of a campaign of so many runs a model, for the process that does a share of those that are missing.
+    /// Blocks that are there are taken for what they are if their length is right: who puts the campaign together reads
+    /// them.
+    ///
+    /// # Errors
+    /// There are blocks of another campaign, or another process does the same share.
+    pub fn blocks(
+        &self,
+        (identity, mark): (&Identity, &str),
+        runs: u64,
+        shard: Shard,
+        threads: &rayon::ThreadPool,
+    ) -> Result<Blocks, FolderError> {
+        let open = || {
+            let (record, _) = self.hidden.record(self.what)?;
+            let opened = Blocks::open(&self.hidden, (identity, mark), Some(shard), false)?;
+            opened.take_up(&self.hidden, &record, (runs, false), threads)
+        };
+        open().map_err(|problem| FolderError { path: self.place.clone(), problem })
+    }
+}
+
+/// The text from which the unfinished campaign in a folder was begun, if there is one.
+#[must_use]
+pub fn begun(place: &Path) -> Option<String> {
+    let area = Area::of(place);
+    area.identity().ok()??;
+    area.mark()
+}
+
+/// The blocks in a folder, as its files tell of them: those of a complete campaign, and those of one that is not. Nothing
+/// is read but what tells of them, and their files have the length that they should.
+///
+/// # Errors
+/// The files that tell of them cannot be read.
+pub fn told(
+    place: &Path,
+    contents: &Contents<'_>,
+    identity: &Identity,
+) -> Result<Vec<Block>, FolderError> {
+    let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
+    let (record, _) = Hidden::record_of(place, contents.what).map_err(failed)?;
+    let mut blocks = published(place, &record, identity);
+    let area = Area::of(place);
+    if area.identity().map_err(failed)?.is_some_and(|there| identity.difference(&there).is_none()) {
+        blocks.extend(area.recorded().map_err(failed)?);
+    }
+    blocks.retain(|block| {
+        let path = if block.published {
+            place.join(block.name())
+        } else {
+            area.path().join(&block.model).join(block.file())
+        };
+        fs::symlink_metadata(path).is_ok_and(|f| f.is_file() && f.len() == block.bytes)
+    });
+    blocks.sort_by(|a, b| {
+        (&a.model, a.first_run, !a.published).cmp(&(&b.model, b.first_run, !b.published))
+    });
+    blocks.dedup_by(|a, b| (&a.model, a.first_run) == (&b.model, b.first_run));
+    Ok(blocks)
+}
+
+/// The runs from 0 to below a number that are in none of these ranges, which are in order: in parts that no block of so
+/// many runs reaches beyond.
+#[must_use]
+pub fn missing_runs(
+    finished: impl IntoIterator<Item = Range<u64>>,
+    runs: u64,
+    block_runs: u64,
+) -> Vec<Range<u64>> {
+    let block_runs = block_runs.max(1);
+    let mut missing = Vec::new();
+    let mut next = 0;
+    for done in finished.into_iter().chain(iter::once(runs..runs)) {
+        while next < done.start.min(runs) {
+            let end = (next / block_runs).saturating_add(1).saturating_mul(block_runs);
+            let end = end.min(done.start).min(runs);
+            missing.push(next..end);
+            next = end;
+        }
+        next = next.max(done.end);
+    }
+    missing
+}
+
 impl Blocks {
     fn open(
         hidden: &Hidden,
+        (identity, mark): (&Identity, &str),
+        shard: Option<Shard>,
+        force: bool,
+    ) -> Result<Self, Problem> {
+        let area = Area::new(hidden);
+        if let Some(difference) = area.identity()?.and_then(|there| identity.difference(&there)) {
+            if !force {
+                return Err(Problem::Unfinished { difference });
+            }
+            area.clear()?;
+        }
+        area.begin(hidden, identity, mark, shard)?;
+        let (record, file) = area.record(shard)?;
+        let state = Mutex::new(State { blocks: Vec::new(), record: file });
+        let (place, identity) = (hidden.place().to_owned(), identity.clone());
+        Ok(Self { place, area, identity, shard, record, state, damaged: Vec::new() })
+    }
+
+    /// Takes up what was finished before.
+    fn take_up(
+        mut self,
+        hidden: &Hidden,
         record: &Record,
-        (identity, runs, force): (&Identity, u64, bool),
+        (runs, force): (u64, bool),
         threads: &rayon::ThreadPool,
     ) -> Result<Self, Problem> {
-        let folder = hidden.join(CAMPAIGN);
-        match fs::symlink_metadata(&folder) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-            Err(error) => return Err(error.into()),
-            Ok(metadata) if metadata.is_dir() => {
-                if let Some(difference) =
-                    unfinished(&folder)?.and_then(|there| identity.difference(&there))
-                {
-                    if !force {
-                        return Err(Problem::Unfinished { difference });
-                    }
-                    clear(&folder)?;
-                }
-            }
-            Ok(metadata) => {
-                let (name, is) = (format!("{HIDDEN}/{CAMPAIGN}"), said(metadata.file_type()));
-                return Err(Problem::Kind { name, is, should: "folder" });
-            }
-        }
-        begin(hidden, &folder, identity)?;
-        let path = folder.join(RECORD);
-        let mut blocks = published(hidden.place(), record, identity);
-        let unfinished = recorded(&path)?;
+        let mut blocks = published(hidden.place(), record, &self.identity);
+        let unfinished = self.area.recorded()?;
         blocks.extend(unfinished.clone());
-        let record = OpenOptions::new().append(true).create(true).open(&path)?;
-        let place = hidden.place().to_owned();
-        let state = Mutex::new(State { blocks: Vec::new(), record });
-        let identity = identity.clone();
-        let mut opened = Self { place, folder, identity, state, damaged: Vec::new() };
-        opened.verify(blocks, &hidden.join(DAMAGED), threads)?;
-        opened.limit(runs, force)?;
-        opened.tidy(&unfinished)?;
-        Ok(opened)
+        self.verify(blocks, &hidden.join(DAMAGED), threads)?;
+        self.limit(runs, force)?;
+        if self.shard.is_none() {
+            self.tidy(&unfinished)?;
+        }
+        Ok(self)
     }
 
     /// Takes up the blocks that are as they were written, and puts others aside.
     fn verify(
         &mut self,
         blocks: Vec<Block>,
-        damaged: &Path,
+        aside: &Path,
         threads: &rayon::ThreadPool,
     ) -> Result<(), Problem> {
         let states: Vec<io::Result<Option<String>>> =
             threads.install(|| blocks.par_iter().map(|block| self.fault(block)).collect());
-        let mut sound = Vec::<Block>::new();
-        for (block, fault) in blocks.into_iter().zip(states) {
-            match fault? {
-                Some(fault) => {
-                    let path = self.path(&block);
-                    if fs::symlink_metadata(&path).is_ok() {
-                        put_aside(&path, damaged, &block)?;
-                    }
-                    self.damaged.push(format!("{} {fault}", block.name()));
+        let states = states.into_iter().collect::<io::Result<Vec<_>>>()?;
+        let all = || blocks.iter().zip(&states);
+        // Two shards may have done the same block, and one of their lines may tell of another content.
+        let good: BTreeSet<PathBuf> =
+            all().filter(|(_, fault)| fault.is_none()).map(|(block, _)| self.path(block)).collect();
+        let mut damaged = Vec::new();
+        for (block, fault) in all() {
+            let path = self.path(block);
+            if let Some(fault) = fault.as_ref().filter(|_| !good.contains(&path)) {
+                // Other shards may be at it.
+                if self.shard.is_none() && fs::symlink_metadata(&path).is_ok() {
+                    put_aside(&path, aside, block)?;
                 }
+                damaged.push((block, format!("{} {fault}", block.name())));
+            }
+        }
+        let mut sound = Vec::<Block>::new();
+        for (block, fault) in blocks.iter().zip(states) {
+            if fault.is_none() {
                 // A block in its place counts, not the same one that was not removed in time.
-                None => {
-                    let overlaps = |other: &Block| {
-                        other.model == block.model
-                            && other.first_run < block.range().end
-                            && block.first_run < other.range().end
-                    };
-                    if !sound.iter().any(overlaps) {
-                        sound.push(block);
-                    }
+                let overlaps = |other: &Block| {
+                    other.model == block.model
+                        && other.first_run < block.range().end
+                        && block.first_run < other.range().end
+                };
+                if !sound.iter().any(overlaps) {
+                    sound.push(block.clone());
                 }
             }
         }
+        // What was done again since is told no more.
+        let again = |block: &Block| {
+            let of_model = sound.iter().filter(|other| other.model == block.model);
+            of_model.map(Block::range).any(|runs| runs.contains(&block.first_run))
+        };
+        damaged.retain(|(block, _)| !again(block));
+        let told: BTreeSet<String> = damaged.into_iter().map(|(_, told)| told).collect();
+        self.damaged.extend(told);
         self.locked().blocks = sound;
         Ok(())
     }
@@ -204,23 +312,16 @@ impl Blocks {
         let mut state = self.locked();
         let kept: Vec<&Block> = state.blocks.iter().filter(|block| !block.published).collect();
         let dropped: Vec<&Block> = recorded.iter().filter(|block| !kept.contains(block)).collect();
-        if !dropped.is_empty() {
+        if !dropped.is_empty() || self.area.has_shards()? {
             // The record first: a file that it does not tell of is none of the blocks.
-            let lines = kept.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
-            let (path, part) = (self.folder.join(RECORD), self.folder.join("record.part"));
-            disk::remove_file(&part)?;
-            let mut file = disk::create_file(&part)?;
-            file.write_all((lines.join("\n") + "\n").as_bytes())?;
-            disk::sync_file(&part)?;
-            disk::replace_file(&part, &path)?;
-            disk::sync_folder(&self.folder)?;
+            let record = self.area.rewrite(&kept)?;
             let files: BTreeSet<PathBuf> = kept.iter().map(|block| self.path(block)).collect();
             for path in dropped.iter().map(|block| self.path(block)) {
                 if !files.contains(&path) {
                     disk::remove_file(&path)?;
                 }
             }
-            state.record = OpenOptions::new().append(true).open(&path)?;
+            state.record = record;
         }
         Ok(())
     }
@@ -228,13 +329,18 @@ impl Blocks {
     /// What is wrong with a block, if anything is.
     fn fault(&self, block: &Block) -> io::Result<Option<String>> {
         let (root, name) = if block.published {
-            (&self.place, block.name())
+            (self.place.as_path(), block.name())
         } else {
-            (&self.folder, format!("{}/{}", block.model, block.file()))
+            (self.area.path(), format!("{}/{}", block.model, block.file()))
         };
         let Ok(name) = Name::new(&name) else {
             return Ok(Some("has no name of a block".to_owned()));
         };
+        if self.shard.is_some() {
+            let found = fs::symlink_metadata(name.below(root));
+            let whole = found.is_ok_and(|found| found.is_file() && found.len() == block.bytes);
+            return Ok((!whole).then(|| "is gone or not of its length".to_owned()));
+        }
         Ok(match look(root, &name)? {
             Found::Nothing => Some("is gone".to_owned()),
             Found::File { hash } if hash == block.sha256 => None,
@@ -256,6 +362,12 @@ impl Blocks {
         blocks
     }
 
+    /// Whether all are in their places.
+    #[must_use]
+    pub fn all_in_place(&self) -> bool {
+        self.locked().blocks.iter().all(|block| block.published)
+    }
+
     /// The names of those that are in their places.
     #[must_use]
     pub fn published(&self) -> BTreeSet<String> {
@@ -266,19 +378,8 @@ impl Blocks {
     /// so many runs at most.
     #[must_use]
     pub fn missing(&self, model: &str, runs: u64, block_runs: u64) -> Vec<Range<u64>> {
-        let block_runs = block_runs.max(1);
-        let mut missing = Vec::new();
-        let mut next = 0;
         let finished = self.all().into_iter().filter(|block| block.model == model);
-        for done in finished.map(|block| block.range()).chain(iter::once(runs..runs)) {
-            while next < done.start.min(runs) {
-                let end = ((next / block_runs + 1) * block_runs).min(done.start).min(runs);
-                missing.push(next..end);
-                next = end;
-            }
-            next = next.max(done.end);
-        }
-        missing
+        missing_runs(finished.map(|block| block.range()), runs, block_runs)
     }
 
     /// Writes a block. When this returns it is on the disk, and counts.
@@ -292,13 +393,14 @@ impl Blocks {
     fn put(&self, table: &Table) -> Result<PathBuf, Problem> {
         let runs = table.first()..table.first() + table.len() as u64;
         let mut block = Block::of(table.model(), &runs);
-        let folder = self.folder.join(&block.model);
+        let folder = self.area.path().join(&block.model);
         match disk::create_folder(&folder) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             other => other?,
         }
         let path = self.path(&block);
-        let part = path.with_extension("part");
+        let name = self.shard.map_or_else(|| "part".to_owned(), |s| format!("{}.part", s.name()));
+        let part = path.with_extension(name);
         // Of a program that was killed; nobody else writes here.
         disk::remove_file(&part)?;
         let mut file = Hashed { to: disk::create_file(&part)?, sha: Sha256::new(), bytes: 0 };
@@ -310,14 +412,14 @@ impl Blocks {
             let _ = disk::remove_file(&part);
             return Err(problem);
         }
+        block.failed = table.failures().len() as u64;
         (block.bytes, block.sha256) = (file.bytes, hex(file.sha));
-        disk::remove_file(&path)?;
-        disk::move_file(&part, &path)?;
+        disk::replace_file(&part, &path)?;
         disk::sync_folder(&folder)?;
-        disk::sync_folder(&self.folder)?;
+        disk::sync_folder(self.area.path())?;
         let mut state = self.locked();
         let line = format!("\n{}\n", serde_json::to_string(&block)?);
-        disk::append(&state.record, &self.folder.join(RECORD), &line)?;
+        disk::append(&state.record, &self.record, &line)?;
         state.blocks.push(block);
         Ok(path)
     }
@@ -344,7 +446,7 @@ impl Blocks {
         if block.published {
             self.place.join(block.name())
         } else {
-            self.folder.join(&block.model).join(block.file())
+            self.area.path().join(&block.model).join(block.file())
         }
     }
 
@@ -356,15 +458,17 @@ impl Blocks {
         for block in &mut self.locked().blocks {
             block.published = true;
         }
-        clear(&self.folder)
+        self.area
+            .clear()
             .map_err(|error| FolderError { path: self.place.clone(), problem: error.into() })
     }
 
     /// Removes the traces of a campaign of which no block was finished.
     pub fn abandon(&self) {
-        if self.locked().blocks.iter().all(|block| block.published) {
+        let nothing = self.locked().blocks.iter().all(|block| block.published);
+        if nothing && self.shard.is_none() {
             // What stays is hidden and harms nothing.
-            let _ = clear(&self.folder);
+            let _ = self.area.clear();
         }
     }
 
@@ -372,45 +476,6 @@ impl Blocks {
         // Nothing is half done with the lock in hand.
         self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
-}
-
-/// The identity of the campaign that is unfinished in a folder, if it was begun.
-fn unfinished(folder: &Path) -> Result<Option<Identity>, Problem> {
-    let name = format!("{HIDDEN}/{CAMPAIGN}/{IDENTITY}");
-    let unknown = |problem: String| Problem::Unknown { name, problem };
-    match fs::read(folder.join(IDENTITY)) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(unknown(error.to_string())),
-        Ok(text) => serde_json::from_slice(&text).map(Some).map_err(|e| unknown(e.to_string())),
-    }
-}
-
-/// Makes the folder of an unfinished campaign, if it is not there.
-fn begin(hidden: &Hidden, folder: &Path, identity: &Identity) -> Result<(), Problem> {
-    if folder.join(IDENTITY).is_file() {
-        return Ok(());
-    }
-    if !folder.is_dir() {
-        disk::create_folder(folder)?;
-    }
-    let part = folder.join("identity.part");
-    disk::remove_file(&part)?;
-    disk::create_file(&part)?.write_all(serde_json::to_string_pretty(identity)?.as_bytes())?;
-    disk::sync_file(&part)?;
-    disk::move_file(&part, &folder.join(IDENTITY))?;
-    disk::sync_folder(folder)?;
-    Ok(disk::sync_folder(&hidden.join(""))?)
-}
-
-/// The blocks that a record tells of; a line that was broken off tells of none.
-fn recorded(path: &Path) -> Result<Vec<Block>, Problem> {
-    let text = match fs::read(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        other => other?,
-    };
-    let lines = text.split(|byte| *byte == b'\n').filter(|line| !line.is_empty());
-    let blocks = lines.filter_map(|line| serde_json::from_slice::<Block>(line).ok());
-    Ok(blocks.filter(Block::is_sound).collect())
 }
 
 /// The blocks of a complete campaign of this identity, if the folder has one.
@@ -434,38 +499,6 @@ fn put_aside(path: &Path, damaged: &Path, block: &Block) -> io::Result<()> {
     let name = |i: u32| damaged.join(format!("{}-{}.{i}", block.model, block.file()));
     let free = (1..).map(name).find(|name| fs::symlink_metadata(name).is_err());
     free.map_or(Ok(()), |free| disk::move_file(path, &free))
-}
-
-/// Removes the files of an unfinished campaign, and the folders if nothing else is in them.
-fn clear(folder: &Path) -> io::Result<()> {
-    let own = |name: &str| {
-        let (stem, end) = name.split_once('.').unwrap_or((name, ""));
-        let numbers = stem.split_once('-').is_some_and(|(first, last)| {
-            [first, last].iter().all(|part| part.bytes().all(|byte| byte.is_ascii_digit()))
-        });
-        numbers && matches!(end, "parquet" | "part")
-    };
-    let entries = match fs::read_dir(folder) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        other => other?,
-    };
-    for entry in entries {
-        let entry = entry?;
-        if entry.file_type()?.is_dir() {
-            for block in fs::read_dir(entry.path())? {
-                let block = block?;
-                if own(&block.file_name().to_string_lossy()) && block.file_type()?.is_file() {
-                    disk::remove_file(&block.path())?;
-                }
-            }
-            disk::remove_folder(&entry.path())?;
-        }
-    }
-    // The identity goes last: without it, nothing is known to be a block.
-    for name in [RECORD, "record.part", "identity.part", IDENTITY] {
-        disk::remove_file(&folder.join(name))?;
-    }
-    disk::remove_folder(folder)
 }
 
 /// Counts and hashes what is written.

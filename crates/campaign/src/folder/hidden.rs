@@ -35,6 +35,18 @@ impl Hidden {
     /// Makes it if need be and locks it. The lock is a file that is empty for ever: it is made if there
     /// is none, and else opened without a change.
     pub(super) fn lock(place: &Path) -> Result<Self, Problem> {
+        Self::locked_by(place, File::try_lock)
+    }
+
+    /// The same, with others who share it.
+    pub(super) fn share(place: &Path) -> Result<Self, Problem> {
+        Self::locked_by(place, File::try_lock_shared)
+    }
+
+    fn locked_by(
+        place: &Path,
+        take: fn(&File) -> Result<(), TryLockError>,
+    ) -> Result<Self, Problem> {
         // The folder that is meant now stays meant, whatever becomes of links on the way to it.
         let place = fs::canonicalize(place)?;
         let made = match disk::create_folder(&place.join(HIDDEN)) {
@@ -54,7 +66,7 @@ impl Hidden {
             }
             other => (other?, true),
         };
-        match lock.try_lock() {
+        match take(&lock) {
             Ok(()) if is_at(&lock, &path)? => Ok(Self { place, lock, made, made_lock }),
             // Who held it has just removed it with the folder.
             Ok(()) | Err(TryLockError::WouldBlock) => Err(Problem::Busy),
@@ -79,8 +91,13 @@ impl Hidden {
 
     /// What was written of this kind and the hash of its record, which is none if nothing was.
     pub(super) fn record(&self, what: &str) -> Result<(Record, Option<String>), Problem> {
+        Self::record_of(&self.place, what)
+    }
+
+    /// The same of a folder that is not locked, for those who only read.
+    pub(super) fn record_of(place: &Path, what: &str) -> Result<(Record, Option<String>), Problem> {
         let name = Self::record_name(what);
-        let path = name.below(&self.place);
+        let path = name.below(place);
         let unknown = |problem: String| Problem::Unknown { name: name.to_string(), problem };
         match fs::symlink_metadata(&path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {

@@ -19,6 +19,9 @@ pub struct Block {
     pub(super) model: String,
     pub(super) first_run: u64,
     pub(super) runs: u64,
+    /// How many of them failed.
+    #[serde(default)]
+    pub(super) failed: u64,
     pub(super) bytes: u64,
     pub(super) sha256: String,
     /// Whether it is in its place.
@@ -50,14 +53,34 @@ impl Block {
             model: model.to_owned(),
             first_run: runs.start,
             runs: runs.end - runs.start,
+            failed: 0,
             bytes: 0,
             sha256: String::new(),
             published: false,
         }
     }
 
+    /// The model whose runs they are.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// Whether it is in its place in the folder of a complete campaign.
+    #[must_use]
+    pub fn is_in_place(&self) -> bool {
+        self.published
+    }
+
+    /// How many of the runs failed.
+    #[must_use]
+    pub fn failed(&self) -> u64 {
+        self.failed
+    }
+
     /// The runs.
-    pub(super) fn range(&self) -> Range<u64> {
+    #[must_use]
+    pub fn range(&self) -> Range<u64> {
         self.first_run..self.first_run + self.runs
     }
 

@@ -9,6 +9,7 @@
 //!
 //! The record, the journal, the lock and the draft are in the hidden folder `.gyradius`.
 
+mod area;
 mod blocks;
 mod disk;
 mod hidden;
@@ -16,6 +17,7 @@ mod journal;
 mod manifest;
 mod name;
 mod record;
+mod shared;
 #[cfg(test)]
 mod tests;
 
@@ -26,12 +28,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-pub use blocks::Blocks;
+pub use blocks::{Blocks, begun, missing_runs, told};
 use hidden::Hidden;
 use journal::{Journal, Left, Replacement};
 pub use manifest::{Block, MANIFEST, Manifest};
 use name::{Found, Name, look};
 use record::Record;
+pub use shared::Shared;
 
 use crate::identity::Difference;
 
@@ -156,6 +159,12 @@ impl<'a> Folder<'a> {
         }
     }
 
+    /// Where it is.
+    #[must_use]
+    pub fn place(&self) -> &Path {
+        &self.place
+    }
+
     /// Writes a file, making the folders above it. It is in the draft until it is published.
     pub fn write(&mut self, name: &str, content: &str) -> Result<(), FolderError> {
         let mut file = self.create(name)?;
@@ -171,6 +180,30 @@ impl<'a> Folder<'a> {
 
     fn failed(&self, problem: Problem) -> FolderError {
         FolderError { path: self.place.clone(), problem }
+    }
+
+    /// Whether every file that was written there is there as it was, the mark with this text; but for those whose check is
+    /// left to those who use them.
+    ///
+    /// # Errors
+    /// The folder cannot be read.
+    pub fn is_whole(&self, mark: &str) -> Result<bool, FolderError> {
+        let whole = || {
+            let (record, hash) = self.hidden.record(self.contents.what)?;
+            let place = self.hidden.place();
+            let is_mark = fs::read(place.join(self.contents.mark))? == mark.as_bytes();
+            for name in record.names().filter(|name| !(self.contents.trusted)(&name.to_string())) {
+                match look(place, name)? {
+                    Found::File { hash } if record.hash(name) == Some(&hash) => {}
+                    Found::File { .. } | Found::Nothing | Found::Other { .. } => return Ok(false),
+                }
+            }
+            Ok(is_mark && hash.is_some())
+        };
+        match whole() {
+            Err(Problem::Io(error)) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+            other => other.map_err(|problem: Problem| self.failed(problem)),
+        }
     }
 
     /// Puts the draft in place of the files of the one that was there, and of nothing else. If

@@ -1,12 +1,12 @@
 //! Verbs and flags of the program, with their help.
 
 use clap::{Args, Parser, Subcommand};
-use gyradius_study::{CompareOptions, ModelKind};
+use gyradius_study::{CompareOptions, ModelKind, Shard};
 use std::path::PathBuf;
 
 use crate::program::examples::{
     CHECK_EXAMPLES, COMPARE_EXAMPLES, COMPLETIONS_EXAMPLES, EXAMPLES, EXIT_CODES, FIT_EXAMPLES,
-    MAN_EXAMPLES, MODEL_EXAMPLES, REPLAY_EXAMPLES, REPORT_EXAMPLES,
+    MAN_EXAMPLES, MODEL_EXAMPLES, REPLAY_EXAMPLES, REPORT_EXAMPLES, STATUS_EXAMPLES,
 };
 
 /// Uncertain rigid-body inertia: Monte Carlo studies of spacecraft separation.
@@ -31,8 +31,16 @@ pub(crate) enum Command {
     /// Reads scenario.toml and summary.json, and draws nothing and runs nothing: the same folder gives the
     /// same report.html, report.md and figures to the byte. Useful after files were deleted, for another place, or for a page of a
     /// study whose run tables are kept elsewhere.
+    ///
+    /// Of a study whose runs are not put together yet, because it was interrupted or done in shards: puts them together,
+    /// or makes the report of the runs that are there and says which are missing.
     #[command(after_help = REPORT_EXAMPLES)]
     Report(ReportArgs),
+    /// Say what of a study is there: which runs are done, missing and failed
+    ///
+    /// Looks at the files of the folder without waiting for anybody, so that it can be asked while runs are being done.
+    #[command(after_help = STATUS_EXAMPLES)]
+    Status(StatusArgs),
     /// Do one run of a study again, bit for bit, and write its full history
     ///
     /// Holds the run against its row in the run table, prints a page on it, and writes a folder with
@@ -120,6 +128,10 @@ pub(crate) struct StudyArgs {
     #[arg(long)]
     pub(crate) force: bool,
 
+    /// Do only a share of the runs, as 2/8, while other processes do the others: `gyradius report` puts them together
+    #[arg(long, value_name = "I/N", conflicts_with = "force")]
+    pub(crate) shard: Option<Shard>,
+
     /// Largest share of the runs of a model that may fail, as 0.05 or 5%, for exit code 0
     #[arg(long, value_name = "SHARE", default_value = "50%", value_parser = share)]
     pub(crate) max_failed: f64,
@@ -138,6 +150,17 @@ pub(crate) struct ReportArgs {
     /// Replace another report in the folder given with --out
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct StatusArgs {
+    /// Folder of a study [default: target/study/peck-2003]
+    #[arg(value_name = "STUDY")]
+    pub(crate) study: Option<PathBuf>,
+
+    /// Write JSON, for other programs
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]

@@ -1,7 +1,8 @@
 //! What the help of the program ends with: examples and exit codes.
 
 pub(crate) const EXIT_CODES: &str = "\
-Exit code: 0 if all went well, 1 if something was found (check, fit, study), 2 if what was asked
+Exit code: 0 if all went well, 1 if something was found or is missing (check, fit, report,
+status, study), 2 if what was asked
 cannot be done, with a message on standard error. A reader of the output that stops reading, as
 head does, is no error; a full disk behind it is.";
 
@@ -27,8 +28,20 @@ Examples:
   gyradius report results/vehicle-a --out pages/vehicle-a
       The same in another folder
 
-Exit code: 0 if the report was made; 2 if there is no study, if its files were changed after the study, or
+  gyradius report big
+      After `gyradius study --out big --shard 1/8` to `8/8`: the whole study
+
+Exit code: 0 if the report was made; 1 if runs are missing, and it is of those that are there; 2 if there is no study, if its files were changed after the study, or
 if something could not be read or written. What was there is then as it was.";
+
+pub(crate) const STATUS_EXAMPLES: &str = "\
+Examples:
+  gyradius status big
+      Runs of each model that are done, missing and failed
+  watch gyradius status big
+      The same every two seconds
+
+Exit code: 0 if all runs are done and put together, 1 if not, 2 if there is no study.";
 
 pub(crate) const MODEL_EXAMPLES: &str = "\
 Examples:

@@ -13,6 +13,7 @@ mod replay;
 mod report;
 mod shell;
 mod signals;
+mod status;
 mod study;
 
 use args::{Cli, Command};
@@ -25,7 +26,8 @@ const REFUSED: u8 = 2;
 
 /// Runs the program with the given arguments, the first of which is its name.
 ///
-/// Returns 0, or 2 after a message on standard error; `check`, `fit` and `study` also return 1, for findings.
+/// Returns 0, or 2 after a message on standard error; `check`, `fit`, `report`, `status` and `study` also return 1, for what
+/// was found or is missing.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
@@ -36,7 +38,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(arguments) => return check::check(arguments),
         Command::Fit(arguments) => return fit::fit(arguments),
         Command::Model(arguments) => model::model(arguments).map(done),
-        Command::Report(arguments) => report::report(arguments).map(done),
+        Command::Report(arguments) => report::report(arguments),
+        Command::Status(arguments) => status::status(arguments),
         Command::Replay(arguments) => replay::replay(arguments).map(done),
         Command::Study(arguments) => study::study(arguments),
         Command::Compare(arguments) => compare::compare(arguments).map(done).map_err(Into::into),

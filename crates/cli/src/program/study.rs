@@ -1,6 +1,8 @@
 //! `gyradius study`: a scenario run, its table, and the exit code.
 
-use gyradius_study::{CampaignError, Notice, Options, Scenario, Study, StudyError};
+use gyradius_study::{
+    CampaignError, Notice, Options, Scenario, Study, StudyError, planned_runs, run_shard,
+};
 use std::{error::Error, fmt::Write, process::ExitCode, time::Duration};
 
 use crate::program::{
@@ -35,39 +37,28 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
         force: arguments.force,
         stop: Some(signals.stop()),
     };
-    let total = scenario.runs() * scenario.model_names().count() as u64;
-    let notice = |notice: Notice| match notice {
-        Notice::Forecast(forecast) if forecast.time() > PATIENCE => say(&forecast.to_string()),
-        Notice::GoesOn { done, of } if done < of => {
-            say(&format!("{done} of {of} runs are finished already; going on"));
-        }
-        Notice::Damaged(block) => say(&format!("{block}: its runs are done again")),
-        // What takes a moment is not worth a word.
-        _ => {}
-    };
+    let total = planned_runs(&scenario, arguments.shard);
+    if let Some(shard) = arguments.shard {
+        let done = progress::show(total, "runs", |report| {
+            run_shard(&scenario, &options, shard, report, &notice)
+        });
+        return match done {
+            Err(StudyError::Campaign(CampaignError::Stopped)) => Ok(stopped(&signals)),
+            other => {
+                other?;
+                print(&format!("shard {shard} of {} is done: {total} runs\n", scenario.name()))?;
+                Ok(ExitCode::SUCCESS)
+            }
+        };
+    }
     let study = progress::show(total, "runs", |report| {
         Study::run_with_notices(&scenario, &options, report, &notice)
     });
     let study = match study {
-        Err(StudyError::Campaign(CampaignError::Stopped)) => {
-            complain("stopped: the runs that were finished are kept, and the same command goes on");
-            return Ok(signals.code());
-        }
+        Err(StudyError::Campaign(CampaignError::Stopped)) => return Ok(stopped(&signals)),
         other => other?,
     };
-
-    let mut text = String::new();
-    // Writing to a string does not fail.
-    let _ = writeln!(
-        text,
-        "{}: {} runs a model, seed {}\n",
-        scenario.name(),
-        scenario.runs(),
-        scenario.seed()
-    );
-    let _ = writeln!(text, "{}", study.summary());
-    let _ = writeln!(text, "report: {}", study.folder().join("report.html").display());
-    print(&text)?;
+    print(&answer(&study))?;
 
     let mut code = ExitCode::SUCCESS;
     for (model, failed, runs) in study.summary().failed() {
@@ -80,4 +71,37 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
         }
     }
     Ok(code)
+}
+
+/// What is said before the runs.
+pub(crate) fn notice(notice: Notice) {
+    match notice {
+        Notice::Forecast(forecast) if forecast.time() > PATIENCE => say(&forecast.to_string()),
+        Notice::GoesOn { done, of } if done < of => {
+            say(&format!("{done} of {of} runs are finished already; going on"));
+        }
+        Notice::Damaged(block) => say(&format!("{block}: its runs are done again")),
+        // What takes a moment is not worth a word.
+        _ => {}
+    }
+}
+
+fn stopped(signals: &Signals) -> ExitCode {
+    complain("stopped: the runs that were finished are kept, and the same command goes on");
+    signals.code()
+}
+
+/// The answer on the terminal.
+pub(crate) fn answer(study: &Study) -> String {
+    let summary = study.summary();
+    let (runs, seed) = (summary.runs_per_model(), summary.seed());
+    let report = study.folder().join("report.html");
+    let mut text =
+        format!("{}: {runs} runs a model, seed {seed}\n\n{summary}\n", summary.scenario());
+    for runs in summary.missing() {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "missing: {runs}");
+    }
+    let _ = writeln!(text, "report: {}", report.display());
+    text
 }

@@ -1,0 +1,218 @@
+//! Where a campaign that is not complete is: what it is, its blocks, and the records that tell of them.
+
+use std::{
+    fs::{self, File, OpenOptions, TryLockError},
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+use super::{
+    Problem, disk,
+    hidden::Hidden,
+    manifest::Block,
+    name::{HIDDEN, said},
+};
+use crate::{identity::Identity, shard::Shard};
+
+const CAMPAIGN: &str = "campaign";
+const IDENTITY: &str = "identity.json";
+const RECORD: &str = "record";
+/// A text that tells those who go on how the campaign was begun.
+const MARK: &str = "mark";
+/// What is being written; also of a program that was killed.
+const PART: &str = ".part";
+
+/// The folder of an unfinished campaign.
+#[derive(Clone, Debug)]
+pub(super) struct Area(PathBuf);
+
+impl Area {
+    pub(super) fn new(hidden: &Hidden) -> Self {
+        Self(hidden.join(CAMPAIGN))
+    }
+
+    /// That in a folder, without its lock, for those who only read.
+    pub(super) fn of(place: &Path) -> Self {
+        Self(place.join(HIDDEN).join(CAMPAIGN))
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// What the campaign is, if one was begun.
+    pub(super) fn identity(&self) -> Result<Option<Identity>, Problem> {
+        match fs::symlink_metadata(&self.0) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(error.into()),
+            Ok(metadata) if metadata.is_dir() => {}
+            Ok(metadata) => {
+                let (name, is) = (format!("{HIDDEN}/{CAMPAIGN}"), said(metadata.file_type()));
+                return Err(Problem::Kind { name, is, should: "folder" });
+            }
+        }
+        let name = format!("{HIDDEN}/{CAMPAIGN}/{IDENTITY}");
+        let unknown = |problem: String| Problem::Unknown { name, problem };
+        match fs::read(self.0.join(IDENTITY)) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(unknown(error.to_string())),
+            Ok(text) => serde_json::from_slice(&text).map(Some).map_err(|e| unknown(e.to_string())),
+        }
+    }
+
+    /// Makes the folder, if it is not there, and tells in it what the campaign is; `mark` is a text that tells the same to
+    /// those who go on.
+    pub(super) fn begin(
+        &self,
+        hidden: &Hidden,
+        identity: &Identity,
+        mark: &str,
+        shard: Option<Shard>,
+    ) -> Result<(), Problem> {
+        match disk::create_folder(&self.0) {
+            Ok(()) => disk::sync_folder(&hidden.join(""))?,
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error.into()),
+        }
+        // The identity last: with it, the campaign is begun.
+        let identity = serde_json::to_string_pretty(identity)?;
+        for (name, text) in [(MARK, mark), (IDENTITY, &identity)] {
+            let path = self.0.join(name);
+            if fs::read(&path).is_ok_and(|there| there == text.as_bytes()) {
+                continue;
+            }
+            // Other shards write the same at the same time.
+            let shard = shard.map_or_else(String::new, |shard| format!(".{}", shard.name()));
+            let part = self.0.join(format!("{name}{shard}{PART}"));
+            disk::remove_file(&part)?;
+            disk::create_file(&part)?.write_all(text.as_bytes())?;
+            disk::sync_file(&part)?;
+            disk::replace_file(&part, &path)?;
+            disk::sync_folder(&self.0)?;
+        }
+        Ok(())
+    }
+
+    /// The text that tells how the campaign was begun, if it was.
+    pub(super) fn mark(&self) -> Option<String> {
+        let path = self.0.join(MARK);
+        let is_file = fs::symlink_metadata(&path).is_ok_and(|found| found.is_file());
+        is_file.then(|| fs::read_to_string(path).ok())?
+    }
+
+    /// The record of those who do all blocks, or of a shard, which only one process at a time holds.
+    pub(super) fn record(&self, shard: Option<Shard>) -> Result<(PathBuf, File), Problem> {
+        let name = shard.map_or_else(|| RECORD.to_owned(), |s| format!("{RECORD}-{}", s.name()));
+        let path = self.0.join(name);
+        let record = OpenOptions::new().append(true).create(true).open(&path)?;
+        if shard.is_some() {
+            match record.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => return Err(Problem::Busy),
+                Err(TryLockError::Error(error)) => return Err(error.into()),
+            }
+        }
+        Ok((path, record))
+    }
+
+    /// The names of all records.
+    fn records(&self) -> io::Result<Vec<PathBuf>> {
+        let entries = match fs::read_dir(&self.0) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            other => other?,
+        };
+        let mut records = Vec::new();
+        for entry in entries {
+            let entry = entry?;
+            if is_record(&entry.file_name().to_string_lossy()) && entry.file_type()?.is_file() {
+                records.push(entry.path());
+            }
+        }
+        records.sort();
+        Ok(records)
+    }
+
+    /// The blocks that the records tell of, each once; a line that was broken off tells of none.
+    pub(super) fn recorded(&self) -> Result<Vec<Block>, Problem> {
+        let mut blocks = Vec::new();
+        for record in self.records()? {
+            let text = fs::read(record)?;
+            let lines = text.split(|byte| *byte == b'\n').filter(|line| !line.is_empty());
+            let told = lines.filter_map(|line| serde_json::from_slice::<Block>(line).ok());
+            for block in told.filter(Block::is_sound) {
+                if !blocks.contains(&block) {
+                    blocks.push(block);
+                }
+            }
+        }
+        Ok(blocks)
+    }
+
+    /// Whether shards have left records.
+    pub(super) fn has_shards(&self) -> io::Result<bool> {
+        Ok(self.records()?.iter().any(|path| !path.ends_with(RECORD)))
+    }
+
+    /// One record of these blocks in place of all.
+    pub(super) fn rewrite(&self, blocks: &[&Block]) -> Result<File, Problem> {
+        let lines = blocks.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
+        let (path, part) = (self.0.join(RECORD), self.0.join(format!("{RECORD}{PART}")));
+        disk::remove_file(&part)?;
+        let mut file = disk::create_file(&part)?;
+        file.write_all((lines.join("\n") + "\n").as_bytes())?;
+        disk::sync_file(&part)?;
+        disk::replace_file(&part, &path)?;
+        for record in self.records()?.iter().filter(|record| **record != path) {
+            disk::remove_file(record)?;
+        }
+        disk::sync_folder(&self.0)?;
+        Ok(OpenOptions::new().append(true).open(&path)?)
+    }
+
+    /// Removes this program's files of the campaign, and the folders if nothing else is in them.
+    pub(super) fn clear(&self) -> io::Result<()> {
+        let folder = &self.0;
+        let own = |name: &str| {
+            let (stem, end) = name.split_once('.').unwrap_or((name, ""));
+            let numbers = stem.split_once('-').is_some_and(|(first, last)| {
+                [first, last].iter().all(|part| part.bytes().all(|byte| byte.is_ascii_digit()))
+            });
+            numbers && (matches!(end, "parquet" | "part") || end.ends_with(PART))
+        };
+        let entries = match fs::read_dir(folder) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+            other => other?,
+        };
+        let mut files = Vec::new();
+        for entry in entries {
+            let entry = entry?;
+            if entry.file_type()?.is_dir() {
+                for block in fs::read_dir(entry.path())? {
+                    let block = block?;
+                    if own(&block.file_name().to_string_lossy()) && block.file_type()?.is_file() {
+                        disk::remove_file(&block.path())?;
+                    }
+                }
+                disk::remove_folder(&entry.path())?;
+            } else {
+                let name = entry.file_name().to_string_lossy().into_owned();
+                if name == MARK || name == IDENTITY || is_record(&name) || name.ends_with(PART) {
+                    files.push(entry.path());
+                }
+            }
+        }
+        // The identity goes last: without it, nothing is known to be a block.
+        files.sort_by_key(|path| path.ends_with(IDENTITY));
+        for path in files {
+            disk::remove_file(&path)?;
+        }
+        disk::remove_folder(folder)
+    }
+}
+
+/// Whether a file of this name is the record of all, or of a shard.
+fn is_record(name: &str) -> bool {
+    let shard = name.strip_prefix(RECORD).and_then(|rest| rest.strip_prefix('-'));
+    let numbers = shard.and_then(|shard| shard.split_once("-of-"));
+    name == RECORD || numbers.is_some_and(|(i, n)| format!("{i}/{n}").parse::<Shard>().is_ok())
+}

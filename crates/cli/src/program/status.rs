@@ -1,0 +1,58 @@
+//! `gyradius status`: what of a study is there.
+
+use gyradius_study::Status;
+use std::{error::Error, fmt::Write, path::Path, process::ExitCode};
+
+use crate::program::{args::StatusArgs, output::print, replay::DEFAULT};
+
+/// What the program returns while runs are missing.
+const UNFINISHED: u8 = 1;
+/// Ranges of missing runs that are told of a study; the rest is counted.
+const MOST: usize = 20;
+
+/// Runs the verb.
+pub(crate) fn status(arguments: &StatusArgs) -> Result<ExitCode, Box<dyn Error>> {
+    let folder = arguments.study.as_deref().unwrap_or(Path::new(DEFAULT));
+    let status = Status::read(folder)?;
+    if arguments.json {
+        print(&(serde_json::to_string_pretty(&status)? + "\n"))?;
+    } else {
+        print(&text(&status, folder))?;
+    }
+    Ok(if status.is_complete() { ExitCode::SUCCESS } else { ExitCode::from(UNFINISHED) })
+}
+
+fn text(status: &Status, folder: &Path) -> String {
+    let of = status.runs_per_model();
+    let widest = status.models().iter().map(|model| model.model().chars().count());
+    let width = widest.max().unwrap_or(0).max("model".len());
+    let mut text = format!("{}: {of} runs a model\n\n", status.scenario());
+    // Writing to a string does not fail.
+    let _ =
+        writeln!(text, "{:width$}  {:>12}  {:>12}  {:>12}", "model", "done", "missing", "failed");
+    for model in status.models() {
+        let (name, done, failed) = (model.model(), model.finished(), model.failed());
+        let missing = of.saturating_sub(done);
+        let _ = writeln!(text, "{name:width$}  {done:>12}  {missing:>12}  {failed:>12}");
+    }
+    text.push('\n');
+    let missing = status.missing();
+    if status.is_complete() {
+        text.push_str("All runs are done and put together.\n");
+    } else if missing.is_empty() {
+        let _ = writeln!(
+            text,
+            "All runs are done. `gyradius report {}` puts them together.",
+            folder.display()
+        );
+    } else {
+        text.push_str("These runs are missing:\n");
+        for runs in missing.iter().take(MOST) {
+            let _ = writeln!(text, "  {runs}");
+        }
+        if missing.len() > MOST {
+            let _ = writeln!(text, "  and {} more ranges", missing.len() - MOST);
+        }
+    }
+    text
+}

@@ -1,0 +1,172 @@
+//! A share of a study's runs, and what of a study is there: for studies that many processes do.
+
+use gyradius_campaign::{
+    Block, Doing, Progress, Shard, Shared, begun, missing_runs, run_missing, threads, told,
+};
+use serde::Serialize;
+use std::{fs, ops::Range, path::Path};
+
+use crate::{
+    Notice, Options, Scenario, StudyError,
+    model::Model,
+    study::{contents, count, forecast, identity, plan, simulations},
+    summary::Missing,
+};
+
+/// How many runs a process is to do if none is there: those of a shard, or of all models.
+#[must_use]
+pub fn planned_runs(scenario: &Scenario, shard: Option<Shard>) -> u64 {
+    let doing = shard.map_or(Doing::All, Doing::Shard);
+    plan(scenario, &Options::default(), doing).total(scenario.model_names().count())
+}
+
+/// Whether a study was begun in a folder whose runs are not all done, or not put together.
+#[must_use]
+pub fn is_begun(folder: &Path) -> bool {
+    begun(folder).is_some()
+}
+
+/// Does a share of the runs of a study, of those that are in no finished block, into its folder. Other processes may do
+/// other shares at the same time, also on other machines that have the folder in common. Nothing is put together:
+/// [`Study::put_together`](crate::Study::put_together) does that, or the study itself.
+///
+/// # Errors
+/// The folder holds another study, or somebody has it alone, or another process does the same share; something cannot be
+/// written. Blocks that were finished stay.
+pub fn run_shard(
+    scenario: &Scenario,
+    options: &Options,
+    shard: Shard,
+    progress: Progress<'_>,
+    say: &dyn Fn(Notice),
+) -> Result<(), StudyError> {
+    let threads = threads(options.threads)?;
+    let models = Model::all(scenario)?;
+    let simulations = simulations(scenario, &models);
+    let contents = contents(scenario);
+    let folder = Shared::open(&options.place(scenario), &contents)?;
+    let begun = (&identity(scenario), scenario.to_toml());
+    let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), shard, &threads)?;
+    blocks.damaged().iter().for_each(|damage| say(Notice::Damaged(damage.clone())));
+    let plan = plan(scenario, options, Doing::Shard(shard));
+    let missing = |(place, model): (usize, &Model)| plan.missing(&blocks, place, model.name());
+    let left = models.iter().enumerate().map(|model| count(&missing(model))).sum::<u64>();
+    let of = plan.total(models.len());
+    if left < of {
+        say(Notice::GoesOn { done: of - left, of });
+    }
+    if left > 0 {
+        say(Notice::Forecast(forecast(&simulations, left, &threads)?));
+    }
+    threads.install(|| run_missing(&simulations, &blocks, plan, progress, None))?;
+    Ok(())
+}
+
+/// What of a study is there.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Status {
+    scenario: String,
+    /// Whether all runs are done and put together.
+    complete: bool,
+    runs_per_model: u64,
+    models: Vec<ModelStatus>,
+    missing: Vec<Missing>,
+}
+
+/// What of the runs of a model is there.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ModelStatus {
+    model: String,
+    finished: u64,
+    failed: u64,
+}
+
+impl Status {
+    /// Of the study in a folder, as its files tell, which are neither read nor locked: others may be at work.
+    ///
+    /// # Errors
+    /// The folder holds no study, or its files cannot be read.
+    pub fn read(folder: &Path) -> Result<Self, StudyError> {
+        let refused = |problem: &str| StudyError::Folder {
+            path: folder.to_owned(),
+            problem: problem.to_owned(),
+        };
+        let unfinished = begun(folder);
+        let complete = || fs::read_to_string(folder.join("scenario.toml")).ok();
+        let text = unfinished.clone().or_else(complete);
+        let scenario = Scenario::from_toml(&text.ok_or_else(|| refused("it holds no study"))?)?;
+        let blocks = told(folder, &contents(&scenario), &identity(&scenario))?;
+        if blocks.is_empty() && unfinished.is_none() {
+            return Err(refused("it holds no runs of a study"));
+        }
+        let (mut models, mut missing) = (Vec::new(), Vec::new());
+        for model in scenario.model_names() {
+            let own = || blocks.iter().filter(|block| block.model() == model);
+            let ranges: Vec<Range<u64>> = own().map(Block::range).collect();
+            models.push(ModelStatus {
+                model: model.to_owned(),
+                finished: count(&ranges),
+                failed: own().map(Block::failed).sum(),
+            });
+            let gaps = missing_runs(ranges, scenario.runs(), u64::MAX);
+            missing.extend(gaps.into_iter().map(|runs| Missing::new(model, runs)));
+        }
+        Ok(Self {
+            scenario: scenario.name().to_owned(),
+            complete: missing.is_empty() && blocks.iter().all(Block::is_in_place),
+            runs_per_model: scenario.runs(),
+            models,
+            missing,
+        })
+    }
+
+    /// The name of the scenario.
+    #[must_use]
+    pub fn scenario(&self) -> &str {
+        &self.scenario
+    }
+
+    /// Whether all runs are done and put together.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.complete
+    }
+
+    /// Runs that each model is to have.
+    #[must_use]
+    pub fn runs_per_model(&self) -> u64 {
+        self.runs_per_model
+    }
+
+    /// What of each model is there.
+    #[must_use]
+    pub fn models(&self) -> &[ModelStatus] {
+        &self.models
+    }
+
+    /// The runs that are not done.
+    #[must_use]
+    pub fn missing(&self) -> &[Missing] {
+        &self.missing
+    }
+}
+
+impl ModelStatus {
+    /// Its name.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// Runs in finished blocks.
+    #[must_use]
+    pub fn finished(&self) -> u64 {
+        self.finished
+    }
+
+    /// How many of them failed.
+    #[must_use]
+    pub fn failed(&self) -> u64 {
+        self.failed
+    }
+}
