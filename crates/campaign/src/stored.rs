@@ -27,29 +27,9 @@ impl Table {
     /// # Errors
     /// Writing fails.
     pub fn write_parquet(&self, output: impl Write + Send) -> Result<(), ParquetError> {
-        let fields = self.columns().iter().map(|column| Ok(Arc::new(field(column)?)));
-        let fields = fields.collect::<Result<_, ParquetError>>()?;
-        let schema = Type::group_type_builder("run").with_fields(fields).build()?;
-        // Numbers that were drawn are all different: no dictionary serves them.
-        let mut properties = WriterProperties::builder()
-            .set_compression(Compression::UNCOMPRESSED)
-            .set_statistics_enabled(EnabledStatistics::Chunk)
-            .set_dictionary_enabled(false);
-        for column in self.columns().iter().filter(|column| column.kind() == Kind::Text) {
-            let path = ColumnPath::from(column.name());
-            properties = properties.set_column_dictionary_enabled(path, true);
-        }
-        let properties = Arc::new(properties.build());
-        let mut writer = SerializedFileWriter::new(output, Arc::new(schema), properties)?;
-        if !self.is_empty() {
-            let mut group = writer.next_row_group()?;
-            for (column, source) in self.sources() {
-                self.write_column(&mut group, column, source)?;
-            }
-            group.close()?;
-        }
-        writer.close()?;
-        Ok(())
+        let mut writer = ParquetWriter::new(self, output)?;
+        writer.write(self)?;
+        writer.finish()
     }
 
     fn write_column<W: Write + Send>(
@@ -181,6 +161,50 @@ impl Table {
         }
         whole.begin(first, runs.len());
         Ok(whole)
+    }
+}
+
+/// Writes tables of the same columns as Parquet, each as a row group.
+pub(crate) struct ParquetWriter<W: Write + Send> {
+    writer: SerializedFileWriter<W>,
+}
+
+impl<W: Write + Send> ParquetWriter<W> {
+    /// A writer of tables with the columns of this one, whose runs are not written.
+    pub(crate) fn new(table: &Table, output: W) -> Result<Self, ParquetError> {
+        let fields = table.columns().iter().map(|column| Ok(Arc::new(field(column)?)));
+        let fields = fields.collect::<Result<_, ParquetError>>()?;
+        let schema = Type::group_type_builder("run").with_fields(fields).build()?;
+        // Numbers that were drawn are all different: no dictionary serves them.
+        let mut properties = WriterProperties::builder()
+            .set_compression(Compression::UNCOMPRESSED)
+            .set_statistics_enabled(EnabledStatistics::Chunk)
+            .set_dictionary_enabled(false);
+        for column in table.columns().iter().filter(|column| column.kind() == Kind::Text) {
+            let path = ColumnPath::from(column.name());
+            properties = properties.set_column_dictionary_enabled(path, true);
+        }
+        let properties = Arc::new(properties.build());
+        let writer = SerializedFileWriter::new(output, Arc::new(schema), properties)?;
+        Ok(Self { writer })
+    }
+
+    /// Writes the runs of a table.
+    pub(crate) fn write(&mut self, table: &Table) -> Result<(), ParquetError> {
+        if !table.is_empty() {
+            let mut group = self.writer.next_row_group()?;
+            for (column, source) in table.sources() {
+                table.write_column(&mut group, column, source)?;
+            }
+            group.close()?;
+        }
+        Ok(())
+    }
+
+    /// Writes what stands after the last run.
+    pub(crate) fn finish(self) -> Result<(), ParquetError> {
+        self.writer.close()?;
+        Ok(())
     }
 }
 

@@ -386,7 +386,7 @@ impl<'a> Row<'a> {
         self.table.sources().map(move |(column, source)| (column, row.cell_from(source)))
     }
 
-    fn cell_from(&self, source: Source) -> Cell<'a> {
+    pub(crate) fn cell_from(&self, source: Source) -> Cell<'a> {
         let failure = self.failure();
         match source {
             Source::Model => Cell::Text(self.table.model.as_str().into()),

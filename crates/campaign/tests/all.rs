@@ -3,3 +3,4 @@
 
 mod blocks;
 mod campaign;
+mod formats;

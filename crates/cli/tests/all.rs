@@ -4,6 +4,7 @@
 mod check;
 mod command_line;
 mod compare;
+mod draw;
 mod fit;
 #[cfg(unix)]
 mod killed;

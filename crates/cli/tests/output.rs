@@ -50,8 +50,10 @@ impl Shell {
     }
 }
 
-const VERBS: [&[&str]; 13] = [
+const VERBS: [&[&str]; 15] = [
     &["study", "--scenario", "scenario.toml", "--out", "here"],
+    &["draw", "scenario.toml", "-n", "3"],
+    &["draw", "scenario.toml", "-n", "3", "--format", "parquet"],
     &["replay", "here", "--run", "0", "--out", "replay"],
     &["check", "robot.urdf"],
     &["check", "--format", "json", "robot.urdf"],
@@ -272,6 +274,7 @@ fn only_regular_files_of_a_sensible_size_are_read() {
     ] {
         for verb in [
             &["study", "--scenario", name][..],
+            &["draw", name],
             &["compare", "--scenario", name],
             &["replay", name, "--run", "0"],
             &["model", name],

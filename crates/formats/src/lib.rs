@@ -33,6 +33,7 @@ mod file;
 mod gap;
 mod judge;
 mod kind;
+mod new_file;
 mod plain;
 mod repair;
 mod robots;
@@ -49,7 +50,8 @@ pub use file::InertiaFile;
 pub use gap::{Gap, GapKind};
 pub use judge::{Judgement, MassFault, Note, judge};
 pub use kind::Format;
-pub use plain::{WriteError, must_write, read_text, write_file, write_file_as};
+pub use new_file::{NewFile, WriteError};
+pub use plain::{must_write, read_text, write_file, write_file_as};
 pub use repair::{Change, Remedy, RepairError, copy_path, is_copy, write_copy, write_copy_of};
 pub use walk::{Found, find};
 

@@ -1,11 +1,14 @@
 //! Single files read and written with care: no pipe is waited for, nothing is read without a limit, and
 //! nothing is written through a link, by halves, or over another file unasked.
 
-use crate::text::is_utf16;
+use crate::{
+    new_file::{NewFile, WriteError, there},
+    text::is_utf16,
+};
 use std::{
-    fs::{self, File, Metadata, Permissions},
-    io::{self, Read, Write},
-    path::{Path, PathBuf},
+    fs::{self, File, Permissions},
+    io::{self, Read},
+    path::Path,
 };
 
 /// The text of a regular file of at most so many bytes.
@@ -41,19 +44,13 @@ pub fn read_text(path: &Path, most_bytes: u64) -> io::Result<String> {
 /// Something else is there, or the system refuses.
 pub fn must_write(path: &Path, bytes: &[u8], force: bool) -> Result<bool, WriteError> {
     let fail = |error| WriteError::Io { path: path.to_owned(), error };
-    match fs::symlink_metadata(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(true),
-        Err(error) => Err(fail(error)),
-        Ok(there) if there.is_file() => {
-            if there.len() == bytes.len() as u64 && fs::read(path).map_err(fail)? == bytes {
-                Ok(false)
-            } else if force {
-                Ok(true)
-            } else {
-                Err(WriteError::Exists(path.to_owned()))
-            }
-        }
-        Ok(_) => Err(WriteError::NoFile(path.to_owned())),
+    let Some(there) = there(path)? else { return Ok(true) };
+    if there.len() == bytes.len() as u64 && fs::read(path).map_err(fail)? == bytes {
+        Ok(false)
+    } else if force {
+        Ok(true)
+    } else {
+        Err(WriteError::Exists(path.to_owned()))
     }
 }
 
@@ -80,80 +77,17 @@ pub fn write_file_as(
     if !must_write(path, bytes, force)? {
         return Ok(false);
     }
-    let replaced = fs::symlink_metadata(path).ok().filter(|_| force);
-    match write(path, bytes, replaced.as_ref(), permissions) {
-        Ok(()) => Ok(true),
-        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-            Err(WriteError::Exists(path.to_owned()))
-        }
-        Err(error) => Err(WriteError::Io { path: path.to_owned(), error }),
-    }
-}
-
-/// Writes a temporary file beside it and moves it to its place, over what is to be replaced only.
-fn write(
-    path: &Path,
-    bytes: &[u8],
-    replaced: Option<&Metadata>,
-    permissions: Option<Permissions>,
-) -> io::Result<()> {
-    // The folder of a name without one is the current folder.
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
-    let permissions = permissions.or_else(|| replaced.map(Metadata::permissions));
-    let mut file = temporary(folder, permissions.is_some())?;
-    if let Some(permissions) = permissions {
-        file.as_file().set_permissions(permissions)?;
-    }
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    if replaced.is_some() {
-        file.persist(path)?;
-    } else {
-        file.persist_noclobber(path)?;
-    }
-    // Elsewhere than on Unix, folders cannot be opened, and their changes are in the system's journal.
-    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
-}
-
-/// A file that is removed unless it is moved: that nobody else may read, or with the permissions of any
-/// new file.
-fn temporary(folder: &Path, private: bool) -> io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".gyradius-");
-    #[cfg(unix)]
-    if !private {
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    }
-    #[cfg(not(unix))]
-    let _ = private;
-    builder.tempfile_in(folder)
-}
-
-/// Why a file is not written. What was there is as it was.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum WriteError {
-    /// Another file is there.
-    #[error("{} exists: --force replaces it", .0.display())]
-    Exists(PathBuf),
-    /// A folder, a link, a pipe or a device is there.
-    #[error("{} is not a regular file, and is neither followed nor replaced", .0.display())]
-    NoFile(PathBuf),
-    /// The system refuses.
-    #[error("cannot write {}: {error}", .path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        error: io::Error,
-    },
+    NewFile::create_as(path, force, permissions)?.finish_with(bytes)?;
+    Ok(true)
 }
 
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
-    use std::os::unix::fs::{PermissionsExt, symlink};
+    use std::{
+        io::Write,
+        os::unix::fs::{PermissionsExt, symlink},
+    };
 
     /// Every kind of thing that may be at a path, with and without force.
     #[test]
@@ -180,6 +114,14 @@ mod tests {
             }
             let kind_before = fs::symlink_metadata(&path).ok().map(|m| m.file_type());
             let mode = fs::symlink_metadata(&path).ok().map(|m| m.permissions().mode());
+            // By pieces, of a file that is never the same as the one that is there.
+            if kind != 2 {
+                let begun = NewFile::create(&path, force);
+                assert_eq!(begun.is_ok(), kind == 0 || (force && matches!(kind, 1 | 6)), "{kind}");
+                if let Ok(mut begun) = begun {
+                    begun.write_all(b"half").unwrap();
+                }
+            }
             let result = write_file(&path, b"new", force);
             let expected = match (kind, force) {
                 (0, _) | (1 | 6, true) => Some(true),

@@ -89,6 +89,15 @@ impl Column {
         }
     }
 
+    /// Whether it tells what is drawn, so that a run has it before it is separated.
+    pub(crate) fn is_drawn(self) -> bool {
+        match self {
+            Self::Number(quantity) => quantity.is_drawn(),
+            Self::Realizable | Self::Axes(..) | Self::Drawn(_) => true,
+            Self::ReleaseOrder | Self::Recompressed | Self::ClearanceNote => false,
+        }
+    }
+
     /// What a run writes into it.
     pub(crate) fn cell(self, run: &Run<'_>) -> Cell<'static> {
         let text = |text: Option<String>| text.map_or(Cell::Null, |text| Cell::Text(text.into()));

@@ -20,6 +20,7 @@ mod claims;
 mod column;
 mod compare;
 mod csv;
+mod draw;
 mod drawn;
 mod error;
 mod failure;
@@ -43,11 +44,13 @@ mod text;
 
 pub use body::Entry;
 pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
+pub use draw::{Draw, DrawError, DrawOptions};
 pub use error::StudyError;
 pub use failure::Failure;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_campaign::{
-    CampaignError, Cell, Column, Forecast, Progress, Row, Runs, RunsError, Shard, ShardError, Table,
+    CampaignError, Cell, Column, Forecast, FormatError, Progress, Row, Runs, RunsError, Shard,
+    ShardError, Table, TableFormat,
 };
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};

@@ -14,6 +14,8 @@ use crate::{
 /// Where the report tells of a quantity, and in which place there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Shown {
+    /// Nowhere: it is drawn, and is in the run table, the summary and the draws.
+    Drawn,
     /// Nowhere: it is in the run table and the summary.
     Table,
     /// Among what the paper's results are about.
@@ -48,7 +50,7 @@ macro_rules! quantities {
             pub const ALL: &'static [Self] = &[$(Self::$name),+];
 
             fn declaration(self) -> &'static Declaration {
-                use Shown::{Behaviour, Parting, Table};
+                use Shown::{Behaviour, Drawn, Parting, Table};
                 match self {
                     $(Self::$name => const {
                         &Declaration {
@@ -89,29 +91,29 @@ macro_rules! quantities {
 
 quantities! {
     /// Entry 11 of the payload's inertia matrix as drawn, about its mass centre, body axes.
-    PayloadI11: "payload_i11", "I₁₁", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[0]);
+    PayloadI11: "payload_i11", "I₁₁", "kg·m²", Drawn, |r| Some(r.inertia(Body::Payload)[0]);
     /// Entry 22 of the payload's inertia matrix as drawn, about its mass centre, body axes.
-    PayloadI22: "payload_i22", "I₂₂", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[1]);
+    PayloadI22: "payload_i22", "I₂₂", "kg·m²", Drawn, |r| Some(r.inertia(Body::Payload)[1]);
     /// Entry 33 of the payload's inertia matrix as drawn, about its mass centre, body axes.
-    PayloadI33: "payload_i33", "I₃₃", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[2]);
+    PayloadI33: "payload_i33", "I₃₃", "kg·m²", Drawn, |r| Some(r.inertia(Body::Payload)[2]);
     /// Entry 12 of the payload's inertia matrix as drawn, about its mass centre, body axes.
-    PayloadI12: "payload_i12", "I₁₂", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[3]);
+    PayloadI12: "payload_i12", "I₁₂", "kg·m²", Drawn, |r| Some(r.inertia(Body::Payload)[3]);
     /// Entry 13 of the payload's inertia matrix as drawn, about its mass centre, body axes.
-    PayloadI13: "payload_i13", "I₁₃", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[4]);
+    PayloadI13: "payload_i13", "I₁₃", "kg·m²", Drawn, |r| Some(r.inertia(Body::Payload)[4]);
     /// Entry 23 of the payload's inertia matrix as drawn, about its mass centre, body axes.
-    PayloadI23: "payload_i23", "I₂₃", "kg·m²", Table, |r| Some(r.inertia(Body::Payload)[5]);
+    PayloadI23: "payload_i23", "I₂₃", "kg·m²", Drawn, |r| Some(r.inertia(Body::Payload)[5]);
     /// Entry 11 of the stage's inertia matrix as drawn, about its mass centre, body axes.
-    StageI11: "stage_i11", "I₁₁", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[0]);
+    StageI11: "stage_i11", "I₁₁", "kg·m²", Drawn, |r| Some(r.inertia(Body::Stage)[0]);
     /// Entry 22 of the stage's inertia matrix as drawn, about its mass centre, body axes.
-    StageI22: "stage_i22", "I₂₂", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[1]);
+    StageI22: "stage_i22", "I₂₂", "kg·m²", Drawn, |r| Some(r.inertia(Body::Stage)[1]);
     /// Entry 33 of the stage's inertia matrix as drawn, about its mass centre, body axes.
-    StageI33: "stage_i33", "I₃₃", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[2]);
+    StageI33: "stage_i33", "I₃₃", "kg·m²", Drawn, |r| Some(r.inertia(Body::Stage)[2]);
     /// Entry 12 of the stage's inertia matrix as drawn, about its mass centre, body axes.
-    StageI12: "stage_i12", "I₁₂", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[3]);
+    StageI12: "stage_i12", "I₁₂", "kg·m²", Drawn, |r| Some(r.inertia(Body::Stage)[3]);
     /// Entry 13 of the stage's inertia matrix as drawn, about its mass centre, body axes.
-    StageI13: "stage_i13", "I₁₃", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[4]);
+    StageI13: "stage_i13", "I₁₃", "kg·m²", Drawn, |r| Some(r.inertia(Body::Stage)[4]);
     /// Entry 23 of the stage's inertia matrix as drawn, about its mass centre, body axes.
-    StageI23: "stage_i23", "I₂₃", "kg·m²", Table, |r| Some(r.inertia(Body::Stage)[5]);
+    StageI23: "stage_i23", "I₂₃", "kg·m²", Drawn, |r| Some(r.inertia(Body::Stage)[5]);
     /// From when on no spring can push: when the last one let go, or, late, came to its free length.
     ReleaseTime: "release_time_s", "release time", "s", Parting(10), |r| Some(r.end()?.separated.release_time());
     /// Speed at which the mass centres part.
@@ -254,6 +256,11 @@ impl Quantity {
     #[must_use]
     pub fn parting() -> Vec<Self> {
         Self::shown(|shown| matches!(shown, Shown::Parting(_)))
+    }
+
+    /// Whether it is drawn, so that a run has it before it is separated.
+    pub(crate) fn is_drawn(self) -> bool {
+        self.declaration().shown == Shown::Drawn
     }
 
     fn shown(here: impl Fn(Shown) -> bool) -> Vec<Self> {

@@ -20,11 +20,12 @@ pub(crate) struct Case {
     pub(crate) drawn: Box<[f64]>,
 }
 
-/// A run that has ended.
+/// A run that has ended, or is only drawn.
 #[derive(Clone, Debug)]
 pub(crate) struct Run<'a> {
     pub(crate) case: &'a Case,
-    end: Result<End<'a>, Failure>,
+    /// None if it is only drawn.
+    end: Option<Result<End<'a>, Failure>>,
 }
 
 /// The end of a run in which the bodies part.
@@ -73,7 +74,13 @@ impl Case {
             // A batch gives every run a result.
             (Ok(_), None) => Err(RunError::NotFinite { time: 0.0 }.into()),
         };
-        Run { case: self, end }
+        Run { case: self, end: Some(end) }
+    }
+
+    /// The run as it is drawn, which is not separated; failed if it cannot be.
+    pub(crate) fn drawn(&self) -> Run<'_> {
+        let refused = self.separation.as_ref().err();
+        Run { case: self, end: refused.map(|failure| Err(failure.clone())) }
     }
 
     fn clearance(
@@ -91,12 +98,12 @@ impl Case {
 impl<'a> Run<'a> {
     /// Why it failed, if it did.
     pub(crate) fn failure(&self) -> Option<&Failure> {
-        self.end.as_ref().err()
+        self.end.as_ref()?.as_ref().err()
     }
 
-    /// How it ended, unless it failed.
+    /// How it ended, unless it failed or is only drawn.
     pub(crate) fn end(&self) -> Option<&End<'a>> {
-        self.end.as_ref().ok()
+        self.end.as_ref()?.as_ref().ok()
     }
 
     /// The drawn inertia: I11, I22, I33, I12, I13, I23, kg·m².

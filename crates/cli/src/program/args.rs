@@ -1,12 +1,15 @@
 //! Verbs and flags of the program, with their help.
 
-use clap::{Args, Parser, Subcommand};
-use gyradius_study::{CompareOptions, ModelKind, Shard};
+use clap::{
+    Args, Parser, Subcommand,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
+use gyradius_study::{CompareOptions, ModelKind, Shard, TableFormat};
 use std::path::PathBuf;
 
 use crate::program::examples::{
-    CHECK_EXAMPLES, COMPARE_EXAMPLES, COMPLETIONS_EXAMPLES, EXAMPLES, EXIT_CODES, FIT_EXAMPLES,
-    MAN_EXAMPLES, MODEL_EXAMPLES, REPLAY_EXAMPLES, REPORT_EXAMPLES, STATUS_EXAMPLES,
+    CHECK_EXAMPLES, COMPARE_EXAMPLES, COMPLETIONS_EXAMPLES, DRAW_EXAMPLES, EXAMPLES, EXIT_CODES,
+    FIT_EXAMPLES, MAN_EXAMPLES, MODEL_EXAMPLES, REPLAY_EXAMPLES, REPORT_EXAMPLES, STATUS_EXAMPLES,
 };
 
 /// Uncertain rigid-body inertia: Monte Carlo studies of spacecraft separation.
@@ -48,6 +51,13 @@ pub(crate) enum Command {
     /// nutation, spring forces) and animation.html (bodies and springs in three dimensions).
     #[command(after_help = REPLAY_EXAMPLES)]
     Replay(ReplayArgs),
+    /// Write what is drawn for the runs of a scenario, without running any
+    ///
+    /// One row a run, for a simulator of your own: the inertias of payload and stage, and whatever else the
+    /// scenario disperses, in the columns of the run table. A study of the scenario has the same values, to the
+    /// bit. Any number of runs takes the same memory.
+    #[command(after_help = DRAW_EXAMPLES)]
+    Draw(DrawArgs),
     /// Check the inertias in robot and CAD files, and write repaired copies
     ///
     /// Reads URDF, MJCF, SDF, CSV, TOML and JSON files and lists the bodies whose inertia no
@@ -188,6 +198,45 @@ pub(crate) struct ReplayArgs {
     /// Replace files of another replay in the folder
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct DrawArgs {
+    /// Scenario file (TOML) [default: the built-in study of Peck (2003)]
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) scenario: Option<PathBuf>,
+
+    /// Runs of each model; 0 for the columns alone [default: as in the scenario]
+    #[arg(short = 'n', long, value_name = "N", value_parser = whole)]
+    pub(crate) runs: Option<u64>,
+
+    /// The first run
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole)]
+    pub(crate) first: u64,
+
+    /// Which model; may be given several times [default: all of the scenario, one after the other]
+    #[arg(long = "model", value_name = "NAME")]
+    pub(crate) models: Vec<String>,
+
+    /// Seed of all random numbers [default: as in the scenario]
+    #[arg(long, value_name = "S", value_parser = whole)]
+    pub(crate) seed: Option<u64>,
+
+    /// Form of the output [default: by the extension of the file; csv on standard output]
+    #[arg(long, value_name = "FORMAT", value_parser = table_format())]
+    pub(crate) format: Option<TableFormat>,
+
+    /// File to write; - is standard output [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Replace the file if it is there
+    #[arg(long, requires = "output")]
+    pub(crate) force: bool,
+
+    /// Number of threads [default: one for each core]
+    #[arg(long, value_name = "T")]
+    pub(crate) threads: Option<usize>,
 }
 
 #[derive(Args, Debug)]
@@ -397,6 +446,14 @@ fn share(text: &str) -> Result<f64, String> {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
         _ => Err("it must lie between 0 and 1, or between 0% and 100%".to_owned()),
     }
+}
+
+/// The forms of tables, by their names.
+fn table_format() -> impl TypedValueParser<Value = TableFormat> {
+    let value = |format: TableFormat| PossibleValue::new(format.name()).help(format.meaning());
+    let names = PossibleValuesParser::new(TableFormat::ALL.map(value));
+    // Each of these is the name of one.
+    names.map(|name| TableFormat::named(&name).unwrap_or_default())
 }
 
 /// The help of `--models`.

@@ -21,6 +21,23 @@ Examples:
 Exit code: 0, for a run that failed as it did in the study too; 2 if there is no such run, if it is not
 what the table says, or if something could not be read or written.";
 
+pub(crate) const DRAW_EXAMPLES: &str = "\
+Examples:
+  gyradius draw my-vehicle.toml -n 1e6 -o draws.parquet
+      A million runs of each model, for pandas, polars or DuckDB
+  gyradius draw my-vehicle.toml -n 1000 --model proposed -o draws.npy
+      One model as a structured array, for numpy.load
+  gyradius draw -n 5
+      Five runs of each model of the built-in scenario, as CSV on the screen
+  gyradius draw my-vehicle.toml --first 1e6 -n 1e6 -o more.parquet
+      The next million
+  gyradius draw my-vehicle.toml -n 1e9 --format jsonl | my-simulator
+      One JSON object after the other, for a program of yours
+
+The same scenario, seed and runs give the same bytes on any number of threads. A file appears whole or not at all.
+
+Exit code: 0; 2 if something could not be read, drawn or written; 130 after an interrupt, 143 after SIGTERM.";
+
 pub(crate) const REPORT_EXAMPLES: &str = "\
 Examples:
   gyradius report /tmp/quick

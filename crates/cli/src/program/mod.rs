@@ -3,6 +3,7 @@
 mod args;
 mod check;
 mod compare;
+mod draw;
 mod examples;
 mod fit;
 mod model;
@@ -41,6 +42,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Report(arguments) => report::report(arguments),
         Command::Status(arguments) => status::status(arguments),
         Command::Replay(arguments) => replay::replay(arguments).map(done),
+        Command::Draw(arguments) => draw::draw(arguments),
         Command::Study(arguments) => study::study(arguments),
         Command::Compare(arguments) => compare::compare(arguments).map(done).map_err(Into::into),
         Command::Completions(arguments) => {
