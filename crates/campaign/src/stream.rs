@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// Runs of a block: many for all threads to have work, few for the first of them to be there soon.
-const BLOCK_RUNS: u64 = 1 << 15;
+const BLOCK_RUNS: u64 = 1 << 14;
 
 /// Does runs of a simulation on the threads that this is called in and hands them on, in run order, some ten thousand at
 /// a time; `more` is told of runs that are done. None are done after `stop` is set.

@@ -68,6 +68,8 @@ const PAYLOAD: [&str; 6] = [
     "attitude_deg = 0.1",
     "angular_velocity_rad_per_s = { covariance = [[1e-6, 5e-7, 0.0], [5e-7, 1e-6, 0.0], [0.0, 0.0, 4e-6]] }",
 ];
+/// The bit of the first of these.
+const PAYLOAD_MASS: u64 = 1;
 const STAGE: [&str; 2] = ["mass_percent = 60.0", "attitude_deg = 1.0"];
 const SPRING: [&str; 8] = [
     "stiffness_percent = 80.0",
@@ -228,25 +230,28 @@ fn only_what_is_drawn(run: &Row<'_>, names: &[String]) {
 #[test]
 fn neither_threads_nor_the_first_run_change_a_draw() {
     let shell = Shell::new();
-    fs::write(shell.path("s.toml"), scenario(u64::MAX)).unwrap();
+    fs::write(shell.path("s.toml"), scenario(PAYLOAD_MASS)).unwrap();
+    fs::write(shell.path("all.toml"), scenario(u64::MAX)).unwrap();
     for format in ["csv", "jsonl", "npy", "parquet"] {
-        let draw = |rest: &[&str]| {
-            shell.draw(&[&["s.toml", "--model", "proposed", "--format", format], rest].concat())
+        let draw = |rest: &[&str]| shell.draw(&[rest, &["--format", format]].concat());
+        let threads = |rest: &[&str]| {
+            let [one, three] =
+                ["1", "3"].map(|threads| draw(&[rest, &["--threads", threads]].concat()));
+            assert!(one == three, "{format}");
+            one
         };
-        let whole = draw(&["-n", "33000", "--threads", "1"]);
-        assert!(whole == draw(&["-n", "33000", "--threads", "3"]), "{format}");
-        if format == "parquet" {
-            continue;
-        }
-        let tail = draw(&["-n", "1000", "--first", "3.2e4", "--threads", "3"]);
+        threads(&["all.toml", "-n", "300"]);
+        let whole = threads(&["s.toml", "--model", "proposed", "-n", "17000"]);
+        let tail = draw(&["s.toml", "--model", "proposed", "-n", "1000", "--first", "1.6e4"]);
         let head = match format {
             "csv" => tail.iter().position(|byte| *byte == b'\n').unwrap() + 1,
             "jsonl" => 0,
-            // Its texts are as wide as they must be.
+            // The head says how many there are, and ends with the line.
+            "npy" => tail.iter().position(|byte| *byte == b'\n').unwrap() + 1,
+            // The head is at the end.
             _ => continue,
         };
-        assert!(whole.ends_with(&tail[head..]), "{format}");
-        assert_eq!(tail[head..].iter().filter(|byte| **byte == b'\n').count(), 1000);
+        assert!(tail.len() - head > 1000 * 20 * 8 && whole.ends_with(&tail[head..]), "{format}");
     }
     // Another seed draws others, and models stand one after the other.
     let csv =
@@ -338,7 +343,8 @@ fn files_are_whole_and_replace_nothing_unasked() {
         (&["--first", "9223372036854775807", "-n", "1"], "1 runs from run 9223372036854775807 on"),
         (&["nowhere.toml"], "cannot read nowhere.toml"),
         (&["--seed", "18446744073709551615"], "seed: 18446744073709551615"),
-        (&["-n", "-1"], "-n"),
+        (&["-n=-1"], "whole number"),
+        (&["--first=-1"], "whole number"),
         (&["-n", "few"], "whole number"),
         (&["--format", "xlsx"], "parquet"),
         (&["--force"], "--output"),

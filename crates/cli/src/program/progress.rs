@@ -16,8 +16,7 @@ pub(crate) fn show<T>(total: u64, what: &str, work: impl FnOnce(&(dyn Fn(u64) + 
     }
     let start = Instant::now();
     let result = work(&|done| {
-        // Counting each of thousands would cost more than the display is worth.
-        if (total < 4096 || done.is_multiple_of(64)) && start.elapsed() > PATIENCE {
+        if start.elapsed() > PATIENCE {
             bar.set_position(done);
         }
     });
