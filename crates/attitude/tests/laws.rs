@@ -358,3 +358,29 @@ fn any_generator_will_do() {
     paper().sample_into(&mut rng(1), &mut own);
     assert_eq!(batch, own);
 }
+
+/// Laws are equal if they are made alike, and differ if mean or covariance do, and so for what is made of them.
+#[test]
+fn laws_are_equal_as_they_are_made() {
+    let made = |angle: f64, variances: [f64; 4]| {
+        let mean = UnitQuaternion::from_euler_angles(angle, 0.1, 0.0);
+        let covariance = Matrix4::from_diagonal(&variances.into());
+        RadiallyConstrainedGaussian::new(mean, covariance).unwrap()
+    };
+    let all: Vec<_> = [0.0, 0.3]
+        .into_iter()
+        .flat_map(|angle| (0..4).map(move |i| (angle, i)))
+        .map(|(angle, i)| {
+            move || made(angle, std::array::from_fn(|j| if i == j { 0.02 } else { 0.01 }))
+        })
+        .collect();
+    for (i, a) in all.iter().enumerate() {
+        for (j, b) in all.iter().enumerate() {
+            let (a, b) = (a(), b());
+            // Whether a sampler has been set up plays no part.
+            let _: UnitQuaternion<f64> = a.sample(&mut ChaCha8Rng::seed_from_u64(1));
+            assert_eq!(a == b, i == j);
+            assert_eq!(MeanHalf::new(a) == MeanHalf::new(b), i == j);
+        }
+    }
+}

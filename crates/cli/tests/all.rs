@@ -11,4 +11,6 @@ mod killed;
 #[cfg(unix)]
 mod output;
 mod report;
+#[cfg(unix)]
+mod shards;
 mod shell;

@@ -20,6 +20,7 @@ mod record;
 mod shared;
 #[cfg(test)]
 mod tests;
+mod told;
 
 use std::{
     fmt, fs,
@@ -28,13 +29,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-pub use blocks::{Blocks, begun, missing_runs, told};
+pub use blocks::Blocks;
 use hidden::Hidden;
 use journal::{Journal, Left, Replacement};
 pub use manifest::{Block, MANIFEST, Manifest};
 use name::{Found, Name, look};
 use record::Record;
 pub use shared::Shared;
+pub use told::{begun, missing_runs, told};
 
 use crate::identity::Difference;
 

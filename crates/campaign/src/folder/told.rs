@@ -1,0 +1,71 @@
+//! What the files of a folder tell of a campaign, for those who only read: others may be at work there.
+
+use std::{fs, iter, ops::Range, path::Path};
+
+use super::{
+    Contents, FolderError, Problem, area::Area, blocks::published, hidden::Hidden, manifest::Block,
+};
+use crate::identity::Identity;
+
+/// The text from which the unfinished campaign in a folder was begun, if there is one.
+#[must_use]
+pub fn begun(place: &Path) -> Option<String> {
+    let area = Area::of(place);
+    area.identity().ok()??;
+    area.mark()
+}
+
+/// The blocks in a folder, as its files tell of them: those of a complete campaign, and those of one that is not. Nothing
+/// is read but what tells of them, and their files have the length that they should.
+///
+/// # Errors
+/// The files that tell of them cannot be read.
+pub fn told(
+    place: &Path,
+    contents: &Contents<'_>,
+    identity: &Identity,
+) -> Result<Vec<Block>, FolderError> {
+    let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
+    let (record, _) = Hidden::record_of(place, contents.what).map_err(failed)?;
+    let mut blocks = published(place, &record, identity);
+    let area = Area::of(place);
+    if area.identity().map_err(failed)?.is_some_and(|there| identity.difference(&there).is_none()) {
+        blocks.extend(area.recorded().map_err(failed)?);
+    }
+    blocks.retain(|block| {
+        let path = if block.published {
+            place.join(block.name())
+        } else {
+            area.path().join(&block.model).join(block.file())
+        };
+        fs::symlink_metadata(path).is_ok_and(|f| f.is_file() && f.len() == block.bytes)
+    });
+    blocks.sort_by(|a, b| {
+        (&a.model, a.first_run, !a.published).cmp(&(&b.model, b.first_run, !b.published))
+    });
+    blocks.dedup_by(|a, b| (&a.model, a.first_run) == (&b.model, b.first_run));
+    Ok(blocks)
+}
+
+/// The runs from 0 to below a number that are in none of these ranges, which are in order: in parts that no block of so
+/// many runs reaches beyond.
+#[must_use]
+pub fn missing_runs(
+    finished: impl IntoIterator<Item = Range<u64>>,
+    runs: u64,
+    block_runs: u64,
+) -> Vec<Range<u64>> {
+    let block_runs = block_runs.max(1);
+    let mut missing = Vec::new();
+    let mut next = 0;
+    for done in finished.into_iter().chain(iter::once(runs..runs)) {
+        while next < done.start.min(runs) {
+            let end = (next / block_runs).saturating_add(1).saturating_mul(block_runs);
+            let end = end.min(done.start).min(runs);
+            missing.push(next..end);
+            next = end;
+        }
+        next = next.max(done.end);
+    }
+    missing
+}
