@@ -171,7 +171,7 @@ impl Blocks {
         let mut blocks = published(hidden.place(), record, &self.identity);
         let unfinished = self.area.recorded()?;
         blocks.extend(unfinished.clone());
-        self.verify(blocks, &hidden.join(DAMAGED), threads)?;
+        self.verify(&blocks, &hidden.join(DAMAGED), threads)?;
         self.limit(runs, force)?;
         if self.shard.is_none() {
             self.tidy(&unfinished)?;
@@ -182,7 +182,7 @@ impl Blocks {
     /// Takes up the blocks that are as they were written, and puts others aside.
     fn verify(
         &mut self,
-        blocks: Vec<Block>,
+        blocks: &[Block],
         aside: &Path,
         threads: &rayon::ThreadPool,
     ) -> Result<(), Problem> {
