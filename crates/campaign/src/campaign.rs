@@ -129,10 +129,10 @@ pub fn run_missing<S: Simulation>(
             if stopped() {
                 return Err(CampaignError::Stopped);
             }
-            let table = run_range(simulation, empty, runs, &|runs| more(runs))?;
-            if stopped() {
-                return Err(CampaignError::Stopped);
-            }
+            let table = run_range(simulation, empty, runs, &|runs| {
+                more(runs);
+                if stopped() { Err(CampaignError::Stopped) } else { Ok(()) }
+            })?;
             blocks.write(&table)?;
             if let Some(look) = look {
                 look(place, &table);

@@ -59,6 +59,7 @@
 mod campaign;
 mod cell;
 mod column;
+mod external;
 mod failure;
 mod folder;
 mod forecast;
@@ -79,6 +80,7 @@ mod values;
 pub use campaign::{Doing, Look, Plan, run_missing};
 pub use cell::Cell;
 pub use column::{Column, ColumnSummary, Kind};
+pub use external::{ExternalSimulation, Inputs, Program, ProgramError, Simulator, Told};
 pub use failure::Failure;
 pub use folder::{
     Block, Blocks, Contents, Folder, FolderError, MANIFEST, Manifest, Shared, begun, folder_of,

@@ -13,8 +13,8 @@ use crate::{
     table::{Table, TableError},
 };
 
-/// Runs that a thread takes at a time: many for the lanes of a batch, few for other threads to be idle
-/// at the end.
+/// Runs that a thread takes at a time if nothing is said: many for the lanes of a batch, few for other threads to be
+/// idle at the end.
 const TOGETHER: u64 = 64;
 /// Most threads that may be asked for.
 const MAX_THREADS: usize = 1024;
@@ -33,6 +33,12 @@ pub trait Simulation: Sync {
 
     /// A worker for a thread that begins.
     fn worker(&self) -> Self::Worker;
+
+    /// How many runs a thread takes at a time, at least one; 64 if nothing is said. A simulation whose runs take long
+    /// takes one: no thread is idle at the end then, and a campaign that is told to stop stops soon.
+    fn together(&self) -> u64 {
+        TOGETHER
+    }
 
     /// Does these runs and pushes a row for each of them, in their order. A run that fails is a row too, with
     /// what it has and its [`Failure`](crate::Failure).
@@ -63,29 +69,32 @@ pub fn run<S: Simulation>(
 ) -> Result<Table, CampaignError> {
     let empty = Table::new(model, 0, simulation.columns())?;
     let done = AtomicU64::new(0);
-    let more = |runs| progress(done.fetch_add(runs, Ordering::Relaxed) + runs);
+    let more = |runs| {
+        progress(done.fetch_add(runs, Ordering::Relaxed) + runs);
+        Ok(())
+    };
     threads.install(|| run_range(simulation, &empty, 0..runs, &more))
 }
 
 /// Does some runs of a simulation on the threads that this is called in. Rows come in run order; `more` is told of
-/// runs that are done.
+/// runs that are done, and can end it.
 pub(crate) fn run_range<S: Simulation>(
     simulation: &S,
     empty: &Table,
     runs: Range<u64>,
-    more: &(dyn Fn(u64) + Sync),
+    more: &(dyn Fn(u64) -> Result<(), CampaignError> + Sync),
 ) -> Result<Table, CampaignError> {
+    let together = simulation.together().max(1);
     let do_some = |worker: &mut S::Worker, first: u64, rows: &mut Table| {
-        let (last, before) = ((first + TOGETHER).min(runs.end), rows.len());
+        let (last, before) = (first.saturating_add(together).min(runs.end), rows.len());
         simulation.run(first..last, worker, rows)?;
         if (rows.len() - before) as u64 != last - first {
             return Err(CampaignError::Rows { runs: first..last, rows: rows.len() - before });
         }
-        more(last - first);
-        Ok(())
+        more(last - first)
     };
-    let number = (runs.end - runs.start).div_ceil(TOGETHER);
-    let groups = (0..number).into_par_iter().map(|group| runs.start + group * TOGETHER);
+    let number = (runs.end - runs.start).div_ceil(together);
+    let groups = (0..number).into_par_iter().map(|group| runs.start + group * together);
     // Groups that a thread does one after the other share a worker and a table.
     let begin = || Ok((simulation.worker(), None));
     let parts = groups.fold(begin, |part, first| {

@@ -28,13 +28,19 @@ pub fn stream<S: Simulation, E: From<CampaignError>>(
     mut take: impl FnMut(&Table) -> Result<(), E>,
 ) -> Result<(), E> {
     let empty = Table::new(model, runs.start, simulation.columns()).map_err(CampaignError::from)?;
+    let go_on = || match stop {
+        Some(stop) if stop.load(Ordering::Relaxed) => Err(CampaignError::Stopped),
+        Some(_) | None => Ok(()),
+    };
+    let more = |runs| {
+        more(runs);
+        go_on()
+    };
     let mut first = runs.start;
     while first < runs.end {
-        if stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
-            return Err(CampaignError::Stopped.into());
-        }
+        go_on()?;
         let last = runs.end.min(first.saturating_add(BLOCK_RUNS));
-        take(&run_range(simulation, &empty, first..last, more)?)?;
+        take(&run_range(simulation, &empty, first..last, &more)?)?;
         first = last;
     }
     Ok(())

@@ -3,4 +3,6 @@
 
 mod blocks;
 mod campaign;
+#[cfg(unix)]
+mod external;
 mod formats;

@@ -1,0 +1,20 @@
+//! A simulator of the user's own, in any language, as a simulation.
+
+mod answer;
+#[cfg(unix)]
+mod child;
+#[cfg(not(unix))]
+#[path = "elsewhere.rs"]
+mod child;
+mod program;
+mod simulation;
+mod simulator;
+mod tail;
+mod trouble;
+
+pub use program::{Program, ProgramError};
+pub use simulation::{ExternalSimulation, Inputs, Told};
+pub use simulator::Simulator;
+
+/// Most bytes of an answer: 1 MiB.
+const LIMIT: usize = 1 << 20;

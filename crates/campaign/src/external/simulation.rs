@@ -1,0 +1,237 @@
+//! Runs of a simulator: what is drawn for a run is sent, what comes back are columns beside it.
+
+use rand_chacha::rand_core::Rng;
+use serde::{Serialize, Serializer};
+use std::ops::Range;
+
+use super::{answer, child::Child, simulator::Simulator, trouble::Trouble};
+use crate::{
+    cell::Cell,
+    column::Column,
+    failure::Failure,
+    simulation::Simulation,
+    streams::Streams,
+    table::{Table, TableError},
+};
+
+/// What is drawn for a run and sent to the simulator.
+pub trait Inputs: Sync {
+    /// The columns of numbers that a run has, of which each has the name of the input; runs may have nothing in them.
+    fn columns(&self) -> Vec<Column>;
+
+    /// Pushes the numbers of a run, one for each column, in their order. What run i has must depend on i alone: draw it
+    /// from [`Streams`].
+    ///
+    /// # Errors
+    /// They cannot be drawn. Those that were pushed before stay in the row of the failed run.
+    fn draw(&self, run: u64, numbers: &mut Vec<f64>) -> Result<(), Failure>;
+}
+
+/// A simulator of the user's own as a [`Simulation`]: a command in any language that is sent the inputs of each run and
+/// answers with its outputs.
+///
+/// # Line by line
+/// A process for each thread is kept for many runs. For each run it reads one line of JSON from standard input,
+/// `{"run":17,"model":"proposed","seed":4503599627370496,"inputs":{"payload_mass_kg":812.3}}`, and writes one line to
+/// standard output, at once and of 1 MiB at most: `{"run":17,"outputs":{"tip_off_deg_per_s":0.4}}`, or
+/// `{"run":17,"error":"diverged at 3.2 s"}` if the run failed. `run` may be left out of the answer; with it, no
+/// answer is ever taken for that of another run. Messages belong on standard error. When standard input ends, the process
+/// should end, too.
+///
+/// # With files
+/// A [`Program::per_run`](super::Program::per_run) is started for each run in a temporary folder of its own,
+/// where it reads the same from `input.json` and writes the same to `output.json`.
+///
+/// # The seed
+/// The seed is for random numbers that the simulator draws itself. It is the first 64-bit word of the run's stream of the
+/// purpose “simulator seed” (see [`Streams`]), shifted right by 11 bits: a whole number below 2⁵³, which JavaScript and
+/// JSON readers that have nothing but doubles read exactly.
+///
+/// # What fails
+/// A run fails, and its row says why, if its inputs cannot be drawn or are not finite; if the answer does not come in
+/// time, is too long, no JSON, out of turn, or followed by more; if a declared output is missing, repeated or not a
+/// finite number, or one is not declared; if the process ends or closes its pipes; and if the simulator says so. A process
+/// that did not answer as agreed is killed with everything in its process group. If it had done runs before, the run is
+/// sent once more, to a process that is started for it alone, and what that does counts. So a run depends on its inputs
+/// alone, as long as the simulator itself keeps nothing from one run to the next, and a process that spoils itself spoils
+/// no other run.
+/// ```
+/// use gyradius_campaign::{
+///     Column, ExternalSimulation, Failure, Inputs, Program, Simulator, Streams, run, threads,
+/// };
+/// use rand::RngExt;
+///
+/// /// A mass between 90 kg and 110 kg.
+/// struct Mass(Streams);
+///
+/// impl Inputs for Mass {
+///     fn columns(&self) -> Vec<Column> {
+///         vec![Column::number("mass_kg", "kg", "Mass, as drawn.")]
+///     }
+///
+///     fn draw(&self, run: u64, numbers: &mut Vec<f64>) -> Result<(), Failure> {
+///         numbers.push(self.0.run(run).random_range(90.0..110.0));
+///         Ok(())
+///     }
+/// }
+///
+/// # if cfg!(unix) {
+/// // A simulator in the shell, which answers the same every time.
+/// let answer = r#"while read -r line; do echo '{"outputs":{"speed_m_per_s":2.5}}'; done"#;
+/// let command = ["sh", "-c", answer].map(str::to_owned);
+/// let simulator = Simulator::start(Program::new(&command, ".".as_ref())?)?;
+/// let speed = Column::number("speed_m_per_s", "m/s", "Speed at the end.");
+/// let mass = Mass(Streams::new(7, "any", "mass"));
+/// let simulation = ExternalSimulation::new(&simulator, 7, "any", mass, vec![speed]);
+/// let table = run(&simulation, "any", 100, &threads(Some(2))?, &|_| {})?;
+/// assert_eq!(table.values("speed_m_per_s"), Some(vec![2.5; 100]));
+/// # }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct ExternalSimulation<'a, I> {
+    simulator: &'a Simulator,
+    model: String,
+    seeds: Streams,
+    inputs: I,
+    /// The columns of the inputs, and then those of the outputs.
+    columns: Vec<Column>,
+    drawn: usize,
+}
+
+/// What was told to and by a simulator in one run.
+#[derive(Clone, Debug)]
+pub struct Told {
+    /// The line or the file that was sent; none if the inputs cannot be sent.
+    pub request: Option<String>,
+    /// The answer as it came, if one came.
+    pub answer: Option<String>,
+    /// The outputs in the order in which they are declared, or why there are none.
+    pub outputs: Result<Vec<f64>, Failure>,
+}
+
+/// What is sent for a run.
+#[derive(Serialize)]
+struct Request<'a> {
+    run: u64,
+    model: &'a str,
+    seed: u64,
+    inputs: Named<'a>,
+}
+
+/// Numbers by the names of their columns.
+struct Named<'a>(&'a [Column], &'a [f64]);
+
+impl<'a, I: Inputs> ExternalSimulation<'a, I> {
+    /// Runs of a simulator under a model in a campaign with a seed: what is drawn and sent, and the outputs that it
+    /// answers with, which are numbers.
+    pub fn new(
+        simulator: &'a Simulator,
+        seed: u64,
+        model: &str,
+        inputs: I,
+        outputs: Vec<Column>,
+    ) -> Self {
+        let mut columns = inputs.columns();
+        let drawn = columns.len();
+        columns.extend(outputs);
+        let seeds = Streams::new(seed, model, "simulator seed");
+        Self { simulator, model: model.to_owned(), seeds, inputs, columns, drawn }
+    }
+
+    /// Does a run alone, in a process that is started for it, and tells what was said.
+    #[must_use]
+    pub fn replay(&self, run: u64) -> Told {
+        let mut numbers = Vec::new();
+        let request = match self.request(run, &mut numbers) {
+            Ok(request) => request,
+            Err(failure) => return Told { request: None, answer: None, outputs: Err(failure) },
+        };
+        let told = std::cell::RefCell::new(None);
+        let outputs = self.simulator.ask(&request, &mut None, |answer| {
+            *told.borrow_mut() = Some(String::from_utf8_lossy(answer).into_owned());
+            answer::read(answer, run, &self.columns[self.drawn..])
+        });
+        Told {
+            request: Some(String::from_utf8_lossy(&request).trim_end().to_owned()),
+            answer: told.into_inner(),
+            outputs: outputs.map_err(Trouble::failure),
+        }
+    }
+
+    /// The line that is sent for a run, and the numbers in it, which are there as far as they could be drawn.
+    fn request(&self, run: u64, numbers: &mut Vec<f64>) -> Result<Vec<u8>, Failure> {
+        self.inputs.draw(run, numbers)?;
+        let columns = &self.columns[..self.drawn];
+        if let Some((column, value)) =
+            columns.iter().zip(&*numbers).find(|(_, value)| !value.is_finite())
+        {
+            let name = column.name().to_owned();
+            return Err(Trouble::Input { name, value: *value }.failure());
+        }
+        let seed = self.seeds.run(run).next_u64() >> 11;
+        let inputs = Named(columns, numbers);
+        let request = Request { run, model: &self.model, seed, inputs };
+        let mut line =
+            serde_json::to_vec(&request).map_err(|error| Trouble::Files(error.into()).failure())?;
+        line.push(b'\n');
+        Ok(line)
+    }
+
+    fn outputs(
+        &self,
+        run: u64,
+        numbers: &mut Vec<f64>,
+        kept: &mut Option<Child>,
+    ) -> Result<Vec<f64>, Failure> {
+        let request = self.request(run, numbers)?;
+        let read = |answer: &[u8]| answer::read(answer, run, &self.columns[self.drawn..]);
+        self.simulator.ask(&request, kept, read).map_err(Trouble::failure)
+    }
+}
+
+impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
+    /// Processes are the simulator's: a thread would start one for every few runs.
+    type Worker = ();
+
+    fn columns(&self) -> Vec<Column> {
+        self.columns.clone()
+    }
+
+    fn worker(&self) {}
+
+    fn together(&self) -> u64 {
+        1
+    }
+
+    fn run(&self, runs: Range<u64>, (): &mut (), rows: &mut Table) -> Result<(), TableError> {
+        let mut kept = self.simulator.take();
+        let mut numbers = Vec::with_capacity(self.drawn);
+        for run in runs {
+            numbers.clear();
+            let (outputs, failure) = match self.outputs(run, &mut numbers, &mut kept) {
+                Ok(outputs) => (outputs, None),
+                Err(failure) => (Vec::new(), Some(failure)),
+            };
+            // Too many numbers are refused by the table, too few of a run that did not fail too.
+            let missing = |all: usize, there: usize| {
+                let missing = if failure.is_some() { all.saturating_sub(there) } else { 0 };
+                std::iter::repeat_n(Cell::Null, missing)
+            };
+            let drawn = numbers.iter().map(|number| Cell::Number(*number));
+            let cells = drawn
+                .chain(missing(self.drawn, numbers.len()))
+                .chain(outputs.iter().map(|number| Cell::Number(*number)))
+                .chain(missing(self.columns.len() - self.drawn, outputs.len()));
+            rows.push(failure.clone(), cells)?;
+        }
+        self.simulator.keep(kept);
+        Ok(())
+    }
+}
+
+impl Serialize for Named<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(Column::name).zip(self.1))
+    }
+}

@@ -1,0 +1,231 @@
+//! What can go wrong between gyradius and a simulator in one run.
+
+use std::{io, process::ExitStatus, time::Duration};
+
+use super::tail::shown;
+use crate::failure::Failure;
+
+/// Characters of an answer, or of its error, that are told.
+const TOLD: usize = 500;
+
+/// What went wrong in one run.
+#[derive(Debug)]
+pub(super) enum Trouble {
+    /// An input has no number that can be sent.
+    Input { name: String, value: f64 },
+    /// The command cannot be started.
+    Start(io::Error),
+    /// The temporary folder of a run cannot be made, written or read.
+    Files(io::Error),
+    /// Nothing came in time.
+    Timeout { timeout: Duration, last_line: Option<String> },
+    /// The process ended by itself.
+    Ended { status: ExitStatus, last_line: Option<String> },
+    /// The process closed standard input or output and did not end.
+    Closed { last_line: Option<String> },
+    /// The answer has more bytes than a line may have.
+    TooLong { limit: usize },
+    /// There is more after the answer, or there was something before the run was sent.
+    Twice { rest: Vec<u8> },
+    /// The answer came before the run was sent whole, or is of another run.
+    OutOfTurn { answered: Option<u64> },
+    /// The process ended well and left no answer.
+    NoFile,
+    /// The answer cannot be read.
+    NotJson { problem: String, line: Vec<u8> },
+    /// A declared output is not in the answer.
+    Missing { output: String },
+    /// An output is in the answer more than once.
+    Repeated { output: String },
+    /// An output is in the answer that is not declared.
+    Unknown { output: String },
+    /// An output is not a finite number.
+    NotFinite { output: Option<String>, value: String },
+    /// The answer has both outputs and an error, or neither.
+    OutputsOrError,
+    /// The simulator says that the run failed.
+    Error { text: String },
+}
+
+impl Trouble {
+    /// Whether this is an answer to the run that was asked for, after which the process can be asked on.
+    pub(super) fn is_an_answer(&self) -> bool {
+        match self {
+            Self::Missing { .. }
+            | Self::Repeated { .. }
+            | Self::Unknown { .. }
+            | Self::NotFinite { .. }
+            | Self::OutputsOrError
+            | Self::Error { .. } => true,
+            Self::Input { .. }
+            | Self::Start(_)
+            | Self::Files(_)
+            | Self::Timeout { .. }
+            | Self::Ended { .. }
+            | Self::Closed { .. }
+            | Self::TooLong { .. }
+            | Self::Twice { .. }
+            | Self::OutOfTurn { .. }
+            | Self::NoFile
+            | Self::NotJson { .. } => false,
+        }
+    }
+
+    /// The kind, which has no numbers, and the message of the failed run.
+    pub(super) fn failure(self) -> Failure {
+        let after = |last_line: Option<String>| {
+            last_line
+                .map(|line| format!("; its last line on standard error: {line}"))
+                .unwrap_or_default()
+        };
+        let (kind, message) = match self {
+            Self::Input { name, value } => (
+                "an input is not finite",
+                format!("the input `{name}` is {value}, which is not sent"),
+            ),
+            Self::Start(error) => (
+                "the simulator cannot be started",
+                format!("the simulator cannot be started: {error}"),
+            ),
+            Self::Files(error) => (
+                "the folder of a run",
+                format!("the temporary folder of the run cannot be used: {error}"),
+            ),
+            Self::Timeout { timeout, last_line } => (
+                "no answer in time",
+                format!("no answer within {} s{}", timeout.as_secs_f64(), after(last_line)),
+            ),
+            Self::Ended { status, last_line } => (
+                "the simulator ended",
+                format!("the simulator ended with {status} before it answered{}", after(last_line)),
+            ),
+            Self::Closed { last_line } => (
+                "the simulator closed its pipes",
+                format!(
+                    "the simulator closed standard input or output before it answered{}",
+                    after(last_line)
+                ),
+            ),
+            Self::TooLong { limit } => {
+                ("the answer is too long", format!("the answer has more than {limit} bytes"))
+            }
+            Self::Twice { rest } => (
+                "more than one answer",
+                format!(
+                    "after the answer, standard output has more: `{}`; messages belong on standard error",
+                    shown(&rest, 80)
+                ),
+            ),
+            Self::OutOfTurn { answered: Some(run) } => {
+                ("an answer out of turn", format!("the answer is that of run {run}"))
+            }
+            Self::OutOfTurn { answered: None } => {
+                ("an answer out of turn", "the answer came before the run was read".to_owned())
+            }
+            Self::NoFile => (
+                "no `output.json`",
+                "the simulator ended without an error and left no file `output.json`".to_owned(),
+            ),
+            Self::NotJson { problem, line } => (
+                "the answer is not as agreed",
+                format!(
+                    "the answer is not a JSON object as agreed: {problem}: `{}`; messages belong on standard error",
+                    shown(&line, 80)
+                ),
+            ),
+            Self::Missing { output } => {
+                ("an output is missing", format!("the output `{output}` is not in the answer"))
+            }
+            Self::Repeated { output } => (
+                "an output is repeated",
+                format!("the output `{output}` is in the answer more than once"),
+            ),
+            Self::Unknown { output } => (
+                "an output is not declared",
+                format!(
+                    "the answer has an output `{}`, which is not declared",
+                    shown(output.as_bytes(), 80)
+                ),
+            ),
+            Self::NotFinite { output, value } => {
+                let of = output
+                    .map_or("an output".to_owned(), |output| format!("the output `{output}`"));
+                (
+                    "an output is not a finite number",
+                    format!("{of} is not a finite number: {value}"),
+                )
+            }
+            Self::OutputsOrError => (
+                "neither outputs nor an error",
+                "the answer must have either `outputs` or `error`".to_owned(),
+            ),
+            Self::Error { text } => {
+                let text = shown(text.as_bytes(), TOLD);
+                return Failure::new(
+                    format!("simulator: {}", without_numbers(&text)),
+                    format!("simulator: {text}"),
+                );
+            }
+        };
+        Failure::new(kind, message)
+    }
+}
+
+/// A text with `#` for every number in it, so that texts that differ in numbers alone are counted together.
+fn without_numbers(text: &str) -> String {
+    let mut kind = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        // The sign and the point before a number belong to it, if no word ends there.
+        let head = rest[..start].trim_end_matches(['-', '+', '.']);
+        let own = head.is_empty() || head.ends_with(|c: char| !c.is_alphanumeric());
+        kind.push_str(if own { head } else { &rest[..start] });
+        kind.push('#');
+        rest = &rest[start..];
+        let digits =
+            |text: &str| text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        rest = &rest[digits(rest)..];
+        if let Some(after) = rest.strip_prefix('.').filter(|after| digits(after) > 0) {
+            rest = &after[digits(after)..];
+        }
+        if let Some(after) = rest.strip_prefix(['e', 'E']) {
+            let after = after.strip_prefix(['-', '+']).unwrap_or(after);
+            if digits(after) > 0 {
+                rest = &after[digits(after)..];
+            }
+        }
+    }
+    kind + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Whatever the numbers in a text are, its kind is the same and has none.
+        #[test]
+        fn kinds_have_no_numbers(
+            words in prop::collection::vec("[a-df-z ]{1,8}: ", 1..5),
+            numbers in prop::collection::vec((any::<f64>(), any::<f64>()), 5),
+        ) {
+            let text = |pick: fn(&(f64, f64)) -> f64, exponent: bool| {
+                let parts = words.iter().zip(&numbers).map(|(word, pair)| {
+                    let number = Some(pick(pair)).filter(|x| x.is_finite()).unwrap_or(-1.5);
+                    if exponent { format!("{word}{number:e} ") } else { format!("{word}{number:.3} ") }
+                });
+                without_numbers(&parts.collect::<String>())
+            };
+            let kind = text(|pair| pair.0, false);
+            prop_assert!(!kind.contains(|c: char| c.is_ascii_digit()));
+            prop_assert_eq!(&kind, &text(|pair| pair.1, false));
+            prop_assert_eq!(&kind, &text(|pair| pair.1, true));
+        }
+
+        #[test]
+        fn any_text_has_a_kind(text in any::<String>()) {
+            prop_assert!(!without_numbers(&text).contains(|c: char| c.is_ascii_digit()));
+        }
+    }
+}
