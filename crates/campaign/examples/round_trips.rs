@@ -19,8 +19,8 @@ impl Inputs for Twenty {
         (0..20).map(|i| Column::number(format!("x{i}"), "1", "A number.")).collect()
     }
 
-    fn draw(&self, run: u64, numbers: &mut Vec<f64>) -> Result<(), Failure> {
-        numbers.extend((0..20_u32).map(|i| (run as f64 + f64::from(i)).sqrt()));
+    fn draw(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<(), Failure> {
+        numbers.extend((0..20_u32).map(|i| Some((run as f64 + f64::from(i)).sqrt())));
         Ok(())
     }
 }

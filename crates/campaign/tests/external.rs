@@ -26,7 +26,7 @@ impl Inputs for Drawn {
         own.chain((0..self.more).map(|i| format!("more {i}"))).map(column).collect()
     }
 
-    fn draw(&self, run: u64, numbers: &mut Vec<f64>) -> Result<(), Failure> {
+    fn draw(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<(), Failure> {
         let mut rng = self.streams.run(run);
         let x = loop {
             let x = f64::from_bits(rng.next_u64());
@@ -34,8 +34,8 @@ impl Inputs for Drawn {
                 break x;
             }
         };
-        numbers.extend([x, f64::from(u8::from(self.mischief.contains(&run)))]);
-        numbers.extend((0..self.more).map(|_| rng.random::<f64>()));
+        numbers.extend([Some(x), Some(f64::from(u8::from(self.mischief.contains(&run))))]);
+        numbers.extend((0..self.more).map(|_| Some(rng.random::<f64>())));
         Ok(())
     }
 }
@@ -289,11 +289,15 @@ fn inputs_that_cannot_be_sent_fail() {
             ["a", "b"].into_iter().map(|name| Column::number(name, "1", "Odd.")).collect()
         }
 
-        fn draw(&self, run: u64, numbers: &mut Vec<f64>) -> Result<(), Failure> {
-            numbers.push(1.5);
+        fn draw(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<(), Failure> {
+            if run == 3 {
+                numbers.extend([None, Some(0.25)]);
+                return Ok(());
+            }
+            numbers.push(Some(1.5));
             match run {
-                0 => numbers.push(f64::NAN),
-                1 => numbers.push(f64::INFINITY),
+                0 => numbers.push(Some(f64::NAN)),
+                1 => numbers.push(Some(f64::INFINITY)),
                 _ => return Err(Failure::new("no body", "no body after 3 draws")),
             }
             Ok(())
@@ -303,6 +307,9 @@ fn inputs_that_cannot_be_sent_fail() {
     let simulator = simulator("", false, 60.0);
     let simulation = ExternalSimulation::new(&simulator, 1, "any", Odd, outputs());
     let table = run(&simulation, "any", 3, &threads(Some(1)).unwrap(), &|_| {}).unwrap();
+    // What a run does not have is not sent.
+    let told = simulation.replay(3);
+    assert!(told.request.unwrap().ends_with(r#""inputs":{"b":0.25}}"#));
     let kinds: Vec<_> = table.failures().map(|(_, failure)| failure.kind()).collect();
     assert_eq!(kinds, ["an input is not finite", "an input is not finite", "no body"]);
     assert_eq!(table.values("a"), Some(vec![1.5; 3]));

@@ -19,12 +19,12 @@ pub trait Inputs: Sync {
     /// The columns of numbers that a run has, of which each has the name of the input; runs may have nothing in them.
     fn columns(&self) -> Vec<Column>;
 
-    /// Pushes the numbers of a run, one for each column, in their order. What run i has must depend on i alone: draw it
-    /// from [`Streams`].
+    /// Pushes the numbers of a run, one for each column, in their order; none for what the run does not have, which is not
+    /// sent. What run i has must depend on i alone: draw it from [`Streams`].
     ///
     /// # Errors
     /// They cannot be drawn. Those that were pushed before stay in the row of the failed run.
-    fn draw(&self, run: u64, numbers: &mut Vec<f64>) -> Result<(), Failure>;
+    fn draw(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<(), Failure>;
 }
 
 /// A simulator of the user's own as a [`Simulation`]: a command in any language that is sent the inputs of each run and
@@ -69,8 +69,8 @@ pub trait Inputs: Sync {
 ///         vec![Column::number("mass_kg", "kg", "Mass, as drawn.")]
 ///     }
 ///
-///     fn draw(&self, run: u64, numbers: &mut Vec<f64>) -> Result<(), Failure> {
-///         numbers.push(self.0.run(run).random_range(90.0..110.0));
+///     fn draw(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<(), Failure> {
+///         numbers.push(Some(self.0.run(run).random_range(90.0..110.0)));
 ///         Ok(())
 ///     }
 /// }
@@ -120,7 +120,7 @@ struct Request<'a> {
 }
 
 /// Numbers by the names of their columns.
-struct Named<'a>(&'a [Column], &'a [f64]);
+struct Named<'a>(&'a [Column], &'a [Option<f64>]);
 
 impl<'a, I: Inputs> ExternalSimulation<'a, I> {
     /// Runs of a simulator under a model in a campaign with a seed: what is drawn and sent, and the outputs that it
@@ -160,14 +160,14 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
     }
 
     /// The line that is sent for a run, and the numbers in it, which are there as far as they could be drawn.
-    fn request(&self, run: u64, numbers: &mut Vec<f64>) -> Result<Vec<u8>, Failure> {
+    fn request(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<Vec<u8>, Failure> {
         self.inputs.draw(run, numbers)?;
         let columns = &self.columns[..self.drawn];
-        if let Some((column, value)) =
-            columns.iter().zip(&*numbers).find(|(_, value)| !value.is_finite())
-        {
+        let mut sent =
+            columns.iter().zip(&*numbers).filter_map(|(column, x)| Some((column, (*x)?)));
+        if let Some((column, value)) = sent.find(|(_, value)| !value.is_finite()) {
             let name = column.name().to_owned();
-            return Err(Trouble::Input { name, value: *value }.failure());
+            return Err(Trouble::Input { name, value }.failure());
         }
         let seed = self.seeds.run(run).next_u64() >> 11;
         let inputs = Named(columns, numbers);
@@ -181,7 +181,7 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
     fn outputs(
         &self,
         run: u64,
-        numbers: &mut Vec<f64>,
+        numbers: &mut Vec<Option<f64>>,
         kept: &mut Option<Child>,
     ) -> Result<Vec<f64>, Failure> {
         let request = self.request(run, numbers)?;
@@ -218,7 +218,7 @@ impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
                 let missing = if failure.is_some() { all.saturating_sub(there) } else { 0 };
                 std::iter::repeat_n(Cell::Null, missing)
             };
-            let drawn = numbers.iter().map(|number| Cell::Number(*number));
+            let drawn = numbers.iter().map(|number| Cell::from(*number));
             let cells = drawn
                 .chain(missing(self.drawn, numbers.len()))
                 .chain(outputs.iter().map(|number| Cell::Number(*number)))
@@ -232,6 +232,8 @@ impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
 
 impl Serialize for Named<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(Column::name).zip(self.1))
+        let named = self.0.iter().zip(self.1);
+        let there = named.filter_map(|(column, number)| Some((column.name(), (*number)?)));
+        serializer.collect_map(there)
     }
 }
