@@ -265,13 +265,13 @@ fn damage(path: &Path, byte: &prop::sample::Index, how: u8) {
 }
 
 /// The runs in a file.
-fn range(path: &PathBuf) -> Range<u64> {
+fn range(path: &Path) -> Range<u64> {
     let (first, last) = path.file_stem().unwrap().to_str().unwrap().split_once('-').unwrap();
     first.parse().unwrap()..last.parse::<u64>().unwrap() + 1
 }
 
 /// How many there are.
-fn size(path: &PathBuf) -> u64 {
+fn size(path: &Path) -> u64 {
     range(path).end - range(path).start
 }
 
@@ -375,7 +375,7 @@ proptest! {
                     // It does again what is gone or not of its length, if that is its own.
                     broken.retain(|path, bytes| fs::read(path).ok().as_ref() != Some(bytes));
                     let sound = |path: &&PathBuf| !broken.contains_key(*path);
-                    finished = campaign.files().iter().filter(sound).map(size).sum();
+                    finished = campaign.files().iter().filter(sound).map(|path| size(path)).sum();
                     continue;
                 }
                 Event::Stopped(after) => Some(after),
@@ -384,7 +384,7 @@ proptest! {
             // A block is damaged if no sound file holds it.
             let name = |path: &PathBuf| path.file_name().unwrap().to_owned();
             let all = campaign.files();
-            let sound: Vec<_> = all.iter().filter(|path| !broken.contains_key(*path)).map(range).collect();
+            let sound: Vec<_> = all.iter().filter(|path| !broken.contains_key(*path)).map(|path| range(path)).collect();
             let lost = |path: &&PathBuf| !sound.iter().any(|runs| runs.contains(&range(path).start));
             let damaged: BTreeSet<_> = broken.keys().filter(lost).map(name).collect();
             match campaign.command(runs, stop, false) {
@@ -404,7 +404,7 @@ proptest! {
                 path.parent().unwrap().ends_with("runs/cheap") && fs::read(path).ok().as_ref() != Some(bytes)
             });
             let sound = |path: &&PathBuf| !broken.contains_key(*path);
-            finished = campaign.files().iter().filter(sound).map(size).sum();
+            finished = campaign.files().iter().filter(sound).map(|path| size(path)).sum();
         }
         // Once more: nothing is left to do.
         let done = campaign.command(runs, None, false).unwrap();

@@ -25,7 +25,7 @@ use super::{
     name::{Found, Name, hex, look},
     record::Record,
     shared::Shared,
-    told::missing_runs,
+    told::{missing_runs, published},
     unobstructed,
 };
 use crate::{
@@ -64,7 +64,7 @@ impl Folder<'_> {
     /// The blocks of a campaign of so many runs a model that are finished, each of which was read and is as it was
     /// written; those that are not, are put aside. `force` drops the blocks of another campaign that was not
     /// completed, and those that go beyond the runs. `mark` is a text from which the campaign can be gone on with: see
-    /// [`begun`].
+    /// [`begun`](crate::begun).
     ///
     /// # Errors
     /// There are blocks of another campaign, or they cannot be read or put aside.
@@ -413,19 +413,6 @@ impl Blocks {
         // Nothing is half done with the lock in hand.
         self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
-}
-
-/// The blocks of a complete campaign of this identity, if the folder has one.
-pub(super) fn published(place: &Path, record: &Record, identity: &Identity) -> Vec<Block> {
-    let known =
-        |name: &str, sha: &str| Name::new(name).is_ok_and(|name| record.hash(&name) == Some(sha));
-    let unchanged = Name::new(MANIFEST).is_ok_and(|name| {
-        matches!(look(place, &name), Ok(Found::File { hash }) if record.hash(&name) == Some(&hash))
-    });
-    let manifest = Manifest::read(place).ok().filter(|_| unchanged);
-    let manifest = manifest.filter(|manifest| manifest.identity().difference(identity).is_none());
-    let blocks = manifest.into_iter().flat_map(Manifest::into_blocks);
-    blocks.filter(|block| block.is_sound() && known(&block.name(), &block.sha256)).collect()
 }
 
 /// Moves a block that is not as it was written out of the way.

@@ -3,7 +3,12 @@
 use std::{fs, iter, ops::Range, path::Path};
 
 use super::{
-    Contents, FolderError, Problem, area::Area, blocks::published, hidden::Hidden, manifest::Block,
+    Contents, FolderError, Problem,
+    area::Area,
+    hidden::Hidden,
+    manifest::{Block, MANIFEST, Manifest},
+    name::{Found, Name, look},
+    record::Record,
 };
 use crate::identity::Identity;
 
@@ -68,4 +73,17 @@ pub fn missing_runs(
         next = next.max(done.end);
     }
     missing
+}
+
+/// The blocks of a complete campaign of this identity, if the folder has one.
+pub(super) fn published(place: &Path, record: &Record, identity: &Identity) -> Vec<Block> {
+    let known =
+        |name: &str, sha: &str| Name::new(name).is_ok_and(|name| record.hash(&name) == Some(sha));
+    let unchanged = Name::new(MANIFEST).is_ok_and(|name| {
+        matches!(look(place, &name), Ok(Found::File { hash }) if record.hash(&name) == Some(&hash))
+    });
+    let manifest = Manifest::read(place).ok().filter(|_| unchanged);
+    let manifest = manifest.filter(|manifest| manifest.identity().difference(identity).is_none());
+    let blocks = manifest.into_iter().flat_map(Manifest::into_blocks);
+    blocks.filter(|block| block.is_sound() && known(&block.name(), &block.sha256)).collect()
 }
