@@ -1,6 +1,6 @@
 //! `gyradius draw`: the draws of a study without its runs, in every form.
 
-use gyradius_campaign::{Cell, Kind, Row, Table};
+use gyradius_campaign::{Cell, Column, Kind, Row, Table};
 use gyradius_study::{Options, Scenario, Study};
 use std::{
     collections::{BTreeSet, HashMap},
@@ -186,7 +186,7 @@ fn draws_are_what_the_runs_of_a_study_have() {
             let lines: Vec<_> = lines.records().map(Result::unwrap).collect();
             fs::write(shell.path("d.parquet"), draw("parquet")).unwrap();
             let drawn = empty_like(&table, &names).read_parquet(&shell.path("d.parquet")).unwrap();
-            let columns = drawn.columns().iter().map(gyradius_study::Column::name);
+            let columns = drawn.columns().iter().map(Column::name);
             assert!(columns.eq(names.iter()), "in the order of the run table: {names:?}");
             let json = String::from_utf8(draw("jsonl")).unwrap();
             let objects: Vec<HashMap<String, serde_json::Value>> =
