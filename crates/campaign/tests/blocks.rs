@@ -2,7 +2,7 @@
 
 use gyradius_campaign::{
     Cell, Column, Contents, Doing, Failure, Folder, Identity, Kind, MANIFEST, Manifest, Plan, Runs,
-    SampleSummary, Shard, Shared, Simulation, Streams, Surveys, Table, TableError, run,
+    SampleSummary, Shard, Shared, Simulation, Streams, Surveys, Table, TableError, begun, run,
     run_missing, threads,
 };
 use gyradius_statistics::Confidence;
@@ -431,6 +431,11 @@ fn another_campaign_is_refused() {
     ] {
         let refused = message(&other, runs);
         assert!(refused.contains(said), "{refused}");
+        assert_eq!(
+            begun(&place).as_deref(),
+            Some("1 300"),
+            "whoever goes on, goes on with what was begun"
+        );
         assert_eq!(campaign(1, 64).files(), kept);
     }
     // A file of the user's in the folder of blocks is none, and stays.

@@ -60,13 +60,11 @@ impl Area {
         }
     }
 
-    /// Makes the folder, if it is not there, and tells in it what the campaign is; `mark` is a text that tells the same to
-    /// those who go on.
+    /// Makes the folder, if it is not there, and tells in it what the campaign is.
     pub(super) fn begin(
         &self,
         hidden: &Hidden,
         identity: &Identity,
-        mark: &str,
         shard: Option<Shard>,
     ) -> Result<(), Problem> {
         match disk::create_folder(&self.0) {
@@ -74,23 +72,27 @@ impl Area {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error.into()),
         }
-        // The identity last: with it, the campaign is begun.
-        let identity = serde_json::to_string_pretty(identity)?;
-        for (name, text) in [(MARK, mark), (IDENTITY, &identity)] {
-            let path = self.0.join(name);
-            if fs::read(&path).is_ok_and(|there| there == text.as_bytes()) {
-                continue;
-            }
-            // Other shards write the same at the same time.
-            let shard = shard.map_or_else(String::new, |shard| format!(".{}", shard.name()));
-            let part = self.0.join(format!("{name}{shard}{PART}"));
-            disk::remove_file(&part)?;
-            disk::create_file(&part)?.write_all(text.as_bytes())?;
-            disk::sync_file(&part)?;
-            disk::replace_file(&part, &path)?;
-            disk::sync_folder(&self.0)?;
+        self.put(IDENTITY, &serde_json::to_string_pretty(identity)?, shard)
+    }
+
+    /// Tells those who go on how the campaign was begun, once it is certain that it goes on so.
+    pub(super) fn tell(&self, mark: &str, shard: Option<Shard>) -> Result<(), Problem> {
+        self.put(MARK, mark, shard)
+    }
+
+    fn put(&self, name: &str, text: &str, shard: Option<Shard>) -> Result<(), Problem> {
+        let path = self.0.join(name);
+        if fs::read(&path).is_ok_and(|there| there == text.as_bytes()) {
+            return Ok(());
         }
-        Ok(())
+        // Other shards write the same at the same time.
+        let shard = shard.map_or_else(String::new, |shard| format!(".{}", shard.name()));
+        let part = self.0.join(format!("{name}{shard}{PART}"));
+        disk::remove_file(&part)?;
+        disk::create_file(&part)?.write_all(text.as_bytes())?;
+        disk::sync_file(&part)?;
+        disk::replace_file(&part, &path)?;
+        Ok(disk::sync_folder(&self.0)?)
     }
 
     /// The text that tells how the campaign was begun, if it was.

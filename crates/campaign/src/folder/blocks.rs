@@ -77,8 +77,8 @@ impl Folder<'_> {
     ) -> Result<Blocks, FolderError> {
         let open = || {
             let (record, _) = self.hidden.record(self.contents.what)?;
-            let opened = Blocks::open(&self.hidden, (identity, mark), None, force)?;
-            opened.take_up(&self.hidden, &record, (runs, force), threads)
+            let opened = Blocks::open(&self.hidden, identity, None, force)?;
+            opened.take_up(&self.hidden, &record, (mark, runs, force), threads)
         };
         open().map_err(|problem| self.failed(problem))
     }
@@ -132,8 +132,8 @@ impl Shared {
     ) -> Result<Blocks, FolderError> {
         let open = || {
             let (record, _) = self.hidden.record(self.what)?;
-            let opened = Blocks::open(&self.hidden, (identity, mark), Some(shard), false)?;
-            opened.take_up(&self.hidden, &record, (runs, false), threads)
+            let opened = Blocks::open(&self.hidden, identity, Some(shard), false)?;
+            opened.take_up(&self.hidden, &record, (mark, runs, false), threads)
         };
         open().map_err(|problem| FolderError { path: self.place.clone(), problem })
     }
@@ -142,7 +142,7 @@ impl Shared {
 impl Blocks {
     fn open(
         hidden: &Hidden,
-        (identity, mark): (&Identity, &str),
+        identity: &Identity,
         shard: Option<Shard>,
         force: bool,
     ) -> Result<Self, Problem> {
@@ -153,19 +153,19 @@ impl Blocks {
             }
             area.clear()?;
         }
-        area.begin(hidden, identity, mark, shard)?;
+        area.begin(hidden, identity, shard)?;
         let (record, file) = area.record(shard)?;
         let state = Mutex::new(State { blocks: Vec::new(), record: file });
         let (place, identity) = (hidden.place().to_owned(), identity.clone());
         Ok(Self { place, area, identity, shard, record, state, damaged: Vec::new() })
     }
 
-    /// Takes up what was finished before.
+    /// Takes up what was finished before, and tells how the campaign goes on.
     fn take_up(
         mut self,
         hidden: &Hidden,
         record: &Record,
-        (runs, force): (u64, bool),
+        (mark, runs, force): (&str, u64, bool),
         threads: &rayon::ThreadPool,
     ) -> Result<Self, Problem> {
         let mut blocks = published(hidden.place(), record, &self.identity);
@@ -176,6 +176,7 @@ impl Blocks {
         if self.shard.is_none() {
             self.tidy(&unfinished)?;
         }
+        self.area.tell(mark, self.shard)?;
         Ok(self)
     }
 
