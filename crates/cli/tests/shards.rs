@@ -78,7 +78,7 @@ fn processes_share_a_study() {
 
     // Shard 1 has blocks 0, 3 and 6, of proposed, published and naive-matched, and 3 was killed before it had any.
     let refused = report(2);
-    assert!(refused.contains("there are no runs of the model naive yet"), "{refused}");
+    assert!(refused.contains("there are no runs of the model \"naive\" yet"), "{refused}");
     done(study("shared", &["--shard", "3/3"]), 0);
     let told = report(1);
     assert!(told.contains("missing: 616 of proposed (16384 to 16999)"), "{told}");
@@ -115,4 +115,38 @@ fn processes_share_a_study() {
     fs::remove_file(scratch.path().join("shared/report.html")).unwrap();
     done(study("shared", &[]), 0);
     assert!(content(&scratch.path().join("shared")) == content(&scratch.path().join("whole")));
+}
+
+/// A complete study that is extended in shards, and reported on before all of them are done, keeps its runs.
+#[test]
+fn a_report_of_part_of_an_extension_keeps_what_is_complete() {
+    let scratch = tempfile::tempdir().unwrap();
+    let done = |arguments: &[&str], code: i32| {
+        let output = gyradius(scratch.path(), arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(code), "{}", text(&output));
+        text(&output)
+    };
+    done(&["study", "--runs", "300", "--out", "here"], 0);
+    let complete = content(&scratch.path().join("here"));
+    done(&["study", "--runs", "400", "--out", "here", "--shard", "1/2"], 0);
+    for _ in 0..2 {
+        assert!(done(&["report", "here"], 1).contains("missing: 100 of published (300 to 399)"));
+        let now = content(&scratch.path().join("here"));
+        for (path, bytes) in complete
+            .iter()
+            .filter(|(path, _)| path.starts_with("runs") || path.ends_with("campaign.json"))
+        {
+            assert!(now.get(path) == Some(bytes), "{}", path.display());
+        }
+        let status = done(&["status", "here", "--json"], 1);
+        let status: serde_json::Value = serde_json::from_str(&status).unwrap();
+        let finished =
+            status["models"].as_array().unwrap().iter().map(|m| m["finished"].as_u64().unwrap());
+        assert_eq!(finished.collect::<Vec<_>>(), [400, 300, 400, 300]);
+    }
+    let told = done(&["study", "--runs", "400", "--out", "here"], 0);
+    assert!(told.contains("1400 of 1600 runs are finished already"), "{told}");
+    done(&["study", "--runs", "300", "--out", "alone"], 0);
+    done(&["study", "--runs", "400", "--out", "alone"], 0);
+    assert!(content(&scratch.path().join("here")) == content(&scratch.path().join("alone")));
 }

@@ -133,7 +133,6 @@ impl Study {
         let text = scenario.to_toml();
         let begun = (&identity(scenario), text.as_str());
         let blocks = folder.blocks(begun, scenario.runs(), options.force, &threads)?;
-        let _ = in_place.set(blocks.published());
         blocks.damaged().iter().for_each(|damage| say(Notice::Damaged(damage.clone())));
 
         let plan = plan(scenario, options, doing);
@@ -144,6 +143,9 @@ impl Study {
             folder.check_places(model.name(), &missing)?;
             left += count(&missing);
         }
+        // A complete study that is being extended stays one until all of the runs are there: its blocks and what tells of them.
+        let manifest = (doing == Doing::Nothing && left > 0).then(|| MANIFEST.to_owned());
+        let _ = in_place.set(blocks.published().into_iter().chain(manifest).collect());
         let of = scenario.runs() * models.len() as u64;
         if left == 0
             && let Some(study) = Self::finished(&folder, &text, &simulations, &blocks)?
@@ -161,7 +163,7 @@ impl Study {
             let look = |place: usize, block: &Table| looks[place].look(block);
             let runs = run_missing(&simulations, &blocks, plan, progress, Some(&look))?;
             if let Some(none) = runs.iter().find(|runs| runs.end() == 0) {
-                let problem = format!("there are no runs of the model {} yet", none.model());
+                let problem = format!("there are no runs of the model {:?} yet", none.model());
                 return Err(StudyError::Folder { path: place.clone(), problem });
             }
             let mut summary = judge(scenario, &models, looks, &runs)?;
