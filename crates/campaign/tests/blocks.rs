@@ -1,9 +1,9 @@
 //! Campaigns that are interrupted, extended, damaged and looked at again: always what one run of all would give.
 
 use gyradius_campaign::{
-    Cell, Column, Contents, Doing, Failure, Folder, Identity, Kind, MANIFEST, Manifest, Plan, Runs,
-    SampleSummary, Shard, Shared, Simulation, Streams, Surveys, Table, TableError, begun, run,
-    run_missing, threads,
+    Blocks, Cell, Column, Contents, Doing, Failure, Folder, Identity, Kind, Look, MANIFEST,
+    Manifest, Plan, Runs, SampleSummary, Shard, Shared, Simulation, Streams, Surveys, Table,
+    TableError, begun, run, run_missing, threads,
 };
 use gyradius_statistics::Confidence;
 use proptest::prelude::*;
@@ -113,9 +113,23 @@ impl Campaign {
         let mark = format!("{} {runs}", self.seed);
         let blocks = folder.blocks((&self.identity(), &mark), runs, shard, &pool);
         let blocks = blocks.map_err(|e| e.to_string())?;
+        let doing = Doing::Shard(shard);
+        let (done, simulated) = self.simulate(&pool, &blocks, runs, doing, stop_after, None);
+        done.map(|_| simulated)
+    }
+
+    /// Does what of a campaign is to be done, until so many runs were simulated, if at all; how many were.
+    fn simulate(
+        &self,
+        pool: &rayon::ThreadPool,
+        blocks: &Blocks,
+        runs: u64,
+        doing: Doing,
+        stop_after: Option<u64>,
+        look: Option<Look<'_>>,
+    ) -> (Result<Vec<Runs>, String>, u64) {
         let stop = AtomicBool::new(stop_after == Some(0));
-        let (block_runs, doing) = (self.block_runs, Doing::Shard(shard));
-        let plan = Plan { runs, block_runs, doing, stop: Some(&stop) };
+        let plan = Plan { runs, block_runs: self.block_runs, doing, stop: Some(&stop) };
         let simulations = [("cheap", Cheap::new(self.seed))];
         let simulation = &simulations[0].1;
         let progress = |_| {
@@ -123,9 +137,8 @@ impl Campaign {
                 stop_after.is_some_and(|most| simulation.done.load(Ordering::Relaxed) >= most);
             stop.fetch_or(enough, Ordering::Relaxed);
         };
-        let done = pool.install(|| run_missing(&simulations, &blocks, plan, &progress, None));
-        done.map_err(|e| e.to_string())?;
-        Ok(simulation.done.load(Ordering::Relaxed))
+        let done = pool.install(|| run_missing(&simulations, blocks, plan, &progress, look));
+        (done.map_err(|e| e.to_string()), simulation.done.load(Ordering::Relaxed))
     }
 
     /// One command that is stopped after so many runs, if at all.
@@ -142,25 +155,14 @@ impl Campaign {
             .map_err(|e| e.to_string())?;
         in_place.set(blocks.published()).unwrap();
         let damaged = blocks.damaged().to_vec();
-        let stop = AtomicBool::new(stop_after == Some(0));
-        let (block_runs, doing) = (self.block_runs, Doing::All);
-        let plan = Plan { runs, block_runs, doing, stop: Some(&stop) };
-        let simulations = [("cheap", Cheap::new(self.seed))];
-        let simulation = &simulations[0].1;
-        let progress = |_| {
-            let enough =
-                stop_after.is_some_and(|most| simulation.done.load(Ordering::Relaxed) >= most);
-            stop.fetch_or(enough, Ordering::Relaxed);
-        };
         let seen = Mutex::new(BTreeMap::new());
         let look = |_, block: &Table| {
             let before = seen.lock().unwrap().insert(block.first(), block.len() as u64);
             assert_eq!(before, None, "a block is looked at once");
         };
-        let done =
-            pool.install(|| run_missing(&simulations, &blocks, plan, &progress, Some(&look)));
-        let simulated = simulation.done.load(Ordering::Relaxed);
-        let done = done.inspect_err(|_| blocks.abandon()).map_err(|e| e.to_string())?;
+        let (done, simulated) =
+            self.simulate(&pool, &blocks, runs, Doing::All, stop_after, Some(&look));
+        let done = done.inspect_err(|_| blocks.abandon())?;
         let ends = |end, (first, len): (&u64, &u64)| (*first == end).then_some(first + len);
         assert_eq!(seen.into_inner().unwrap().iter().try_fold(0, ends), Some(runs));
         folder.adopt(&blocks, done[0].columns()).map_err(|e| e.to_string())?;

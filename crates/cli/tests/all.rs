@@ -11,6 +11,7 @@ mod killed;
 #[cfg(unix)]
 mod output;
 mod report;
+mod scratch;
 #[cfg(unix)]
 mod shards;
 mod shell;

@@ -6,33 +6,14 @@ use std::{
     collections::{BTreeSet, HashMap},
     fmt::Write as _,
     fs,
-    path::{Path, PathBuf},
-    process::{Command, Output, Stdio},
+    path::Path,
+    process::{Command, Stdio},
     time::Duration,
 };
-use tempfile::TempDir;
 
-struct Shell(TempDir);
+use crate::scratch::Scratch;
 
-impl Shell {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_gyradius"));
-        command.current_dir(self.0.path()).args(arguments).stdin(Stdio::null());
-        command
-    }
-
-    fn run(&self, arguments: &[&str]) -> Output {
-        self.command(arguments).output().unwrap()
-    }
-
+impl Scratch {
     /// What a draw that is done leaves on standard output.
     #[track_caller]
     fn draw(&self, arguments: &[&str]) -> Vec<u8> {
@@ -53,7 +34,7 @@ impl Shell {
     }
 
     fn names(&self) -> BTreeSet<String> {
-        let entries = fs::read_dir(self.0.path()).unwrap();
+        let entries = fs::read_dir(self.folder()).unwrap();
         entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
     }
 }
@@ -168,7 +149,7 @@ fn is_value_of(value: &serde_json::Value, cell: &Cell<'_>) -> bool {
 #[test]
 fn draws_are_what_the_runs_of_a_study_have() {
     const RUNS: &str = "70";
-    let shell = Shell::new();
+    let shell = Scratch::new();
     let (mut refused, mut sound) = (0, 0);
     for bits in subsets() {
         let text = scenario(bits);
@@ -229,7 +210,7 @@ fn only_what_is_drawn(run: &Row<'_>, names: &[String]) {
 /// The same bytes on any number of threads and beyond the end of a block; the runs from a number on are the last of all.
 #[test]
 fn neither_threads_nor_the_first_run_change_a_draw() {
-    let shell = Shell::new();
+    let shell = Scratch::new();
     fs::write(shell.path("s.toml"), scenario(PAYLOAD_MASS)).unwrap();
     fs::write(shell.path("all.toml"), scenario(u64::MAX)).unwrap();
     for format in ["csv", "jsonl", "npy", "parquet"] {
@@ -275,7 +256,7 @@ fn numpy_opens_arrays() {
     if !has.is_ok_and(|status| status.success()) {
         return;
     }
-    let shell = Shell::new();
+    let shell = Scratch::new();
     let script = "\
 import csv, math, sys, numpy
 array = numpy.load('d.npy', max_header_size=100000)
@@ -298,7 +279,7 @@ print('same', len(array), *array['status_kind'][:1])
             shell.draw(&["s.toml", "-n", runs, "-o", file, "--force"]);
         }
         let mut python = Command::new("python3");
-        let said = python.args(["-c", script]).current_dir(shell.0.path()).output().unwrap();
+        let said = python.args(["-c", script]).current_dir(shell.folder()).output().unwrap();
         let message = String::from_utf8_lossy(&said.stderr);
         assert!(said.status.success() && said.stdout.starts_with(b"same"), "{message}");
     }
@@ -307,7 +288,7 @@ print('same', len(array), *array['status_kind'][:1])
 /// Files appear whole, by the format of their extension, and replace nothing unasked.
 #[test]
 fn files_are_whole_and_replace_nothing_unasked() {
-    let shell = Shell::new();
+    let shell = Scratch::new();
     fs::write(shell.path("s.toml"), scenario(0)).unwrap();
     for (file, format) in [
         ("a.csv", "csv"),
@@ -369,7 +350,7 @@ fn files_are_whole_and_replace_nothing_unasked() {
 #[test]
 fn readers_and_screens_get_what_they_can_read() {
     use std::io::{BufRead, BufReader};
-    let shell = Shell::new();
+    let shell = Scratch::new();
     for format in ["csv", "jsonl", "parquet"] {
         let mut child = shell
             .command(&["draw", "-n", "1e12", "--format", format])
@@ -402,7 +383,7 @@ fn readers_and_screens_get_what_they_can_read() {
 #[cfg(unix)]
 #[test]
 fn an_interrupt_leaves_nothing() {
-    let shell = Shell::new();
+    let shell = Scratch::new();
     fs::write(shell.path("d.csv"), "mine").unwrap();
     for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
         let mut child = shell

@@ -2,13 +2,11 @@
 
 use std::{
     fs::{self, File},
-    path::{Path, PathBuf},
-    process::{Command, Output, Stdio},
+    path::Path,
+    process::Command,
 };
-use tempfile::TempDir;
 
-/// A scratch folder with a study, a table of samples, statements and a robot.
-struct Shell(TempDir);
+use crate::scratch::Scratch;
 
 const ROBOT: &str = r#"<robot name="r"><link name="base"><inertial><mass value="1"/>
 <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="9"/></inertial></link></robot>"#;
@@ -21,33 +19,18 @@ fn scenario() -> String {
     text[..models].replace("comparisons = []\n", "") + model
 }
 
-impl Shell {
-    fn new() -> Self {
-        let shell = Self(tempfile::tempdir().unwrap());
-        let tables = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tables");
-        for name in ["variants.csv", "payload.toml"] {
-            fs::copy(tables.join(name), shell.path(name)).unwrap();
-        }
-        fs::write(shell.path("robot.urdf"), ROBOT).unwrap();
-        fs::write(shell.path("scenario.toml"), scenario()).unwrap();
-        let output = shell.run(&["study", "--scenario", "scenario.toml", "--out", "here"]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        shell
+/// A folder with a study, a table of samples, statements and a robot.
+fn furnished() -> Scratch {
+    let shell = Scratch::new();
+    let tables = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tables");
+    for name in ["variants.csv", "payload.toml"] {
+        fs::copy(tables.join(name), shell.path(name)).unwrap();
     }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_gyradius"));
-        command.current_dir(self.0.path()).args(arguments).stdin(Stdio::null());
-        command
-    }
-
-    fn run(&self, arguments: &[&str]) -> Output {
-        self.command(arguments).output().unwrap()
-    }
+    fs::write(shell.path("robot.urdf"), ROBOT).unwrap();
+    fs::write(shell.path("scenario.toml"), scenario()).unwrap();
+    let output = shell.run(&["study", "--scenario", "scenario.toml", "--out", "here"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    shell
 }
 
 const VERBS: [&[&str]; 15] = [
@@ -71,7 +54,7 @@ const VERBS: [&[&str]; 15] = [
 /// A reader that has gone is no error, a full disk is one, and nothing panics.
 #[test]
 fn every_verb_bears_a_closed_pipe_and_a_full_disk() {
-    let shell = Shell::new();
+    let shell = furnished();
     for arguments in VERBS {
         let usual = shell.run(arguments);
         assert!(!usual.stdout.is_empty(), "{arguments:?}");
@@ -100,7 +83,7 @@ fn every_verb_bears_a_closed_pipe_and_a_full_disk() {
 /// Characters that command a terminal, or the order of what is shown, in whatever a user may write.
 #[test]
 fn nothing_commands_the_terminal_or_a_page() {
-    let shell = Shell::new();
+    let shell = furnished();
     let nasty = "\u{1b}[31m\u{9b}2J\u{202e}\u{2066}\u{7}\u{200f}";
     let harmless = |text: &[u8], said: &str| {
         let text = String::from_utf8(text.to_vec()).unwrap();
@@ -180,7 +163,7 @@ fn nothing_commands_the_terminal_or_a_page() {
 /// The share of failed runs decides the exit code, and nothing else.
 #[test]
 fn too_many_failures_are_exit_code_1() {
-    let shell = Shell::new();
+    let shell = furnished();
     // A horizon at which some runs have ended and others have not.
     let table = |horizon: f64, limit: &[&str]| {
         let horizon = format!("horizon_s = {horizon:?}");
@@ -234,7 +217,7 @@ fn too_many_failures_are_exit_code_1() {
 /// Whole numbers as people write them, with the same result.
 #[test]
 fn whole_numbers_have_many_forms() {
-    let shell = Shell::new();
+    let shell = furnished();
     let seed = |text: &str| {
         let arguments = ["study", "--scenario", "scenario.toml", "--out", "n", "--force", "--seed"];
         let output = shell.run(&[&arguments[..], &[text]].concat());
@@ -262,7 +245,7 @@ fn whole_numbers_have_many_forms() {
 /// What is no scenario is refused at once, whatever it is.
 #[test]
 fn only_regular_files_of_a_sensible_size_are_read() {
-    let shell = Shell::new();
+    let shell = furnished();
     assert!(Command::new("mkfifo").arg(shell.path("pipe")).status().unwrap().success());
     // A gigabyte that takes no room.
     File::create(shell.path("large.toml")).unwrap().set_len(1 << 30).unwrap();

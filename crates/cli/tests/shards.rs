@@ -3,65 +3,53 @@
 use std::{
     collections::BTreeMap,
     fs,
-    path::{Path, PathBuf},
+    path::Path,
     process::{Command, Output, Stdio},
 };
 
-fn gyradius(place: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_gyradius"));
-    command.current_dir(place).args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
-}
+use crate::scratch::{Scratch, files};
 
 fn text(output: &Output) -> String {
     String::from_utf8_lossy(&[output.stdout.as_slice(), &output.stderr].concat()).into_owned()
 }
 
-/// Every file below a folder with its content, but for the lock.
-fn content(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if !path.ends_with("lock") {
-                found
-                    .insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(path).unwrap());
-            }
-        }
-    }
-    found
+/// What the command says, which ends with this exit code.
+#[track_caller]
+fn done(mut command: Command, code: i32) -> String {
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(code), "{}", text(&output));
+    text(&output)
+}
+
+/// Every file of a study with its content, but for the lock.
+fn content(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = files(folder);
+    files.remove(".gyradius/lock");
+    files
 }
 
 /// Three processes, one of which is killed: what is there is told at every time, a report is made of part of the runs, and
 /// the study is the same to the byte as that of one process.
 #[test]
 fn processes_share_a_study() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = Scratch::new();
     // Two blocks of each of four models.
     let study = |out: &str, more: &[&str]| {
         let arguments = [&["study", "--runs", "17000", "--out", out], more].concat();
-        gyradius(scratch.path(), &arguments)
-    };
-    let done = |mut command: Command, code: i32| {
-        let output = command.output().unwrap();
-        assert_eq!(output.status.code(), Some(code), "{}", text(&output));
-        text(&output)
+        scratch.command(&arguments)
     };
     done(study("whole", &[]), 0);
 
-    let status = |code| done(gyradius(scratch.path(), &["status", "shared"]), code);
-    let report = |code| done(gyradius(scratch.path(), &["report", "shared"]), code);
+    let status = |code| done(scratch.command(&["status", "shared"]), code);
+    let report = |code| done(scratch.command(&["report", "shared"]), code);
     assert!(status(2).contains("it holds no study"));
-    let mut first = study("shared", &["--shard", "1/3"]).spawn().unwrap();
-    let mut third = study("shared", &["--shard", "3/3"]).spawn().unwrap();
+    let mut first = study("shared", &["--shard", "1/3"]).stdout(Stdio::null()).spawn().unwrap();
+    let mut third = study("shared", &["--shard", "3/3"]).stdout(Stdio::null()).spawn().unwrap();
     third.kill().unwrap();
     third.wait().unwrap();
     assert!(first.wait().unwrap().success());
 
-    let json = done(gyradius(scratch.path(), &["status", "shared", "--json"]), 1);
+    let json = done(scratch.command(&["status", "shared", "--json"]), 1);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let sum = |list: &str, field: &str| {
         json[list]
@@ -82,12 +70,9 @@ fn processes_share_a_study() {
     done(study("shared", &["--shard", "3/3"]), 0);
     let told = report(1);
     assert!(told.contains("missing: 616 of proposed (16384 to 16999)"), "{told}");
-    let page = fs::read_to_string(scratch.path().join("shared/report.html")).unwrap();
+    let page = fs::read_to_string(scratch.path("shared/report.html")).unwrap();
     assert!(page.contains("Not all runs are done."), "the page says so");
-    assert!(
-        !scratch.path().join("shared/runs").exists(),
-        "part of a study is not taken for all of it"
-    );
+    assert!(!scratch.path("shared/runs").exists(), "part of a study is not taken for all of it");
 
     // Whoever asks for something else is refused, and nothing is lost.
     assert!(done(study("shared", &["--seed", "5"]), 2).contains("seed is"));
@@ -101,42 +86,38 @@ fn processes_share_a_study() {
     assert!(status(1).contains("All runs are done."));
     report(0);
     assert!(status(0).contains("put together"));
-    assert!(content(&scratch.path().join("shared")) == content(&scratch.path().join("whole")));
+    assert!(content(&scratch.path("shared")) == content(&scratch.path("whole")));
 
     // Looking at it again changes nothing, and does nothing.
-    let before = fs::metadata(scratch.path().join("shared/summary.json")).unwrap();
+    let before = fs::metadata(scratch.path("shared/summary.json")).unwrap();
     done(study("shared", &[]), 0);
     done(study("shared", &["--shard", "1/3"]), 0);
     done(study("shared", &[]), 0);
-    let after = fs::metadata(scratch.path().join("shared/summary.json")).unwrap();
+    let after = fs::metadata(scratch.path("shared/summary.json")).unwrap();
     assert_eq!(before.modified().unwrap(), after.modified().unwrap());
-    assert!(content(&scratch.path().join("shared")) == content(&scratch.path().join("whole")));
+    assert!(content(&scratch.path("shared")) == content(&scratch.path("whole")));
     // What is gone is made again.
-    fs::remove_file(scratch.path().join("shared/report.html")).unwrap();
+    fs::remove_file(scratch.path("shared/report.html")).unwrap();
     done(study("shared", &[]), 0);
-    assert!(content(&scratch.path().join("shared")) == content(&scratch.path().join("whole")));
+    assert!(content(&scratch.path("shared")) == content(&scratch.path("whole")));
 }
 
 /// A complete study that is extended in shards, and reported on before all of them are done, keeps its runs.
 #[test]
 fn a_report_of_part_of_an_extension_keeps_what_is_complete() {
-    let scratch = tempfile::tempdir().unwrap();
-    let done = |arguments: &[&str], code: i32| {
-        let output = gyradius(scratch.path(), arguments).output().unwrap();
-        assert_eq!(output.status.code(), Some(code), "{}", text(&output));
-        text(&output)
-    };
+    let scratch = Scratch::new();
+    let done = |arguments: &[&str], code: i32| done(scratch.command(arguments), code);
     done(&["study", "--runs", "300", "--out", "here"], 0);
-    let complete = content(&scratch.path().join("here"));
+    let complete = content(&scratch.path("here"));
     done(&["study", "--runs", "400", "--out", "here", "--shard", "1/2"], 0);
     for _ in 0..2 {
         assert!(done(&["report", "here"], 1).contains("missing: 100 of published (300 to 399)"));
-        let now = content(&scratch.path().join("here"));
+        let now = content(&scratch.path("here"));
         for (path, bytes) in complete
             .iter()
-            .filter(|(path, _)| path.starts_with("runs") || path.ends_with("campaign.json"))
+            .filter(|(path, _)| path.starts_with("runs/") || *path == "campaign.json")
         {
-            assert!(now.get(path) == Some(bytes), "{}", path.display());
+            assert!(now.get(path) == Some(bytes), "{path}");
         }
         let status = done(&["status", "here", "--json"], 1);
         let status: serde_json::Value = serde_json::from_str(&status).unwrap();
@@ -148,5 +129,5 @@ fn a_report_of_part_of_an_extension_keeps_what_is_complete() {
     assert!(told.contains("1400 of 1600 runs are finished already"), "{told}");
     done(&["study", "--runs", "300", "--out", "alone"], 0);
     done(&["study", "--runs", "400", "--out", "alone"], 0);
-    assert!(content(&scratch.path().join("here")) == content(&scratch.path().join("alone")));
+    assert!(content(&scratch.path("here")) == content(&scratch.path("alone")));
 }
