@@ -1,9 +1,7 @@
 //! `gyradius draw`: what is drawn for the runs of a scenario, for other programs.
 
 use gyradius_formats::NewFile;
-use gyradius_study::{
-    CampaignError, Draw, DrawError, DrawOptions, FormatError, Scenario, TableFormat,
-};
+use gyradius_study::{CampaignError, Draw, DrawError, DrawOptions, FormatError, TableFormat};
 use std::{
     error::Error,
     fs,
@@ -12,19 +10,15 @@ use std::{
     process::ExitCode,
 };
 
-use crate::program::{args::DrawArgs, output::complain, progress, signals::Signals};
+use crate::program::{
+    args::DrawArgs, output::complain, progress, signals::Signals, study::scenario,
+};
 
 /// Runs the verb.
 pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
     let file = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
     let format = format(arguments, file)?;
-    let mut scenario = match &arguments.scenario {
-        Some(path) => Scenario::read(path)?,
-        None => Scenario::peck_2003()?,
-    };
-    if let Some(seed) = arguments.seed {
-        scenario = scenario.with_seed(seed)?;
-    }
+    let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
     let signals = Signals::watch()?;
     let options = DrawOptions {
         models: arguments.models.clone(),

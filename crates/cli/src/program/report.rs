@@ -11,11 +11,9 @@ use crate::program::{
     args::ReportArgs,
     output::print,
     replay::DEFAULT,
+    status::UNFINISHED,
     study::{answer, notice},
 };
-
-/// What the program returns if runs are missing.
-const UNFINISHED: u8 = 1;
 
 /// Runs the verb.
 pub(crate) fn report(arguments: &ReportArgs) -> Result<ExitCode, Box<dyn Error>> {

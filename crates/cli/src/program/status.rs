@@ -6,7 +6,7 @@ use std::{error::Error, fmt::Write, path::Path, process::ExitCode};
 use crate::program::{args::StatusArgs, output::print, replay::DEFAULT};
 
 /// What the program returns while runs are missing.
-const UNFINISHED: u8 = 1;
+pub(crate) const UNFINISHED: u8 = 1;
 /// Ranges of missing runs that are told of a study; the rest is counted.
 const MOST: usize = 20;
 

@@ -1,9 +1,10 @@
 //! `gyradius study`: a scenario run, its table, and the exit code.
 
 use gyradius_study::{
-    CampaignError, Notice, Options, Scenario, Study, StudyError, planned_runs, run_shard,
+    CampaignError, Notice, Options, Scenario, ScenarioError, Study, StudyError, planned_runs,
+    run_shard,
 };
-use std::{error::Error, fmt::Write, process::ExitCode, time::Duration};
+use std::{error::Error, fmt::Write, path::Path, process::ExitCode, time::Duration};
 
 use crate::program::{
     args::StudyArgs,
@@ -20,15 +21,9 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Runs the verb.
 pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
-    let mut scenario = match &arguments.scenario {
-        Some(path) => Scenario::read(path)?,
-        None => Scenario::peck_2003()?,
-    };
+    let mut scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
     if let Some(runs) = arguments.runs {
         scenario = scenario.with_runs(runs)?;
-    }
-    if let Some(seed) = arguments.seed {
-        scenario = scenario.with_seed(seed)?;
     }
     let signals = Signals::watch()?;
     let options = Options {
@@ -71,6 +66,15 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
         }
     }
     Ok(code)
+}
+
+/// The scenario in a file or the built-in one, with a seed if one is given.
+pub(crate) fn scenario(file: Option<&Path>, seed: Option<u64>) -> Result<Scenario, ScenarioError> {
+    let scenario = file.map_or_else(Scenario::peck_2003, Scenario::read)?;
+    match seed {
+        Some(seed) => scenario.with_seed(seed),
+        None => Ok(scenario),
+    }
 }
 
 /// What is said before the runs.
