@@ -1,6 +1,7 @@
 //! Where a campaign that is not complete is: what it is, its blocks, and the records that tell of them.
 
 use std::{
+    collections::BTreeSet,
     fs::{self, File, OpenOptions, TryLockError},
     io::{self, Write},
     path::{Path, PathBuf},
@@ -27,17 +28,22 @@ const PART: &str = ".part";
 pub(super) struct Area(PathBuf);
 
 impl Area {
-    pub(super) fn new(hidden: &Hidden) -> Self {
-        Self(hidden.join(CAMPAIGN))
-    }
-
-    /// That in a folder, without its lock, for those who only read.
+    /// That in a folder.
     pub(super) fn of(place: &Path) -> Self {
         Self(place.join(HIDDEN).join(CAMPAIGN))
     }
 
     pub(super) fn path(&self) -> &Path {
         &self.0
+    }
+
+    /// Where a block is: in the folder of the complete campaign, or here; and its name from there on.
+    pub(super) fn place_of<'a>(&'a self, block: &Block, complete: &'a Path) -> (&'a Path, String) {
+        if block.published {
+            (complete, block.name())
+        } else {
+            (&self.0, format!("{}/{}", block.model, block.file()))
+        }
     }
 
     /// What the campaign is, if one was begun.
@@ -85,14 +91,19 @@ impl Area {
         if fs::read(&path).is_ok_and(|there| there == text.as_bytes()) {
             return Ok(());
         }
+        self.replace(name, text, shard)?;
+        Ok(disk::sync_folder(&self.0)?)
+    }
+
+    /// Puts a text, synced, in the place of a file.
+    fn replace(&self, name: &str, text: &str, shard: Option<Shard>) -> Result<(), Problem> {
         // Other shards write the same at the same time.
         let shard = shard.map_or_else(String::new, |shard| format!(".{}", shard.name()));
         let part = self.0.join(format!("{name}{shard}{PART}"));
         disk::remove_file(&part)?;
         disk::create_file(&part)?.write_all(text.as_bytes())?;
         disk::sync_file(&part)?;
-        disk::replace_file(&part, &path)?;
-        Ok(disk::sync_folder(&self.0)?)
+        Ok(disk::replace_file(&part, &self.0.join(name))?)
     }
 
     /// The text that tells how the campaign was begun, if it was.
@@ -136,18 +147,12 @@ impl Area {
 
     /// The blocks that the records tell of, each once; a line that was broken off tells of none.
     pub(super) fn recorded(&self) -> Result<Vec<Block>, Problem> {
-        let mut blocks = Vec::new();
-        for record in self.records()? {
-            let text = fs::read(record)?;
-            let lines = text.split(|byte| *byte == b'\n').filter(|line| !line.is_empty());
-            let told = lines.filter_map(|line| serde_json::from_slice::<Block>(line).ok());
-            for block in told.filter(Block::is_sound) {
-                if !blocks.contains(&block) {
-                    blocks.push(block);
-                }
-            }
-        }
-        Ok(blocks)
+        let texts = self.records()?.into_iter().map(fs::read).collect::<io::Result<Vec<_>>>()?;
+        let mut seen = BTreeSet::new();
+        let lines = texts.iter().flat_map(|text| text.split(|byte| *byte == b'\n'));
+        let lines = lines.filter(|line| !line.is_empty() && seen.insert(*line));
+        let blocks = lines.filter_map(|line| serde_json::from_slice::<Block>(line).ok());
+        Ok(blocks.filter(Block::is_sound).collect())
     }
 
     /// Whether shards have left records.
@@ -158,12 +163,8 @@ impl Area {
     /// One record of these blocks in place of all.
     pub(super) fn rewrite(&self, blocks: &[&Block]) -> Result<File, Problem> {
         let lines = blocks.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
-        let (path, part) = (self.0.join(RECORD), self.0.join(format!("{RECORD}{PART}")));
-        disk::remove_file(&part)?;
-        let mut file = disk::create_file(&part)?;
-        file.write_all((lines.join("\n") + "\n").as_bytes())?;
-        disk::sync_file(&part)?;
-        disk::replace_file(&part, &path)?;
+        let path = self.0.join(RECORD);
+        self.replace(RECORD, &(lines.join("\n") + "\n"), None)?;
         for record in self.records()?.iter().filter(|record| **record != path) {
             disk::remove_file(record)?;
         }

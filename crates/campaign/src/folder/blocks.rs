@@ -8,7 +8,7 @@
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
     fs::{self, File},
     io::{self, BufWriter, Write},
     ops::Range,
@@ -23,7 +23,6 @@ use super::{
     hidden::Hidden,
     manifest::{Block, MANIFEST, Manifest},
     name::{Found, Name, hex, look},
-    record::Record,
     shared::Shared,
     told::{missing_runs, published},
     unobstructed,
@@ -75,12 +74,9 @@ impl Folder<'_> {
         force: bool,
         threads: &rayon::ThreadPool,
     ) -> Result<Blocks, FolderError> {
-        let open = || {
-            let (record, _) = self.hidden.record(self.contents.what)?;
-            let opened = Blocks::open(&self.hidden, identity, None, force)?;
-            opened.take_up(&self.hidden, &record, (mark, runs, force), threads)
-        };
-        open().map_err(|problem| self.failed(problem))
+        let folder = (&self.hidden, self.contents.what);
+        let opened = Blocks::open(folder, (identity, mark), None, (runs, force), threads);
+        opened.map_err(|problem| self.failed(problem))
     }
 
     /// That nothing is in the places of blocks of a model that are to be done, but what may be replaced.
@@ -130,23 +126,22 @@ impl Shared {
         shard: Shard,
         threads: &rayon::ThreadPool,
     ) -> Result<Blocks, FolderError> {
-        let open = || {
-            let (record, _) = self.hidden.record(self.what)?;
-            let opened = Blocks::open(&self.hidden, identity, Some(shard), false)?;
-            opened.take_up(&self.hidden, &record, (mark, runs, false), threads)
-        };
-        open().map_err(|problem| FolderError { path: self.place.clone(), problem })
+        let folder = (&self.hidden, self.what);
+        let opened = Blocks::open(folder, (identity, mark), Some(shard), (runs, false), threads);
+        opened.map_err(|problem| FolderError { path: self.place.clone(), problem })
     }
 }
 
 impl Blocks {
+    /// Takes up what was finished before, and tells how the campaign goes on.
     fn open(
-        hidden: &Hidden,
-        identity: &Identity,
+        (hidden, what): (&Hidden, &str),
+        (identity, mark): (&Identity, &str),
         shard: Option<Shard>,
-        force: bool,
+        (runs, force): (u64, bool),
+        threads: &rayon::ThreadPool,
     ) -> Result<Self, Problem> {
-        let area = Area::new(hidden);
+        let area = Area::of(hidden.place());
         if let Some(difference) = area.identity()?.and_then(|there| identity.difference(&there)) {
             if !force {
                 return Err(Problem::Unfinished { difference });
@@ -157,27 +152,17 @@ impl Blocks {
         let (record, file) = area.record(shard)?;
         let state = Mutex::new(State { blocks: Vec::new(), record: file });
         let (place, identity) = (hidden.place().to_owned(), identity.clone());
-        Ok(Self { place, area, identity, shard, record, state, damaged: Vec::new() })
-    }
-
-    /// Takes up what was finished before, and tells how the campaign goes on.
-    fn take_up(
-        mut self,
-        hidden: &Hidden,
-        record: &Record,
-        (mark, runs, force): (&str, u64, bool),
-        threads: &rayon::ThreadPool,
-    ) -> Result<Self, Problem> {
-        let mut blocks = published(hidden.place(), record, &self.identity);
-        let unfinished = self.area.recorded()?;
+        let mut opened = Self { place, area, identity, shard, record, state, damaged: Vec::new() };
+        let mut blocks = published(&opened.place, &hidden.record(what)?.0, &opened.identity);
+        let unfinished = opened.area.recorded()?;
         blocks.extend(unfinished.clone());
-        self.verify(&blocks, &hidden.join(DAMAGED), threads)?;
-        self.limit(runs, force)?;
-        if self.shard.is_none() {
-            self.tidy(&unfinished)?;
+        opened.verify(&blocks, &hidden.join(DAMAGED), threads)?;
+        opened.limit(runs, force)?;
+        if shard.is_none() {
+            opened.tidy(&unfinished)?;
         }
-        self.area.tell(mark, self.shard)?;
-        Ok(self)
+        opened.area.tell(mark, shard)?;
+        Ok(opened)
     }
 
     /// Takes up the blocks that are as they were written, and puts others aside.
@@ -205,24 +190,19 @@ impl Blocks {
                 damaged.push((block, format!("{} {fault}", block.name())));
             }
         }
-        let mut sound = Vec::<Block>::new();
-        for (block, fault) in blocks.iter().zip(states) {
-            if fault.is_none() {
-                // A block in its place counts, not the same one that was not removed in time.
-                let overlaps = |other: &Block| {
-                    other.model == block.model
-                        && other.first_run < block.range().end
-                        && block.first_run < other.range().end
-                };
-                if !sound.iter().any(overlaps) {
-                    sound.push(block.clone());
-                }
+        // A block in its place counts, not the same one that was not removed in time.
+        let mut ends = Ends::new();
+        let mut sound = Vec::new();
+        for (block, fault) in all() {
+            let (model, runs) = (block.model(), block.range());
+            if fault.is_none() && reach(&ends, model, runs.end) <= runs.start {
+                ends.insert((model, runs.start), runs.end);
+                sound.push(block.clone());
             }
         }
         // What was done again since is told no more.
         let again = |block: &Block| {
-            let of_model = sound.iter().filter(|other| other.model == block.model);
-            of_model.map(Block::range).any(|runs| runs.contains(&block.first_run))
+            reach(&ends, block.model(), block.first_run.saturating_add(1)) > block.first_run
         };
         damaged.retain(|(block, _)| !again(block));
         let told: BTreeSet<String> = damaged.into_iter().map(|(_, told)| told).collect();
@@ -249,7 +229,8 @@ impl Blocks {
     fn tidy(&self, recorded: &[Block]) -> Result<(), Problem> {
         let mut state = self.locked();
         let kept: Vec<&Block> = state.blocks.iter().filter(|block| !block.published).collect();
-        let dropped: Vec<&Block> = recorded.iter().filter(|block| !kept.contains(block)).collect();
+        let known: BTreeSet<&Block> = kept.iter().copied().collect();
+        let dropped: Vec<&Block> = recorded.iter().filter(|block| !known.contains(block)).collect();
         if !dropped.is_empty() || self.area.has_shards()? {
             // The record first: a file that it does not tell of is none of the blocks.
             let record = self.area.rewrite(&kept)?;
@@ -266,11 +247,7 @@ impl Blocks {
 
     /// What is wrong with a block, if anything is.
     fn fault(&self, block: &Block) -> io::Result<Option<String>> {
-        let (root, name) = if block.published {
-            (self.place.as_path(), block.name())
-        } else {
-            (self.area.path(), format!("{}/{}", block.model, block.file()))
-        };
+        let (root, name) = self.area.place_of(block, &self.place);
         let Ok(name) = Name::new(&name) else {
             return Ok(Some("has no name of a block".to_owned()));
         };
@@ -381,11 +358,8 @@ impl Blocks {
 
     /// Where a block is.
     fn path(&self, block: &Block) -> PathBuf {
-        if block.published {
-            self.place.join(block.name())
-        } else {
-            self.area.path().join(&block.model).join(block.file())
-        }
+        let (root, name) = self.area.place_of(block, &self.place);
+        root.join(name)
     }
 
     /// All blocks are in their places: removes what they were linked from.
@@ -414,6 +388,14 @@ impl Blocks {
         // Nothing is half done with the lock in hand.
         self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
+}
+
+/// One more than the last runs of blocks, by their models and first runs.
+type Ends<'a> = BTreeMap<(&'a str, u64), u64>;
+
+/// How far the blocks of a model reach that begin before a run. Blocks are apart, so that the last of them reaches furthest.
+fn reach(ends: &Ends<'_>, model: &str, run: u64) -> u64 {
+    ends.range((model, 0)..(model, run)).next_back().map_or(0, |(_, end)| *end)
 }
 
 /// Moves a block that is not as it was written out of the way.

@@ -13,7 +13,7 @@ use crate::{
 pub const MANIFEST: &str = "campaign.json";
 
 /// A block that is finished.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Block {
     pub(super) model: String,

@@ -38,12 +38,8 @@ pub fn told(
         blocks.extend(area.recorded().map_err(failed)?);
     }
     blocks.retain(|block| {
-        let path = if block.published {
-            place.join(block.name())
-        } else {
-            area.path().join(&block.model).join(block.file())
-        };
-        fs::symlink_metadata(path).is_ok_and(|f| f.is_file() && f.len() == block.bytes)
+        let (root, name) = area.place_of(block, place);
+        fs::symlink_metadata(root.join(name)).is_ok_and(|f| f.is_file() && f.len() == block.bytes)
     });
     blocks.sort_by(|a, b| {
         (&a.model, a.first_run, !a.published).cmp(&(&b.model, b.first_run, !b.published))
