@@ -22,6 +22,14 @@ pub enum StudyError {
         /// What is wrong with it.
         problem: String,
     },
+    /// What is asked for is not there.
+    #[error("{}: {problem}", path.display())]
+    Absent {
+        /// The folder.
+        path: PathBuf,
+        /// What it lacks.
+        problem: String,
+    },
     /// A run table cannot be written.
     #[error("cannot write the run table of {model}: {source}")]
     RunTable {

@@ -87,7 +87,7 @@ impl Status {
     /// # Errors
     /// The folder holds no study, or its files cannot be read.
     pub fn read(folder: &Path) -> Result<Self, StudyError> {
-        let refused = |problem: &str| StudyError::Folder {
+        let refused = |problem: &str| StudyError::Absent {
             path: folder.to_owned(),
             problem: problem.to_owned(),
         };

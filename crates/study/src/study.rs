@@ -106,7 +106,7 @@ impl Study {
         options: &Options,
         say: &dyn Fn(Notice),
     ) -> Result<Self, StudyError> {
-        let none = || StudyError::Folder {
+        let none = || StudyError::Absent {
             path: folder.to_owned(),
             problem: "it holds no study that was begun".to_owned(),
         };
@@ -164,7 +164,7 @@ impl Study {
             let runs = run_missing(&simulations, &blocks, plan, progress, Some(&look))?;
             if let Some(none) = runs.iter().find(|runs| runs.end() == 0) {
                 let problem = format!("there are no runs of the model {:?} yet", none.model());
-                return Err(StudyError::Folder { path: place.clone(), problem });
+                return Err(StudyError::Absent { path: place.clone(), problem });
             }
             let mut summary = judge(scenario, &models, looks, &runs)?;
             summary.missing = gaps(&blocks, scenario);
