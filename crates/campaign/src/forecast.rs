@@ -1,4 +1,4 @@
-//! How long a study will take, from the time of a few of its runs. No result depends on it.
+//! What a study will take, from the time and the size of a few of its runs. No result depends on it.
 
 use std::{
     fmt,
@@ -14,13 +14,24 @@ use crate::{
 const RUNS: [u64; 3] = [1, 8, 64];
 /// Long enough to be measured.
 const ENOUGH: Duration = Duration::from_millis(20);
+/// Bytes of a number in a run table, where nothing was measured.
+const NUMBER: u64 = 8;
 
-/// The time that a study will take.
+/// What a study will take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
     runs: u64,
     threads: usize,
-    time: Duration,
+    /// None if no run was tried.
+    time: Option<Duration>,
+    disk: u64,
+}
+
+/// What runs take.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cost {
+    seconds: f64,
+    bytes: f64,
 }
 
 impl Forecast {
@@ -33,40 +44,70 @@ impl Forecast {
         runs: u64,
         threads: usize,
     ) -> Result<Self, TableError> {
-        let (mut each, mut count) = (0.0, 0);
+        let (mut each, mut count) = (Cost::default(), 0);
         for simulation in simulations {
-            each += seconds_a_run(simulation, runs)?;
+            let cost = cost_of_a_run(simulation, runs)?;
+            each.seconds += cost.seconds;
+            each.bytes += cost.bytes;
             count += 1;
         }
-        let seconds = each * runs as f64 / threads.max(1) as f64;
+        let seconds = each.seconds * runs as f64 / threads.max(1) as f64;
         Ok(Self {
             runs: runs * count,
             threads,
-            time: Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX),
+            time: Some(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)),
+            disk: (each.bytes * runs as f64) as u64,
         })
     }
 
-    /// The time from the first run to the last, to a factor of two or so.
+    /// Of runs of which nobody knows how long they take, in tables of so many columns.
     #[must_use]
-    pub fn time(&self) -> Duration {
+    pub fn untimed(runs: u64, columns: usize, threads: usize) -> Self {
+        let disk = runs.saturating_mul(columns as u64).saturating_mul(NUMBER);
+        Self { runs, threads, time: None, disk }
+    }
+
+    /// The time from the first run to the last, to a factor of two or so; none if no run was tried.
+    #[must_use]
+    pub fn time(&self) -> Option<Duration> {
         self.time
+    }
+
+    /// About how many bytes the run tables take on the disk.
+    #[must_use]
+    pub fn disk(&self) -> u64 {
+        self.disk
     }
 }
 
-fn seconds_a_run<S: Simulation>(simulation: &S, most: u64) -> Result<f64, TableError> {
+fn cost_of_a_run<S: Simulation>(simulation: &S, most: u64) -> Result<Cost, TableError> {
     let mut worker = simulation.worker();
-    let mut seconds = 0.0;
+    let mut cost = Cost::default();
+    let mut before = None;
     for runs in RUNS.into_iter().filter(|runs| *runs == 1 || *runs <= most) {
         let mut rows = Table::new("", 0, simulation.columns())?;
         let start = Instant::now();
         simulation.run(0..runs, &mut worker, &mut rows)?;
         let time = start.elapsed();
-        seconds = time.as_secs_f64() / runs as f64;
+        cost.seconds = time.as_secs_f64() / runs as f64;
+        // What a file has besides its rows is in the smaller one too.
+        let size = size(&rows);
+        let (fewer, less) = before.unwrap_or((0, 0));
+        cost.bytes = size.saturating_sub(less) as f64 / (runs - fewer) as f64;
+        before = Some((runs, size));
         if time > ENOUGH {
             break;
         }
     }
-    Ok(seconds)
+    Ok(cost)
+}
+
+/// Bytes of the file of a table.
+fn size(table: &Table) -> usize {
+    let mut file = Vec::new();
+    // Memory does not refuse.
+    let _ = table.write_parquet(&mut file);
+    file.len()
 }
 
 /// In one line.
@@ -74,19 +115,33 @@ impl fmt::Display for Forecast {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { runs, threads, .. } = self;
         let s = if *threads == 1 { "" } else { "s" };
-        write!(f, "about {} for {runs} runs on {threads} thread{s}", rough(self.time))
+        if let Some(time) = self.time {
+            write!(f, "about {} for ", rough_time(time))?;
+        }
+        write!(f, "{runs} runs on {threads} thread{s}, and {} of disk", rough_size(self.disk))
     }
 }
 
-/// One or two digits, for nobody knows more.
-fn rough(time: Duration) -> String {
-    let seconds = time.as_secs_f64();
+/// A time in one or two digits, for nobody knows more.
+#[must_use]
+pub fn rough_time(time: Duration) -> String {
     let units =
         [(1.0, "s"), (60.0, "min"), (3600.0, "h"), (86_400.0, "days"), (31_557_600.0, "years")];
-    let unit = units.into_iter().rev().find(|(unit, _)| seconds >= 1.5 * unit);
-    let (unit, name) = unit.unwrap_or(units[0]);
-    let count = seconds / unit;
-    if count < 100.0 { format!("{count:.0} {name}") } else { format!("{count:.0e} {name}") }
+    rough(time.as_secs_f64(), &units)
+}
+
+/// A size in one or two digits.
+#[must_use]
+pub fn rough_size(bytes: u64) -> String {
+    rough(bytes as f64, &[(1.0, "bytes"), (1e3, "kB"), (1e6, "MB"), (1e9, "GB"), (1e12, "TB")])
+}
+
+/// In the largest of some units that leaves more than one and a half of them.
+fn rough(value: f64, units: &[(f64, &str)]) -> String {
+    let unit = units.iter().rev().find(|(unit, _)| value >= 1.5 * unit).or(units.first());
+    let (unit, name) = unit.copied().unwrap_or((1.0, ""));
+    let count = value / unit;
+    if count < 10_000.0 { format!("{count:.0} {name}") } else { format!("{count:.0e} {name}") }
 }
 
 #[cfg(test)]
@@ -105,7 +160,21 @@ mod tests {
             (1e6, "12 days"),
             (1e19, "3e11 years"),
         ] {
-            assert_eq!(rough(Duration::from_secs_f64(seconds)), text, "{seconds}");
+            assert_eq!(rough_time(Duration::from_secs_f64(seconds)), text, "{seconds}");
+        }
+    }
+
+    #[test]
+    fn sizes_are_short() {
+        for (bytes, text) in [
+            (0, "0 bytes"),
+            (1499, "1499 bytes"),
+            (1500, "2 kB"),
+            (210_400_000, "210 MB"),
+            (41_000_000_000, "41 GB"),
+            (u64::MAX, "2e7 TB"),
+        ] {
+            assert_eq!(rough_size(bytes), text);
         }
     }
 }

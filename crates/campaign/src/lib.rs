@@ -56,6 +56,7 @@
 //! # Ok::<(), gyradius_campaign::CampaignError>(())
 //! ```
 
+mod again;
 mod campaign;
 mod cell;
 mod column;
@@ -65,6 +66,7 @@ mod folder;
 mod forecast;
 mod format;
 mod identity;
+mod room;
 mod runs;
 mod sample;
 mod shard;
@@ -77,6 +79,7 @@ mod surveys;
 mod table;
 mod values;
 
+pub use again::{Again, run_again};
 pub use campaign::{Doing, Look, Plan, run_missing};
 pub use cell::Cell;
 pub use column::{Column, ColumnSummary, Kind};
@@ -86,9 +89,10 @@ pub use folder::{
     Block, Blocks, Contents, Folder, FolderError, MANIFEST, Manifest, Shared, begun, folder_of,
     missing_runs, restore, restore_all, told,
 };
-pub use forecast::Forecast;
+pub use forecast::{Forecast, rough_size, rough_time};
 pub use format::{Extent, FormatError, TableFormat, TableWriter};
 pub use identity::{Difference, Identity};
+pub use room::disk_left;
 pub use runs::{Runs, RunsError};
 pub use sample::{SampleSummary, bounded};
 pub use shard::{Shard, ShardError};

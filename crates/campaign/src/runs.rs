@@ -91,6 +91,16 @@ impl Runs {
         })
     }
 
+    /// The block that begins with a run; none if there is none.
+    pub(crate) fn block(&self, first: u64) -> Result<Option<Table>, RunsError> {
+        let found = self.blocks.iter().find(|block| block.range().start == first);
+        match found {
+            None => Ok(None),
+            Some(Block::Held(table)) => Ok(Some(table.clone())),
+            Some(Block::Stored { path, .. }) => self.read(path).map(Some),
+        }
+    }
+
     fn read(&self, path: &Path) -> Result<Table, RunsError> {
         let read = self.empty.read_parquet(path);
         read.map_err(|source| RunsError { path: path.to_owned(), source })

@@ -386,6 +386,12 @@ impl<'a> Row<'a> {
         self.table.sources().map(move |(column, source)| (column, row.cell_from(source)))
     }
 
+    /// What stands in the columns of the simulation, in their order.
+    pub(crate) fn own_cells(&self) -> impl Iterator<Item = Cell<'a>> {
+        let place = self.place;
+        self.table.values.iter().map(move |values| values.cell(place))
+    }
+
     pub(crate) fn cell_from(&self, source: Source) -> Cell<'a> {
         let failure = self.failure();
         match source {

@@ -57,6 +57,12 @@ impl Document {
         Self { title, heading, lead, sections: Vec::new() }
     }
 
+    /// With more of what it is about: what stands out, and what follows.
+    #[must_use]
+    pub fn noting(self, strong: impl Into<String>, plain: impl Into<String>) -> Self {
+        Self { lead: self.lead.strong(strong).plain(plain), ..self }
+    }
+
     /// With another section.
     #[must_use]
     pub fn section(self, section: Section) -> Self {

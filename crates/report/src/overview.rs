@@ -1,6 +1,6 @@
 //! What the runs of any simulation amount to, as data, and the page that shows it.
 
-use gyradius_campaign::{Kind, SampleSummary, Share, Table, counted};
+use gyradius_campaign::{Column, Kind, SampleSummary, Share, Surveys, Table, counted};
 use gyradius_statistics::{Confidence, StatisticsError};
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +12,8 @@ use crate::{
 
 /// Panels in a figure at most; further numbers are in the table of the page and in the run tables.
 const PANELS: usize = 24;
+/// The name of the figure.
+const FIGURE: &str = "quantities";
 
 /// What the runs of a simulation under one or several models amount to: every number that its page shows.
 ///
@@ -51,28 +53,13 @@ impl Overview {
     pub fn new(title: &str, tables: &[Table]) -> Result<Self, StatisticsError> {
         let confidence = Confidence::default();
         let model = |table: &Table| {
-            let failed = table.failures().len() as u64;
-            let runs = table.len() as u64;
-            Ok(Model {
-                name: table.model().to_owned(),
-                runs,
-                failed: if runs == 0 { None } else { Some(Share::new(failed, runs, confidence)?) },
-                failures: counted(table.failures().map(|(_, failure)| failure.kind().to_owned())),
-            })
+            let failures = table.failures().map(|(_, failure)| failure.kind().to_owned());
+            Model::new(table.model(), table.len() as u64, counted(failures), confidence)
         };
-        let numbers = tables.first().into_iter().flat_map(Table::columns);
-        let numbers = numbers.filter(|column| column.kind() == Kind::Number);
-        let quantities: Vec<Quantity> = numbers
-            .map(|column| Quantity {
-                column: column.name().to_owned(),
-                unit: column.unit().unwrap_or("1").to_owned(),
-                meaning: column.meaning().to_owned(),
-                samples: tables
-                    .iter()
-                    .map(|table| sample(table, column.name(), confidence))
-                    .collect(),
-            })
-            .collect();
+        let columns = tables.first().map_or(&[][..], Table::columns);
+        let quantities = quantities(columns, |column| {
+            tables.iter().map(|table| sample(table, column, confidence)).collect()
+        });
         Ok(Self {
             title: title.to_owned(),
             confidence,
@@ -80,6 +67,66 @@ impl Overview {
             figures: figure(tables, &quantities).into_iter().collect(),
             quantities,
         })
+    }
+
+    /// Of surveys of the runs of models, which have these columns: in flat memory, for any number of runs.
+    ///
+    /// # Errors
+    /// None for runs that were surveyed: shares of what is counted exist.
+    pub fn of_surveys(
+        title: &str,
+        columns: &[Column],
+        surveys: &[Surveys],
+    ) -> Result<Self, StatisticsError> {
+        let confidence = Confidence::default();
+        let model = |surveys: &Surveys| {
+            let failures = surveys.failures().into_iter();
+            let failures = failures.map(|(kind, count)| (kind.to_owned(), count)).collect();
+            Model::new(surveys.model(), surveys.runs(), failures, confidence)
+        };
+        let quantities = quantities(columns, |column| {
+            let survey = |surveys: &Surveys| match surveys.column(column) {
+                Some(survey) => SampleSummary::of(survey, confidence),
+                None => SampleSummary::new(&[], confidence),
+            };
+            surveys.iter().map(survey).collect()
+        });
+        let panel = |quantity: &Quantity| {
+            let series = surveys.iter().map(|surveys| {
+                Series::surveyed(surveys.model(), surveys.column(&quantity.column), surveys.runs())
+            });
+            Some(Panel { label: quantity.label(), series: series.collect(), nominal: None })
+        };
+        let panels: Vec<_> = shown(&quantities).map(panel).collect();
+        Ok(Self {
+            title: title.to_owned(),
+            confidence,
+            models: surveys.iter().map(model).collect::<Result<_, StatisticsError>>()?,
+            figures: of_panels(&panels).into_iter().collect(),
+            quantities,
+        })
+    }
+
+    /// Of each model its name, how many of its runs failed, and how many there are.
+    pub fn failed(&self) -> impl Iterator<Item = (&str, u64, u64)> {
+        let count = |model: &Model| model.failed.map_or(0, |failed| failed.count);
+        self.models.iter().map(move |model| (model.name.as_str(), count(model), model.runs))
+    }
+
+    /// Of each model its name, and the kinds of failure with how often.
+    pub fn failures(&self) -> impl Iterator<Item = (&str, &[(String, u64)])> {
+        self.models.iter().map(|model| (model.name.as_str(), &model.failures[..]))
+    }
+
+    /// Of each quantity its column, its unit, and its sample under each model.
+    pub fn quantities(&self) -> impl Iterator<Item = (&str, &str, &[SampleSummary])> {
+        self.quantities.iter().map(|q| (q.column.as_str(), q.unit.as_str(), &q.samples[..]))
+    }
+
+    /// The figures that such a page may have, by name.
+    #[must_use]
+    pub fn figure_names() -> &'static [&'static str] {
+        &[FIGURE]
     }
 
     /// The page.
@@ -111,6 +158,19 @@ impl Overview {
     }
 }
 
+impl Model {
+    fn new(
+        name: &str,
+        runs: u64,
+        failures: Vec<(String, u64)>,
+        confidence: Confidence,
+    ) -> Result<Self, StatisticsError> {
+        let failed = failures.iter().map(|(_, count)| count).sum();
+        let failed = if runs == 0 { None } else { Some(Share::new(failed, runs, confidence)?) };
+        Ok(Self { name: name.to_owned(), runs, failed, failures })
+    }
+}
+
 impl Quantity {
     fn label(&self) -> String {
         with_unit(&self.column, &self.unit)
@@ -121,27 +181,45 @@ fn sample(table: &Table, column: &str, confidence: Confidence) -> SampleSummary 
     SampleSummary::new(&table.values(column).unwrap_or_default(), confidence)
 }
 
+/// The numbers in columns, with the samples of each.
+fn quantities(columns: &[Column], samples: impl Fn(&str) -> Vec<SampleSummary>) -> Vec<Quantity> {
+    let numbers = columns.iter().filter(|column| column.kind() == Kind::Number);
+    let quantity = |column: &Column| Quantity {
+        column: column.name().to_owned(),
+        unit: column.unit().unwrap_or("1").to_owned(),
+        meaning: column.meaning().to_owned(),
+        samples: samples(column.name()),
+    };
+    numbers.map(quantity).collect()
+}
+
 /// Every number whose runs differ.
-fn figure(tables: &[Table], quantities: &[Quantity]) -> Option<Figure> {
+fn shown(quantities: &[Quantity]) -> impl Iterator<Item = &Quantity> {
     let differ = |quantity: &&Quantity| {
         quantity.samples.iter().any(|sample| sample.minimum < sample.maximum)
     };
-    let shown: Vec<&Quantity> = quantities.iter().filter(differ).take(PANELS).collect();
-    let values: Vec<Vec<Vec<f64>>> = shown
-        .iter()
+    quantities.iter().filter(differ).take(PANELS)
+}
+
+fn figure(tables: &[Table], quantities: &[Quantity]) -> Option<Figure> {
+    let values: Vec<Vec<Vec<f64>>> = shown(quantities)
         .map(|q| tables.iter().map(|t| t.values(&q.column).unwrap_or_default()).collect())
         .collect();
     let mut panels = Vec::new();
-    for (quantity, values) in shown.iter().zip(&values) {
+    for (quantity, values) in shown(quantities).zip(&values) {
         let series = tables.iter().zip(values);
         let series = series.map(|(table, values)| Series::new(table.model(), values, table.len()));
         let (label, series) = (quantity.label(), series.collect());
         panels.push(Some(Panel { label, series, nominal: None }));
     }
+    of_panels(&panels)
+}
+
+fn of_panels(panels: &[Option<Panel<'_>>]) -> Option<Figure> {
     (!panels.is_empty()).then(|| Figure {
-        name: "quantities".to_owned(),
+        name: FIGURE.to_owned(),
         caption: "How the quantities are distributed over the runs".to_owned(),
-        picture: Picture::Histograms(HistogramGrid::new("Quantities", &panels, 3)),
+        picture: Picture::Histograms(HistogramGrid::new("Quantities", panels, 3)),
     })
 }
 

@@ -268,7 +268,7 @@ fn shapes(summary: &Summary, runs: &[Seen]) -> Claim {
         else {
             continue;
         };
-        let few = summary.runs_per_model < ENOUGH_FOR_SHAPES as u64;
+        let few = summary.head.runs_per_model < ENOUGH_FOR_SHAPES as u64;
         parts.push(match (physical.one_sided(), physical.two_peaked.is_some()) {
             _ if few => Verdict::NotTested,
             _ if naive.one_sided() || naive.two_peaked.is_some() => Verdict::DoesNotHold,

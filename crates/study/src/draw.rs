@@ -13,7 +13,10 @@ use std::{
     },
 };
 
-use crate::{Scenario, ScenarioError, column::Column, model::Model, scenario::ModelSpec};
+use crate::{
+    Scenario, ScenarioError, SimulatorScenario, column::Column, model::Model,
+    simulator::SimulatorDraws, subject::Subject,
+};
 
 /// Which draws, and how they are written.
 #[derive(Clone, Debug, Default)]
@@ -48,9 +51,7 @@ pub struct DrawOptions {
 /// ```
 #[derive(Debug)]
 pub struct Draw<'a> {
-    scenario: &'a Scenario,
-    models: Vec<Model>,
-    columns: Vec<Column>,
+    models: Drawn<'a>,
     runs: Range<u64>,
     format: TableFormat,
     threads: Option<usize>,
@@ -63,23 +64,37 @@ impl<'a> Draw<'a> {
     /// # Errors
     /// A model does not exist or cannot be made, or the runs are out of range.
     pub fn new(scenario: &'a Scenario, options: &DrawOptions) -> Result<Self, DrawError> {
-        for name in &options.models {
-            if !scenario.model_names().any(|model| model == name) {
-                let models: Vec<&str> = scenario.model_names().collect();
-                return Err(DrawError::Model { model: name.clone(), models: models.join(", ") });
-            }
-        }
-        let asked =
-            |spec: &&ModelSpec| options.models.is_empty() || options.models.contains(&spec.name);
-        let models = scenario.models().iter().filter(asked);
-        let models = models.map(|spec| Model::new(spec, scenario)).collect::<Result<_, _>>()?;
-        let all = Column::all(scenario.separation(), scenario.dispersions().all.len());
+        let all = Column::all(scenario.separation(), scenario.dispersions().all().len());
+        let columns: Vec<_> = all.into_iter().filter(|column| column.is_drawn()).collect();
+        let model = |place: usize| {
+            let model = Model::new(&scenario.models()[place], scenario)?;
+            Ok(SeparationDraws { scenario, model, columns: columns.clone() })
+        };
+        let models = chosen(scenario, options, model)?;
+        Self::of(scenario, Drawn::Separation(models), options)
+    }
+
+    /// As [`new`](Self::new), of what is sent to a simulator.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of_simulator(
+        scenario: &'a SimulatorScenario,
+        options: &DrawOptions,
+    ) -> Result<Self, DrawError> {
+        let models = chosen(scenario, options, |place| SimulatorDraws::new(scenario, place))?;
+        Self::of(scenario, Drawn::Simulator(models), options)
+    }
+
+    fn of<C: Subject>(
+        scenario: &C,
+        models: Drawn<'a>,
+        options: &DrawOptions,
+    ) -> Result<Self, DrawError> {
         let (first, runs) = (options.first, options.runs.unwrap_or_else(|| scenario.runs()));
         let last = first.checked_add(runs).filter(|last| *last <= MOST);
         Ok(Self {
-            scenario,
             models,
-            columns: all.into_iter().filter(|column| column.is_drawn()).collect(),
             runs: first..last.ok_or(DrawError::Runs { first, runs })?,
             format: options.format,
             threads: options.threads,
@@ -90,7 +105,7 @@ impl<'a> Draw<'a> {
     /// How many runs [`write`](Self::write) draws, of all models, and twice if the form needs that.
     #[must_use]
     pub fn steps(&self) -> u64 {
-        let runs = (self.runs.end - self.runs.start).saturating_mul(self.models.len() as u64);
+        let runs = (self.runs.end - self.runs.start).saturating_mul(self.models.len());
         runs.saturating_mul(1 + u64::from(self.format.needs_extent()))
     }
 
@@ -115,7 +130,7 @@ impl<'a> Draw<'a> {
                     Ok(())
                 })?;
             }
-            let empty = Table::new("", 0, self.columns()).map_err(CampaignError::from)?;
+            let empty = Table::new("", 0, self.models.columns()).map_err(CampaignError::from)?;
             let mut writer = self.format.writer(&empty, &extent, output)?;
             self.each(&more, |table| Ok(writer.write(table)?))?;
             Ok(writer.finish()?)
@@ -128,42 +143,91 @@ impl<'a> Draw<'a> {
         more: &(dyn Fn(u64) + Sync),
         mut take: impl FnMut(&Table) -> Result<(), DrawError>,
     ) -> Result<(), DrawError> {
-        self.models.iter().try_for_each(|model| {
-            let draws = Draws { draw: self, model };
-            let stop = self.stop.as_deref();
-            stream(&draws, model.name(), self.runs.clone(), stop, more, &mut take)
-        })
+        match &self.models {
+            Drawn::Separation(models) => self.each_of(models, more, &mut take),
+            Drawn::Simulator(models) => self.each_of(models, more, &mut take),
+        }
     }
 
-    fn columns(&self) -> Vec<RunColumn> {
-        let drawn = self.scenario.dispersions().columns();
-        self.columns.iter().map(|column| column.declaration(&drawn)).collect()
+    fn each_of<D: Simulation>(
+        &self,
+        models: &[(String, D)],
+        more: &(dyn Fn(u64) + Sync),
+        take: &mut impl FnMut(&Table) -> Result<(), DrawError>,
+    ) -> Result<(), DrawError> {
+        models.iter().try_for_each(|(name, draws)| {
+            stream(draws, name, self.runs.clone(), self.stop.as_deref(), more, &mut *take)
+        })
     }
 }
 
 /// The last run has a number that the column `run` can hold.
 const MOST: u64 = i64::MAX as u64;
 
-/// The bodies that a model draws, which are not separated.
-struct Draws<'a> {
-    draw: &'a Draw<'a>,
-    model: &'a Model,
+/// What models draw, by their names.
+#[derive(Debug)]
+enum Drawn<'a> {
+    Separation(Vec<(String, SeparationDraws<'a>)>),
+    Simulator(Vec<(String, SimulatorDraws<'a>)>),
 }
 
-impl Simulation for Draws<'_> {
+impl Drawn<'_> {
+    fn len(&self) -> u64 {
+        match self {
+            Self::Separation(models) => models.len() as u64,
+            Self::Simulator(models) => models.len() as u64,
+        }
+    }
+
+    fn columns(&self) -> Vec<RunColumn> {
+        fn columns<D: Simulation>(models: &[(String, D)]) -> Vec<RunColumn> {
+            models.first().map_or_else(Vec::new, |(_, draws)| draws.columns())
+        }
+        match self {
+            Self::Separation(models) => columns(models),
+            Self::Simulator(models) => columns(models),
+        }
+    }
+}
+
+/// The models that are asked for, each made from its place.
+fn chosen<C: Subject, D>(
+    scenario: &C,
+    options: &DrawOptions,
+    model: impl Fn(usize) -> Result<D, ScenarioError>,
+) -> Result<Vec<(String, D)>, DrawError> {
+    let names: Vec<&str> = scenario.model_names().collect();
+    if let Some(unknown) = options.models.iter().find(|asked| !names.contains(&asked.as_str())) {
+        return Err(DrawError::Model { model: unknown.clone(), models: names.join(", ") });
+    }
+    let asked = |name: &str| options.models.is_empty() || options.models.iter().any(|n| n == name);
+    let asked = names.into_iter().enumerate().filter(|(_, name)| asked(name));
+    asked.map(|(place, name)| Ok((name.to_owned(), model(place)?))).collect()
+}
+
+/// The bodies that a model draws, which are not separated.
+#[derive(Debug)]
+struct SeparationDraws<'a> {
+    scenario: &'a Scenario,
+    model: Model,
+    columns: Vec<Column>,
+}
+
+impl Simulation for SeparationDraws<'_> {
     type Worker = ();
 
     fn columns(&self) -> Vec<RunColumn> {
-        self.draw.columns()
+        let drawn = self.scenario.dispersions().columns();
+        self.columns.iter().map(|column| column.declaration(&drawn)).collect()
     }
 
     fn worker(&self) {}
 
     fn run(&self, runs: Range<u64>, _: &mut (), rows: &mut Table) -> Result<(), TableError> {
         for run in runs {
-            let case = self.model.draw(self.draw.scenario, run);
+            let case = self.model.draw(self.scenario, run);
             let drawn = case.drawn();
-            let cells = self.draw.columns.iter().map(|column| column.cell(&drawn));
+            let cells = self.columns.iter().map(|column| column.cell(&drawn));
             rows.push(drawn.failure().map(Failure::from), cells)?;
         }
         Ok(())

@@ -9,7 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::{
     body::Body,
     failure::Failure,
-    scenario::{Dispersions, Scenario, Target},
+    scenario::{Dispersed, Dispersions, Joint, Scenario, Target},
 };
 
 /// The random streams of a model's dispersions, one for each quantity.
@@ -19,27 +19,34 @@ pub(crate) struct Draws {
 }
 
 impl Draws {
-    pub(crate) fn new(seed: u64, model: &str, dispersions: &Dispersions) -> Self {
-        let stream = |column: &String| Streams::new(seed, model, column);
-        Self { streams: dispersions.columns().iter().map(stream).collect() }
+    pub(crate) fn new<T>(seed: u64, model: &str, dispersed: &[Dispersed<T>]) -> Self {
+        let stream = |d: &Dispersed<T>| Streams::new(seed, model, &d.column);
+        Self { streams: dispersed.iter().map(stream).collect() }
     }
 
-    /// The values of a run, in the order of the dispersions: a score from the stream of each, mixed
+    /// The values of a run, in the order of what is dispersed: a score from the stream of each, mixed
     /// where they are correlated.
-    pub(crate) fn run(&self, dispersions: &Dispersions, run: u64) -> Box<[f64]> {
+    pub(crate) fn values<T>(&self, joint: &Joint<T>, run: u64) -> Vec<f64> {
         let score = |streams: &Streams| StandardNormal.sample(&mut streams.run(run));
         let mut values: Vec<f64> = self.streams.iter().map(score).collect();
-        dispersions.correlation.mix(&mut values);
-        for (value, d) in values.iter_mut().zip(&dispersions.all) {
+        joint.correlation.mix(&mut values);
+        for (value, d) in values.iter_mut().zip(&joint.all) {
             *value = d.law.at_score(*value);
         }
+        values
+    }
+
+    /// The values of a run of a separation.
+    pub(crate) fn run(&self, dispersions: &Dispersions, run: u64) -> Box<[f64]> {
+        let mut values = self.values(&dispersions.joint, run);
+        let all = dispersions.all();
         // A load that is not late starts as it should.
         for late in 0..values.len() {
-            if let Target::Late(load, start) = dispersions.all[late].target
+            if let Target::Late(load, start) = all[late].target
                 && values[late] == 0.0
             {
                 let start = Target::Load(load, start, 0);
-                for (value, d) in values.iter_mut().zip(&dispersions.all) {
+                for (value, d) in values.iter_mut().zip(all) {
                     if d.target == start {
                         *value = d.nominal;
                     }
@@ -63,10 +70,15 @@ pub(crate) fn scaled(
         return inertia;
     }
     let mass = Target::Body(body, BodyParameter::Mass, 0);
-    let mass = dispersions.all.iter().zip(drawn).find(|(d, _)| d.target == mass);
+    let mass = dispersions.all().iter().zip(drawn).find(|(d, _)| d.target == mass);
     let ratio = mass.map_or(1.0, |(d, value)| value / d.nominal);
+    following(inertia, ratio, share)
+}
+
+/// An inertia that takes a share of the relative change of a mass, which is so many times its nominal value.
+pub(crate) fn following(inertia: InertiaMatrix, ratio: f64, share: f64) -> InertiaMatrix {
     // A mass that is none fails the run anyway.
-    if !(ratio > 0.0) {
+    if !(ratio > 0.0) || share == 0.0 {
         return inertia;
     }
     // Of the whole change the ratio itself, to the bit.
@@ -77,7 +89,7 @@ pub(crate) fn scaled(
 /// From the nominal mass centres of payload and stage to the drawn ones, body axes, m.
 pub(crate) fn mass_centres(dispersions: &Dispersions, drawn: &[f64]) -> [Vector3<f64>; 2] {
     let mut centres = [Vector3::zeros(); 2];
-    for (d, value) in dispersions.all.iter().zip(drawn) {
+    for (d, value) in dispersions.all().iter().zip(drawn) {
         if let Target::Body(body, BodyParameter::MassCentre, i) = d.target {
             centres[body as usize][i] = *value;
         }
@@ -98,7 +110,7 @@ pub(crate) fn separation(
     let mut stack = Stack::from(scenario.separation());
     stack.set_inertia(Body::Payload, payload);
     stack.set_inertia(Body::Stage, stage);
-    for (d, &value) in scenario.dispersions().all.iter().zip(drawn) {
+    for (d, &value) in scenario.dispersions().all().iter().zip(drawn) {
         match d.target {
             Target::Body(body, parameter, i) => stack.set_body(body, parameter, i, value),
             Target::Stack(parameter, i) => stack.set_whole(parameter, i, value),
@@ -124,7 +136,7 @@ mod tests {
         let second = text.match_indices("[[springs]]").nth(1).unwrap().0;
         text.insert_str(second, &format!("[springs.dispersion]\n{spring}\n\n"));
         let scenario = Scenario::from_toml(&format!("{text}\n{rest}")).unwrap();
-        assert_eq!(scenario.dispersions().all.len(), values.len());
+        assert_eq!(scenario.dispersions().all().len(), values.len());
         let [payload, stage] =
             [scenario.payload(), scenario.stage()].map(|b| *b.nominal().as_inertia_matrix());
         separation(&scenario, values, payload, stage)

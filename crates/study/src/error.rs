@@ -1,6 +1,6 @@
 //! Why a study could not be done.
 
-use gyradius_campaign::{CampaignError, FolderError, RunsError};
+use gyradius_campaign::{CampaignError, FolderError, RunsError, rough_size};
 use gyradius_statistics::StatisticsError;
 use parquet::errors::ParquetError;
 use std::path::PathBuf;
@@ -29,6 +29,19 @@ pub enum StudyError {
         path: PathBuf,
         /// What it lacks.
         problem: String,
+    },
+    /// The disk is too small for the run tables.
+    #[error(
+        "{}: the run tables will take about {}, and the disk has {} left: choose another folder with --out, or pass \
+         --even-if-full to begin all the same", path.display(), rough_size(*needed), rough_size(*left)
+    )]
+    Room {
+        /// Where they were to be.
+        path: PathBuf,
+        /// About how many bytes they take.
+        needed: u64,
+        /// How many there are.
+        left: u64,
     },
     /// A run table cannot be written.
     #[error("cannot write the run table of {model}: {source}")]

@@ -14,6 +14,7 @@
 //! # Ok::<(), gyradius_study::StudyError>(())
 //! ```
 
+mod any;
 mod body;
 mod claim;
 mod claims;
@@ -26,6 +27,7 @@ mod error;
 mod failure;
 mod figures_of_study;
 mod fragment;
+mod head;
 mod loads;
 mod model;
 #[cfg(test)]
@@ -37,11 +39,15 @@ mod results;
 mod run;
 mod scenario;
 mod seen;
+mod separations;
 mod shards;
+mod simulator;
 mod study;
+mod subject;
 mod summary;
 mod text;
 
+pub use any::{AnyScenario, Outcome, is_begun, put_together, write_report};
 pub use body::Entry;
 pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
 pub use draw::{Draw, DrawError, DrawOptions};
@@ -49,18 +55,20 @@ pub use error::StudyError;
 pub use failure::Failure;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_campaign::{
-    CampaignError, Cell, Column, Forecast, FormatError, Progress, Row, Runs, RunsError, Shard,
-    ShardError, Table, TableFormat,
+    Again, CampaignError, Cell, Column, Forecast, FormatError, Progress, Row, Runs, RunsError,
+    Shard, ShardError, Table, TableFormat, rough_time,
 };
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};
+pub use head::{Head, Missing};
 pub use quantity::Quantity;
 pub use replay::{Replay, ReplayError};
 pub use results::{Results, ResultsError};
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
-pub use shards::{ModelStatus, Status, is_begun, planned_runs, run_shard};
+pub use shards::{ModelStatus, Status};
+pub use simulator::{SimulatorReplay, SimulatorScenario, SimulatorSummary};
 pub use study::{Notice, Options, Study, restore_studies};
-pub use summary::{Missing, Summary};
+pub use summary::Summary;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

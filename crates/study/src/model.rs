@@ -1,7 +1,9 @@
 //! Inertia models ready to draw, and the runs that their draws make.
 
 use gyradius_campaign::{Column as RunColumn, Failure, Simulation, Streams, Table, TableError};
-use gyradius_dispersion::{DispersionModel, InertiaLaw, ModelDraw, ModelKind, ModelParameters};
+use gyradius_dispersion::{
+    DispersionModel, EntryMoments, InertiaLaw, ModelDraw, ModelKind, ModelParameters,
+};
 use gyradius_separation::Batch;
 use std::{ops::Range, sync::Arc};
 
@@ -57,7 +59,7 @@ impl Model {
             given: payload_given.zip(stage_given).map(<[_; 2]>::from),
             payload: body(Body::Payload, payload),
             stage: body(Body::Stage, stage),
-            draws: Draws::new(scenario.seed(), &spec.name, scenario.dispersions()),
+            draws: Draws::new(scenario.seed(), &spec.name, scenario.dispersions().all()),
         })
     }
 
@@ -117,7 +119,7 @@ pub(crate) struct Separations<'a> {
 
 impl<'a> Separations<'a> {
     pub(crate) fn new(scenario: &'a Scenario, model: &'a Model) -> Self {
-        let columns = Column::all(scenario.separation(), scenario.dispersions().all.len());
+        let columns = Column::all(scenario.separation(), scenario.dispersions().all().len());
         Self { scenario, model, columns }
     }
 
@@ -205,18 +207,26 @@ fn law(
                     other.name()
                 )
             })?;
-            if let ModelKind::Entries { correlated: false, .. } = kind {
-                // The naive model knows the nominal body and how far its entries scatter, no more.
-                let given = ModelParameters::of_deviations(moments.deviations());
-                DispersionModel::about(*kind, body.nominal(), &given).map_err(|e| e.problem)?
-            } else {
-                DispersionModel::matched(*kind, &moments)?.into_model()
-            }
+            matched(*kind, body, &moments)?
         }
     };
     let given =
         if let DispersionModel::Entrywise(law) = &model { Some(law.deviations()) } else { None };
     Ok((Arc::new(model), given))
+}
+
+/// The model of a kind that has these moments of the entries.
+pub(crate) fn matched(
+    kind: ModelKind,
+    body: &UncertainBody,
+    moments: &EntryMoments,
+) -> Result<DispersionModel, Box<dyn std::error::Error>> {
+    if let ModelKind::Entries { correlated: false, .. } = kind {
+        // The naive model knows the nominal body and how far its entries scatter, no more.
+        let given = ModelParameters::of_deviations(moments.deviations());
+        return Ok(DispersionModel::about(kind, body.nominal(), &given).map_err(|e| e.problem)?);
+    }
+    Ok(DispersionModel::matched(kind, moments)?.into_model())
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use crate::{
     claim::Verdict,
     claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED},
     figures_of_study,
+    head::Head,
     quantity::Quantity,
     scenario::{Comparison, Scenario},
     summary::{ClearanceSummary, ModelSummary, Summary},
@@ -31,25 +32,18 @@ pub(crate) fn files(scenario: &Scenario) -> impl Iterator<Item = String> {
 /// The report, made from results that were read back.
 pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     let models: Vec<&str> = summary.models.iter().map(|m| m.name.as_str()).collect();
-    let lead = Text::from("Scenario ").strong(&summary.scenario).plain(format!(
+    let lead = Text::from("Scenario ").strong(&summary.head.scenario).plain(format!(
         ": {} runs of each of the models {}, seed {}. Intervals have a confidence of {} %; p95 is the 95th \
          percentile.",
-        summary.runs_per_model,
+        summary.head.runs_per_model,
         models.join(", "),
-        summary.seed,
-        100.0 * summary.confidence
+        summary.head.seed,
+        100.0 * summary.head.confidence
     ));
-    let lead = match summary.missing.as_slice() {
-        [] => lead,
-        missing => {
-            let runs: Vec<String> = missing.iter().map(ToString::to_string).collect();
-            lead.strong(" Not all runs are done.")
-                .plain(format!(" These are missing: {}.", runs.join(", ")))
-        }
-    };
     let drawn: Vec<_> = summary.figures.par_iter().map(Figure::drawn).collect();
-    let title = format!("gyradius study: {}", summary.scenario);
-    Document::new(title, "Separation under inertia uncertainty", lead)
+    let title = format!("gyradius study: {}", summary.head.scenario);
+    let document = Document::new(title, "Separation under inertia uncertainty", lead);
+    noting_what_is_missing(document, &summary.head)
         .section(results(summary))
         .section(parting(scenario, summary))
         .section(claims(summary))
@@ -59,7 +53,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         .sections(dispersed(summary))
         .sections(summary.every_model.section())
         .section(Section::new("Figures").figures(drawn))
-        .section(inputs(scenario, summary))
+        .section(inputs(&summary.head, scenario.to_toml()))
 }
 
 fn results(summary: &Summary) -> Section {
@@ -93,7 +87,7 @@ fn results(summary: &Summary) -> Section {
             .numbers_of(&heading, "p95", of(|s| number(s.p95, 4, interval(s.p95_interval, 4))));
     }
     let failures = summary.models.iter().filter(|m| m.failed > 0).map(|model| {
-        let (name, failed, of) = (&model.name, model.failed, summary.runs_per_model);
+        let (name, failed, of) = (&model.name, model.failed, summary.head.runs_per_model);
         let kinds = model.failures.iter().take(5);
         let kinds: String = kinds.map(|(reason, count)| format!("{count} × {reason}; ")).collect();
         Text::default()
@@ -383,12 +377,29 @@ fn dispersed(summary: &Summary) -> Option<Section> {
     Some(Section::new("What else was dispersed").paragraph(reading).table(table))
 }
 
-fn inputs(scenario: &Scenario, summary: &Summary) -> Section {
-    let version = &summary.gyradius_version;
+/// Says on a page which runs are missing, if any are, and how many were done again.
+pub(crate) fn noting_what_is_missing(mut document: Document, head: &Head) -> Document {
+    if head.done_again > 0 {
+        let again = match head.done_again {
+            1 => " 1 run that had failed was done again.".to_owned(),
+            runs => format!(" {runs} runs that had failed were done again."),
+        };
+        document = document.noting("", again);
+    }
+    if head.missing.is_empty() {
+        return document;
+    }
+    let runs: Vec<String> = head.missing.iter().map(ToString::to_string).collect();
+    document.noting(" Not all runs are done.", format!(" These are missing: {}.", runs.join(", ")))
+}
+
+/// The resolved scenario, and where what is.
+pub(crate) fn inputs(head: &Head, toml: String) -> Section {
+    let version = &head.gyradius_version;
     let origin = Text::from(format!(
         "Run by gyradius {version} from the scenario below, every default spelled out; its SHA-256 is "
     ))
-    .code(&summary.fingerprint)
+    .code(&head.fingerprint)
     .plain(". The same scenario gives the same numbers on any number of threads: ")
     .code("gyradius study --scenario scenario.toml")
     .plain(".");
@@ -397,6 +408,6 @@ fn inputs(scenario: &Scenario, summary: &Summary) -> Section {
         .plain(", every number of this page is in ")
         .code("summary.json")
         .plain(".");
-    let text = Section::folded("scenario.toml").file("toml", scenario.to_toml());
+    let text = Section::folded("scenario.toml").file("toml", toml);
     Section::new("What went in").paragraph(origin).paragraph(files).sections([text])
 }

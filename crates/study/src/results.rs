@@ -9,10 +9,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{Scenario, ScenarioError, Summary, report};
+use crate::{
+    Scenario, ScenarioError, Summary, head, report,
+    subject::{Subject, read_resolved},
+};
 
 /// Largest `summary.json` that is read, far beyond any that is written.
-const BYTES: u64 = 1 << 30;
+pub(crate) const BYTES: u64 = 1 << 30;
 
 /// Why the results in a folder are not read.
 #[derive(Debug, thiserror::Error)]
@@ -66,10 +69,10 @@ impl From<FolderError> for ResultsError {
 ///
 /// The report is made from nothing else, so that it can be made again from the folder alone, to the byte.
 #[derive(Clone, Debug)]
-pub struct Results {
+pub struct Results<C = Scenario, S = Summary> {
     folder: PathBuf,
-    scenario: Scenario,
-    summary: Summary,
+    scenario: C,
+    summary: S,
 }
 
 impl Results {
@@ -79,57 +82,7 @@ impl Results {
     /// The folder holds no study, or one by another version; the scenario is not the one that the runs are
     /// from.
     pub fn read(folder: &Path) -> Result<Self, ResultsError> {
-        let problem = |problem: String| ResultsError::Study { path: folder.to_owned(), problem };
-        // A study that was killed while it replaced this one is put right first.
-        restore(folder)?;
-        let (file, written) = (folder.join("scenario.toml"), folder.join("summary.json"));
-        if !file.is_file() || !written.is_file() {
-            return Err(problem(
-                "it holds no study, which has a scenario.toml and a summary.json; name the folder of one"
-                    .to_owned(),
-            ));
-        }
-        let no_summary = |e: serde_json::Error| problem(format!("summary.json is no summary: {e}"));
-        let text = read_text(&written, BYTES)
-            .map_err(|e: io::Error| problem(format!("summary.json cannot be read: {e}")))?;
-        let value: Value = serde_json::from_str(&text).map_err(no_summary)?;
-        let said = |field: &str| value[field].as_str().map(str::to_owned);
-        let (Some(version), Some(fingerprint)) = (said("gyradius_version"), said("fingerprint"))
-        else {
-            return Err(problem("summary.json names no version and no fingerprint".to_owned()));
-        };
-        // First: another version may read other scenarios.
-        if version != env!("CARGO_PKG_VERSION") {
-            return Err(ResultsError::Version { path: folder.to_owned(), found: version });
-        }
-        let scenario = Scenario::read(&file)?;
-        if scenario.fingerprint() != fingerprint {
-            return Err(ResultsError::Fingerprint {
-                path: folder.to_owned(),
-                scenario: scenario.fingerprint(),
-                summary: fingerprint,
-            });
-        }
-        let summary = serde_json::from_str(&text).map_err(no_summary)?;
-        Ok(Self { folder: folder.to_owned(), scenario, summary })
-    }
-
-    /// The scenario.
-    #[must_use]
-    pub fn scenario(&self) -> &Scenario {
-        &self.scenario
-    }
-
-    /// What the runs amount to.
-    #[must_use]
-    pub fn summary(&self) -> &Summary {
-        &self.summary
-    }
-
-    /// The report, a page of HTML that needs nothing but itself.
-    #[must_use]
-    pub fn report(&self) -> String {
-        report::report(&self.scenario, &self.summary).html()
+        read(folder)
     }
 
     /// Makes the figures and the report, as HTML and as Markdown, again, in the study's folder or in another; returns the folder.
@@ -141,18 +94,84 @@ impl Results {
     /// Something in the study's folder was changed after the study, or the other folder holds something else
     /// and `force` is not set; something cannot be written. What was there stays as it was.
     pub fn write_report(&self, out: Option<&Path>, force: bool) -> Result<PathBuf, ResultsError> {
-        let report = report::report(&self.scenario, &self.summary);
-        let (page, pages) = (report.html(), Document::pages(report::NAME));
-        let certain = report::files(&self.scenario);
-        let contents = match out {
-            Some(_) => Contents::new("report", "report.html", certain, |text| text == page),
-            None => Contents::new("study", "summary.json", certain, |_| true)
-                .keeping(|name| !name.starts_with("figures/") && !pages.iter().any(|p| p == name)),
-        };
-        let mut folder = Folder::prepare(out.unwrap_or(&self.folder), &contents, force)?;
-        for (name, content) in report.files(report::NAME) {
-            folder.write(&name, &content)?;
-        }
-        Ok(folder.publish()?)
+        write(self, out, force)
     }
+
+    /// The report, a page of HTML that needs nothing but itself.
+    #[must_use]
+    pub fn report(&self) -> String {
+        report::report(&self.scenario, &self.summary).html()
+    }
+}
+
+impl<C, S> Results<C, S> {
+    /// The scenario.
+    #[must_use]
+    pub fn scenario(&self) -> &C {
+        &self.scenario
+    }
+
+    /// What the runs amount to.
+    #[must_use]
+    pub fn summary(&self) -> &S {
+        &self.summary
+    }
+}
+
+/// The results in a folder.
+pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, ResultsError> {
+    let problem = |problem: String| ResultsError::Study { path: folder.to_owned(), problem };
+    // A study that was killed while it replaced this one is put right first.
+    restore(folder)?;
+    let (file, written) = (folder.join("scenario.toml"), folder.join("summary.json"));
+    if !file.is_file() || !written.is_file() {
+        return Err(problem(
+                "it holds no study, which has a scenario.toml and a summary.json; name the folder of one"
+                    .to_owned(),
+            ));
+    }
+    let no_summary = |e: serde_json::Error| problem(format!("summary.json is no summary: {e}"));
+    let text = read_text(&written, BYTES)
+        .map_err(|e: io::Error| problem(format!("summary.json cannot be read: {e}")))?;
+    let value: Value = serde_json::from_str(&text).map_err(no_summary)?;
+    let said = |field: &str| value[field].as_str().map(str::to_owned);
+    let (Some(version), Some(fingerprint)) = (said("gyradius_version"), said("fingerprint")) else {
+        return Err(problem("summary.json names no version and no fingerprint".to_owned()));
+    };
+    // First: another version may read other scenarios.
+    if version != env!("CARGO_PKG_VERSION") {
+        return Err(ResultsError::Version { path: folder.to_owned(), found: version });
+    }
+    let scenario: C = read_resolved(&file)?;
+    let there = head::fingerprint(&scenario.to_toml());
+    if there != fingerprint {
+        return Err(ResultsError::Fingerprint {
+            path: folder.to_owned(),
+            scenario: there,
+            summary: fingerprint,
+        });
+    }
+    let summary = serde_json::from_str(&text).map_err(no_summary)?;
+    Ok(Results { folder: folder.to_owned(), scenario, summary })
+}
+
+/// Makes figures and report again.
+pub(crate) fn write<C: Subject>(
+    results: &Results<C, C::Summary>,
+    out: Option<&Path>,
+    force: bool,
+) -> Result<PathBuf, ResultsError> {
+    let report = results.scenario.report(&results.summary);
+    let (page, pages) = (report.html(), Document::pages(report::NAME));
+    let certain = results.scenario.report_files();
+    let contents = match out {
+        Some(_) => Contents::new("report", "report.html", certain, |text| text == page),
+        None => Contents::new("study", "summary.json", certain, |_| true)
+            .keeping(|name| !name.starts_with("figures/") && !pages.iter().any(|p| p == name)),
+    };
+    let mut folder = Folder::prepare(out.unwrap_or(&results.folder), &contents, force)?;
+    for (name, content) in report.files(report::NAME) {
+        folder.write(&name, &content)?;
+    }
+    Ok(folder.publish()?)
 }

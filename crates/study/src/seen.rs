@@ -5,7 +5,9 @@ use gyradius_statistics::{Confidence, Survey};
 use nalgebra::UnitQuaternion;
 use std::sync::Mutex;
 
-use crate::{body::Body, column::attitudes, quantity::Quantity, scenario::Scenario};
+use crate::{
+    body::Body, column::attitudes, quantity::Quantity, scenario::Scenario, subject::LookAt,
+};
 
 /// Attitudes that are kept, at most: of every so manieth run.
 const ATTITUDES: u64 = 1 << 16;
@@ -46,16 +48,6 @@ impl<'a> Looking<'a> {
         Self { scenario, columns, blocks: Mutex::default() }
     }
 
-    /// Looks at a block, once at each and in any order.
-    pub(crate) fn look(&self, block: &Table) {
-        self.columns.look(block);
-        let stride = self.scenario.runs().div_ceil(ATTITUDES).max(1);
-        let drawn = Drawn::new(self.scenario, block, stride);
-        if let Ok(mut blocks) = self.blocks.lock() {
-            blocks.push(drawn);
-        }
-    }
-
     /// What is seen once all blocks have been looked at; they are read again.
     pub(crate) fn finish(self, runs: &Runs) -> Result<Seen, RunsError> {
         let surveys = self.columns.finish(runs)?;
@@ -69,6 +61,17 @@ impl<'a> Looking<'a> {
         });
         let attitudes = blocks.into_iter().flat_map(|block| block.kept).collect();
         Ok(Seen { surveys, drawn, far, attitudes })
+    }
+}
+
+impl LookAt for Looking<'_> {
+    fn look(&self, block: &Table) {
+        self.columns.look(block);
+        let stride = self.scenario.runs().div_ceil(ATTITUDES).max(1);
+        let drawn = Drawn::new(self.scenario, block, stride);
+        if let Ok(mut blocks) = self.blocks.lock() {
+            blocks.push(drawn);
+        }
     }
 }
 

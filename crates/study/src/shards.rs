@@ -4,59 +4,49 @@ use gyradius_campaign::{
     Block, Doing, Progress, Shard, Shared, begun, missing_runs, run_missing, threads, told,
 };
 use serde::Serialize;
-use std::{fs, ops::Range, path::Path};
+use std::{ops::Range, path::Path};
 
 use crate::{
-    Notice, Options, Scenario, StudyError,
-    model::Model,
-    study::{contents, count, forecast, identity, plan, simulations},
-    summary::Missing,
+    Notice, Options, StudyError,
+    head::Missing,
+    study::{contents, count, foretell, identity, plan},
+    subject::Subject,
 };
 
 /// How many runs a process is to do if none is there: those of a shard, or of all models.
-#[must_use]
-pub fn planned_runs(scenario: &Scenario, shard: Option<Shard>) -> u64 {
+pub(crate) fn planned_runs<C: Subject>(scenario: &C, shard: Option<Shard>) -> u64 {
     let doing = shard.map_or(Doing::All, Doing::Shard);
     plan(scenario, &Options::default(), doing).total(scenario.model_names().count())
 }
 
-/// Whether a study was begun in a folder whose runs are not all done, or not put together.
-#[must_use]
-pub fn is_begun(folder: &Path) -> bool {
-    begun(folder).is_some()
-}
-
 /// Does a share of the runs of a study, of those that are in no finished block, into its folder. Other processes may do
-/// other shares at the same time, also on other machines that have the folder in common. Nothing is put together:
-/// [`Study::put_together`](crate::Study::put_together) does that, or the study itself.
+/// other shares at the same time, also on other machines that have the folder in common. Nothing is put together.
 ///
 /// # Errors
 /// The folder holds another study, or somebody has it alone, or another process does the same share; something cannot be
 /// written. Blocks that were finished stay.
-pub fn run_shard(
-    scenario: &Scenario,
+pub(crate) fn run_shard<C: Subject>(
+    scenario: &C,
     options: &Options,
     shard: Shard,
     progress: Progress<'_>,
     say: &dyn Fn(Notice),
 ) -> Result<(), StudyError> {
     let threads = threads(options.threads)?;
-    let models = Model::all(scenario)?;
-    let simulations = simulations(scenario, &models);
+    let models = scenario.prepare()?;
+    let simulations = scenario.simulations(&models)?;
     let contents = contents(scenario);
-    let folder = Shared::open(&options.place(scenario), &contents)?;
+    let folder = Shared::open(&options.place(scenario.name()), &contents)?;
     let begun = (&identity(scenario), scenario.to_toml());
     let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), shard, &threads)?;
     blocks.damaged().iter().for_each(|damage| say(Notice::Damaged(damage.clone())));
     let plan = plan(scenario, options, Doing::Shard(shard));
-    let missing = |(place, model): (usize, &Model)| plan.missing(&blocks, place, model.name());
-    let left = models.iter().enumerate().map(|model| count(&missing(model))).sum::<u64>();
-    let of = plan.total(models.len());
-    if left < of {
-        say(Notice::GoesOn { done: of - left, of });
-    }
+    let missing = |(place, (model, _)): (usize, &(&str, _))| plan.missing(&blocks, place, model);
+    let left = simulations.iter().enumerate().map(|model| count(&missing(model))).sum::<u64>();
     if left > 0 {
-        say(Notice::Forecast(forecast(&simulations, left, &threads)?));
+        scenario.begin(&models)?;
+        let of = plan.total(simulations.len());
+        foretell(scenario, &simulations, [left, of], options, &threads, say)?;
     }
     threads.install(|| run_missing(&simulations, &blocks, plan, progress, None))?;
     Ok(())
@@ -82,22 +72,12 @@ pub struct ModelStatus {
 }
 
 impl Status {
-    /// Of the study in a folder, as its files tell, which are neither read nor locked: others may be at work.
-    ///
-    /// # Errors
-    /// The folder holds no study, or its files cannot be read.
-    pub fn read(folder: &Path) -> Result<Self, StudyError> {
-        let refused = |problem: &str| StudyError::Absent {
-            path: folder.to_owned(),
-            problem: problem.to_owned(),
-        };
-        let unfinished = begun(folder);
-        let complete = || fs::read_to_string(folder.join("scenario.toml")).ok();
-        let text = unfinished.clone().or_else(complete);
-        let scenario = Scenario::from_toml(&text.ok_or_else(|| refused("it holds no study"))?)?;
-        let blocks = told(folder, &contents(&scenario), &identity(&scenario))?;
-        if blocks.is_empty() && unfinished.is_none() {
-            return Err(refused("it holds no runs of a study"));
+    /// Of the study of a scenario in a folder, as its files tell.
+    pub(crate) fn of<C: Subject>(scenario: &C, folder: &Path) -> Result<Self, StudyError> {
+        let blocks = told(folder, &contents(scenario), &identity(scenario))?;
+        if blocks.is_empty() && begun(folder).is_none() {
+            let problem = "it holds no runs of a study".to_owned();
+            return Err(StudyError::Absent { path: folder.to_owned(), problem });
         }
         let (mut models, mut missing) = (Vec::new(), Vec::new());
         for model in scenario.model_names() {

@@ -1,39 +1,30 @@
 //! Every number that the report shows.
 
-use gyradius_campaign::{Column, ColumnSummary, SampleSummary, Share, Surveys, bounded};
+use gyradius_campaign::{Column, SampleSummary, Share, Surveys, bounded};
 use gyradius_report::Figure;
 use gyradius_statistics::{Confidence, Interval, Moments, StatisticsError, Survey};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize, Serializer, ser::Error};
-use std::{borrow::Cow, fmt, ops::Range};
+use std::borrow::Cow;
 
 use crate::{
     claim::Claim,
     column::{CLEARANCE_NOTE, REALIZABLE, RECOMPRESSED, RELEASE_ORDER},
     compare::Section,
+    head::Head,
     model::Model,
     quantity::Quantity,
     run::Case,
     scenario::{Dispersed, ModelLaw, Scenario},
     seen::Seen,
+    subject::Summarized,
 };
 
 /// Every number that the report shows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    pub(crate) gyradius_version: Cow<'static, str>,
-    pub(crate) scenario: String,
-    /// SHA-256 of the resolved scenario.
-    pub(crate) fingerprint: String,
-    pub(crate) seed: u64,
-    pub(crate) runs_per_model: u64,
-    /// Runs that are not done, where not all are.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) missing: Vec<Missing>,
-    /// Of every interval.
-    pub(crate) confidence: f64,
-    /// Of the run tables.
-    pub(crate) columns: Vec<ColumnSummary>,
+    #[serde(flatten)]
+    pub(crate) head: Head,
     pub(crate) nominal: Vec<Nominal>,
     pub(crate) models: Vec<ModelSummary>,
     pub(crate) comparisons: Vec<ComparisonSummary>,
@@ -43,41 +34,6 @@ pub struct Summary {
     /// What the figures show.
     #[serde(serialize_with = "a_line_each")]
     pub(crate) figures: Vec<Figure>,
-}
-
-/// Runs of a model that are not done.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Missing {
-    pub(crate) model: String,
-    pub(crate) first_run: u64,
-    pub(crate) runs: u64,
-}
-
-impl Missing {
-    pub(crate) fn new(model: &str, runs: Range<u64>) -> Self {
-        let (first_run, runs) = (runs.start, runs.end - runs.start);
-        Self { model: model.to_owned(), first_run, runs }
-    }
-
-    /// The model.
-    #[must_use]
-    pub fn model(&self) -> &str {
-        &self.model
-    }
-
-    /// The runs.
-    #[must_use]
-    pub fn range(&self) -> Range<u64> {
-        self.first_run..self.first_run + self.runs
-    }
-}
-
-/// How many there are, and which, from the first to the last.
-impl fmt::Display for Missing {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let last = self.first_run + self.runs - 1;
-        write!(f, "{} of {} ({} to {last})", self.runs, self.model, self.first_run)
-    }
 }
 
 /// A quantity of the run without any dispersion.
@@ -247,14 +203,7 @@ impl Summary {
             })
             .collect();
         Ok(Self {
-            gyradius_version: env!("CARGO_PKG_VERSION").into(),
-            scenario: scenario.name().to_owned(),
-            fingerprint: scenario.fingerprint(),
-            seed: scenario.seed(),
-            runs_per_model: scenario.runs(),
-            missing: Vec::new(),
-            confidence: confidence.level(),
-            columns: columns.iter().map(Column::summary).collect(),
+            head: Head::new(scenario, columns),
             nominal,
             models,
             comparisons,
@@ -264,33 +213,10 @@ impl Summary {
         })
     }
 
-    /// The name of the scenario.
+    /// Of what it is.
     #[must_use]
-    pub fn scenario(&self) -> &str {
-        &self.scenario
-    }
-
-    /// The seed of all random numbers.
-    #[must_use]
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
-    /// Runs of each model, those that are missing too.
-    #[must_use]
-    pub fn runs_per_model(&self) -> u64 {
-        self.runs_per_model
-    }
-
-    /// The runs that are not done; none of a complete study.
-    #[must_use]
-    pub fn missing(&self) -> &[Missing] {
-        &self.missing
-    }
-
-    /// Each model with how many of its runs failed, and how many there are.
-    pub fn failed(&self) -> impl Iterator<Item = (&str, u64, u64)> {
-        self.models.iter().map(|m| (m.name.as_str(), m.failed, m.unrealizable.of))
+    pub fn head(&self) -> &Head {
+        &self.head
     }
 
     pub(crate) fn model(&self, name: &str) -> Option<&ModelSummary> {
@@ -299,6 +225,20 @@ impl Summary {
 
     pub(crate) fn nominal_value(&self, quantity: Quantity) -> Option<f64> {
         self.nominal.iter().find(|n| n.quantity == quantity).map(|n| n.value)
+    }
+}
+
+impl Summarized for Summary {
+    fn head(&self) -> &Head {
+        &self.head
+    }
+
+    fn head_mut(&mut self) -> &mut Head {
+        &mut self.head
+    }
+
+    fn failed(&self) -> Vec<(String, u64, u64)> {
+        self.models.iter().map(|m| (m.name.clone(), m.failed, m.unrealizable.of)).collect()
     }
 }
 
@@ -333,7 +273,7 @@ fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {
             deviation: moments.map(Moments::standard_deviation),
         }
     };
-    scenario.dispersions().all.iter().map(summary).collect()
+    scenario.dispersions().all().iter().map(summary).collect()
 }
 
 impl ModelSummary {

@@ -47,7 +47,7 @@ impl Display for Summary {
         }
         for model in self.models.iter().filter(|m| m.failed > 0) {
             let (name, failed) = (&model.name, model.failed);
-            writeln!(f, "\n{name}: {failed} of {} runs failed:", self.runs_per_model)?;
+            writeln!(f, "\n{name}: {failed} of {} runs failed:", self.head.runs_per_model)?;
             for (reason, count) in model.failures.iter().take(3) {
                 writeln!(f, "  {count} × {reason}")?;
             }

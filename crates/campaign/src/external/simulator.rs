@@ -30,22 +30,41 @@ pub struct Simulator {
 }
 
 impl Simulator {
+    /// Whose processes are started when they are needed.
+    #[must_use]
+    pub fn new(program: Program) -> Self {
+        Self { program, idle: Mutex::default() }
+    }
+
     /// Starts the first process, or finds the program if it is to be started for each run.
     ///
     /// # Errors
     /// The command cannot be started.
     pub fn start(program: Program) -> Result<Self, ProgramError> {
+        let simulator = Self::new(program);
+        simulator.check()?;
+        Ok(simulator)
+    }
+
+    /// Makes certain that the command can be started: starts the first process, or finds the program if it is to be started
+    /// for each run.
+    ///
+    /// # Errors
+    /// The command cannot be started, or its folder is not there.
+    pub fn check(&self) -> Result<(), ProgramError> {
+        let program = &self.program;
         let first = if program.is_per_run() {
             // It is not started without a run: nobody knows what it does then.
-            found(&program).map(|()| Vec::new())
+            found(program).map(|()| None)
         } else {
-            Child::start(&program).map(|child| vec![child])
+            Child::start(program).map(Some)
         };
-        let idle = first.map_err(|error| ProgramError::Start {
+        let first = first.map_err(|error| ProgramError::Start {
             command: program.shown(),
             problem: error.to_string(),
         })?;
-        Ok(Self { program, idle: Mutex::new(idle) })
+        self.keep(first);
+        Ok(())
     }
 
     /// Its command.

@@ -10,7 +10,7 @@ use std::{
 use super::{
     Problem, disk,
     hidden::Hidden,
-    manifest::Block,
+    manifest::{AGAIN, Block},
     name::{HIDDEN, said},
 };
 use crate::{identity::Identity, shard::Shard};
@@ -42,7 +42,7 @@ impl Area {
         if block.published {
             (complete, block.name())
         } else {
-            (&self.0, format!("{}/{}", block.model, block.file()))
+            (&self.0, format!("{}/{}", block.model, block.file_before()))
         }
     }
 
@@ -180,7 +180,8 @@ impl Area {
             let numbers = stem.split_once('-').is_some_and(|(first, last)| {
                 [first, last].iter().all(|part| part.bytes().all(|byte| byte.is_ascii_digit()))
             });
-            numbers && (matches!(end, "parquet" | "part") || end.ends_with(PART))
+            let again = end.starts_with(AGAIN) && end.ends_with(".parquet");
+            numbers && (again || matches!(end, "parquet" | "part") || end.ends_with(PART))
         };
         let entries = match fs::read_dir(folder) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),

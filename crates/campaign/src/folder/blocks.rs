@@ -8,6 +8,7 @@
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use std::{
+    cmp::Reverse,
     collections::{BTreeMap, BTreeSet},
     fs::{self, File},
     io::{self, BufWriter, Write},
@@ -156,6 +157,8 @@ impl Blocks {
         let mut blocks = published(&opened.place, &hidden.record(what)?.0, &opened.identity);
         let unfinished = opened.area.recorded()?;
         blocks.extend(unfinished.clone());
+        // What was done again takes the place of what failed.
+        blocks.sort_by_key(|block| Reverse(block.again));
         opened.verify(&blocks, &hidden.join(DAMAGED), threads)?;
         opened.limit(runs, force)?;
         if shard.is_none() {
@@ -297,17 +300,47 @@ impl Blocks {
         missing_runs(finished.map(|block| block.range()), runs, block_runs)
     }
 
+    /// The runs of each block of a model in which runs failed.
+    pub(crate) fn with_failures(&self, model: &str) -> Vec<Range<u64>> {
+        let failed = |block: &Block| block.model == model && block.failed > 0;
+        self.all().iter().filter(|block| failed(block)).map(Block::range).collect()
+    }
+
+    /// Whether any run of a finished block failed.
+    #[must_use]
+    pub fn any_failed(&self) -> bool {
+        self.locked().blocks.iter().any(|block| block.failed > 0)
+    }
+
+    /// How many runs of all blocks were done again because they had failed.
+    #[must_use]
+    pub fn again(&self) -> u64 {
+        self.locked().blocks.iter().map(|block| block.again).sum()
+    }
+
     /// Writes a block. When this returns it is on the disk, and counts.
     ///
     /// # Errors
     /// It cannot be written, as on a full disk. Blocks that were finished stay so.
     pub fn write(&self, table: &Table) -> Result<PathBuf, FolderError> {
-        self.put(table).map_err(|problem| FolderError { path: self.place.clone(), problem })
+        self.write_again(table, 0)
     }
 
-    fn put(&self, table: &Table) -> Result<PathBuf, Problem> {
+    /// Writes a block in the place of a finished one, so many runs of which were done again. The finished one counts until
+    /// this one does.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub(crate) fn write_again(&self, table: &Table, again: u64) -> Result<PathBuf, FolderError> {
+        self.put(table, again).map_err(|problem| FolderError { path: self.place.clone(), problem })
+    }
+
+    fn put(&self, table: &Table, again: u64) -> Result<PathBuf, Problem> {
         let runs = table.first()..table.first() + table.len() as u64;
         let mut block = Block::of(table.model(), &runs);
+        let same = |b: &Block| b.model == block.model && b.first_run == block.first_run;
+        let before = self.locked().blocks.iter().filter(|b| same(b)).map(|b| b.again).sum::<u64>();
+        block.again = before + again;
         let folder = self.area.path().join(&block.model);
         match disk::create_folder(&folder) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
@@ -335,6 +368,7 @@ impl Blocks {
         let mut state = self.locked();
         let line = format!("\n{}\n", serde_json::to_string(&block)?);
         disk::append(&state.record, &self.record, &line)?;
+        state.blocks.retain(|b| !(b.model == block.model && b.first_run == block.first_run));
         state.blocks.push(block);
         Ok(path)
     }

@@ -12,6 +12,9 @@ use crate::{
 /// The file that tells of the blocks of a complete campaign.
 pub const MANIFEST: &str = "campaign.json";
 
+/// What the files of blocks that were written again are called besides.
+pub(super) const AGAIN: &str = "again-";
+
 /// A block that is finished.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -22,6 +25,9 @@ pub struct Block {
     /// How many of them failed.
     #[serde(default)]
     pub(super) failed: u64,
+    /// How many runs of it were done again because they had failed; the more, the later it was written.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub(super) again: u64,
     pub(super) bytes: u64,
     pub(super) sha256: String,
     /// Whether it is in its place.
@@ -54,6 +60,7 @@ impl Block {
             first_run: runs.start,
             runs: runs.end - runs.start,
             failed: 0,
+            again: 0,
             bytes: 0,
             sha256: String::new(),
             published: false,
@@ -78,6 +85,12 @@ impl Block {
         self.failed
     }
 
+    /// How many runs were done again because they had failed, as often as that was.
+    #[must_use]
+    pub fn again(&self) -> u64 {
+        self.again
+    }
+
     /// The runs.
     #[must_use]
     pub fn range(&self) -> Range<u64> {
@@ -94,6 +107,15 @@ impl Block {
     /// Its file: the first run and the last one.
     pub(super) fn file(&self) -> String {
         format!("{:09}-{:09}.parquet", self.first_run, self.range().end - 1)
+    }
+
+    /// Its file until it is in its place, beside those of which it takes the place.
+    pub(super) fn file_before(&self) -> String {
+        let file = self.file();
+        match (self.again, file.split_once('.')) {
+            (0, _) | (_, None) => file,
+            (again, Some((runs, extension))) => format!("{runs}.{AGAIN}{again}.{extension}"),
+        }
     }
 
     /// Its place in the folder of a complete campaign.
@@ -140,4 +162,8 @@ impl Manifest {
     pub fn identity(&self) -> &Identity {
         &self.identity
     }
+}
+
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }

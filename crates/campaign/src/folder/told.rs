@@ -1,6 +1,6 @@
 //! What the files of a folder tell of a campaign, for those who only read: others may be at work there.
 
-use std::{fs, iter, ops::Range, path::Path};
+use std::{cmp::Reverse, fs, iter, ops::Range, path::Path};
 
 use super::{
     Contents, FolderError, Problem,
@@ -41,9 +41,8 @@ pub fn told(
         let (root, name) = area.place_of(block, place);
         fs::symlink_metadata(root.join(name)).is_ok_and(|f| f.is_file() && f.len() == block.bytes)
     });
-    blocks.sort_by(|a, b| {
-        (&a.model, a.first_run, !a.published).cmp(&(&b.model, b.first_run, !b.published))
-    });
+    let order = |b: &Block| (b.first_run, Reverse(b.again), !b.published);
+    blocks.sort_by(|a, b| a.model.cmp(&b.model).then_with(|| order(a).cmp(&order(b))));
     blocks.dedup_by(|a, b| (&a.model, a.first_run) == (&b.model, b.first_run));
     Ok(blocks)
 }

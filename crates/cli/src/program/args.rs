@@ -27,6 +27,9 @@ pub(crate) enum Command {
     /// Draws the inertia of payload and stage under every model of the scenario, separates them,
     /// and writes a folder with the resolved scenario, the run tables (Parquet), summary.json, the
     /// figures (SVG) and the report, as report.html and as report.md.
+    ///
+    /// A scenario with a table [simulation] names a simulator of your own instead: it is sent what is drawn, run by run,
+    /// and its answers are reported.
     #[command(after_help = EXAMPLES)]
     Study(StudyArgs),
     /// Make the report and the figures of a study again, from its folder alone
@@ -141,6 +144,22 @@ pub(crate) struct StudyArgs {
     /// Do only a share of the runs, as 2/8, while other processes do the others: `gyradius report` puts them together
     #[arg(long, value_name = "I/N", conflicts_with = "force")]
     pub(crate) shard: Option<Shard>,
+
+    /// Do the runs again that failed before, as after a licence was not free; the report says how many
+    #[arg(long, conflicts_with = "shard")]
+    pub(crate) retry_failed: bool,
+
+    /// Begin even if the run tables will not fit onto the disk
+    #[arg(long)]
+    pub(crate) even_if_full: bool,
+
+    /// Write JSON in place of the table, for other programs
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    /// Write nothing but errors: no progress, no table
+    #[arg(long, short, conflicts_with = "json")]
+    pub(crate) quiet: bool,
 
     /// Largest share of the runs of a model that may fail, as 0.05 or 5%, for exit code 0
     #[arg(long, value_name = "SHARE", default_value = "50%", value_parser = share)]

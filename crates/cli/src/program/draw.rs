@@ -1,7 +1,9 @@
 //! `gyradius draw`: what is drawn for the runs of a scenario, for other programs.
 
 use gyradius_formats::NewFile;
-use gyradius_study::{CampaignError, Draw, DrawError, DrawOptions, FormatError, TableFormat};
+use gyradius_study::{
+    AnyScenario, CampaignError, Draw, DrawError, DrawOptions, FormatError, TableFormat,
+};
 use std::{
     error::Error,
     fs,
@@ -28,7 +30,10 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
         format,
         stop: Some(signals.stop()),
     };
-    let draw = Draw::new(&scenario, &options)?;
+    let draw = match &scenario {
+        AnyScenario::Separation(scenario) => Draw::new(scenario, &options)?,
+        AnyScenario::Simulator(scenario) => Draw::of_simulator(scenario, &options)?,
+    };
     let written = match file {
         Some(path) => {
             if let Some(input) = &arguments.scenario {

@@ -1,6 +1,6 @@
 //! `gyradius replay`: one run of a study again.
 
-use gyradius_study::Replay;
+use gyradius_study::{AnyScenario, Replay, SimulatorReplay};
 use std::{error::Error, path::Path};
 
 use crate::program::{args::ReplayArgs, output::print};
@@ -12,6 +12,10 @@ pub(crate) const DEFAULT: &str = "target/study/peck-2003";
 pub(crate) fn replay(arguments: &ReplayArgs) -> Result<(), Box<dyn Error>> {
     let path = arguments.study.as_deref().unwrap_or(Path::new(DEFAULT));
     let model = arguments.model.as_deref();
+    if let Ok(AnyScenario::Simulator(scenario)) = AnyScenario::read(path) {
+        let replay = SimulatorReplay::new(&scenario, model, arguments.run)?;
+        return Ok(print(&replay.to_string())?);
+    }
     let replay = Replay::open(path, model, arguments.run, arguments.coast)?;
     let folder = arguments.out.clone().unwrap_or_else(|| replay.default_folder());
     let files = replay.write(&folder, arguments.force)?;

@@ -1,6 +1,6 @@
 //! `gyradius report`: the report of a study made again, or of one whose runs are put together now.
 
-use gyradius_study::{Options, Results, Study, is_begun};
+use gyradius_study::{Options, ResultsError, is_begun, put_together, write_report};
 use std::{
     error::Error,
     path::{Path, PathBuf},
@@ -8,11 +8,7 @@ use std::{
 };
 
 use crate::program::{
-    args::ReportArgs,
-    output::print,
-    replay::DEFAULT,
-    status::UNFINISHED,
-    study::{answer, notice},
+    args::ReportArgs, output::print, replay::DEFAULT, status::UNFINISHED, study::notice,
 };
 
 /// Runs the verb.
@@ -23,15 +19,15 @@ pub(crate) fn report(arguments: &ReportArgs) -> Result<ExitCode, Box<dyn Error>>
         print(&format!("report: {}\n", written.join("report.html").display()))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let study = Study::put_together(folder, &Options::default(), &notice)?;
+    let study = put_together(folder, &Options::default(), &notice)?;
     if arguments.out.is_some() {
         write(folder, arguments)?;
     }
-    print(&answer(&study))?;
-    let complete = study.summary().missing().is_empty();
+    print(&study.to_string())?;
+    let complete = study.missing().is_empty();
     Ok(if complete { ExitCode::SUCCESS } else { ExitCode::from(UNFINISHED) })
 }
 
-fn write(folder: &Path, arguments: &ReportArgs) -> Result<PathBuf, Box<dyn Error>> {
-    Ok(Results::read(folder)?.write_report(arguments.out.as_deref(), arguments.force)?)
+fn write(folder: &Path, arguments: &ReportArgs) -> Result<PathBuf, ResultsError> {
+    write_report(folder, arguments.out.as_deref(), arguments.force)
 }

@@ -1,15 +1,15 @@
 //! `gyradius study`: a scenario run, its table, and the exit code.
 
 use gyradius_study::{
-    CampaignError, Notice, Options, Scenario, ScenarioError, Study, StudyError, planned_runs,
-    run_shard,
+    Again, AnyScenario, CampaignError, Notice, Options, Scenario, ScenarioError, StudyError,
 };
-use std::{error::Error, fmt::Write, path::Path, process::ExitCode, time::Duration};
+use serde_json::json;
+use std::{error::Error, path::Path, process::ExitCode, time::Duration};
 
 use crate::program::{
     args::StudyArgs,
     number::short,
-    output::{complain, print, say},
+    output::{complain, print, print_json, say},
     progress,
     signals::Signals,
 };
@@ -30,33 +30,44 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
         out: arguments.out.clone(),
         threads: arguments.threads,
         force: arguments.force,
+        retry_failed: arguments.retry_failed,
+        even_if_full: arguments.even_if_full,
         stop: Some(signals.stop()),
     };
-    let total = planned_runs(&scenario, arguments.shard);
+    let total = scenario.planned_runs(arguments.shard);
     if let Some(shard) = arguments.shard {
-        let done = progress::show(total, "runs", |report| {
-            run_shard(&scenario, &options, shard, report, &notice)
+        let done = shown(total, arguments.quiet, |report, notice| {
+            scenario.run_shard(&options, shard, report, notice)
         });
         return match done {
             Err(StudyError::Campaign(CampaignError::Stopped)) => Ok(stopped(&signals)),
             other => {
                 other?;
-                print(&format!("shard {shard} of {} is done: {total} runs\n", scenario.name()))?;
+                let text = if arguments.json {
+                    format!("{}\n", json!({ "shard": shard.to_string(), "runs": total }))
+                } else {
+                    format!("shard {shard} of {} is done: {total} runs\n", scenario.name())
+                };
+                if !arguments.quiet {
+                    print(&text)?;
+                }
                 Ok(ExitCode::SUCCESS)
             }
         };
     }
-    let study = progress::show(total, "runs", |report| {
-        Study::run_with_notices(&scenario, &options, report, &notice)
-    });
-    let study = match study {
+    let outcome = progress::show(total, "runs", |report| scenario.run(&options, report, &notice));
+    let outcome = match outcome {
         Err(StudyError::Campaign(CampaignError::Stopped)) => return Ok(stopped(&signals)),
         other => other?,
     };
-    print(&answer(&study))?;
+    if arguments.json {
+        print_json(&serde_json::to_string_pretty(&outcome)?)?;
+    } else if !arguments.quiet {
+        print(&outcome.to_string())?;
+    }
 
     let mut code = ExitCode::SUCCESS;
-    for (model, failed, runs) in study.summary().failed() {
+    for (model, failed, runs) in outcome.failed() {
         if failed as f64 > arguments.max_failed * runs as f64 {
             complain(format_args!(
                 "{model}: {failed} of {runs} runs failed, and --max-failed allows {} %",
@@ -68,9 +79,25 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     Ok(code)
 }
 
+/// Does what reports its progress and has things to say, which nobody hears if it is to be quiet.
+fn shown<T>(
+    total: u64,
+    quiet: bool,
+    work: impl FnOnce(&(dyn Fn(u64) + Sync), &dyn Fn(Notice)) -> T,
+) -> T {
+    if quiet {
+        return work(&|_| {}, &|_| {});
+    }
+    progress::show(total, "runs", |report| work(report, &notice))
+}
+
 /// The scenario in a file or the built-in one, with a seed if one is given.
-pub(crate) fn scenario(file: Option<&Path>, seed: Option<u64>) -> Result<Scenario, ScenarioError> {
-    let scenario = file.map_or_else(Scenario::peck_2003, Scenario::read)?;
+pub(crate) fn scenario(
+    file: Option<&Path>,
+    seed: Option<u64>,
+) -> Result<AnyScenario, ScenarioError> {
+    let built_in = || Ok(AnyScenario::Separation(Box::new(Scenario::peck_2003()?)));
+    let scenario = file.map_or_else(built_in, AnyScenario::read)?;
     match seed {
         Some(seed) => scenario.with_seed(seed),
         None => Ok(scenario),
@@ -80,11 +107,17 @@ pub(crate) fn scenario(file: Option<&Path>, seed: Option<u64>) -> Result<Scenari
 /// What is said before the runs.
 pub(crate) fn notice(notice: Notice) {
     match notice {
-        Notice::Forecast(forecast) if forecast.time() > PATIENCE => say(&forecast.to_string()),
+        Notice::Forecast(forecast) if forecast.time() > Some(PATIENCE) => {
+            say(&forecast.to_string());
+        }
         Notice::GoesOn { done, of } if done < of => {
             say(&format!("{done} of {of} runs are finished already; going on"));
         }
         Notice::Damaged(block) => say(&format!("{block}: its runs are done again")),
+        Notice::Again(Again { runs, failed }) => {
+            let s = if runs == 1 { "" } else { "s" };
+            say(&format!("{runs} run{s} that had failed, done again: {failed} failed again"));
+        }
         // What takes a moment is not worth a word.
         _ => {}
     }
@@ -93,19 +126,4 @@ pub(crate) fn notice(notice: Notice) {
 fn stopped(signals: &Signals) -> ExitCode {
     complain("stopped: the runs that were finished are kept, and the same command goes on");
     signals.code()
-}
-
-/// The answer on the terminal.
-pub(crate) fn answer(study: &Study) -> String {
-    let summary = study.summary();
-    let (runs, seed) = (summary.runs_per_model(), summary.seed());
-    let report = study.folder().join("report.html");
-    let mut text =
-        format!("{}: {runs} runs a model, seed {seed}\n\n{summary}\n", summary.scenario());
-    for runs in summary.missing() {
-        // Writing to a string does not fail.
-        let _ = writeln!(text, "missing: {runs}");
-    }
-    let _ = writeln!(text, "report: {}", report.display());
-    text
 }

@@ -174,7 +174,7 @@ impl Replay {
     /// What else was drawn, beside its nominal value, and how far it is from the mean of its law in
     /// standard deviations.
     fn drawn(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let dispersed = &self.scenario.dispersions().all;
+        let dispersed = self.scenario.dispersions().all();
         if dispersed.is_empty() {
             return Ok(());
         }

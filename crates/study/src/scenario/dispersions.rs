@@ -7,7 +7,7 @@ use gyradius_separation::{
 
 use super::{
     ScenarioError,
-    file::{BodyFile, ScenarioFile},
+    file::{BodyFile, CorrelationFile, ScenarioFile},
     law::{self, GivenLaw, VectorLawFile},
     load::{self, GivenLoad, Uncertain},
 };
@@ -15,13 +15,12 @@ use crate::body::Body;
 
 /// A number that every run draws.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Dispersed {
+pub(crate) struct Dispersed<T = Target> {
     /// Its name in correlations and in the run table, and of its random stream.
     pub(crate) column: String,
-    pub(crate) unit: &'static str,
     pub(crate) nominal: f64,
     pub(crate) law: ScalarLaw,
-    pub(crate) target: Target,
+    pub(crate) target: T,
 }
 
 /// What a number is of: a component, from 0, of a parameter.
@@ -38,10 +37,16 @@ pub(crate) enum Target {
 }
 
 /// All of them, and how they are correlated.
+#[derive(Clone, Debug)]
+pub(crate) struct Joint<T> {
+    pub(crate) all: Vec<Dispersed<T>>,
+    pub(crate) correlation: Correlation,
+}
+
+/// What is uncertain of a separation besides the inertias.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Dispersions {
-    pub(crate) all: Vec<Dispersed>,
-    pub(crate) correlation: Correlation,
+    pub(crate) joint: Joint<Target>,
     /// The share of its mass's relative change that the drawn inertia of payload and stage takes.
     pub(crate) inertia_follows_mass: [f64; 2],
 }
@@ -62,14 +67,28 @@ impl Dispersions {
         for (place, (id, given)) in file.loads().enumerate() {
             list.load(place, id, given)?;
         }
-        let correlation = list.correlate(file)?;
+        let joint = list.correlate(
+            &file.correlations,
+            "the dispersion of payload, stage, stack and springs names",
+        )?;
         let follows = |body: &BodyFile| body.dispersion.inertia_follows_mass.share();
         let inertia_follows_mass = [follows(&file.payload), follows(&file.stage)];
-        Ok(Self { all: list.all, correlation, inertia_follows_mass })
+        Ok(Self { joint, inertia_follows_mass })
+    }
+
+    /// What they are, in order.
+    pub(crate) fn all(&self) -> &[Dispersed] {
+        &self.joint.all
     }
 
     pub(crate) fn columns(&self) -> Vec<String> {
-        self.all.iter().map(|d| d.column.clone()).collect()
+        self.all().iter().map(|d| d.column.clone()).collect()
+    }
+}
+
+impl<T> Default for Joint<T> {
+    fn default() -> Self {
+        Self { all: Vec::new(), correlation: Correlation::default() }
     }
 }
 
@@ -85,34 +104,33 @@ struct Place {
 const CORRELATIONS: &str = "correlations";
 
 /// As it is put together.
-#[derive(Default)]
-struct List {
-    all: Vec<Dispersed>,
+pub(crate) struct List<T = Target> {
+    all: Vec<Dispersed<T>>,
     /// Pairs that covariances correlate, and where they are given.
     pairs: Vec<(usize, usize, f64)>,
     fields: Vec<String>,
 }
 
-impl List {
-    fn push(
-        &mut self,
-        name: &str,
-        unit: &'static str,
-        nominal: f64,
-        law: ScalarLaw,
-        target: Target,
-    ) {
+impl<T> Default for List<T> {
+    fn default() -> Self {
+        Self { all: Vec::new(), pairs: Vec::new(), fields: Vec::new() }
+    }
+}
+
+impl<T> List<T> {
+    /// A number with a name that ends in its unit, if it has one.
+    pub(crate) fn push(&mut self, name: &str, unit: &str, nominal: f64, law: ScalarLaw, target: T) {
         let column = if unit.is_empty() { name.to_owned() } else { format!("{name}_{unit}") };
-        self.all.push(Dispersed { column, unit, nominal, law, target });
+        self.all.push(Dispersed { column, nominal, law, target });
     }
 
     /// A parameter of what stands at a place of the file, and is called by a name.
-    fn parameter(
+    pub(crate) fn parameter(
         &mut self,
         place: &str,
         name: &str,
         uncertain: &Uncertain<'_>,
-        target: impl Fn(usize) -> Target,
+        target: impl Fn(usize) -> T,
     ) -> Result<(), ScenarioError> {
         let Uncertain { name: quantity, unit, nominal, law } = uncertain;
         let place = Place {
@@ -138,7 +156,7 @@ impl List {
         law: Option<&ScalarLawForm>,
         percent: Option<&ScalarLawForm>,
         nominal: f64,
-        target: Target,
+        target: T,
     ) -> Result<(), ScenarioError> {
         let (field, unit, law) = match (law, percent) {
             (None, None) => return Ok(()),
@@ -160,7 +178,7 @@ impl List {
         place: &Place,
         law: Option<&VectorLawFile>,
         nominal: &[f64],
-        target: impl Fn(usize) -> Target,
+        target: impl Fn(usize) -> T,
     ) -> Result<(), ScenarioError> {
         let Some(law) = law else { return Ok(()) };
         let law = law.about(&place.field, nominal, LawUnit::OWN)?;
@@ -176,6 +194,63 @@ impl List {
         Ok(())
     }
 
+    /// All of it, correlated as the file says; `names` tells what names the quantities that there are.
+    pub(crate) fn correlate(
+        mut self,
+        given: &[CorrelationFile],
+        names: &str,
+    ) -> Result<Joint<T>, ScenarioError> {
+        for (i, given) in given.iter().enumerate() {
+            let field = format!("{CORRELATIONS}[{}]", i + 1);
+            let index = |name: &String| {
+                self.all.iter().position(|d| d.column == *name).ok_or_else(|| {
+                    let all: Vec<_> = self.all.iter().map(|d| d.column.as_str()).collect();
+                    let problem = if all.is_empty() {
+                        format!("{name:?} is not dispersed, and nothing is: there is nothing to correlate")
+                    } else {
+                        format!("{name:?} is not dispersed: {names} {}", all.join(", "))
+                    };
+                    ScenarioError::field(format!("{field}.between"), problem)
+                })
+            };
+            let members = given.between.iter().map(index).collect::<Result<Vec<_>, _>>()?;
+            if members.len() < 2 {
+                let problem = format!("{:?}: it must name at least two quantities", given.between);
+                return Err(ScenarioError::field(format!("{field}.between"), problem));
+            }
+            for (j, &b) in members.iter().enumerate() {
+                for &a in &members[..j] {
+                    self.pairs.push((a, b, given.coefficient));
+                    self.fields.push(field.clone());
+                }
+            }
+        }
+        let correlation = Correlation::new(&self.pairs).map_err(|error| {
+            let pair = match &error {
+                CorrelationError::Coefficient { pair, .. }
+                | CorrelationError::NoPair { pair }
+                | CorrelationError::Twice { pair }
+                | CorrelationError::Indefinite { pair, .. } => *pair,
+                _ => return ScenarioError::field(CORRELATIONS, error),
+            };
+            let field = match (&error, self.fields[pair].as_str()) {
+                (CorrelationError::NoPair { .. } | CorrelationError::Twice { .. }, field)
+                    if field.starts_with(CORRELATIONS) =>
+                {
+                    format!("{field}.between")
+                }
+                (_, field) if field.starts_with(CORRELATIONS) => format!("{field}.coefficient"),
+                (_, field) => field.to_owned(),
+            };
+            let (a, b, _) = self.pairs[pair];
+            let (a, b) = (&self.all[a].column, &self.all[b].column);
+            ScenarioError::field(field, format!("{a:?} and {b:?}: {error}"))
+        })?;
+        Ok(Joint { all: self.all, correlation })
+    }
+}
+
+impl List {
     fn body(
         &mut self,
         body: Body,
@@ -232,58 +307,6 @@ impl List {
             chance("late", d.late_probability, Target::Late(load, start))?;
         }
         chance("failure", d.failure_probability, Target::Fails(load))
-    }
-
-    fn correlate(&mut self, file: &ScenarioFile) -> Result<Correlation, ScenarioError> {
-        for (i, given) in file.correlations.iter().enumerate() {
-            let field = format!("{CORRELATIONS}[{}]", i + 1);
-            let index = |name: &String| {
-                self.all.iter().position(|d| d.column == *name).ok_or_else(|| {
-                    let names: Vec<_> = self.all.iter().map(|d| d.column.as_str()).collect();
-                    let problem = if names.is_empty() {
-                        format!("{name:?} is not dispersed, and nothing is: there is nothing to correlate")
-                    } else {
-                        format!(
-                            "{name:?} is not dispersed: the dispersion of payload, stage, stack and springs names {}",
-                            names.join(", ")
-                        )
-                    };
-                    ScenarioError::field(format!("{field}.between"), problem)
-                })
-            };
-            let members = given.between.iter().map(index).collect::<Result<Vec<_>, _>>()?;
-            if members.len() < 2 {
-                let problem = format!("{:?}: it must name at least two quantities", given.between);
-                return Err(ScenarioError::field(format!("{field}.between"), problem));
-            }
-            for (j, &b) in members.iter().enumerate() {
-                for &a in &members[..j] {
-                    self.pairs.push((a, b, given.coefficient));
-                    self.fields.push(field.clone());
-                }
-            }
-        }
-        Correlation::new(&self.pairs).map_err(|error| {
-            let pair = match &error {
-                CorrelationError::Coefficient { pair, .. }
-                | CorrelationError::NoPair { pair }
-                | CorrelationError::Twice { pair }
-                | CorrelationError::Indefinite { pair, .. } => *pair,
-                _ => return ScenarioError::field(CORRELATIONS, error),
-            };
-            let field = match (&error, self.fields[pair].as_str()) {
-                (CorrelationError::NoPair { .. } | CorrelationError::Twice { .. }, field)
-                    if field.starts_with(CORRELATIONS) =>
-                {
-                    format!("{field}.between")
-                }
-                (_, field) if field.starts_with(CORRELATIONS) => format!("{field}.coefficient"),
-                (_, field) => field.to_owned(),
-            };
-            let (a, b, _) = self.pairs[pair];
-            let (a, b) = (&self.all[a].column, &self.all[b].column);
-            ScenarioError::field(field, format!("{a:?} and {b:?}: {error}"))
-        })
     }
 }
 

@@ -66,7 +66,7 @@ impl<'de> Deserialize<'de> for VectorLawFile {
 }
 
 /// A refusal at its key below a field.
-pub(super) fn refused(field: &str, error: &ScalarLawFormError) -> ScenarioError {
+pub(crate) fn refused(field: &str, error: &ScalarLawFormError) -> ScenarioError {
     match error.key {
         Some(key) => ScenarioError::field(format!("{field}.{key}"), &error.problem),
         None => ScenarioError::field(field, &error.problem),

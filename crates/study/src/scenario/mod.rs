@@ -17,17 +17,19 @@ mod sides;
 use gyradius_formats::read_text;
 use gyradius_separation::{Separation, SeparationError, Settings, SettingsError};
 use nalgebra::{Unit, Vector3};
-use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 pub(crate) use body::UncertainBody;
 use clearance::Outlines;
-pub(crate) use dispersions::{Dispersed, Dispersions, Target};
+pub(crate) use dispersions::{Dispersed, Dispersions, Joint, List, Target};
 use file::ScenarioFile;
-pub(crate) use file::ShapeFile;
+pub(crate) use file::{BodyFile, CorrelationFile, DispersionFile, ShapeFile};
+pub(crate) use law::{GivenLaw, refused};
+pub(crate) use load::Uncertain;
 pub(crate) use model::{Comparison, Law, ModelSpec};
 pub(crate) use model_file::{AxesFile as Axes, ModelLaw};
 use outside::OutsideLaws;
+pub(crate) use parse::whole;
 pub use parse::{parse_toml, whole_number};
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
@@ -67,6 +69,17 @@ impl ScenarioError {
     pub(crate) fn field(field: impl Into<String>, problem: impl std::fmt::Display) -> Self {
         Self::Field { field: field.into(), problem: format!("{problem}") }
     }
+
+    /// The same, which says in which file.
+    pub(crate) fn in_file(self, path: &Path) -> Self {
+        match self {
+            Self::Parse { message, .. } => Self::Parse { path: Some(path.to_owned()), message },
+            Self::Field { field, problem } => {
+                Self::Field { field: format!("{}: {field}", path.display()), problem }
+            }
+            read @ Self::Read { .. } => read,
+        }
+    }
 }
 
 /// A study to be run: bodies with their uncertainty, loads, models, how many runs from which
@@ -103,20 +116,8 @@ impl Scenario {
     /// # Errors
     /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let unread = |source| ScenarioError::Read { path: path.to_owned(), source };
-        // One in the folder of a study may have been put aside by a command that was killed.
-        gyradius_campaign::restore(gyradius_campaign::folder_of(path))
-            .map_err(|error| unread(std::io::Error::other(error)))?;
-        let text = read_text(path, limits::BYTES).map_err(unread)?;
-        Self::from_toml(&text).map_err(|error| match error {
-            ScenarioError::Parse { message, .. } => {
-                ScenarioError::Parse { path: Some(path.to_owned()), message }
-            }
-            ScenarioError::Field { field, problem } => {
-                ScenarioError::Field { field: format!("{}: {field}", path.display()), problem }
-            }
-            other => other,
-        })
+        let text = read_file(path)?;
+        Self::from_toml(&text).map_err(|error| error.in_file(path))
     }
 
     /// Reads a scenario from the text of a file.
@@ -250,7 +251,7 @@ impl Scenario {
     /// a digest of its draws, so that this is then as sure as that the law always draws the same.
     #[must_use]
     pub fn fingerprint(&self) -> String {
-        Sha256::digest(self.to_toml()).iter().map(|byte| format!("{byte:02x}")).collect()
+        crate::head::fingerprint(&self.to_toml())
     }
 
     /// The axis that the payload spins about, body axes.
@@ -372,7 +373,15 @@ fn separation_error(error: SeparationError) -> ScenarioError {
 const POINTS: &str = "; where its points are follows from payload_point_m, stage_point_m, and position_m and \
                       body_to_inertial of the bodies";
 
-fn check_runs(runs: u64) -> Result<(), ScenarioError> {
+/// The text of a scenario file. One in the folder of a study may have been put aside by a command that was killed.
+pub(crate) fn read_file(path: &Path) -> Result<String, ScenarioError> {
+    let unread = |source| ScenarioError::Read { path: path.to_owned(), source };
+    gyradius_campaign::restore(gyradius_campaign::folder_of(path))
+        .map_err(|error| unread(std::io::Error::other(error)))?;
+    read_text(path, limits::BYTES).map_err(unread)
+}
+
+pub(crate) fn check_runs(runs: u64) -> Result<(), ScenarioError> {
     if (1..=limits::RUNS).contains(&runs) {
         Ok(())
     } else {
@@ -383,7 +392,7 @@ fn check_runs(runs: u64) -> Result<(), ScenarioError> {
     }
 }
 
-fn check_seed(seed: u64) -> Result<(), ScenarioError> {
+pub(crate) fn check_seed(seed: u64) -> Result<(), ScenarioError> {
     if i64::try_from(seed).is_ok() {
         Ok(())
     } else {
@@ -393,7 +402,7 @@ fn check_seed(seed: u64) -> Result<(), ScenarioError> {
 }
 
 /// Names become names of folders.
-fn check_name(field: &str, name: &str) -> Result<(), ScenarioError> {
+pub(crate) fn check_name(field: &str, name: &str) -> Result<(), ScenarioError> {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     // What Windows takes for devices.
     let device = ["con", "prn", "aux", "nul"].contains(&name.to_ascii_lowercase().as_str());

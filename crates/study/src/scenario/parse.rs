@@ -112,7 +112,7 @@ fn said(path: &Path) -> String {
 }
 
 /// A whole number, which may be written as `1e6` as well.
-pub(super) fn whole<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+pub(crate) fn whole<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
     struct Whole;
     impl de::Visitor<'_> for Whole {
         type Value = u64;

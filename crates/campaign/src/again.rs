@@ -1,0 +1,86 @@
+//! Runs that failed, done again: for failures that are not of the run, such as a licence that was not free.
+
+use rayon::prelude::*;
+use std::sync::{
+    Mutex, PoisonError,
+    atomic::{AtomicBool, Ordering},
+};
+
+use crate::{
+    folder::Blocks,
+    simulation::{CampaignError, Simulation, run_range},
+    table::Table,
+};
+
+/// What became of runs that were done again.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Again {
+    /// Runs that had failed, and were done again.
+    pub runs: u64,
+    /// How many of them failed again.
+    pub failed: u64,
+}
+
+/// Does the runs of finished blocks again that failed. A block is written anew, and takes the place of the old one when it
+/// is on the disk; until then that one counts. To be called in the threads that are to do it.
+///
+/// # Errors
+/// A block cannot be read or written; a simulation writes rows that do not fit its columns; the campaign is stopped.
+pub fn run_again<S: Simulation>(
+    simulations: &[(&str, S)],
+    blocks: &Blocks,
+    stop: Option<&AtomicBool>,
+) -> Result<Again, CampaignError> {
+    let go_on = || match stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+        true => Err(CampaignError::Stopped),
+        false => Ok(()),
+    };
+    let mut all = Again::default();
+    for (name, simulation) in simulations {
+        let empty = Table::new(name, 0, simulation.columns())?;
+        let with_failures = blocks.with_failures(name);
+        let runs = blocks.runs(&empty, Vec::new());
+        let each = with_failures.into_par_iter().map(|range| {
+            go_on()?;
+            let Some(old) = runs.block(range.start)? else { return Ok(Again::default()) };
+            let (new, again) = redone(simulation, &empty, &old, &|_| go_on())?;
+            blocks.write_again(&new, again.runs)?;
+            Ok::<_, CampaignError>(again)
+        });
+        for again in each.collect::<Result<Vec<_>, _>>()? {
+            all = Again { runs: all.runs + again.runs, failed: all.failed + again.failed };
+        }
+    }
+    Ok(all)
+}
+
+/// A table in which the runs that failed are those of the simulation now.
+fn redone<S: Simulation>(
+    simulation: &S,
+    empty: &Table,
+    old: &Table,
+    more: &(dyn Fn(u64) -> Result<(), CampaignError> + Sync),
+) -> Result<(Table, Again), CampaignError> {
+    let failed: Vec<u64> = old.failures().map(|(run, _)| run).collect();
+    let rows = Mutex::new(Vec::new());
+    failed.into_par_iter().try_for_each(|run| {
+        let table = run_range(simulation, empty, run..run.saturating_add(1), more)?;
+        rows.lock().unwrap_or_else(PoisonError::into_inner).push(table);
+        Ok::<_, CampaignError>(())
+    })?;
+    let mut rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
+    rows.sort_by_key(Table::first);
+    let again = Again {
+        runs: rows.len() as u64,
+        failed: rows.iter().map(|table| table.failures().len() as u64).sum(),
+    };
+    let mut new = empty.from_run(old.first());
+    let mut rows = rows.into_iter();
+    for row in old.rows() {
+        match row.failure().and_then(|_| rows.next()) {
+            Some(redone) => new.append(redone),
+            None => new.push(row.failure().cloned(), row.own_cells())?,
+        }
+    }
+    Ok((new, again))
+}

@@ -1,0 +1,257 @@
+//! A scenario of either kind, and what becomes of it: for programs that are given a file or a folder.
+
+use gyradius_campaign::{Doing, Progress, Shard, begun};
+use serde::Serialize;
+use std::{
+    fmt, fs,
+    path::{Path, PathBuf},
+};
+
+use crate::{
+    Notice, Options, ResultsError, Scenario, ScenarioError, SimulatorScenario, Status, Study,
+    StudyError,
+    head::{Head, Missing},
+    results,
+    scenario::{parse_toml, read_file},
+    shards,
+    study::{self, carry_out},
+    subject::Summarized,
+};
+
+/// A scenario of separations, or of a simulator of the user's own, which has a table `[simulation]`.
+#[derive(Clone, Debug)]
+pub enum AnyScenario {
+    /// Of separations.
+    Separation(Box<Scenario>),
+    /// Of a simulator.
+    Simulator(Box<SimulatorScenario>),
+}
+
+/// Does the same with a scenario of either kind.
+macro_rules! of_either {
+    ($any:expr, $scenario:ident => $done:expr) => {
+        match $any {
+            AnyScenario::Separation($scenario) => $done,
+            AnyScenario::Simulator($scenario) => $done,
+        }
+    };
+}
+
+impl AnyScenario {
+    /// Reads a scenario file; of the folder of a study, its `scenario.toml`.
+    ///
+    /// # Errors
+    /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
+    pub fn read(path: &Path) -> Result<Self, ScenarioError> {
+        let file = if path.is_dir() { path.join("scenario.toml") } else { path.to_owned() };
+        let folder = gyradius_campaign::folder_of(&file);
+        Self::from_toml(&read_file(&file)?, folder).map_err(|error| error.in_file(&file))
+    }
+
+    /// Reads a scenario from the text of a file that is in a folder.
+    ///
+    /// # Errors
+    /// It is not TOML, has an unknown key, or a value that is not allowed.
+    pub fn from_toml(text: &str, folder: &Path) -> Result<Self, ScenarioError> {
+        if is_of_simulator(text) {
+            let scenario = SimulatorScenario::from_toml(text, folder)?;
+            return Ok(Self::Simulator(Box::new(scenario)));
+        }
+        Ok(Self::Separation(Box::new(Scenario::from_toml(text)?)))
+    }
+
+    /// The same scenario with another number of runs for each model.
+    ///
+    /// # Errors
+    /// The number is out of range.
+    pub fn with_runs(self, runs: u64) -> Result<Self, ScenarioError> {
+        Ok(match self {
+            Self::Separation(scenario) => Self::Separation(Box::new(scenario.with_runs(runs)?)),
+            Self::Simulator(scenario) => Self::Simulator(Box::new(scenario.with_runs(runs)?)),
+        })
+    }
+
+    /// The same scenario from another seed.
+    ///
+    /// # Errors
+    /// The seed does not fit into a TOML integer.
+    pub fn with_seed(self, seed: u64) -> Result<Self, ScenarioError> {
+        Ok(match self {
+            Self::Separation(scenario) => Self::Separation(Box::new(scenario.with_seed(seed)?)),
+            Self::Simulator(scenario) => Self::Simulator(Box::new(scenario.with_seed(seed)?)),
+        })
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        of_either!(self, scenario => scenario.name())
+    }
+
+    /// How many runs a process is to do if none is there: those of a shard, or of all models.
+    #[must_use]
+    pub fn planned_runs(&self, shard: Option<Shard>) -> u64 {
+        of_either!(self, scenario => shards::planned_runs(&**scenario, shard))
+    }
+
+    /// Runs the scenario and writes its folder: the resolved scenario, run tables, summary, figures and report. Says what
+    /// there is to say before it begins.
+    ///
+    /// # Errors
+    /// The folder holds another study and `force` is not set; the command of a simulator cannot be started; something cannot
+    /// be written. What was there stays as it was.
+    pub fn run(
+        &self,
+        options: &Options,
+        progress: Progress<'_>,
+        say: &dyn Fn(Notice),
+    ) -> Result<Outcome, StudyError> {
+        of_either!(self, scenario =>
+            carry_out(&**scenario, options, Doing::All, progress, say).map(Outcome::of))
+    }
+
+    /// Does a share of the runs of a study, of those that are in no finished block, into its folder. Other processes may do
+    /// other shares at the same time, also on other machines that have the folder in common. Nothing is put together:
+    /// [`put_together`] does that, or [`run`](Self::run).
+    ///
+    /// # Errors
+    /// The folder holds another study, or somebody has it alone, or another process does the same share; something cannot be
+    /// written. Blocks that were finished stay.
+    pub fn run_shard(
+        &self,
+        options: &Options,
+        shard: Shard,
+        progress: Progress<'_>,
+        say: &dyn Fn(Notice),
+    ) -> Result<(), StudyError> {
+        of_either!(self, scenario => shards::run_shard(&**scenario, options, shard, progress, say))
+    }
+}
+
+impl Status {
+    /// Of the study in a folder, as its files tell, which are neither read nor locked: others may be at work.
+    ///
+    /// # Errors
+    /// The folder holds no study, or its files cannot be read.
+    pub fn read(folder: &Path) -> Result<Self, StudyError> {
+        let complete = || fs::read_to_string(folder.join("scenario.toml")).ok();
+        let text = begun(folder).or_else(complete).ok_or_else(|| StudyError::Absent {
+            path: folder.to_owned(),
+            problem: "it holds no study".to_owned(),
+        })?;
+        let scenario = AnyScenario::from_toml(&text, folder)?;
+        of_either!(&scenario, scenario => Self::of(&**scenario, folder))
+    }
+}
+
+/// Whether a study was begun in a folder whose runs are not all done, or not put together.
+#[must_use]
+pub fn is_begun(folder: &Path) -> bool {
+    begun(folder).is_some()
+}
+
+/// Puts together what is there of a study whose runs are not all done, in its folder: the study, if nothing is
+/// missing, and else summary and report of the runs that are there, which say what is missing.
+///
+/// # Errors
+/// Nothing was begun in the folder, or there are models without any run; a shard is at work.
+pub fn put_together(
+    folder: &Path,
+    options: &Options,
+    say: &dyn Fn(Notice),
+) -> Result<Outcome, StudyError> {
+    let text = begun(folder).ok_or_else(|| StudyError::Absent {
+        path: folder.to_owned(),
+        problem: "it holds no study that was begun".to_owned(),
+    })?;
+    let scenario = AnyScenario::from_toml(&text, folder)?;
+    of_either!(&scenario, scenario =>
+        study::put_together(&**scenario, folder, options, say).map(Outcome::of))
+}
+
+/// Makes the figures and the report of the study in a folder again, there or in another folder; returns the folder.
+///
+/// # Errors
+/// As [`Results::read`](crate::Results::read) and [`Results::write_report`](crate::Results::write_report).
+pub fn write_report(
+    folder: &Path,
+    out: Option<&Path>,
+    force: bool,
+) -> Result<PathBuf, ResultsError> {
+    let scenario = fs::read_to_string(folder.join("scenario.toml"));
+    if scenario.is_ok_and(|text| is_of_simulator(&text)) {
+        return results::write::<SimulatorScenario>(&results::read(folder)?, out, force);
+    }
+    results::write::<Scenario>(&results::read(folder)?, out, force)
+}
+
+/// Whether the text of a scenario is of a simulator.
+fn is_of_simulator(text: &str) -> bool {
+    parse_toml::<toml::Table>(text).is_ok_and(|table| table.contains_key("simulation"))
+}
+
+/// What became of a study: where it is, and what there is to say of it. Serialized, it is what other programs want to know;
+/// every number is in `summary.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Outcome {
+    folder: PathBuf,
+    #[serde(flatten)]
+    head: Head,
+    complete: bool,
+    models: Vec<ModelOutcome>,
+    #[serde(skip)]
+    table: String,
+}
+
+/// What became of the runs of a model.
+#[derive(Clone, Debug, Serialize)]
+struct ModelOutcome {
+    model: String,
+    runs: u64,
+    failed: u64,
+}
+
+impl Outcome {
+    fn of<S: Summarized>(study: Study<S>) -> Self {
+        let summary = study.summary();
+        Self {
+            folder: study.folder().to_owned(),
+            head: summary.head().clone(),
+            complete: summary.head().missing().is_empty(),
+            models: summary
+                .failed()
+                .into_iter()
+                .map(|(model, failed, runs)| ModelOutcome { model, runs, failed })
+                .collect(),
+            table: summary.to_string(),
+        }
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Each model with how many of its runs failed, and how many there are.
+    pub fn failed(&self) -> impl Iterator<Item = (&str, u64, u64)> {
+        self.models.iter().map(|model| (model.model.as_str(), model.failed, model.runs))
+    }
+
+    /// The runs that are not done; none of a complete study.
+    #[must_use]
+    pub fn missing(&self) -> &[Missing] {
+        self.head.missing()
+    }
+}
+
+/// What there is to say on a terminal.
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (head, report) = (&self.head, self.folder.join("report.html"));
+        let (name, runs, seed) = (head.scenario(), head.runs_per_model(), head.seed());
+        writeln!(f, "{name}: {runs} runs a model, seed {seed}\n\n{}", self.table)?;
+        head.missing().iter().try_for_each(|runs| writeln!(f, "missing: {runs}"))?;
+        writeln!(f, "report: {}", report.display())
+    }
+}

@@ -1,0 +1,115 @@
+//! What a summary says first: of which scenario it is, by which version, of how many runs from which seed.
+
+use gyradius_campaign::{Column, ColumnSummary};
+use gyradius_statistics::Confidence;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::{borrow::Cow, fmt, ops::Range};
+
+use crate::subject::Subject;
+
+/// What a summary says first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Head {
+    pub(crate) gyradius_version: Cow<'static, str>,
+    pub(crate) scenario: String,
+    /// SHA-256 of the resolved scenario.
+    pub(crate) fingerprint: String,
+    pub(crate) seed: u64,
+    pub(crate) runs_per_model: u64,
+    /// Runs that are not done, where not all are.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) missing: Vec<Missing>,
+    /// How many runs were done again because they had failed.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub(crate) done_again: u64,
+    /// Of every interval.
+    pub(crate) confidence: f64,
+    /// Of the run tables.
+    pub(crate) columns: Vec<ColumnSummary>,
+}
+
+impl Head {
+    /// Of a scenario all of whose runs are there.
+    pub(crate) fn new(scenario: &impl Subject, columns: &[Column]) -> Self {
+        Self {
+            gyradius_version: env!("CARGO_PKG_VERSION").into(),
+            scenario: scenario.name().to_owned(),
+            fingerprint: fingerprint(&scenario.to_toml()),
+            seed: scenario.seed(),
+            runs_per_model: scenario.runs(),
+            missing: Vec::new(),
+            done_again: 0,
+            confidence: Confidence::default().level(),
+            columns: columns.iter().map(Column::summary).collect(),
+        }
+    }
+
+    /// The name of the scenario.
+    #[must_use]
+    pub fn scenario(&self) -> &str {
+        &self.scenario
+    }
+
+    /// The seed of all random numbers.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Runs of each model, those that are missing too.
+    #[must_use]
+    pub fn runs_per_model(&self) -> u64 {
+        self.runs_per_model
+    }
+
+    /// The runs that are not done; none of a complete study.
+    #[must_use]
+    pub fn missing(&self) -> &[Missing] {
+        &self.missing
+    }
+}
+
+/// Runs of a model that are not done.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Missing {
+    model: String,
+    first_run: u64,
+    runs: u64,
+}
+
+impl Missing {
+    pub(crate) fn new(model: &str, runs: Range<u64>) -> Self {
+        let (first_run, runs) = (runs.start, runs.end - runs.start);
+        Self { model: model.to_owned(), first_run, runs }
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// The runs.
+    #[must_use]
+    pub fn range(&self) -> Range<u64> {
+        self.first_run..self.first_run + self.runs
+    }
+}
+
+/// How many there are, and which, from the first to the last.
+impl fmt::Display for Missing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let last = self.first_run + self.runs - 1;
+        write!(f, "{} of {} ({} to {last})", self.runs, self.model, self.first_run)
+    }
+}
+
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
+/// SHA-256 of a resolved scenario, in hexadecimal.
+pub(crate) fn fingerprint(toml: &str) -> String {
+    Sha256::digest(toml).iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,104 @@
+//! Separations as a study: how their runs are simulated, and what they amount to.
+
+use gyradius_campaign::{CampaignError, Column, Forecast, Runs};
+use gyradius_report::Document;
+use rayon::ThreadPool;
+
+use crate::{
+    Scenario, ScenarioError, StudyError, Summary, claims,
+    compare::Section,
+    figures_of_study,
+    model::{Model, Separations},
+    report,
+    seen::{Looking, Seen},
+    subject::Subject,
+};
+
+impl Subject for Scenario {
+    /// Some tenths of a second of separations.
+    const BLOCK_RUNS: u64 = 1 << 14;
+    const IMMATERIAL: &[&str] = &["runs"];
+
+    type Prepared = Vec<Model>;
+    type Simulation<'a> = Separations<'a>;
+    type Look<'a> = Looking<'a>;
+    type Summary = Summary;
+
+    fn resolved(text: &str) -> Result<Self, ScenarioError> {
+        Self::from_toml(text)
+    }
+
+    fn name(&self) -> &str {
+        self.name()
+    }
+
+    fn seed(&self) -> u64 {
+        self.seed()
+    }
+
+    fn runs(&self) -> u64 {
+        self.runs()
+    }
+
+    fn model_names(&self) -> impl Iterator<Item = &str> {
+        self.model_names()
+    }
+
+    fn to_toml(&self) -> String {
+        self.to_toml()
+    }
+
+    fn prepare(&self) -> Result<Vec<Model>, ScenarioError> {
+        Model::all(self)
+    }
+
+    fn begin(&self, _: &Vec<Model>) -> Result<(), ScenarioError> {
+        Ok(())
+    }
+
+    fn forecast(
+        &self,
+        simulations: &[(&str, Separations<'_>)],
+        left: u64,
+        threads: &ThreadPool,
+    ) -> Result<Forecast, StudyError> {
+        let timed = simulations.iter().map(|(_, simulation)| simulation);
+        let each = left.div_ceil(simulations.len() as u64);
+        let forecast = Forecast::of(timed, each, threads.current_num_threads());
+        Ok(forecast.map_err(CampaignError::from)?)
+    }
+
+    fn simulations<'a>(
+        &'a self,
+        models: &'a Vec<Model>,
+    ) -> Result<Vec<(&'a str, Separations<'a>)>, ScenarioError> {
+        Ok(models.iter().map(|model| (model.name(), Separations::new(self, model))).collect())
+    }
+
+    fn look(&self, model: &str, columns: &[Column]) -> Looking<'_> {
+        Looking::new(self, model, columns)
+    }
+
+    fn judge(
+        &self,
+        models: &Vec<Model>,
+        looks: Vec<Looking<'_>>,
+        runs: &[Runs],
+    ) -> Result<Summary, StudyError> {
+        let seen = looks.into_iter().zip(runs).map(|(look, runs)| look.finish(runs));
+        let seen: Vec<Seen> = seen.collect::<Result<_, _>>()?;
+        let columns = runs.first().map_or(&[][..], Runs::columns);
+        let mut summary = Summary::new(self, models, &seen, columns, Section::new(self)?)?;
+        summary.claims = claims::judge(self, &summary, &seen);
+        summary.figures = figures_of_study::of_study(self, &summary, &seen);
+        Ok(summary)
+    }
+
+    fn report_files(&self) -> Vec<String> {
+        report::files(self).collect()
+    }
+
+    fn report(&self, summary: &Summary) -> Document {
+        report::report(self, summary)
+    }
+}

@@ -1,0 +1,118 @@
+//! A body whose mass, mass centre and inertia are drawn for each run of a simulator.
+
+use gyradius_campaign::Column;
+
+use super::{
+    file::SimulatedBodyFile,
+    scenario::{Number, check_column},
+};
+use crate::{
+    ScenarioError,
+    body::Entry,
+    scenario::{GivenLaw, List, Uncertain, UncertainBody},
+};
+
+/// A body whose mass, mass centre and inertia are drawn for each run of a simulator.
+#[derive(Clone, Debug)]
+pub(super) struct SimulatedBody {
+    pub(super) name: String,
+    pub(super) uncertain: UncertainBody,
+    pub(super) mass_kg: f64,
+    /// The share of the mass's relative change that the inertia takes.
+    pub(super) follows: f64,
+    /// Mass, and mass centre where it is given.
+    pub(super) numbers: Vec<Number>,
+}
+
+impl SimulatedBody {
+    /// The body in a place of the file; what is dispersed of its numbers, of which the first has the number `first` among
+    /// all, joins the list.
+    pub(super) fn new(
+        place: usize,
+        file: &SimulatedBodyFile,
+        first: usize,
+        list: &mut List<usize>,
+    ) -> Result<Self, ScenarioError> {
+        let (field, name) = (format!("bodies[{}]", place + 1), &file.name);
+        check_column(&format!("{field}.name"), name)?;
+        let d = &file.dispersion;
+        let at = |key: &str| format!("{field}.dispersion.{key}");
+        let motion = [
+            ("position_m", d.position_m.is_some()),
+            ("velocity_m_per_s", d.velocity_m_per_s.is_some()),
+            ("attitude_deg", d.attitude_deg.is_some()),
+            ("angular_velocity_rad_per_s", d.angular_velocity_rad_per_s.is_some()),
+        ];
+        if let Some((key, _)) = motion.into_iter().find(|(_, given)| *given) {
+            let problem = "a body of a simulator has mass, mass centre and inertia; what else is uncertain stands in \
+                           [[quantities]]";
+            return Err(ScenarioError::field(at(key), problem));
+        }
+        if d.mass_centre_m.is_some() && file.mass_centre_m.is_none() {
+            let problem = format!("the body has no mass centre: it needs {field}.mass_centre_m");
+            return Err(ScenarioError::field(at("mass_centre_m"), problem));
+        }
+        if let Some(centre) = file.mass_centre_m
+            && !centre.iter().all(|x| x.is_finite())
+        {
+            let problem = format!("{centre:?}: every entry must be finite");
+            return Err(ScenarioError::field(format!("{field}.mass_centre_m"), problem));
+        }
+        if d.mass_kg.is_none() && d.mass_percent.is_none() && !d.inertia_follows_mass.not_at_all() {
+            let problem = "the mass is not dispersed: it needs mass_kg or mass_percent";
+            return Err(ScenarioError::field(at("inertia_follows_mass"), problem));
+        }
+        let uncertain = UncertainBody::new(&field, &file.at_rest())?;
+        let mass = Uncertain {
+            name: "mass",
+            unit: "kg",
+            nominal: vec![file.mass_kg],
+            law: GivenLaw::Number(d.mass_kg.as_ref(), d.mass_percent.as_ref()),
+        };
+        list.parameter(&field, name, &mass, |_| first)?;
+        let meaning = format!("Mass of the body {name}, as drawn.");
+        let column = Column::number(format!("{name}_mass_kg"), "kg", meaning);
+        let mut numbers = vec![Number { column, nominal: file.mass_kg }];
+        if let Some(nominal) = file.mass_centre_m {
+            let centre = Uncertain {
+                name: "mass_centre",
+                unit: "m",
+                nominal: nominal.to_vec(),
+                law: GivenLaw::Vector(d.mass_centre_m.as_ref()),
+            };
+            list.parameter(&field, name, &centre, |i| first + 1 + i)?;
+            for (i, nominal) in nominal.into_iter().enumerate() {
+                let meaning = format!(
+                    "Coordinate {} of the mass centre of the body {name}, as drawn.",
+                    i + 1
+                );
+                let column =
+                    Column::number(format!("{name}_mass_centre_{}_m", i + 1), "m", meaning);
+                numbers.push(Number { column, nominal });
+            }
+        }
+        let (mass_kg, follows) = (file.mass_kg, d.inertia_follows_mass.share());
+        Ok(Self { name: name.clone(), uncertain, mass_kg, follows, numbers })
+    }
+
+    /// Its numbers, the six entries of the inertia, and the attitude of the principal axes.
+    pub(super) fn columns(&self) -> impl Iterator<Item = Column> {
+        let name = &self.name;
+        let entry = move |entry: Entry| {
+            let digits = format!("{entry:?}").replace('I', "");
+            let meaning = format!(
+                "Entry {digits} of the inertia matrix of the body {name} as drawn, about its mass centre, body axes."
+            );
+            Column::number(format!("{name}_i{digits}"), "kg·m²", meaning)
+        };
+        let axes = move |i: usize| {
+            let meaning = format!(
+                "Component of the attitude of the principal axes of the body {name} as drawn, scalar last; none for \
+                 entrywise models."
+            );
+            Column::number(format!("{name}_q{i}"), "1", meaning)
+        };
+        let numbers = self.numbers.iter().map(|number| number.column.clone());
+        numbers.chain(Entry::ALL.into_iter().map(entry)).chain((1..=4).map(axes))
+    }
+}

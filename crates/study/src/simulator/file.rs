@@ -1,0 +1,129 @@
+//! A scenario of a simulator as it stands in a TOML file.
+
+use gyradius_dispersion::{ModelKind, ScalarLawForm};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+use crate::scenario::{Axes, BodyFile, CorrelationFile, DispersionFile, whole};
+
+/// A scenario of a simulator, defaults filled in. Units are in the names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct File {
+    pub(super) name: String,
+    #[serde(default = "default_runs", deserialize_with = "whole")]
+    pub(super) runs: u64,
+    #[serde(default = "default_seed", deserialize_with = "whole")]
+    pub(super) seed: u64,
+    pub(super) simulation: SimulationFile,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) bodies: Vec<SimulatedBodyFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) quantities: Vec<QuantityFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) correlations: Vec<CorrelationFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) models: Vec<SimulatedModelFile>,
+}
+
+/// How the simulator is started, and what it answers with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SimulationFile {
+    pub(super) command: Vec<String>,
+    #[serde(default)]
+    pub(super) per_run: bool,
+    #[serde(default = "default_timeout")]
+    pub(super) timeout_s: f64,
+    /// Where the command belongs; the folder of the scenario if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) folder: Option<PathBuf>,
+    /// SHA-256 of the files that the command names, so that runs of another simulator are not mixed with these; in what is
+    /// resolved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) files_sha256: Option<String>,
+    pub(super) outputs: Vec<OutputFile>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct OutputFile {
+    pub(super) name: String,
+    #[serde(default = "default_unit")]
+    pub(super) unit: String,
+    #[serde(default = "default_output_meaning")]
+    pub(super) meaning: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SimulatedBodyFile {
+    pub(super) name: String,
+    pub(super) mass_kg: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) mass_centre_m: Option<[f64; 3]>,
+    pub(super) inertia_kg_m2: [[f64; 3]; 3],
+    pub(super) dispersion: DispersionFile,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct QuantityFile {
+    pub(super) name: String,
+    #[serde(default = "default_unit")]
+    pub(super) unit: String,
+    #[serde(default = "default_meaning")]
+    pub(super) meaning: String,
+    /// Of the quantity itself.
+    pub(super) law: ScalarLawForm,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SimulatedModelFile {
+    pub(super) name: String,
+    pub(super) law: ModelKind,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) axes: Option<Axes>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) matched_to: Option<String>,
+}
+
+impl SimulatedBodyFile {
+    /// As a body of a separation that rests where it is.
+    pub(super) fn at_rest(&self) -> BodyFile {
+        BodyFile {
+            mass_kg: self.mass_kg,
+            inertia_kg_m2: self.inertia_kg_m2,
+            position_m: [0.0; 3],
+            velocity_m_per_s: [0.0; 3],
+            body_to_inertial: [0.0, 0.0, 0.0, 1.0],
+            angular_velocity_rad_per_s: [0.0; 3],
+            dispersion: self.dispersion.clone(),
+        }
+    }
+}
+
+fn default_runs() -> u64 {
+    2000
+}
+
+fn default_seed() -> u64 {
+    1
+}
+
+fn default_timeout() -> f64 {
+    60.0
+}
+
+fn default_unit() -> String {
+    "1".to_owned()
+}
+
+fn default_meaning() -> String {
+    "As drawn.".to_owned()
+}
+
+fn default_output_meaning() -> String {
+    "As the simulator answers.".to_owned()
+}

@@ -1,0 +1,214 @@
+//! Campaigns of simulators as studies: how their runs are simulated, and what they amount to.
+
+use gyradius_campaign::{
+    Column, Doing, ExternalSimulation, FirstLook, Forecast, Progress, Runs, Simulator, Surveys,
+};
+use gyradius_report::{Document, Overview, file_of, optional, with_unit};
+use gyradius_statistics::Confidence;
+use rayon::ThreadPool;
+use serde::{Deserialize, Serialize};
+use std::{fmt, path::Path};
+
+use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
+use crate::{
+    Notice, Options, ScenarioError, Study, StudyError,
+    head::Head,
+    report,
+    study::carry_out,
+    subject::{Subject, Summarized},
+};
+
+/// Every number that the report of a campaign of a simulator shows, and of what it is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SimulatorSummary {
+    #[serde(flatten)]
+    head: Head,
+    command: Vec<String>,
+    overview: Overview,
+}
+
+impl SimulatorSummary {
+    /// Of what it is.
+    #[must_use]
+    pub fn head(&self) -> &Head {
+        &self.head
+    }
+
+    /// What the runs amount to.
+    #[must_use]
+    pub fn overview(&self) -> &Overview {
+        &self.overview
+    }
+}
+
+impl SimulatorScenario {
+    /// Runs the scenario and writes its folder: the resolved scenario, run tables, summary, figures and report. Says what
+    /// there is to say before it begins.
+    ///
+    /// # Errors
+    /// The command cannot be started; the folder holds another study and `force` is not set, or something cannot be
+    /// written. What was there stays as it was.
+    pub fn study(
+        &self,
+        options: &Options,
+        progress: Progress<'_>,
+        say: &dyn Fn(Notice),
+    ) -> Result<Study<SimulatorSummary>, StudyError> {
+        carry_out(self, options, Doing::All, progress, say)
+    }
+
+    /// The runs of the model in a place.
+    pub(super) fn simulation<'a>(
+        &'a self,
+        simulator: &'a Simulator,
+        place: usize,
+    ) -> Result<ExternalSimulation<'a, SimulatorDraws<'a>>, ScenarioError> {
+        let draws = SimulatorDraws::new(self, place)?;
+        let name = &self.models()[place].name;
+        Ok(ExternalSimulation::new(simulator, self.seed(), name, draws, self.outputs().to_vec()))
+    }
+}
+
+impl Subject for SimulatorScenario {
+    /// Few, for a run of a simulator may take seconds.
+    const BLOCK_RUNS: u64 = 1 << 8;
+    /// Machines that do a campaign together may have the simulator in different places.
+    const IMMATERIAL: &[&str] = &["runs", "simulation.folder"];
+
+    type Prepared = Simulator;
+    type Simulation<'a> = ExternalSimulation<'a, SimulatorDraws<'a>>;
+    type Look<'a> = FirstLook;
+    type Summary = SimulatorSummary;
+
+    fn resolved(text: &str) -> Result<Self, ScenarioError> {
+        Self::from_toml(text, Path::new("."))
+    }
+
+    fn name(&self) -> &str {
+        self.name()
+    }
+
+    fn seed(&self) -> u64 {
+        self.seed()
+    }
+
+    fn runs(&self) -> u64 {
+        self.runs()
+    }
+
+    fn model_names(&self) -> impl Iterator<Item = &str> {
+        self.model_names()
+    }
+
+    fn to_toml(&self) -> String {
+        self.to_toml()
+    }
+
+    fn prepare(&self) -> Result<Simulator, ScenarioError> {
+        Ok(Simulator::new(self.program()?))
+    }
+
+    fn begin(&self, simulator: &Simulator) -> Result<(), ScenarioError> {
+        self.check_files(simulator.program())?;
+        simulator.check().map_err(|error| ScenarioError::field("simulation.command", error))
+    }
+
+    /// Nobody knows what a run costs, and one may take an hour.
+    fn forecast(
+        &self,
+        _: &[(&str, Self::Simulation<'_>)],
+        left: u64,
+        threads: &ThreadPool,
+    ) -> Result<Forecast, StudyError> {
+        let columns = self.inputs().count() + self.outputs().len();
+        Ok(Forecast::untimed(left, columns, threads.current_num_threads()))
+    }
+
+    fn simulations<'a>(
+        &'a self,
+        simulator: &'a Simulator,
+    ) -> Result<Vec<(&'a str, Self::Simulation<'a>)>, ScenarioError> {
+        let simulation =
+            |(place, name): (usize, &'a str)| Ok((name, self.simulation(simulator, place)?));
+        self.model_names().enumerate().map(simulation).collect()
+    }
+
+    fn look(&self, model: &str, columns: &[Column]) -> FirstLook {
+        FirstLook::new(model, columns, self.runs(), Confidence::default())
+    }
+
+    fn judge(
+        &self,
+        _: &Simulator,
+        looks: Vec<FirstLook>,
+        runs: &[Runs],
+    ) -> Result<SimulatorSummary, StudyError> {
+        let surveys = looks.into_iter().zip(runs).map(|(look, runs)| look.finish(runs));
+        let surveys = surveys.collect::<Result<Vec<Surveys>, _>>()?;
+        let columns = runs.first().map_or(&[][..], Runs::columns);
+        let title = format!("gyradius campaign: {}", self.name());
+        Ok(SimulatorSummary {
+            head: Head::new(self, columns),
+            command: self.command().to_vec(),
+            overview: Overview::of_surveys(&title, columns, &surveys)?,
+        })
+    }
+
+    fn report_files(&self) -> Vec<String> {
+        let figures = Overview::figure_names().iter().map(|name| file_of(name));
+        figures.chain(Document::pages(report::NAME)).chain(["figures/".to_owned()]).collect()
+    }
+
+    fn report(&self, summary: &SimulatorSummary) -> Document {
+        let document = summary.overview.document();
+        report::noting_what_is_missing(document, &summary.head)
+            .section(report::inputs(&summary.head, self.to_toml()))
+    }
+}
+
+impl Summarized for SimulatorSummary {
+    fn head(&self) -> &Head {
+        &self.head
+    }
+
+    fn head_mut(&mut self) -> &mut Head {
+        &mut self.head
+    }
+
+    fn failed(&self) -> Vec<(String, u64, u64)> {
+        let failed = self.overview.failed();
+        failed.map(|(model, failed, runs)| (model.to_owned(), failed, runs)).collect()
+    }
+}
+
+/// A table of the quantities and of the failures, for a terminal.
+impl fmt::Display for SimulatorSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let overview = &self.overview;
+        let labels = overview.quantities().map(|(column, unit, _)| with_unit(column, unit));
+        let width = labels.map(|label| label.chars().count()).max().unwrap_or(0);
+        for (place, ((model, failed, runs), (_, kinds))) in
+            overview.failed().zip(overview.failures()).enumerate()
+        {
+            let blank = if place > 0 { "\n" } else { "" };
+            writeln!(f, "{blank}{model}: {runs} runs, {failed} failed")?;
+            for (kind, count) in kinds.iter().take(5) {
+                writeln!(f, "  {count} × {kind}")?;
+            }
+            write!(f, "  {:width$}", "")?;
+            for heading in ["mean", "deviation", "p05", "p95"] {
+                write!(f, " {heading:>12}")?;
+            }
+            writeln!(f)?;
+            for (column, unit, samples) in overview.quantities() {
+                let Some(s) = samples.get(place).filter(|sample| sample.n > 0) else { continue };
+                write!(f, "  {:width$}", with_unit(column, unit))?;
+                for number in [s.mean, s.deviation, s.p05, s.p95] {
+                    write!(f, " {:>12}", optional(number, 4))?;
+                }
+                writeln!(f)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,596 @@
+//! Campaigns of simulators in scripts: what is drawn, that they go on, that one run is done again.
+
+use gyradius_campaign::{Inputs, Simulation, Table};
+use proptest::prelude::*;
+use std::{
+    fs,
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+};
+
+use super::{SimulatorDraws, SimulatorReplay, SimulatorScenario, SimulatorSummary};
+use crate::{
+    AnyScenario, CampaignError, Notice, Options, Scenario, Shard, Status, Study, StudyError,
+    is_begun,
+    model::{self, Separations},
+    put_together, write_report,
+};
+
+/// Answers with a quantity, and fails if it is above 0.9.
+const SCRIPT: &str = r#"
+while read -r line; do
+    run=${line#*'"run":'}; run=${run%%,*}
+    x=${line#*'"x":'}; x=${x%%[,\}]*}
+    case $x in
+        0.9*) echo "{\"run\":$run,\"error\":\"too large: $x\"}" ;;
+        *) echo "{\"run\":$run,\"outputs\":{\"y\":$x}}" ;;
+    esac
+done
+"#;
+
+const HEAD: &str = r#"
+name = "shell"
+runs = 300
+seed = 5
+
+[simulation]
+command = ["sh", "answer.sh"]
+timeout_s = 60.0
+
+[[simulation.outputs]]
+name = "y"
+unit = "m"
+meaning = "x again."
+"#;
+
+const BODY: &str = r#"
+mass_kg = 120.0
+inertia_kg_m2 = [[21.0, 0.2, -0.1], [0.2, 19.0, 0.3], [-0.1, 0.3, 26.0]]
+
+[bodies.dispersion]
+DISPERSION
+root_second_moment_variance_kg_m2 = [0.001, 0.001, 0.001]
+axes = "fixed"
+"#;
+
+const MODELS: &str = r#"
+[[models]]
+name = "proposed"
+law = "principal"
+axes = "whole-sphere"
+
+[[models]]
+name = "naive"
+law = "entrywise"
+matched_to = "proposed"
+"#;
+
+fn quantity(name: &str, law: &str) -> String {
+    format!("\n[[quantities]]\nname = \"{name}\"\nunit = \"m\"\nlaw = {law}\n")
+}
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("answer.sh"), SCRIPT).unwrap();
+    folder
+}
+
+fn scenario(text: &str, folder: &Path) -> SimulatorScenario {
+    let scenario = SimulatorScenario::from_toml(text, folder).unwrap();
+    // What is resolved is the same scenario, from anywhere.
+    let again = SimulatorScenario::from_toml(&scenario.to_toml(), Path::new("/")).unwrap();
+    assert_eq!(again.to_toml(), scenario.to_toml());
+    scenario
+}
+
+/// A second quantity, which goes against the first.
+fn correlated() -> String {
+    quantity("z", "{ law = \"normal\", mean = 1.0, sigma = 0.1 }")
+        + "\n[[correlations]]\nbetween = [\"x\", \"z\"]\ncoefficient = -0.8\n"
+}
+
+fn uniform() -> String {
+    HEAD.to_owned() + &quantity("x", "{ law = \"uniform\", low = 0.1, high = 0.95 }")
+}
+
+/// What a model draws for some runs, column by column.
+fn drawn(scenario: &SimulatorScenario, model: usize) -> Vec<(String, Vec<Option<u64>>)> {
+    let model = SimulatorDraws::new(scenario, model).unwrap();
+    let mut columns: Vec<(String, Vec<_>)> = Inputs::columns(&model)
+        .iter()
+        .map(|column| (column.name().to_owned(), Vec::new()))
+        .collect();
+    for run in 0..30 {
+        let mut numbers = Vec::new();
+        model.draw(run, &mut numbers).unwrap();
+        assert_eq!(numbers.len(), columns.len());
+        for ((_, values), number) in columns.iter_mut().zip(numbers) {
+            values.push(number.map(f64::to_bits));
+        }
+    }
+    columns
+}
+
+const LAWS: [&str; 9] = [
+    "{ law = \"normal\", mean = 2.0, sigma = 0.1 }",
+    "{ law = \"uniform\", low = -1.0, high = 3.0 }",
+    "{ law = \"lognormal\", mean = 2.0, sigma = 0.5 }",
+    "{ law = \"truncated-normal\", mean = 0.0, sigma = 1.0, low = -1.0, high = 2.0 }",
+    "{ law = \"triangular\", low = -1.0, mode = 0.5, high = 3.0 }",
+    "{ law = \"beta\", alpha = 2.0, beta = 3.0, low = 1.0, high = 4.0 }",
+    "{ law = \"weibull\", low = 0.0, shape = 1.5, scale = 2.0 }",
+    "{ law = \"samples\", samples = [1.0, 2.0, 4.0, 8.0] }",
+    "{ law = \"bernoulli\", probability = 0.5 }",
+];
+/// What is dispersed of a body besides its inertia, and whether mass and mass centre are.
+const DISPERSIONS: [(&str, bool, bool); 7] = [
+    ("", false, false),
+    ("mass_kg = 2.0", true, false),
+    ("mass_percent = 1.0", true, false),
+    ("mass_kg = 2.0\ninertia_follows_mass = 0.5", true, false),
+    ("mass_centre_m = 0.01", false, true),
+    (
+        "mass_percent = 1.0\nmass_centre_m = [0.01, 0.02, { law = \"uniform\", low = -0.1, high = 0.1 }]",
+        true,
+        true,
+    ),
+    (
+        "mass_centre_m = { covariance = [[1e-4, 5e-5, 0.0], [5e-5, 1e-4, 0.0], [0.0, 0.0, 1e-6]] }",
+        false,
+        true,
+    ),
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Any bodies and quantities: what is declared to scatter does, what is not does not, and taking any of them away
+    /// changes no other to the bit.
+    #[test]
+    fn every_dispersion_moves_its_column_and_no_other(
+        bodies in prop::collection::vec(0..DISPERSIONS.len(), 0..3),
+        quantities in prop::collection::vec(0..LAWS.len(), 0..4),
+        model in 0_usize..2,
+        left_out in any::<prop::sample::Index>(),
+    ) {
+        let text = |without: Option<usize>| {
+            let body = |(i, d): (usize, &usize)| {
+                let (dispersed, _, centre) = DISPERSIONS[*d];
+                let centre = if centre { "\nmass_centre_m = [0.1, -0.2, 0.0]" } else { "" };
+                let body = BODY.replace("DISPERSION", dispersed);
+                format!("\n[[bodies]]\nname = \"b{i}\"{centre}{body}")
+            };
+            let parts = bodies.iter().enumerate().map(body);
+            let others = quantities.iter().enumerate();
+            let parts = parts.chain(others.map(|(i, law)| quantity(&format!("q{i}"), LAWS[*law])));
+            let kept = parts.enumerate().filter(|(i, _)| Some(*i) != without).map(|(_, part)| part);
+            HEAD.to_owned() + &kept.collect::<String>() + MODELS
+        };
+        let folder = folder();
+        let whole = scenario(&text(None), folder.path());
+        // Without a body, models have nothing to match.
+        let model = if bodies.is_empty() { 0 } else { model };
+        let columns = drawn(&whole, model);
+        for (name, values) in &columns {
+            let differ = values.iter().any(|value| *value != values[0]);
+            let moves = match name.split_once('_') {
+                Some((body, "mass_kg")) => DISPERSIONS[bodies[body[1..].parse::<usize>().unwrap()]].1,
+                Some((_, axes)) if axes.starts_with('q') => false,
+                Some(_) | None => true,
+            };
+            prop_assert_eq!(differ, moves, "{}", name);
+            let axes = name.contains("_q");
+            prop_assert_eq!(values[0].is_some(), !(axes && model == 1), "{}", name);
+        }
+        let count = bodies.len() + quantities.len();
+        if count > 0 {
+            let without = left_out.index(count);
+            let less = scenario(&text(Some(without)), folder.path());
+            if !(less.inputs().next().is_none() || bodies.len() == 1 && without == 0 && model == 1) {
+                for (name, values) in drawn(&less, model) {
+                    let (_, same) = columns.iter().find(|(other, _)| *other == name).unwrap();
+                    prop_assert_eq!(&values, same, "{}", name);
+                }
+            }
+        }
+    }
+}
+
+/// Bodies of a separation draw the same bits as its payload and stage, under the same models.
+#[test]
+fn bodies_draw_what_payload_and_stage_do() {
+    let separation = Scenario::peck_2003().unwrap();
+    let models = model::Model::all(&separation).unwrap();
+    let text = separation.to_toml();
+    let table: toml::Table = toml::from_str(&text).unwrap();
+    let mut own: toml::Table = toml::from_str(&uniform()).unwrap();
+    own["seed"] = table["seed"].clone();
+    let body = |name: &str| {
+        let given = table[name].as_table().unwrap();
+        let keys = ["mass_kg", "inertia_kg_m2", "dispersion"];
+        let mut body: toml::Table =
+            keys.iter().map(|key| ((*key).to_owned(), given[*key].clone())).collect();
+        body.insert("name".to_owned(), name.into());
+        toml::Value::Table(body)
+    };
+    own.insert("bodies".to_owned(), vec![body("payload"), body("stage")].into());
+    let principal_or_matched = |model: &&toml::Value| {
+        let model = model.as_table().unwrap();
+        model.contains_key("axes") || model.contains_key("matched_to")
+    };
+    let given = table["models"].as_array().unwrap();
+    let kept: Vec<toml::Value> = given.iter().filter(principal_or_matched).cloned().collect();
+    assert!(kept.len() > 1);
+    let names: Vec<String> =
+        kept.iter().map(|model| model["name"].as_str().unwrap().to_owned()).collect();
+    own.insert("models".to_owned(), kept.into());
+    let folder = folder();
+    let scenario = scenario(&toml::to_string(&own).unwrap(), folder.path());
+    for (place, name) in names.iter().enumerate() {
+        let model = models.iter().find(|model| model.name() == name).unwrap();
+        let separations = Separations::new(&separation, model);
+        let mut rows = Table::new(name, 0, separations.columns()).unwrap();
+        separations.run(0..30, &mut separations.worker(), &mut rows).unwrap();
+        let mut compared = 0;
+        for (column, values) in drawn(&scenario, place) {
+            if let Some(numbers) = rows.numbers(&column) {
+                let expected: Vec<_> =
+                    (0..30).map(|run| numbers.get(run).map(f64::to_bits)).collect();
+                assert_eq!(values, expected, "{name}: {column}");
+                compared += 1;
+            }
+        }
+        assert_eq!(compared, 20, "six entries and four components of two bodies");
+    }
+}
+
+/// A campaign that is stopped anywhere goes on to the same rows, can be extended, and is not mixed with runs of another
+/// simulator; its report is made again to the byte, and any run says the same alone.
+#[test]
+fn campaigns_go_on() {
+    let folder = folder();
+    let text = uniform();
+    let scenario = scenario(&text, folder.path()).with_runs(700).unwrap();
+    let options = |name: &str, threads: usize| Options {
+        out: Some(folder.path().join(name)),
+        threads: Some(threads),
+        ..Options::default()
+    };
+    let run =
+        |scenario: &SimulatorScenario, options: &Options| scenario.study(options, &|_| {}, &|_| {});
+    let rows = |study: &Study<SimulatorSummary>| {
+        let table = study.runs()[0].table().unwrap();
+        table.rows().map(|row| format!("{:?}", row.cells().collect::<Vec<_>>())).collect::<Vec<_>>()
+    };
+    let whole = run(&scenario, &options("whole", 2)).unwrap();
+    let expected = rows(&whole);
+    assert_eq!(expected.len(), 700);
+
+    let stop = Arc::new(AtomicBool::new(false));
+    let stopped = Options { stop: Some(Arc::clone(&stop)), ..options("stopped", 1) };
+    let short = scenario.clone().with_runs(600).unwrap();
+    let most = AtomicU64::new(0);
+    let progress = |done| {
+        most.fetch_max(done, Ordering::Relaxed);
+        stop.store(done > 300, Ordering::Relaxed);
+    };
+    let ended = short.study(&stopped, &progress, &|_| {});
+    assert!(matches!(ended, Err(StudyError::Campaign(CampaignError::Stopped))), "{ended:?}");
+    // It stops within a block.
+    assert!((301..310).contains(&most.into_inner()));
+    run(&short, &options("stopped", 3)).unwrap();
+    let extended = run(&scenario, &options("stopped", 2)).unwrap();
+    assert_eq!(rows(&extended), expected);
+    for name in ["summary.json", "report.html", "report.md"] {
+        let [a, b] = [&whole, &extended].map(|study| fs::read(study.folder().join(name)).unwrap());
+        assert!(a == b, "{name}");
+    }
+
+    // Failures are counted together, whatever their numbers.
+    let failures: Vec<_> = whole.summary().overview().failures().collect();
+    let [(_, [(kind, count)])] = failures[..] else { panic!("{failures:?}") };
+    assert_eq!(kind, "simulator: too large: #");
+    assert!((20..80).contains(count), "{count}");
+    assert!(whole.summary().to_string().contains(&format!("700 runs, {count} failed")));
+
+    let page = fs::read(whole.folder().join("report.html")).unwrap();
+    fs::remove_file(whole.folder().join("report.html")).unwrap();
+    write_report(whole.folder(), None, false).unwrap();
+    assert!(fs::read(whole.folder().join("report.html")).unwrap() == page);
+
+    let there = SimulatorScenario::read(whole.folder()).unwrap();
+    let table = whole.runs()[0].table().unwrap();
+    for run in [0, 255, 256, 699] {
+        let replay = SimulatorReplay::new(&there, None, run).unwrap();
+        let row = table.row(run as usize).unwrap();
+        let outputs = replay.told().outputs.as_ref();
+        assert_eq!(outputs.err(), row.failure());
+        let y = table.numbers("y").unwrap().get(run as usize);
+        assert_eq!(outputs.ok().map(|outputs| outputs[0].to_bits()), y.map(f64::to_bits));
+        assert!(replay.to_string().contains("sent: {\"run\":"));
+    }
+    let beyond = SimulatorReplay::new(&there, None, 700).unwrap_err();
+    assert!(beyond.to_string().contains("from 0 to 699"));
+
+    fs::write(folder.path().join("answer.sh"), format!("{SCRIPT}\n# changed\n")).unwrap();
+    let changed = SimulatorScenario::from_toml(&text, folder.path()).unwrap();
+    let refused = run(&changed.with_runs(800).unwrap(), &options("whole", 1)).unwrap_err();
+    assert!(refused.to_string().contains("simulation.files_sha256"), "{refused}");
+}
+
+/// Shards with any number of threads make the bytes of one process; a folder of shards is put together where the simulator is
+/// not, and what is missing of it is told.
+#[test]
+fn shards_are_put_together_without_the_simulator() {
+    let folder = folder();
+    let scenario = scenario(&(uniform() + &correlated()), folder.path()).with_runs(1000).unwrap();
+    let any = AnyScenario::Simulator(Box::new(scenario.clone()));
+    let out = |name: &str| folder.path().join(name);
+    let options = |name: &str| Options { out: Some(out(name)), ..Options::default() };
+    let whole = scenario.study(&options("whole"), &|_| {}, &|_| {}).unwrap();
+    let shard = |i: u64, of: u64| -> Shard { format!("{i}/{of}").parse().unwrap() };
+    for (i, threads) in [(2, 1), (1, 3)] {
+        let options = Options { threads: Some(threads), ..options("shards") };
+        any.run_shard(&options, shard(i, 3), &|_| {}, &|_| {}).unwrap();
+    }
+    let status = Status::read(&out("shards")).unwrap();
+    let done: u64 = status.models().iter().map(|model| model.finished()).sum();
+    assert_eq!(done, any.planned_runs(Some(shard(1, 3))) + any.planned_runs(Some(shard(2, 3))));
+    assert!(!status.is_complete() && is_begun(&out("shards")));
+    let part = put_together(&out("shards"), &Options::default(), &|_| {}).unwrap();
+    assert_eq!(
+        part.missing().iter().map(|m| m.range().end - m.range().start).sum::<u64>(),
+        1000 - done
+    );
+    let page = fs::read_to_string(out("shards").join("report.html")).unwrap();
+    assert!(page.contains("Not all runs are done"));
+
+    any.run_shard(&options("shards"), shard(3, 3), &|_| {}, &|_| {}).unwrap();
+    fs::remove_file(folder.path().join("answer.sh")).unwrap();
+    let together = put_together(&out("shards"), &Options::default(), &|_| {}).unwrap();
+    assert!(together.missing().is_empty() && !is_begun(&out("shards")));
+    assert!(Status::read(&out("shards")).unwrap().is_complete());
+    for name in ["scenario.toml", "summary.json", "report.html", "report.md"] {
+        let [a, b] =
+            [whole.folder(), together.folder()].map(|place| fs::read(place.join(name)).unwrap());
+        assert!(a == b, "{name}");
+    }
+    // What is complete is looked at without the simulator, and is not extended without it.
+    let again = Options { force: false, ..options("shards") };
+    scenario.study(&again, &|_| {}, &|_| {}).unwrap();
+    let more = scenario.with_runs(1200).unwrap();
+    let refused = more.study(&again, &|_| {}, &|_| {}).unwrap_err().to_string();
+    assert!(refused.contains("simulation."), "{refused}");
+    assert!(Status::read(&out("shards")).unwrap().is_complete());
+}
+
+/// Runs that failed for a reason that is gone are done again, and no other: of a study that is complete, and of one that was
+/// stopped. Until the new blocks are there, the old ones count.
+#[test]
+fn failed_runs_are_done_again() {
+    // While there is a file, runs fail whose quantity is below 0.4. It counts what it is asked.
+    const SOMETIMES: &str = r#"
+while read -r line; do
+    echo . >> asked
+    x=${line#*'"x":'}; x=${x%%[,\}]*}
+    case $x in
+        0.[123]*) [ -e busy ] && echo '{"error":"no licence"}' || echo "{\"outputs\":{\"y\":$x}}" ;;
+        *) echo "{\"outputs\":{\"y\":$x}}" ;;
+    esac
+done
+"#;
+    let folder = folder();
+    fs::write(folder.path().join("answer.sh"), SOMETIMES).unwrap();
+    let scenario = scenario(&uniform(), folder.path()).with_runs(700).unwrap();
+    let options = |name: &str| Options {
+        out: Some(folder.path().join(name)),
+        threads: Some(2),
+        ..Options::default()
+    };
+    let asked = || fs::read(folder.path().join("asked")).map_or(0, |asked| asked.len() / 2);
+    let rows = |study: &Study<SimulatorSummary>| {
+        let table = study.runs()[0].table().unwrap();
+        table.rows().map(|row| format!("{row:?}")).collect::<Vec<_>>()
+    };
+    let well = scenario.study(&options("well"), &|_| {}, &|_| {}).unwrap();
+    let busy = folder.path().join("busy");
+    for stopped in [false, true] {
+        let name = format!("stopped-{stopped}");
+        fs::write(&busy, "").unwrap();
+        let stop = Arc::new(AtomicBool::new(false));
+        let first = Options { stop: Some(Arc::clone(&stop)), threads: Some(1), ..options(&name) };
+        let progress = |done: u64| stop.store(stopped && done > 530, Ordering::Relaxed);
+        let ended = scenario.study(&first, &progress, &|_| {});
+        assert_eq!(ended.is_err(), stopped);
+        let status = Status::read(&folder.path().join(&name)).unwrap();
+        let failed = status.models()[0].failed();
+        assert!(failed > 100, "{failed}");
+
+        // It is stopped in the middle of what is done again: what was there still counts.
+        stop.store(true, Ordering::Relaxed);
+        let again = Options { retry_failed: true, ..first.clone() };
+        let error = scenario.study(&again, &|_| {}, &|_| {}).unwrap_err();
+        assert!(matches!(error, StudyError::Campaign(CampaignError::Stopped)), "{error}");
+        let status = Status::read(&folder.path().join(&name)).unwrap();
+        assert_eq!((status.models()[0].failed(), status.is_complete()), (failed, !stopped));
+
+        // Still busy: they fail again, and are told so.
+        let said = std::sync::Mutex::new(Vec::new());
+        let say = |notice: Notice| {
+            if let Notice::Again(again) = notice {
+                said.lock().unwrap().push((again.runs, again.failed));
+            }
+        };
+        let again = Options { retry_failed: true, ..options(&name) };
+        scenario.study(&again, &|_| {}, &say).unwrap();
+        assert_eq!(said.lock().unwrap()[..], [(failed, failed)]);
+        let all = Status::read(&folder.path().join(&name)).unwrap().models()[0].failed();
+
+        fs::remove_file(&busy).unwrap();
+        let before = asked();
+        let study = scenario.study(&again, &|_| {}, &say).unwrap();
+        assert_eq!((asked() - before) as u64, all);
+        assert_eq!(said.lock().unwrap()[1], (all, 0));
+        assert_eq!(rows(&study), rows(&well));
+        let page = fs::read_to_string(study.folder().join("report.html")).unwrap();
+        let told = format!("{} runs that had failed were done again", failed + all);
+        assert!(page.contains(&told), "{told}");
+        // Nothing is left to be done again.
+        scenario.study(&again, &|_| {}, &say).unwrap();
+        assert_eq!(said.lock().unwrap().len(), 2);
+        assert_eq!((asked() - before) as u64, all);
+        let status = Status::read(study.folder()).unwrap();
+        assert!(status.is_complete() && status.models()[0].failed() == 0);
+        assert!(!study.folder().join(".gyradius/campaign").exists());
+    }
+}
+
+/// Scores of what is correlated have the coefficient, and the marginal laws stay.
+#[test]
+fn quantities_are_correlated() {
+    let folder = folder();
+    let scenario = scenario(&(uniform() + &correlated()), folder.path());
+    let draws = SimulatorDraws::new(&scenario, 0).unwrap();
+    let (mut x, mut z) = (Vec::new(), Vec::new());
+    for run in 0..4000 {
+        let mut numbers = Vec::new();
+        draws.draw(run, &mut numbers).unwrap();
+        x.push(numbers[0].unwrap());
+        z.push(numbers[1].unwrap());
+    }
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let (mx, mz) = (mean(&x), mean(&z));
+    let covariance = |a: &[f64], ma: f64, b: &[f64], mb: f64| {
+        a.iter().zip(b).map(|(a, b)| (a - ma) * (b - mb)).sum::<f64>() / a.len() as f64
+    };
+    // A uniform and a normal number whose scores have the coefficient c are correlated by c √(3/π).
+    let expected = -0.8 * (3.0 / std::f64::consts::PI).sqrt();
+    let found = covariance(&x, mx, &z, mz)
+        / (covariance(&x, mx, &x, mx) * covariance(&z, mz, &z, mz)).sqrt();
+    assert!((found - expected).abs() < 0.03, "{found} {expected}");
+    assert!((mx - 0.525).abs() < 0.02 && (mz - 1.0).abs() < 0.01);
+}
+
+/// What cannot be, at its key.
+#[test]
+fn refusals_name_their_key() {
+    let folder = folder();
+    let body = "\n[[bodies]]\nname = \"hub\"".to_owned() + BODY;
+    let with = |d: &str| HEAD.to_owned() + &body.replace("DISPERSION", d) + MODELS;
+    let normal = "{ law = \"normal\", mean = 1.0, sigma = 1.0 }";
+    let cases = [
+        (uniform().replace("timeout_s = 60.0", "timeout_s = 0.0"), "simulation.timeout_s"),
+        (uniform().replace("[\"sh\", \"answer.sh\"]", "[]"), "simulation.command"),
+        (uniform().replace("timeout_s = 60.0", "folder = \"/no/such\""), "simulation.folder"),
+        (uniform().replace("name = \"y\"", "name = \"x\""), "simulation.outputs"),
+        (uniform().replace("name = \"y\"", "name = \"run\""), "simulation.outputs"),
+        (uniform().replace("name = \"y\"", "name = \"y 1\""), "simulation.outputs[1].name"),
+        (uniform().replace("shell", "a/b"), "name"),
+        (uniform() + "\n[payload]\nmass_kg = 1.0\n", "payload"),
+        (HEAD.to_owned() + &quantity("1x", normal), "quantities[1].name"),
+        (
+            HEAD.to_owned() + &quantity("x", &normal.replace("sigma = 1.0", "sigma = -1.0")),
+            "quantities[1].law.sigma",
+        ),
+        (HEAD.to_owned() + &body.replace("DISPERSION", ""), "models"),
+        (with("mass_centre_m = 0.1"), "bodies[1].dispersion.mass_centre_m"),
+        (with("inertia_follows_mass = true"), "bodies[1].dispersion.inertia_follows_mass"),
+        (with("mass_kg = 1.0\nmass_percent = 1.0"), "bodies[1].dispersion.mass_percent"),
+        (with("").replace("mass_kg = 120.0", "mass_kg = -1.0"), "bodies[1].mass_kg"),
+        (
+            with("").replace("mass_kg = 120.0", "mass_kg = 120.0\nmass_centre_m = [0.0, inf, 0.0]"),
+            "bodies[1].mass_centre_m",
+        ),
+        (with("velocity_m_per_s = 0.1"), "bodies[1].dispersion.velocity_m_per_s"),
+        (uniform() + &correlated().replace("\"x\", ", ""), "correlations[1].between"),
+        (uniform() + &correlated().replace("\"x\", ", "\"y\", "), "correlations[1].between"),
+        (uniform() + &correlated().replace("-0.8", "-1.8"), "correlations[1].coefficient"),
+        (with("").replace("axes = \"whole-sphere\"", ""), "models[1].axes"),
+        (with("").replace("axes = \"whole-sphere\"", "axes = \"mean-half\""), "models[1].axes"),
+        (with("").replace("matched_to = \"proposed\"", ""), "models[2].matched_to"),
+        (
+            with("").replace("matched_to = \"proposed\"", "matched_to = \"naive\""),
+            "models[2].matched_to",
+        ),
+        (with("").replace("\"naive\"", "\"Proposed\""), "models[2].name"),
+    ];
+    for (text, key) in cases {
+        let refused = SimulatorScenario::from_toml(&text, folder.path()).unwrap_err().to_string();
+        assert!(
+            refused.starts_with(&format!("{key}:")) || refused.contains(key),
+            "{key}: {refused}"
+        );
+    }
+    let absent = uniform().replace("\"sh\"", "\"gyradius-no-such-program\"");
+    let absent = scenario(&absent, folder.path());
+    let options = Options { out: Some(folder.path().join("absent")), ..Options::default() };
+    let refused = absent.study(&options, &|_| {}, &|_| {}).unwrap_err();
+    assert!(refused.to_string().contains("cannot be started"), "{refused}");
+    assert!(!folder.path().join("absent").exists());
+}
+
+/// Runs an example in Python; none where Python or one of the modules that it imports is not there.
+fn example(name: &str, modules: &str) -> Option<(tempfile::TempDir, Study<SimulatorSummary>)> {
+    let import = format!("import {modules}");
+    let there = std::process::Command::new("python3").args(["-c", &import]).output();
+    if !there.is_ok_and(|output| output.status.success()) {
+        return None;
+    }
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulators"));
+    let scenario = SimulatorScenario::read(&folder.join(name)).unwrap().with_runs(30).unwrap();
+    let out = tempfile::tempdir().unwrap();
+    let options = Options { out: Some(out.path().join("out")), ..Options::default() };
+    let study = scenario.study(&options, &|_| {}, &|_| {}).unwrap();
+    for runs in study.runs() {
+        let table = runs.table().unwrap();
+        let failed = table.failures().next().map(|(_, failure)| failure.to_string());
+        assert_eq!(failed, None, "{name}");
+    }
+    Some((out, study))
+}
+
+/// The satellite spins as the motor's impulse says, and in Basilisk as in the script without packages.
+#[test]
+fn the_satellite_spins_up() {
+    let Some((_folder, study)) = example("spin_up.toml", "json") else { return };
+    for runs in study.runs() {
+        let table = runs.table().unwrap();
+        let column = |name: &str| table.values(name).unwrap();
+        assert_eq!(column("mass_again_kg"), column("hub_mass_kg"));
+        let spins = column("spin_rad_per_s").into_iter().zip(column("hub_i33"));
+        let impulses = column("torque_n_m").into_iter().zip(column("burn_s"));
+        for ((spin, i33), (torque, burn)) in spins.zip(impulses) {
+            let expected = torque * burn / i33;
+            assert!((spin / expected - 1.0).abs() < 0.02, "{spin} {expected}");
+        }
+    }
+    let Some((_folder, basilisk)) = example("spin_up_basilisk.toml", "Basilisk") else { return };
+    for (own, other) in study.runs().iter().zip(basilisk.runs()) {
+        for column in ["hub_i11", "torque_n_m", "spin_rad_per_s", "nutation_deg"] {
+            let [own, other] =
+                [own, other].map(|runs| runs.table().unwrap().values(column).unwrap());
+            // Basilisk's steps are whole nanoseconds.
+            assert!(own.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-6), "{column}");
+        }
+    }
+}
+
+/// A heavier tool, farther out, keeps the arm farther below its target.
+#[test]
+fn the_arm_swings() {
+    let Some((_folder, study)) = example("arm_mujoco.toml", "mujoco") else { return };
+    let table = study.runs()[0].table().unwrap();
+    let column = |name: &str| table.values(name).unwrap();
+    let tools = column("tool_mass_kg").into_iter().zip(column("tool_mass_centre_1_m"));
+    let angles = column("error_at_end_deg").into_iter().zip(column("tool_mass_centre_3_m"));
+    for ((mass, x), (error, z)) in tools.zip(angles) {
+        let angle = (60.0 + error).to_radians();
+        // At rest the servo, 400 N·m/rad, holds the weight of arm and tool.
+        let weight = 4.0 * 0.3 * angle.cos() + mass * ((0.6 + x) * angle.cos() - z * angle.sin());
+        let held = 400.0 * (60.0_f64.to_radians() - angle);
+        assert!((held / (9.81 * weight) - 1.0).abs() < 1e-3, "{held} {weight}");
+    }
+}

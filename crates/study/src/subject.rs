@@ -1,0 +1,100 @@
+//! What a study is of: a scenario of separations, or of a simulator of the user's own.
+
+use gyradius_campaign::{Column, FirstLook, Forecast, Runs, Simulation, Table};
+use gyradius_report::Document;
+use rayon::ThreadPool;
+use serde::{Serialize, de::DeserializeOwned};
+use std::{fmt::Display, path::Path};
+
+use crate::{ScenarioError, StudyError, head::Head};
+
+/// What a study is of: models whose runs are simulated, what they amount to, and the pages that show it.
+pub(crate) trait Subject: Sync + Sized {
+    /// Runs of a block: what is lost, at most, on each thread that is interrupted.
+    const BLOCK_RUNS: u64;
+    /// Keys of the resolved scenario, by their paths, that no run depends on.
+    const IMMATERIAL: &[&str];
+
+    /// What is made of the scenario before its runs.
+    type Prepared: Sync;
+    /// The runs of a model.
+    type Simulation<'a>: Simulation
+    where
+        Self: 'a;
+    /// What is seen of the runs of a model while they are done.
+    type Look<'a>: LookAt
+    where
+        Self: 'a;
+    /// What the runs amount to.
+    type Summary: Summarized;
+
+    /// Reads a scenario that was resolved, as the folder of a study has it.
+    fn resolved(text: &str) -> Result<Self, ScenarioError>;
+    /// Its name.
+    fn name(&self) -> &str;
+    /// Seed of all random streams.
+    fn seed(&self) -> u64;
+    /// Runs of each model.
+    fn runs(&self) -> u64;
+    /// Names of the models, in order.
+    fn model_names(&self) -> impl Iterator<Item = &str>;
+    /// The resolved scenario.
+    fn to_toml(&self) -> String;
+    /// Makes what draws and simulates.
+    fn prepare(&self) -> Result<Self::Prepared, ScenarioError>;
+    /// Makes certain, before the first run, that runs can be done.
+    fn begin(&self, models: &Self::Prepared) -> Result<(), ScenarioError>;
+    /// What so many runs will take, all models together; without the time where trying it may cost much.
+    fn forecast(
+        &self,
+        simulations: &[(&str, Self::Simulation<'_>)],
+        left: u64,
+        threads: &ThreadPool,
+    ) -> Result<Forecast, StudyError>;
+    /// The runs of each model, by its name.
+    fn simulations<'a>(
+        &'a self,
+        models: &'a Self::Prepared,
+    ) -> Result<Vec<(&'a str, Self::Simulation<'a>)>, ScenarioError>;
+    /// A look at the runs of a model, which have these columns.
+    fn look(&self, model: &str, columns: &[Column]) -> Self::Look<'_>;
+    /// What the runs amount to: every number, judgement and figure, before any page is made.
+    fn judge(
+        &self,
+        models: &Self::Prepared,
+        looks: Vec<Self::Look<'_>>,
+        runs: &[Runs],
+    ) -> Result<Self::Summary, StudyError>;
+    /// What may be written of the report, as files and folders.
+    fn report_files(&self) -> Vec<String>;
+    /// The report, from a summary that was read back.
+    fn report(&self, summary: &Self::Summary) -> Document;
+}
+
+/// What runs amount to, for a terminal, for a file and for a report.
+pub(crate) trait Summarized: Display + Serialize + DeserializeOwned + Send + Sync {
+    /// Of what it is.
+    fn head(&self) -> &Head;
+    /// Of what it is, to be completed.
+    fn head_mut(&mut self) -> &mut Head;
+    /// Each model with how many of its runs failed, and how many there are.
+    fn failed(&self) -> Vec<(String, u64, u64)>;
+}
+
+/// What looks at blocks while runs are done: once at each, and in any order.
+pub(crate) trait LookAt: Sync {
+    /// Looks at one.
+    fn look(&self, block: &Table);
+}
+
+impl LookAt for FirstLook {
+    fn look(&self, block: &Table) {
+        self.look(block);
+    }
+}
+
+/// Reads the scenario in a file of a study, which says in which file what is wrong.
+pub(crate) fn read_resolved<C: Subject>(file: &Path) -> Result<C, ScenarioError> {
+    let text = crate::scenario::read_file(file)?;
+    C::resolved(&text).map_err(|error| error.in_file(file))
+}
