@@ -67,6 +67,23 @@ impl Plan<'_> {
         (0..models).map(own).sum()
     }
 
+    /// The runs of so many models that each of so many shards is to do if none is there, by their numbers.
+    #[must_use]
+    pub fn shares(&self, models: usize, shards: u32) -> Vec<u64> {
+        let runs = self.block_runs.max(1);
+        let mut shares = vec![0; shards as usize];
+        for place in 0..models {
+            for at in 0..self.runs.div_ceil(runs) {
+                let first = at * runs;
+                let block = self.block(place, first);
+                if let Some(share) = shares.get_mut((block % u64::from(shards.max(1))) as usize) {
+                    *share += runs.min(self.runs - first);
+                }
+            }
+        }
+        shares
+    }
+
     /// The place of a block among those of all models.
     fn block(&self, place: usize, first: u64) -> u64 {
         let runs = self.block_runs.max(1);
@@ -153,4 +170,27 @@ pub fn run_missing<S: Simulation>(
         all.push(blocks.runs(empty, held.into_inner().unwrap_or_default()));
     }
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Each share is what the shard does.
+        #[test]
+        fn shares_are_those_of_shards(
+            runs in 0..3000_u64,
+            block_runs in 1..200_u64,
+            models in 0..5_usize,
+            shards in 0..40_u32,
+        ) {
+            let plan = |doing| Plan { runs, block_runs, doing, stop: None };
+            let own = (1..=shards).map(|number| {
+                plan(Doing::Shard(Shard::new(number, shards).unwrap())).total(models)
+            });
+            prop_assert_eq!(plan(Doing::All).shares(models, shards), own.collect::<Vec<_>>());
+        }
+    }
 }

@@ -78,6 +78,13 @@ impl Forecast {
     pub fn disk(&self) -> u64 {
         self.disk
     }
+
+    /// The time that so many of the runs will take, as many threads doing them; none if no run was tried.
+    #[must_use]
+    pub fn time_of(&self, runs: u64) -> Option<Duration> {
+        let seconds = self.time?.as_secs_f64() / self.runs.max(1) as f64 * runs as f64;
+        Some(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX))
+    }
 }
 
 fn cost_of_a_run<S: Simulation>(simulation: &S, most: u64) -> Result<Cost, TableError> {

@@ -15,3 +15,5 @@ mod scratch;
 #[cfg(unix)]
 mod shards;
 mod shell;
+#[cfg(unix)]
+mod slurm;

@@ -1,6 +1,6 @@
 //! A scenario of either kind, and what becomes of it: for programs that are given a file or a folder.
 
-use gyradius_campaign::{Doing, Progress, Shard, begun};
+use gyradius_campaign::{Doing, Forecast, Progress, Shard, begun};
 use serde::Serialize;
 use std::{
     fmt, fs,
@@ -92,6 +92,22 @@ impl AnyScenario {
     #[must_use]
     pub fn planned_runs(&self, shard: Option<Shard>) -> u64 {
         of_either!(self, scenario => shards::planned_runs(&**scenario, shard))
+    }
+
+    /// How many runs each of so many shards is to do if none is there, by their numbers. A shard without any is one too many:
+    /// runs are done in blocks.
+    #[must_use]
+    pub fn planned_shares(&self, shards: u32) -> Vec<u64> {
+        of_either!(self, scenario => shards::planned_shares(&**scenario, shards))
+    }
+
+    /// What all runs would take in one process, by the time of a few of them; without the time where trying one may cost
+    /// much.
+    ///
+    /// # Errors
+    /// A model cannot be made, or there cannot be as many threads as the options say.
+    pub fn forecast(&self, options: &Options) -> Result<Forecast, StudyError> {
+        of_either!(self, scenario => shards::forecast_study(&**scenario, options))
     }
 
     /// Runs the scenario and writes its folder: the resolved scenario, run tables, summary, figures and report. Says what

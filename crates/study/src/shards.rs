@@ -1,7 +1,8 @@
 //! A share of a study's runs, and what of a study is there: for studies that many processes do.
 
 use gyradius_campaign::{
-    Block, Doing, Progress, Shard, Shared, begun, missing_runs, run_missing, threads, told,
+    Block, Doing, Forecast, Progress, Shard, Shared, begun, missing_runs, run_missing, threads,
+    told,
 };
 use serde::Serialize;
 use std::{ops::Range, path::Path};
@@ -17,6 +18,24 @@ use crate::{
 pub(crate) fn planned_runs<C: Subject>(scenario: &C, shard: Option<Shard>) -> u64 {
     let doing = shard.map_or(Doing::All, Doing::Shard);
     plan(scenario, &Options::default(), doing).total(scenario.model_names().count())
+}
+
+/// How many runs each of so many shards is to do if none is there, by their numbers. A shard without any is one too many:
+/// runs are done in blocks.
+pub(crate) fn planned_shares<C: Subject>(scenario: &C, shards: u32) -> Vec<u64> {
+    let options = Options::default();
+    plan(scenario, &options, Doing::All).shares(scenario.model_names().count(), shards)
+}
+
+/// What all runs of a scenario would take in one process.
+pub(crate) fn forecast_study<C: Subject>(
+    scenario: &C,
+    options: &Options,
+) -> Result<Forecast, StudyError> {
+    let threads = threads(options.threads)?;
+    let prepared = scenario.prepare()?;
+    let simulations = scenario.simulations(&prepared)?;
+    scenario.forecast(&simulations, planned_runs(scenario, None), &threads)
 }
 
 /// Does a share of the runs of a study, of those that are in no finished block, into its folder. Other processes may do

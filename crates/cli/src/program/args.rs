@@ -4,12 +4,17 @@ use clap::{
     Args, Parser, Subcommand,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
-use gyradius_study::{CompareOptions, ModelKind, Shard, TableFormat};
+use gyradius_study::{CompareOptions, ModelKind, TableFormat};
 use std::path::PathBuf;
 
-use crate::program::examples::{
-    CHECK_EXAMPLES, COMPARE_EXAMPLES, COMPLETIONS_EXAMPLES, DRAW_EXAMPLES, EXAMPLES, EXIT_CODES,
-    FIT_EXAMPLES, MAN_EXAMPLES, MODEL_EXAMPLES, REPLAY_EXAMPLES, REPORT_EXAMPLES, STATUS_EXAMPLES,
+use crate::program::{
+    examples::{
+        CHECK_EXAMPLES, COMPARE_EXAMPLES, COMPLETIONS_EXAMPLES, DRAW_EXAMPLES, EXAMPLES,
+        EXIT_CODES, FIT_EXAMPLES, MAN_EXAMPLES, MODEL_EXAMPLES, REPLAY_EXAMPLES, REPORT_EXAMPLES,
+        SLURM_EXAMPLES, STATUS_EXAMPLES,
+    },
+    scheduler::AskedShard,
+    slurm::SlurmArgs,
 };
 
 /// Uncertain rigid-body inertia: Monte Carlo studies of spacecraft separation.
@@ -47,6 +52,12 @@ pub(crate) enum Command {
     /// Looks at the files of the folder without waiting for anybody, so that it can be asked while runs are being done.
     #[command(after_help = STATUS_EXAMPLES)]
     Status(StatusArgs),
+    /// Write a script that does a study on a Slurm cluster: a job array, and the report after it
+    ///
+    /// Times a few runs, and divides the study so that each task of the array takes ten minutes or so. `bash` runs the
+    /// script, and as often as it is run again, only what is missing is done.
+    #[command(after_help = SLURM_EXAMPLES)]
+    Slurm(SlurmArgs),
     /// Do one run of a study again, bit for bit, and write its full history
     ///
     /// Holds the run against its row in the run table, prints a page on it, and writes a folder with
@@ -142,8 +153,10 @@ pub(crate) struct StudyArgs {
     pub(crate) force: bool,
 
     /// Do only a share of the runs, as 2/8, while other processes do the others: `gyradius report` puts them together
-    #[arg(long, value_name = "I/N", conflicts_with = "force")]
-    pub(crate) shard: Option<Shard>,
+    ///
+    /// auto/8 takes the number from the environment, as a scheduler says it: Slurm, Kubernetes, HyperQueue, MPI.
+    #[arg(long, value_name = "I/N|auto/N", conflicts_with = "force")]
+    pub(crate) shard: Option<AskedShard>,
 
     /// Do the runs again that failed before, as after a licence was not free; the report says how many
     #[arg(long, conflicts_with = "shard")]
@@ -443,7 +456,7 @@ pub(crate) enum Form {
 }
 
 /// A whole number: 1000000, 1_000_000 or 1e6.
-fn whole(text: &str) -> Result<u64, String> {
+pub(crate) fn whole(text: &str) -> Result<u64, String> {
     let digits = text.replace('_', "");
     let grouped = text.split('_').all(|part| !part.is_empty());
     let float = || digits.parse().ok().and_then(gyradius_study::whole_number);

@@ -77,7 +77,7 @@ fn format(arguments: &DrawArgs, file: Option<&Path>) -> Result<TableFormat, Stri
 }
 
 /// The scenario is not written over, whatever is forced.
-fn refuse_input(path: &Path, scenario: &Path) -> Result<(), String> {
+pub(crate) fn refuse_input(path: &Path, scenario: &Path) -> Result<(), String> {
     match (fs::canonicalize(path), fs::canonicalize(scenario)) {
         (Ok(output), Ok(input)) if output == input => {
             Err(format!("{} is the scenario: it is not written over", path.display()))

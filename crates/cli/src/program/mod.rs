@@ -10,10 +10,13 @@ mod model;
 mod number;
 mod output;
 mod progress;
+mod quote;
 mod replay;
 mod report;
+mod scheduler;
 mod shell;
 mod signals;
+mod slurm;
 mod status;
 mod study;
 
@@ -41,6 +44,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Model(arguments) => model::model(arguments).map(done),
         Command::Report(arguments) => report::report(arguments),
         Command::Status(arguments) => status::status(arguments),
+        Command::Slurm(arguments) => slurm::slurm(arguments).map(done),
         Command::Replay(arguments) => replay::replay(arguments).map(done),
         Command::Draw(arguments) => draw::draw(arguments),
         Command::Study(arguments) => study::study(arguments),

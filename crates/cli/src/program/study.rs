@@ -11,6 +11,7 @@ use crate::program::{
     number::short,
     output::{complain, print, print_json, say},
     progress,
+    scheduler::AskedShard,
     signals::Signals,
 };
 
@@ -25,6 +26,7 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     if let Some(runs) = arguments.runs {
         scenario = scenario.with_runs(runs)?;
     }
+    let shard = arguments.shard.map(AskedShard::find).transpose()?;
     let signals = Signals::watch()?;
     let options = Options {
         out: arguments.out.clone(),
@@ -34,8 +36,8 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
         even_if_full: arguments.even_if_full,
         stop: Some(signals.stop()),
     };
-    let total = scenario.planned_runs(arguments.shard);
-    if let Some(shard) = arguments.shard {
+    let total = scenario.planned_runs(shard);
+    if let Some(shard) = shard {
         let done = shown(total, arguments.quiet, |report, notice| {
             scenario.run_shard(&options, shard, report, notice)
         });

@@ -1,0 +1,184 @@
+//! `gyradius slurm`: the script that does a study on a Slurm cluster.
+
+mod script;
+mod shards;
+
+use clap::{Args, builder::NonEmptyStringValueParser};
+use gyradius_formats::NewFile;
+use gyradius_study::{Options, Scenario, forecast_study, planned_shares};
+use std::{
+    env,
+    error::Error,
+    io::{self, Write},
+    path::{Path, PathBuf, absolute},
+    time::Duration,
+};
+
+use crate::program::{
+    args::whole,
+    draw::refuse_input,
+    output::{print, say, to_standard_output},
+    study::scenario,
+};
+use script::{Limits, Script};
+use shards::{LARGEST_ARRAY, choose};
+
+#[derive(Args, Debug)]
+pub(crate) struct SlurmArgs {
+    /// Scenario file (TOML) [default: the built-in study of Peck (2003)]
+    #[arg(long, value_name = "FILE")]
+    scenario: Option<PathBuf>,
+
+    /// Runs of each model [default: as in the scenario]
+    #[arg(long, value_name = "N", value_parser = whole)]
+    runs: Option<u64>,
+
+    /// Seed of all random numbers [default: as in the scenario]
+    #[arg(long, value_name = "S", value_parser = whole)]
+    seed: Option<u64>,
+
+    /// Folder of the study, on a file system that all nodes have in common
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+
+    /// Threads, and processor cores, of each task
+    #[arg(long, value_name = "T", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    threads: u32,
+
+    /// Number of shards, which is the size of the array [default: so that each takes about ten minutes]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    shards: Option<u32>,
+
+    /// Tasks of the array that may run at the same time [default: all]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    max_tasks: Option<u32>,
+
+    /// Partition, as of sbatch [default: that of the cluster]
+    #[arg(long, value_name = "NAME", value_parser = NonEmptyStringValueParser::new())]
+    partition: Option<String>,
+
+    /// Account, as of sbatch [default: yours]
+    #[arg(long, value_name = "NAME", value_parser = NonEmptyStringValueParser::new())]
+    account: Option<String>,
+
+    /// Time limit of a task, and of the report, as of sbatch [default: five times the forecast, and ten minutes]
+    #[arg(long, value_name = "TIME", value_parser = NonEmptyStringValueParser::new())]
+    time: Option<String>,
+
+    /// Memory of a task, and of the report, as of sbatch [default: that of the cluster]
+    #[arg(long, value_name = "SIZE", value_parser = NonEmptyStringValueParser::new())]
+    mem: Option<String>,
+
+    /// Folder of the logs [default: beside that of the study, with -slurm at the end of its name]
+    #[arg(long, value_name = "DIR")]
+    logs: Option<PathBuf>,
+
+    /// File to write; - is standard output [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+
+    /// Replace the file if it is there
+    #[arg(long, requires = "output")]
+    force: bool,
+}
+
+/// Runs the verb.
+pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
+    let mut scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
+    if let Some(runs) = arguments.runs {
+        scenario = scenario.with_runs(runs)?;
+    }
+    let script = script(arguments, &scenario)?.to_string();
+    let Some(path) = arguments.output.as_deref().filter(|path| *path != Path::new("-")) else {
+        return Ok(to_standard_output(&script)?);
+    };
+    if let Some(input) = &arguments.scenario {
+        refuse_input(path, input)?;
+    }
+    let mut file = NewFile::create(path, arguments.force)?;
+    let written = file.write_all(script.as_bytes());
+    written.map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+    file.finish()?;
+    print(&format!("wrote {}: bash submits it\n", path.display()))?;
+    Ok(())
+}
+
+fn script(arguments: &SlurmArgs, scenario: &Scenario) -> Result<Script, Box<dyn Error>> {
+    let threads = arguments.threads;
+    let (shards, forecast) = match (arguments.shards, &arguments.time) {
+        // Nothing else depends on the time.
+        (Some(shards), Some(_)) => (shards, None),
+        (shards, _) => {
+            let options = Options { threads: Some(threads as usize), ..Options::default() };
+            let forecast = forecast_study(scenario, &options)?;
+            let least = |shards| planned_shares(scenario, shards).into_iter().min().unwrap_or(0);
+            let chosen = || choose(forecast.time(), &|shards| forecast.time_of(least(shards)));
+            (shards.unwrap_or_else(chosen), Some(forecast))
+        }
+    };
+    let shares = planned_shares(scenario, shards);
+    let idle = shares.iter().filter(|runs| **runs == 0).count();
+    if idle > 0 {
+        return Err(format!(
+            "--shards {shards}: runs are done in blocks, and there are {}: no more shards than that",
+            shares.len() - idle
+        )
+        .into());
+    }
+    if shards > LARGEST_ARRAY {
+        say(&format!(
+            "{shards} shards: the MaxArraySize of the cluster must be larger (scontrol show config), and is \
+             {} where nobody set it",
+            LARGEST_ARRAY + 1
+        ));
+    }
+    let models = scenario.model_names().count() as u64;
+    let largest = shares.into_iter().max().unwrap_or(0);
+    let shard_time = forecast.map(|forecast| forecast.time_of(largest));
+    let limits = match &arguments.time {
+        Some(time) => Limits::both(time),
+        None => Limits::of(shard_time.unwrap_or(Duration::MAX), scenario.runs() * models),
+    };
+    let out: PathBuf = place(&arguments.out)?;
+    let logs = match &arguments.logs {
+        Some(logs) => place(logs)?,
+        None => beside(&out)?,
+    };
+    Ok(Script {
+        name: scenario.name().to_owned(),
+        models,
+        program: env::current_exe()?,
+        folder: env::current_dir()?,
+        scenario: arguments.scenario.as_deref().map(place).transpose()?,
+        runs: scenario.runs(),
+        seed: arguments.seed,
+        out,
+        logs,
+        threads,
+        shards,
+        shard_time,
+        limits,
+        max_tasks: arguments.max_tasks,
+        partition: arguments.partition.clone(),
+        account: arguments.account.clone(),
+        mem: arguments.mem.clone(),
+    })
+}
+
+/// A path that means the same in every folder, without a slash at its end.
+fn place(path: &Path) -> io::Result<PathBuf> {
+    Ok(absolute(path)?.components().collect())
+}
+
+/// The folder of the logs beside that of the study, which belongs to the study.
+fn beside(out: &Path) -> Result<PathBuf, String> {
+    let name = out.file_name().ok_or_else(|| {
+        format!(
+            "--out {}: it ends with no name, so that --logs must say where the logs go",
+            out.display()
+        )
+    })?;
+    let mut name = name.to_owned();
+    name.push("-slurm");
+    Ok(out.with_file_name(name))
+}
