@@ -92,14 +92,14 @@ fn content(folder: &Path) -> std::collections::BTreeMap<String, Vec<u8>> {
 fn a_script_does_a_study_and_then_what_is_missing() {
     let cluster = Cluster::new();
     let scratch = &cluster.0;
-    let alone = scratch.run(&["study", "--runs", "17000", "--seed", "5", "--out", "alone"]);
+    let alone = scratch.run(&["study", "--runs", "100", "--seed", "5", "--out", "alone"]);
     assert!(alone.status.success(), "{}", text(&alone));
 
     let here = scratch.path("-it's $(touch oops) `touch oops` \"a\"\\\n; touch oops #*%j é");
     fs::create_dir(&here).unwrap();
     fs::copy(scratch.path("alone/scenario.toml"), here.join("-s.toml")).unwrap();
     let slurm = |more: &[&str]| {
-        let given = ["slurm", "--scenario=-s.toml", "--runs=17000", "--seed=5", "--out=-o"];
+        let given = ["slurm", "--scenario=-s.toml", "--runs=100", "--seed=5", "--out=-o"];
         let mut command = scratch.command(&[&given, more].concat());
         command.current_dir(&here).output().unwrap()
     };
@@ -123,15 +123,10 @@ fn a_script_does_a_study_and_then_what_is_missing() {
         "{}",
         text(&said)
     );
-    // Shards 1 and 3 of eight blocks have those of two models whole, and the report says what is missing of the others.
-    assert_eq!(cluster.codes(), "0 0 1 ");
+    // Shard 2 has all runs of the second of four models, and there is no report without any.
+    assert_eq!(cluster.codes(), "0 0 2 ");
     let status = |code| {
-        let output = scratch.command(&["status", "-o"]).current_dir(&here).output().unwrap();
-        let output = if output.status.code() == Some(2) {
-            scratch.command(&["status", "--", "-o"]).current_dir(&here).output().unwrap()
-        } else {
-            output
-        };
+        let output = scratch.command(&["status", "--", "-o"]).current_dir(&here).output().unwrap();
         assert_eq!(output.status.code(), Some(code), "{}", text(&output));
     };
     status(1);
@@ -196,7 +191,7 @@ fn every_script_is_read_by_bash() {
         "--max-tasks=5",
         "--logs=logs\n\u{1b}[1m",
     ];
-    for subset in (0..1_usize << flags.len()).step_by(5) {
+    for subset in (0..1_usize << flags.len()).step_by(11) {
         let mut given = vec!["slurm", "--out=x", "--shards=4", "--time=7"];
         given.extend(
             flags.iter().enumerate().filter(|(i, _)| subset >> i & 1 == 1).map(|(_, flag)| *flag),

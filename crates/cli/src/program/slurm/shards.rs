@@ -22,11 +22,13 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(100))]
+
         /// For studies of any size and any speed: one shard, or shards of a minute or more, none without runs, ten minutes on
         /// average where the blocks and the size of arrays allow it.
         #[test]
         fn shards_are_neither_short_nor_many(
-            exponent in 0.0..8.5_f64,
+            exponent in 0.0..7.0_f64,
             seconds in -7.0..1.0_f64,
         ) {
             let runs = 10_f64.powf(exponent) as u64;
