@@ -53,9 +53,9 @@ if something could not be read or written. What was there is then as it was.";
 
 pub(crate) const SLURM_EXAMPLES: &str = "\
 Examples:
-  gyradius slurm --scenario my-vehicle.toml --runs 1e8 --out /shared/big -o big.sh
+  gyradius slurm --scenario my-vehicle.toml --runs 1e7 --out /shared/big -o big.sh
   bash big.sh
-      The jobs of a study of 1e8 runs a model, and their submission
+      The jobs of a study of 1e7 runs a model, and their submission
   gyradius slurm --runs 1e7 --out big --partition short --time 30 --max-tasks 20 | bash
       The same at once, with 20 tasks at a time, each of which is ended after 30 minutes
   gyradius status big
