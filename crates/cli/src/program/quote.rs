@@ -35,7 +35,8 @@ fn is_bare(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || b"/._-+:@%".contains(&byte)
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod tests {
     use super::*;
     use proptest::{collection::vec, prelude::*};

@@ -276,8 +276,8 @@ mod tests {
     /// Each variable that a scheduler sets, with what it cannot be.
     #[test]
     fn what_does_not_fit_is_refused_by_its_name() {
-        for scheduler in 0..SCHEDULERS.len() {
-            let sound = told(scheduler, 3, 8);
+        for (place, scheduler) in SCHEDULERS.iter().enumerate() {
+            let sound = told(place, 3, 8);
             for variable in sound.keys().filter(|name| **name != "SLURM_ARRAY_TASK_MAX") {
                 for bad in ["", " 3", "+3", "-1", "3.0", "three", "4294967296", "undefined"] {
                     let mut environment = sound.clone();
@@ -286,7 +286,7 @@ mod tests {
                     assert!(text.starts_with(&format!("{variable} is {bad:?}:")), "{text}");
                 }
             }
-            let number = SCHEDULERS[scheduler].number;
+            let number = scheduler.number;
             let first: u32 = sound[number].parse::<u32>().unwrap() - 2;
             for outside in [first.wrapping_sub(1), first + 8, u32::MAX] {
                 let mut environment = sound.clone();
