@@ -2,7 +2,8 @@
 
 use clap::{
     Args, Parser, Subcommand,
-    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+    builder::{NonEmptyStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser},
+    value_parser,
 };
 use gyradius_study::{CompareOptions, ModelKind, TableFormat};
 use std::path::PathBuf;
@@ -14,7 +15,6 @@ use crate::program::{
         SLURM_EXAMPLES, STATUS_EXAMPLES,
     },
     scheduler::AskedShard,
-    slurm::SlurmArgs,
 };
 
 /// Uncertain rigid-body inertia: Monte Carlo studies of spacecraft separation.
@@ -203,6 +203,65 @@ pub(crate) struct StatusArgs {
     /// Write JSON, for other programs
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct SlurmArgs {
+    /// Scenario file (TOML) [default: the built-in study of Peck (2003)]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scenario: Option<PathBuf>,
+
+    /// Runs of each model [default: as in the scenario]
+    #[arg(long, value_name = "N", value_parser = whole)]
+    pub(crate) runs: Option<u64>,
+
+    /// Seed of all random numbers [default: as in the scenario]
+    #[arg(long, value_name = "S", value_parser = whole)]
+    pub(crate) seed: Option<u64>,
+
+    /// Folder of the study, on a file system that all nodes have in common
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+
+    /// Threads, and processor cores, of each task
+    #[arg(long, value_name = "T", default_value_t = 1, value_parser = value_parser!(u32).range(1..=1024))]
+    pub(crate) threads: u32,
+
+    /// Number of shards, which is the size of the array [default: so that each takes about ten minutes]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) shards: Option<u32>,
+
+    /// Tasks of the array that may run at the same time [default: all]
+    #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(1..))]
+    pub(crate) max_tasks: Option<u32>,
+
+    /// Partition, as of sbatch [default: that of the cluster]
+    #[arg(long, value_name = "NAME", value_parser = NonEmptyStringValueParser::new())]
+    pub(crate) partition: Option<String>,
+
+    /// Account, as of sbatch [default: yours]
+    #[arg(long, value_name = "NAME", value_parser = NonEmptyStringValueParser::new())]
+    pub(crate) account: Option<String>,
+
+    /// Time limit of a task, and of the report, as of sbatch [default: five times the forecast, and ten minutes]
+    #[arg(long, value_name = "TIME", value_parser = NonEmptyStringValueParser::new())]
+    pub(crate) time: Option<String>,
+
+    /// Memory of a task, and of the report, as of sbatch [default: that of the cluster]
+    #[arg(long, value_name = "SIZE", value_parser = NonEmptyStringValueParser::new())]
+    pub(crate) mem: Option<String>,
+
+    /// Folder of the logs [default: beside that of the study, with -slurm at the end of its name]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) logs: Option<PathBuf>,
+
+    /// File to write; - is standard output [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Replace the file if it is there
+    #[arg(long, requires = "output")]
+    pub(crate) force: bool,
 }
 
 #[derive(Args, Debug)]
@@ -456,7 +515,7 @@ pub(crate) enum Form {
 }
 
 /// A whole number: 1000000, 1_000_000 or 1e6.
-pub(crate) fn whole(text: &str) -> Result<u64, String> {
+fn whole(text: &str) -> Result<u64, String> {
     let digits = text.replace('_', "");
     let grouped = text.split('_').all(|part| !part.is_empty());
     let float = || digits.parse().ok().and_then(gyradius_study::whole_number);

@@ -3,7 +3,6 @@
 mod script;
 mod shards;
 
-use clap::{Args, builder::NonEmptyStringValueParser};
 use gyradius_formats::NewFile;
 use gyradius_study::{Options, Scenario, forecast_study, planned_shares};
 use std::{
@@ -15,72 +14,13 @@ use std::{
 };
 
 use crate::program::{
-    args::whole,
+    args::SlurmArgs,
     draw::refuse_input,
     output::{print, say, to_standard_output},
     study::scenario,
 };
 use script::{Limits, Script};
 use shards::{LARGEST_ARRAY, choose};
-
-#[derive(Args, Debug)]
-pub(crate) struct SlurmArgs {
-    /// Scenario file (TOML) [default: the built-in study of Peck (2003)]
-    #[arg(long, value_name = "FILE")]
-    scenario: Option<PathBuf>,
-
-    /// Runs of each model [default: as in the scenario]
-    #[arg(long, value_name = "N", value_parser = whole)]
-    runs: Option<u64>,
-
-    /// Seed of all random numbers [default: as in the scenario]
-    #[arg(long, value_name = "S", value_parser = whole)]
-    seed: Option<u64>,
-
-    /// Folder of the study, on a file system that all nodes have in common
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
-
-    /// Threads, and processor cores, of each task
-    #[arg(long, value_name = "T", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1024))]
-    threads: u32,
-
-    /// Number of shards, which is the size of the array [default: so that each takes about ten minutes]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    shards: Option<u32>,
-
-    /// Tasks of the array that may run at the same time [default: all]
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
-    max_tasks: Option<u32>,
-
-    /// Partition, as of sbatch [default: that of the cluster]
-    #[arg(long, value_name = "NAME", value_parser = NonEmptyStringValueParser::new())]
-    partition: Option<String>,
-
-    /// Account, as of sbatch [default: yours]
-    #[arg(long, value_name = "NAME", value_parser = NonEmptyStringValueParser::new())]
-    account: Option<String>,
-
-    /// Time limit of a task, and of the report, as of sbatch [default: five times the forecast, and ten minutes]
-    #[arg(long, value_name = "TIME", value_parser = NonEmptyStringValueParser::new())]
-    time: Option<String>,
-
-    /// Memory of a task, and of the report, as of sbatch [default: that of the cluster]
-    #[arg(long, value_name = "SIZE", value_parser = NonEmptyStringValueParser::new())]
-    mem: Option<String>,
-
-    /// Folder of the logs [default: beside that of the study, with -slurm at the end of its name]
-    #[arg(long, value_name = "DIR")]
-    logs: Option<PathBuf>,
-
-    /// File to write; - is standard output [default: standard output]
-    #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
-
-    /// Replace the file if it is there
-    #[arg(long, requires = "output")]
-    force: bool,
-}
 
 /// Runs the verb.
 pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
