@@ -88,6 +88,18 @@ impl AnyScenario {
         of_either!(self, scenario => scenario.name())
     }
 
+    /// Runs of each model.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        of_either!(self, scenario => scenario.runs())
+    }
+
+    /// How many models there are.
+    #[must_use]
+    pub fn models(&self) -> usize {
+        of_either!(self, scenario => scenario.model_names().count())
+    }
+
     /// How many runs a process is to do if none is there: those of a shard, or of all models.
     #[must_use]
     pub fn planned_runs(&self, shard: Option<Shard>) -> u64 {

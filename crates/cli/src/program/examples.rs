@@ -53,10 +53,10 @@ if something could not be read or written. What was there is then as it was.";
 
 pub(crate) const SLURM_EXAMPLES: &str = "\
 Examples:
-  gyradius slurm --scenario my-vehicle.toml --runs 1e7 --out /shared/big -o big.sh
+  gyradius slurm --scenario my-vehicle.toml --runs 1e8 --out /shared/big -o big.sh
   bash big.sh
-      The jobs of a study of 1e7 runs a model, and their submission
-  gyradius slurm --runs 1e7 --out big --partition short --time 30 --max-tasks 20 | bash
+      The jobs of a study of 1e8 runs a model, and their submission
+  gyradius slurm --runs 1e8 --out big --partition short --time 30 --max-tasks 20 | bash
       The same at once, with 20 tasks at a time, each of which is ended after 30 minutes
   gyradius status big
       What is done and missing meanwhile
@@ -164,7 +164,7 @@ Examples:
       A quick look
   gyradius study --scenario my-vehicle.toml --seed 7 --threads 4
       Another vehicle. Start from the scenario.toml that any study writes
-  mpirun -n 8 gyradius study --runs 1e7 --out big --threads 1 --shard auto/8
+  mpirun -n 8 gyradius study --runs 1e8 --out big --threads 1 --shard auto/8
       Eight processes of MPI do a shard each, as tasks of Slurm, Kubernetes or HyperQueue do
   gyradius study --seed 8 --force
       Replace the study in the folder by another one

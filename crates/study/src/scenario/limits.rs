@@ -11,8 +11,8 @@ use super::{
 /// Bytes of the largest file that is read: a hundred thousand samples of roots.
 pub(super) const BYTES: u64 = 16 << 20;
 
-/// Most runs of a model: what fits into memory.
-pub(super) const RUNS: u64 = 10_000_000;
+/// Most runs of a model: nine digits number them in the names of files, and weeks pass until they are done.
+pub(super) const RUNS: u64 = 1_000_000_000;
 
 /// Most loads of a kind: each is a release in every run and a column of the run table.
 const LOADS: usize = 300;

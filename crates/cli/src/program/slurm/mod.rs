@@ -4,7 +4,7 @@ mod script;
 mod shards;
 
 use gyradius_formats::NewFile;
-use gyradius_study::{Options, Scenario, forecast_study, planned_shares};
+use gyradius_study::{AnyScenario, Options};
 use std::{
     env,
     error::Error,
@@ -43,20 +43,26 @@ pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn script(arguments: &SlurmArgs, scenario: &Scenario) -> Result<Script, Box<dyn Error>> {
+fn script(arguments: &SlurmArgs, scenario: &AnyScenario) -> Result<Script, Box<dyn Error>> {
     let threads = arguments.threads;
     let (shards, forecast) = match (arguments.shards, &arguments.time) {
         // Nothing else depends on the time.
         (Some(shards), Some(_)) => (shards, None),
         (shards, _) => {
             let options = Options { threads: Some(threads as usize), ..Options::default() };
-            let forecast = forecast_study(scenario, &options)?;
-            let least = |shards| planned_shares(scenario, shards).into_iter().min().unwrap_or(0);
-            let chosen = || choose(forecast.time(), &|shards| forecast.time_of(least(shards)));
-            (shards.unwrap_or_else(chosen), Some(forecast))
+            let forecast = scenario.forecast(&options)?;
+            let time_of = |runs: u64| forecast.time_of(runs);
+            let Some(total) = forecast.time() else {
+                return Err("--shards and --time: nobody but you knows how long a run of your simulator takes, so \
+                            that both must be given"
+                    .into());
+            };
+            let least = |shards| scenario.planned_shares(shards).into_iter().min().unwrap_or(0);
+            let smallest = |shards| time_of(least(shards)).unwrap_or(total);
+            (shards.unwrap_or_else(|| choose(total, &smallest)), Some(forecast))
         }
     };
-    let shares = planned_shares(scenario, shards);
+    let shares = scenario.planned_shares(shards);
     let idle = shares.iter().filter(|runs| **runs == 0).count();
     if idle > 0 {
         return Err(format!(
@@ -72,9 +78,9 @@ fn script(arguments: &SlurmArgs, scenario: &Scenario) -> Result<Script, Box<dyn 
             LARGEST_ARRAY + 1
         ));
     }
-    let models = scenario.model_names().count() as u64;
+    let models = scenario.models() as u64;
     let largest = shares.into_iter().max().unwrap_or(0);
-    let shard_time = forecast.map(|forecast| forecast.time_of(largest));
+    let shard_time = forecast.and_then(|forecast| forecast.time_of(largest));
     let limits = match &arguments.time {
         Some(time) => Limits::both(time),
         None => Limits::of(shard_time.unwrap_or(Duration::MAX), scenario.runs() * models),

@@ -18,7 +18,7 @@ pub(super) fn choose(total: Duration, smallest: &dyn Fn(u32) -> Duration) -> u32
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gyradius_study::{Scenario, planned_shares};
+    use gyradius_study::{AnyScenario, Scenario};
     use proptest::prelude::*;
 
     proptest! {
@@ -33,14 +33,15 @@ mod tests {
         ) {
             let runs = 10_f64.powf(exponent) as u64;
             let scenario = Scenario::peck_2003().unwrap().with_runs(runs).unwrap();
+            let scenario = AnyScenario::Separation(Box::new(scenario));
             let each = 10_f64.powf(seconds);
             let time = |runs: u64| Duration::from_secs_f64(each * runs as f64);
-            let total: u64 = planned_shares(&scenario, 1).iter().sum();
+            let total: u64 = scenario.planned_shares(1).iter().sum();
             prop_assert_eq!(total, 4 * runs);
-            let least = |shards| time(planned_shares(&scenario, shards).into_iter().min().unwrap());
+            let least = |shards| time(scenario.planned_shares(shards).into_iter().min().unwrap());
             let shards = choose(time(total), &least);
             prop_assert!((1..=1000).contains(&shards));
-            let shares = planned_shares(&scenario, shards);
+            let shares = scenario.planned_shares(shards);
             prop_assert_eq!(shares.iter().sum::<u64>(), total);
             prop_assert!(shards == 1 || shares.iter().all(|runs| time(*runs) >= LEAST));
             let average = each * total as f64 / f64::from(shards);
