@@ -16,4 +16,6 @@ mod scratch;
 mod shards;
 mod shell;
 #[cfg(unix)]
+mod simulator;
+#[cfg(unix)]
 mod slurm;

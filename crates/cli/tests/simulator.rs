@@ -1,0 +1,202 @@
+//! Campaigns of a user's own simulator, a script in the shell: studied, killed, put together, drawn and replayed.
+
+use serde_json::Value;
+use std::{
+    fs::{self, File},
+    process::{Command, Output, Stdio},
+    thread,
+    time::{Duration, SystemTime},
+};
+
+use crate::scratch::{Scratch, files};
+
+/// Answers with the quantity, and fails while there is a file and it is below 0.2.
+const SCRIPT: &str = r#"
+while read -r line; do
+    x=${line#*'"x":'}; x=${x%%[,\}]*}
+    case $x in
+        0.1*) [ -e busy ] && echo '{"error":"no licence"}' || echo "{\"outputs\":{\"y\":$x}}" ;;
+        *) echo "{\"outputs\":{\"y\":$x}}" ;;
+    esac
+done
+"#;
+const SCENARIO: &str = r#"
+name = "shell"
+runs = 4000
+seed = 5
+
+[simulation]
+command = ["sh", "answer.sh"]
+
+[[simulation.outputs]]
+name = "y"
+
+[[quantities]]
+name = "x"
+law = { law = "uniform", low = 0.1, high = 0.95 }
+"#;
+
+fn scratch() -> Scratch {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("answer.sh"), SCRIPT).unwrap();
+    fs::write(scratch.path("s.toml"), SCENARIO).unwrap();
+    scratch
+}
+
+fn said(output: &Output) -> [String; 2] {
+    [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned())
+}
+
+/// Killed at fifty moments: what the record told of before is not done again, and at the end there is what a study leaves that nobody
+/// disturbed, byte by byte.
+#[test]
+fn a_campaign_survives_fifty_kills() {
+    let scratch = scratch();
+    let study = |out: &str| {
+        let mut command = scratch.command(&["study", "--scenario", "s.toml", "--out", out]);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        command
+    };
+    let record = || {
+        let text = fs::read_to_string(scratch.path("here/.gyradius/campaign/record"));
+        let text = text.unwrap_or_default();
+        text.lines().filter(|line| line.ends_with('}')).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let mut known: Vec<String> = Vec::new();
+    let mut kills = 0;
+    // At moments that are spread evenly over a tenth of a second, in no order.
+    for moment in (0..50).map(|i| 500 + i * 61 % 50 * 1800) {
+        let mut child = study("here").spawn().unwrap();
+        thread::sleep(Duration::from_micros(moment));
+        if child.try_wait().unwrap().is_some() {
+            break;
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        kills += 1;
+        let now = record();
+        assert!(now.starts_with(&known), "{now:?} {known:?}");
+        known = now;
+    }
+    assert!(kills > 5, "{kills}");
+    assert!(study("here").status().unwrap().success());
+    assert!(study("there").status().unwrap().success());
+    let [here, there] = ["here", "there"].map(|out| {
+        let mut files = files(&scratch.path(out));
+        files.remove(".gyradius/lock");
+        files
+    });
+    assert!(here.keys().eq(there.keys()), "{:?} {:?}", here.keys(), there.keys());
+    for (name, content) in &here {
+        assert!(*content == there[name], "{name}");
+    }
+
+    // Nobody asks what time it is: files of any age are what they are.
+    for (i, name) in here.keys().enumerate() {
+        let years = Duration::from_secs(86_400 * 365 * (i as u64 % 60));
+        let time = SystemTime::UNIX_EPOCH + years;
+        File::options()
+            .append(true)
+            .open(scratch.path("here").join(name))
+            .unwrap()
+            .set_modified(time)
+            .unwrap();
+    }
+    assert!(study("here").status().unwrap().success());
+    let status = scratch.run(&["status", "here"]);
+    assert_eq!(status.status.code(), Some(0), "{:?}", said(&status));
+    for (name, content) in &here {
+        assert!(fs::read(scratch.path("here").join(name)).unwrap() == *content, "{name}");
+    }
+}
+
+/// The everyday commands, in the order in which they are used.
+#[test]
+fn every_verb_knows_simulators() {
+    let scratch = scratch();
+    let study = |more: &[&str]| {
+        let arguments = ["study", "--scenario", "s.toml", "--runs", "700", "--out", "o"];
+        scratch.run(&[&arguments, more].concat())
+    };
+    fs::write(scratch.path("busy"), "").unwrap();
+    let [out, err] = said(&study(&["--shard", "2/2", "--json"]));
+    let json: Value = serde_json::from_str(&out).unwrap_or_else(|_| panic!("{out}{err}"));
+    assert_eq!((&json["shard"], &json["runs"]), (&Value::from("2/2"), &Value::from(256)));
+    let status = scratch.run(&["status", "o"]);
+    assert_eq!(status.status.code(), Some(1));
+    let report = scratch.run(&["report", "o"]);
+    assert_eq!(report.status.code(), Some(1));
+    assert!(said(&report)[0].contains("missing: 256 of all (0 to 255)"), "{:?}", said(&report));
+
+    let json = study(&["--json"]);
+    let json: Value = serde_json::from_slice(&json.stdout).unwrap();
+    let failed = json["models"][0]["failed"].as_u64().unwrap();
+    assert!(failed > 40 && json["complete"] == true && json["runs_per_model"] == 700, "{json}");
+    assert_eq!(json["columns"].as_array().unwrap().len(), 6);
+
+    fs::remove_file(scratch.path("busy")).unwrap();
+    let again = study(&["--retry-failed"]);
+    let [out, err] = said(&again);
+    assert!(err.contains(&format!("{failed} runs that had failed, done again: 0 failed again")));
+    assert!(again.status.success() && out.contains("all: 700 runs, 0 failed"), "{out}");
+    let quiet = study(&["--quiet"]);
+    assert!(quiet.status.success() && said(&quiet).concat().is_empty());
+
+    let replay = scratch.run(&["replay", "o", "--run", "699"]);
+    let [told, _] = said(&replay);
+    let sent = told.lines().find_map(|line| line.strip_prefix("sent: ")).unwrap();
+    let sent: Value = serde_json::from_str(sent).unwrap();
+    let y = format!("y = {:?}", sent["inputs"]["x"].as_f64().unwrap());
+    assert!(told.contains(&y), "{told}");
+    let draw = scratch.run(&["draw", "s.toml", "-n", "700", "--format", "csv"]);
+    let last = said(&draw)[0].lines().last().unwrap().to_owned();
+    assert!(last.starts_with("all,699,ok,") && last.contains(&y[4..]), "{last}");
+
+    let page = fs::read(scratch.path("o/report.html")).unwrap();
+    fs::remove_file(scratch.path("o/report.html")).unwrap();
+    assert!(scratch.run(&["report", "o"]).status.success());
+    assert!(fs::read(scratch.path("o/report.html")).unwrap() == page);
+
+    // Another simulator does not go on with these runs, nor does one that is not there.
+    fs::write(scratch.path("answer.sh"), format!("{SCRIPT}\n")).unwrap();
+    let other = scratch.run(&["study", "--scenario", "s.toml", "--runs", "800", "--out", "o"]);
+    let [_, err] = said(&other);
+    assert!(other.status.code() == Some(2) && err.contains("simulation.files_sha256"), "{err}");
+    let absent = SCENARIO.replace("\"sh\"", "\"gyradius-no-such-program\"");
+    fs::write(scratch.path("s.toml"), absent).unwrap();
+    let refused = scratch.run(&["study", "--scenario", "s.toml", "--out", "absent"]);
+    assert!(refused.status.code() == Some(2) && !scratch.path("absent").exists());
+}
+
+/// A study that the disk has no room for is refused before it begins, and begun if that is asked for.
+#[test]
+fn a_disk_that_is_too_small_is_found_before() {
+    let scratch = scratch();
+    let run = |more: &[&str]| {
+        let arguments = ["study", "--scenario", "s.toml", "--runs", "1e9", "--out", "o"];
+        let mut command: Command = scratch.command(&[&arguments, more].concat());
+        command.stdout(Stdio::null()).stderr(Stdio::piped());
+        command
+    };
+    let body = |i: u32| {
+        format!(
+            "\n[[bodies]]\nname = \"b{i}\"\nmass_kg = 1.0\n\
+             inertia_kg_m2 = [[1.0, 0.0, 0.0], [0.0, 1.1, 0.0], [0.0, 0.0, 1.2]]\n\
+             [bodies.dispersion]\nroot_second_moment_variance_kg_m2 = [1e-3, 1e-3, 1e-3]\naxes = \"fixed\"\n"
+        )
+    };
+    let model = "\n[[models]]\nname = \"all\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n";
+    let bodies: String = (0..300).map(body).collect();
+    fs::write(scratch.path("s.toml"), format!("{SCENARIO}{bodies}{model}")).unwrap();
+    let refused = run(&[]).output().unwrap();
+    let [_, err] = said(&refused);
+    // 11 numbers of each body and two more, of 8 bytes, a thousand million times: no test runs on such a disk.
+    assert!(err.contains("the run tables will take about 26 TB"), "{err}");
+    assert!(refused.status.code() == Some(2) && err.contains("--even-if-full"), "{err}");
+    assert!(!scratch.path("o/report.html").exists());
+    let mut begun = run(&["--even-if-full"]).spawn().unwrap();
+    thread::sleep(Duration::from_millis(300));
+    assert!(begun.try_wait().unwrap().is_none());
+    begun.kill().unwrap();
+    begun.wait().unwrap();
+}
