@@ -40,9 +40,9 @@ def swing(inputs):
     data = mujoco.MjData(MODEL)
     mujoco.mj_setConst(MODEL, data)
     mujoco.mj_resetData(MODEL, data)
-    data.ctrl[0] = TARGET
     angles, torques = [], []
-    for _ in range(1000):
+    for _ in range(1500):
+        data.ctrl[0] = TARGET * min(1.0, data.time)
         mujoco.mj_step(MODEL, data)
         angles.append(data.qpos[0])
         torques.append(abs(data.actuator_force[0]))

@@ -146,11 +146,15 @@ impl Subject for SimulatorScenario {
         let surveys = looks.into_iter().zip(runs).map(|(look, runs)| look.finish(runs));
         let surveys = surveys.collect::<Result<Vec<Surveys>, _>>()?;
         let columns = runs.first().map_or(&[][..], Runs::columns);
+        // The answers before what was asked.
+        let is_output = |column: &&Column| self.outputs().iter().any(|o| o.name() == column.name());
+        let (outputs, inputs): (Vec<_>, Vec<_>) = columns.iter().partition(is_output);
+        let shown: Vec<Column> = outputs.into_iter().chain(inputs).cloned().collect();
         let title = format!("gyradius campaign: {}", self.name());
         Ok(SimulatorSummary {
             head: Head::new(self, columns),
             command: self.command().to_vec(),
-            overview: Overview::of_surveys(&title, columns, &surveys)?,
+            overview: Overview::of_surveys(&title, &shown, &surveys)?,
         })
     }
 
