@@ -1,12 +1,9 @@
 //! What a summary says first: of which scenario it is, by which version, of how many runs from which seed.
 
-use gyradius_campaign::{Column, ColumnSummary};
-use gyradius_statistics::Confidence;
+use gyradius_campaign::ColumnSummary;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::{borrow::Cow, fmt, ops::Range};
-
-use crate::subject::Subject;
 
 /// What a summary says first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,21 +27,6 @@ pub struct Head {
 }
 
 impl Head {
-    /// Of a scenario all of whose runs are there.
-    pub(crate) fn new(scenario: &impl Subject, columns: &[Column]) -> Self {
-        Self {
-            gyradius_version: env!("CARGO_PKG_VERSION").into(),
-            scenario: scenario.name().to_owned(),
-            fingerprint: fingerprint(&scenario.to_toml()),
-            seed: scenario.seed(),
-            runs_per_model: scenario.runs(),
-            missing: Vec::new(),
-            done_again: 0,
-            confidence: Confidence::default().level(),
-            columns: columns.iter().map(Column::summary).collect(),
-        }
-    }
-
     /// The name of the scenario.
     #[must_use]
     pub fn scenario(&self) -> &str {

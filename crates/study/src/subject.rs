@@ -2,11 +2,15 @@
 
 use gyradius_campaign::{Column, FirstLook, Forecast, Runs, Simulation, Table};
 use gyradius_report::Document;
+use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
 use serde::{Serialize, de::DeserializeOwned};
 use std::{fmt::Display, path::Path};
 
-use crate::{ScenarioError, StudyError, head::Head};
+use crate::{
+    ScenarioError, StudyError,
+    head::{Head, fingerprint},
+};
 
 /// What a study is of: models whose runs are simulated, what they amount to, and the pages that show it.
 pub(crate) trait Subject: Sync + Sized {
@@ -90,6 +94,21 @@ pub(crate) trait LookAt: Sync {
 impl LookAt for FirstLook {
     fn look(&self, block: &Table) {
         self.look(block);
+    }
+}
+
+/// What a summary of all runs of a scenario says first; their tables have these columns.
+pub(crate) fn head_of(scenario: &impl Subject, columns: &[Column]) -> Head {
+    Head {
+        gyradius_version: env!("CARGO_PKG_VERSION").into(),
+        scenario: scenario.name().to_owned(),
+        fingerprint: fingerprint(&scenario.to_toml()),
+        seed: scenario.seed(),
+        runs_per_model: scenario.runs(),
+        missing: Vec::new(),
+        done_again: 0,
+        confidence: Confidence::default().level(),
+        columns: columns.iter().map(Column::summary).collect(),
     }
 }
 

@@ -17,7 +17,7 @@ use crate::{
     run::Case,
     scenario::{Dispersed, ModelLaw, Scenario},
     seen::Seen,
-    subject::Summarized,
+    subject::{Summarized, head_of},
 };
 
 /// Every number that the report shows.
@@ -203,7 +203,7 @@ impl Summary {
             })
             .collect();
         Ok(Self {
-            head: Head::new(scenario, columns),
+            head: head_of(scenario, columns),
             nominal,
             models,
             comparisons,

@@ -4,7 +4,7 @@ use gyradius_campaign::Column;
 
 use super::{
     file::SimulatedBodyFile,
-    scenario::{Number, check_column},
+    number::{Number, check_column},
 };
 use crate::{
     ScenarioError,

@@ -5,9 +5,7 @@ use gyradius_dispersion::{InertiaLaw, ModelKind};
 use std::{ops::Range, sync::Arc};
 
 use super::{
-    body::SimulatedBody,
-    file::SimulatedModelFile,
-    scenario::{Number, SimulatorScenario},
+    body::SimulatedBody, file::SimulatedModelFile, number::Number, scenario::SimulatorScenario,
 };
 use crate::{
     ScenarioError,

@@ -2,7 +2,11 @@
 
 mod body;
 mod draws;
+#[cfg(all(test, unix))]
+mod examples;
 mod file;
+mod number;
+mod read;
 mod replay;
 mod scenario;
 mod summary;

@@ -1,18 +1,18 @@
 //! A scenario of a simulator, checked: the command, what is uncertain, how often.
 
-use gyradius_campaign::{Column, Program, ProgramError, Table};
+use gyradius_campaign::{Column, Program, ProgramError};
 use gyradius_dispersion::{ModelKind, ScalarLaw};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 use super::{
     body::SimulatedBody,
-    draws::SimulatorDraws,
     file::{File, SimulatedModelFile},
+    number::{Number, check_column},
 };
 use crate::{
     ScenarioError,
-    scenario::{Joint, List, check_name, check_runs, check_seed, parse_toml, read_file, refused},
+    scenario::{Joint, List, check_name, check_runs, check_seed, parse_toml, refused},
 };
 
 /// Most bodies, quantities or outputs.
@@ -30,13 +30,6 @@ pub struct SimulatorScenario {
     outputs: Vec<Column>,
 }
 
-/// A number that is sent, and what it is where nothing is drawn.
-#[derive(Clone, Debug)]
-pub(super) struct Number {
-    pub(super) column: Column,
-    pub(super) nominal: f64,
-}
-
 impl SimulatorScenario {
     /// Whether the text of a scenario file is of a simulator: whether it has a table `[simulation]`.
     #[must_use]
@@ -44,22 +37,8 @@ impl SimulatorScenario {
         parse_toml::<toml::Table>(text).is_ok_and(|table| table.contains_key("simulation"))
     }
 
-    /// Reads a scenario file; of the folder of a study, its `scenario.toml`.
-    ///
-    /// # Errors
-    /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
-    pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let file = if path.is_dir() { path.join("scenario.toml") } else { path.to_owned() };
-        let text = read_file(&file)?;
-        let folder = gyradius_campaign::folder_of(&file);
-        Self::from_toml(&text, folder).map_err(|error| error.in_file(&file))
-    }
-
-    /// Reads a scenario from the text of a file that is in a folder.
-    ///
-    /// # Errors
-    /// It is not TOML, has an unknown key, or a value that is not allowed.
-    pub fn from_toml(text: &str, folder: &Path) -> Result<Self, ScenarioError> {
+    /// Of the text of a file that is in a folder; what models need of the bodies is not checked yet.
+    pub(super) fn parse(text: &str, folder: &Path) -> Result<Self, ScenarioError> {
         let mut file = parse_toml::<File>(text)
             .map_err(|message| ScenarioError::Parse { path: None, message })?;
         check_name("name", &file.name)?;
@@ -112,15 +91,7 @@ impl SimulatorScenario {
         });
         let outputs = outputs.collect::<Result<Vec<_>, ScenarioError>>()?;
         check_models(&mut file)?;
-        let scenario = Self { file, bodies, quantities, dispersed, outputs };
-        let columns = scenario.inputs().chain(scenario.outputs.iter().cloned()).collect();
-        Table::new("", 0, columns)
-            .map_err(|error| ScenarioError::field("simulation.outputs", error))?;
-        // What a model needs of the bodies is found by making it.
-        for place in 0..scenario.file.models.len() {
-            SimulatorDraws::new(&scenario, place)?;
-        }
-        Ok(scenario)
+        Ok(Self { file, bodies, quantities, dispersed, outputs })
     }
 
     /// The same scenario with another number of runs for each model.
@@ -275,17 +246,4 @@ fn check_models(file: &mut File) -> Result<(), ScenarioError> {
         }
     }
     Ok(())
-}
-
-/// Names of bodies, quantities and outputs are keys in JSON and columns.
-pub(super) fn check_column(field: &str, name: &str) -> Result<(), ScenarioError> {
-    let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
-    if begins && name.len() <= 64 && name.chars().all(letters) {
-        return Ok(());
-    }
-    let problem = format!(
-        "{name:?}: it must be 1 to 64 letters, digits and underscores, and begin with a letter, for it names a column"
-    );
-    Err(ScenarioError::field(field, problem))
 }

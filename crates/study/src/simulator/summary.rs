@@ -15,7 +15,7 @@ use crate::{
     head::Head,
     report,
     study::carry_out,
-    subject::{Subject, Summarized},
+    subject::{Subject, Summarized, head_of},
 };
 
 /// Every number that the report of a campaign of a simulator shows, and of what it is.
@@ -152,7 +152,7 @@ impl Subject for SimulatorScenario {
         let shown: Vec<Column> = outputs.into_iter().chain(inputs).cloned().collect();
         let title = format!("gyradius campaign: {}", self.name());
         Ok(SimulatorSummary {
-            head: Head::new(self, columns),
+            head: head_of(self, columns),
             command: self.command().to_vec(),
             overview: Overview::of_surveys(&title, &shown, &surveys)?,
         })

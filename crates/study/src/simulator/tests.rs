@@ -1,5 +1,8 @@
 //! Campaigns of simulators in scripts: what is drawn, that they go on, that one run is done again.
 
+mod again;
+mod refusals;
+
 use gyradius_campaign::{Inputs, Simulation, Table};
 use proptest::prelude::*;
 use std::{
@@ -13,8 +16,7 @@ use std::{
 
 use super::{SimulatorDraws, SimulatorReplay, SimulatorScenario, SimulatorSummary};
 use crate::{
-    AnyScenario, CampaignError, Notice, Options, Scenario, Shard, Status, Study, StudyError,
-    is_begun,
+    AnyScenario, CampaignError, Options, Scenario, Shard, Status, Study, StudyError, is_begun,
     model::{self, Separations},
     put_together, write_report,
 };
@@ -367,87 +369,6 @@ fn shards_are_put_together_without_the_simulator() {
     assert!(Status::read(&out("shards")).unwrap().is_complete());
 }
 
-/// Runs that failed for a reason that is gone are done again, and no other: of a study that is complete, and of one that was
-/// stopped. Until the new blocks are there, the old ones count.
-#[test]
-fn failed_runs_are_done_again() {
-    // While there is a file, runs fail whose quantity is below 0.4. It counts what it is asked.
-    const SOMETIMES: &str = r#"
-while read -r line; do
-    echo . >> asked
-    x=${line#*'"x":'}; x=${x%%[,\}]*}
-    case $x in
-        0.[123]*) [ -e busy ] && echo '{"error":"no licence"}' || echo "{\"outputs\":{\"y\":$x}}" ;;
-        *) echo "{\"outputs\":{\"y\":$x}}" ;;
-    esac
-done
-"#;
-    let folder = folder();
-    fs::write(folder.path().join("answer.sh"), SOMETIMES).unwrap();
-    let scenario = scenario(&uniform(), folder.path()).with_runs(700).unwrap();
-    let options = |name: &str| Options {
-        out: Some(folder.path().join(name)),
-        threads: Some(2),
-        ..Options::default()
-    };
-    let asked = || fs::read(folder.path().join("asked")).map_or(0, |asked| asked.len() / 2);
-    let rows = |study: &Study<SimulatorSummary>| {
-        let table = study.runs()[0].table().unwrap();
-        table.rows().map(|row| format!("{row:?}")).collect::<Vec<_>>()
-    };
-    let well = scenario.study(&options("well"), &|_| {}, &|_| {}).unwrap();
-    let busy = folder.path().join("busy");
-    for stopped in [false, true] {
-        let name = format!("stopped-{stopped}");
-        fs::write(&busy, "").unwrap();
-        let stop = Arc::new(AtomicBool::new(false));
-        let first = Options { stop: Some(Arc::clone(&stop)), threads: Some(1), ..options(&name) };
-        let progress = |done: u64| stop.store(stopped && done > 530, Ordering::Relaxed);
-        let ended = scenario.study(&first, &progress, &|_| {});
-        assert_eq!(ended.is_err(), stopped);
-        let status = Status::read(&folder.path().join(&name)).unwrap();
-        let failed = status.models()[0].failed();
-        assert!(failed > 100, "{failed}");
-
-        // It is stopped in the middle of what is done again: what was there still counts.
-        stop.store(true, Ordering::Relaxed);
-        let again = Options { retry_failed: true, ..first.clone() };
-        let error = scenario.study(&again, &|_| {}, &|_| {}).unwrap_err();
-        assert!(matches!(error, StudyError::Campaign(CampaignError::Stopped)), "{error}");
-        let status = Status::read(&folder.path().join(&name)).unwrap();
-        assert_eq!((status.models()[0].failed(), status.is_complete()), (failed, !stopped));
-
-        // Still busy: they fail again, and are told so.
-        let said = std::sync::Mutex::new(Vec::new());
-        let say = |notice: Notice| {
-            if let Notice::Again(again) = notice {
-                said.lock().unwrap().push((again.runs, again.failed));
-            }
-        };
-        let again = Options { retry_failed: true, ..options(&name) };
-        scenario.study(&again, &|_| {}, &say).unwrap();
-        assert_eq!(said.lock().unwrap()[..], [(failed, failed)]);
-        let all = Status::read(&folder.path().join(&name)).unwrap().models()[0].failed();
-
-        fs::remove_file(&busy).unwrap();
-        let before = asked();
-        let study = scenario.study(&again, &|_| {}, &say).unwrap();
-        assert_eq!((asked() - before) as u64, all);
-        assert_eq!(said.lock().unwrap()[1], (all, 0));
-        assert_eq!(rows(&study), rows(&well));
-        let page = fs::read_to_string(study.folder().join("report.html")).unwrap();
-        let told = format!("{} runs that had failed were done again", failed + all);
-        assert!(page.contains(&told), "{told}");
-        // Nothing is left to be done again.
-        scenario.study(&again, &|_| {}, &say).unwrap();
-        assert_eq!(said.lock().unwrap().len(), 2);
-        assert_eq!((asked() - before) as u64, all);
-        let status = Status::read(study.folder()).unwrap();
-        assert!(status.is_complete() && status.models()[0].failed() == 0);
-        assert!(!study.folder().join(".gyradius/campaign").exists());
-    }
-}
-
 /// Scores of what is correlated have the coefficient, and the marginal laws stay.
 #[test]
 fn quantities_are_correlated() {
@@ -472,125 +393,4 @@ fn quantities_are_correlated() {
         / (covariance(&x, mx, &x, mx) * covariance(&z, mz, &z, mz)).sqrt();
     assert!((found - expected).abs() < 0.03, "{found} {expected}");
     assert!((mx - 0.525).abs() < 0.02 && (mz - 1.0).abs() < 0.01);
-}
-
-/// What cannot be, at its key.
-#[test]
-fn refusals_name_their_key() {
-    let folder = folder();
-    let body = "\n[[bodies]]\nname = \"hub\"".to_owned() + BODY;
-    let with = |d: &str| HEAD.to_owned() + &body.replace("DISPERSION", d) + MODELS;
-    let normal = "{ law = \"normal\", mean = 1.0, sigma = 1.0 }";
-    let cases = [
-        (uniform().replace("timeout_s = 60.0", "timeout_s = 0.0"), "simulation.timeout_s"),
-        (uniform().replace("[\"sh\", \"answer.sh\"]", "[]"), "simulation.command"),
-        (uniform().replace("timeout_s = 60.0", "folder = \"/no/such\""), "simulation.folder"),
-        (uniform().replace("name = \"y\"", "name = \"x\""), "simulation.outputs"),
-        (uniform().replace("name = \"y\"", "name = \"run\""), "simulation.outputs"),
-        (uniform().replace("name = \"y\"", "name = \"y 1\""), "simulation.outputs[1].name"),
-        (uniform().replace("shell", "a/b"), "name"),
-        (uniform() + "\n[payload]\nmass_kg = 1.0\n", "payload"),
-        (HEAD.to_owned() + &quantity("1x", normal), "quantities[1].name"),
-        (
-            HEAD.to_owned() + &quantity("x", &normal.replace("sigma = 1.0", "sigma = -1.0")),
-            "quantities[1].law.sigma",
-        ),
-        (HEAD.to_owned() + &body.replace("DISPERSION", ""), "models"),
-        (with("mass_centre_m = 0.1"), "bodies[1].dispersion.mass_centre_m"),
-        (with("inertia_follows_mass = true"), "bodies[1].dispersion.inertia_follows_mass"),
-        (with("mass_kg = 1.0\nmass_percent = 1.0"), "bodies[1].dispersion.mass_percent"),
-        (with("").replace("mass_kg = 120.0", "mass_kg = -1.0"), "bodies[1].mass_kg"),
-        (
-            with("").replace("mass_kg = 120.0", "mass_kg = 120.0\nmass_centre_m = [0.0, inf, 0.0]"),
-            "bodies[1].mass_centre_m",
-        ),
-        (with("velocity_m_per_s = 0.1"), "bodies[1].dispersion.velocity_m_per_s"),
-        (uniform() + &correlated().replace("\"x\", ", ""), "correlations[1].between"),
-        (uniform() + &correlated().replace("\"x\", ", "\"y\", "), "correlations[1].between"),
-        (uniform() + &correlated().replace("-0.8", "-1.8"), "correlations[1].coefficient"),
-        (with("").replace("axes = \"whole-sphere\"", ""), "models[1].axes"),
-        (with("").replace("axes = \"whole-sphere\"", "axes = \"mean-half\""), "models[1].axes"),
-        (with("").replace("matched_to = \"proposed\"", ""), "models[2].matched_to"),
-        (
-            with("").replace("matched_to = \"proposed\"", "matched_to = \"naive\""),
-            "models[2].matched_to",
-        ),
-        (with("").replace("\"naive\"", "\"Proposed\""), "models[2].name"),
-    ];
-    for (text, key) in cases {
-        let refused = SimulatorScenario::from_toml(&text, folder.path()).unwrap_err().to_string();
-        assert!(
-            refused.starts_with(&format!("{key}:")) || refused.contains(key),
-            "{key}: {refused}"
-        );
-    }
-    let absent = uniform().replace("\"sh\"", "\"gyradius-no-such-program\"");
-    let absent = scenario(&absent, folder.path());
-    let options = Options { out: Some(folder.path().join("absent")), ..Options::default() };
-    let refused = absent.study(&options, &|_| {}, &|_| {}).unwrap_err();
-    assert!(refused.to_string().contains("cannot be started"), "{refused}");
-    assert!(!folder.path().join("absent").exists());
-}
-
-/// Runs an example in Python; none where Python or one of the modules that it imports is not there.
-fn example(name: &str, modules: &str) -> Option<(tempfile::TempDir, Study<SimulatorSummary>)> {
-    let import = format!("import {modules}");
-    let there = std::process::Command::new("python3").args(["-c", &import]).output();
-    if !there.is_ok_and(|output| output.status.success()) {
-        return None;
-    }
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulators"));
-    let scenario = SimulatorScenario::read(&folder.join(name)).unwrap().with_runs(30).unwrap();
-    let out = tempfile::tempdir().unwrap();
-    let options = Options { out: Some(out.path().join("out")), ..Options::default() };
-    let study = scenario.study(&options, &|_| {}, &|_| {}).unwrap();
-    for runs in study.runs() {
-        let table = runs.table().unwrap();
-        let failed = table.failures().next().map(|(_, failure)| failure.to_string());
-        assert_eq!(failed, None, "{name}");
-    }
-    Some((out, study))
-}
-
-/// The satellite spins as the motor's impulse says, and in Basilisk as in the script without packages.
-#[test]
-fn the_satellite_spins_up() {
-    let Some((_folder, study)) = example("spin_up.toml", "json") else { return };
-    for runs in study.runs() {
-        let table = runs.table().unwrap();
-        let column = |name: &str| table.values(name).unwrap();
-        assert_eq!(column("mass_again_kg"), column("hub_mass_kg"));
-        let spins = column("spin_rad_per_s").into_iter().zip(column("hub_i33"));
-        let impulses = column("torque_n_m").into_iter().zip(column("burn_s"));
-        for ((spin, i33), (torque, burn)) in spins.zip(impulses) {
-            let expected = torque * burn / i33;
-            assert!((spin / expected - 1.0).abs() < 0.02, "{spin} {expected}");
-        }
-    }
-    let Some((_folder, basilisk)) = example("spin_up_basilisk.toml", "Basilisk") else { return };
-    for (own, other) in study.runs().iter().zip(basilisk.runs()) {
-        for column in ["hub_i11", "torque_n_m", "spin_rad_per_s", "nutation_deg"] {
-            let [own, other] =
-                [own, other].map(|runs| runs.table().unwrap().values(column).unwrap());
-            // Basilisk's steps are whole nanoseconds.
-            assert!(own.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-6), "{column}");
-        }
-    }
-}
-
-/// A heavier tool, farther out, keeps the arm farther below its target.
-#[test]
-fn the_arm_swings() {
-    let Some((_folder, study)) = example("arm_mujoco.toml", "mujoco") else { return };
-    let table = study.runs()[0].table().unwrap();
-    let column = |name: &str| table.values(name).unwrap();
-    let tools = column("tool_mass_kg").into_iter().zip(column("tool_mass_centre_1_m"));
-    let angles = column("error_at_end_deg").into_iter().zip(column("tool_mass_centre_3_m"));
-    for ((mass, x), (error, z)) in tools.zip(angles) {
-        let angle = (60.0 + error).to_radians();
-        // At rest the servo, 400 N·m/rad, holds the weight of arm and tool.
-        let weight = 4.0 * 0.3 * angle.cos() + mass * ((0.6 + x) * angle.cos() - z * angle.sin());
-        let held = 400.0 * (60.0_f64.to_radians() - angle);
-        assert!((held / (9.81 * weight) - 1.0).abs() < 1e-3, "{held} {weight}");
-    }
 }

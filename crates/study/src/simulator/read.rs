@@ -1,0 +1,36 @@
+//! Scenarios of simulators, read from files.
+
+use gyradius_campaign::{Table, folder_of};
+use std::path::Path;
+
+use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
+use crate::{ScenarioError, scenario::read_file};
+
+impl SimulatorScenario {
+    /// Reads a scenario file; of the folder of a study, its `scenario.toml`.
+    ///
+    /// # Errors
+    /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
+    pub fn read(path: &Path) -> Result<Self, ScenarioError> {
+        let file = if path.is_dir() { path.join("scenario.toml") } else { path.to_owned() };
+        let text = read_file(&file)?;
+        let folder = folder_of(&file);
+        Self::from_toml(&text, folder).map_err(|error| error.in_file(&file))
+    }
+
+    /// Reads a scenario from the text of a file that is in a folder.
+    ///
+    /// # Errors
+    /// It is not TOML, has an unknown key, or a value that is not allowed.
+    pub fn from_toml(text: &str, folder: &Path) -> Result<Self, ScenarioError> {
+        let scenario = Self::parse(text, folder)?;
+        let columns = scenario.inputs().chain(scenario.outputs().iter().cloned()).collect();
+        Table::new("", 0, columns)
+            .map_err(|error| ScenarioError::field("simulation.outputs", error))?;
+        // What a model needs of the bodies is found by making it.
+        for place in 0..scenario.models().len() {
+            SimulatorDraws::new(&scenario, place)?;
+        }
+        Ok(scenario)
+    }
+}
