@@ -37,6 +37,11 @@ impl Centred {
         ((x * self.scale - self.anchor) - self.residue) / self.unit
     }
 
+    /// A length that was measured in deviations.
+    pub(crate) fn length(&self, deviations: f64) -> f64 {
+        self.unit * deviations / self.scale
+    }
+
     /// The standard deviation of values whose squared deviations have a sum.
     pub(crate) fn standard_deviation(&self, squares: f64, n: u64) -> f64 {
         self.unit * (squares / (n as f64 - 1.0)).sqrt() / self.scale

@@ -6,6 +6,7 @@ mod edges;
 mod error;
 mod exact_sum;
 mod goodness;
+mod groups;
 mod histogram;
 mod interval;
 mod law;

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::centred::{Centred, Powers};
 use crate::deviation::{self, trimmed};
+use crate::groups::{GroupSums, Grouped};
 use crate::quantile::{between, interval_ranks, type_7_place};
 use crate::selection::{Count, Selection};
 use crate::{Confidence, Deviation, ExactSum, Interval, Moments, SortedSample};
@@ -38,11 +39,23 @@ const SAMPLE: u64 = 1 << 15;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Survey {
+    runs: u64,
     stride: u64,
     quantiles: Vec<f64>,
     intervals: Vec<(f64, Confidence)>,
+    /// Of runs in groups whose values have something in common.
+    groups: Option<Box<Groups>>,
     /// None until the first pass is done.
     known: Option<Known>,
+}
+
+/// Runs in groups.
+#[derive(Clone, Debug)]
+struct Groups {
+    /// Runs of a group.
+    size: u64,
+    /// The first run of each group, by the number of the group: these are independent.
+    first: Survey,
 }
 
 /// What is known after the first pass.
@@ -67,11 +80,18 @@ struct Finite {
     selection: Selection,
     moments: Option<Moments>,
     deviation: Option<Deviation>,
+    /// None until they are gathered, where there are any.
+    grouped: Option<Grouped>,
 }
 
 /// What is gathered from all values of a sample in one go.
 #[derive(Clone, Debug)]
-pub struct Pass(Gathered);
+pub struct Pass {
+    /// None if all is known of all values.
+    gathered: Option<Gathered>,
+    /// Runs of a group, and what is gathered from the first run of each.
+    first: Option<(u64, Box<Pass>)>,
+}
 
 #[derive(Clone, Debug)]
 enum Gathered {
@@ -96,6 +116,7 @@ struct Later {
     centred: Option<Centred>,
     powers: Option<Powers>,
     count: Option<Count>,
+    groups: Option<GroupSums>,
 }
 
 impl Survey {
@@ -103,7 +124,36 @@ impl Survey {
     #[must_use]
     pub fn new(runs: u64) -> Self {
         let stride = runs.div_ceil(SAMPLE).max(1).next_power_of_two();
-        Self { stride, quantiles: Vec::new(), intervals: Vec::new(), known: None }
+        Self {
+            runs,
+            stride,
+            quantiles: Vec::new(),
+            intervals: Vec::new(),
+            groups: None,
+            known: None,
+        }
+    }
+
+    /// The same for runs that come in groups of so many, of which those of a group have something in common: intervals
+    /// take account of it, if it is said last. Of one run each, groups are nothing.
+    ///
+    /// The intervals of mean and deviation take groups for what is independent. Those of quantiles are of the first run of
+    /// each group alone, and so as exact as any. Each call of [`Pass::extend`] must be of consecutive runs in their order.
+    #[must_use]
+    pub fn in_groups_of(mut self, size: u64) -> Self {
+        if size > 1 {
+            let intervals = self.intervals.clone();
+            let first = Self { intervals, ..Self::new(self.runs.div_ceil(size)) };
+            self.groups = Some(Box::new(Groups { size, first }));
+        }
+        self
+    }
+
+    /// The runs that are independent of each other, as far as is known: the first of each group, by the number of
+    /// the group, or all if there are no groups.
+    #[must_use]
+    pub fn independent(&self) -> &Self {
+        self.groups.as_ref().map_or(self, |groups| &groups.first)
     }
 
     /// With the quantiles of these probabilities; those that are no probabilities are not found.
@@ -124,6 +174,13 @@ impl Survey {
     /// What is to be gathered from all values next, empty; none if all is known.
     #[must_use]
     pub fn pass(&self) -> Option<Pass> {
+        let gathered = self.own_pass();
+        let of_first = |groups: &Groups| Some((groups.size, Box::new(groups.first.pass()?)));
+        let first = self.groups.as_deref().and_then(of_first);
+        (gathered.is_some() || first.is_some()).then_some(Pass { gathered, first })
+    }
+
+    fn own_pass(&self) -> Option<Gathered> {
         let Some(known) = &self.known else {
             let first = First {
                 stride: self.stride,
@@ -134,19 +191,26 @@ impl Survey {
                 sampled: 0,
                 sample: Vec::new(),
             };
-            return Some(Pass(Gathered::First(Box::new(first))));
+            return Some(Gathered::First(Box::new(first)));
         };
         let finite = known.finite.as_ref()?;
         let centred = finite.centred;
         let powers = (centred.is_some() && finite.powers.is_none()).then(Powers::default);
         let count = finite.selection.pass().cloned();
-        let waits = powers.is_some() || count.is_some();
-        waits.then(|| Pass(Gathered::Later(Box::new(Later { centred, powers, count }))))
+        let missing = centred.is_some() && finite.grouped.is_none();
+        let groups = self.groups.as_ref().filter(|_| missing);
+        let groups = groups.map(|groups| GroupSums::new(groups.size));
+        let waits = powers.is_some() || count.is_some() || groups.is_some();
+        waits.then(|| Gathered::Later(Box::new(Later { centred, powers, count, groups })))
     }
 
     /// Takes up what was gathered from all values.
     pub fn advance(&mut self, pass: Pass) {
-        match (pass.0, &mut self.known) {
+        if let (Some(groups), Some((_, first))) = (&mut self.groups, pass.first) {
+            groups.first.advance(*first);
+        }
+        let Some(gathered) = pass.gathered else { return };
+        match (gathered, &mut self.known) {
             (Gathered::First(first), known) => {
                 *known = Some(first.known(|n| {
                     let cut = trimmed(n);
@@ -203,6 +267,66 @@ impl Survey {
         self.finite()?.deviation.as_ref()
     }
 
+    /// Where the true mean lies, as [`Moments::mean_interval`] has it; of groups, where theirs are known to lie.
+    #[must_use]
+    pub fn mean_interval(&self, confidence: Confidence) -> Option<Interval> {
+        let moments = self.moments()?;
+        match self.grouped() {
+            Some(grouped) => grouped.mean_interval(moments.mean(), confidence),
+            None => Some(moments.mean_interval(confidence)),
+        }
+    }
+
+    /// Where the true mean less that of another law lies, as [`Moments::mean_difference_interval`] has it.
+    #[must_use]
+    pub fn mean_difference_interval(
+        &self,
+        other: &Self,
+        confidence: Confidence,
+    ) -> Option<Interval> {
+        let (own, of_other) = (self.moments()?, other.moments()?);
+        match (self.grouped(), other.grouped()) {
+            (Some(grouped), Some(others)) => {
+                let difference = own.mean() - of_other.mean();
+                grouped.mean_difference_interval(others, difference, confidence)
+            }
+            (None, None) => Some(own.mean_difference_interval(of_other, confidence)),
+            (Some(_), None) | (None, Some(_)) => None,
+        }
+    }
+
+    /// Where the true standard deviation lies, as [`Deviation::interval`] has it; of groups, where that of all of
+    /// them lies.
+    ///
+    /// Of groups, coverage at 95 % is 0.92 to 0.95 from 50 groups on for laws without heavy tails, whatever groups have in
+    /// common, and 0.86 of 50, 0.91 of 200 groups of one exponential value each.
+    #[must_use]
+    pub fn deviation_interval(&self, confidence: Confidence) -> Option<Interval> {
+        match self.grouped() {
+            Some(grouped) => self.deviation().and_then(|_| grouped.deviation_interval(confidence)),
+            None => self.deviation()?.interval(confidence).ok(),
+        }
+    }
+
+    /// Where the ratio of the true standard deviation to another lies, as [`Deviation::ratio_interval`] has it.
+    #[must_use]
+    pub fn deviation_ratio_interval(
+        &self,
+        other: &Self,
+        confidence: Confidence,
+    ) -> Option<Interval> {
+        let (own, of_other) = (self.deviation()?, other.deviation()?);
+        match (self.grouped(), other.grouped()) {
+            (Some(grouped), Some(others)) => grouped.ratio_interval(others, confidence),
+            (None, None) => own.ratio_interval(of_other, confidence).ok(),
+            (Some(_), None) | (None, Some(_)) => None,
+        }
+    }
+
+    fn grouped(&self) -> Option<&Grouped> {
+        self.finite()?.grouped.as_ref()
+    }
+
     /// A quantile that was asked for, as [`SortedSample::quantile`] has it.
     #[must_use]
     pub fn quantile(&self, p: f64) -> Option<f64> {
@@ -212,9 +336,13 @@ impl Survey {
         Some(if place + 1 < n { between(below, self.at(place + 1)?, share) } else { below })
     }
 
-    /// An interval that was asked for, as [`SortedSample::quantile_interval`] has it.
+    /// An interval that was asked for, as [`SortedSample::quantile_interval`] has it; of groups, that of the first run
+    /// of each.
     #[must_use]
     pub fn quantile_interval(&self, p: f64, confidence: Confidence) -> Option<Interval> {
+        if let Some(groups) = &self.groups {
+            return groups.first.quantile_interval(p, confidence);
+        }
         self.finite()?;
         let (lower, upper) = interval_ranks(self.n(), p, confidence);
         let at = |rank: Option<u64>, none: f64| rank.map_or(Some(none), |rank| self.at(rank));
@@ -291,7 +419,15 @@ impl First {
         let selection = Selection::new(n, &ranks(n), (minimum, maximum), centred, values);
         let constant = centred.is_none() && n > 1;
         let moments = constant.then(|| Moments::constant(n, minimum));
-        let mut finite = Finite { sum, centred, powers: None, selection, moments, deviation: None };
+        let mut finite = Finite {
+            sum,
+            centred,
+            powers: None,
+            selection,
+            moments,
+            deviation: None,
+            grouped: None,
+        };
         if values.len() as u64 == n
             && let Some(centred) = centred
         {
@@ -314,6 +450,9 @@ impl Finite {
         if let Some(count) = later.count {
             self.selection.advance(&count);
         }
+        if let (Some(groups), Some(centred)) = (later.groups, &self.centred) {
+            self.grouped = Some(groups.close(centred));
+        }
         self.conclude(n, range);
     }
 
@@ -334,11 +473,38 @@ impl Finite {
 impl Pass {
     /// Takes up values, each with the number of its run.
     pub fn extend(&mut self, values: impl IntoIterator<Item = (u64, f64)>) {
-        match &mut self.0 {
-            Gathered::First(first) => values.into_iter().for_each(|(run, x)| first.add(run, x)),
-            Gathered::Later(later) => {
-                let Later { centred, powers, count } = &mut **later;
-                values.into_iter().for_each(|(_, x)| {
+        let Some((size, first)) = &mut self.first else {
+            if let Some(gathered) = &mut self.gathered {
+                gathered.extend(values);
+            }
+            return;
+        };
+        let values: Vec<(u64, f64)> = values.into_iter().collect();
+        let begins = values.iter().filter(|(run, _)| run.is_multiple_of(*size));
+        first.extend(begins.map(|(run, x)| (run / *size, *x)).collect::<Vec<_>>());
+        if let Some(gathered) = &mut self.gathered {
+            gathered.extend(values);
+        }
+    }
+
+    /// Takes up what another part of the same pass has gathered.
+    pub fn merge(&mut self, other: Self) {
+        if let (Some(gathered), Some(more)) = (&mut self.gathered, other.gathered) {
+            gathered.merge(more);
+        }
+        if let (Some((_, first)), Some((_, more))) = (&mut self.first, other.first) {
+            first.merge(*more);
+        }
+    }
+}
+
+impl Gathered {
+    fn extend(&mut self, values: impl IntoIterator<Item = (u64, f64)>) {
+        match self {
+            Self::First(first) => values.into_iter().for_each(|(run, x)| first.add(run, x)),
+            Self::Later(later) => {
+                let Later { centred, powers, count, groups } = &mut **later;
+                let deviations = values.into_iter().map(|(run, x)| {
                     let deviation = centred.map_or(0.0, |centred| centred.map(x));
                     if let Some(powers) = powers {
                         powers.add(deviation);
@@ -346,15 +512,19 @@ impl Pass {
                     if let Some(count) = count {
                         count.add(x, deviation);
                     }
+                    (run, deviation)
                 });
+                match groups {
+                    Some(groups) => groups.part(deviations),
+                    None => deviations.for_each(drop),
+                }
             }
         }
     }
 
-    /// Takes up what another part of the same pass has gathered.
-    pub fn merge(&mut self, other: Self) {
-        match (&mut self.0, other.0) {
-            (Gathered::First(first), Gathered::First(other)) => {
+    fn merge(&mut self, other: Self) {
+        match (self, other) {
+            (Self::First(first), Self::First(other)) => {
                 first.n += other.n;
                 first.finite += other.finite;
                 first.sampled += other.sampled;
@@ -362,16 +532,19 @@ impl Pass {
                 first.sample.extend(other.sample);
                 other.range.into_iter().for_each(|range| first.stretch(range));
             }
-            (Gathered::Later(later), Gathered::Later(other)) => {
+            (Self::Later(later), Self::Later(other)) => {
                 if let (Some(powers), Some(more)) = (&mut later.powers, &other.powers) {
                     powers.merge(more);
                 }
                 if let (Some(count), Some(more)) = (&mut later.count, &other.count) {
                     count.merge(more);
                 }
+                if let (Some(groups), Some(more)) = (&mut later.groups, other.groups) {
+                    groups.merge(more);
+                }
             }
             // Of another pass, which knows nothing of this one.
-            (Gathered::First(_) | Gathered::Later(_), _) => {}
+            (Self::First(_) | Self::Later(_), _) => {}
         }
     }
 }
