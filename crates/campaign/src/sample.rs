@@ -47,16 +47,16 @@ impl SampleSummary {
         Self::of(&survey, confidence)
     }
 
-    /// Of a survey of the numbers, with intervals of this confidence.
+    /// Of a survey of the numbers, with intervals of this confidence: of groups, as the survey has them.
     #[must_use]
     pub fn of(survey: &Survey, confidence: Confidence) -> Self {
         let moments = survey.moments();
         Self {
             n: survey.n(),
             mean: moments.map(Moments::mean),
-            mean_interval: moments.map(|m| m.mean_interval(confidence)),
+            mean_interval: survey.mean_interval(confidence),
             deviation: moments.map(Moments::standard_deviation),
-            deviation_interval: survey.deviation().and_then(|d| d.interval(confidence).ok()),
+            deviation_interval: survey.deviation_interval(confidence),
             minimum: survey.minimum().map(|(x, _)| x),
             p05: survey.quantile(0.05),
             median: survey.quantile(0.5),

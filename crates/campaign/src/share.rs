@@ -17,6 +17,25 @@ pub struct Share {
 }
 
 impl Share {
+    /// A share of runs that are not independent, with the interval that so many of so many independent runs give.
+    ///
+    /// # Errors
+    /// There are more than runs, or no runs.
+    pub fn of_dependent(
+        count: u64,
+        of: u64,
+        independent: (u64, u64),
+        confidence: Confidence,
+    ) -> Result<Self, StatisticsError> {
+        let share = Self::new(count, of, confidence)?;
+        let interval = match independent {
+            // Nothing is known.
+            (_, 0) => Interval::new(0.0, 1.0, confidence)?,
+            (count, of) => Proportion::new(count, of)?.interval(confidence),
+        };
+        Ok(Self { interval, ..share })
+    }
+
     /// So many of so many runs.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use gyradius_statistics::{Confidence, Pass, Survey};
 use rayon::prelude::*;
-use std::{collections::BTreeMap, sync::Mutex};
+use std::{collections::BTreeMap, mem, sync::Mutex};
 
 use crate::{
     column::{Column, Kind},
@@ -20,6 +20,8 @@ pub struct Surveys {
     model: String,
     numbers: Vec<(String, Survey)>,
     counts: Counts,
+    /// Of the runs that are independent, if not all are.
+    independent: Option<Box<Surveys>>,
 }
 
 /// How often there is a text of each kind, and in which run first.
@@ -39,8 +41,19 @@ struct Counts {
 #[derive(Debug)]
 pub struct FirstLook {
     surveys: Surveys,
+    /// Runs of a group.
+    size: u64,
     empty: Vec<Option<Pass>>,
-    gathered: Mutex<(Vec<Option<Pass>>, Counts)>,
+    gathered: Mutex<Gathered>,
+}
+
+/// What is gathered of all columns.
+#[derive(Debug)]
+struct Gathered {
+    passes: Vec<Option<Pass>>,
+    counts: Counts,
+    /// Of the first run of each group.
+    of_first: Counts,
 }
 
 impl FirstLook {
@@ -54,19 +67,39 @@ impl FirstLook {
                 .map(|column| (column.name().to_owned(), surveyed(runs, confidence)))
                 .collect(),
             counts: Counts::default(),
+            independent: None,
         };
+        Self::of(surveys, 1)
+    }
+
+    fn of(surveys: Surveys, size: u64) -> Self {
         let empty = surveys.passes();
-        Self { surveys, gathered: Mutex::new((empty.clone(), Counts::default())), empty }
+        let (passes, counts) = (empty.clone(), Counts::default());
+        let gathered = Gathered { passes, of_first: counts.clone(), counts };
+        Self { surveys, size, gathered: Mutex::new(gathered), empty }
+    }
+
+    /// The same for runs that come in groups of so many, of which those of a group have something in common: see
+    /// [`Survey::in_groups_of`].
+    #[must_use]
+    pub fn in_groups_of(self, size: u64) -> Self {
+        let mut surveys = self.surveys;
+        let numbers = mem::take(&mut surveys.numbers).into_iter();
+        surveys.numbers = numbers.map(|(name, survey)| (name, survey.in_groups_of(size))).collect();
+        Self::of(surveys, size.max(1))
     }
 
     /// Looks at a block, once at each and in any order.
     pub fn look(&self, block: &Table) {
-        let (passes, counts) = (self.surveys.gather(&self.empty, block), Counts::of(block));
+        let passes = self.surveys.gather(&self.empty, block);
+        let counts = Counts::of(block, |_| true);
+        let of_first =
+            (self.size > 1).then(|| Counts::of(block, |run| run.is_multiple_of(self.size)));
         // Nobody panics with the lock in hand.
         if let Ok(mut gathered) = self.gathered.lock() {
-            let (whole, all) = &mut *gathered;
-            take_up(whole, passes);
-            all.merge(counts);
+            take_up(&mut gathered.passes, passes);
+            gathered.counts.merge(counts);
+            of_first.into_iter().for_each(|counts| gathered.of_first.merge(counts));
         }
     }
 
@@ -76,13 +109,17 @@ impl FirstLook {
     /// A block cannot be read.
     pub fn finish(self, runs: &Runs) -> Result<Surveys, RunsError> {
         let mut surveys = self.surveys;
-        if let Ok((whole, counts)) = self.gathered.into_inner() {
-            surveys.advance(whole);
-            surveys.counts = counts;
+        let mut of_first = Counts::default();
+        if let Ok(gathered) = self.gathered.into_inner() {
+            surveys.advance(gathered.passes);
+            (surveys.counts, of_first) = (gathered.counts, gathered.of_first);
         }
         loop {
             let passes = surveys.passes();
             if passes.iter().all(Option::is_none) {
+                if self.size > 1 {
+                    surveys.independent = Some(Box::new(surveys.of_independent(of_first)));
+                }
                 return Ok(surveys);
             }
             let whole = Mutex::new(passes.clone());
@@ -108,6 +145,20 @@ impl Surveys {
         let first = FirstLook::new(runs.model(), runs.columns(), runs.end(), confidence);
         runs.scan(|block| first.look(block))?;
         first.finish(runs)
+    }
+
+    /// The runs that are independent, of which these are the counts.
+    fn of_independent(&self, counts: Counts) -> Self {
+        let numbers = self.numbers.iter();
+        let numbers = numbers.map(|(name, survey)| (name.clone(), survey.independent().clone()));
+        Self { model: self.model.clone(), numbers: numbers.collect(), counts, independent: None }
+    }
+
+    /// Of the runs that are independent of each other, as far as is known: the first of each group, or all runs if there
+    /// are no groups.
+    #[must_use]
+    pub fn independent(&self) -> &Self {
+        self.independent.as_deref().unwrap_or(self)
     }
 
     /// What is to be gathered next of each column of numbers.
@@ -182,24 +233,30 @@ fn take_up(whole: &mut [Option<Pass>], part: Vec<Option<Pass>>) {
 }
 
 impl Counts {
-    fn of(block: &Table) -> Self {
-        let mut counts = Self { runs: block.len() as u64, ..Self::default() };
-        for (run, failure) in block.failures() {
+    /// Of some runs of a block.
+    fn of(block: &Table, which: impl Fn(u64) -> bool + Copy) -> Self {
+        let runs = || block.first()..block.first() + block.len() as u64;
+        let mut counts =
+            Self { runs: runs().filter(|run| which(*run)).count() as u64, ..Self::default() };
+        for (run, failure) in block.failures().filter(|(run, _)| which(*run)) {
             counts.failures.add(failure.kind(), run, 1);
         }
         for column in block.columns() {
             match column.kind() {
                 Kind::Text => {
                     let mut tally = Tally::default();
-                    for (kind, first, count) in block.kinds(column.name()) {
+                    for (kind, first, count) in block.kinds(column.name(), which) {
                         tally.add(kind, first, count);
                     }
                     counts.texts.insert(column.name().to_owned(), tally);
                 }
                 Kind::Flag => {
                     let mut flags = [0; 2];
-                    for flag in block.flags(column.name()).iter().flatten() {
-                        flags[usize::from(*flag)] += 1;
+                    let of_runs = runs().zip(block.flags(column.name()));
+                    for (_, flag) in of_runs.filter(|(run, _)| which(*run)) {
+                        if let Some(flag) = flag {
+                            flags[usize::from(*flag)] += 1;
+                        }
                     }
                     counts.flags.insert(column.name().to_owned(), flags);
                 }

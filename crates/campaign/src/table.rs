@@ -248,13 +248,15 @@ impl Table {
 
     /// The kinds of the texts in a column of the simulation, each with the first run that has such a text and how many
     /// have.
-    pub(crate) fn kinds(&self, column: &str) -> impl Iterator<Item = (&str, u64, u64)> {
+    pub(crate) fn kinds(&self, column: &str, which: impl Fn(u64) -> bool) -> Vec<(&str, u64, u64)> {
         let texts = match self.column(column) {
             Some(Values::Texts(texts)) => Some(texts),
             Some(Values::Numbers(_) | Values::Integers(_) | Values::Flags(_)) | None => None,
         };
-        let counted = texts.into_iter().flat_map(Texts::counted);
-        counted.map(|(kind, place, count)| (kind, self.first + place as u64, count))
+        let run = |place: usize| self.first + place as u64;
+        let counted = texts.map(|texts| texts.counted(|place| which(run(place))));
+        let of_run = |(kind, place, count)| (kind, run(place), count);
+        counted.into_iter().flatten().map(of_run).collect()
     }
 
     fn column(&self, column: &str) -> Option<&Values> {

@@ -104,10 +104,13 @@ impl Texts {
         (0..self.of_run.len()).filter_map(|run| self.get(run))
     }
 
-    /// The kind of each text that runs have, with the place of the first of them and how many have it.
-    pub(crate) fn counted(&self) -> impl Iterator<Item = (&str, usize, u64)> {
+    /// The kind of each text that some runs have, with the place of the first of them and how many have it.
+    pub(crate) fn counted(
+        &self,
+        which: impl Fn(usize) -> bool,
+    ) -> impl Iterator<Item = (&str, usize, u64)> {
         let mut counted = vec![(0, 0); self.texts.len()];
-        for (run, place) in self.of_run.iter().enumerate() {
+        for (run, place) in self.of_run.iter().enumerate().filter(|(run, _)| which(*run)) {
             if let Some((first, count)) = place.map(|place| &mut counted[place as usize]) {
                 *first = if *count == 0 { run } else { *first };
                 *count += 1;
