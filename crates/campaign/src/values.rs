@@ -161,7 +161,7 @@ mod tests {
                 prop_assert_eq!(texts.get(run), expected);
             }
             prop_assert_eq!(numbers.get(runs.len()), None);
-            let mut counted: Vec<_> = texts.counted().collect();
+            let mut counted: Vec<_> = texts.counted(|_| true).collect();
             counted.sort_by_key(|(_, first, _)| *first);
             let mut expected: Vec<(&str, usize, u64)> = Vec::new();
             let mut known: Vec<&str> = Vec::new();

@@ -6,6 +6,7 @@ mod command_line;
 mod compare;
 mod draw;
 mod fit;
+mod fleet;
 #[cfg(unix)]
 mod killed;
 #[cfg(unix)]

@@ -152,6 +152,11 @@ pub(crate) struct Grouped {
 }
 
 impl Grouped {
+    /// Of so many groups whose values are all the same.
+    pub(crate) fn constant(groups: u64) -> Self {
+        Self { groups, mean_error: 0.0, standard_deviation: 0.0, log_variance_error: 0.0 }
+    }
+
     /// The mean of all values and Student's t with `G − 1` degrees of freedom; none of a single group.
     pub(crate) fn mean_interval(&self, mean: f64, confidence: Confidence) -> Option<Interval> {
         let t = law::students_t(confidence.tail(), self.freedom()?);
@@ -188,7 +193,7 @@ impl Grouped {
     }
 
     fn freedom(&self) -> Option<f64> {
-        (self.groups > 1).then(|| self.groups as f64 - 1.0)
+        (self.groups > 1).then_some(self.groups as f64 - 1.0)
     }
 
     /// Student's t with the degrees of freedom of Welch for two errors.

@@ -4,7 +4,9 @@
 //! those at the nominal level. What is known to fall short is asserted to do so: the negative
 //! controls.
 
-use gyradius_statistics::{Confidence, Deviation, GoodnessOfFit, Moments, SortedSample};
+use gyradius_statistics::{
+    Confidence, Deviation, GoodnessOfFit, Interval, Moments, SortedSample, Survey,
+};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{
@@ -273,4 +275,62 @@ fn tests_of_fit_have_their_size_and_power() {
     };
     assert_share("χ²", rejected([50.0; 4]), 0.05, r, 0.0);
     assert!(rejected([60.0, 60.0, 40.0, 40.0]) > 0.6);
+}
+
+/// Runs of vehicles: intervals cover, whatever part of the variance is the vehicles', where those that take runs for
+/// independent do not.
+#[test]
+fn intervals_of_groups() {
+    let (r, confidence, size) = (1000, Confidence::default(), 10_usize);
+    // Values with mean 0 and variance 1, of which a share is common to a group.
+    let draw = |law: Law, rng: &mut ChaCha8Rng, groups: usize, common: f64| -> Vec<f64> {
+        let standard = |x: f64| (x - law.mean()) / law.deviation();
+        let of_groups = law.draw(rng, groups);
+        let own = law.draw(rng, groups * size);
+        let both = own.iter().enumerate().map(|(run, x)| {
+            common.sqrt() * standard(of_groups[run / size]) + (1.0 - common).sqrt() * standard(*x)
+        });
+        both.collect()
+    };
+    let survey = |values: &[f64], size: usize| {
+        let mut survey = Survey::new(values.len() as u64)
+            .quantile_interval_at(0.5, confidence)
+            .in_groups_of(size as u64);
+        while let Some(mut pass) = survey.pass() {
+            pass.extend((0..).zip(values.iter().copied()));
+            survey.advance(pass);
+        }
+        survey
+    };
+    for (law, slack) in [(Law::Normal, 0.02), (Law::Uniform, 0.02), (Law::Exponential, 0.10)] {
+        for common in [0.0, 0.3, 1.0] {
+            let (mut mean, mut deviation, mut median, mut difference, mut ratio) = (0, 0, 0, 0, 0);
+            let naive = share(r, |rng| {
+                let values = draw(law, rng, 50, common);
+                let (own, other) =
+                    (survey(&values, size), survey(&draw(law, rng, 30, common), size));
+                let covers = |interval: Option<Interval>, truth: f64| {
+                    u64::from(interval.unwrap().contains(truth))
+                };
+                mean += covers(own.mean_interval(confidence), 0.0);
+                deviation += covers(own.deviation_interval(confidence), 1.0);
+                // Of symmetric laws.
+                median += covers(own.quantile_interval(0.5, confidence), 0.0);
+                difference += covers(own.mean_difference_interval(&other, confidence), 0.0);
+                ratio += covers(own.deviation_ratio_interval(&other, confidence), 1.0);
+                survey(&values, 1).mean_interval(confidence).unwrap().contains(0.0)
+            });
+            let of = |hits: u64| hits as f64 / r as f64;
+            assert_share("mean", of(mean), 0.95, r, slack);
+            assert_share("deviation", of(deviation), 0.95, r, slack);
+            assert_share("difference", of(difference), 0.95, r, slack);
+            assert_share("ratio", of(ratio), 0.95, r, slack);
+            if !matches!(law, Law::Exponential) {
+                // Ranks 18 and 33 of 50.
+                assert_share("median", of(median), 0.9672, r, 0.01);
+            }
+            // Student's t at √(1 + 9 · share): 0.95 of none, 0.75, 0.46.
+            assert!(common == 0.0 || naive < 0.8, "{naive}");
+        }
+    }
 }

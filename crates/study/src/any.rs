@@ -71,6 +71,23 @@ impl AnyScenario {
         })
     }
 
+    /// The same scenario with another number of vehicles, each with as many flights.
+    ///
+    /// # Errors
+    /// The number is out of range, or the scenario has no vehicles, as that of a simulator.
+    pub fn with_vehicles(self, vehicles: u64) -> Result<Self, ScenarioError> {
+        match self {
+            Self::Separation(scenario) => {
+                Ok(Self::Separation(Box::new(scenario.with_vehicles(vehicles)?)))
+            }
+            Self::Simulator(_) => {
+                let problem =
+                    format!("{vehicles}: a scenario of a simulator has no vehicles, but runs");
+                Err(ScenarioError::field("vehicles", problem))
+            }
+        }
+    }
+
     /// The same scenario from another seed.
     ///
     /// # Errors
@@ -278,7 +295,8 @@ impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (head, report) = (&self.head, self.folder.join("report.html"));
         let (name, runs, seed) = (head.scenario(), head.runs_per_model(), head.seed());
-        writeln!(f, "{name}: {runs} runs a model, seed {seed}\n\n{}", self.table)?;
+        let vehicles = head.fleet().map_or_else(String::new, |fleet| format!("{fleet}, "));
+        writeln!(f, "{name}: {vehicles}{runs} runs a model, seed {seed}\n\n{}", self.table)?;
         head.missing().iter().try_for_each(|runs| writeln!(f, "missing: {runs}"))?;
         writeln!(f, "report: {}", report.display())
     }

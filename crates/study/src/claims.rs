@@ -268,7 +268,8 @@ fn shapes(summary: &Summary, runs: &[Seen]) -> Claim {
         else {
             continue;
         };
-        let few = summary.head.runs_per_model < ENOUGH_FOR_SHAPES as u64;
+        let independent = summary.head.independent_runs();
+        let few = independent < ENOUGH_FOR_SHAPES as u64;
         parts.push(match (physical.one_sided(), physical.two_peaked.is_some()) {
             _ if few => Verdict::NotTested,
             _ if naive.one_sided() || naive.two_peaked.is_some() => Verdict::DoesNotHold,
@@ -305,6 +306,8 @@ impl Shape {
             Body::BOTH.into_iter().flat_map(|b| Entry::ALL.map(|e| Quantity::entry(b, e)))
         {
             let Some(survey) = seen.quantity(quantity) else { continue };
+            // Equal values of the flights of a vehicle would make peaks.
+            let survey = survey.independent();
             let Some((moments, sample)) = survey.moments().zip(survey.sample()) else { continue };
             let skewness = moments.skewness().unwrap_or(0.0);
             if skewness.abs() > skewed.1.abs() {

@@ -9,11 +9,14 @@ use crate::{
     body::Body,
     quantity::Quantity,
     run::{End, Run},
+    scenario::Scenario,
 };
 
 /// A column of the run table, after `model`, `run` and `status`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Column {
+    Vehicle,
+    Flight,
     Number(Quantity),
     Realizable,
     /// A component of the attitude of a body's principal axes, scalar last.
@@ -31,9 +34,18 @@ pub(crate) const RECOMPRESSED: &str = "recompressed";
 pub(crate) const CLEARANCE_NOTE: &str = "clearance_note";
 
 impl Column {
-    /// All columns, in order, of a separation by such loads in which so much else is drawn.
-    pub(crate) fn all(separation: &Separation, drawn: usize) -> Vec<Self> {
+    /// All columns of a scenario, in order.
+    pub(crate) fn of(scenario: &Scenario) -> Vec<Self> {
+        let drawn = scenario.dispersions().all().len();
+        Self::all(scenario.separation(), scenario.fleet().is_some(), drawn)
+    }
+
+    /// All columns, in order, of a separation by such loads, of vehicles or not, in which so much else is drawn.
+    fn all(separation: &Separation, vehicles: bool, drawn: usize) -> Vec<Self> {
         let mut columns = Vec::new();
+        if vehicles {
+            columns.extend([Self::Vehicle, Self::Flight]);
+        }
         for quantity in Quantity::of(separation) {
             columns.push(Self::Number(quantity));
             if quantity == Quantity::LAST_BEFORE_REALIZABLE {
@@ -50,8 +62,16 @@ impl Column {
 
     /// What it is called, holds and means; `drawn` are the names of what else is drawn.
     pub(crate) fn declaration(self, drawn: &[String]) -> RunColumn {
-        use Kind::{Flag, Number, Text};
+        use Kind::{Flag, Integer, Number, Text};
         match self {
+            Self::Vehicle => {
+                let meaning = "Which vehicle the run is a flight of, from 0; only in scenarios with `vehicles`.";
+                RunColumn::new("vehicle", Integer, meaning).required()
+            }
+            Self::Flight => {
+                let meaning = "Which of the vehicle's flights it is, from 0; only in scenarios with `vehicles`.";
+                RunColumn::new("flight", Integer, meaning).required()
+            }
             Self::Number(q) => RunColumn::number(q.column(), q.unit(), q.meaning()),
             Self::Realizable => {
                 let meaning = "Whether the inertias of both bodies are realizable.";
@@ -93,7 +113,9 @@ impl Column {
     pub(crate) fn is_drawn(self) -> bool {
         match self {
             Self::Number(quantity) => quantity.is_drawn(),
-            Self::Realizable | Self::Axes(..) | Self::Drawn(_) => true,
+            Self::Vehicle | Self::Flight | Self::Realizable | Self::Axes(..) | Self::Drawn(_) => {
+                true
+            }
             Self::ReleaseOrder | Self::Recompressed | Self::ClearanceNote => false,
         }
     }
@@ -101,7 +123,13 @@ impl Column {
     /// What a run writes into it.
     pub(crate) fn cell(self, run: &Run<'_>) -> Cell<'static> {
         let text = |text: Option<String>| text.map_or(Cell::Null, |text| Cell::Text(text.into()));
+        // Runs are fewer than the numbers of a column.
+        let index = |index: Option<u64>| {
+            index.and_then(|index| i64::try_from(index).ok()).map_or(Cell::Null, Cell::Integer)
+        };
         match self {
+            Self::Vehicle => index(run.case.flight.map(|(vehicle, _)| vehicle)),
+            Self::Flight => index(run.case.flight.map(|(_, flight)| flight)),
             Self::Number(quantity) => quantity.value(run).into(),
             Self::Realizable => run.realizable().into(),
             Self::Axes(body, i) => run.axes(body).map(|q| q.coords[i]).into(),
@@ -159,7 +187,7 @@ mod tests {
             [separation](models/separation.md), equation numbers are those of Peck (2003).\n\n\
             | column | unit | |\n|---|---|---|\n"
             .to_owned();
-        let mut own = Column::all(Scenario::peck_2003().unwrap().separation(), 1);
+        let mut own = Column::all(Scenario::peck_2003().unwrap().separation(), true, 1);
         // Of all springs the first.
         let first = LoadId { kind: Spring::KIND, number: 0 };
         own.retain(

@@ -64,8 +64,8 @@ impl<'a> Draw<'a> {
     /// # Errors
     /// A model does not exist or cannot be made, or the runs are out of range.
     pub fn new(scenario: &'a Scenario, options: &DrawOptions) -> Result<Self, DrawError> {
-        let all = Column::all(scenario.separation(), scenario.dispersions().all().len());
-        let columns: Vec<_> = all.into_iter().filter(|column| column.is_drawn()).collect();
+        let columns: Vec<_> =
+            Column::of(scenario).into_iter().filter(|column| column.is_drawn()).collect();
         let model = |place: usize| {
             let model = Model::new(&scenario.models()[place], scenario)?;
             Ok(SeparationDraws { scenario, model, columns: columns.clone() })

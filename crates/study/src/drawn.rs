@@ -9,7 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::{
     body::Body,
     failure::Failure,
-    scenario::{Dispersed, Dispersions, Joint, Scenario, Target},
+    scenario::{Dispersed, Dispersions, Each, Joint, Scenario, Target},
 };
 
 /// The random streams of a model's dispersions, one for each quantity.
@@ -25,10 +25,12 @@ impl Draws {
     }
 
     /// The values of a run, in the order of what is dispersed: a score from the stream of each, mixed
-    /// where they are correlated.
-    pub(crate) fn values<T>(&self, joint: &Joint<T>, run: u64) -> Vec<f64> {
-        let score = |streams: &Streams| StandardNormal.sample(&mut streams.run(run));
-        let mut values: Vec<f64> = self.streams.iter().map(score).collect();
+    /// where they are correlated. `stream` is the number of the stream of what is drawn for vehicles, or for flights.
+    pub(crate) fn values<T>(&self, joint: &Joint<T>, stream: impl Fn(Each) -> u64) -> Vec<f64> {
+        let score = |(streams, d): (&Streams, &Dispersed<T>)| {
+            StandardNormal.sample(&mut streams.run(stream(d.each)))
+        };
+        let mut values: Vec<f64> = self.streams.iter().zip(&joint.all).map(score).collect();
         joint.correlation.mix(&mut values);
         for (value, d) in values.iter_mut().zip(&joint.all) {
             *value = d.law.at_score(*value);
@@ -37,8 +39,9 @@ impl Draws {
     }
 
     /// The values of a run of a separation.
-    pub(crate) fn run(&self, dispersions: &Dispersions, run: u64) -> Box<[f64]> {
-        let mut values = self.values(&dispersions.joint, run);
+    pub(crate) fn run(&self, scenario: &Scenario, run: u64) -> Box<[f64]> {
+        let dispersions = scenario.dispersions();
+        let mut values = self.values(&dispersions.joint, |each| scenario.stream(each, run));
         let all = dispersions.all();
         // A load that is not late starts as it should.
         for late in 0..values.len() {

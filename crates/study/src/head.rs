@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::{borrow::Cow, fmt, ops::Range};
 
+use crate::Fleet;
+
 /// What a summary says first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Head {
@@ -14,6 +16,13 @@ pub struct Head {
     pub(crate) fingerprint: String,
     pub(crate) seed: u64,
     pub(crate) runs_per_model: u64,
+    /// Whose flights they are, if there are vehicles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) fleet: Option<Fleet>,
+    /// Runs that are independent of each other, the first flights of the vehicles, if flights of a vehicle have something
+    /// in common.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) independent_runs_per_model: Option<u64>,
     /// Runs that are not done, where not all are.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) missing: Vec<Missing>,
@@ -43,6 +52,17 @@ impl Head {
     #[must_use]
     pub fn runs_per_model(&self) -> u64 {
         self.runs_per_model
+    }
+
+    /// The vehicles whose flights the runs are, if there are vehicles.
+    #[must_use]
+    pub fn fleet(&self) -> Option<Fleet> {
+        self.fleet
+    }
+
+    /// How many runs of each model are independent of each other.
+    pub(crate) fn independent_runs(&self) -> u64 {
+        self.independent_runs_per_model.unwrap_or(self.runs_per_model)
     }
 
     /// The runs that are not done; none of a complete study.

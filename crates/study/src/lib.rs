@@ -33,6 +33,7 @@ mod model;
 #[cfg(test)]
 mod pages;
 mod quantity;
+mod releases;
 mod replay;
 mod report;
 mod results;
@@ -46,6 +47,8 @@ mod study;
 mod subject;
 mod summary;
 mod text;
+#[cfg(test)]
+mod two_loops;
 
 pub use any::{AnyScenario, Outcome, is_begun, put_together, write_report};
 pub use body::Entry;
@@ -62,9 +65,9 @@ pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};
 pub use head::{Head, Missing};
 pub use quantity::Quantity;
-pub use replay::{Replay, ReplayError};
+pub use replay::{Replay, ReplayError, Which};
 pub use results::{Results, ResultsError};
-pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
+pub use scenario::{Fleet, Scenario, ScenarioError, parse_toml, whole_number};
 pub use shards::{ModelStatus, Status};
 pub use simulator::{SimulatorReplay, SimulatorScenario, SimulatorSummary};
 pub use study::{Notice, Options, Study, restore_studies};

@@ -91,9 +91,11 @@ impl Model {
 
     /// Draws the bodies of one run.
     pub(crate) fn draw(&self, scenario: &Scenario, run: u64) -> Case {
-        let drawn = self.draws.run(scenario.dispersions(), run);
-        let mut payload = self.payload.draw(run);
-        let mut stage = self.stage.draw(run);
+        let drawn = self.draws.run(scenario, run);
+        let inertia = scenario.dispersions().inertia;
+        let [payload, stage] = inertia.map(|each| scenario.stream(each, run));
+        let mut payload = self.payload.draw(payload);
+        let mut stage = self.stage.draw(stage);
         for (body, draw) in [(Body::Payload, &mut payload), (Body::Stage, &mut stage)] {
             draw.inertia = drawn::scaled(scenario, body, &drawn, draw.inertia);
         }
@@ -105,6 +107,7 @@ impl Model {
             stage_axes: stage.axes,
             separation,
             drawn,
+            flight: scenario.fleet().map(|fleet| fleet.place(run)),
         }
     }
 }
@@ -119,8 +122,21 @@ pub(crate) struct Separations<'a> {
 
 impl<'a> Separations<'a> {
     pub(crate) fn new(scenario: &'a Scenario, model: &'a Model) -> Self {
-        let columns = Column::all(scenario.separation(), scenario.dispersions().all().len());
+        let columns = Column::of(scenario);
         Self { scenario, model, columns }
+    }
+
+    /// What is drawn for a run, by column, with every digit.
+    #[cfg(test)]
+    pub(crate) fn drawn(&self, run: u64) -> std::collections::BTreeMap<String, String> {
+        let case = self.model.draw(self.scenario, run);
+        let (run, names) = (case.drawn(), self.scenario.dispersions().columns());
+        let columns = self.columns.iter().filter(|column| column.is_drawn());
+        let cell = |column: &Column| {
+            let name = column.declaration(&names).name().to_owned();
+            (name, column.cell(&run).to_string())
+        };
+        columns.map(cell).collect()
     }
 
     /// Writes the row of a run that has ended.
@@ -159,8 +175,8 @@ impl Simulation for Separations<'_> {
 }
 
 impl BodyModel {
-    fn draw(&self, run: u64) -> ModelDraw {
-        self.law.draw(&mut self.streams.run(run))
+    fn draw(&self, stream: u64) -> ModelDraw {
+        self.law.draw(&mut self.streams.run(stream))
     }
 }
 

@@ -16,7 +16,7 @@ use crate::{
     figures_of_study,
     head::Head,
     quantity::Quantity,
-    scenario::{Comparison, Scenario},
+    scenario::{Comparison, Each, Scenario},
     summary::{ClearanceSummary, ModelSummary, Summary},
 };
 
@@ -29,17 +29,28 @@ pub(crate) fn files(scenario: &Scenario) -> impl Iterator<Item = String> {
     figures.chain(Document::pages(NAME)).chain(["figures/".to_owned()])
 }
 
+/// What intervals stand for if runs are not independent.
+const DEPENDENT: &str = "The flights of a vehicle share what is drawn once for it, so that runs are not independent. \
+                         Intervals of means and standard deviations therefore take the vehicles for what is independent, \
+                         and those of percentiles and shares are of the first flight of each vehicle alone, so that the \
+                         number itself, which is of all runs, can lie beside its interval.";
+
 /// The report, made from results that were read back.
 pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     let models: Vec<&str> = summary.models.iter().map(|m| m.name.as_str()).collect();
+    let vehicles = summary.head.fleet.map_or_else(String::new, |fleet| format!("{fleet}, "));
     let lead = Text::from("Scenario ").strong(&summary.head.scenario).plain(format!(
-        ": {} runs of each of the models {}, seed {}. Intervals have a confidence of {} %; p95 is the 95th \
+        ": {vehicles}{} runs of each of the models {}, seed {}. Intervals have a confidence of {} %; p95 is the 95th \
          percentile.",
         summary.head.runs_per_model,
         models.join(", "),
         summary.head.seed,
         100.0 * summary.head.confidence
     ));
+    let lead = match summary.head.independent_runs_per_model {
+        None => lead,
+        Some(_) => lead.plain(format!(" {DEPENDENT}")),
+    };
     let drawn: Vec<_> = summary.figures.par_iter().map(Figure::drawn).collect();
     let title = format!("gyradius study: {}", summary.head.scenario);
     let document = Document::new(title, "Separation under inertia uncertainty", lead);
@@ -361,7 +372,14 @@ fn dispersed(summary: &Summary) -> Option<Section> {
     let rows: Vec<_> = given.iter().enumerate().collect();
     let mut table = PageTable::of(&rows)
         .words("quantity", |(_, d)| Text::default().code(&d.quantity))
-        .words("law", |(_, d)| d.law.as_ref())
+        .words("law", |(_, d)| d.law.as_ref());
+    if summary.head.fleet.is_some() {
+        table = table.words("drawn", |(_, d)| match d.drawn {
+            Each::Vehicle => "for each vehicle",
+            Each::Flight => "for each flight",
+        });
+    }
+    let mut table = table
         .numbers("nominal", |(_, d)| significant(d.nominal, 5))
         .numbers("mean", |(_, d)| significant(d.law_mean, 5))
         .numbers("sd", |(_, d)| significant(d.law_deviation, 5));

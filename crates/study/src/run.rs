@@ -18,6 +18,8 @@ pub(crate) struct Case {
     pub(crate) separation: Result<Separation, Failure>,
     /// What else was drawn, in the order of the scenario's dispersions.
     pub(crate) drawn: Box<[f64]>,
+    /// Which vehicle it is and which of its flights, from 0, if there are vehicles.
+    pub(crate) flight: Option<(u64, u64)>,
 }
 
 /// A run that has ended, or is only drawn.
@@ -56,6 +58,7 @@ impl Case {
             stage_axes: None,
             separation: Ok(scenario.separation().clone()),
             drawn: Box::default(),
+            flight: None,
         }
     }
 

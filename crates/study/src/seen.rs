@@ -6,7 +6,7 @@ use nalgebra::UnitQuaternion;
 use std::sync::Mutex;
 
 use crate::{
-    body::Body, column::attitudes, quantity::Quantity, scenario::Scenario, subject::LookAt,
+    Fleet, body::Body, column::attitudes, quantity::Quantity, scenario::Scenario, subject::LookAt,
 };
 
 /// Attitudes that are kept, at most: of every so manieth run.
@@ -44,7 +44,8 @@ struct Drawn {
 impl<'a> Looking<'a> {
     /// At the runs of a model of a scenario, in these columns.
     pub(crate) fn new(scenario: &'a Scenario, model: &str, columns: &[Column]) -> Self {
-        let columns = FirstLook::new(model, columns, scenario.runs(), Confidence::default());
+        let columns = FirstLook::new(model, columns, scenario.runs(), Confidence::default())
+            .in_groups_of(scenario.sharing().map_or(1, Fleet::flights));
         Self { scenario, columns, blocks: Mutex::default() }
     }
 

@@ -5,7 +5,7 @@ use gyradius_report::Document;
 use rayon::ThreadPool;
 
 use crate::{
-    Scenario, ScenarioError, StudyError, Summary, claims,
+    Fleet, Scenario, ScenarioError, StudyError, Summary, claims,
     compare::Section,
     figures_of_study,
     model::{Model, Separations},
@@ -17,7 +17,7 @@ use crate::{
 impl Subject for Scenario {
     /// Some tenths of a second of separations.
     const BLOCK_RUNS: u64 = 1 << 14;
-    const IMMATERIAL: &[&str] = &["runs"];
+    const IMMATERIAL: &[&str] = &["runs", "vehicles"];
 
     type Prepared = Vec<Model>;
     type Simulation<'a> = Separations<'a>;
@@ -38,6 +38,14 @@ impl Subject for Scenario {
 
     fn runs(&self) -> u64 {
         self.runs()
+    }
+
+    fn fleet(&self) -> Option<Fleet> {
+        self.fleet()
+    }
+
+    fn independent_runs(&self) -> Option<u64> {
+        self.sharing().map(Fleet::vehicles)
     }
 
     fn model_names(&self) -> impl Iterator<Item = &str> {

@@ -8,7 +8,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use std::{fmt::Display, path::Path};
 
 use crate::{
-    ScenarioError, StudyError,
+    Fleet, ScenarioError, StudyError,
     head::{Head, fingerprint},
 };
 
@@ -40,6 +40,14 @@ pub(crate) trait Subject: Sync + Sized {
     fn seed(&self) -> u64;
     /// Runs of each model.
     fn runs(&self) -> u64;
+    /// The vehicles whose flights the runs are, if there are vehicles.
+    fn fleet(&self) -> Option<Fleet> {
+        None
+    }
+    /// How many of the runs are independent of each other, if not all are.
+    fn independent_runs(&self) -> Option<u64> {
+        None
+    }
     /// Names of the models, in order.
     fn model_names(&self) -> impl Iterator<Item = &str>;
     /// The resolved scenario.
@@ -105,6 +113,8 @@ pub(crate) fn head_of(scenario: &impl Subject, columns: &[Column]) -> Head {
         fingerprint: fingerprint(&scenario.to_toml()),
         seed: scenario.seed(),
         runs_per_model: scenario.runs(),
+        fleet: scenario.fleet(),
+        independent_runs_per_model: scenario.independent_runs(),
         missing: Vec::new(),
         done_again: 0,
         confidence: Confidence::default().level(),

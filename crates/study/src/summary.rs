@@ -8,14 +8,16 @@ use serde::{Deserialize, Serialize, Serializer, ser::Error};
 use std::borrow::Cow;
 
 use crate::{
+    Fleet,
+    body::Body,
     claim::Claim,
-    column::{CLEARANCE_NOTE, REALIZABLE, RECOMPRESSED, RELEASE_ORDER},
+    column::{CLEARANCE_NOTE, REALIZABLE},
     compare::Section,
     head::Head,
     model::Model,
     quantity::Quantity,
     run::Case,
-    scenario::{Dispersed, ModelLaw, Scenario},
+    scenario::{Dispersed, Each, ModelLaw, Scenario},
     seen::Seen,
     subject::{Summarized, head_of},
 };
@@ -75,6 +77,8 @@ pub(crate) struct ModelSummary {
 pub(crate) struct DispersedSummary {
     pub(crate) quantity: String,
     pub(crate) law: Cow<'static, str>,
+    #[serde(default, skip_serializing_if = "Each::is_flight")]
+    pub(crate) drawn: Each,
     pub(crate) nominal: f64,
     pub(crate) law_mean: f64,
     pub(crate) law_deviation: f64,
@@ -266,6 +270,7 @@ fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {
         DispersedSummary {
             quantity: d.column.clone(),
             law: d.law.name().into(),
+            drawn: d.each,
             nominal: d.nominal,
             law_mean: d.law.mean(),
             law_deviation: d.law.deviation(),
@@ -283,15 +288,32 @@ impl ModelSummary {
         seen: &Seen,
         confidence: Confidence,
     ) -> Result<Self, StatisticsError> {
-        let share = |count: u64, of: u64| Share::new(count, of, confidence);
+        let inertia = scenario.dispersions().inertia;
+        let sharing = scenario.sharing().map_or(1, Fleet::flights);
+        // What a vehicle has drawn counts once.
+        let share = |body: Body, count: u64, of: u64| {
+            let flights = match inertia[body as usize] {
+                Each::Vehicle => sharing,
+                Each::Flight => 1,
+            };
+            let of_vehicles = of / flights;
+            let once = (count.div_ceil(flights).min(of_vehicles), of_vehicles);
+            Share::of_dependent(count, of, once, confidence)
+        };
         let failures = owned(seen.surveys.failures());
         let far_half = match (seen.far, seen.drawn) {
-            ([Some(payload), Some(stage)], [of_payload, of_stage]) if of_payload > 0 => {
-                Some([share(payload, of_payload)?, share(stage, of_stage)?])
-            }
+            ([Some(payload), Some(stage)], [of_payload, of_stage]) if of_payload > 0 => Some([
+                share(Body::Payload, payload, of_payload)?,
+                share(Body::Stage, stage, of_stage)?,
+            ]),
             _ => None,
         };
         let [unrealizable, _] = seen.surveys.flags(REALIZABLE);
+        // Inertias that each flight draws anew are independent, whatever else flights have in common.
+        let anew = inertia.iter().all(Each::is_flight);
+        let of_flags = if anew { &seen.surveys } else { seen.surveys.independent() };
+        let [independent, _] = of_flags.flags(REALIZABLE);
+        let independent = (independent, of_flags.runs());
         Ok(Self {
             name: seen.model().to_owned(),
             law: model.law(),
@@ -299,7 +321,7 @@ impl ModelSummary {
             acceptance: model.acceptance(),
             failed: failures.iter().map(|f| f.1).sum(),
             failures,
-            unrealizable: share(unrealizable, seen.runs())?,
+            unrealizable: Share::of_dependent(unrealizable, seen.runs(), independent, confidence)?,
             far_half,
             given_deviations_kg_m2: model.given_deviations(),
             releases: Releases::new(&seen.surveys, scenario.outlines().is_some(), confidence)?,
@@ -313,39 +335,8 @@ impl ModelSummary {
     }
 }
 
-/// Orders of releases that are listed.
-const ORDERS: usize = 12;
-
-impl Releases {
-    fn new(
-        surveys: &Surveys,
-        watched: bool,
-        confidence: Confidence,
-    ) -> Result<Self, StatisticsError> {
-        let mut counts = surveys.texts(RELEASE_ORDER);
-        let of = counts.iter().map(|(_, count)| count).sum();
-        let share =
-            |count| if of == 0 { Ok(None) } else { Share::new(count, of, confidence).map(Some) };
-        let recompressed = share(surveys.texts(RECOMPRESSED).iter().map(|(_, count)| count).sum())?;
-        let touching = surveys.column(&Quantity::RecontactTime.column()).map_or(0, Survey::n);
-        let recontact = if watched { share(touching)? } else { None };
-        let clearance = if watched { ClearanceSummary::new(surveys, confidence) } else { None };
-        // Equal counts in the order of their names.
-        counts.sort_by_key(|(order, count)| (std::cmp::Reverse(*count), *order));
-        let orders = counts.into_iter().take(ORDERS).map(|(order, count)| {
-            Ok(Order { order: order.to_owned(), share: Share::new(count, of, confidence)? })
-        });
-        Ok(Self {
-            orders: orders.collect::<Result<_, StatisticsError>>()?,
-            recompressed,
-            recontact,
-            clearance,
-        })
-    }
-}
-
 impl ClearanceSummary {
-    fn new(surveys: &Surveys, confidence: Confidence) -> Option<Self> {
+    pub(crate) fn new(surveys: &Surveys, confidence: Confidence) -> Option<Self> {
         let clearances = surveys.column(&Quantity::Clearance.column())?;
         let notes = owned(surveys.texts(CLEARANCE_NOTE));
         if clearances.n() == 0 && notes.is_empty() {
@@ -380,11 +371,11 @@ impl Ratio {
         Self {
             quantity,
             deviation_ratio: deviations.map(|(n, p)| n.ratio(p)),
-            deviation_ratio_interval: deviations
-                .and_then(|(n, p)| n.ratio_interval(p, confidence).ok()),
+            deviation_ratio_interval: both
+                .and_then(|(n, p)| n.deviation_ratio_interval(p, confidence)),
             mean_difference: moments.map(|(n, p)| n.mean() - p.mean()),
-            mean_difference_interval: moments
-                .map(|(n, p)| n.mean_difference_interval(p, confidence)),
+            mean_difference_interval: both
+                .and_then(|(n, p)| n.mean_difference_interval(p, confidence)),
         }
     }
 }

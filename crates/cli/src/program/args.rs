@@ -136,6 +136,10 @@ pub(crate) struct StudyArgs {
     #[arg(long, value_name = "N", value_parser = whole)]
     pub(crate) runs: Option<u64>,
 
+    /// Vehicles, in the place of runs, of a scenario with vehicles and flights [default: as in the scenario]
+    #[arg(long, value_name = "V", value_parser = whole, conflicts_with = "runs")]
+    pub(crate) vehicles: Option<u64>,
+
     /// Seed of all random numbers [default: as in the scenario]
     #[arg(long, value_name = "S", value_parser = whole)]
     pub(crate) seed: Option<u64>,
@@ -271,8 +275,17 @@ pub(crate) struct ReplayArgs {
     pub(crate) study: Option<PathBuf>,
 
     /// Which run, from 0
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
-    pub(crate) run: u64,
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole,
+          required_unless_present = "vehicle")]
+    pub(crate) run: Option<u64>,
+
+    /// In the place of --run: which vehicle of a scenario with vehicles, from 0
+    #[arg(long, value_name = "V", value_parser = whole, requires = "flight", conflicts_with = "run")]
+    pub(crate) vehicle: Option<u64>,
+
+    /// Which flight of the vehicle, from 0
+    #[arg(long, value_name = "F", value_parser = whole, requires = "vehicle")]
+    pub(crate) flight: Option<u64>,
 
     /// Which model [default: the first of the scenario]
     #[arg(long, value_name = "NAME")]

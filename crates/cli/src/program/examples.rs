@@ -166,6 +166,8 @@ Examples:
       Another vehicle. Start from the scenario.toml that any study writes
   mpirun -n 8 gyradius study --runs 1e8 --out big --threads 1 --shard auto/8
       Eight processes of MPI do a shard each, as tasks of Slurm, Kubernetes or HyperQueue do
+  gyradius study --scenario my-fleet.toml --vehicles 500
+      More vehicles of a scenario that says vehicles and flights in the place of runs
   gyradius study --seed 8 --force
       Replace the study in the folder by another one
 

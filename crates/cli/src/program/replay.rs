@@ -1,6 +1,6 @@
 //! `gyradius replay`: one run of a study again.
 
-use gyradius_study::{AnyScenario, Replay, SimulatorReplay};
+use gyradius_study::{AnyScenario, Replay, SimulatorReplay, Which};
 use std::{error::Error, path::Path};
 
 use crate::program::{args::ReplayArgs, output::print};
@@ -12,11 +12,21 @@ pub(crate) const DEFAULT: &str = "target/study/peck-2003";
 pub(crate) fn replay(arguments: &ReplayArgs) -> Result<(), Box<dyn Error>> {
     let path = arguments.study.as_deref().unwrap_or(Path::new(DEFAULT));
     let model = arguments.model.as_deref();
+    let which = match (arguments.vehicle, arguments.flight) {
+        (Some(vehicle), Some(flight)) => Which::Flight { vehicle, flight },
+        // One of the two is given.
+        _ => Which::Run(arguments.run.unwrap_or_default()),
+    };
     if let Ok(AnyScenario::Simulator(scenario)) = AnyScenario::read(path) {
-        let replay = SimulatorReplay::new(&scenario, model, arguments.run)?;
+        let Which::Run(run) = which else {
+            return Err(
+                "--vehicle: a scenario of a simulator has no vehicles: --run names a run".into()
+            );
+        };
+        let replay = SimulatorReplay::new(&scenario, model, run)?;
         return Ok(print(&replay.to_string())?);
     }
-    let replay = Replay::open(path, model, arguments.run, arguments.coast)?;
+    let replay = Replay::open(path, model, which, arguments.coast)?;
     let folder = arguments.out.clone().unwrap_or_else(|| replay.default_folder());
     let files = replay.write(&folder, arguments.force)?;
     let mut text = format!("{replay}\n");

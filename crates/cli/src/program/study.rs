@@ -26,6 +26,9 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     if let Some(runs) = arguments.runs {
         scenario = scenario.with_runs(runs)?;
     }
+    if let Some(vehicles) = arguments.vehicles {
+        scenario = scenario.with_vehicles(vehicles)?;
+    }
     let shard = arguments.shard.map(AskedShard::find).transpose()?;
     let signals = Signals::watch()?;
     let options = Options {

@@ -277,18 +277,25 @@ mod file {
     use std::fmt;
 
     fn names(all: impl Iterator<Item = &'static str>) -> String {
-        let mut seen: Vec<String> = Vec::new();
-        for name in all.map(|name| format!("`{name}`")) {
-            if !seen.contains(&name) {
-                seen.push(name);
-            }
-        }
-        seen.join(", ")
+        all.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
     }
 
     /// The keys of all laws.
     fn keys() -> impl Iterator<Item = &'static super::super::parameters::Key> {
         DECLARATIONS.iter().flat_map(|law| law.keys)
+    }
+
+    impl ScalarLawForm {
+        /// Every key that the table of a law may have, each once: for formats that add keys of their own to it.
+        pub fn keys() -> impl Iterator<Item = &'static str> {
+            let mut all = vec!["law"];
+            for key in keys() {
+                if !all.contains(&key.name) {
+                    all.push(key.name);
+                }
+            }
+            all.into_iter()
+        }
     }
 
     impl<'de> Deserialize<'de> for &'static Declaration {
@@ -331,7 +338,7 @@ mod file {
                     continue;
                 }
                 let Some(key) = keys().find(|key| key.name == name) else {
-                    let all = names(std::iter::once("law").chain(keys().map(|key| key.name)));
+                    let all = names(ScalarLawForm::keys());
                     let problem = format!("unknown field `{name}`, expected one of {all}");
                     return Err(A::Error::custom(problem));
                 };

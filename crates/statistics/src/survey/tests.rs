@@ -92,3 +92,105 @@ fn large_samples_are_thinned() {
     assert_same(&survey, &runs);
     assert_eq!(survey.sample().unwrap().n(), 18_750);
 }
+
+/// Of runs in groups: what is found with plain sums over the groups of the whole sample, and the same bits in whatever
+/// parts the runs come.
+#[derive(Debug, PartialEq)]
+struct OfGroups {
+    mean: Option<Interval>,
+    deviation: Option<Interval>,
+    quantile: Option<Interval>,
+    of_first: Option<Moments>,
+}
+
+fn grouped(runs: &[Option<f64>], size: u64, part: usize, stride: u64) -> OfGroups {
+    let confidence = Confidence::default();
+    let mut survey = Survey::new(runs.len() as u64)
+        .quantiles([0.5])
+        .quantile_interval_at(0.5, confidence)
+        .in_groups_of(size);
+    survey.stride = stride;
+    while let Some(empty) = survey.pass() {
+        let mut whole = empty.clone();
+        for (i, values) in runs.chunks(part).enumerate().rev() {
+            let mut pass = empty.clone();
+            let first = (i * part) as u64;
+            pass.extend((first..).zip(values).filter_map(|(run, x)| Some((run, (*x)?))));
+            whole.merge(pass);
+        }
+        survey.advance(whole);
+    }
+    OfGroups {
+        mean: survey.mean_interval(confidence),
+        deviation: survey.deviation_interval(confidence),
+        quantile: survey.quantile_interval(0.5, confidence),
+        of_first: survey.independent().moments().copied(),
+    }
+}
+
+proptest! {
+    #[test]
+    fn groups_are_what_is_independent(
+        runs in prop::collection::vec(prop::option::weighted(0.9, -1.0..1.0f64), 0..150),
+        shared in prop::collection::vec(-3.0..3.0f64, 150),
+        // Its fourth power is a number, too.
+        unit in -100..100_i32,
+        size in 1..12_u64,
+        parts in prop::array::uniform2(1..60_usize),
+        stride in 0..3_u32,
+    ) {
+        let value = |(run, x): (usize, &Option<f64>)| {
+            x.map(|x| (x + shared[run / size as usize]) * 2f64.powi(unit))
+        };
+        let runs: Vec<Option<f64>> = runs.iter().enumerate().map(value).collect();
+        let [found, again] = parts.map(|part| grouped(&runs, size, part, 1 << stride));
+        prop_assert_eq!(&found, &again);
+
+        let confidence = Confidence::default();
+        let of = |runs: &[Option<f64>]| runs.iter().flatten().copied().collect::<Vec<f64>>();
+        let first: Vec<_> = runs.iter().step_by(size as usize).copied().collect();
+        prop_assert_eq!(found.of_first, Moments::new(&of(&first)).ok());
+        let sorted = SortedSample::new(&of(&first)).ok();
+        let expected = sorted.map(|s| s.quantile_interval(0.5, confidence).unwrap());
+        prop_assert_eq!(found.quantile, expected);
+
+        let values = of(&runs);
+        let moments = Moments::new(&values).ok();
+        if size == 1 {
+            prop_assert_eq!(found.mean, moments.map(|m| m.mean_interval(confidence)));
+            return Ok(());
+        }
+        let groups: Vec<Vec<f64>> =
+            runs.chunks(size as usize).map(of).filter(|group| !group.is_empty()).collect();
+        let (count, n) = (groups.len() as f64, values.len() as f64);
+        // Of equal values the first of each group are counted.
+        let constant = moments.is_some_and(|m| m.standard_deviation() == 0.0);
+        let enough = if constant { found.of_first.is_some() } else { groups.len() > 1 };
+        let Some(moments) = moments.filter(|_| enough) else {
+            prop_assert_eq!((found.mean, found.deviation), (None, None));
+            return Ok(());
+        };
+        let mean = moments.mean();
+        let square = |x: &f64| (x - mean).powi(2);
+        let m2 = values.iter().map(square).sum::<f64>() / n;
+        let variance = |of_group: &dyn Fn(&Vec<f64>) -> f64| {
+            groups.iter().map(|g| of_group(g).powi(2)).sum::<f64>() * count / (count - 1.0) / (n * n)
+        };
+        let of_mean = variance(&|g| g.iter().map(|x| x - mean).sum());
+        let of_square = variance(&|g| g.iter().map(|x| square(x) - m2).sum());
+        let t = crate::law::students_t(confidence.tail(), count - 1.0);
+        let interval = found.mean.unwrap();
+        let scale = 2f64.powi(unit);
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + scale);
+        prop_assert!(near(interval.lower(), mean - t * of_mean.sqrt()), "{interval} {mean} {of_mean}");
+        prop_assert!(near(interval.upper(), mean + t * of_mean.sqrt()), "{interval} {mean} {of_mean}");
+        if values.len() >= 5 && !constant {
+            let (centre, half) = ((m2 + of_mean).sqrt(), 0.5 * t * of_square.sqrt() / m2);
+            let interval = found.deviation.unwrap();
+            // The square root of what cancels keeps half of its digits.
+            let near = |a: f64, b: f64| (a / b).ln().abs() < 1e-6;
+            prop_assert!(near(interval.lower(), centre * (-half).exp()), "{interval}");
+            prop_assert!(near(interval.upper(), centre * half.exp()), "{interval}");
+        }
+    }
+}

@@ -20,7 +20,7 @@ use std::{
 };
 
 use crate::{
-    Results, ResultsError, Scenario, ScenarioError,
+    Fleet, Results, ResultsError, Scenario, ScenarioError,
     model::{Model, Separations},
     run::{Case, End},
 };
@@ -57,6 +57,19 @@ pub enum ReplayError {
         run: u64,
         /// How many there are.
         runs: u64,
+    },
+    /// There is no such vehicle or flight.
+    #[error(
+        "vehicle {vehicle}, flight {flight}: the scenario has {}, all numbered from 0",
+        fleet.map_or_else(|| "no vehicles".to_owned(), |fleet| fleet.to_string())
+    )]
+    Flight {
+        /// The vehicle that was asked for.
+        vehicle: u64,
+        /// Its flight.
+        flight: u64,
+        /// What there is.
+        fleet: Option<Fleet>,
     },
     /// The coast is none.
     #[error("coast = {value:?} s: it must lie between 0 and {MOST_COAST}")]
@@ -131,6 +144,41 @@ impl From<WriteError> for ReplayError {
     }
 }
 
+/// Which run is replayed; a number is that of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// By its number, from 0.
+    Run(u64),
+    /// By its vehicle and flight, both from 0.
+    Flight {
+        /// The vehicle.
+        vehicle: u64,
+        /// Its flight.
+        flight: u64,
+    },
+}
+
+impl From<u64> for Which {
+    fn from(run: u64) -> Self {
+        Self::Run(run)
+    }
+}
+
+impl Which {
+    /// The number of the run, if the scenario has it.
+    fn run(self, scenario: &Scenario) -> Result<u64, ReplayError> {
+        match self {
+            Self::Run(run) if run < scenario.runs() => Ok(run),
+            Self::Run(run) => Err(ReplayError::Run { run, runs: scenario.runs() }),
+            Self::Flight { vehicle, flight } => {
+                let fleet = scenario.fleet();
+                let run = fleet.and_then(|fleet| fleet.run(vehicle, flight));
+                run.ok_or(ReplayError::Flight { vehicle, flight, fleet })
+            }
+        }
+    }
+}
+
 /// A run of a study, done again and followed through.
 ///
 /// Its row is that of the study, bit for bit. Printed, it is a page of what happened.
@@ -159,7 +207,7 @@ impl Replay {
     pub fn open(
         path: &Path,
         model: Option<&str>,
-        run: u64,
+        run: impl Into<Which>,
         coast_s: f64,
     ) -> Result<Self, ReplayError> {
         // A study that was killed while it replaced this one is put right first; its scenario may be away
@@ -208,15 +256,13 @@ impl Replay {
     pub fn new(
         scenario: &Scenario,
         model: Option<&str>,
-        run: u64,
+        run: impl Into<Which>,
         coast_s: f64,
     ) -> Result<Self, ReplayError> {
         if !(0.0..=MOST_COAST).contains(&coast_s) {
             return Err(ReplayError::Coast { value: coast_s });
         }
-        if run >= scenario.runs() {
-            return Err(ReplayError::Run { run, runs: scenario.runs() });
-        }
+        let run = run.into().run(scenario)?;
         let specs = scenario.models();
         let asked = specs.iter().find(|spec| model.is_none_or(|name| spec.name == name));
         let Some(spec) = asked else {

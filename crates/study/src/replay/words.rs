@@ -35,13 +35,18 @@ fn approach(shapes: &ShapeClearance) -> String {
 impl Display for Replay {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (scenario, row) = (&self.scenario, self.row());
+        let flight = scenario.fleet().map(|fleet| {
+            let (vehicle, flight) = fleet.place(row.run());
+            format!(" (vehicle {vehicle}, flight {flight})")
+        });
         writeln!(
             f,
-            "{}, model {}, run {} of {}, seed {}",
+            "{}, model {}, run {} of {}{}, seed {}",
             scenario.name(),
             self.model,
             row.run(),
             scenario.runs(),
+            flight.unwrap_or_default(),
             scenario.seed()
         )?;
         writeln!(f, "status: {}", row.status())?;

@@ -1,15 +1,19 @@
 //! What else is uncertain than the inertias, in the order in which it is drawn.
 
-use gyradius_dispersion::{Correlation, CorrelationError, LawUnit, ScalarLaw, ScalarLawForm};
+use gyradius_dispersion::{Correlation, CorrelationError, LawUnit, ScalarLaw};
 use gyradius_separation::{
     BodyParameter, LoadId, LoadParameter, MovingBody, Parameter, Separation, StackParameter,
 };
 
 use super::{
     ScenarioError,
+    chance::ChanceFile,
+    each::{DRAWN, Each},
     file::{BodyFile, CorrelationFile, ScenarioFile},
+    fleet::{self, Fleet},
     law::{self, GivenLaw, VectorLawFile},
     load::{self, GivenLoad, Uncertain},
+    scalar::ScalarLawFile,
 };
 use crate::body::Body;
 
@@ -20,6 +24,8 @@ pub(crate) struct Dispersed<T = Target> {
     pub(crate) column: String,
     pub(crate) nominal: f64,
     pub(crate) law: ScalarLaw,
+    /// For what it is drawn.
+    pub(crate) each: Each,
     pub(crate) target: T,
 }
 
@@ -47,14 +53,20 @@ pub(crate) struct Joint<T> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Dispersions {
     pub(crate) joint: Joint<Target>,
+    /// For what the inertias of payload and stage are drawn.
+    pub(crate) inertia: [Each; 2],
     /// The share of its mass's relative change that the drawn inertia of payload and stage takes.
     pub(crate) inertia_follows_mass: [f64; 2],
 }
 
 impl Dispersions {
     /// Of a scenario, and its separation without dispersions.
-    pub(crate) fn new(file: &ScenarioFile, separation: &Separation) -> Result<Self, ScenarioError> {
-        let mut list = List::default();
+    pub(crate) fn new(
+        file: &ScenarioFile,
+        fleet: Option<Fleet>,
+        separation: &Separation,
+    ) -> Result<Self, ScenarioError> {
+        let mut list = List { fleet, ..List::default() };
         list.body(Body::Payload, &file.payload, separation.payload())?;
         list.body(Body::Stage, &file.stage, separation.stage())?;
         if let Some(stack) = file.stack.as_ref().and_then(|s| s.dispersion.as_ref()) {
@@ -73,7 +85,17 @@ impl Dispersions {
         )?;
         let follows = |body: &BodyFile| body.dispersion.inertia_follows_mass.share();
         let inertia_follows_mass = [follows(&file.payload), follows(&file.stage)];
-        Ok(Self { joint, inertia_follows_mass })
+        let inertia = |name: Body, body: &BodyFile| {
+            let field = format!("{}.dispersion.inertia_drawn", name.name());
+            fleet::possible(&field, body.dispersion.inertia_drawn, fleet)
+        };
+        let inertia = [inertia(Body::Payload, &file.payload)?, inertia(Body::Stage, &file.stage)?];
+        Ok(Self { joint, inertia, inertia_follows_mass })
+    }
+
+    /// Whether runs have anything in common: something is drawn for a vehicle.
+    pub(crate) fn of_vehicles(&self) -> bool {
+        self.inertia.iter().chain(self.all().iter().map(|d| &d.each)).any(|each| !each.is_flight())
     }
 
     /// What they are, in order.
@@ -105,6 +127,7 @@ const CORRELATIONS: &str = "correlations";
 
 /// As it is put together.
 pub(crate) struct List<T = Target> {
+    fleet: Option<Fleet>,
     all: Vec<Dispersed<T>>,
     /// Pairs that covariances correlate, and where they are given.
     pairs: Vec<(usize, usize, f64)>,
@@ -113,15 +136,22 @@ pub(crate) struct List<T = Target> {
 
 impl<T> Default for List<T> {
     fn default() -> Self {
-        Self { all: Vec::new(), pairs: Vec::new(), fields: Vec::new() }
+        Self { fleet: None, all: Vec::new(), pairs: Vec::new(), fields: Vec::new() }
     }
 }
 
 impl<T> List<T> {
     /// A number with a name that ends in its unit, if it has one.
-    pub(crate) fn push(&mut self, name: &str, unit: &str, nominal: f64, law: ScalarLaw, target: T) {
+    pub(crate) fn push(
+        &mut self,
+        name: &str,
+        unit: &str,
+        nominal: f64,
+        (law, each): (ScalarLaw, Each),
+        target: T,
+    ) {
         let column = if unit.is_empty() { name.to_owned() } else { format!("{name}_{unit}") };
-        self.all.push(Dispersed { column, nominal, law, target });
+        self.all.push(Dispersed { column, nominal, law, each, target });
     }
 
     /// A parameter of what stands at a place of the file, and is called by a name.
@@ -149,12 +179,17 @@ impl<T> List<T> {
         }
     }
 
+    /// For what a law is drawn that stands at a field, if the scenario has that.
+    fn each(&self, field: &str, each: Each) -> Result<Each, ScenarioError> {
+        fleet::possible(&format!("{field}.{DRAWN}"), each, self.fleet)
+    }
+
     /// A number given in its unit or in percent.
     fn number(
         &mut self,
         place: &Place,
-        law: Option<&ScalarLawForm>,
-        percent: Option<&ScalarLawForm>,
+        law: Option<&ScalarLawFile>,
+        percent: Option<&ScalarLawFile>,
         nominal: f64,
         target: T,
     ) -> Result<(), ScenarioError> {
@@ -167,9 +202,10 @@ impl<T> List<T> {
             (Some(law), None) => (&place.field, LawUnit::OWN, law),
             (None, Some(law)) => (&place.percent, LawUnit::percent_of(nominal), law),
         };
-        let law = law::about(law, field, nominal, unit)?;
+        let each = self.each(field, law.drawn)?;
+        let law = law::about(&law.form, field, nominal, unit)?;
         positive(field, nominal, &law)?;
-        self.push(&place.name, place.unit, nominal, law, target);
+        self.push(&place.name, place.unit, nominal, (law, each), target);
         Ok(())
     }
 
@@ -181,17 +217,40 @@ impl<T> List<T> {
         target: impl Fn(usize) -> T,
     ) -> Result<(), ScenarioError> {
         let Some(law) = law else { return Ok(()) };
-        let law = law.about(&place.field, nominal, LawUnit::OWN)?;
+        let vector = law.about(&place.field, nominal, LawUnit::OWN)?;
         let first = self.all.len();
-        for (i, (law, nominal)) in law.laws.into_iter().zip(nominal).enumerate() {
+        for (i, (scalar, nominal)) in vector.laws.into_iter().zip(nominal).enumerate() {
             let name = format!("{}_{}", place.name, i + 1);
-            self.push(&name, place.unit, *nominal, law, target(i));
+            let (each, field) = law.drawn(&place.field, i);
+            let each = self.each(&field, each)?;
+            self.push(&name, place.unit, *nominal, (scalar, each), target(i));
         }
-        for (a, b, coefficient) in law.pairs {
+        for (a, b, coefficient) in vector.pairs {
             self.pairs.push((first + a, first + b, coefficient));
             self.fields.push(format!("{}.covariance", place.field));
         }
         Ok(())
+    }
+
+    /// That two quantities are drawn for the same, if they are correlated at all: what is drawn for a flight would
+    /// hold a part that all flights of a vehicle have.
+    fn together(
+        &self,
+        field: &str,
+        a: usize,
+        b: usize,
+        coefficient: f64,
+    ) -> Result<(), ScenarioError> {
+        let (a, b) = (&self.all[a], &self.all[b]);
+        if a.each == b.each || coefficient == 0.0 {
+            return Ok(());
+        }
+        let (of_vehicle, of_flight) = if a.each.is_flight() { (b, a) } else { (a, b) };
+        let problem = format!(
+            "{:?} is drawn for each vehicle and {:?} for each flight: what is correlated must have the same {DRAWN}",
+            of_vehicle.column, of_flight.column
+        );
+        Err(ScenarioError::field(field, problem))
     }
 
     /// All of it, correlated as the file says; `names` tells what names the quantities that there are.
@@ -220,6 +279,7 @@ impl<T> List<T> {
             }
             for (j, &b) in members.iter().enumerate() {
                 for &a in &members[..j] {
+                    self.together(&format!("{field}.between"), a, b, given.coefficient)?;
                     self.pairs.push((a, b, given.coefficient));
                     self.fields.push(field.clone());
                 }
@@ -284,11 +344,13 @@ impl List {
             self.parameter(&place, &name, uncertain, target)?;
         }
         let at = |field: &str| format!("{place}.dispersion.{field}");
-        let mut chance = |chance: &str, probability: Option<f64>, target: Target| {
-            let Some(p) = probability else { return Ok(()) };
+        let mut chance = |chance: &str, given: Option<ChanceFile>, target: Target| {
+            let Some(given) = given else { return Ok(()) };
             let field = at(&format!("{chance}_probability"));
-            let law = ScalarLaw::bernoulli(p).map_err(|e| ScenarioError::field(field, e))?;
-            self.push(&format!("{name}_{chance}"), "", 0.0, law, target);
+            let each = self.each(&field, given.drawn)?;
+            let law = ScalarLaw::bernoulli(given.probability)
+                .map_err(|e| ScenarioError::field(given.key(&field), e))?;
+            self.push(&format!("{name}_{chance}"), "", 0.0, (law, each), target);
             Ok(())
         };
         if let (Some(_), Some(start)) = (d.late_probability, d.start) {

@@ -5,11 +5,13 @@ use gyradius_separation::{BodyParameter, LoadId, Spring, StackParameter};
 use serde::{Deserialize, Serialize};
 
 use super::{
+    each::Each,
     follows::Follows,
     law::{GivenLaw, VectorLawFile},
     load::{self, GivenLoad, LoadFile},
     model_file::ModelFile,
     parse,
+    scalar::ScalarLawFile,
 };
 
 /// A scenario as it stands in a TOML file, defaults filled in. Units are in the names.
@@ -17,8 +19,25 @@ use super::{
 #[serde(deny_unknown_fields)]
 pub(crate) struct ScenarioFile {
     pub(crate) name: String,
-    #[serde(default = "default_runs", deserialize_with = "parse::whole")]
-    pub(crate) runs: u64,
+    /// Filled in unless there are vehicles and flights.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "parse::some_whole"
+    )]
+    pub(crate) runs: Option<u64>,
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "parse::some_whole"
+    )]
+    pub(crate) vehicles: Option<u64>,
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "parse::some_whole"
+    )]
+    pub(crate) flights: Option<u64>,
     #[serde(default = "default_seed", deserialize_with = "parse::whole")]
     pub(crate) seed: u64,
     #[serde(default = "default_spin_axis")]
@@ -76,6 +95,9 @@ pub(crate) struct BodyFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DispersionFile {
+    /// For what the inertia is drawn, whichever the model.
+    #[serde(default, skip_serializing_if = "Each::is_flight")]
+    pub(crate) inertia_drawn: Each,
     #[serde(default)]
     pub(crate) roots: RootsFile,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -94,9 +116,9 @@ pub(crate) struct DispersionFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) axes_covariance: Option<[[f64; 4]; 4]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) mass_kg: Option<ScalarLawForm>,
+    pub(crate) mass_kg: Option<ScalarLawFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) mass_percent: Option<ScalarLawForm>,
+    pub(crate) mass_percent: Option<ScalarLawFile>,
     #[serde(default, skip_serializing_if = "Follows::not_at_all")]
     pub(crate) inertia_follows_mass: Follows,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -244,9 +266,8 @@ fn default_coast() -> f64 {
     60.0
 }
 
-fn default_runs() -> u64 {
-    2000
-}
+/// Runs if neither they nor vehicles are given.
+pub(super) const DEFAULT_RUNS: u64 = 2000;
 
 fn default_seed() -> u64 {
     1

@@ -9,20 +9,20 @@ use serde::{
 };
 use std::fmt;
 
-use super::ScenarioError;
+use super::{ScenarioError, each::Each, scalar::ScalarLawFile};
 
 /// Laws of the components of a vector: one for all, one for each, or a covariance.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(crate) enum VectorLawFile {
-    Same(ScalarLawForm),
-    Each(Vec<ScalarLawForm>),
+    Same(ScalarLawFile),
+    Each(Vec<ScalarLawFile>),
 }
 
 /// What a file says of a parameter: a law of a number, in its unit or in percent, or of a vector.
 #[derive(Clone, Copy)]
 pub(crate) enum GivenLaw<'a> {
-    Number(Option<&'a ScalarLawForm>, Option<&'a ScalarLawForm>),
+    Number(Option<&'a ScalarLawFile>, Option<&'a ScalarLawFile>),
     Vector(Option<&'a VectorLawFile>),
 }
 
@@ -33,13 +33,13 @@ impl<'de> Visitor<'de> for VectorLawVisitor {
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(
-            "a standard deviation, a table with law, sigma, sigmas, mean, low, high or covariance, or a list of \
+            "a standard deviation, a table with law, sigma, sigmas, mean, low, high, drawn or covariance, or a list of \
              them, one for each component",
         )
     }
 
     fn visit_f64<E: Error>(self, sigma: f64) -> Result<VectorLawFile, E> {
-        ScalarLawForm::deserialize(sigma.into_deserializer()).map(VectorLawFile::Same)
+        ScalarLawFile::deserialize(sigma.into_deserializer()).map(VectorLawFile::Same)
     }
 
     fn visit_i64<E: Error>(self, sigma: i64) -> Result<VectorLawFile, E> {
@@ -47,7 +47,7 @@ impl<'de> Visitor<'de> for VectorLawVisitor {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<VectorLawFile, A::Error> {
-        ScalarLawForm::deserialize(MapAccessDeserializer::new(map)).map(VectorLawFile::Same)
+        ScalarLawFile::deserialize(MapAccessDeserializer::new(map)).map(VectorLawFile::Same)
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<VectorLawFile, A::Error> {
@@ -90,6 +90,17 @@ pub(crate) struct VectorLaw {
 }
 
 impl VectorLawFile {
+    /// For what a component is drawn, and the key of its law, of a vector whose key is `field`.
+    pub(crate) fn drawn(&self, field: &str, component: usize) -> (Each, String) {
+        match self {
+            Self::Same(law) => (law.drawn, field.to_owned()),
+            Self::Each(laws) => {
+                let drawn = laws.get(component).map_or_else(Each::default, |law| law.drawn);
+                (drawn, format!("{field}[{}]", component + 1))
+            }
+        }
+    }
+
     pub(crate) fn about(
         &self,
         field: &str,
@@ -97,7 +108,7 @@ impl VectorLawFile {
         unit: LawUnit,
     ) -> Result<VectorLaw, ScenarioError> {
         let each = match self {
-            Self::Same(law) => match law.covariance() {
+            Self::Same(law) => match law.form.covariance() {
                 Some(matrix) => return covariance(field, &matrix, nominal, unit),
                 None => vec![law; nominal.len()],
             },
@@ -111,13 +122,10 @@ impl VectorLawFile {
                 return Err(ScenarioError::field(field, problem));
             }
         };
-        let laws = each.iter().zip(nominal).enumerate().map(|(i, (law, nominal))| {
-            let field = match self {
-                Self::Same(_) => field.to_owned(),
-                Self::Each(_) => format!("{field}[{}]", i + 1),
-            };
-            about(law, &field, *nominal, unit)
-        });
+        let laws =
+            each.iter().zip(nominal).enumerate().map(|(i, (law, nominal))| {
+                about(&law.form, &self.drawn(field, i).1, *nominal, unit)
+            });
         Ok(VectorLaw { laws: laws.collect::<Result<_, _>>()?, pairs: Vec::new() })
     }
 }

@@ -1,7 +1,6 @@
 //! A load between the bodies as it stands in a scenario file, of any kind: its keys follow from what the kind declares of
 //! its parameters.
 
-use gyradius_dispersion::ScalarLawForm;
 use gyradius_separation::{AnyLoad, Given, Load, LoadError, LoadId, LoadParameter, Parameter};
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
@@ -10,7 +9,11 @@ use serde::{
 };
 use std::{fmt, marker::PhantomData};
 
-use super::law::{GivenLaw, VectorLawFile};
+use super::{
+    chance::ChanceFile,
+    law::{GivenLaw, VectorLawFile},
+    scalar::ScalarLawFile,
+};
 
 /// A load of a kind as it stands in a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,16 +36,16 @@ enum Value {
 struct LoadDispersionFile<L: Load> {
     /// The law of each parameter, in their order.
     laws: Vec<LawFile>,
-    late_probability: Option<f64>,
-    failure_probability: Option<f64>,
+    late_probability: Option<ChanceFile>,
+    failure_probability: Option<ChanceFile>,
     kind: PhantomData<L>,
 }
 
 /// Laws that are given of a parameter.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct LawFile {
-    number: Option<ScalarLawForm>,
-    percent: Option<ScalarLawForm>,
+    number: Option<ScalarLawFile>,
+    percent: Option<ScalarLawFile>,
     vector: Option<VectorLawFile>,
 }
 
@@ -61,8 +64,8 @@ pub(crate) struct GivenDispersion<'a> {
     pub(crate) parameters: Vec<(LoadParameter, Uncertain<'a>)>,
     /// Which parameter says when it starts.
     pub(crate) start: Option<LoadParameter>,
-    pub(crate) late_probability: Option<f64>,
-    pub(crate) failure_probability: Option<f64>,
+    pub(crate) late_probability: Option<ChanceFile>,
+    pub(crate) failure_probability: Option<ChanceFile>,
 }
 
 /// A parameter that may be uncertain.

@@ -1,9 +1,12 @@
 //! Scenario files: what is uncertain, what flies, how often.
 
 mod body;
+mod chance;
 mod clearance;
 mod dispersions;
+mod each;
 mod file;
+mod fleet;
 mod follows;
 mod law;
 mod limits;
@@ -12,6 +15,7 @@ mod model;
 mod model_file;
 mod outside;
 mod parse;
+mod scalar;
 mod sides;
 
 use gyradius_formats::read_text;
@@ -24,6 +28,7 @@ use clearance::Outlines;
 pub(crate) use dispersions::{Dispersed, Dispersions, Joint, List, Target};
 use file::ScenarioFile;
 pub(crate) use file::{BodyFile, CorrelationFile, DispersionFile, ShapeFile};
+pub use fleet::Fleet;
 pub(crate) use law::{GivenLaw, refused};
 pub(crate) use load::Uncertain;
 pub(crate) use model::{Comparison, Law, ModelSpec};
@@ -31,6 +36,7 @@ pub(crate) use model_file::{AxesFile as Axes, ModelLaw};
 use outside::OutsideLaws;
 pub(crate) use parse::whole;
 pub use parse::{parse_toml, whole_number};
+pub(crate) use {each::Each, fleet::possible};
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
 
@@ -87,6 +93,7 @@ impl ScenarioError {
 #[derive(Clone, Debug)]
 pub struct Scenario {
     file: ScenarioFile,
+    fleet: Option<Fleet>,
     spin_axis: Unit<Vector3<f64>>,
     separation_direction: Option<Unit<Vector3<f64>>>,
     momentum_direction: Unit<Vector3<f64>>,
@@ -134,10 +141,32 @@ impl Scenario {
     /// The same scenario with another number of runs for each model.
     ///
     /// # Errors
-    /// The number is zero or beyond ten million.
+    /// The number is zero or beyond ten million, or the scenario has vehicles.
     pub fn with_runs(self, runs: u64) -> Result<Self, ScenarioError> {
+        if let Some(fleet) = self.fleet {
+            let problem = format!(
+                "{runs}: the scenario has {fleet}, and its runs are their product: say how many vehicles instead"
+            );
+            return Err(ScenarioError::field("runs", problem));
+        }
         check_runs(runs)?;
-        Ok(Self { file: ScenarioFile { runs, ..self.file }, ..self })
+        Ok(Self { file: ScenarioFile { runs: Some(runs), ..self.file }, ..self })
+    }
+
+    /// The same scenario with another number of vehicles, each with as many flights.
+    ///
+    /// # Errors
+    /// The number is zero, or there are more than a thousand million runs then, or the scenario has no vehicles.
+    pub fn with_vehicles(self, vehicles: u64) -> Result<Self, ScenarioError> {
+        let Some(fleet) = self.fleet else {
+            let problem = format!(
+                "{vehicles}: the scenario has no vehicles: it needs vehicles and flights in the place of runs"
+            );
+            return Err(ScenarioError::field("vehicles", problem));
+        };
+        let fleet = Some(fleet.with_vehicles(vehicles)?);
+        let file = ScenarioFile { vehicles: Some(vehicles), ..self.file };
+        Ok(Self { file, fleet, ..self })
     }
 
     /// The same scenario from another seed.
@@ -152,7 +181,12 @@ impl Scenario {
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
         file.models.iter_mut().for_each(model_file::ModelFile::fill);
         check_name("name", &file.name)?;
-        check_runs(file.runs)?;
+        let fleet = Fleet::new(&file)?;
+        match fleet {
+            // One of the two says it.
+            Some(_) => file.runs = None,
+            None => check_runs(*file.runs.get_or_insert(file::DEFAULT_RUNS))?,
+        }
         check_seed(file.seed)?;
         let spin_axis = direction("spin_axis", file.spin_axis)?;
         if let Some(source) = &file.source {
@@ -195,12 +229,13 @@ impl Scenario {
                     let field = if horizon { "horizon_s" } else { "relative_tolerance" };
                     ScenarioError::field(format!("integration.{field}"), e)
                 })?;
-        let dispersions = Dispersions::new(&file, &separation)?;
+        let dispersions = Dispersions::new(&file, fleet, &separation)?;
         let outlines = file.clearance.as_ref().map(Outlines::new).transpose()?;
         let models = model::check_models(&file.models, [&payload, &stage])?;
         let comparisons = model::check_comparisons(&file.comparisons, &models)?;
         Ok(Self {
             file,
+            fleet,
             spin_axis,
             separation_direction,
             momentum_direction,
@@ -222,10 +257,29 @@ impl Scenario {
         &self.file.name
     }
 
-    /// Runs of each model.
+    /// Runs of each model: the flights of all vehicles, if it has vehicles.
     #[must_use]
     pub fn runs(&self) -> u64 {
-        self.file.runs
+        self.fleet.map_or(self.file.runs.unwrap_or(file::DEFAULT_RUNS), Fleet::runs)
+    }
+
+    /// Its vehicles and how often each flies, if it has both.
+    #[must_use]
+    pub fn fleet(&self) -> Option<Fleet> {
+        self.fleet
+    }
+
+    /// The fleet, if flights of a vehicle have something in common, so that runs are not independent.
+    pub(crate) fn sharing(&self) -> Option<Fleet> {
+        self.fleet.filter(|fleet| fleet.flights() > 1 && self.dispersions.of_vehicles())
+    }
+
+    /// The number of the random stream that a run takes for what is drawn for each vehicle, or for each flight.
+    pub(crate) fn stream(&self, each: Each, run: u64) -> u64 {
+        match (each, self.fleet) {
+            (Each::Vehicle, Some(fleet)) => fleet.place(run).0,
+            (Each::Flight, _) | (Each::Vehicle, None) => run,
+        }
     }
 
     /// Seed of all random streams.

@@ -29,9 +29,9 @@ fn complete() -> Table {
         (
             "root_second_moment_variance_kg_m2",
             "roots = \"gaussian\"\naxes = \"radially-constrained-gaussian\"\n\
-             mass_percent = { sigma = 1.0, mean = 0.1 }\ninertia_follows_mass = true\n\
-             mass_centre_m = [0.005, 0.005, 0.02]\n\
-             position_m = { law = \"uniform\", low = -0.01, high = 0.01 }\n\
+             mass_percent = { sigma = 1.0, mean = 0.1 }\ninertia_follows_mass = true\ninertia_drawn = \"vehicle\"\n\
+             mass_centre_m = [0.005, { sigma = 0.005, drawn = \"vehicle\" }, 0.02]\n\
+             position_m = { law = \"uniform\", low = -0.01, high = 0.01, drawn = \"vehicle\" }\n\
              velocity_m_per_s = { law = \"truncated-normal\", sigma = 0.1, low = -0.2, high = 0.2 }\n\
              attitude_deg = 0.5\nangular_velocity_rad_per_s = 0.001\n",
         ),
@@ -41,7 +41,7 @@ fn complete() -> Table {
              friction_n = { law = \"uniform\", low = 0.0, high = 5.0 }\nline_of_action_deg = 0.1\n\
              payload_point_m = 0.001\nstage_point_m = [0.001, 0.001, { sigma = 0.001 }]\n\
              start_s = { law = \"lognormal\", mean = 0.01, sigma = 0.005 }\n\
-             late_probability = 0.02\nfailure_probability = 0.001\n\
+             late_probability = 0.02\nfailure_probability = { probability = 0.001, drawn = \"vehicle\" }\n\
              [[correlations]]\nbetween = [\"payload_mass_kg\", \"spring_4_stroke_m\"]\ncoefficient = 0.5\n",
         ),
         (
@@ -56,6 +56,7 @@ fn complete() -> Table {
         let at = text.find(before).unwrap();
         text.insert_str(at, more);
     }
+    text = text.replace("runs = 2000", "vehicles = 40\nflights = 50");
     let stage = "root_second_moment_variance_kg_m2 = [0.0067, 0.0067, 0.002]";
     let laws = "roots = \"independent\"\nroot_second_moment_laws_sqrt_kg_m = [\
                 { law = \"triangular\", low = 31.0, mode = 31.6, high = 33.0 }, \

@@ -136,6 +136,13 @@ pub(crate) fn whole<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D
     deserializer.deserialize_any(Whole)
 }
 
+/// The same where it may be left out.
+pub(super) fn some_whole<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<u64>, D::Error> {
+    whole(deserializer).map(Some)
+}
+
 /// A whole number that is written as `1e6`: none if it is negative, has a fraction, or is so large
 /// that its last digits are not certain.
 #[must_use]

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     ScenarioError,
     body::Entry,
-    scenario::{GivenLaw, List, Uncertain, UncertainBody},
+    scenario::{GivenLaw, List, Uncertain, UncertainBody, possible},
 };
 
 /// A body whose mass, mass centre and inertia are drawn for each run of a simulator.
@@ -48,6 +48,7 @@ impl SimulatedBody {
                            [[quantities]]";
             return Err(ScenarioError::field(at(key), problem));
         }
+        possible(&at("inertia_drawn"), d.inertia_drawn, None)?;
         if d.mass_centre_m.is_some() && file.mass_centre_m.is_none() {
             let problem = format!("the body has no mass centre: it needs {field}.mass_centre_m");
             return Err(ScenarioError::field(at("mass_centre_m"), problem));

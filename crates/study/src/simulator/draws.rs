@@ -62,7 +62,8 @@ impl Inputs for SimulatorDraws<'_> {
         let of_bodies = self.bodies.iter().flat_map(|draws| &draws.body.numbers);
         let mut values: Vec<f64> =
             of_bodies.chain(self.quantities).map(|number| number.nominal).collect();
-        for (d, value) in self.dispersed.all.iter().zip(self.draws.values(self.dispersed, run)) {
+        for (d, value) in self.dispersed.all.iter().zip(self.draws.values(self.dispersed, |_| run))
+        {
             values[d.target] = value;
         }
         let (mut first, mut failure) = (0, None);

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     ScenarioError,
-    scenario::{Joint, List, check_name, check_runs, check_seed, parse_toml, refused},
+    scenario::{Each, Joint, List, check_name, check_runs, check_seed, parse_toml, refused},
 };
 
 /// Most bodies, quantities or outputs.
@@ -77,7 +77,7 @@ impl SimulatorScenario {
             let nominal = law.mean();
             let (unit, meaning) = (quantity.unit.clone(), quantity.meaning.clone());
             let column = Column::number(quantity.name.clone(), unit, meaning);
-            list.push(&quantity.name, "", nominal, law, count + i);
+            list.push(&quantity.name, "", nominal, (law, Each::Flight), count + i);
             quantities.push(Number { column, nominal });
         }
         let dispersed = list.correlate(

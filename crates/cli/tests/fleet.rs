@@ -1,0 +1,69 @@
+//! Vehicles and flights on the command line.
+
+use std::fs;
+
+use crate::scratch::Scratch;
+
+fn said(output: &std::process::Output) -> (Option<i32>, String) {
+    let text = [&output.stdout[..], &output.stderr[..]].concat();
+    (output.status.code(), String::from_utf8(text).unwrap())
+}
+
+/// More vehicles go on where a study ended; runs in their place, other flights and contradictory flags are refused by
+/// name, and a flight is replayed by its vehicle.
+#[test]
+fn vehicles_take_the_place_of_runs() {
+    let scratch = Scratch::new();
+    let of = |arguments: &[&str]| said(&scratch.run(arguments));
+    assert_eq!(of(&["study", "--runs", "2", "--out", "plain"]).0, Some(0));
+    let plain = fs::read_to_string(scratch.path("plain/scenario.toml")).unwrap();
+    let fleet = plain.replace("runs = 2\n", "vehicles = 3\nflights = 4\n");
+    let fleet = fleet
+        .replace("[payload.dispersion]\n", "[payload.dispersion]\ninertia_drawn = \"vehicle\"\n");
+    fs::write(scratch.path("fleet.toml"), &fleet).unwrap();
+    fs::write(scratch.path("other.toml"), fleet.replace("flights = 4", "flights = 2")).unwrap();
+    let study =
+        |more: &[&str]| of(&[&["study", "--scenario", "fleet.toml", "--out", "s"], more].concat());
+    let (code, text) = study(&[]);
+    assert!(code == Some(0) && text.contains("3 vehicles of 4 flights each, 12 runs"), "{text}");
+    let (code, text) = study(&["--vehicles", "5"]);
+    assert!(code == Some(0) && text.contains("5 vehicles of 4 flights each, 20 runs"), "{text}");
+    for (more, expected) in [
+        (&["--runs", "40"][..], "runs: 40: the scenario has 3 vehicles of 4 flights each"),
+        (&["--vehicles", "0"], "vehicles: 0: "),
+        (&["--vehicles", "1e9"], "vehicles: 1000000000: times flights = 4"),
+        (&["--vehicles", "4"], "runs is 20 there and 16 here"),
+        (&["--vehicles", "4", "--runs", "16"], "cannot be used with"),
+    ] {
+        let (code, text) = study(more);
+        assert!(code == Some(2) && text.contains(expected), "{text}");
+    }
+    let (code, text) = of(&["study", "--scenario", "other.toml", "--vehicles", "50", "--out", "s"]);
+    assert!(code == Some(2) && text.contains("flights is 4 there and 2 here"), "{text}");
+    let (code, text) = of(&["study", "--vehicles", "5", "--out", "t"]);
+    assert!(code == Some(2) && text.contains("the scenario has no vehicles"), "{text}");
+
+    let (code, text) = of(&["replay", "s", "--vehicle", "4", "--flight", "3", "--coast", "0"]);
+    assert!(code == Some(0) && text.contains("run 19 of 20 (vehicle 4, flight 3)"), "{text}");
+    for (arguments, expected) in [
+        (
+            &["s", "--vehicle", "5", "--flight", "0"][..],
+            "the scenario has 5 vehicles of 4 flights each",
+        ),
+        (&["plain", "--vehicle", "0", "--flight", "0"], "the scenario has no vehicles"),
+        (&["s", "--vehicle", "0"], "--flight"),
+        (&["s", "--flight", "0"], "--vehicle"),
+        (&["s"], "--run"),
+        (&["s", "--run", "1", "--vehicle", "0", "--flight", "0"], "cannot be used with"),
+    ] {
+        let (code, text) = of(&[&["replay"], arguments].concat());
+        assert!(code == Some(2) && text.contains(expected), "{text}");
+    }
+    let (_, text) = of(&["draw", "fleet.toml", "-n", "6", "--model", "proposed"]);
+    let column = |at: usize| -> Vec<&str> {
+        text.lines().map(|line| line.split(',').nth(at).unwrap()).collect()
+    };
+    assert_eq!(column(3), ["vehicle", "0", "0", "0", "0", "1", "1"]);
+    assert_eq!(column(4), ["flight", "0", "1", "2", "3", "0", "1"]);
+    assert!(column(5)[1..5].iter().all(|x| *x == column(5)[1]) && column(5)[1] != column(5)[5]);
+}

@@ -1,0 +1,108 @@
+//! A law of one number and for what it is drawn, as they stand in a scenario file.
+
+use gyradius_dispersion::ScalarLawForm;
+use serde::{
+    Deserialize, Deserializer, Serialize, Serializer,
+    de::{
+        DeserializeSeed, Error, IntoDeserializer, MapAccess, Visitor, value::MapAccessDeserializer,
+    },
+};
+use std::fmt;
+
+use super::each::{DRAWN, Each};
+
+/// A law of one number, and for what it is drawn: a key of the law's table, beside those of the law.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ScalarLawFile {
+    pub(crate) form: ScalarLawForm,
+    pub(crate) drawn: Each,
+}
+
+impl Serialize for ScalarLawFile {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Both<'a> {
+            #[serde(flatten)]
+            form: &'a ScalarLawForm,
+            drawn: Each,
+        }
+        let Self { form, drawn } = self;
+        // A number alone is drawn for each flight.
+        if drawn.is_flight() {
+            form.serialize(to)
+        } else {
+            Both { form, drawn: *drawn }.serialize(to)
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for ScalarLawFile {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        from.deserialize_any(LawVisitor)
+    }
+}
+
+struct LawVisitor;
+
+impl<'de> Visitor<'de> for LawVisitor {
+    type Value = ScalarLawFile;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(
+            "a standard deviation, or a table with law, sigma, sigmas, mean, low, high, drawn",
+        )
+    }
+
+    fn visit_f64<E: Error>(self, sigma: f64) -> Result<ScalarLawFile, E> {
+        let form = ScalarLawForm::deserialize(sigma.into_deserializer())?;
+        Ok(ScalarLawFile { form, drawn: Each::default() })
+    }
+
+    fn visit_i64<E: Error>(self, sigma: i64) -> Result<ScalarLawFile, E> {
+        self.visit_f64(sigma as f64)
+    }
+
+    fn visit_u64<E: Error>(self, sigma: u64) -> Result<ScalarLawFile, E> {
+        self.visit_f64(sigma as f64)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ScalarLawFile, A::Error> {
+        let mut drawn = Each::default();
+        let rest = OfLaw { map, drawn: &mut drawn };
+        let form = ScalarLawForm::deserialize(MapAccessDeserializer::new(rest))?;
+        Ok(ScalarLawFile { form, drawn })
+    }
+}
+
+/// What of a table is of the law; for what it is drawn is put aside.
+struct OfLaw<'a, A> {
+    map: A,
+    drawn: &'a mut Each,
+}
+
+impl<'de, A: MapAccess<'de>> MapAccess<'de> for OfLaw<'_, A> {
+    type Error = A::Error;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> Result<Option<K::Value>, A::Error> {
+        while let Some(key) = self.map.next_key::<String>()? {
+            if key == DRAWN {
+                *self.drawn = self.map.next_value()?;
+            } else if ScalarLawForm::keys().any(|known| known == key) {
+                return seed.deserialize(key.into_deserializer()).map(Some);
+            } else {
+                let known = ScalarLawForm::keys().chain([DRAWN]).map(|known| format!("`{known}`"));
+                let known = known.collect::<Vec<_>>().join(", ");
+                let problem = format!("unknown field `{key}`, expected one of {known}");
+                return Err(A::Error::custom(problem));
+            }
+        }
+        Ok(None)
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, A::Error> {
+        self.map.next_value_seed(seed)
+    }
+}
