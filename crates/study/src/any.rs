@@ -152,7 +152,7 @@ impl AnyScenario {
         say: &dyn Fn(Notice),
     ) -> Result<Outcome, StudyError> {
         of_either!(self, scenario =>
-            carry_out(&**scenario, options, Doing::All, progress, say).map(Outcome::of))
+            carry_out(&**scenario, options, Doing::All, progress, say).map(|study| Outcome::of(&study)))
     }
 
     /// Does a share of the runs of a study, of those that are in no finished block, into its folder. Other processes may do
@@ -211,7 +211,7 @@ pub fn put_together(
     })?;
     let scenario = AnyScenario::from_toml(&text, folder)?;
     of_either!(&scenario, scenario =>
-        study::put_together(&**scenario, folder, options, say).map(Outcome::of))
+        study::put_together(&**scenario, folder, options, say).map(|study| Outcome::of(&study)))
 }
 
 /// Makes the figures and the report of the study in a folder again, there or in another folder; returns the folder.
@@ -257,7 +257,7 @@ struct ModelOutcome {
 }
 
 impl Outcome {
-    fn of<S: Summarized>(study: Study<S>) -> Self {
+    fn of<S: Summarized>(study: &Study<S>) -> Self {
         let summary = study.summary();
         Self {
             folder: study.folder().to_owned(),

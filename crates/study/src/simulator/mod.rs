@@ -2,7 +2,8 @@
 
 mod body;
 mod draws;
-#[cfg(all(test, unix))]
+#[cfg(unix)]
+#[cfg(test)]
 mod examples;
 mod file;
 mod number;
@@ -10,7 +11,8 @@ mod read;
 mod replay;
 mod scenario;
 mod summary;
-#[cfg(all(test, unix))]
+#[cfg(unix)]
+#[cfg(test)]
 mod tests;
 
 pub(crate) use draws::SimulatorDraws;

@@ -16,7 +16,8 @@ use std::{
 
 use super::{SimulatorDraws, SimulatorReplay, SimulatorScenario, SimulatorSummary};
 use crate::{
-    AnyScenario, CampaignError, Options, Scenario, Shard, Status, Study, StudyError, is_begun,
+    AnyScenario, CampaignError, ModelStatus, Options, Scenario, Shard, Status, Study, StudyError,
+    is_begun,
     model::{self, Separations},
     put_together, write_report,
 };
@@ -339,7 +340,7 @@ fn shards_are_put_together_without_the_simulator() {
         any.run_shard(&options, shard(i, 3), &|_| {}, &|_| {}).unwrap();
     }
     let status = Status::read(&out("shards")).unwrap();
-    let done: u64 = status.models().iter().map(|model| model.finished()).sum();
+    let done: u64 = status.models().iter().map(ModelStatus::finished).sum();
     assert_eq!(done, any.planned_runs(Some(shard(1, 3))) + any.planned_runs(Some(shard(2, 3))));
     assert!(!status.is_complete() && is_begun(&out("shards")));
     let part = put_together(&out("shards"), &Options::default(), &|_| {}).unwrap();
