@@ -26,6 +26,7 @@ mod drawn;
 mod error;
 mod failure;
 mod figures_of_study;
+mod fleet;
 mod fragment;
 mod head;
 mod loads;
@@ -56,6 +57,7 @@ pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
 pub use draw::{Draw, DrawError, DrawOptions};
 pub use error::StudyError;
 pub use failure::Failure;
+pub use fleet::Fleet;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_campaign::{
     Again, CampaignError, Cell, Column, Forecast, FormatError, Progress, Row, Runs, RunsError,
@@ -67,7 +69,7 @@ pub use head::{Head, Missing};
 pub use quantity::Quantity;
 pub use replay::{Replay, ReplayError, Which};
 pub use results::{Results, ResultsError};
-pub use scenario::{Fleet, Scenario, ScenarioError, parse_toml, whole_number};
+pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
 pub use shards::{ModelStatus, Status};
 pub use simulator::{SimulatorReplay, SimulatorScenario, SimulatorSummary};
 pub use study::{Notice, Options, Study, restore_studies};

@@ -10,12 +10,12 @@ use super::{
     chance::ChanceFile,
     each::{DRAWN, Each},
     file::{BodyFile, CorrelationFile, ScenarioFile},
-    fleet::{self, Fleet},
     law::{self, GivenLaw, VectorLawFile},
     load::{self, GivenLoad, Uncertain},
     scalar::ScalarLawFile,
+    vehicles,
 };
-use crate::body::Body;
+use crate::{body::Body, fleet::Fleet};
 
 /// A number that every run draws.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,7 +87,7 @@ impl Dispersions {
         let inertia_follows_mass = [follows(&file.payload), follows(&file.stage)];
         let inertia = |name: Body, body: &BodyFile| {
             let field = format!("{}.dispersion.inertia_drawn", name.name());
-            fleet::possible(&field, body.dispersion.inertia_drawn, fleet)
+            vehicles::possible(&field, body.dispersion.inertia_drawn, fleet)
         };
         let inertia = [inertia(Body::Payload, &file.payload)?, inertia(Body::Stage, &file.stage)?];
         Ok(Self { joint, inertia, inertia_follows_mass })
@@ -181,7 +181,7 @@ impl<T> List<T> {
 
     /// For what a law is drawn that stands at a field, if the scenario has that.
     fn each(&self, field: &str, each: Each) -> Result<Each, ScenarioError> {
-        fleet::possible(&format!("{field}.{DRAWN}"), each, self.fleet)
+        vehicles::possible(&format!("{field}.{DRAWN}"), each, self.fleet)
     }
 
     /// A number given in its unit or in percent.

@@ -6,7 +6,6 @@ mod clearance;
 mod dispersions;
 mod each;
 mod file;
-mod fleet;
 mod follows;
 mod law;
 mod limits;
@@ -17,6 +16,7 @@ mod outside;
 mod parse;
 mod scalar;
 mod sides;
+mod vehicles;
 
 use gyradius_formats::read_text;
 use gyradius_separation::{Separation, SeparationError, Settings, SettingsError};
@@ -28,7 +28,6 @@ use clearance::Outlines;
 pub(crate) use dispersions::{Dispersed, Dispersions, Joint, List, Target};
 use file::ScenarioFile;
 pub(crate) use file::{BodyFile, CorrelationFile, DispersionFile, ShapeFile};
-pub use fleet::Fleet;
 pub(crate) use law::{GivenLaw, refused};
 pub(crate) use load::Uncertain;
 pub(crate) use model::{Comparison, Law, ModelSpec};
@@ -36,7 +35,9 @@ pub(crate) use model_file::{AxesFile as Axes, ModelLaw};
 use outside::OutsideLaws;
 pub(crate) use parse::whole;
 pub use parse::{parse_toml, whole_number};
-pub(crate) use {each::Each, fleet::possible};
+pub(crate) use {each::Each, vehicles::possible};
+
+use crate::fleet::Fleet;
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
 
@@ -164,9 +165,10 @@ impl Scenario {
             );
             return Err(ScenarioError::field("vehicles", problem));
         };
-        let fleet = Some(fleet.with_vehicles(vehicles)?);
-        let file = ScenarioFile { vehicles: Some(vehicles), ..self.file };
-        Ok(Self { file, fleet, ..self })
+        let fleet = Fleet::new(vehicles, fleet.flights());
+        vehicles::check(fleet)?;
+        let file = ScenarioFile { vehicles: Some(fleet.vehicles()), ..self.file };
+        Ok(Self { file, fleet: Some(fleet), ..self })
     }
 
     /// The same scenario from another seed.
@@ -181,7 +183,7 @@ impl Scenario {
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
         file.models.iter_mut().for_each(model_file::ModelFile::fill);
         check_name("name", &file.name)?;
-        let fleet = Fleet::new(&file)?;
+        let fleet = vehicles::fleet(&file)?;
         match fleet {
             // One of the two says it.
             Some(_) => file.runs = None,

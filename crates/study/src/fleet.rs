@@ -1,0 +1,61 @@
+//! Vehicles and their flights: which of them a run is.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Vehicles, each of which flies so many times.
+///
+/// Run `vehicle · flights + flight` is that flight of that vehicle, both from 0: more vehicles change no run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fleet {
+    vehicles: u64,
+    flights: u64,
+}
+
+impl Fleet {
+    /// So many vehicles of so many flights each.
+    pub(crate) fn new(vehicles: u64, flights: u64) -> Self {
+        Self { vehicles, flights }
+    }
+
+    /// How many vehicles there are.
+    #[must_use]
+    pub fn vehicles(self) -> u64 {
+        self.vehicles
+    }
+
+    /// How many flights each of them makes.
+    #[must_use]
+    pub fn flights(self) -> u64 {
+        self.flights
+    }
+
+    /// The flights of all vehicles.
+    #[must_use]
+    pub fn runs(self) -> u64 {
+        // A scenario with more is refused.
+        self.vehicles.saturating_mul(self.flights)
+    }
+
+    /// The vehicle and the flight of a run, all from 0.
+    #[must_use]
+    pub fn place(self, run: u64) -> (u64, u64) {
+        let flights = self.flights.max(1);
+        (run / flights, run % flights)
+    }
+
+    /// The run that is a flight of a vehicle, all from 0; none if there is no such vehicle or flight.
+    #[must_use]
+    pub fn run(self, vehicle: u64, flight: u64) -> Option<u64> {
+        let there = vehicle < self.vehicles && flight < self.flights;
+        there.then(|| vehicle * self.flights + flight)
+    }
+}
+
+impl fmt::Display for Fleet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let many = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+        let (vehicles, flights) = (many(self.vehicles, "vehicle"), many(self.flights, "flight"));
+        write!(f, "{vehicles} of {flights} each")
+    }
+}
