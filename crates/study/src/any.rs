@@ -1,6 +1,6 @@
 //! A scenario of either kind, and what becomes of it: for programs that are given a file or a folder.
 
-use gyradius_campaign::{Doing, Forecast, Progress, Shard, begun};
+use gyradius_campaign::{Doing, Forecast, Progress, Shard, begun, folder_of};
 use serde::Serialize;
 use std::{
     fmt, fs,
@@ -38,14 +38,12 @@ macro_rules! of_either {
 }
 
 impl AnyScenario {
-    /// Reads a scenario file; of the folder of a study, its `scenario.toml`.
+    /// Reads a scenario file.
     ///
     /// # Errors
     /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let file = if path.is_dir() { path.join("scenario.toml") } else { path.to_owned() };
-        let folder = gyradius_campaign::folder_of(&file);
-        Self::from_toml(&read_file(&file)?, folder).map_err(|error| error.in_file(&file))
+        Self::from_toml(&read_file(path)?, folder_of(path)).map_err(|error| error.in_file(path))
     }
 
     /// Reads a scenario from the text of a file that is in a folder.

@@ -17,7 +17,8 @@ pub(crate) fn replay(arguments: &ReplayArgs) -> Result<(), Box<dyn Error>> {
         // One of the two is given.
         _ => Which::Run(arguments.run.unwrap_or_default()),
     };
-    if let Ok(AnyScenario::Simulator(scenario)) = AnyScenario::read(path) {
+    let file = if path.is_dir() { path.join("scenario.toml") } else { path.to_owned() };
+    if let Ok(AnyScenario::Simulator(scenario)) = AnyScenario::read(&file) {
         let Which::Run(run) = which else {
             return Err(
                 "--vehicle: a scenario of a simulator has no vehicles: --run names a run".into()
