@@ -1,14 +1,11 @@
 //! Runs that failed, done again: for failures that are not of the run, such as a licence that was not free.
 
 use rayon::prelude::*;
-use std::sync::{
-    Mutex, PoisonError,
-    atomic::{AtomicBool, Ordering},
-};
+use std::sync::{Mutex, PoisonError, atomic::AtomicBool};
 
 use crate::{
     folder::Blocks,
-    simulation::{CampaignError, Simulation, run_range},
+    simulation::{CampaignError, Simulation, go_on, run_range},
     table::Table,
 };
 
@@ -31,19 +28,15 @@ pub fn run_again<S: Simulation>(
     blocks: &Blocks,
     stop: Option<&AtomicBool>,
 ) -> Result<Again, CampaignError> {
-    let go_on = || match stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
-        true => Err(CampaignError::Stopped),
-        false => Ok(()),
-    };
     let mut all = Again::default();
     for (name, simulation) in simulations {
         let empty = Table::new(name, 0, simulation.columns())?;
         let with_failures = blocks.with_failures(name);
         let runs = blocks.runs(&empty, Vec::new());
         let each = with_failures.into_par_iter().map(|range| {
-            go_on()?;
+            go_on(stop)?;
             let Some(old) = runs.block(range.start)? else { return Ok(Again::default()) };
-            let (new, again) = redone(simulation, &empty, &old, &|_| go_on())?;
+            let (new, again) = redone(simulation, &empty, &old, &|_| go_on(stop))?;
             blocks.write_again(&new, again.runs)?;
             Ok::<_, CampaignError>(again)
         });

@@ -13,7 +13,7 @@ use crate::{
     folder::Blocks,
     runs::Runs,
     shard::Shard,
-    simulation::{CampaignError, Progress, Simulation, run_range},
+    simulation::{CampaignError, Progress, Simulation, go_on, run_range},
     table::Table,
 };
 
@@ -118,7 +118,6 @@ pub fn run_missing<S: Simulation>(
     progress: Progress<'_>,
     look: Option<Look<'_>>,
 ) -> Result<Vec<Runs>, CampaignError> {
-    let stopped = || plan.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
     let tables =
         simulations.iter().map(|(name, simulation)| Table::new(name, 0, simulation.columns()));
     let tables = tables.collect::<Result<Vec<_>, _>>()?;
@@ -143,12 +142,10 @@ pub fn run_missing<S: Simulation>(
         }
         let held = Mutex::new(Vec::new());
         missing.into_par_iter().try_for_each(|runs| {
-            if stopped() {
-                return Err(CampaignError::Stopped);
-            }
+            go_on(plan.stop)?;
             let table = run_range(simulation, empty, runs, &|runs| {
                 more(runs);
-                if stopped() { Err(CampaignError::Stopped) } else { Ok(()) }
+                go_on(plan.stop)
             })?;
             blocks.write(&table)?;
             if let Some(look) = look {
@@ -165,7 +162,7 @@ pub fn run_missing<S: Simulation>(
             {
                 held.push(table);
             }
-            Ok(())
+            Ok::<_, CampaignError>(())
         })?;
         all.push(blocks.runs(empty, held.into_inner().unwrap_or_default()));
     }

@@ -65,6 +65,7 @@ mod failure;
 mod folder;
 mod forecast;
 mod format;
+mod hash;
 mod identity;
 mod room;
 mod runs;
@@ -91,6 +92,7 @@ pub use folder::{
 };
 pub use forecast::{Forecast, rough_size, rough_time};
 pub use format::{Extent, FormatError, TableFormat, TableWriter};
+pub use hash::sha256;
 pub use identity::{Difference, Identity};
 pub use room::disk_left;
 pub use runs::{Runs, RunsError};

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use std::{
     ops::Range,
-    sync::atomic::{AtomicU64, Ordering},
+    sync::atomic::{AtomicBool, AtomicU64, Ordering},
 };
 
 use crate::{
@@ -110,6 +110,14 @@ pub(crate) fn run_range<S: Simulation>(
         whole.append(part);
     }
     Ok(whole)
+}
+
+/// Whether it goes on, or was told to stop.
+pub(crate) fn go_on(stop: Option<&AtomicBool>) -> Result<(), CampaignError> {
+    match stop {
+        Some(stop) if stop.load(Ordering::Relaxed) => Err(CampaignError::Stopped),
+        Some(_) | None => Ok(()),
+    }
 }
 
 /// So many threads, or as many as the machine has.

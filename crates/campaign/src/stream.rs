@@ -1,12 +1,9 @@
 //! Runs that are handed on block by block, in memory that does not grow with their number.
 
-use std::{
-    ops::Range,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::{ops::Range, sync::atomic::AtomicBool};
 
 use crate::{
-    simulation::{CampaignError, Simulation, run_range},
+    simulation::{CampaignError, Simulation, go_on, run_range},
     table::Table,
 };
 
@@ -28,17 +25,13 @@ pub fn stream<S: Simulation, E: From<CampaignError>>(
     mut take: impl FnMut(&Table) -> Result<(), E>,
 ) -> Result<(), E> {
     let empty = Table::new(model, runs.start, simulation.columns()).map_err(CampaignError::from)?;
-    let go_on = || match stop {
-        Some(stop) if stop.load(Ordering::Relaxed) => Err(CampaignError::Stopped),
-        Some(_) | None => Ok(()),
-    };
     let more = |runs| {
         more(runs);
-        go_on()
+        go_on(stop)
     };
     let mut first = runs.start;
     while first < runs.end {
-        go_on()?;
+        go_on(stop)?;
         let last = runs.end.min(first.saturating_add(BLOCK_RUNS));
         take(&run_range(simulation, &empty, first..last, &more)?)?;
         first = last;

@@ -2,7 +2,6 @@
 
 use gyradius_campaign::ColumnSummary;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use std::{borrow::Cow, fmt, ops::Range};
 
 use crate::Fleet;
@@ -109,9 +108,4 @@ impl fmt::Display for Missing {
 
 fn is_zero(count: &u64) -> bool {
     *count == 0
-}
-
-/// SHA-256 of a resolved scenario, in hexadecimal.
-pub(crate) fn fingerprint(toml: &str) -> String {
-    Sha256::digest(toml).iter().map(|byte| format!("{byte:02x}")).collect()
 }

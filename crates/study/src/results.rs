@@ -1,6 +1,6 @@
 //! The results of a study as plain data: read back from its folder, and the report that is made from them.
 
-use gyradius_campaign::{Contents, Folder, FolderError, restore};
+use gyradius_campaign::{Contents, Folder, FolderError, restore, sha256};
 use gyradius_formats::read_text;
 use gyradius_report::Document;
 use serde_json::Value;
@@ -10,7 +10,7 @@ use std::{
 };
 
 use crate::{
-    Scenario, ScenarioError, Summary, head, report,
+    Scenario, ScenarioError, Summary, report,
     subject::{Subject, read_resolved},
 };
 
@@ -143,7 +143,7 @@ pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, 
         return Err(ResultsError::Version { path: folder.to_owned(), found: version });
     }
     let scenario: C = read_resolved(&file)?;
-    let there = head::fingerprint(&scenario.to_toml());
+    let there = sha256(&scenario.to_toml());
     if there != fingerprint {
         return Err(ResultsError::Fingerprint {
             path: folder.to_owned(),

@@ -1,16 +1,13 @@
 //! What a study is of: a scenario of separations, or of a simulator of the user's own.
 
-use gyradius_campaign::{Column, FirstLook, Forecast, Runs, Simulation, Table};
+use gyradius_campaign::{Column, FirstLook, Forecast, Runs, Simulation, Table, sha256};
 use gyradius_report::Document;
 use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
 use serde::{Serialize, de::DeserializeOwned};
 use std::{fmt::Display, path::Path};
 
-use crate::{
-    Fleet, ScenarioError, StudyError,
-    head::{Head, fingerprint},
-};
+use crate::{Fleet, ScenarioError, StudyError, head::Head};
 
 /// What a study is of: models whose runs are simulated, what they amount to, and the pages that show it.
 pub(crate) trait Subject: Sync + Sized {
@@ -110,7 +107,7 @@ pub(crate) fn head_of(scenario: &impl Subject, columns: &[Column]) -> Head {
     Head {
         gyradius_version: env!("CARGO_PKG_VERSION").into(),
         scenario: scenario.name().to_owned(),
-        fingerprint: fingerprint(&scenario.to_toml()),
+        fingerprint: sha256(&scenario.to_toml()),
         seed: scenario.seed(),
         runs_per_model: scenario.runs(),
         fleet: scenario.fleet(),

@@ -6,6 +6,8 @@ use std::{
     time::Duration,
 };
 
+use crate::hash::{sha256, sha256_of_file};
+
 /// Seconds that a run may take if nothing is said.
 const TIMEOUT_S: f64 = 60.0;
 /// Most seconds that may be asked for: twelve days.
@@ -80,6 +82,15 @@ impl Program {
     #[must_use]
     pub fn timeout_s(&self) -> f64 {
         self.timeout_s
+    }
+
+    /// SHA-256 of the files that its words name, in hexadecimal: of regular files alone, for a pipe or a device has no end.
+    #[must_use]
+    pub fn files_sha256(&self) -> String {
+        let files =
+            self.words.iter().map(Path::new).filter(|word| word.is_absolute() && word.is_file());
+        let hashes = files.filter_map(|file| sha256_of_file(file).ok());
+        sha256(&hashes.collect::<Vec<_>>().join("\n"))
     }
 
     pub(super) fn timeout(&self) -> Duration {

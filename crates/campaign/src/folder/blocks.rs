@@ -23,13 +23,14 @@ use super::{
     disk,
     hidden::Hidden,
     manifest::{Block, MANIFEST, Manifest},
-    name::{Found, Name, hex, look},
+    name::{Found, Name, look},
     shared::Shared,
     told::{missing_runs, published},
     unobstructed,
 };
 use crate::{
     column::Column,
+    hash::hex,
     identity::{Difference, Identity},
     runs::Runs,
     shard::Shard,

@@ -8,9 +8,10 @@ use std::{
 
 use super::{
     Problem, disk,
-    name::{HIDDEN, Name, hash_of, said},
+    name::{HIDDEN, Name, said},
     record::Record,
 };
+use crate::hash::sha256;
 
 /// The hidden folder, held by a lock until it is dropped; the system gives the lock back if the program
 /// dies.
@@ -109,7 +110,7 @@ impl Hidden {
         }
         let text = fs::read_to_string(&path).map_err(|error| unknown(error.to_string()))?;
         let record = serde_json::from_str(&text).map_err(|error| unknown(error.to_string()))?;
-        Ok((record, Some(hash_of(&text))))
+        Ok((record, Some(sha256(&text))))
     }
 
     /// Takes it away again if it was made for nothing.

@@ -16,9 +16,10 @@ use std::{
 use super::{
     Problem, disk,
     hidden::Hidden,
-    name::{Found, HIDDEN, Name, hash, hash_of, look, said},
+    name::{Found, HIDDEN, Name, look, said},
     record::Record,
 };
+use crate::hash::{sha256, sha256_of_file};
 
 const JOURNAL: &str = "journal";
 const DRAFT: &str = "draft";
@@ -70,7 +71,7 @@ impl Replacement {
             files.extend(hash.map(|hash| (record.clone(), hash)));
             Record::new(files, known.folders().clone())
         };
-        Self { mark, old: with(old, old_hash), new: with(new, Some(hash_of(new_text))) }
+        Self { mark, old: with(old, old_hash), new: with(new, Some(sha256(new_text))) }
     }
 
     /// The old files, the mark first: a folder without one is not whole.
@@ -166,7 +167,8 @@ impl Journal {
         let (mut files, mut folders) = (BTreeMap::new(), BTreeSet::new());
         for name in &self.drafts {
             let known = self.hashes.get(name).cloned();
-            let hash = known.map_or_else(|| hash(&name.below(&hidden.join(DRAFT))), Ok)?;
+            let hash =
+                known.map_or_else(|| sha256_of_file(&name.below(&hidden.join(DRAFT))), Ok)?;
             files.insert(name.clone(), hash);
             for above in name.folders() {
                 let there = fs::symlink_metadata(above.below(hidden.place())).is_ok();

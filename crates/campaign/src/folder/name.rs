@@ -1,13 +1,14 @@
 //! Names of files in a folder, and what is found under them.
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use std::{
     fmt,
-    fs::{self, File, FileType},
-    io::{self, Read},
+    fs::{self, FileType},
+    io,
     path::{Path, PathBuf},
 };
+
+use crate::hash::sha256_of_file;
 
 /// The folder in which this module keeps what it knows of the one above it.
 pub(super) const HIDDEN: &str = ".gyradius";
@@ -106,7 +107,9 @@ pub(super) fn look(folder: &Path, name: &Name) -> io::Result<Found> {
     }
     match kind(name)? {
         None => Ok(Found::Nothing),
-        Some(kind) if kind.is_file() => Ok(Found::File { hash: hash(&name.below(folder))? }),
+        Some(kind) if kind.is_file() => {
+            Ok(Found::File { hash: sha256_of_file(&name.below(folder))? })
+        }
         Some(kind) => other(name, kind, "file"),
     }
 }
@@ -122,27 +125,6 @@ pub(super) fn said(kind: FileType) -> &'static str {
     } else {
         "device or pipe"
     }
-}
-
-/// SHA-256 of a file, in hexadecimal.
-pub(super) fn hash(path: &Path) -> io::Result<String> {
-    let (mut file, mut sha) = (File::open(path)?, Sha256::new());
-    let mut buffer = vec![0; 1 << 16];
-    loop {
-        match file.read(&mut buffer)? {
-            0 => return Ok(hex(sha)),
-            n => sha.update(&buffer[..n]),
-        }
-    }
-}
-
-/// SHA-256 of a text, in hexadecimal.
-pub(super) fn hash_of(text: &str) -> String {
-    hex(Sha256::new_with_prefix(text))
-}
-
-pub(super) fn hex(sha: Sha256) -> String {
-    sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// A name that no file of this program has.

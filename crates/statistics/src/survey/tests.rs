@@ -11,6 +11,11 @@ fn surveyed(runs: &[Option<f64>], part: usize, stride: u64) -> Survey {
         .quantiles([0.05, 0.5, 0.95, 0.0, 1.0])
         .quantile_interval_at(0.95, confidence);
     survey.stride = stride;
+    advanced(survey, runs, part)
+}
+
+/// The survey after all of its passes over the runs, in parts, the last first.
+fn advanced(mut survey: Survey, runs: &[Option<f64>], part: usize) -> Survey {
     let mut passes = 0;
     while let Some(empty) = survey.pass() {
         let mut whole = empty.clone();
@@ -110,16 +115,7 @@ fn grouped(runs: &[Option<f64>], size: u64, part: usize, stride: u64) -> OfGroup
         .quantile_interval_at(0.5, confidence)
         .in_groups_of(size);
     survey.stride = stride;
-    while let Some(empty) = survey.pass() {
-        let mut whole = empty.clone();
-        for (i, values) in runs.chunks(part).enumerate().rev() {
-            let mut pass = empty.clone();
-            let first = (i * part) as u64;
-            pass.extend((first..).zip(values).filter_map(|(run, x)| Some((run, (*x)?))));
-            whole.merge(pass);
-        }
-        survey.advance(whole);
-    }
+    let survey = advanced(survey, runs, part);
     OfGroups {
         mean: survey.mean_interval(confidence),
         deviation: survey.deviation_interval(confidence),

@@ -23,8 +23,8 @@ struct Table {
     drawn: Each,
 }
 
-/// The key of the probability itself; below that of the chance if this is a table.
 impl ChanceFile {
+    /// The key of the probability itself; below that of the chance if this is a table.
     pub(crate) fn key(&self, chance: &str) -> String {
         if self.drawn.is_flight() { chance.to_owned() } else { format!("{chance}.probability") }
     }

@@ -307,7 +307,7 @@ impl Scenario {
     /// a digest of its draws, so that this is then as sure as that the law always draws the same.
     #[must_use]
     pub fn fingerprint(&self) -> String {
-        crate::head::fingerprint(&self.to_toml())
+        gyradius_campaign::sha256(&self.to_toml())
     }
 
     /// The axis that the payload spins about, body axes.
@@ -428,6 +428,11 @@ fn separation_error(error: SeparationError) -> ScenarioError {
 /// What the distances of a load come from.
 const POINTS: &str = "; where its points are follows from payload_point_m, stage_point_m, and position_m and \
                       body_to_inertial of the bodies";
+
+/// The scenario file that a path names: a file, or that in the folder of a study.
+pub(crate) fn scenario_file(path: &Path) -> PathBuf {
+    if path.is_dir() { path.join("scenario.toml") } else { path.to_owned() }
+}
 
 /// The text of a scenario file. One in the folder of a study may have been put aside by a command that was killed.
 pub(crate) fn read_file(path: &Path) -> Result<String, ScenarioError> {

@@ -4,7 +4,10 @@ use gyradius_campaign::{Table, folder_of};
 use std::path::Path;
 
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
-use crate::{ScenarioError, scenario::read_file};
+use crate::{
+    ScenarioError,
+    scenario::{read_file, scenario_file},
+};
 
 impl SimulatorScenario {
     /// Reads a scenario file; of the folder of a study, its `scenario.toml`.
@@ -12,7 +15,7 @@ impl SimulatorScenario {
     /// # Errors
     /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let file = if path.is_dir() { path.join("scenario.toml") } else { path.to_owned() };
+        let file = scenario_file(path);
         let text = read_file(&file)?;
         let folder = folder_of(&file);
         Self::from_toml(&text, folder).map_err(|error| error.in_file(&file))

@@ -2,8 +2,7 @@
 
 use gyradius_campaign::{Column, Program, ProgramError};
 use gyradius_dispersion::{ModelKind, ScalarLaw};
-use sha2::{Digest, Sha256};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::{
     body::SimulatedBody,
@@ -59,7 +58,7 @@ impl SimulatorScenario {
         if file.simulation.files_sha256.is_none() {
             let given = file.simulation.folder.clone().unwrap_or_else(|| folder.to_owned());
             file.simulation.folder = Some(std::path::absolute(&given).unwrap_or(given));
-            file.simulation.files_sha256 = Some(digest(&program(&file)?));
+            file.simulation.files_sha256 = Some(program(&file)?.files_sha256());
         }
         let mut list = List::default();
         let (mut bodies, mut count) = (Vec::new(), 0);
@@ -155,7 +154,7 @@ impl SimulatorScenario {
 
     /// That the files that the command names are those that runs were done with.
     pub(super) fn check_files(&self, program: &Program) -> Result<(), ScenarioError> {
-        if self.file.simulation.files_sha256.as_ref() == Some(&digest(program)) {
+        if self.file.simulation.files_sha256.as_ref() == Some(&program.files_sha256()) {
             return Ok(());
         }
         let problem = "a file that the command names was changed after the scenario was resolved, and its runs would not \
@@ -207,18 +206,6 @@ fn program(file: &File) -> Result<Program, ScenarioError> {
             ScenarioError::field(format!("simulation.{key}"), error)
         })?;
     Ok(if simulation.per_run { program.per_run() } else { program })
-}
-
-/// SHA-256 of the files that a command names, in hexadecimal.
-fn digest(program: &Program) -> String {
-    let mut digest = Sha256::new();
-    for path in program.words().iter().map(PathBuf::from).filter(|path| path.is_absolute()) {
-        if let Ok(bytes) = std::fs::read(&path) {
-            digest.update((bytes.len() as u64).to_le_bytes());
-            digest.update(bytes);
-        }
-    }
-    digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn check_models(file: &mut File) -> Result<(), ScenarioError> {
