@@ -67,3 +67,25 @@ fn vehicles_take_the_place_of_runs() {
     assert_eq!(column(4), ["flight", "0", "1", "2", "3", "0", "1"]);
     assert!(column(5)[1..5].iter().all(|x| *x == column(5)[1]) && column(5)[1] != column(5)[5]);
 }
+
+/// Each task of a job array does its share of the vehicles, as the script says it.
+#[test]
+fn a_script_for_slurm_tells_vehicles() {
+    let scratch = Scratch::new();
+    assert_eq!(said(&scratch.run(&["study", "--runs", "2", "--out", "plain"])).0, Some(0));
+    let plain = fs::read_to_string(scratch.path("plain/scenario.toml")).unwrap();
+    fs::write(scratch.path("f.toml"), plain.replace("runs = 2\n", "vehicles = 3\nflights = 4\n"))
+        .unwrap();
+    for (more, vehicles) in [(&[][..], "3"), (&["--vehicles", "5"], "5")] {
+        let slurm = ["slurm", "--scenario", "f.toml", "--out", "o", "--shards", "2", "--time", "9"];
+        let (code, script) = said(&scratch.run(&[&slurm, more].concat()));
+        let line = script.lines().find(|line| line.starts_with("exec ")).unwrap();
+        assert_eq!(code, Some(0), "{script}");
+        let flag = format!("--vehicles={vehicles}");
+        assert!(line.contains(&flag) && !line.contains("--runs"), "{line}");
+        let out = format!("shard-{vehicles}");
+        let shard = ["study", "--scenario", "f.toml", "--out", &out, "--shard", "1/2", &flag];
+        let (code, text) = said(&scratch.run(&shard));
+        assert_eq!(code, Some(0), "{text}");
+    }
+}

@@ -168,6 +168,30 @@ fn every_verb_knows_simulators() {
     assert!(refused.status.code() == Some(2) && !scratch.path("absent").exists());
 }
 
+/// A scenario that is wrong is refused as one of a simulator by every verb, and what a command names is read if it is a
+/// regular file.
+#[test]
+fn wrong_scenarios_and_endless_files_are_known() {
+    let scratch = scratch();
+    let wrong = SCENARIO.replace("command =", "timeout_s = -1.0\ncommand =");
+    fs::write(scratch.path("wrong.toml"), wrong).unwrap();
+    for verb in [
+        &["study", "--scenario", "wrong.toml"][..],
+        &["replay", "wrong.toml", "--run", "1"],
+        &["draw", "wrong.toml"],
+        &["slurm", "--scenario", "wrong.toml", "--out", "x"],
+    ] {
+        let output = scratch.run(verb);
+        let [_, err] = said(&output);
+        assert!(output.status.code() == Some(2) && err.contains("simulation.timeout_s"), "{err}");
+    }
+    let endless = SCENARIO.replace("\"answer.sh\"", "\"answer.sh\", \"/dev/zero\"");
+    fs::write(scratch.path("endless.toml"), endless).unwrap();
+    let output =
+        scratch.run(&["study", "--scenario", "endless.toml", "--runs", "3", "--out", "endless"]);
+    assert!(output.status.success(), "{:?}", said(&output));
+}
+
 /// A study that the disk has no room for is refused before it begins, and begun if that is asked for.
 #[test]
 fn a_disk_that_is_too_small_is_found_before() {

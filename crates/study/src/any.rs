@@ -8,14 +8,14 @@ use std::{
 };
 
 use crate::{
-    Notice, Options, ResultsError, Scenario, ScenarioError, SimulatorScenario, Status, Study,
-    StudyError,
+    Fleet, Notice, Options, ResultsError, Scenario, ScenarioError, SimulatorScenario, Status,
+    Study, StudyError,
     head::{Head, Missing},
     results,
-    scenario::{parse_toml, read_file},
+    scenario::{parse_toml, read_file, scenario_file},
     shards,
     study::{self, carry_out},
-    subject::Summarized,
+    subject::{Subject, Summarized},
 };
 
 /// A scenario of separations, or of a simulator of the user's own, which has a table `[simulation]`.
@@ -107,6 +107,12 @@ impl AnyScenario {
     #[must_use]
     pub fn runs(&self) -> u64 {
         of_either!(self, scenario => scenario.runs())
+    }
+
+    /// The vehicles whose flights the runs are, if there are vehicles.
+    #[must_use]
+    pub fn fleet(&self) -> Option<Fleet> {
+        of_either!(self, scenario => Subject::fleet(&**scenario))
     }
 
     /// How many models there are.
@@ -221,11 +227,18 @@ pub fn write_report(
     out: Option<&Path>,
     force: bool,
 ) -> Result<PathBuf, ResultsError> {
-    let scenario = fs::read_to_string(folder.join("scenario.toml"));
-    if scenario.is_ok_and(|text| is_of_simulator(&text)) {
+    if SimulatorScenario::is_in(folder) {
         return results::write::<SimulatorScenario>(&results::read(folder)?, out, force);
     }
     results::write::<Scenario>(&results::read(folder)?, out, force)
+}
+
+impl SimulatorScenario {
+    /// Whether the scenario in a file, or in the folder of a study, is of a simulator, right or wrong.
+    #[must_use]
+    pub fn is_in(path: &Path) -> bool {
+        read_file(&scenario_file(path)).is_ok_and(|text| is_of_simulator(&text))
+    }
 }
 
 /// Whether the text of a scenario is of a simulator.

@@ -219,6 +219,10 @@ pub(crate) struct SlurmArgs {
     #[arg(long, value_name = "N", value_parser = whole)]
     pub(crate) runs: Option<u64>,
 
+    /// Vehicles, in the place of runs, of a scenario with vehicles and flights [default: as in the scenario]
+    #[arg(long, value_name = "V", value_parser = whole, conflicts_with = "runs")]
+    pub(crate) vehicles: Option<u64>,
+
     /// Seed of all random numbers [default: as in the scenario]
     #[arg(long, value_name = "S", value_parser = whole)]
     pub(crate) seed: Option<u64>,

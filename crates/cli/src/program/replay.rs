@@ -1,6 +1,6 @@
 //! `gyradius replay`: one run of a study again.
 
-use gyradius_study::{AnyScenario, Replay, SimulatorReplay, Which};
+use gyradius_study::{Replay, SimulatorReplay, SimulatorScenario, Which};
 use std::{error::Error, path::Path};
 
 use crate::program::{args::ReplayArgs, output::print};
@@ -17,8 +17,8 @@ pub(crate) fn replay(arguments: &ReplayArgs) -> Result<(), Box<dyn Error>> {
         // One of the two is given.
         _ => Which::Run(arguments.run.unwrap_or_default()),
     };
-    let file = if path.is_dir() { path.join("scenario.toml") } else { path.to_owned() };
-    if let Ok(AnyScenario::Simulator(scenario)) = AnyScenario::read(&file) {
+    if SimulatorScenario::is_in(path) {
+        let scenario = SimulatorScenario::read(path)?;
         let Which::Run(run) = which else {
             return Err(
                 "--vehicle: a scenario of a simulator has no vehicles: --run names a run".into()

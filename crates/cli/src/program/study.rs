@@ -22,13 +22,8 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Runs the verb.
 pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
-    let mut scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
-    if let Some(runs) = arguments.runs {
-        scenario = scenario.with_runs(runs)?;
-    }
-    if let Some(vehicles) = arguments.vehicles {
-        scenario = scenario.with_vehicles(vehicles)?;
-    }
+    let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
+    let scenario = sized(scenario, arguments.runs, arguments.vehicles)?;
     let shard = arguments.shard.map(AskedShard::find).transpose()?;
     let signals = Signals::watch()?;
     let options = Options {
@@ -107,6 +102,21 @@ pub(crate) fn scenario(
         Some(seed) => scenario.with_seed(seed),
         None => Ok(scenario),
     }
+}
+
+/// The same scenario with other numbers of runs and vehicles, if they are given.
+pub(crate) fn sized(
+    mut scenario: AnyScenario,
+    runs: Option<u64>,
+    vehicles: Option<u64>,
+) -> Result<AnyScenario, ScenarioError> {
+    if let Some(runs) = runs {
+        scenario = scenario.with_runs(runs)?;
+    }
+    if let Some(vehicles) = vehicles {
+        scenario = scenario.with_vehicles(vehicles)?;
+    }
+    Ok(scenario)
 }
 
 /// What is said before the runs.

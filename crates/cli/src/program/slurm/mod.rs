@@ -4,7 +4,7 @@ mod script;
 mod shards;
 
 use gyradius_formats::NewFile;
-use gyradius_study::{AnyScenario, Options};
+use gyradius_study::{AnyScenario, Fleet, Options};
 use std::{
     env,
     error::Error,
@@ -17,17 +17,15 @@ use crate::program::{
     args::SlurmArgs,
     draw::refuse_input,
     output::{print, say, to_standard_output},
-    study::scenario,
+    study::{scenario, sized},
 };
 use script::{Limits, Script};
 use shards::{LARGEST_ARRAY, choose};
 
 /// Runs the verb.
 pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
-    let mut scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
-    if let Some(runs) = arguments.runs {
-        scenario = scenario.with_runs(runs)?;
-    }
+    let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
+    let scenario = sized(scenario, arguments.runs, arguments.vehicles)?;
     let script = script(arguments, &scenario)?.to_string();
     let Some(path) = arguments.output.as_deref().filter(|path| *path != Path::new("-")) else {
         return Ok(to_standard_output(&script)?);
@@ -97,6 +95,7 @@ fn script(arguments: &SlurmArgs, scenario: &AnyScenario) -> Result<Script, Box<d
         folder: env::current_dir()?,
         scenario: arguments.scenario.as_deref().map(place).transpose()?,
         runs: scenario.runs(),
+        vehicles: scenario.fleet().map(Fleet::vehicles),
         seed: arguments.seed,
         out,
         logs,

@@ -1,11 +1,6 @@
 //! The script itself: a job array of shards, and the report that waits for it.
 
-use std::{
-    ffi::OsStr,
-    fmt::{self, Write},
-    path::PathBuf,
-    time::Duration,
-};
+use std::{ffi::OsStr, fmt, path::PathBuf, time::Duration};
 
 use crate::program::quote::quote;
 
@@ -28,6 +23,8 @@ pub(super) struct Script {
     pub(super) folder: PathBuf,
     pub(super) scenario: Option<PathBuf>,
     pub(super) runs: u64,
+    /// Which say how many runs there are, if there are vehicles.
+    pub(super) vehicles: Option<u64>,
     pub(super) seed: Option<u64>,
     pub(super) out: PathBuf,
     pub(super) logs: PathBuf,
@@ -77,8 +74,10 @@ impl Script {
     fn study(&self) -> String {
         let mut text = format!("{} study", quote(self.program.as_os_str()));
         text.extend(self.scenario.iter().map(|file| flag("scenario", file)));
-        // Writing to a string does not fail.
-        let _ = write!(text, " --runs={}", self.runs);
+        text += &match self.vehicles {
+            Some(vehicles) => format!(" --vehicles={vehicles}"),
+            None => format!(" --runs={}", self.runs),
+        };
         text.extend(self.seed.iter().map(|seed| format!(" --seed={seed}")));
         text + &flag("out", &self.out) + &format!(" --threads={}", self.threads)
     }
