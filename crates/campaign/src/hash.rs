@@ -19,10 +19,10 @@ pub(crate) fn sha256_of_file(path: &Path) -> io::Result<String> {
     }
 }
 
-/// SHA-256 of a text, in hexadecimal.
+/// SHA-256 of a text or of bytes, in hexadecimal.
 #[must_use]
-pub fn sha256(text: &str) -> String {
-    hex(Sha256::new_with_prefix(text))
+pub fn sha256(content: impl AsRef<[u8]>) -> String {
+    hex(Sha256::new_with_prefix(content))
 }
 
 /// A digest in hexadecimal.

@@ -67,6 +67,7 @@ mod forecast;
 mod format;
 mod hash;
 mod identity;
+mod kept;
 mod room;
 mod runs;
 mod sample;
@@ -87,20 +88,21 @@ pub use column::{Column, ColumnSummary, Kind};
 pub use external::{ExternalSimulation, Inputs, Program, ProgramError, Simulator, Told};
 pub use failure::Failure;
 pub use folder::{
-    Block, Blocks, Contents, Folder, FolderError, MANIFEST, Manifest, Shared, begun, folder_of,
-    missing_runs, restore, restore_all, told,
+    Block, Blocks, Contents, Folder, FolderError, MANIFEST, Manifest, Reduced, Shared, begun,
+    folder_of, missing_runs, restore, restore_all, told,
 };
 pub use forecast::{Forecast, rough_size, rough_time};
 pub use format::{Extent, FormatError, TableFormat, TableWriter};
 pub use hash::sha256;
 pub use identity::{Difference, Identity};
+pub use kept::{Kept, KeptError, Rows};
 pub use room::disk_left;
 pub use runs::{Runs, RunsError};
 pub use sample::{SampleSummary, bounded};
 pub use shard::{Shard, ShardError};
 pub use share::{Share, counted};
 pub use simulation::{CampaignError, Progress, Simulation, run, threads};
-pub use stored::read_row;
+pub use stored::read_run;
 pub use stream::stream;
 pub use streams::Streams;
 pub use surveys::{FirstLook, Surveys};

@@ -18,6 +18,7 @@ use crate::{
     cell::Cell,
     column::{Column, Kind},
     failure::{Failure, OK},
+    kept::Kept,
     table::{Source, Table, Values},
 };
 
@@ -32,13 +33,28 @@ impl Table {
         writer.finish()
     }
 
+    /// What is kept of the table, as the content of a Parquet file; none if no row is.
+    pub(crate) fn kept_parquet(&self, kept: &Kept) -> Result<Option<Vec<u8>>, ParquetError> {
+        let (columns, places) = (kept.columns_of(self), kept.places_of(self));
+        if places.is_empty() {
+            return Ok(None);
+        }
+        let mut content = Vec::new();
+        let mut writer =
+            ParquetWriter::of(columns.iter().map(|(column, _)| *column), &mut content)?;
+        writer.write_places(self, &columns, &places)?;
+        writer.finish()?;
+        Ok(Some(content))
+    }
+
     fn write_column<W: Write + Send>(
         &self,
         group: &mut SerializedRowGroupWriter<'_, W>,
-        column: &Column,
-        source: Source,
+        (column, source): (&Column, Source),
+        places: &[usize],
     ) -> Result<(), ParquetError> {
-        let texts = |text: &dyn Fn(usize) -> Option<ByteArray>| (0..self.len()).map(text).collect();
+        let each = || places.iter().copied();
+        let texts = |text: &dyn Fn(usize) -> Option<ByteArray>| each().map(text).collect();
         let of_failures = |text: fn(&Failure) -> &str| {
             texts(&|place| Some(self.failures.get(&place).map_or(OK, text).into()))
         };
@@ -49,7 +65,7 @@ impl Table {
             }
             Source::Run => {
                 // There are fewer runs than 2⁶³.
-                let runs = (0..self.len()).map(|place| Some((self.first() + place as u64) as i64));
+                let runs = each().map(|place| Some((self.first() + place as u64) as i64));
                 write::<Int64Type, _>(group, column, runs.collect())
             }
             Source::Status => {
@@ -65,20 +81,26 @@ impl Table {
             }
             Source::Value(place) => match &self.values[place] {
                 Values::Numbers(numbers) => match numbers.all() {
-                    Some(values) => write_all::<DoubleType, _>(group, column, values),
-                    None => {
-                        let values = (0..self.len()).map(|run| numbers.get(run)).collect();
+                    Some(values) if places.len() == self.len() => {
+                        write_all::<DoubleType, _>(group, column, values)
+                    }
+                    Some(_) | None => {
+                        let values = each().map(|place| numbers.get(place)).collect();
                         write::<DoubleType, _>(group, column, values)
                     }
                 },
                 Values::Integers(integers) => {
-                    write::<Int64Type, _>(group, column, integers.clone())
+                    let values = each().map(|place| integers.get(place).copied().flatten());
+                    write::<Int64Type, _>(group, column, values.collect())
                 }
                 Values::Texts(values) => {
                     let values = texts(&|run| Some(values.get(run)?.0.into()));
                     write::<ByteArrayType, _>(group, column, values)
                 }
-                Values::Flags(flags) => write::<BoolType, _>(group, column, flags.clone()),
+                Values::Flags(flags) => {
+                    let values = each().map(|place| flags.get(place).copied().flatten());
+                    write::<BoolType, _>(group, column, values.collect())
+                }
             },
         }
     }
@@ -172,15 +194,23 @@ pub(crate) struct ParquetWriter<W: Write + Send> {
 impl<W: Write + Send> ParquetWriter<W> {
     /// A writer of tables with the columns of this one, whose runs are not written.
     pub(crate) fn new(table: &Table, output: W) -> Result<Self, ParquetError> {
-        let fields = table.columns().iter().map(|column| Ok(Arc::new(field(column)?)));
+        Self::of(table.columns(), output)
+    }
+
+    fn of<'c>(
+        columns: impl IntoIterator<Item = &'c Column>,
+        output: W,
+    ) -> Result<Self, ParquetError> {
+        let columns: Vec<&Column> = columns.into_iter().collect();
+        let fields = columns.iter().map(|column| Ok(Arc::new(field(column)?)));
         let fields = fields.collect::<Result<_, ParquetError>>()?;
         let schema = Type::group_type_builder("run").with_fields(fields).build()?;
-        // Numbers that were drawn are all different: no dictionary serves them.
+        // Numbers that were drawn are all different: no dictionary serves them, and compression saves less than a fifth (docs/run-table.md).
         let mut properties = WriterProperties::builder()
             .set_compression(Compression::UNCOMPRESSED)
             .set_statistics_enabled(EnabledStatistics::Chunk)
             .set_dictionary_enabled(false);
-        for column in table.columns().iter().filter(|column| column.kind() == Kind::Text) {
+        for column in columns.iter().filter(|column| column.kind() == Kind::Text) {
             let path = ColumnPath::from(column.name());
             properties = properties.set_column_dictionary_enabled(path, true);
         }
@@ -191,10 +221,21 @@ impl<W: Write + Send> ParquetWriter<W> {
 
     /// Writes the runs of a table.
     pub(crate) fn write(&mut self, table: &Table) -> Result<(), ParquetError> {
-        if !table.is_empty() {
+        let columns: Vec<_> = table.sources().collect();
+        self.write_places(table, &columns, &(0..table.len()).collect::<Vec<_>>())
+    }
+
+    /// Writes the runs in some places of a table, in some of its columns.
+    fn write_places(
+        &mut self,
+        table: &Table,
+        columns: &[(&Column, Source)],
+        places: &[usize],
+    ) -> Result<(), ParquetError> {
+        if !places.is_empty() {
             let mut group = self.writer.next_row_group()?;
-            for (column, source) in table.sources() {
-                table.write_column(&mut group, column, source)?;
+            for column in columns {
+                table.write_column(&mut group, *column, places)?;
             }
             group.close()?;
         }
@@ -290,25 +331,36 @@ fn read<T: DataType>(
     Ok(levels.into_iter().map(|level| if level == 1 { values.next() } else { None }).collect())
 }
 
-/// The cells of a row of a table that was written, by the names of their columns, the first row being 0; none if the
-/// table has no such row.
+/// The cells of a run of a model in a table that was written, by the names of their columns; none if the table does not have
+/// the run.
 ///
 /// # Errors
 /// The table cannot be read, or is not of this kind.
-pub fn read_row(
+pub fn read_run(
     path: &Path,
-    row: u64,
+    (model, run): (&str, u64),
 ) -> Result<Option<Vec<(String, Cell<'static>)>>, ParquetError> {
     let reader = open(path)?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
-    let mut place = usize::try_from(row).unwrap_or(usize::MAX);
+    let wrong = || ParquetError::General("it is no run table".to_owned());
+    let place = |own: &Column| schema.columns().iter().position(|c| c.name() == own.name());
+    let [Some(models), Some(runs), _] = Column::first().each_ref().map(place) else {
+        return Err(wrong());
+    };
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        if place >= rows {
-            place -= rows;
+        let (ColumnReader::ByteArrayColumnReader(models), ColumnReader::Int64ColumnReader(runs)) =
+            (group.get_column_reader(models)?, group.get_column_reader(runs)?)
+        else {
+            return Err(wrong());
+        };
+        let of_model = |name: Option<ByteArray>| name.is_some_and(|n| n.data() == model.as_bytes());
+        let is_run = |number: Option<i64>| number.and_then(|n| u64::try_from(n).ok()) == Some(run);
+        let mut rows = read(models, rows)?.into_iter().zip(read(runs, rows)?);
+        let Some(place) = rows.position(|(name, number)| of_model(name) && is_run(number)) else {
             continue;
-        }
+        };
         let cell = |i: usize| {
             let name = schema.column(i).name().to_owned();
             Ok((name, cell(group.get_column_reader(i)?, place)?))

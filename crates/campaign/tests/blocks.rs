@@ -1,9 +1,9 @@
 //! Campaigns that are interrupted, extended, damaged and looked at again: always what one run of all would give.
 
 use gyradius_campaign::{
-    Blocks, Cell, Column, Contents, Doing, Failure, Folder, Identity, Kind, Look, MANIFEST,
-    Manifest, Plan, Runs, SampleSummary, Shard, Shared, Simulation, Streams, Surveys, Table,
-    TableError, begun, run, run_missing, threads,
+    Blocks, Cell, Column, Contents, Doing, Failure, Folder, Identity, Kept, Kind, Look, MANIFEST,
+    Manifest, Plan, Rows, Runs, SampleSummary, Shard, Shared, Simulation, Streams, Surveys, Table,
+    TableError, begun, read_run, run, run_missing, threads,
 };
 use gyradius_statistics::Confidence;
 use proptest::prelude::*;
@@ -141,8 +141,19 @@ impl Campaign {
         (done.map_err(|e| e.to_string()), simulation.done.load(Ordering::Relaxed))
     }
 
-    /// One command that is stopped after so many runs, if at all.
+    /// One command that is stopped after so many runs, if at all, and keeps all.
     fn command(&self, runs: u64, stop_after: Option<u64>, force: bool) -> Result<Done, String> {
+        self.keeping(runs, stop_after, force, &Kept::default())
+    }
+
+    /// One command that is stopped after so many runs, if at all.
+    fn keeping(
+        &self,
+        runs: u64,
+        stop_after: Option<u64>,
+        force: bool,
+        kept: &Kept,
+    ) -> Result<Done, String> {
         let text = format!("{} {runs}", self.seed);
         let in_place = OnceLock::<BTreeSet<String>>::new();
         let contents = self.contents(runs, &in_place);
@@ -153,7 +164,8 @@ impl Campaign {
         let blocks = folder
             .blocks((&self.identity(), &text), runs, force, &pool)
             .map_err(|e| e.to_string())?;
-        in_place.set(blocks.published()).unwrap();
+        let all = if kept.is_all() { blocks.published() } else { BTreeSet::new() };
+        in_place.set(all).unwrap();
         let damaged = blocks.damaged().to_vec();
         let seen = Mutex::new(BTreeMap::new());
         let look = |_, block: &Table| {
@@ -165,7 +177,8 @@ impl Campaign {
         let done = done.inspect_err(|_| blocks.abandon())?;
         let ends = |end, (first, len): (&u64, &u64)| (*first == end).then_some(first + len);
         assert_eq!(seen.into_inner().unwrap().iter().try_fold(0, ends), Some(runs));
-        folder.adopt(&blocks, done[0].columns()).map_err(|e| e.to_string())?;
+        let empty = [whole(self.seed, 0)];
+        folder.adopt(&blocks, &empty, kept, &pool).map_err(|e| e.to_string())?;
         folder.write("mark", &text).map_err(|e| e.to_string())?;
         folder.publish().map_err(|e| e.to_string())?;
         blocks.settle().map_err(|e| e.to_string())?;
@@ -197,9 +210,9 @@ fn assert_whole(campaign: &Campaign, done: &Done, runs: u64) {
     let mut read = 0;
     let empty = expected.from_run(0);
     for row in expected.rows() {
-        let (file, place) = manifest.find("cheap", row.run()).unwrap();
-        if place == 0 {
-            let block = empty.read_parquet(&campaign.place.join(file)).unwrap();
+        let block = manifest.find("cheap", row.run()).unwrap();
+        if block.range().start == row.run() {
+            let block = empty.read_parquet(&campaign.place.join(block.name())).unwrap();
             assert_eq!(block.first(), row.run());
             read += block.len() as u64;
         }
@@ -466,4 +479,97 @@ fn what_is_dropped_by_force_does_not_come_back() {
     let done = campaign.command(20, None, false).unwrap();
     assert!(done.damaged.is_empty() && done.simulated <= 20, "{:?}", done.damaged);
     assert_whole(&campaign, &done, 20);
+}
+
+/// What a campaign keeps: rows, and columns, if not all.
+fn kept() -> impl Strategy<Value = Kept> {
+    let names = vec!["x", "y", "note", "flag", "note_kind", "status", "run"];
+    let some = prop::collection::btree_set(prop::sample::select(names), 0..4);
+    let columns = prop::option::of(some.prop_map(|s| s.into_iter().map(str::to_owned).collect()));
+    (prop::sample::select(&Rows::ALL), columns).prop_map(|(rows, columns)| Kept::new(rows, columns))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Whatever is kept: exactly these rows and columns are in the files, the same to the bit; nobody goes on with less than all,
+    /// and who begins anew by force gets all.
+    #[test]
+    fn what_is_kept_is_what_was_asked_for(
+        seed in any::<u64>(),
+        runs in 1_u64..60,
+        block_runs in 1_u64..16,
+        kept in kept(),
+        whole_first in any::<bool>(),
+    ) {
+        let scratch = tempfile::tempdir().unwrap();
+        let campaign = Campaign { place: scratch.path().join("it"), seed, block_runs };
+        if whole_first {
+            campaign.command(runs, None, false).unwrap();
+        }
+        let done = campaign.keeping(runs, None, false, &kept).unwrap();
+        prop_assert_eq!(done.simulated, if whole_first { 0 } else { runs });
+        let manifest = Manifest::read(&campaign.place).unwrap();
+        prop_assert_eq!(manifest.kept(), &kept);
+        let expected = whole(seed, runs);
+        let own = ["model", "run", "status", "status_kind"];
+        let asked = |name: &str| kept.columns().is_none_or(|c| {
+            c.iter().any(|c| c == name || name == "note_kind" && c == "note")
+        });
+        let mut files = BTreeSet::new();
+        for row in expected.rows() {
+            let block = manifest.find("cheap", row.run()).unwrap();
+            let path = campaign.place.join(block.name());
+            let stays = match kept.rows() {
+                Rows::All => true,
+                Rows::Failed => row.failure().is_some(),
+                Rows::None => false,
+            };
+            prop_assert!(!stays || block.has_file());
+            prop_assert_eq!(block.has_file(), path.exists());
+            if block.has_file() {
+                files.insert(path.clone());
+                let read = read_run(&path, ("cheap", row.run())).unwrap();
+                prop_assert_eq!(read.is_some(), stays);
+                let cells = row.cells().filter(|(c, _)| own.contains(&c.name()) || asked(c.name()));
+                let cells: Vec<_> = cells.map(|(c, cell)| (c.name().to_owned(), cell)).collect();
+                prop_assert!(read.is_none_or(|read| read == cells));
+            }
+        }
+        prop_assert_eq!(campaign.files(), files.into_iter().collect::<Vec<_>>());
+        let failed = expected.failures().len();
+        prop_assert!(!campaign.place.join(".gyradius/campaign").exists());
+        let in_place = OnceLock::new();
+        let contents = campaign.contents(runs, &in_place);
+        let folder = Folder::prepare(&campaign.place, &contents, false).unwrap();
+        let reduced = folder.reduced(&campaign.identity()).unwrap();
+        prop_assert_eq!(reduced.is_none(), kept.is_all());
+        if let Some(reduced) = reduced {
+            prop_assert_eq!((reduced.kept(), reduced.runs()), (&kept, runs));
+            prop_assert!(reduced.is_whole().unwrap());
+            if let Some(file) = campaign.files().first() {
+                fs::write(file, "other").unwrap();
+                prop_assert!(!reduced.is_whole().unwrap());
+            } else {
+                prop_assert!(kept.rows() == Rows::None || failed == 0);
+            }
+        }
+        drop(folder);
+    }
+
+    /// A study of which not all was kept is done anew by force, and then goes on as any other.
+    #[test]
+    fn what_was_not_kept_is_done_again_by_force(
+        seed in any::<u64>(),
+        runs in 1_u64..40,
+        more in 0_u64..20,
+        kept in kept().prop_filter("less than all", |kept| !kept.is_all()),
+    ) {
+        let scratch = tempfile::tempdir().unwrap();
+        let campaign = Campaign { place: scratch.path().join("it"), seed, block_runs: 8 };
+        campaign.keeping(runs, None, false, &kept).unwrap();
+        let done = campaign.command(runs + more, None, true).unwrap();
+        prop_assert_eq!(done.simulated, runs + more);
+        assert_whole(&campaign, &done, runs + more);
+    }
 }

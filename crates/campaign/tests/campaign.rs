@@ -3,7 +3,7 @@
 use bytes::Bytes;
 use gyradius_campaign::{
     CampaignError, Cell, Column, Failure, Forecast, Kind, Simulation, Streams, Table, TableError,
-    read_row, run, threads,
+    read_run, run, threads,
 };
 use parquet::{
     file::reader::{FileReader, SerializedFileReader},
@@ -146,12 +146,12 @@ proptest! {
         prop_assert!(whole.rows().eq(table.rows()));
         prop_assert!(whole.failures().eq(table.failures()));
         for row in table.rows() {
-            let read = read_row(&path, row.run()).unwrap().unwrap();
+            let read = read_run(&path, ("any", row.run())).unwrap().unwrap();
             prop_assert!(read.iter().map(|(_, cell)| cell).eq(row.cells().map(|(_, cell)| cell).collect::<Vec<_>>().iter()));
         }
-        prop_assert!(read_row(&path, runs).unwrap().is_none());
+        prop_assert!(read_run(&path, ("any", runs)).unwrap().is_none());
         std::fs::write(&path, &file[..file.len() / 2]).unwrap();
-        prop_assert!(read_row(&path, 0).is_err());
+        prop_assert!(read_run(&path, ("any", 0)).is_err());
         prop_assert!(table.from_run(0).read_parquet(&path).is_err());
     }
 

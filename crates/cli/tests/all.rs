@@ -7,6 +7,7 @@ mod compare;
 mod draw;
 mod fit;
 mod fleet;
+mod kept;
 #[cfg(unix)]
 mod killed;
 #[cfg(unix)]

@@ -1,6 +1,6 @@
 //! A scenario of either kind, and what becomes of it: for programs that are given a file or a folder.
 
-use gyradius_campaign::{Doing, Forecast, Progress, Shard, begun, folder_of};
+use gyradius_campaign::{Doing, Forecast, Kept, Progress, Shard, begun, folder_of};
 use serde::Serialize;
 use std::{
     fmt, fs,
@@ -84,6 +84,21 @@ impl AnyScenario {
                 Err(ScenarioError::field("vehicles", problem))
             }
         }
+    }
+
+    /// The same scenario, which keeps so much of its run tables.
+    #[must_use]
+    pub fn with_kept(self, kept: &Kept) -> Self {
+        match self {
+            Self::Separation(scenario) => Self::Separation(Box::new(scenario.with_kept(kept))),
+            Self::Simulator(scenario) => Self::Simulator(Box::new(scenario.with_kept(kept))),
+        }
+    }
+
+    /// What is kept of its run tables once all runs are done.
+    #[must_use]
+    pub fn kept(&self) -> Kept {
+        of_either!(self, scenario => scenario.kept())
     }
 
     /// The same scenario from another seed.

@@ -1,6 +1,6 @@
 //! Why a study could not be done.
 
-use gyradius_campaign::{CampaignError, FolderError, RunsError, rough_size};
+use gyradius_campaign::{CampaignError, FolderError, Kept, RunsError, rough_size};
 use gyradius_statistics::StatisticsError;
 use parquet::errors::ParquetError;
 use std::path::PathBuf;
@@ -42,6 +42,17 @@ pub enum StudyError {
         needed: u64,
         /// How many there are.
         left: u64,
+    },
+    /// Rows or columns of the complete study that is there were not kept.
+    #[error(
+        "{}: not everything of the run tables was kept there ({kept}), so that nobody can go on with it: choose another folder \
+         with --out, or pass --force to do all runs again", path.display()
+    )]
+    Reduced {
+        /// The folder.
+        path: PathBuf,
+        /// What was kept.
+        kept: Kept,
     },
     /// A run table cannot be written.
     #[error("cannot write the run table of {model}: {source}")]

@@ -60,8 +60,8 @@ pub use failure::Failure;
 pub use fleet::Fleet;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_campaign::{
-    Again, CampaignError, Cell, Column, Forecast, FormatError, Progress, Row, Runs, RunsError,
-    Shard, ShardError, Table, TableFormat, rough_time,
+    Again, CampaignError, Cell, Column, Forecast, FormatError, Kept, KeptError, Progress, Row,
+    Rows, Runs, RunsError, Shard, ShardError, Table, TableFormat, rough_time,
 };
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};

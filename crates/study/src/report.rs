@@ -1,6 +1,6 @@
 //! The report of a study: what it says of separations and of the paper.
 
-use gyradius_campaign::SampleSummary;
+use gyradius_campaign::{Kept, Rows, SampleSummary};
 use gyradius_report::{
     Document, Figure, PageCell, PageTable, Section, Text, Tone, file_of, interval, optional,
     percent, significant, spread,
@@ -64,7 +64,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         .sections(dispersed(summary))
         .sections(summary.every_model.section())
         .section(Section::new("Figures").figures(drawn))
-        .section(inputs(&summary.head, scenario.to_toml()))
+        .section(inputs(&summary.head, &scenario.kept(), scenario.to_toml()))
 }
 
 fn results(summary: &Summary) -> Section {
@@ -412,7 +412,7 @@ pub(crate) fn noting_what_is_missing(mut document: Document, head: &Head) -> Doc
 }
 
 /// The resolved scenario, and where what is.
-pub(crate) fn inputs(head: &Head, toml: String) -> Section {
+pub(crate) fn inputs(head: &Head, kept: &Kept, toml: String) -> Section {
     let version = &head.gyradius_version;
     let origin = Text::from(format!(
         "Run by gyradius {version} from the scenario below, every default spelled out; its SHA-256 is "
@@ -421,11 +421,20 @@ pub(crate) fn inputs(head: &Head, toml: String) -> Section {
     .plain(". The same scenario gives the same numbers on any number of threads: ")
     .code("gyradius study --scenario scenario.toml")
     .plain(".");
-    let files = Text::from("Every run is a row of ")
-        .code("runs/<model>/")
+    let rows = |which: &str| Text::from(format!("{which} is a row of ")).code("runs/<model>/");
+    let files = match kept.rows() {
+        Rows::All => rows("Every run"),
+        Rows::Failed => {
+            rows("Every run that failed").plain(" (the rows of the others were not kept)")
+        }
+        Rows::None => Text::from("The rows of the runs were not kept"),
+    };
+    let some = kept.columns().map_or("", |_| " Not all columns of the run tables were kept.");
+    let files = files
         .plain(", every number of this page is in ")
         .code("summary.json")
-        .plain(".");
+        .plain(".")
+        .plain(some);
     let text = Section::folded("scenario.toml").file("toml", toml);
     Section::new("What went in").paragraph(origin).paragraph(files).sections([text])
 }

@@ -1,6 +1,6 @@
 //! Separations as a study: how their runs are simulated, and what they amount to.
 
-use gyradius_campaign::{CampaignError, Column, Forecast, Runs};
+use gyradius_campaign::{CampaignError, Column, Forecast, Kept, Runs};
 use gyradius_report::Document;
 use rayon::ThreadPool;
 
@@ -17,7 +17,7 @@ use crate::{
 impl Subject for Scenario {
     /// Some tenths of a second of separations.
     const BLOCK_RUNS: u64 = 1 << 14;
-    const IMMATERIAL: &[&str] = &["runs", "vehicles"];
+    const IMMATERIAL: &[&str] = &["runs", "vehicles", "rows", "columns"];
 
     type Prepared = Vec<Model>;
     type Simulation<'a> = Separations<'a>;
@@ -46,6 +46,10 @@ impl Subject for Scenario {
 
     fn independent_runs(&self) -> Option<u64> {
         self.sharing().map(Fleet::vehicles)
+    }
+
+    fn kept(&self) -> Kept {
+        self.kept()
     }
 
     fn model_names(&self) -> impl Iterator<Item = &str> {

@@ -10,7 +10,7 @@ use std::{ops::Range, path::Path};
 use crate::{
     Notice, Options, StudyError,
     head::Missing,
-    study::{contents, count, foretell, identity, plan},
+    study::{check_kept, contents, count, foretell, identity, plan},
     subject::Subject,
 };
 
@@ -56,7 +56,17 @@ pub(crate) fn run_shard<C: Subject>(
     let simulations = scenario.simulations(&models)?;
     let contents = contents(scenario);
     let folder = Shared::open(&options.place(scenario.name()), &contents)?;
+    check_kept(scenario, &simulations)?;
     let begun = (&identity(scenario), scenario.to_toml());
+    if let Some(there) = folder.reduced(begun.0)? {
+        // All is done, also what this share would have been.
+        let (path, kept) = (options.place(scenario.name()), there.kept().clone());
+        return if scenario.runs() <= there.runs() {
+            Ok(())
+        } else {
+            Err(StudyError::Reduced { path, kept })
+        };
+    }
     let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), shard, &threads)?;
     blocks.damaged().iter().for_each(|damage| say(Notice::Damaged(damage.clone())));
     let plan = plan(scenario, options, Doing::Shard(shard));

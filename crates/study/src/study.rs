@@ -6,7 +6,8 @@ use crate::model::{Model, Separations};
 use gyradius_campaign::run;
 use gyradius_campaign::{
     Again, Blocks, CampaignError, Contents, Doing, Folder, Forecast, Identity, MANIFEST, Plan,
-    Progress, Runs, RunsError, Simulation, Table, disk_left, run_again, run_missing, threads,
+    Progress, Reduced, Runs, RunsError, Simulation, Table, disk_left, run_again, run_missing,
+    threads,
 };
 use rayon::ThreadPool;
 use std::{
@@ -19,7 +20,7 @@ use std::{
 use toml::{Table as Toml, Value};
 
 use crate::{
-    Scenario, StudyError, Summary,
+    Scenario, ScenarioError, StudyError, Summary,
     head::Missing,
     report,
     scenario::parse_toml,
@@ -132,7 +133,14 @@ pub(crate) fn carry_out<C: Subject>(
         contents(scenario).keeping(|name| in_place.get().is_some_and(|all| all.contains(name)));
     let mut folder = Folder::prepare(&place, &contents, options.force)?;
     let text = scenario.to_toml();
+    check_kept(scenario, &simulations)?;
     let begun = (&identity(scenario), text.as_str());
+    if let Some(there) = folder.reduced(begun.0)?
+        && !options.force
+    {
+        let study = reduced(scenario, &there, (&folder, &text), options, &simulations, &threads)?;
+        return study.ok_or(StudyError::Reduced { path: place, kept: there.kept().clone() });
+    }
     let blocks = folder.blocks(begun, scenario.runs(), options.force, &threads)?;
     blocks.damaged().iter().for_each(|damage| say(Notice::Damaged(damage.clone())));
 
@@ -153,8 +161,11 @@ pub(crate) fn carry_out<C: Subject>(
         say(Notice::Again(threads.install(|| run_again(&simulations, &blocks, stop))?));
     }
     // A complete study that is being extended stays one until all of the runs are there: its blocks and what tells of them.
-    let manifest = (doing == Doing::Nothing && left > 0).then(|| MANIFEST.to_owned());
-    let _ = in_place.set(blocks.published().into_iter().chain(manifest).collect());
+    let incomplete = doing == Doing::Nothing && left > 0;
+    let manifest = incomplete.then(|| MANIFEST.to_owned());
+    let published = blocks.published().into_iter().chain(manifest);
+    // What is not all kept is written anew.
+    let _ = in_place.set(published.filter(|_| incomplete || scenario.kept().is_all()).collect());
     let of = scenario.runs() * simulations.len() as u64;
     if left == 0
         && let Some(study) = finished::<C>(&folder, &text, &simulations, &blocks)?
@@ -182,7 +193,8 @@ pub(crate) fn carry_out<C: Subject>(
 
     let complete = summary.head().missing().is_empty();
     if complete {
-        folder.adopt(&blocks, runs.first().map_or(&[][..], Runs::columns))?;
+        let empty = empty_tables(&simulations)?;
+        folder.adopt(&blocks, &empty, &scenario.kept(), &threads)?;
     }
     folder.write("scenario.toml", &text)?;
     let written = serde_json::to_string_pretty(&summary)? + "\n";
@@ -197,8 +209,54 @@ pub(crate) fn carry_out<C: Subject>(
     if complete {
         blocks.settle()?;
     }
-    let runs = runs.into_iter().map(|runs| blocks.in_place(&runs)).collect();
+    let runs = match scenario.kept().is_all() || !complete {
+        true => runs.into_iter().map(|runs| blocks.in_place(&runs)).collect(),
+        false => empty_tables(&simulations)?.into_iter().map(Runs::from).collect(),
+    };
     Ok(Study { folder, runs, summary })
+}
+
+/// That what is to be kept are columns of the run tables.
+pub(crate) fn check_kept<C: Subject>(
+    scenario: &C,
+    simulations: &[(&str, C::Simulation<'_>)],
+) -> Result<(), StudyError> {
+    let tables = empty_tables(simulations)?;
+    let columns = tables.first().map_or(&[][..], Table::columns);
+    let known = scenario.kept().check(columns);
+    Ok(known.map_err(|error| ScenarioError::field("columns", error))?)
+}
+
+/// A table of each model, without runs.
+fn empty_tables<S: Simulation>(simulations: &[(&str, S)]) -> Result<Vec<Table>, CampaignError> {
+    let table = |(model, simulation): &(&str, S)| Table::new(model, 0, simulation.columns());
+    Ok(simulations.iter().map(table).collect::<Result<_, _>>()?)
+}
+
+/// The study in a folder, not everything of which was kept, if it is this one and as it was written.
+fn reduced<C: Subject>(
+    scenario: &C,
+    there: &Reduced,
+    (folder, text): (&Folder<'_>, &str),
+    options: &Options,
+    simulations: &[(&str, C::Simulation<'_>)],
+    threads: &ThreadPool,
+) -> Result<Option<Study<C::Summary>>, StudyError> {
+    let same = there.runs() == scenario.runs() && *there.kept() == scenario.kept();
+    let whole = same && !options.retry_failed && folder.is_whole(text)?;
+    if !whole || !threads.install(|| there.is_whole())? {
+        return Ok(None);
+    }
+    let summary = whole_summary::<C>(folder.place());
+    let runs = empty_tables(simulations)?.into_iter().map(Runs::from).collect();
+    Ok(summary.map(|summary| Study { folder: folder.place().to_owned(), runs, summary }))
+}
+
+/// The summary of a complete study in a folder, if it is there.
+fn whole_summary<C: Subject>(place: &Path) -> Option<C::Summary> {
+    let read = fs::read_to_string(place.join("summary.json")).ok()?;
+    let summary = serde_json::from_str::<C::Summary>(&read).ok()?;
+    summary.head().missing().is_empty().then_some(summary)
 }
 
 /// Puts together what is there of a study whose runs are not all done, in its folder, which holds this scenario.
@@ -246,16 +304,9 @@ fn finished<C: Subject>(
         return Ok(None);
     }
     let place = folder.place().to_owned();
-    let read = fs::read_to_string(place.join("summary.json")).ok();
-    let summary = read.and_then(|text| serde_json::from_str::<C::Summary>(&text).ok());
-    let Some(summary) = summary.filter(|summary| summary.head().missing().is_empty()) else {
-        return Ok(None);
-    };
-    let runs = simulations.iter().map(|(model, simulation)| {
-        let empty = Table::new(model, 0, simulation.columns())?;
-        Ok(blocks.runs(&empty, Vec::new()))
-    });
-    let runs = runs.collect::<Result<_, CampaignError>>()?;
+    let Some(summary) = whole_summary::<C>(&place) else { return Ok(None) };
+    let empty = empty_tables(simulations)?;
+    let runs = empty.iter().map(|empty| blocks.runs(empty, Vec::new())).collect();
     blocks.settle()?;
     Ok(Some(Study { folder: place, runs, summary }))
 }

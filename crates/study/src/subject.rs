@@ -1,6 +1,6 @@
 //! What a study is of: a scenario of separations, or of a simulator of the user's own.
 
-use gyradius_campaign::{Column, FirstLook, Forecast, Runs, Simulation, Table, sha256};
+use gyradius_campaign::{Column, FirstLook, Forecast, Kept, Runs, Simulation, Table, sha256};
 use gyradius_report::Document;
 use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
@@ -45,6 +45,8 @@ pub(crate) trait Subject: Sync + Sized {
     fn independent_runs(&self) -> Option<u64> {
         None
     }
+    /// What is kept of the run tables once all runs are done.
+    fn kept(&self) -> Kept;
     /// Names of the models, in order.
     fn model_names(&self) -> impl Iterator<Item = &str>;
     /// The resolved scenario.

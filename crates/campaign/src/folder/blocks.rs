@@ -22,14 +22,13 @@ use super::{
     area::Area,
     disk,
     hidden::Hidden,
-    manifest::{Block, MANIFEST, Manifest},
+    manifest::Block,
     name::{Found, Name, look},
     shared::Shared,
     told::{missing_runs, published},
     unobstructed,
 };
 use crate::{
-    column::Column,
     hash::hex,
     identity::{Difference, Identity},
     runs::Runs,
@@ -46,7 +45,7 @@ pub struct Blocks {
     place: PathBuf,
     /// Where the blocks of an unfinished campaign are.
     area: Area,
-    identity: Identity,
+    pub(super) identity: Identity,
     /// Which share this is of; others are done by other processes at the same time.
     shard: Option<Shard>,
     /// Where finished blocks are told of.
@@ -94,24 +93,6 @@ impl Folder<'_> {
         };
         check().map_err(|problem| self.failed(problem))
     }
-
-    /// Puts the blocks that are not in their places there with the rest of the draft, and tells of all of them.
-    ///
-    /// # Errors
-    /// They cannot be linked or copied.
-    pub fn adopt(&mut self, blocks: &Blocks, columns: &[Column]) -> Result<(), FolderError> {
-        for block in blocks.all().iter().filter(|block| !block.published) {
-            let name = Name::new(&block.name()).map_err(|error| self.failed(error.into()))?;
-            let path = blocks.path(block);
-            self.journal
-                .link(&self.hidden, name, &path, &block.sha256)
-                .map_err(|problem| self.failed(problem))?;
-        }
-        let text =
-            serde_json::to_string_pretty(&Manifest::new(&blocks.identity, columns, blocks.all()))
-                .map_err(|error| self.failed(error.into()))?;
-        self.write(MANIFEST, &(text + "\n"))
-    }
 }
 
 impl Shared {
@@ -155,7 +136,11 @@ impl Blocks {
         let state = Mutex::new(State { blocks: Vec::new(), record: file });
         let (place, identity) = (hidden.place().to_owned(), identity.clone());
         let mut opened = Self { place, area, identity, shard, record, state, damaged: Vec::new() };
-        let mut blocks = published(&opened.place, &hidden.record(what)?.0, &opened.identity);
+        let (kept, mut blocks) =
+            published(&opened.place, &hidden.record(what)?.0, &opened.identity);
+        if !kept.is_all() {
+            blocks.clear();
+        }
         let unfinished = opened.area.recorded()?;
         blocks.extend(unfinished.clone());
         // What was done again takes the place of what failed.
@@ -275,7 +260,7 @@ impl Blocks {
     }
 
     /// All that are finished.
-    fn all(&self) -> Vec<Block> {
+    pub(super) fn all(&self) -> Vec<Block> {
         let mut blocks = self.locked().blocks.clone();
         blocks.sort_by(|a, b| (&a.model, a.first_run).cmp(&(&b.model, b.first_run)));
         blocks
@@ -392,7 +377,7 @@ impl Blocks {
     }
 
     /// Where a block is.
-    fn path(&self, block: &Block) -> PathBuf {
+    pub(super) fn path(&self, block: &Block) -> PathBuf {
         let (root, name) = self.area.place_of(block, &self.place);
         root.join(name)
     }

@@ -7,6 +7,7 @@ use super::name::Name;
 use crate::{
     column::{Column, ColumnSummary},
     identity::Identity,
+    kept::Kept,
 };
 
 /// The file that tells of the blocks of a complete campaign.
@@ -28,6 +29,7 @@ pub struct Block {
     /// How many runs of it were done again because they had failed; the more, the later it was written.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub(super) again: u64,
+    /// Length of its file; 0 of a block of which no row is kept, which has none.
     pub(super) bytes: u64,
     pub(super) sha256: String,
     /// Whether it is in its place.
@@ -41,13 +43,17 @@ pub struct Manifest {
     gyradius_version: String,
     /// What the runs depend on.
     identity: Identity,
+    /// What is kept of the run tables, if not everything is.
+    #[serde(default, skip_serializing_if = "Kept::is_all")]
+    kept: Kept,
     columns: Vec<ColumnSummary>,
     blocks: Vec<ManifestBlock>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct ManifestBlock {
-    file: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
     #[serde(flatten)]
     block: Block,
 }
@@ -118,20 +124,34 @@ impl Block {
         }
     }
 
-    /// Its place in the folder of a complete campaign.
-    pub(super) fn name(&self) -> String {
+    /// Its file in the folder of a complete campaign, from the folder on, if rows of it are kept.
+    #[must_use]
+    pub fn name(&self) -> String {
         format!("runs/{}/{}", self.model, self.file())
+    }
+
+    /// Whether there is a file of it.
+    #[must_use]
+    pub fn has_file(&self) -> bool {
+        self.bytes > 0
     }
 }
 
 impl Manifest {
-    /// Of a campaign with these blocks.
-    pub(super) fn new(identity: &Identity, columns: &[Column], blocks: Vec<Block>) -> Self {
-        let block = |block: Block| ManifestBlock { file: block.name(), block };
+    /// Of a campaign with these blocks, of which so much is kept.
+    pub(super) fn new<'c>(
+        identity: &Identity,
+        kept: &Kept,
+        columns: impl IntoIterator<Item = &'c Column>,
+        blocks: Vec<Block>,
+    ) -> Self {
+        let block =
+            |block: Block| ManifestBlock { file: block.has_file().then(|| block.name()), block };
         Self {
             gyradius_version: env!("CARGO_PKG_VERSION").to_owned(),
             identity: identity.clone(),
-            columns: columns.iter().map(Column::summary).collect(),
+            kept: kept.clone(),
+            columns: columns.into_iter().map(Column::summary).collect(),
             blocks: blocks.into_iter().map(block).collect(),
         }
     }
@@ -149,12 +169,17 @@ impl Manifest {
         Ok(serde_json::from_slice(&fs::read(folder.join(MANIFEST))?)?)
     }
 
-    /// The file of the block that has a run of a model, from the folder on, and the row of the run in it.
+    /// The block that has a run of a model.
     #[must_use]
-    pub fn find(&self, model: &str, run: u64) -> Option<(&str, u64)> {
-        let has = |b: &&ManifestBlock| b.block.model == model && b.block.range().contains(&run);
-        let found = self.blocks.iter().find(has)?;
-        Some((&found.file, run - found.block.first_run))
+    pub fn find(&self, model: &str, run: u64) -> Option<&Block> {
+        let mut blocks = self.blocks.iter().map(|entry| &entry.block);
+        blocks.find(|block| block.model == model && block.range().contains(&run))
+    }
+
+    /// What is kept of the run tables.
+    #[must_use]
+    pub fn kept(&self) -> &Kept {
+        &self.kept
     }
 
     /// What the runs depend on.

@@ -9,6 +9,7 @@
 //!
 //! The record, the journal, the lock and the draft are in the hidden folder `.gyradius`.
 
+mod adopt;
 mod area;
 mod blocks;
 mod disk;
@@ -29,6 +30,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+pub use adopt::Reduced;
 pub use blocks::Blocks;
 use hidden::Hidden;
 use journal::{Journal, Left, Replacement};

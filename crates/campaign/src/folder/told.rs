@@ -10,7 +10,7 @@ use super::{
     name::{Found, Name, look},
     record::Record,
 };
-use crate::identity::Identity;
+use crate::{identity::Identity, kept::Kept};
 
 /// The text from which the unfinished campaign in a folder was begun, if there is one.
 #[must_use]
@@ -32,14 +32,15 @@ pub fn told(
 ) -> Result<Vec<Block>, FolderError> {
     let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
     let (record, _) = Hidden::record_of(place, contents.what).map_err(failed)?;
-    let mut blocks = published(place, &record, identity);
+    let mut blocks = published(place, &record, identity).1;
     let area = Area::of(place);
     if area.identity().map_err(failed)?.is_some_and(|there| identity.difference(&there).is_none()) {
         blocks.extend(area.recorded().map_err(failed)?);
     }
     blocks.retain(|block| {
         let (root, name) = area.place_of(block, place);
-        fs::symlink_metadata(root.join(name)).is_ok_and(|f| f.is_file() && f.len() == block.bytes)
+        let found = fs::symlink_metadata(root.join(name));
+        !block.has_file() || found.is_ok_and(|f| f.is_file() && f.len() == block.bytes)
     });
     let order = |b: &Block| (b.first_run, Reverse(b.again), !b.published);
     blocks.sort_by(|a, b| a.model.cmp(&b.model).then_with(|| order(a).cmp(&order(b))));
@@ -70,8 +71,8 @@ pub fn missing_runs(
     missing
 }
 
-/// The blocks of a complete campaign of this identity, if the folder has one.
-pub(super) fn published(place: &Path, record: &Record, identity: &Identity) -> Vec<Block> {
+/// What is kept of the complete campaign of this identity, and its blocks, if the folder has one.
+pub(super) fn published(place: &Path, record: &Record, identity: &Identity) -> (Kept, Vec<Block>) {
     let known =
         |name: &str, sha: &str| Name::new(name).is_ok_and(|name| record.hash(&name) == Some(sha));
     let unchanged = Name::new(MANIFEST).is_ok_and(|name| {
@@ -79,6 +80,8 @@ pub(super) fn published(place: &Path, record: &Record, identity: &Identity) -> V
     });
     let manifest = Manifest::read(place).ok().filter(|_| unchanged);
     let manifest = manifest.filter(|manifest| manifest.identity().difference(identity).is_none());
+    let kept = manifest.as_ref().map(|manifest| manifest.kept().clone()).unwrap_or_default();
+    let is_known = |block: &Block| !block.has_file() || known(&block.name(), &block.sha256);
     let blocks = manifest.into_iter().flat_map(Manifest::into_blocks);
-    blocks.filter(|block| block.is_sound() && known(&block.name(), &block.sha256)).collect()
+    (kept, blocks.filter(|block| block.is_sound() && is_known(block)).collect())
 }

@@ -5,7 +5,7 @@ use clap::{
     builder::{NonEmptyStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser},
     value_parser,
 };
-use gyradius_study::{CompareOptions, ModelKind, TableFormat};
+use gyradius_study::{CompareOptions, ModelKind, Rows, TableFormat};
 use std::path::PathBuf;
 
 use crate::program::{
@@ -155,6 +155,17 @@ pub(crate) struct StudyArgs {
     /// Replace another study in the folder: the files that it wrote, and nothing else
     #[arg(long)]
     pub(crate) force: bool,
+
+    /// Which rows of the run tables to keep once all runs are done [default: as in the scenario, which is all if it does not say]
+    ///
+    /// Until then all rows are on the disk, for quantiles are found in several passes over them. Nobody can add runs to a
+    /// study whose rows were not all kept.
+    #[arg(long, value_name = "WHICH", value_parser = rows())]
+    pub(crate) rows: Option<Rows>,
+
+    /// Columns of the run tables to keep once all runs are done, besides model, run and status [default: as in the scenario]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) columns: Option<Vec<String>>,
 
     /// Do only a share of the runs, as 2/8, while other processes do the others: `gyradius report` puts them together
     ///
@@ -562,6 +573,14 @@ fn table_format() -> impl TypedValueParser<Value = TableFormat> {
     let names = PossibleValuesParser::new(TableFormat::ALL.map(value));
     // Each of these is the name of one.
     names.map(|name| TableFormat::named(&name).unwrap_or_default())
+}
+
+/// Which rows are kept, by their names.
+fn rows() -> impl TypedValueParser<Value = Rows> {
+    let value = |rows: Rows| PossibleValue::new(rows.name()).help(rows.meaning());
+    // Each of these is the name of one.
+    PossibleValuesParser::new(Rows::ALL.map(value))
+        .map(|name| Rows::ALL.into_iter().find(|rows| rows.name() == name).unwrap_or_default())
 }
 
 /// The help of `--models`.

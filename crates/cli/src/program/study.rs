@@ -1,7 +1,7 @@
 //! `gyradius study`: a scenario run, its table, and the exit code.
 
 use gyradius_study::{
-    Again, AnyScenario, CampaignError, Notice, Options, Scenario, ScenarioError, StudyError,
+    Again, AnyScenario, CampaignError, Kept, Notice, Options, Scenario, ScenarioError, StudyError,
 };
 use serde_json::json;
 use std::{error::Error, path::Path, process::ExitCode, time::Duration};
@@ -24,6 +24,9 @@ const PATIENCE: Duration = Duration::from_secs(20);
 pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
     let scenario = sized(scenario, arguments.runs, arguments.vehicles)?;
+    let kept = scenario.kept();
+    let columns = arguments.columns.clone().or_else(|| kept.columns().map(<[_]>::to_vec));
+    let scenario = scenario.with_kept(&Kept::new(arguments.rows.unwrap_or(kept.rows()), columns));
     let shard = arguments.shard.map(AskedShard::find).transpose()?;
     let signals = Signals::watch()?;
     let options = Options {

@@ -8,13 +8,15 @@ mod short;
 mod words;
 
 use gyradius_campaign::{
-    MANIFEST, Manifest, Row, Simulation, Table, TableError, folder_of, read_row, restore,
+    Column, Kept, MANIFEST, Manifest, Row, Rows, Simulation, Table, TableError, folder_of,
+    read_run, restore,
 };
 use gyradius_clearance::Clearance;
 use gyradius_formats::{WriteError, must_write, write_file};
 use gyradius_separation::{RunError, Separation, Step};
 use parquet::errors::ParquetError;
 use std::{
+    collections::BTreeSet,
     fs, io,
     path::{Path, PathBuf},
 };
@@ -193,7 +195,18 @@ pub struct Replay {
     /// How near the bodies come, if that is watched and the run ends well.
     clearance: Option<Clearance>,
     /// The table whose row it was held against.
-    table: Option<PathBuf>,
+    table: Held,
+}
+
+/// What a replay was held against.
+#[derive(Debug)]
+enum Held {
+    /// Nothing: there is no study.
+    Nowhere,
+    /// Nothing: the study did not keep the row.
+    NotKept,
+    /// What was kept of the row in a table.
+    To(PathBuf),
 }
 
 impl Replay {
@@ -239,13 +252,23 @@ impl Replay {
             path: folder.join(MANIFEST),
             problem: error.to_string(),
         })?;
-        let (file, row) = manifest.find(&self.model, run).ok_or_else(|| {
+        let block = manifest.find(&self.model, run).ok_or_else(|| {
             let problem = format!("it tells of no run {run} of {:?}", self.model);
             ReplayError::Manifest { path: folder.join(MANIFEST), problem }
         })?;
-        let table = folder.join(file);
-        self.compare(&table, row)?;
-        self.table = Some(table);
+        let kept = manifest.kept();
+        let is_kept = match kept.rows() {
+            Rows::All => true,
+            Rows::Failed => self.row().failure().is_some(),
+            Rows::None => false,
+        };
+        if !is_kept {
+            self.table = Held::NotKept;
+            return Ok(self);
+        }
+        let table = folder.join(block.name());
+        self.compare(&table, kept)?;
+        self.table = Held::To(table);
         Ok(self)
     }
 
@@ -296,7 +319,7 @@ impl Replay {
             model: spec.name.clone(),
             case,
             clearance,
-            table: None,
+            table: Held::Nowhere,
         })
     }
 
@@ -348,7 +371,7 @@ impl Replay {
     }
 
     /// Holds the row against that of a run table, bit by bit.
-    fn compare(&self, table: &Path, row: u64) -> Result<(), ReplayError> {
+    fn compare(&self, table: &Path, kept: &Kept) -> Result<(), ReplayError> {
         let unreadable = |source| ReplayError::Table { path: table.to_owned(), source };
         let differs = |column: &str, found: String, replayed: String| ReplayError::Differs {
             path: table.to_owned(),
@@ -356,15 +379,18 @@ impl Replay {
             table: found,
             replayed,
         };
-        let found = read_row(table, row).map_err(unreadable)?;
+        let found = read_run(table, (&self.model, self.row().run())).map_err(unreadable)?;
         let found = found
             .ok_or_else(|| unreadable(ParquetError::General("it has no such run".to_owned())))?;
-        let columns = self.own.columns().len();
-        if columns != found.len() {
+        let columns: BTreeSet<_> =
+            kept.kept_columns(&self.own).into_iter().map(Column::name).collect();
+        if columns.len() != found.len() {
             let count = |n: usize| format!("{n} columns");
-            return Err(differs("the number of columns", count(found.len()), count(columns)));
+            return Err(differs("the number of columns", count(found.len()), count(columns.len())));
         }
-        for ((column, own), (name, cell)) in self.row().cells().zip(found) {
+        let row = self.row();
+        let own = row.cells().filter(|(column, _)| columns.contains(column.name()));
+        for ((column, own), (name, cell)) in own.zip(found) {
             if column.name() != name {
                 return Err(differs("the name of a column", name, column.name().to_owned()));
             }

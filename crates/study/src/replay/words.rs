@@ -6,7 +6,7 @@ use std::fmt::{self, Display, Formatter};
 
 use gyradius_report::{optional, significant};
 
-use super::Replay;
+use super::{Held, Replay};
 use crate::{
     body::{Body, Entry},
     column::{CLEARANCE_NOTE, REALIZABLE, RECOMPRESSED},
@@ -51,8 +51,16 @@ impl Display for Replay {
         )?;
         writeln!(f, "status: {}", row.status())?;
         match &self.table {
-            Some(table) => writeln!(f, "the same, bit for bit, as in {}", table.display())?,
-            None => writeln!(f, "there is no run table to hold it against")?,
+            Held::To(table) => {
+                writeln!(f, "the same, bit for bit, as in {}", table.display())?;
+            }
+            Held::NotKept => {
+                writeln!(
+                    f,
+                    "the study did not keep the row of this run: there is nothing to hold it against"
+                )?;
+            }
+            Held::Nowhere => writeln!(f, "there is no run table to hold it against")?,
         }
         write!(f, "\ninertia (kg·m²)")?;
         for entry in Entry::ALL {

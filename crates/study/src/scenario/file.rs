@@ -1,5 +1,6 @@
 //! A scenario as it stands in a TOML file.
 
+use gyradius_campaign::Rows;
 use gyradius_dispersion::ScalarLawForm;
 use gyradius_separation::{BodyParameter, LoadId, Spring, StackParameter};
 use serde::{Deserialize, Serialize};
@@ -40,6 +41,11 @@ pub(crate) struct ScenarioFile {
     pub(crate) flights: Option<u64>,
     #[serde(default = "default_seed", deserialize_with = "parse::whole")]
     pub(crate) seed: u64,
+    /// Which rows of the run tables are kept, and which columns, if not all.
+    #[serde(default, skip_serializing_if = "Rows::is_all")]
+    pub(crate) rows: Rows,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) columns: Option<Vec<String>>,
     #[serde(default = "default_spin_axis")]
     pub(crate) spin_axis: [f64; 3],
     /// Inertial axes; the force of the springs at the start if not given.

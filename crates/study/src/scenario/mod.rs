@@ -18,6 +18,7 @@ mod scalar;
 mod sides;
 mod vehicles;
 
+use gyradius_campaign::Kept;
 use gyradius_formats::read_text;
 use gyradius_separation::{Separation, SeparationError, Settings, SettingsError};
 use nalgebra::{Unit, Vector3};
@@ -178,6 +179,19 @@ impl Scenario {
     pub fn with_seed(self, seed: u64) -> Result<Self, ScenarioError> {
         check_seed(seed)?;
         Ok(Self { file: ScenarioFile { seed, ..self.file }, ..self })
+    }
+
+    /// The same scenario, which keeps so much of its run tables.
+    #[must_use]
+    pub fn with_kept(self, kept: &Kept) -> Self {
+        let (rows, columns) = (kept.rows(), kept.columns().map(<[_]>::to_vec));
+        Self { file: ScenarioFile { rows, columns, ..self.file }, ..self }
+    }
+
+    /// What is kept of its run tables once all runs are done.
+    #[must_use]
+    pub fn kept(&self) -> Kept {
+        Kept::new(self.file.rows, self.file.columns.clone())
     }
 
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {

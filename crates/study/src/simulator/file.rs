@@ -1,5 +1,6 @@
 //! A scenario of a simulator as it stands in a TOML file.
 
+use gyradius_campaign::Rows;
 use gyradius_dispersion::{ModelKind, ScalarLawForm};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -15,6 +16,11 @@ pub(super) struct File {
     pub(super) runs: u64,
     #[serde(default = "default_seed", deserialize_with = "whole")]
     pub(super) seed: u64,
+    /// Which rows of the run tables are kept, and which columns, if not all.
+    #[serde(default, skip_serializing_if = "Rows::is_all")]
+    pub(super) rows: Rows,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) columns: Option<Vec<String>>,
     pub(super) simulation: SimulationFile,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) bodies: Vec<SimulatedBodyFile>,

@@ -1,6 +1,6 @@
 //! A scenario of a simulator, checked: the command, what is uncertain, how often.
 
-use gyradius_campaign::{Column, Program, ProgramError};
+use gyradius_campaign::{Column, Kept, Program, ProgramError};
 use gyradius_dispersion::{ModelKind, ScalarLaw};
 use std::path::Path;
 
@@ -109,6 +109,19 @@ impl SimulatorScenario {
     pub fn with_seed(self, seed: u64) -> Result<Self, ScenarioError> {
         check_seed(seed)?;
         Ok(Self { file: File { seed, ..self.file }, ..self })
+    }
+
+    /// The same scenario, which keeps so much of its run tables.
+    #[must_use]
+    pub fn with_kept(self, kept: &Kept) -> Self {
+        let (rows, columns) = (kept.rows(), kept.columns().map(<[_]>::to_vec));
+        Self { file: File { rows, columns, ..self.file }, ..self }
+    }
+
+    /// What is kept of its run tables once all runs are done.
+    #[must_use]
+    pub fn kept(&self) -> Kept {
+        Kept::new(self.file.rows, self.file.columns.clone())
     }
 
     /// Its name.

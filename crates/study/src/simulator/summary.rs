@@ -1,7 +1,8 @@
 //! Campaigns of simulators as studies: how their runs are simulated, and what they amount to.
 
 use gyradius_campaign::{
-    Column, Doing, ExternalSimulation, FirstLook, Forecast, Progress, Runs, Simulator, Surveys,
+    Column, Doing, ExternalSimulation, FirstLook, Forecast, Kept, Progress, Runs, Simulator,
+    Surveys,
 };
 use gyradius_report::{Document, Overview, file_of, optional, with_unit};
 use gyradius_statistics::Confidence;
@@ -73,7 +74,7 @@ impl Subject for SimulatorScenario {
     /// Few, for a run of a simulator may take seconds.
     const BLOCK_RUNS: u64 = 1 << 8;
     /// Machines that do a campaign together may have the simulator in different places.
-    const IMMATERIAL: &[&str] = &["runs", "simulation.folder"];
+    const IMMATERIAL: &[&str] = &["runs", "rows", "columns", "simulation.folder"];
 
     type Prepared = Simulator;
     type Simulation<'a> = ExternalSimulation<'a, SimulatorDraws<'a>>;
@@ -94,6 +95,10 @@ impl Subject for SimulatorScenario {
 
     fn runs(&self) -> u64 {
         self.runs()
+    }
+
+    fn kept(&self) -> Kept {
+        self.kept()
     }
 
     fn model_names(&self) -> impl Iterator<Item = &str> {
@@ -165,8 +170,11 @@ impl Subject for SimulatorScenario {
 
     fn report(&self, summary: &SimulatorSummary) -> Document {
         let document = summary.overview.document();
-        report::noting_what_is_missing(document, &summary.head)
-            .section(report::inputs(&summary.head, self.to_toml()))
+        report::noting_what_is_missing(document, &summary.head).section(report::inputs(
+            &summary.head,
+            &self.kept(),
+            self.to_toml(),
+        ))
     }
 }
 

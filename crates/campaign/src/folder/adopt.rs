@@ -1,0 +1,151 @@
+//! Blocks of a complete campaign put in their places: whole, or those rows and columns of them that are kept.
+
+use rayon::prelude::*;
+use std::{
+    io::{self, Write},
+    path::PathBuf,
+};
+
+use super::{
+    Folder, FolderError, Problem,
+    blocks::Blocks,
+    hidden::Hidden,
+    manifest::{Block, MANIFEST, Manifest},
+    name::{Found, Name, look},
+    shared::Shared,
+    told::published,
+};
+use crate::{hash::sha256, identity::Identity, kept::Kept, stored, table::Table};
+
+/// A complete campaign of which not all rows and columns were kept: nobody can go on with it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reduced {
+    kept: Kept,
+    place: PathBuf,
+    blocks: Vec<Block>,
+}
+
+impl Folder<'_> {
+    /// Puts the blocks that are not in their places there with the rest of the draft, and tells of all of them. `empty` is a
+    /// table of each model, by which its runs are read if not all of their rows and columns are kept.
+    ///
+    /// # Errors
+    /// They cannot be read, linked or written.
+    pub fn adopt(
+        &mut self,
+        blocks: &Blocks,
+        empty: &[Table],
+        kept: &Kept,
+        threads: &rayon::ThreadPool,
+    ) -> Result<(), FolderError> {
+        let adopted = if kept.is_all() {
+            self.adopt_whole(blocks)
+        } else {
+            self.adopt_reduced(blocks, empty, kept, threads)
+        };
+        let adopted = adopted.map_err(|problem| self.failed(problem))?;
+        let columns = empty.first().map(|table| kept.kept_columns(table)).unwrap_or_default();
+        let manifest = Manifest::new(&blocks.identity, kept, columns, adopted);
+        let text =
+            serde_json::to_string_pretty(&manifest).map_err(|error| self.failed(error.into()))?;
+        self.write(MANIFEST, &(text + "\n"))
+    }
+
+    fn adopt_whole(&mut self, blocks: &Blocks) -> Result<Vec<Block>, Problem> {
+        let all = blocks.all();
+        for block in all.iter().filter(|block| !block.published) {
+            let name = Name::new(&block.name())?;
+            self.journal.link(&self.hidden, name, &blocks.path(block), &block.sha256)?;
+        }
+        Ok(all)
+    }
+
+    fn adopt_reduced(
+        &mut self,
+        blocks: &Blocks,
+        empty: &[Table],
+        kept: &Kept,
+        threads: &rayon::ThreadPool,
+    ) -> Result<Vec<Block>, Problem> {
+        let mut all = blocks.all();
+        // So many are in memory at the same time.
+        for some in all.chunks_mut(threads.current_num_threads()) {
+            let content = |block: &Block| match empty.iter().find(|t| t.model() == block.model()) {
+                None => Ok(None),
+                Some(empty) => {
+                    let table = empty.read_parquet(&blocks.path(block));
+                    table.and_then(|table| table.kept_parquet(kept)).map_err(|error| {
+                        Problem::Block { name: block.name(), problem: stored::said(&error) }
+                    })
+                }
+            };
+            let contents = threads
+                .install(|| some.par_iter().map(content).collect::<Result<Vec<_>, Problem>>())?;
+            for (block, content) in some.iter_mut().zip(contents) {
+                let content = content.unwrap_or_default();
+                (block.bytes, block.sha256) = (content.len() as u64, String::new());
+                if block.has_file() {
+                    block.sha256 = sha256(&content);
+                    let name = Name::new(&block.name())?;
+                    self.journal.create(&self.hidden, name)?.write_all(&content)?;
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// The complete campaign of an identity that is in the folder, if not all of its rows and columns were kept.
+    ///
+    /// # Errors
+    /// The folder cannot be read.
+    pub fn reduced(&self, identity: &Identity) -> Result<Option<Reduced>, FolderError> {
+        let reduced = Reduced::find((&self.hidden, self.contents.what), identity);
+        reduced.map_err(|problem| self.failed(problem))
+    }
+}
+
+impl Shared {
+    /// As [`Folder::reduced`].
+    ///
+    /// # Errors
+    /// The folder cannot be read.
+    pub fn reduced(&self, identity: &Identity) -> Result<Option<Reduced>, FolderError> {
+        let reduced = Reduced::find((&self.hidden, self.what), identity);
+        reduced.map_err(|problem| FolderError { path: self.place.clone(), problem })
+    }
+}
+
+impl Reduced {
+    fn find((hidden, what): (&Hidden, &str), identity: &Identity) -> Result<Option<Self>, Problem> {
+        let place = hidden.place().to_owned();
+        let (kept, blocks) = published(&place, &hidden.record(what)?.0, identity);
+        Ok((!kept.is_all()).then_some(Self { kept, place, blocks }))
+    }
+
+    /// What was kept.
+    #[must_use]
+    pub fn kept(&self) -> &Kept {
+        &self.kept
+    }
+
+    /// Runs of each model.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        self.blocks.iter().map(|block| block.range().end).max().unwrap_or(0)
+    }
+
+    /// Whether what was kept is as it was written; to be called in the threads that are to look.
+    ///
+    /// # Errors
+    /// The folder cannot be read.
+    pub fn is_whole(&self) -> Result<bool, FolderError> {
+        let with_file = self.blocks.par_iter().filter(|block| block.has_file());
+        let whole = with_file.map(|block| {
+            let Ok(name) = Name::new(&block.name()) else { return Ok(false) };
+            Ok(matches!(look(&self.place, &name)?, Found::File { hash } if hash == block.sha256))
+        });
+        let all = whole.collect::<io::Result<Vec<bool>>>();
+        let all = all.map_err(|e| FolderError { path: self.place.clone(), problem: e.into() })?;
+        Ok(all.into_iter().all(|whole| whole))
+    }
+}

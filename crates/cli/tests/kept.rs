@@ -1,0 +1,128 @@
+//! Studies that keep only a part of their run tables.
+
+use std::{collections::BTreeMap, fs, path::Path};
+
+use crate::scratch::{Scratch, files};
+
+/// The built-in study of light bodies, a few of which have no mass that is positive: their runs fail.
+fn scenario() -> String {
+    let text = fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../study/src/scenario/peck-2003.toml"
+    ));
+    let (head, rest) = text.as_ref().unwrap().split_once("[payload.dispersion]").unwrap();
+    format!("{head}[payload.dispersion]\nmass_percent = 60\n{rest}")
+}
+
+/// What the program says to these arguments, which ends with this exit code.
+#[track_caller]
+fn done(scratch: &Scratch, arguments: &[&str], code: i32) -> String {
+    let output = scratch.run(arguments);
+    let text = [output.stdout.as_slice(), &output.stderr].concat();
+    let text = String::from_utf8_lossy(&text).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {text}");
+    text
+}
+
+/// Every file of a study but those of its runs and those that say what is kept of them.
+fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = files(folder);
+    files.retain(|name, _| name.starts_with("figures/") || name == "summary.json");
+    let summary = files.get_mut("summary.json").unwrap();
+    let mut told: serde_json::Value = serde_json::from_slice(summary).unwrap();
+    // Of the scenario, which says what is kept.
+    assert!(told.as_object_mut().unwrap().remove("fingerprint").is_some());
+    *summary = told.to_string().into_bytes();
+    files
+}
+
+fn runs(folder: &Path) -> Vec<String> {
+    files(folder).into_keys().filter(|name| name.starts_with("runs/")).collect()
+}
+
+/// Whatever is kept, in one process or in shards: the results are those of the study that keeps all; the same command finds
+/// it done; nobody goes on with it, and who begins anew by force has all.
+#[test]
+fn results_do_not_depend_on_what_is_kept() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), scenario()).unwrap();
+    let study = ["study", "--scenario", "it.toml", "--runs", "300"];
+    let with = |more: &[&'static str]| [&study, more].concat();
+    done(&scratch, &with(&["--out", "whole"]), 0);
+    let whole = results(&scratch.path("whole"));
+    assert_eq!(runs(&scratch.path("whole")).len(), 4);
+
+    for (i, flags) in [
+        &["--rows", "none"][..],
+        &["--rows", "failed"],
+        &["--columns", "wobble_deg,payload_mass_kg"],
+        &["--rows", "failed", "--columns", "payload_mass_kg"],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let part: &'static str = ["a", "b", "c", "d"][i];
+        let place = scratch.path(part);
+        let command = with(&[flags, &["--out", part]].concat());
+        if i == 1 {
+            // A study that kept all loses the rest.
+            done(&scratch, &with(&["--out", part]), 0);
+        }
+        if i == 3 {
+            for shard in ["2/2", "1/2"] {
+                done(&scratch, &[&command[..], &["--shard", shard]].concat(), 0);
+            }
+            done(&scratch, &["report", part], 0);
+        }
+        done(&scratch, &command, 0);
+        assert_eq!(results(&place), whole, "{flags:?}");
+        assert_eq!(runs(&place).len(), if i == 0 { 0 } else { 4 }, "{flags:?}");
+        let report = fs::read_to_string(place.join("report.md")).unwrap();
+        assert!(report.contains("kept"), "{flags:?}");
+
+        let before = files(&place);
+        let same = |what: &str| assert_eq!(files(&place), before, "{flags:?} {what}");
+        done(&scratch, &command, 0);
+        same("again");
+        done(&scratch, &[&command[..], &["--shard", "1/2"]].concat(), 0);
+        same("a share of it");
+        for more in [
+            &["--runs", "301"][..],
+            &["--rows", "all", "--columns", "status"],
+            &["--runs", "301", "--shard", "1/3"],
+            &["--retry-failed"],
+        ] {
+            let mut other = command.clone();
+            if more[0] == "--runs" {
+                other.retain(|word| !["--runs", "300"].contains(word));
+            } else if more[0] == "--rows" {
+                other = with(&["--out", part]);
+            }
+            let said = done(&scratch, &[&other[..], more].concat(), 2);
+            assert!(said.contains("was kept") && said.contains("--force"), "{said}");
+            same("refused");
+        }
+        assert!(done(&scratch, &["status", part], 0).contains("put together"), "{flags:?}");
+        let replay = done(&scratch, &["replay", part, "--run", "3", "--out", "r", "--force"], 0);
+        let expected = if flags[0] == "--columns" { "bit for bit" } else { "did not keep the row" };
+        assert!(replay.contains(expected), "{replay}");
+
+        done(&scratch, &with(&["--out", part, "--force"]), 0);
+        let all = |folder: &str| {
+            let mut all = files(&scratch.path(folder));
+            all.remove(".gyradius/lock");
+            all
+        };
+        assert_eq!(all(part), all("whole"), "{flags:?}");
+    }
+}
+
+/// A column that is not there is refused before the first run, and nothing is written.
+#[test]
+fn columns_that_are_not_there_are_refused() {
+    let scratch = Scratch::new();
+    let said = done(&scratch, &["study", "--columns", "status,wobble", "--out", "it"], 2);
+    assert!(said.contains("columns: \"wobble\"") && said.contains("wobble_deg"), "{said}");
+    assert!(!scratch.path("it").exists());
+    done(&scratch, &["study", "--rows", "some"], 2);
+}
