@@ -4,6 +4,8 @@
 mod check;
 mod command_line;
 mod compare;
+#[cfg(target_os = "linux")]
+mod disk;
 mod draw;
 mod fit;
 mod fleet;

@@ -224,3 +224,56 @@ fn a_disk_that_is_too_small_is_found_before() {
     begun.kill().unwrap();
     begun.wait().unwrap();
 }
+
+/// A signal does not wait for a run of the simulator: the runs at hand are dropped, their processes and what these started
+/// are killed, and the same command goes on.
+#[test]
+fn a_signal_ends_runs_that_take_long() {
+    // Tells who it is, and then takes its time, the first time.
+    let slow = "if [ -e busy ]; then echo $$ > process; sleep 30; fi; ";
+    let answers = [
+        ("false", format!("read -r line; {slow}echo '{{\"outputs\":{{\"y\":1}}}}'; exec cat")),
+        (
+            "true",
+            format!(
+                "here=$PWD; cd \"$0\"; {slow}echo '{{\"outputs\":{{\"y\":1}}}}' > $here/output.json"
+            ),
+        ),
+    ];
+    for (per_run, answer) in answers {
+        for (signal, code) in [("INT", 130), ("TERM", 143)] {
+            let scratch = Scratch::new();
+            let folder = scratch.folder().to_str().unwrap();
+            let command = format!(
+                "runs = 1\nsimulation.per_run = {per_run}\nsimulation.command = ['sh', '-c', '''cd {folder}; {answer}''', '{folder}']\n"
+            );
+            let rest = SCENARIO.replace("[simulation]\ncommand = [\"sh\", \"answer.sh\"]\n", "");
+            let text = command + &rest.replace("runs = 4000\n", "");
+            let text = if per_run == "true" {
+                text.replace(&format!("cd {folder}; here"), "here")
+            } else {
+                text
+            };
+            fs::write(scratch.path("s.toml"), text).unwrap();
+            fs::write(scratch.path("busy"), "").unwrap();
+            let study = ["study", "--scenario", "s.toml", "--out", "it"];
+            let mut child = scratch.command(&study);
+            let child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+            let process = || fs::read_to_string(scratch.path("process")).unwrap_or_default();
+            while !process().ends_with('\n') {
+                thread::sleep(Duration::from_millis(2));
+            }
+            let id = child.id().to_string();
+            Command::new("kill").args([&format!("-{signal}"), &id]).status().unwrap();
+            let output = child.wait_with_output().unwrap();
+            assert_eq!(output.status.code(), Some(code), "{:?}", said(&output));
+            assert!(said(&output)[1].contains("the same command goes on"));
+            let alive = Command::new("kill").args(["-0", process().trim()]).output().unwrap();
+            assert!(!alive.status.success(), "{per_run}");
+            fs::remove_file(scratch.path("busy")).unwrap();
+            let output = scratch.run(&study);
+            assert!(output.status.success(), "{:?}", said(&output));
+            assert!(said(&output)[0].contains("1 runs a model"), "{:?}", said(&output));
+        }
+    }
+}

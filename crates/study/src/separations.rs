@@ -3,6 +3,7 @@
 use gyradius_campaign::{CampaignError, Column, Forecast, Kept, Runs};
 use gyradius_report::Document;
 use rayon::ThreadPool;
+use std::sync::{Arc, atomic::AtomicBool};
 
 use crate::{
     Fleet, Scenario, ScenarioError, StudyError, Summary, claims,
@@ -60,7 +61,7 @@ impl Subject for Scenario {
         self.to_toml()
     }
 
-    fn prepare(&self) -> Result<Vec<Model>, ScenarioError> {
+    fn prepare(&self, _: Option<&Arc<AtomicBool>>) -> Result<Vec<Model>, ScenarioError> {
         Model::all(self)
     }
 

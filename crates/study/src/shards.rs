@@ -33,7 +33,7 @@ pub(crate) fn forecast_study<C: Subject>(
     options: &Options,
 ) -> Result<Forecast, StudyError> {
     let threads = threads(options.threads)?;
-    let prepared = scenario.prepare()?;
+    let prepared = scenario.prepare(None)?;
     let simulations = scenario.simulations(&prepared)?;
     scenario.forecast(&simulations, planned_runs(scenario, None), &threads)
 }
@@ -52,7 +52,7 @@ pub(crate) fn run_shard<C: Subject>(
     say: &dyn Fn(Notice),
 ) -> Result<(), StudyError> {
     let threads = threads(options.threads)?;
-    let models = scenario.prepare()?;
+    let models = scenario.prepare(options.stop.as_ref())?;
     let simulations = scenario.simulations(&models)?;
     let contents = contents(scenario);
     let folder = Shared::open(&options.place(scenario.name()), &contents)?;

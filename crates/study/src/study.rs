@@ -126,7 +126,7 @@ pub(crate) fn carry_out<C: Subject>(
 ) -> Result<Study<C::Summary>, StudyError> {
     let threads = threads(options.threads)?;
     let place = options.place(scenario.name());
-    let models = scenario.prepare()?;
+    let models = scenario.prepare(options.stop.as_ref())?;
     let simulations = scenario.simulations(&models)?;
     let in_place = OnceLock::<BTreeSet<String>>::new();
     let contents =

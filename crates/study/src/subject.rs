@@ -5,7 +5,11 @@ use gyradius_report::Document;
 use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
 use serde::{Serialize, de::DeserializeOwned};
-use std::{fmt::Display, path::Path};
+use std::{
+    fmt::Display,
+    path::Path,
+    sync::{Arc, atomic::AtomicBool},
+};
 
 use crate::{Fleet, ScenarioError, StudyError, head::Head};
 
@@ -51,8 +55,8 @@ pub(crate) trait Subject: Sync + Sized {
     fn model_names(&self) -> impl Iterator<Item = &str>;
     /// The resolved scenario.
     fn to_toml(&self) -> String;
-    /// Makes what draws and simulates.
-    fn prepare(&self) -> Result<Self::Prepared, ScenarioError>;
+    /// Makes what draws and simulates, and lets go of runs at hand once `stop` is true, if they can take long.
+    fn prepare(&self, stop: Option<&Arc<AtomicBool>>) -> Result<Self::Prepared, ScenarioError>;
     /// Makes certain, before the first run, that runs can be done.
     fn begin(&self, models: &Self::Prepared) -> Result<(), ScenarioError>;
     /// What so many runs will take, all models together; without the time where trying it may cost much.

@@ -13,7 +13,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{LIMIT, program::Program, tail::Tail, trouble::Trouble};
+use super::{LIMIT, patience::Patience, program::Program, tail::Tail, trouble::Trouble};
 
 /// How long a process that has closed its pipes may take to end, so that its status is told.
 const ENDING: Duration = Duration::from_secs(1);
@@ -90,8 +90,7 @@ impl Child {
     }
 
     /// Sends a line, without its end, and takes the line that is the answer.
-    pub(super) fn ask(&mut self, line: &[u8], timeout: Duration) -> Result<Vec<u8>, Trouble> {
-        let deadline = Instant::now() + timeout;
+    pub(super) fn ask(&mut self, line: &[u8], patience: Patience<'_>) -> Result<Vec<u8>, Trouble> {
         let mut left = line;
         // Lines that have no end yet are searched once.
         let mut searched = 0;
@@ -103,9 +102,9 @@ impl Child {
                     Some(Err(_)) | None => return Err(self.gone()),
                 }
             }
-            let Some([reads, complains]) = self.wait(!left.is_empty(), deadline) else {
+            let Some([reads, complains]) = self.wait(!left.is_empty(), patience) else {
                 let (_, last_line) = self.kill();
-                return Err(Trouble::Timeout { timeout, last_line });
+                return Err(patience.over(last_line));
             };
             if complains {
                 self.read_errors();
@@ -140,11 +139,10 @@ impl Child {
     }
 
     /// Waits until it has ended by itself, well.
-    pub(super) fn finish(&mut self, timeout: Duration) -> Result<(), Trouble> {
-        let deadline = Instant::now() + timeout;
-        let ended = self.ends_by(deadline);
+    pub(super) fn finish(&mut self, patience: Patience<'_>) -> Result<(), Trouble> {
+        let ended = self.ends_within(patience);
         match self.kill() {
-            (_, last_line) if !ended => Err(Trouble::Timeout { timeout, last_line }),
+            (_, last_line) if !ended => Err(patience.over(last_line)),
             (Some(status), last_line) if !status.success() => {
                 Err(Trouble::Ended { status, last_line })
             }
@@ -159,20 +157,24 @@ impl Child {
 
     /// Waits until it has ended or until the deadline, whatever it writes.
     pub(super) fn ends_by(&mut self, deadline: Instant) -> bool {
+        let left = deadline.saturating_duration_since(Instant::now());
+        self.ends_within(Patience::new(left, None))
+    }
+
+    fn ends_within(&mut self, patience: Patience<'_>) -> bool {
         let [mut pause, longest] = LOOKS;
         loop {
             self.read_errors();
             if self.output.is_some() && !matches!(self.read_output(), Ok(Arrived::Nothing)) {
                 self.arrived.clear();
             }
-            let left = deadline.saturating_duration_since(Instant::now());
+            // Asked before: what has ended by then has ended in time.
+            let wait = patience.next_wait();
             if self.has_ended() {
                 return true;
             }
-            if left.is_zero() {
-                return false;
-            }
-            std::thread::sleep(pause.min(left));
+            let Some(wait) = wait else { return false };
+            std::thread::sleep(pause.min(wait));
             pause = (2 * pause).min(longest);
         }
     }
@@ -221,10 +223,10 @@ impl Child {
     }
 
     /// Waits until there is something to read on standard output or standard error, which it tells apart, or room to
-    /// write; none if there is nothing before the deadline.
-    fn wait(&self, writes: bool, deadline: Instant) -> Option<[bool; 2]> {
+    /// write; none if there is nothing in time.
+    fn wait(&self, writes: bool, patience: Patience<'_>) -> Option<[bool; 2]> {
         loop {
-            let left = deadline.saturating_duration_since(Instant::now());
+            let left = patience.next_wait().unwrap_or_default();
             let timeout = Timespec {
                 tv_sec: left.as_secs().try_into().ok()?,
                 tv_nsec: left.subsec_nanos().into(),
@@ -237,7 +239,8 @@ impl Child {
             pipes.extend(errors.map(|pipe| PollFd::from_borrowed_fd(pipe, PollFlags::IN)));
             pipes.extend(input.map(|pipe| PollFd::from_borrowed_fd(pipe, PollFlags::OUT)));
             match poll(&mut pipes, Some(&timeout)) {
-                Ok(0) => return None,
+                Ok(0) if left.is_zero() => return None,
+                Ok(0) => {}
                 Ok(_) => {
                     let mut ready = pipes.iter().map(|pipe| !pipe.revents().is_empty());
                     let mut next = |there: bool| there && ready.next().unwrap_or(false);

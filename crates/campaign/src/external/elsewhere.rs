@@ -4,10 +4,10 @@ use std::{
     convert::Infallible,
     io::{self, ErrorKind},
     path::Path,
-    time::{Duration, Instant},
+    time::Instant,
 };
 
-use super::{program::Program, trouble::Trouble};
+use super::{patience::Patience, program::Program, trouble::Trouble};
 
 /// A process that is never started.
 #[derive(Debug)]
@@ -27,11 +27,11 @@ impl Child {
         match self.0 {}
     }
 
-    pub(super) fn ask(&mut self, _: &[u8], _: Duration) -> Result<Vec<u8>, Trouble> {
+    pub(super) fn ask(&mut self, _: &[u8], _: Patience<'_>) -> Result<Vec<u8>, Trouble> {
         match self.0 {}
     }
 
-    pub(super) fn finish(&mut self, _: Duration) -> Result<(), Trouble> {
+    pub(super) fn finish(&mut self, _: Patience<'_>) -> Result<(), Trouble> {
         match self.0 {}
     }
 

@@ -6,6 +6,7 @@ mod child;
 #[cfg(not(unix))]
 #[path = "elsewhere.rs"]
 mod child;
+mod patience;
 mod program;
 mod simulation;
 mod simulator;

@@ -3,9 +3,11 @@
 use std::{
     ffi::OsString,
     path::{Path, PathBuf},
+    sync::{Arc, atomic::AtomicBool},
     time::Duration,
 };
 
+use super::patience::Patience;
 use crate::hash::{sha256, sha256_of_file};
 
 /// Seconds that a run may take if nothing is said.
@@ -20,6 +22,7 @@ pub struct Program {
     folder: PathBuf,
     per_run: bool,
     timeout_s: f64,
+    stop: Option<Arc<AtomicBool>>,
 }
 
 impl Program {
@@ -44,7 +47,7 @@ impl Program {
             if is_path && !word.is_empty() && file.is_file() { file.into() } else { word.into() }
         };
         let words = command.iter().enumerate().map(word).collect();
-        Ok(Self { words, folder, per_run: false, timeout_s: TIMEOUT_S })
+        Ok(Self { words, folder, per_run: false, timeout_s: TIMEOUT_S, stop: None })
     }
 
     /// The same, started once for each run in a temporary folder of its own, where it finds `input.json` and leaves
@@ -64,6 +67,13 @@ impl Program {
         } else {
             Err(ProgramError::Timeout { timeout_s })
         }
+    }
+
+    /// The same, whose processes are waited for no longer once `stop` is true: the runs that they are at fail, and a
+    /// campaign that is stopped by the same drops them.
+    #[must_use]
+    pub fn stopped_by(self, stop: Arc<AtomicBool>) -> Self {
+        Self { stop: Some(stop), ..self }
     }
 
     /// The words of the command.
@@ -93,8 +103,9 @@ impl Program {
         sha256(&hashes.collect::<Vec<_>>().join("\n"))
     }
 
-    pub(super) fn timeout(&self) -> Duration {
-        Duration::from_secs_f64(self.timeout_s)
+    /// How long a run that begins now is waited for.
+    pub(super) fn patience(&self) -> Patience<'_> {
+        Patience::new(Duration::from_secs_f64(self.timeout_s), self.stop.as_deref())
     }
 
     pub(super) fn folder(&self) -> &Path {

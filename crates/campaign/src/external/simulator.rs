@@ -99,7 +99,7 @@ impl Simulator {
         }
         let ask = |mut child: Child, kept: &mut Option<Child>| {
             let result =
-                child.ask(request, self.program.timeout()).and_then(|answer| read(&answer));
+                child.ask(request, self.program.patience()).and_then(|answer| read(&answer));
             if result.as_ref().map_or_else(Trouble::is_an_answer, |_| true) {
                 *kept = Some(child);
             }
@@ -109,7 +109,7 @@ impl Simulator {
             && child.is_quiet()
         {
             let result = ask(child, kept);
-            if kept.is_some() {
+            if kept.is_some() || matches!(result, Err(Trouble::Stopped)) {
                 return result;
             }
         }
@@ -121,7 +121,7 @@ impl Simulator {
         let folder = tempfile::tempdir().map_err(Trouble::Files)?;
         fs::write(folder.path().join("input.json"), request).map_err(Trouble::Files)?;
         let mut child = Child::start_in(&self.program, folder.path()).map_err(Trouble::Start)?;
-        child.finish(self.program.timeout())?;
+        child.finish(self.program.patience())?;
         left(&folder.path().join("output.json"))
     }
 }

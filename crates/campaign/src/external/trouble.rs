@@ -19,6 +19,8 @@ pub(super) enum Trouble {
     Files(io::Error),
     /// Nothing came in time.
     Timeout { timeout: Duration, last_line: Option<String> },
+    /// The campaign was told to stop before there was an answer.
+    Stopped,
     /// The process ended by itself.
     Ended { status: ExitStatus, last_line: Option<String> },
     /// The process closed standard input or output and did not end.
@@ -61,6 +63,7 @@ impl Trouble {
             | Self::Start(_)
             | Self::Files(_)
             | Self::Timeout { .. }
+            | Self::Stopped
             | Self::Ended { .. }
             | Self::Closed { .. }
             | Self::TooLong { .. }
@@ -95,6 +98,7 @@ impl Trouble {
                 "no answer in time",
                 format!("no answer within {} s{}", timeout.as_secs_f64(), after(last_line)),
             ),
+            Self::Stopped => ("stopped", "stopped before the simulator answered".to_owned()),
             Self::Ended { status, last_line } => (
                 "the simulator ended",
                 format!("the simulator ended with {status} before it answered{}", after(last_line)),

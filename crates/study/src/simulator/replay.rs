@@ -34,7 +34,7 @@ impl SimulatorReplay {
                 let known = scenario.model_names().map(str::to_owned).collect();
                 ReplayError::Model { model: model.unwrap_or_default().to_owned(), known }
             })?;
-        let simulator = scenario.prepare()?;
+        let simulator = scenario.prepare(None)?;
         scenario.begin(&simulator)?;
         let told = scenario.simulation(&simulator, place)?.replay(run);
         let outputs = scenario.outputs().iter();

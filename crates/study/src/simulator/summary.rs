@@ -8,7 +8,11 @@ use gyradius_report::{Document, Overview, file_of, optional, with_unit};
 use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
 use serde::{Deserialize, Serialize};
-use std::{fmt, path::Path};
+use std::{
+    fmt,
+    path::Path,
+    sync::{Arc, atomic::AtomicBool},
+};
 
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
 use crate::{
@@ -109,8 +113,12 @@ impl Subject for SimulatorScenario {
         self.to_toml()
     }
 
-    fn prepare(&self) -> Result<Simulator, ScenarioError> {
-        Ok(Simulator::new(self.program()?))
+    fn prepare(&self, stop: Option<&Arc<AtomicBool>>) -> Result<Simulator, ScenarioError> {
+        let program = self.program()?;
+        Ok(Simulator::new(match stop {
+            Some(stop) => program.stopped_by(Arc::clone(stop)),
+            None => program,
+        }))
     }
 
     fn begin(&self, simulator: &Simulator) -> Result<(), ScenarioError> {

@@ -1,0 +1,122 @@
+//! Studies on a disk that is full, or must not be written: nothing is lost, and the words are clear.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+use crate::scratch::{Scratch, files};
+
+/// A model, so that a block of its runs has 7.6 MB.
+fn scenario() -> String {
+    let text = fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../study/src/scenario/peck-2003.toml"
+    ));
+    let text = text.unwrap();
+    let (head, rest) = text.split_once("# The law behind").unwrap();
+    let (_, source) = rest.split_once("# What the paper prints").unwrap();
+    format!("{head}#{source}")
+}
+
+/// Does what a shell script says where file systems can be mounted, which no other program sees; none where they cannot.
+fn with_mounts(scratch: &Scratch, script: &str) -> Option<Output> {
+    let mut may = Command::new("unshare");
+    may.args(["-rm", "sh", "-c", "mount -t tmpfs none /mnt"]);
+    if !may.output().is_ok_and(|output| output.status.success()) {
+        return None;
+    }
+    let mut command = Command::new("unshare");
+    command.args(["-rm", "sh", "-c", script]).current_dir(scratch.folder());
+    Some(command.env("GYRADIUS", env!("CARGO_BIN_EXE_gyradius")).output().unwrap())
+}
+
+fn content(folder: &Path) -> std::collections::BTreeMap<String, Vec<u8>> {
+    let mut files = files(folder);
+    files.remove(".gyradius/lock");
+    files
+}
+
+/// A disk that is full at the first block, at later ones, and when the results are written, and grows each time: the command says so
+/// with exit code 2, what was finished stays, a file of the user's is not touched, and at the end there is what a study leaves that had
+/// room.
+#[test]
+fn a_study_survives_a_full_disk() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), scenario()).unwrap();
+    let output =
+        scratch.run(&["study", "--scenario", "it.toml", "--runs", "40000", "--out", "whole", "-q"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let script = r#"
+        mkdir small && mount -t tmpfs -o size=1m none small || exit 99
+        echo mine > small/notes.txt
+        for size in 1m 9m 17m 18300k 100m; do
+            mount -o remount,size=$size small || exit 99
+            "$GYRADIUS" study --scenario it.toml --runs 40000 --out small/it -q --even-if-full
+            echo "$size ends with $?" >&2
+            "$GYRADIUS" status --json small/it | tr -d ' \n' | grep -o '"finished":[0-9]*' >&2
+            [ "$(cat small/notes.txt)" = mine ] || exit 98
+        done
+        cp -r small/it it
+    "#;
+    let Some(output) = with_mounts(&scratch, script) else { return };
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    let done = |size: &str| {
+        let (before, after) = said.split_once(&format!("{size} ends with ")).unwrap();
+        let error = before.lines().last().unwrap_or_default().to_owned();
+        let status = after.lines().nth(1).unwrap();
+        let finished = status.strip_prefix("\"finished\":").unwrap_or("0");
+        (after[..1].to_owned(), error, finished.parse::<u64>().unwrap())
+    };
+    let mut before = 0;
+    for size in ["1m", "9m", "17m", "18300k"] {
+        let (code, error, finished) = done(size);
+        assert_eq!(code, "2", "{said}");
+        assert!(error.contains("small/it") && error.contains("No space left"), "{error}");
+        assert!(finished >= before, "{said}");
+        before = finished;
+    }
+    assert_eq!(before, 40_000, "{said}");
+    assert_eq!(done("100m").0, "0", "{said}");
+    assert_eq!(content(&scratch.path("it")), content(&scratch.path("whole")));
+}
+
+/// A folder that must not be written is refused before the first run, and what is in it can be read: status, replay, a report elsewhere.
+#[test]
+fn a_study_that_is_read_only_can_be_looked_at() {
+    let scratch = Scratch::new();
+    let script = r#"
+        mkdir fixed && mount -t tmpfs none fixed || exit 99
+        "$GYRADIUS" study --runs 40 --out fixed/it -q || exit 1
+        "$GYRADIUS" study --runs 40 --out fixed/begun --shard 1/2 -q || exit 2
+        mount -o remount,ro fixed || exit 99
+        "$GYRADIUS" status fixed/it || exit 3
+        "$GYRADIUS" replay fixed/it --run 7 --out replay | grep 'bit for bit' || exit 4
+        "$GYRADIUS" report fixed/it --out report || exit 5
+        "$GYRADIUS" status fixed/begun; [ $? = 1 ] || exit 6
+        for command in 'study --runs 50 --out fixed/it' 'study --runs 50 --out fixed/new' 'report fixed/it' \
+            'report fixed/begun' 'study --runs 40 --out fixed/begun --shard 2/2'; do
+            "$GYRADIUS" $command 2> said
+            [ $? = 2 ] || { echo "$command"; cat said; exit 7; } >&2
+            grep -q 'fixed/.*Read-only file system' said || { echo "$command"; cat said; exit 8; } >&2
+        done
+    "#;
+    let Some(output) = with_mounts(&scratch, script) else { return };
+    let text = [output.stdout.as_slice(), &output.stderr].concat();
+    assert!(output.status.success(), "{}: {}", output.status, String::from_utf8_lossy(&text));
+}
+
+/// A study under a limit of 512 MB of memory, which does not grow with the runs.
+#[test]
+fn half_a_gigabyte_is_enough() {
+    let scratch = Scratch::new();
+    let script =
+        r#"ulimit -v 524288 && exec "$GYRADIUS" study --runs 50000 --out it --threads 2 -q"#;
+    let mut command = Command::new("sh");
+    command.args(["-c", script]).current_dir(scratch.folder());
+    let output = command.env("GYRADIUS", env!("CARGO_BIN_EXE_gyradius")).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(files(&scratch.path("it/runs")).len(), 16);
+}
