@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// Numbers that are kept in memory, so that small campaigns are not read again: 64 MiB.
-const HELD: u64 = 1 << 23;
+pub(crate) const HELD: u64 = 1 << 23;
 
 /// How the runs of a campaign are done.
 #[derive(Clone, Copy, Debug)]

@@ -214,6 +214,17 @@ fn what_cannot_be_is_refused() {
         let error = threads(Some(count)).unwrap_err().to_string();
         assert!(error.contains(&count.to_string()) && error.contains("between 1 and 1024"));
     }
-    let forecast = Forecast::of(&[Everything::new(1)], 1_000_000, 2).unwrap().to_string();
-    assert!(forecast.contains("for 1000000 runs on 2 threads"), "{forecast}");
+    let forecast = Forecast::of(&[Everything::new(1)], 1_000_000, 2).unwrap();
+    assert_eq!(forecast.memory(), None);
+    let text = forecast.to_string();
+    assert!(text.contains("for 1000000 runs on 2 threads, and "), "{text}");
+    // The memory grows with threads, columns and blocks, and with runs only as far as they fill a block.
+    let of = |runs, threads, block, columns| {
+        Forecast::untimed(runs, 1, threads).in_blocks_of(block, columns).memory().unwrap()
+    };
+    let usual = of(1 << 20, 2, 1 << 14, 60);
+    assert_eq!(of(1 << 40, 2, 1 << 14, 60), usual);
+    assert!(of(1 << 10, 2, 1 << 14, 60) < usual && of(1 << 20, 4, 1 << 14, 60) > usual);
+    assert!(of(1 << 20, 2, 1 << 15, 60) > usual && of(1 << 20, 2, 1 << 14, 61) > usual);
+    assert_eq!(of(u64::MAX, usize::MAX, u64::MAX, usize::MAX), u64::MAX);
 }

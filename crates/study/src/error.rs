@@ -43,6 +43,17 @@ pub enum StudyError {
         /// How many there are.
         left: u64,
     },
+    /// There is too little memory.
+    #[error(
+        "the study may need {} of memory, and there are {} left: take fewer threads with --threads, or pass --even-if-full to \
+         begin all the same", rough_size(*needed), rough_size(*left)
+    )]
+    Memory {
+        /// How many bytes are certainly enough.
+        needed: u64,
+        /// How many there are.
+        left: u64,
+    },
     /// Rows or columns of the complete study that is there were not kept.
     #[error(
         "{}: not everything of the run tables was kept there ({kept}), so that nobody can go on with it: choose another folder \

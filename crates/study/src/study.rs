@@ -6,8 +6,8 @@ use crate::model::{Model, Separations};
 use gyradius_campaign::run;
 use gyradius_campaign::{
     Again, Blocks, CampaignError, Contents, Doing, Folder, Forecast, Identity, MANIFEST, Plan,
-    Progress, Reduced, Runs, RunsError, Simulation, Table, disk_left, run_again, run_missing,
-    threads,
+    Progress, Reduced, Runs, RunsError, Simulation, Table, disk_left, memory_left, run_again,
+    run_missing, threads,
 };
 use rayon::ThreadPool;
 use std::{
@@ -36,7 +36,7 @@ pub struct Options {
     pub threads: Option<usize>,
     /// Replace another study in the folder.
     pub force: bool,
-    /// Begin even if the disk has no room for the run tables.
+    /// Begin even if the disk has no room for the run tables, or the memory for the study.
     pub even_if_full: bool,
     /// Do runs again that failed.
     pub retry_failed: bool,
@@ -270,7 +270,8 @@ pub(crate) fn put_together<C: Subject>(
     carry_out(scenario, &options, Doing::Nothing, &|_| {}, say)
 }
 
-/// Says how many of the runs are done already, and what the others will take; refuses what the disk has no room for.
+/// Says how many of the runs are done already, and what the others will take; refuses what the disk or the memory has no
+/// room for.
 pub(crate) fn foretell<C: Subject>(
     scenario: &C,
     simulations: &[(&str, C::Simulation<'_>)],
@@ -282,14 +283,22 @@ pub(crate) fn foretell<C: Subject>(
     if left < of {
         say(Notice::GoesOn { done: of - left, of });
     }
+    let columns = simulations.first().map_or(0, |(_, simulation)| simulation.columns().len());
     let forecast = scenario.forecast(simulations, left, threads)?;
+    let forecast = forecast.in_blocks_of(C::BLOCK_RUNS, columns);
     say(Notice::Forecast(forecast));
     let path = options.place(scenario.name());
-    match disk_left(&path) {
-        Some(left) if forecast.disk() > left && !options.even_if_full => {
-            Err(StudyError::Room { path, needed: forecast.disk(), left })
-        }
-        Some(_) | None => Ok(()),
+    let lacks = |needed: u64, left: Option<u64>| left.filter(|left| needed > *left);
+    if options.even_if_full {
+        return Ok(());
+    }
+    if let Some(left) = lacks(forecast.disk(), disk_left(&path)) {
+        return Err(StudyError::Room { path, needed: forecast.disk(), left });
+    }
+    let needed = forecast.memory().unwrap_or(0);
+    match lacks(needed, memory_left()) {
+        Some(left) => Err(StudyError::Memory { needed, left }),
+        None => Ok(()),
     }
 }
 

@@ -177,7 +177,7 @@ pub(crate) struct StudyArgs {
     #[arg(long, conflicts_with = "shard")]
     pub(crate) retry_failed: bool,
 
-    /// Begin even if the run tables will not fit onto the disk
+    /// Begin even if the run tables will not fit onto the disk, or the study into memory
     #[arg(long)]
     pub(crate) even_if_full: bool,
 
