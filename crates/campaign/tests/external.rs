@@ -2,8 +2,8 @@
 //! runs, and that they do nothing to others.
 
 use gyradius_campaign::{
-    Column, ExternalSimulation, Failure, Inputs, Program, ProgramError, Simulator, Streams, Table,
-    run, threads,
+    Column, ExternalSimulation, Failure, Inputs, Kind, Program, ProgramError, Simulator, Streams,
+    Table, run, threads,
 };
 use proptest::prelude::*;
 use rand::{Rng, RngExt};
@@ -289,6 +289,14 @@ fn inputs_that_cannot_be_sent_fail() {
             ["a", "b"].into_iter().map(|name| Column::number(name, "1", "Odd.")).collect()
         }
 
+        fn place_columns(&self) -> Vec<Column> {
+            vec![Column::new("ring", Kind::Integer, "Where it belongs.").required()]
+        }
+
+        fn place(&self, run: u64) -> Vec<i64> {
+            vec![7 * run as i64 - 1]
+        }
+
         fn draw(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<(), Failure> {
             if run == 3 {
                 numbers.extend([None, Some(0.25)]);
@@ -309,7 +317,12 @@ fn inputs_that_cannot_be_sent_fail() {
     let table = run(&simulation, "any", 3, &threads(Some(1)).unwrap(), &|_| {}).unwrap();
     // What a run does not have is not sent.
     let told = simulation.replay(3);
-    assert!(told.request.unwrap().ends_with(r#""inputs":{"b":0.25}}"#));
+    let sent = told.request.unwrap();
+    assert!(sent.ends_with(r#""inputs":{"b":0.25}}"#));
+    // Where a run belongs is sent and written, whatever becomes of the run.
+    assert!(sent.starts_with(r#"{"run":3,"ring":20,"model":"any","seed":"#), "{sent}");
+    let rows = table.rows().map(|row| row.cells().nth(3).unwrap().1.to_string());
+    assert_eq!(rows.collect::<Vec<_>>(), ["-1", "6", "13"]);
     let kinds: Vec<_> = table.failures().map(|(_, failure)| failure.kind()).collect();
     assert_eq!(kinds, ["an input is not finite", "an input is not finite", "no body"]);
     assert_eq!(table.values("a"), Some(vec![1.5; 3]));

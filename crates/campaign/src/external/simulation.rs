@@ -19,6 +19,18 @@ pub trait Inputs: Sync {
     /// The columns of numbers that a run has, of which each has the name of the input; runs may have nothing in them.
     fn columns(&self) -> Vec<Column>;
 
+    /// The columns of whole numbers that say which run it is beside its own number, such as those of a vehicle and its flight.
+    /// They stand before all others, and are sent beside `run`; none if it does not say otherwise. They must not be called as
+    /// anything else that is sent there: `model`, `seed` or `inputs`.
+    fn place_columns(&self) -> Vec<Column> {
+        Vec::new()
+    }
+
+    /// What a run has in these columns.
+    fn place(&self, _run: u64) -> Vec<i64> {
+        Vec::new()
+    }
+
     /// Pushes the numbers of a run, one for each column, in their order; none for what the run does not have, which is not
     /// sent. What run i has must depend on i alone: draw it from [`Streams`].
     ///
@@ -94,9 +106,10 @@ pub struct ExternalSimulation<'a, I> {
     model: String,
     seeds: Streams,
     inputs: I,
-    /// The columns of the inputs, and then those of the outputs.
-    columns: Vec<Column>,
-    drawn: usize,
+    /// The columns of where the run belongs, of the inputs, and of the outputs.
+    places: Vec<Column>,
+    drawn: Vec<Column>,
+    outputs: Vec<Column>,
 }
 
 /// What was told to and by a simulator in one run.
@@ -114,13 +127,15 @@ pub struct Told {
 #[derive(Serialize)]
 struct Request<'a> {
     run: u64,
+    #[serde(flatten)]
+    place: Named<'a, i64>,
     model: &'a str,
     seed: u64,
-    inputs: Named<'a>,
+    inputs: Named<'a, f64>,
 }
 
 /// Numbers by the names of their columns.
-struct Named<'a>(&'a [Column], &'a [Option<f64>]);
+struct Named<'a, T>(&'a [Column], &'a [Option<T>]);
 
 impl<'a, I: Inputs> ExternalSimulation<'a, I> {
     /// Runs of a simulator under a model in a campaign with a seed: what is drawn and sent, and the outputs that it
@@ -132,11 +147,9 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         inputs: I,
         outputs: Vec<Column>,
     ) -> Self {
-        let mut columns = inputs.columns();
-        let drawn = columns.len();
-        columns.extend(outputs);
+        let (places, drawn) = (inputs.place_columns(), inputs.columns());
         let seeds = Streams::new(seed, model, "simulator seed");
-        Self { simulator, model: model.to_owned(), seeds, inputs, columns, drawn }
+        Self { simulator, model: model.to_owned(), seeds, inputs, places, drawn, outputs }
     }
 
     /// Does a run alone, in a process that is started for it, and tells what was said.
@@ -150,7 +163,7 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         let told = std::cell::RefCell::new(None);
         let outputs = self.simulator.ask(&request, &mut None, |answer| {
             *told.borrow_mut() = Some(String::from_utf8_lossy(answer).into_owned());
-            answer::read(answer, run, &self.columns[self.drawn..])
+            answer::read(answer, run, &self.outputs)
         });
         Told {
             request: Some(String::from_utf8_lossy(&request).trim_end().to_owned()),
@@ -162,16 +175,16 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
     /// The line that is sent for a run, and the numbers in it, which are there as far as they could be drawn.
     fn request(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<Vec<u8>, Failure> {
         self.inputs.draw(run, numbers)?;
-        let columns = &self.columns[..self.drawn];
         let mut sent =
-            columns.iter().zip(&*numbers).filter_map(|(column, x)| Some((column, (*x)?)));
+            self.drawn.iter().zip(&*numbers).filter_map(|(column, x)| Some((column, (*x)?)));
         if let Some((column, value)) = sent.find(|(_, value)| !value.is_finite()) {
             let name = column.name().to_owned();
             return Err(Trouble::Input { name, value }.failure());
         }
         let seed = self.seeds.run(run).next_u64() >> 11;
-        let inputs = Named(columns, numbers);
-        let request = Request { run, model: &self.model, seed, inputs };
+        let place: Vec<_> = self.inputs.place(run).into_iter().map(Some).collect();
+        let (place, inputs) = (Named(&self.places, &place), Named(&self.drawn, numbers));
+        let request = Request { run, place, model: &self.model, seed, inputs };
         let mut line =
             serde_json::to_vec(&request).map_err(|error| Trouble::Files(error.into()).failure())?;
         line.push(b'\n');
@@ -185,7 +198,7 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         kept: &mut Option<Child>,
     ) -> Result<Vec<f64>, Failure> {
         let request = self.request(run, numbers)?;
-        let read = |answer: &[u8]| answer::read(answer, run, &self.columns[self.drawn..]);
+        let read = |answer: &[u8]| answer::read(answer, run, &self.outputs);
         self.simulator.ask(&request, kept, read).map_err(Trouble::failure)
     }
 }
@@ -195,7 +208,7 @@ impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
     type Worker = ();
 
     fn columns(&self) -> Vec<Column> {
-        self.columns.clone()
+        self.places.iter().chain(&self.drawn).chain(&self.outputs).cloned().collect()
     }
 
     fn worker(&self) {}
@@ -206,7 +219,7 @@ impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
 
     fn run(&self, runs: Range<u64>, (): &mut (), rows: &mut Table) -> Result<(), TableError> {
         let mut kept = self.simulator.take();
-        let mut numbers = Vec::with_capacity(self.drawn);
+        let mut numbers = Vec::with_capacity(self.drawn.len());
         for run in runs {
             numbers.clear();
             let (outputs, failure) = match self.outputs(run, &mut numbers, &mut kept) {
@@ -219,10 +232,12 @@ impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
                 std::iter::repeat_n(Cell::Null, missing)
             };
             let drawn = numbers.iter().map(|number| Cell::from(*number));
-            let cells = drawn
-                .chain(missing(self.drawn, numbers.len()))
+            let place = self.inputs.place(run).into_iter().map(Cell::Integer);
+            let cells = place
+                .chain(drawn)
+                .chain(missing(self.drawn.len(), numbers.len()))
                 .chain(outputs.iter().map(|number| Cell::Number(*number)))
-                .chain(missing(self.columns.len() - self.drawn, outputs.len()));
+                .chain(missing(self.outputs.len(), outputs.len()));
             rows.push(failure.clone(), cells)?;
         }
         self.simulator.keep(kept);
@@ -230,7 +245,7 @@ impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
     }
 }
 
-impl Serialize for Named<'_> {
+impl<T: Copy + Serialize> Serialize for Named<'_, T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let named = self.0.iter().zip(self.1);
         let there = named.filter_map(|(column, number)| Some((column.name(), (*number)?)));
