@@ -54,7 +54,9 @@ impl Overview {
         let confidence = Confidence::default();
         let model = |table: &Table| {
             let failures = table.failures().map(|(_, failure)| failure.kind().to_owned());
-            Model::new(table.model(), table.len() as u64, counted(failures), confidence)
+            let (runs, failures) = (table.len() as u64, counted(failures));
+            let failed = failures.iter().map(|(_, count)| count).sum();
+            Model::new(table.model(), runs, failures, (failed, runs), confidence)
         };
         let columns = tables.first().map_or(&[][..], Table::columns);
         let quantities = quantities(columns, |column| {
@@ -82,7 +84,10 @@ impl Overview {
         let model = |surveys: &Surveys| {
             let failures = surveys.failures().into_iter();
             let failures = failures.map(|(kind, count)| (kind.to_owned(), count)).collect();
-            Model::new(surveys.model(), surveys.runs(), failures, confidence)
+            let independent = surveys.independent();
+            let failed = independent.failures().into_iter().map(|(_, count)| count).sum();
+            let (name, runs) = (surveys.model(), surveys.runs());
+            Model::new(name, runs, failures, (failed, independent.runs()), confidence)
         };
         let quantities = quantities(columns, |column| {
             let survey = |surveys: &Surveys| match surveys.column(column) {
@@ -159,14 +164,17 @@ impl Overview {
 }
 
 impl Model {
+    /// `independent` says of how many runs that are independent how many failed.
     fn new(
         name: &str,
         runs: u64,
         failures: Vec<(String, u64)>,
+        independent: (u64, u64),
         confidence: Confidence,
     ) -> Result<Self, StatisticsError> {
         let failed = failures.iter().map(|(_, count)| count).sum();
-        let failed = if runs == 0 { None } else { Some(Share::new(failed, runs, confidence)?) };
+        let share = || Share::of_dependent(failed, runs, independent, confidence);
+        let failed = if runs == 0 { None } else { Some(share()?) };
         Ok(Self { name: name.to_owned(), runs, failed, failures })
     }
 }
