@@ -89,3 +89,59 @@ fn a_script_for_slurm_tells_vehicles() {
         assert_eq!(code, Some(0), "{text}");
     }
 }
+
+/// A fleet of a user's own simulator takes the same flags: more vehicles, a flight again, a script for Slurm.
+#[test]
+fn simulators_have_vehicles() {
+    let scratch = Scratch::new();
+    let of = |arguments: &[&str]| said(&scratch.run(arguments));
+    let script = r#"
+while read -r line; do
+    v=${line#*'"vehicle":'}; v=${v%%,*}
+    echo "{\"outputs\":{\"y\":$v}}"
+done
+"#;
+    fs::write(scratch.path("answer.sh"), script).unwrap();
+    let scenario = r#"
+name = "shell"
+vehicles = 3
+flights = 4
+[simulation]
+command = ["sh", "answer.sh"]
+[[simulation.outputs]]
+name = "y"
+[[quantities]]
+name = "x"
+law = { law = "normal", mean = 1.0, sigma = 0.1, drawn = "vehicle" }
+"#;
+    fs::write(scratch.path("s.toml"), scenario).unwrap();
+    let study =
+        |more: &[&str]| of(&[&["study", "--scenario", "s.toml", "--out", "s"], more].concat());
+    let (code, text) = study(&[]);
+    assert!(code == Some(0) && text.contains("3 vehicles of 4 flights each, 12 runs"), "{text}");
+    let (code, text) = study(&["--vehicles", "5"]);
+    assert!(code == Some(0) && text.contains("5 vehicles of 4 flights each, 20 runs"), "{text}");
+    for (more, expected) in [
+        (&["--runs", "40"][..], "runs: 40: the scenario has 3 vehicles of 4 flights each"),
+        (&["--vehicles", "0"], "vehicles: 0: "),
+        (&["--vehicles", "4"], "runs is 20 there and 16 here"),
+    ] {
+        let (code, text) = study(more);
+        assert!(code == Some(2) && text.contains(expected), "{text}");
+    }
+    let (code, text) = of(&["replay", "s", "--vehicle", "4", "--flight", "3"]);
+    assert!(code == Some(0) && text.contains("run 19 (vehicle 4, flight 3)"), "{text}");
+    assert!(text.contains("{\"run\":19,\"vehicle\":4,\"flight\":3,"), "{text}");
+    assert!(text.contains("y = 4.0"), "{text}");
+    let (code, text) = of(&["replay", "s", "--vehicle", "5", "--flight", "0"]);
+    assert!(code == Some(2) && text.contains("5 vehicles of 4 flights each"), "{text}");
+    let (code, text) = of(&["draw", "s.toml", "--format", "csv"]);
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!((code, rows.len()), (Some(0), 13));
+    assert_eq!(rows[0][3..6], ["vehicle", "flight", "x"]);
+    assert!(rows[6][3..5] == ["1", "1"] && rows[6][5] == rows[5][5] && rows[6][5] != rows[4][5]);
+    let slurm = ["slurm", "--scenario", "s.toml", "--vehicles", "200", "--out", "o"];
+    let (code, script) = of(&[&slurm[..], &["--shards", "2", "--time", "9"]].concat());
+    let line = script.lines().find(|line| line.starts_with("exec ")).unwrap_or_default();
+    assert!(code == Some(0) && line.contains("--vehicles=200"), "{script}");
+}

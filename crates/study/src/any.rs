@@ -72,18 +72,16 @@ impl AnyScenario {
     /// The same scenario with another number of vehicles, each with as many flights.
     ///
     /// # Errors
-    /// The number is out of range, or the scenario has no vehicles, as that of a simulator.
+    /// The number is out of range, or the scenario has no vehicles.
     pub fn with_vehicles(self, vehicles: u64) -> Result<Self, ScenarioError> {
-        match self {
+        Ok(match self {
             Self::Separation(scenario) => {
-                Ok(Self::Separation(Box::new(scenario.with_vehicles(vehicles)?)))
+                Self::Separation(Box::new(scenario.with_vehicles(vehicles)?))
             }
-            Self::Simulator(_) => {
-                let problem =
-                    format!("{vehicles}: a scenario of a simulator has no vehicles, but runs");
-                Err(ScenarioError::field("vehicles", problem))
+            Self::Simulator(scenario) => {
+                Self::Simulator(Box::new(scenario.with_vehicles(vehicles)?))
             }
-        }
+        })
     }
 
     /// The same scenario, which keeps so much of its run tables.

@@ -6,6 +6,7 @@ use gyradius_separation::Separation;
 use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::{
+    Fleet,
     body::Body,
     quantity::Quantity,
     run::{End, Run},
@@ -62,15 +63,15 @@ impl Column {
 
     /// What it is called, holds and means; `drawn` are the names of what else is drawn.
     pub(crate) fn declaration(self, drawn: &[String]) -> RunColumn {
-        use Kind::{Flag, Integer, Number, Text};
+        use Kind::{Flag, Number, Text};
         match self {
             Self::Vehicle => {
-                let meaning = "Which vehicle the run is a flight of, from 0; only in scenarios with `vehicles`.";
-                RunColumn::new("vehicle", Integer, meaning).required()
+                let [vehicle, _] = Fleet::columns();
+                vehicle
             }
             Self::Flight => {
-                let meaning = "Which of the vehicle's flights it is, from 0; only in scenarios with `vehicles`.";
-                RunColumn::new("flight", Integer, meaning).required()
+                let [_, flight] = Fleet::columns();
+                flight
             }
             Self::Number(q) => RunColumn::number(q.column(), q.unit(), q.meaning()),
             Self::Realizable => {
@@ -123,13 +124,11 @@ impl Column {
     /// What a run writes into it.
     pub(crate) fn cell(self, run: &Run<'_>) -> Cell<'static> {
         let text = |text: Option<String>| text.map_or(Cell::Null, |text| Cell::Text(text.into()));
-        // Runs are fewer than the numbers of a column.
-        let index = |index: Option<u64>| {
-            index.and_then(|index| i64::try_from(index).ok()).map_or(Cell::Null, Cell::Integer)
-        };
         match self {
-            Self::Vehicle => index(run.case.flight.map(|(vehicle, _)| vehicle)),
-            Self::Flight => index(run.case.flight.map(|(_, flight)| flight)),
+            Self::Vehicle => {
+                run.case.flight.map_or(Cell::Null, |[vehicle, _]| Cell::Integer(vehicle))
+            }
+            Self::Flight => run.case.flight.map_or(Cell::Null, |[_, flight]| Cell::Integer(flight)),
             Self::Number(quantity) => quantity.value(run).into(),
             Self::Realizable => run.realizable().into(),
             Self::Axes(body, i) => run.axes(body).map(|q| q.coords[i]).into(),

@@ -1,5 +1,6 @@
 //! Vehicles and their flights: which of them a run is.
 
+use gyradius_campaign::{Column, Kind};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -42,6 +43,34 @@ impl Fleet {
     pub fn place(self, run: u64) -> (u64, u64) {
         let flights = self.flights.max(1);
         (run / flights, run % flights)
+    }
+
+    /// The columns of vehicle and flight.
+    pub(crate) fn columns() -> [Column; 2] {
+        [
+            (
+                "vehicle",
+                "Which vehicle the run is a flight of, from 0; only in scenarios with `vehicles`.",
+            ),
+            (
+                "flight",
+                "Which of the vehicle's flights it is, from 0; only in scenarios with `vehicles`.",
+            ),
+        ]
+        .map(|(name, meaning)| Column::new(name, Kind::Integer, meaning).required())
+    }
+
+    /// What a run has in them.
+    pub(crate) fn numbers(self, run: u64) -> [i64; 2] {
+        let (vehicle, flight) = self.place(run);
+        // Runs are numbered in such a column, too.
+        [vehicle, flight].map(|number| i64::try_from(number).unwrap_or(i64::MAX))
+    }
+
+    /// What there is to say of a run: its vehicle and flight.
+    pub(crate) fn told(self, run: u64) -> String {
+        let (vehicle, flight) = self.place(run);
+        format!("(vehicle {vehicle}, flight {flight})")
     }
 
     /// The run that is a flight of a vehicle, all from 0; none if there is no such vehicle or flight.

@@ -41,7 +41,8 @@ impl Model {
 
     pub(crate) fn new(spec: &ModelSpec, scenario: &Scenario) -> Result<Self, ScenarioError> {
         let law = |which: Body, body: &UncertainBody| {
-            law(spec, which, body, scenario).map_err(|error| {
+            let outside = |spec: &ModelSpec| scenario.outside_law(spec, which).cloned();
+            law(spec, which as usize, body, scenario.models(), &outside).map_err(|error| {
                 let problem = format!("the {}: {error}", which.name());
                 ScenarioError::field(scenario.place(spec), problem)
             })
@@ -107,7 +108,7 @@ impl Model {
             stage_axes: stage.axes,
             separation,
             drawn,
-            flight: scenario.fleet().map(|fleet| fleet.place(run)),
+            flight: scenario.fleet().map(|fleet| fleet.numbers(run)),
         }
     }
 }
@@ -183,40 +184,38 @@ impl BodyModel {
 /// A law, and the deviations that it was given if it is entrywise.
 type BodyLaw = (Arc<dyn InertiaLaw>, Option<[f64; 6]>);
 
-/// The law of one body.
-fn law(
+/// The law of the body in a place, under a model that is one of several; `outside` is a program's own under a model, if it
+/// gave one.
+pub(crate) fn law(
     spec: &ModelSpec,
-    which: Body,
+    place: usize,
     body: &UncertainBody,
-    scenario: &Scenario,
+    models: &[ModelSpec],
+    outside: &dyn Fn(&ModelSpec) -> Option<Arc<dyn InertiaLaw>>,
 ) -> Result<BodyLaw, Box<dyn std::error::Error>> {
     let model = match &spec.law {
         Law::Outside(said) => {
-            let name = said.as_ref().map_or_else(String::new, |said| match which {
-                Body::Payload => format!(" {:?}", said.payload),
-                Body::Stage => format!(" {:?}", said.stage),
-            });
-            let law = scenario.outside_law(spec, which).ok_or_else(|| {
+            let names = said.as_ref().map(|said| [&said.payload, &said.stage]);
+            let name = names.and_then(|names| names.get(place).map(|name| format!(" {name:?}")));
+            let name = name.unwrap_or_default();
+            let law = outside(spec).ok_or_else(|| {
                 format!(
                     "its law{name} is a program's own, which no file holds: run or replay the study from that \
                      program, which gives the law by Scenario::with_model"
                 )
             })?;
-            return Ok((Arc::clone(law), None));
+            return Ok((law, None));
         }
         Law::Principal(axes) => body.principal(*axes)?.into(),
-        Law::Given { kind, payload, stage } => {
-            let given = match which {
-                Body::Payload => payload,
-                Body::Stage => stage,
-            };
-            DispersionModel::about(*kind, body.nominal(), given).map_err(|error| error.problem)?
+        Law::Given { kind, parameters } => {
+            let given = parameters.get(place).copied().unwrap_or_default();
+            DispersionModel::about(*kind, body.nominal(), &given).map_err(|error| error.problem)?
         }
         Law::Matched { kind, to } => {
-            let other = scenario.models().iter().find(|m| m.name == *to);
+            let other = models.iter().find(|m| m.name == *to);
             let other = other.filter(|m| matches!(m.law, Law::Principal(_) | Law::Outside(_)));
             let other = other.ok_or_else(|| format!("matched_to {to:?}: no such model"))?;
-            let (other, _) = law(other, which, body, scenario)?;
+            let (other, _) = law(other, place, body, models, outside)?;
             let moments = other.expected_moments().ok_or_else(|| {
                 format!(
                     "matched_to {to:?}: the moments of its law {:?} are not known",
@@ -232,7 +231,7 @@ fn law(
 }
 
 /// The model of a kind that has these moments of the entries.
-pub(crate) fn matched(
+fn matched(
     kind: ModelKind,
     body: &UncertainBody,
     moments: &EntryMoments,

@@ -29,7 +29,6 @@ pub(crate) fn files(scenario: &Scenario) -> impl Iterator<Item = String> {
     figures.chain(Document::pages(NAME)).chain(["figures/".to_owned()])
 }
 
-/// What intervals stand for if runs are not independent.
 const DEPENDENT: &str = "The flights of a vehicle share what is drawn once for it, so that runs are not independent. \
                          Intervals of means and standard deviations therefore take the vehicles for what is independent, \
                          and those of percentiles and shares are of the first flight of each vehicle alone, so that the \
@@ -47,10 +46,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         summary.head.seed,
         100.0 * summary.head.confidence
     ));
-    let lead = match summary.head.independent_runs_per_model {
-        None => lead,
-        Some(_) => lead.plain(format!(" {DEPENDENT}")),
-    };
+    let lead = lead.plain(dependence(&summary.head));
     let drawn: Vec<_> = summary.figures.par_iter().map(Figure::drawn).collect();
     let title = format!("gyradius study: {}", summary.head.scenario);
     let document = Document::new(title, "Separation under inertia uncertainty", lead);
@@ -393,6 +389,19 @@ fn dispersed(summary: &Summary) -> Option<Section> {
     let reading = "Mean and standard deviation of the law of each quantity, and of what each model drew, in the \
                    unit of its name. Every draw is in the run table.";
     Some(Section::new("What else was dispersed").paragraph(reading).table(table))
+}
+
+/// What intervals stand for, if runs are not independent.
+fn dependence(head: &Head) -> String {
+    head.independent_runs_per_model.map_or_else(String::new, |_| format!(" {DEPENDENT}"))
+}
+
+/// Says on a page which vehicles the runs are flights of, if there are vehicles.
+pub(crate) fn noting_vehicles(document: Document, head: &Head) -> Document {
+    match head.fleet {
+        Some(fleet) => document.noting(format!(" {fleet}."), dependence(head)),
+        None => document,
+    }
 }
 
 /// Says on a page which runs are missing, if any are, and how many were done again.

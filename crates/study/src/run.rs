@@ -19,7 +19,7 @@ pub(crate) struct Case {
     /// What else was drawn, in the order of the scenario's dispersions.
     pub(crate) drawn: Box<[f64]>,
     /// Which vehicle it is and which of its flights, from 0, if there are vehicles.
-    pub(crate) flight: Option<(u64, u64)>,
+    pub(crate) flight: Option<[i64; 2]>,
 }
 
 /// A run that has ended, or is only drawn.

@@ -19,12 +19,7 @@ pub(crate) fn replay(arguments: &ReplayArgs) -> Result<(), Box<dyn Error>> {
     };
     if SimulatorScenario::is_in(path) {
         let scenario = SimulatorScenario::read(path)?;
-        let Which::Run(run) = which else {
-            return Err(
-                "--vehicle: a scenario of a simulator has no vehicles: --run names a run".into()
-            );
-        };
-        let replay = SimulatorReplay::new(&scenario, model, run)?;
+        let replay = SimulatorReplay::new(&scenario, model, which)?;
         return Ok(print(&replay.to_string())?);
     }
     let replay = Replay::open(path, model, which, arguments.coast)?;

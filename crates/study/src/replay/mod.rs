@@ -25,6 +25,7 @@ use crate::{
     Fleet, Results, ResultsError, Scenario, ScenarioError,
     model::{Model, Separations},
     run::{Case, End},
+    subject::Subject,
 };
 use history::History;
 
@@ -168,7 +169,7 @@ impl From<u64> for Which {
 
 impl Which {
     /// The number of the run, if the scenario has it.
-    fn run(self, scenario: &Scenario) -> Result<u64, ReplayError> {
+    pub(crate) fn run(self, scenario: &impl Subject) -> Result<u64, ReplayError> {
         match self {
             Self::Run(run) if run < scenario.runs() => Ok(run),
             Self::Run(run) => Err(ReplayError::Run { run, runs: scenario.runs() }),

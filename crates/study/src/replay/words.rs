@@ -35,10 +35,7 @@ fn approach(shapes: &ShapeClearance) -> String {
 impl Display for Replay {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (scenario, row) = (&self.scenario, self.row());
-        let flight = scenario.fleet().map(|fleet| {
-            let (vehicle, flight) = fleet.place(row.run());
-            format!(" (vehicle {vehicle}, flight {flight})")
-        });
+        let flight = scenario.fleet().map(|fleet| format!(" {}", fleet.told(row.run())));
         writeln!(
             f,
             "{}, model {}, run {} of {}{}, seed {}",

@@ -66,7 +66,7 @@ impl Dispersions {
         fleet: Option<Fleet>,
         separation: &Separation,
     ) -> Result<Self, ScenarioError> {
-        let mut list = List { fleet, ..List::default() };
+        let mut list = List::of(fleet);
         list.body(Body::Payload, &file.payload, separation.payload())?;
         list.body(Body::Stage, &file.stage, separation.stage())?;
         if let Some(stack) = file.stack.as_ref().and_then(|s| s.dispersion.as_ref()) {
@@ -79,23 +79,23 @@ impl Dispersions {
         for (place, (id, given)) in file.loads().enumerate() {
             list.load(place, id, given)?;
         }
-        let joint = list.correlate(
-            &file.correlations,
-            "the dispersion of payload, stage, stack and springs names",
-        )?;
         let follows = |body: &BodyFile| body.dispersion.inertia_follows_mass.share();
         let inertia_follows_mass = [follows(&file.payload), follows(&file.stage)];
         let inertia = |name: Body, body: &BodyFile| {
             let field = format!("{}.dispersion.inertia_drawn", name.name());
-            vehicles::possible(&field, body.dispersion.inertia_drawn, fleet)
+            list.possible(&field, body.dispersion.inertia_drawn)
         };
         let inertia = [inertia(Body::Payload, &file.payload)?, inertia(Body::Stage, &file.stage)?];
+        let joint = list.correlate(
+            &file.correlations,
+            "the dispersion of payload, stage, stack and springs names",
+        )?;
         Ok(Self { joint, inertia, inertia_follows_mass })
     }
 
-    /// Whether runs have anything in common: something is drawn for a vehicle.
-    pub(crate) fn of_vehicles(&self) -> bool {
-        self.inertia.iter().chain(self.all().iter().map(|d| &d.each)).any(|each| !each.is_flight())
+    /// For what each of all that is uncertain is drawn.
+    pub(crate) fn drawn_for(&self) -> impl Iterator<Item = Each> {
+        self.inertia.into_iter().chain(self.joint.drawn_for())
     }
 
     /// What they are, in order.
@@ -105,6 +105,13 @@ impl Dispersions {
 
     pub(crate) fn columns(&self) -> Vec<String> {
         self.all().iter().map(|d| d.column.clone()).collect()
+    }
+}
+
+impl<T> Joint<T> {
+    /// For what each of them is drawn.
+    pub(crate) fn drawn_for(&self) -> impl Iterator<Item = Each> {
+        self.all.iter().map(|d| d.each)
     }
 }
 
@@ -134,13 +141,12 @@ pub(crate) struct List<T = Target> {
     fields: Vec<String>,
 }
 
-impl<T> Default for List<T> {
-    fn default() -> Self {
-        Self { fleet: None, all: Vec::new(), pairs: Vec::new(), fields: Vec::new() }
-    }
-}
-
 impl<T> List<T> {
+    /// Nothing yet, of a scenario with vehicles or without.
+    pub(crate) fn of(fleet: Option<Fleet>) -> Self {
+        Self { fleet, all: Vec::new(), pairs: Vec::new(), fields: Vec::new() }
+    }
+
     /// A number with a name that ends in its unit, if it has one.
     pub(crate) fn push(
         &mut self,
@@ -180,8 +186,13 @@ impl<T> List<T> {
     }
 
     /// For what a law is drawn that stands at a field, if the scenario has that.
-    fn each(&self, field: &str, each: Each) -> Result<Each, ScenarioError> {
-        vehicles::possible(&format!("{field}.{DRAWN}"), each, self.fleet)
+    pub(crate) fn each(&self, field: &str, each: Each) -> Result<Each, ScenarioError> {
+        self.possible(&format!("{field}.{DRAWN}"), each)
+    }
+
+    /// For what something is drawn, as a key says, if the scenario has that.
+    pub(crate) fn possible(&self, key: &str, each: Each) -> Result<Each, ScenarioError> {
+        vehicles::possible(key, each, self.fleet)
     }
 
     /// A number given in its unit or in percent.

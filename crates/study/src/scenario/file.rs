@@ -272,9 +272,6 @@ fn default_coast() -> f64 {
     60.0
 }
 
-/// Runs if neither they nor vehicles are given.
-pub(super) const DEFAULT_RUNS: u64 = 2000;
-
 fn default_seed() -> u64 {
     1
 }

@@ -31,14 +31,15 @@ use file::ScenarioFile;
 pub(crate) use file::{BodyFile, CorrelationFile, DispersionFile, ShapeFile};
 pub(crate) use law::{GivenLaw, refused};
 pub(crate) use load::Uncertain;
-pub(crate) use model::{Comparison, Law, ModelSpec};
-pub(crate) use model_file::{AxesFile as Axes, ModelLaw};
+pub(crate) use model::{Comparison, Law, ModelSpec, check_models, place};
+pub(crate) use model_file::{AxesFile as Axes, ModelFile, ModelLaw, Owner};
 use outside::OutsideLaws;
-pub(crate) use parse::whole;
 pub use parse::{parse_toml, whole_number};
-pub(crate) use {each::Each, vehicles::possible};
+pub(crate) use parse::{some_whole, whole};
+pub(crate) use scalar::ScalarLawFile;
+pub(crate) use {each::Each, vehicles::Size};
 
-use crate::fleet::Fleet;
+use crate::{body::Body, fleet::Fleet};
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
 
@@ -95,7 +96,7 @@ impl ScenarioError {
 #[derive(Clone, Debug)]
 pub struct Scenario {
     file: ScenarioFile,
-    fleet: Option<Fleet>,
+    size: Size,
     spin_axis: Unit<Vector3<f64>>,
     separation_direction: Option<Unit<Vector3<f64>>>,
     momentum_direction: Unit<Vector3<f64>>,
@@ -145,14 +146,8 @@ impl Scenario {
     /// # Errors
     /// The number is zero or beyond ten million, or the scenario has vehicles.
     pub fn with_runs(self, runs: u64) -> Result<Self, ScenarioError> {
-        if let Some(fleet) = self.fleet {
-            let problem = format!(
-                "{runs}: the scenario has {fleet}, and its runs are their product: say how many vehicles instead"
-            );
-            return Err(ScenarioError::field("runs", problem));
-        }
-        check_runs(runs)?;
-        Ok(Self { file: ScenarioFile { runs: Some(runs), ..self.file }, ..self })
+        let size = self.size.with_runs(runs)?;
+        Ok(self.sized(size))
     }
 
     /// The same scenario with another number of vehicles, each with as many flights.
@@ -160,16 +155,13 @@ impl Scenario {
     /// # Errors
     /// The number is zero, or there are more than a thousand million runs then, or the scenario has no vehicles.
     pub fn with_vehicles(self, vehicles: u64) -> Result<Self, ScenarioError> {
-        let Some(fleet) = self.fleet else {
-            let problem = format!(
-                "{vehicles}: the scenario has no vehicles: it needs vehicles and flights in the place of runs"
-            );
-            return Err(ScenarioError::field("vehicles", problem));
-        };
-        let fleet = Fleet::new(vehicles, fleet.flights());
-        vehicles::check(fleet)?;
-        let file = ScenarioFile { vehicles: Some(fleet.vehicles()), ..self.file };
-        Ok(Self { file, fleet: Some(fleet), ..self })
+        let size = self.size.with_vehicles(vehicles)?;
+        Ok(self.sized(size))
+    }
+
+    fn sized(self, size: Size) -> Self {
+        let [runs, vehicles, flights] = size.keys();
+        Self { file: ScenarioFile { runs, vehicles, flights, ..self.file }, size, ..self }
     }
 
     /// The same scenario from another seed.
@@ -195,14 +187,10 @@ impl Scenario {
     }
 
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
-        file.models.iter_mut().for_each(model_file::ModelFile::fill);
+        file.models.iter_mut().for_each(|model| model.fill(&Body::BOTH));
         check_name("name", &file.name)?;
-        let fleet = vehicles::fleet(&file)?;
-        match fleet {
-            // One of the two says it.
-            Some(_) => file.runs = None,
-            None => check_runs(*file.runs.get_or_insert(file::DEFAULT_RUNS))?,
-        }
+        let size = Size::of([file.runs, file.vehicles, file.flights])?;
+        [file.runs, file.vehicles, file.flights] = size.keys();
         check_seed(file.seed)?;
         let spin_axis = direction("spin_axis", file.spin_axis)?;
         if let Some(source) = &file.source {
@@ -245,13 +233,14 @@ impl Scenario {
                     let field = if horizon { "horizon_s" } else { "relative_tolerance" };
                     ScenarioError::field(format!("integration.{field}"), e)
                 })?;
-        let dispersions = Dispersions::new(&file, fleet, &separation)?;
+        let dispersions = Dispersions::new(&file, size.fleet(), &separation)?;
         let outlines = file.clearance.as_ref().map(Outlines::new).transpose()?;
-        let models = model::check_models(&file.models, [&payload, &stage])?;
+        let bodies = [(Body::Payload, &payload), (Body::Stage, &stage)];
+        let models = check_models(&file.models, &bodies)?;
         let comparisons = model::check_comparisons(&file.comparisons, &models)?;
         Ok(Self {
             file,
-            fleet,
+            size,
             spin_axis,
             separation_direction,
             momentum_direction,
@@ -276,26 +265,23 @@ impl Scenario {
     /// Runs of each model: the flights of all vehicles, if it has vehicles.
     #[must_use]
     pub fn runs(&self) -> u64 {
-        self.fleet.map_or(self.file.runs.unwrap_or(file::DEFAULT_RUNS), Fleet::runs)
+        self.size.runs()
     }
 
     /// Its vehicles and how often each flies, if it has both.
     #[must_use]
     pub fn fleet(&self) -> Option<Fleet> {
-        self.fleet
+        self.size.fleet()
     }
 
     /// The fleet, if flights of a vehicle have something in common, so that runs are not independent.
     pub(crate) fn sharing(&self) -> Option<Fleet> {
-        self.fleet.filter(|fleet| fleet.flights() > 1 && self.dispersions.of_vehicles())
+        self.size.sharing(self.dispersions.drawn_for())
     }
 
     /// The number of the random stream that a run takes for what is drawn for each vehicle, or for each flight.
     pub(crate) fn stream(&self, each: Each, run: u64) -> u64 {
-        match (each, self.fleet) {
-            (Each::Vehicle, Some(fleet)) => fleet.place(run).0,
-            (Each::Flight, _) | (Each::Vehicle, None) => run,
-        }
+        self.size.stream(each, run)
     }
 
     /// Seed of all random streams.
@@ -378,7 +364,7 @@ impl Scenario {
     /// The key of a model in the file.
     pub(crate) fn place(&self, model: &ModelSpec) -> String {
         let index = self.models.iter().position(|m| m.name == model.name);
-        index.map_or_else(|| format!("model {:?}", model.name), model::place)
+        index.map_or_else(|| format!("model {:?}", model.name), place)
     }
 
     /// Whether a model was given exactly the deviations of another.
@@ -454,17 +440,6 @@ pub(crate) fn read_file(path: &Path) -> Result<String, ScenarioError> {
     gyradius_campaign::restore(gyradius_campaign::folder_of(path))
         .map_err(|error| unread(std::io::Error::other(error)))?;
     read_text(path, limits::BYTES).map_err(unread)
-}
-
-pub(crate) fn check_runs(runs: u64) -> Result<(), ScenarioError> {
-    if (1..=limits::RUNS).contains(&runs) {
-        Ok(())
-    } else {
-        Err(ScenarioError::field(
-            "runs",
-            format!("{runs}: it must be between 1 and {}", limits::RUNS),
-        ))
-    }
 }
 
 pub(crate) fn check_seed(seed: u64) -> Result<(), ScenarioError> {

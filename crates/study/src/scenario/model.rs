@@ -5,7 +5,7 @@ use gyradius_dispersion::{DispersionModel, ModelKind, ModelParameterError, Model
 use super::{
     ScenarioError, UncertainBody, check_name,
     file::ComparisonFile,
-    model_file::{AxesFile as Axes, ModelFile, ModelLaw, OutsideFile},
+    model_file::{AxesFile as Axes, ModelFile, ModelLaw, OutsideFile, Owner, parameter_key},
 };
 
 /// A model as the scenario describes it.
@@ -18,10 +18,10 @@ pub(crate) struct ModelSpec {
 /// A law of inertia.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Law {
-    /// Roots and axes as payload.dispersion and stage.dispersion say.
+    /// Roots and axes as the dispersions of the bodies say.
     Principal(Axes),
-    /// Any other model with given parameters of payload and stage.
-    Given { kind: ModelKind, payload: Box<ModelParameters>, stage: Box<ModelParameters> },
+    /// Any other model with given parameters of each body.
+    Given { kind: ModelKind, parameters: Vec<ModelParameters> },
     /// Any other model with the moments of a principal one, or of one from outside.
     Matched { kind: ModelKind, to: String },
     /// That of a program, and what the file says of it.
@@ -57,9 +57,10 @@ pub(crate) struct Comparison {
     pub(crate) naive: usize,
 }
 
-pub(crate) fn check_models(
-    files: &[ModelFile],
-    bodies: [&UncertainBody; 2],
+/// The models of a file that is filled in, of these bodies.
+pub(crate) fn check_models<O: Owner>(
+    files: &[ModelFile<O>],
+    bodies: &[(O, &UncertainBody)],
 ) -> Result<Vec<ModelSpec>, ScenarioError> {
     if files.is_empty() {
         return Err(ScenarioError::field("models", "none: there must be at least one"));
@@ -81,23 +82,31 @@ pub(crate) fn place(index: usize) -> String {
     format!("models[{}]", index + 1)
 }
 
-fn check_model(
+fn check_model<O: Owner>(
     index: usize,
-    file: &ModelFile,
-    all: &[ModelFile],
-    bodies: [&UncertainBody; 2],
+    file: &ModelFile<O>,
+    all: &[ModelFile<O>],
+    bodies: &[(O, &UncertainBody)],
 ) -> Result<ModelSpec, ScenarioError> {
     let place = place(index);
     let field_error = |field: &str, problem: String| {
         Err(ScenarioError::field(format!("{place}.{field}"), problem))
     };
     let given = || {
-        let of = |body: &'static str, given: &ModelParameters| {
-            let keys: Vec<&str> = given.given().collect();
-            keys.into_iter().map(move |key| (format!("{body}_{key}"), key))
+        let of = |(body, given): &(O, ModelParameters)| {
+            let keys = given.given().map(|key| (parameter_key(body, key), key));
+            keys.collect::<Vec<_>>()
         };
-        of("payload", &file.payload).chain(of("stage", &file.stage))
+        file.parameters.iter().flat_map(of)
     };
+    let of_nobody = file.parameters.iter().find(|(body, _)| bodies.iter().all(|(b, _)| b != body));
+    if let Some((body, parameters)) = of_nobody {
+        let names = bodies.iter().map(|(body, _)| body.name()).collect::<Vec<_>>().join(", ");
+        let key = parameters.given().next().unwrap_or_default();
+        let there = if names.is_empty() { "none".to_owned() } else { names };
+        let problem = format!("there is no body {:?}: the bodies are {there}", body.name());
+        return field_error(&parameter_key(body, key), problem);
+    }
 
     let ModelLaw::Kind(kind) = file.law else {
         let mut others = given().map(|(field, _)| field);
@@ -117,21 +126,23 @@ fn check_model(
         return field_error("outside", format!("law \"{kind}\" does not take it"));
     }
     if kind == ModelKind::Principal {
-        let Some(axes) = file.axes else {
+        // Without bodies they say nothing.
+        let none = bodies.is_empty().then_some(Axes::WholeSphere);
+        let Some(axes) = file.axes.or(none) else {
             return Err(ScenarioError::field(
                 format!("{place}.axes"),
                 "missing: law \"principal\" needs axes: \"whole-sphere\", \"mean-half\" or \"jacobian-twice\"",
             ));
         };
         let only = "law \"principal\" takes axes and nothing else: its variances are those of \
-                    payload.dispersion and stage.dispersion";
+                    the dispersion of each body";
         if let Some((field, _)) = given().next() {
             return field_error(&field, only.to_owned());
         }
         if file.matched_to.is_some() {
             return field_error("matched_to", only.to_owned());
         }
-        if axes != Axes::WholeSphere && bodies.iter().any(|b| b.gaussian_axes().is_none()) {
+        if axes != Axes::WholeSphere && bodies.iter().any(|(_, b)| b.gaussian_axes().is_none()) {
             let problem = "only \"whole-sphere\" goes with bodies whose dispersion.axes are \"uniform\" \
                            or \"fixed\": they have no far half";
             return field_error("axes", problem.to_owned());
@@ -144,9 +155,13 @@ fn check_model(
     }
     let (needs, defaults) = (kind.needs(), kind.defaults());
     let takes = |key: &str| needs.contains(&key) || defaults.given().any(|other| other == key);
+    let of_all = |key: &&str| {
+        let keys = bodies.iter().map(|(body, _)| parameter_key(body, key));
+        keys.collect::<Vec<_>>().join(" and ")
+    };
     let choice = format!(
         "law \"{kind}\" needs either {}, or matched_to, and nothing else",
-        needs.iter().map(|f| format!("payload_{f} and stage_{f}")).collect::<Vec<_>>().join(", ")
+        needs.iter().map(of_all).collect::<Vec<_>>().join(", ")
     );
     if let Some((field, _)) = given().find(|(_, key)| !takes(key)) {
         return field_error(&field, format!("{choice}; it does not take this"));
@@ -165,22 +180,19 @@ fn check_model(
         }
         Law::Matched { kind, to: other.clone() }
     } else {
-        for (body, given) in [("payload", &file.payload), ("stage", &file.stage)] {
+        for (body, given) in &file.parameters {
             if let Some(need) = needs.iter().find(|need| !given.given().any(|key| key == **need)) {
-                return field_error(&format!("{body}_{need}"), format!("missing: {choice}"));
+                return field_error(&parameter_key(body, need), format!("missing: {choice}"));
             }
         }
         // Checked by making the models.
-        for (body, given, uncertain) in
-            [("payload", &file.payload, bodies[0]), ("stage", &file.stage, bodies[1])]
-        {
+        for ((body, given), (_, uncertain)) in file.parameters.iter().zip(bodies) {
             let wrong = |ModelParameterError { key, problem }| {
-                ScenarioError::field(format!("{place}.{body}_{key}"), problem)
+                ScenarioError::field(format!("{place}.{}", parameter_key(body, key)), problem)
             };
             DispersionModel::about(kind, uncertain.nominal(), given).map_err(wrong)?;
         }
-        let [payload, stage] = [file.payload, file.stage].map(Box::new);
-        Law::Given { kind, payload, stage }
+        Law::Given { kind, parameters: file.parameters.iter().map(|(_, given)| *given).collect() }
     };
     Ok(ModelSpec { name: file.name.clone(), law })
 }

@@ -6,32 +6,84 @@ use serde::{
     de::{DeserializeSeed, Error, MapAccess, Visitor},
     ser::SerializeMap,
 };
-use std::fmt;
+use std::{fmt, marker::PhantomData, mem};
 
 use crate::body::Body;
 
-/// A model: its law, and for each body what the law needs.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct ModelFile {
+/// A model: its law, and for each body what the law needs. Bodies are payload and stage, or have names of their own.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ModelFile<O = Body> {
     pub(crate) name: String,
     pub(crate) law: ModelLaw,
     pub(crate) axes: Option<AxesFile>,
-    /// Their keys begin with `payload_`.
-    pub(crate) payload: ModelParameters,
-    /// Their keys begin with `stage_`.
-    pub(crate) stage: ModelParameters,
+    /// Their keys begin with the name of the body and an underscore.
+    pub(crate) parameters: Vec<(O, ModelParameters)>,
     pub(crate) matched_to: Option<String>,
     pub(crate) outside: Option<OutsideFile>,
 }
 
-impl ModelFile {
-    /// With the defaults of its law filled in.
-    pub(crate) fn fill(&mut self) {
-        if let (ModelLaw::Kind(kind), None) = (self.law, &self.matched_to) {
-            for parameters in [&mut self.payload, &mut self.stage] {
-                *parameters = parameters.or(&kind.defaults());
-            }
+/// Whose parameters a model has in a file.
+pub(crate) trait Owner: Clone + PartialEq + fmt::Debug {
+    /// What it is called.
+    fn name(&self) -> &str;
+    /// Whose parameter a key is, and which one; none if it is no such key.
+    fn of(key: &str) -> Option<(Self, &'static str)>;
+    /// The keys of all parameters, for messages.
+    fn keys() -> impl Iterator<Item = String>;
+}
+
+impl Owner for Body {
+    fn name(&self) -> &str {
+        Self::name(*self)
+    }
+
+    fn of(key: &str) -> Option<(Self, &'static str)> {
+        parameters().find(|(body, parameter)| parameter_key(body, parameter) == key)
+    }
+
+    fn keys() -> impl Iterator<Item = String> {
+        parameters().map(|(body, parameter)| parameter_key(&body, parameter))
+    }
+}
+
+/// All parameters of payload and stage, in the order of files.
+fn parameters() -> impl Iterator<Item = (Body, &'static str)> {
+    let of = |body| ModelParameters::KEYS.iter().map(move |key| (body, *key));
+    Body::BOTH.into_iter().flat_map(of)
+}
+
+/// What a file calls a parameter of a body.
+pub(crate) fn parameter_key(body: &impl Owner, parameter: &str) -> String {
+    prefix(body) + parameter
+}
+
+/// What the keys of a body's parameters begin with.
+fn prefix(body: &impl Owner) -> String {
+    format!("{}_", body.name())
+}
+
+impl<O: Owner> ModelFile<O> {
+    /// With the parameters of these bodies in their order, and the defaults of its law filled in. Parameters of other bodies
+    /// stay, to be refused.
+    pub(crate) fn fill(&mut self, bodies: &[O]) {
+        let defaults = match (self.law, &self.matched_to) {
+            (ModelLaw::Kind(kind), None) => kind.defaults(),
+            (ModelLaw::Kind(_), Some(_)) | (ModelLaw::Outside, _) => ModelParameters::default(),
+        };
+        let mut given = mem::take(&mut self.parameters);
+        for body in bodies {
+            let place = given.iter().position(|(other, _)| other == body);
+            let own = place.map_or_else(ModelParameters::default, |place| given.remove(place).1);
+            self.parameters.push((body.clone(), own.or(&defaults)));
         }
+        self.parameters.append(&mut given);
+    }
+}
+
+impl<O> Default for ModelFile<O> {
+    fn default() -> Self {
+        let (name, law, parameters) = (String::new(), ModelLaw::default(), Vec::new());
+        Self { name, law, axes: None, parameters, matched_to: None, outside: None }
     }
 }
 
@@ -88,92 +140,75 @@ pub(crate) enum AxesFile {
 }
 
 /// A key of a model.
-enum Key {
+enum Key<O> {
     Name,
     Law,
     Axes,
-    Parameter(Body, &'static str),
+    Parameter(O, &'static str),
     MatchedTo,
     Outside,
 }
 
 const NAME: &str = "name";
 const LAW: &str = "law";
+const AXES: &str = "axes";
+const MATCHED_TO: &str = "matched_to";
 
-impl Key {
-    /// What a file calls it.
-    fn text(&self) -> String {
-        match self {
-            Self::Name => NAME.to_owned(),
-            Self::Law => LAW.to_owned(),
-            Self::Axes => "axes".to_owned(),
-            Self::Parameter(body, key) => format!("{}{key}", prefix(*body)),
-            Self::MatchedTo => "matched_to".to_owned(),
-            Self::Outside => OUTSIDE.to_owned(),
-        }
-    }
-
-    /// All of them, in the order of files.
-    fn all() -> impl Iterator<Item = Self> {
-        let of = |body| ModelParameters::KEYS.iter().map(move |key| Self::Parameter(body, key));
-        let parameters = of(Body::Payload).chain(of(Body::Stage));
-        let first = [Self::Name, Self::Law, Self::Axes].into_iter();
-        first.chain(parameters).chain([Self::MatchedTo, Self::Outside])
-    }
-}
-
-/// What the keys of a body's parameters begin with.
-fn prefix(body: Body) -> String {
-    format!("{}_", body.name())
-}
-
-impl Serialize for ModelFile {
+impl<O: Owner> Serialize for ModelFile<O> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let Self { name, law, axes, payload, stage, matched_to, outside } = self;
+        let Self { name, law, axes, parameters, matched_to, outside } = self;
         let mut map = to.serialize_map(None)?;
         map.serialize_entry(NAME, name)?;
         map.serialize_entry(LAW, law)?;
         if let Some(axes) = axes {
-            map.serialize_entry(&Key::Axes.text(), axes)?;
+            map.serialize_entry(AXES, axes)?;
         }
-        payload.write(&prefix(Body::Payload), &mut map)?;
-        stage.write(&prefix(Body::Stage), &mut map)?;
+        for (body, parameters) in parameters {
+            parameters.write(&prefix(body), &mut map)?;
+        }
         if let Some(matched_to) = matched_to {
-            map.serialize_entry(&Key::MatchedTo.text(), matched_to)?;
+            map.serialize_entry(MATCHED_TO, matched_to)?;
         }
         if let Some(outside) = outside {
-            map.serialize_entry(&Key::Outside.text(), outside)?;
+            map.serialize_entry(OUTSIDE, outside)?;
         }
         map.end()
     }
 }
 
 /// By hand, for the keys of the parameters are those that the models declare.
-impl<'de> Deserialize<'de> for ModelFile {
+impl<'de, O: Owner> Deserialize<'de> for ModelFile<O> {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        from.deserialize_map(Table)
+        from.deserialize_map(Table(PhantomData))
     }
 }
 
-struct Table;
+struct Table<O>(PhantomData<O>);
 
-impl<'de> Visitor<'de> for Table {
-    type Value = ModelFile;
+impl<'de, O: Owner> Visitor<'de> for Table<O> {
+    type Value = ModelFile<O>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a table")
     }
 
-    fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<ModelFile, M::Error> {
+    fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<ModelFile<O>, M::Error> {
         let mut file = ModelFile::default();
         let (mut name, mut law) = (None, None);
-        while let Some(key) = map.next_key_seed(AnyKey)? {
+        while let Some(key) = map.next_key_seed(AnyKey(PhantomData))? {
             match key {
                 Key::Name => name = Some(map.next_value()?),
                 Key::Law => law = Some(map.next_value()?),
                 Key::Axes => file.axes = Some(map.next_value()?),
-                Key::Parameter(Body::Payload, key) => file.payload.read(key, &mut map)?,
-                Key::Parameter(Body::Stage, key) => file.stage.read(key, &mut map)?,
+                Key::Parameter(body, key) => {
+                    let mut all = file.parameters.iter();
+                    let place = all.position(|(other, _): &(O, _)| *other == body);
+                    let place = place.unwrap_or_else(|| {
+                        file.parameters.push((body, ModelParameters::default()));
+                        file.parameters.len() - 1
+                    });
+                    file.parameters[place].1.read(key, &mut map)?;
+                }
                 Key::MatchedTo => file.matched_to = Some(map.next_value()?),
                 Key::Outside => file.outside = Some(map.next_value()?),
             }
@@ -185,27 +220,37 @@ impl<'de> Visitor<'de> for Table {
 }
 
 /// Refuses a key that is not known where it stands.
-struct AnyKey;
+struct AnyKey<O>(PhantomData<O>);
 
-impl<'de> DeserializeSeed<'de> for AnyKey {
-    type Value = Key;
+impl<'de, O: Owner> DeserializeSeed<'de> for AnyKey<O> {
+    type Value = Key<O>;
 
-    fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<Key, D::Error> {
+    fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<Key<O>, D::Error> {
         from.deserialize_identifier(self)
     }
 }
 
-impl Visitor<'_> for AnyKey {
-    type Value = Key;
+impl<O: Owner> Visitor<'_> for AnyKey<O> {
+    type Value = Key<O>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a key")
     }
 
-    fn visit_str<E: Error>(self, text: &str) -> Result<Key, E> {
-        Key::all().find(|key| key.text() == text).ok_or_else(|| {
-            let known: Vec<String> = Key::all().map(|key| format!("`{}`", key.text())).collect();
-            E::custom(format!("unknown field `{text}`, expected one of {}", known.join(", ")))
-        })
+    fn visit_str<E: Error>(self, text: &str) -> Result<Key<O>, E> {
+        match text {
+            NAME => Ok(Key::Name),
+            LAW => Ok(Key::Law),
+            AXES => Ok(Key::Axes),
+            MATCHED_TO => Ok(Key::MatchedTo),
+            OUTSIDE => Ok(Key::Outside),
+            other => O::of(other).map(|(body, key)| Key::Parameter(body, key)).ok_or_else(|| {
+                let [first, last] = [&[NAME, LAW, AXES][..], &[MATCHED_TO, OUTSIDE]]
+                    .map(|keys| keys.iter().map(|key| (*key).to_owned()));
+                let known = first.chain(O::keys()).chain(last).map(|key| format!("`{key}`"));
+                let known = known.collect::<Vec<_>>().join(", ");
+                E::custom(format!("unknown field `{text}`, expected one of {known}"))
+            }),
+        }
     }
 }

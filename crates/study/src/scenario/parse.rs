@@ -137,7 +137,7 @@ pub(crate) fn whole<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D
 }
 
 /// The same where it may be left out.
-pub(super) fn some_whole<'de, D: Deserializer<'de>>(
+pub(crate) fn some_whole<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<u64>, D::Error> {
     whole(deserializer).map(Some)

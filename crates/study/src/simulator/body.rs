@@ -9,7 +9,7 @@ use super::{
 use crate::{
     ScenarioError,
     body::Entry,
-    scenario::{GivenLaw, List, Uncertain, UncertainBody, possible},
+    scenario::{Each, GivenLaw, List, Uncertain, UncertainBody},
 };
 
 /// A body whose mass, mass centre and inertia are drawn for each run of a simulator.
@@ -17,6 +17,8 @@ use crate::{
 pub(super) struct SimulatedBody {
     pub(super) name: String,
     pub(super) uncertain: UncertainBody,
+    /// For what its inertia is drawn.
+    pub(super) inertia_drawn: Each,
     pub(super) mass_kg: f64,
     /// The share of the mass's relative change that the inertia takes.
     pub(super) follows: f64,
@@ -25,16 +27,20 @@ pub(super) struct SimulatedBody {
 }
 
 impl SimulatedBody {
-    /// The body in a place of the file; what is dispersed of its numbers, of which the first has the number `first` among
+    /// The body in a place of the file, after others; what is dispersed of its numbers, of which the first has the number `first` among
     /// all, joins the list.
     pub(super) fn new(
-        place: usize,
         file: &SimulatedBodyFile,
+        before: &[Self],
         first: usize,
         list: &mut List<usize>,
     ) -> Result<Self, ScenarioError> {
-        let (field, name) = (format!("bodies[{}]", place + 1), &file.name);
+        let (field, name) = (format!("bodies[{}]", before.len() + 1), &file.name);
         check_column(&format!("{field}.name"), name)?;
+        if before.iter().any(|other| other.name == *name) {
+            let problem = format!("{name:?}: another body has this name");
+            return Err(ScenarioError::field(format!("{field}.name"), problem));
+        }
         let d = &file.dispersion;
         let at = |key: &str| format!("{field}.dispersion.{key}");
         let motion = [
@@ -48,7 +54,7 @@ impl SimulatedBody {
                            [[quantities]]";
             return Err(ScenarioError::field(at(key), problem));
         }
-        possible(&at("inertia_drawn"), d.inertia_drawn, None)?;
+        let inertia_drawn = list.possible(&at("inertia_drawn"), d.inertia_drawn)?;
         if d.mass_centre_m.is_some() && file.mass_centre_m.is_none() {
             let problem = format!("the body has no mass centre: it needs {field}.mass_centre_m");
             return Err(ScenarioError::field(at("mass_centre_m"), problem));
@@ -93,7 +99,8 @@ impl SimulatedBody {
             }
         }
         let (mass_kg, follows) = (file.mass_kg, d.inertia_follows_mass.share());
-        Ok(Self { name: name.clone(), uncertain, mass_kg, follows, numbers })
+        let name = name.clone();
+        Ok(Self { name, uncertain, inertia_drawn, mass_kg, follows, numbers })
     }
 
     /// Its numbers, the six entries of the inertia, and the attitude of the principal axes.

@@ -1,22 +1,22 @@
 //! What a model draws of the bodies and the quantities of a simulator.
 
 use gyradius_campaign::{Cell, Column, Failure, Inputs, Simulation, Streams, Table, TableError};
-use gyradius_dispersion::{InertiaLaw, ModelKind};
+use gyradius_dispersion::InertiaLaw;
 use std::{ops::Range, sync::Arc};
 
-use super::{
-    body::SimulatedBody, file::SimulatedModelFile, number::Number, scenario::SimulatorScenario,
-};
+use super::{body::SimulatedBody, number::Number, scenario::SimulatorScenario};
 use crate::{
     ScenarioError,
     drawn::{self, following},
-    model::matched,
-    scenario::{Axes, Joint},
+    scenario::{Joint, Size},
 };
 
 /// What a model draws of the bodies and the quantities of a simulator: inputs that are sent, or rows of their own.
 #[derive(Debug)]
 pub(crate) struct SimulatorDraws<'a> {
+    size: Size,
+    /// The columns of vehicle and flight, if there are vehicles, and those of what is drawn.
+    own: Vec<Column>,
     columns: Vec<Column>,
     bodies: Vec<BodyDraws<'a>>,
     quantities: &'a [Number],
@@ -37,15 +37,18 @@ impl<'a> SimulatorDraws<'a> {
         scenario: &'a SimulatorScenario,
         place: usize,
     ) -> Result<Self, ScenarioError> {
-        let (seed, name) = (scenario.seed(), scenario.models()[place].name.as_str());
-        let body = |body: &'a SimulatedBody| {
-            let law = law(scenario, place, body)?;
+        let (seed, name) = (scenario.seed(), scenario.model_names().nth(place).unwrap_or_default());
+        let body = |(i, body): (usize, &'a SimulatedBody)| {
+            let law = scenario.law(place, i)?;
             let inertias = Streams::new(seed, name, &format!("{} inertia", body.name));
             Ok(BodyDraws { body, law, inertias })
         };
+        let bodies = scenario.bodies().iter().enumerate().map(body);
         Ok(Self {
+            size: scenario.size(),
+            own: scenario.own(),
             columns: scenario.inputs().collect(),
-            bodies: scenario.bodies().iter().map(body).collect::<Result<_, ScenarioError>>()?,
+            bodies: bodies.collect::<Result<_, ScenarioError>>()?,
             quantities: scenario.quantities(),
             dispersed: scenario.dispersed(),
             draws: drawn::Draws::new(seed, name, &scenario.dispersed().all),
@@ -58,12 +61,20 @@ impl Inputs for SimulatorDraws<'_> {
         self.columns.clone()
     }
 
+    fn place_columns(&self) -> Vec<Column> {
+        self.own.clone()
+    }
+
+    fn place(&self, run: u64) -> Vec<i64> {
+        self.size.fleet().map_or_else(Vec::new, |fleet| fleet.numbers(run).into())
+    }
+
     fn draw(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<(), Failure> {
         let of_bodies = self.bodies.iter().flat_map(|draws| &draws.body.numbers);
         let mut values: Vec<f64> =
             of_bodies.chain(self.quantities).map(|number| number.nominal).collect();
-        for (d, value) in self.dispersed.all.iter().zip(self.draws.values(self.dispersed, |_| run))
-        {
+        let drawn = self.draws.values(self.dispersed, |each| self.size.stream(each, run));
+        for (d, value) in self.dispersed.all.iter().zip(drawn) {
             values[d.target] = value;
         }
         let (mut first, mut failure) = (0, None);
@@ -72,7 +83,8 @@ impl Inputs for SimulatorDraws<'_> {
             let own = &values[first..first + body.numbers.len()];
             first += own.len();
             let mass = own[0];
-            let drawn = draws.law.draw(&mut draws.inertias.run(run));
+            let drawn =
+                draws.law.draw(&mut draws.inertias.run(self.size.stream(body.inertia_drawn, run)));
             let inertia = following(drawn.inertia, mass / body.mass_kg, body.follows);
             numbers.extend(own.iter().copied().map(Some));
             numbers.extend(inertia.entries().map(Some));
@@ -94,7 +106,7 @@ impl Simulation for SimulatorDraws<'_> {
     type Worker = Vec<Option<f64>>;
 
     fn columns(&self) -> Vec<Column> {
-        self.columns.clone()
+        self.own.iter().chain(&self.columns).cloned().collect()
     }
 
     fn worker(&self) -> Self::Worker {
@@ -110,59 +122,9 @@ impl Simulation for SimulatorDraws<'_> {
         for run in runs {
             numbers.clear();
             let failure = self.draw(run, numbers).err();
-            rows.push(failure, numbers.iter().map(|number| Cell::from(*number)))?;
+            let place = self.place(run).into_iter().map(Cell::Integer);
+            rows.push(failure, place.chain(numbers.iter().map(|number| Cell::from(*number))))?;
         }
         Ok(())
-    }
-}
-
-/// The law of a body under the model in a place.
-fn law(
-    scenario: &SimulatorScenario,
-    place: usize,
-    body: &SimulatedBody,
-) -> Result<Arc<dyn InertiaLaw>, ScenarioError> {
-    let model = &scenario.models()[place];
-    let field = |key: &str| format!("models[{}].{key}", place + 1);
-    let refused = |key: &str, problem: &dyn std::fmt::Display| {
-        ScenarioError::field(field(key), format!("the body {}: {problem}", body.name))
-    };
-    match (model.law, model.axes, &model.matched_to) {
-        (ModelKind::Principal, Some(axes), None) => {
-            if axes != Axes::WholeSphere && body.uncertain.gaussian_axes().is_none() {
-                let problem = "only \"whole-sphere\" goes with dispersion.axes that are \"uniform\" or \"fixed\": they have \
-                               no far half";
-                return Err(refused("axes", &problem));
-            }
-            Ok(Arc::new(body.uncertain.principal(axes).map_err(|error| refused("axes", &error))?))
-        }
-        (ModelKind::Principal, None, None) => {
-            let problem = "missing: law \"principal\" needs axes: \"whole-sphere\", \"mean-half\" or \"jacobian-twice\"";
-            Err(ScenarioError::field(field("axes"), problem))
-        }
-        (ModelKind::Principal, _, Some(_)) => {
-            Err(ScenarioError::field(field("matched_to"), "law \"principal\" does not take it"))
-        }
-        (kind, Some(_), _) => {
-            Err(ScenarioError::field(field("axes"), format!("law \"{kind}\" does not take it")))
-        }
-        (kind, None, None) => {
-            let problem =
-                format!("missing: law \"{kind}\" needs the name of a model with law \"principal\"");
-            Err(ScenarioError::field(field("matched_to"), problem))
-        }
-        (kind, None, Some(to)) => {
-            let principal = |m: &SimulatedModelFile| m.name == *to && m.law == ModelKind::Principal;
-            let other = scenario.models().iter().position(principal).ok_or_else(|| {
-                let problem = format!("{to:?}: it must name a model with law \"principal\"");
-                ScenarioError::field(field("matched_to"), problem)
-            })?;
-            let moments = law(scenario, other, body)?.expected_moments().ok_or_else(|| {
-                refused("matched_to", &format!("the moments of {to:?} are not known"))
-            })?;
-            let model = matched(kind, &body.uncertain, &moments)
-                .map_err(|error| refused("matched_to", &error))?;
-            Ok(Arc::new(model))
-        }
     }
 }

@@ -1,19 +1,26 @@
 //! A scenario of a simulator as it stands in a TOML file.
 
 use gyradius_campaign::Rows;
-use gyradius_dispersion::{ModelKind, ScalarLawForm};
+use gyradius_dispersion::ModelParameters;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-use crate::scenario::{Axes, BodyFile, CorrelationFile, DispersionFile, whole};
+use crate::scenario::{
+    BodyFile, CorrelationFile, DispersionFile, ModelFile, Owner, ScalarLawFile, some_whole, whole,
+};
 
 /// A scenario of a simulator, defaults filled in. Units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct File {
     pub(super) name: String,
-    #[serde(default = "default_runs", deserialize_with = "whole")]
-    pub(super) runs: u64,
+    /// Filled in unless there are vehicles and flights.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "some_whole")]
+    pub(super) runs: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "some_whole")]
+    pub(super) vehicles: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "some_whole")]
+    pub(super) flights: Option<u64>,
     #[serde(default = "default_seed", deserialize_with = "whole")]
     pub(super) seed: u64,
     /// Which rows of the run tables are kept, and which columns, if not all.
@@ -29,7 +36,7 @@ pub(super) struct File {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) correlations: Vec<CorrelationFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) models: Vec<SimulatedModelFile>,
+    pub(super) models: Vec<ModelFile<BodyName>>,
 }
 
 /// How the simulator is started, and what it answers with.
@@ -81,18 +88,31 @@ pub(super) struct QuantityFile {
     #[serde(default = "default_meaning")]
     pub(super) meaning: String,
     /// Of the quantity itself.
-    pub(super) law: ScalarLawForm,
+    pub(super) law: ScalarLawFile,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SimulatedModelFile {
-    pub(super) name: String,
-    pub(super) law: ModelKind,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) axes: Option<Axes>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) matched_to: Option<String>,
+/// The name of a body, with which the keys of its parameters in models begin.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct BodyName(pub(super) String);
+
+impl Owner for BodyName {
+    fn name(&self) -> &str {
+        &self.0
+    }
+
+    /// Of parameters of which one ends in the other, the longer.
+    fn of(key: &str) -> Option<(Self, &'static str)> {
+        let of = |parameter: &&'static str| {
+            let name = key.strip_suffix(*parameter)?.strip_suffix('_')?;
+            (!name.is_empty()).then(|| (Self(name.to_owned()), *parameter))
+        };
+        let fits = ModelParameters::KEYS.iter().filter_map(of);
+        fits.max_by_key(|(_, parameter)| parameter.len())
+    }
+
+    fn keys() -> impl Iterator<Item = String> {
+        ModelParameters::KEYS.iter().map(|parameter| format!("<body>_{parameter}"))
+    }
 }
 
 impl SimulatedBodyFile {
@@ -108,10 +128,6 @@ impl SimulatedBodyFile {
             dispersion: self.dispersion.clone(),
         }
     }
-}
-
-fn default_runs() -> u64 {
-    2000
 }
 
 fn default_seed() -> u64 {

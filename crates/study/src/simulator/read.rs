@@ -1,6 +1,6 @@
 //! Scenarios of simulators, read from files.
 
-use gyradius_campaign::{Table, folder_of};
+use gyradius_campaign::folder_of;
 use std::path::Path;
 
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
@@ -27,11 +27,8 @@ impl SimulatorScenario {
     /// It is not TOML, has an unknown key, or a value that is not allowed.
     pub fn from_toml(text: &str, folder: &Path) -> Result<Self, ScenarioError> {
         let scenario = Self::parse(text, folder)?;
-        let columns = scenario.inputs().chain(scenario.outputs().iter().cloned()).collect();
-        Table::new("", 0, columns)
-            .map_err(|error| ScenarioError::field("simulation.outputs", error))?;
         // What a model needs of the bodies is found by making it.
-        for place in 0..scenario.models().len() {
+        for place in 0..scenario.model_names().len() {
             SimulatorDraws::new(&scenario, place)?;
         }
         Ok(scenario)

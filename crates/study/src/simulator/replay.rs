@@ -4,13 +4,14 @@ use gyradius_campaign::Told;
 use std::fmt;
 
 use super::scenario::SimulatorScenario;
-use crate::{ReplayError, subject::Subject};
+use crate::{Fleet, ReplayError, Which, subject::Subject};
 
 /// One run of a simulator again, in a process that is started for it.
 #[derive(Clone, Debug)]
 pub struct SimulatorReplay {
     model: String,
     run: u64,
+    fleet: Option<Fleet>,
     told: Told,
     outputs: Vec<(String, String)>,
 }
@@ -23,11 +24,9 @@ impl SimulatorReplay {
     pub fn new(
         scenario: &SimulatorScenario,
         model: Option<&str>,
-        run: u64,
+        run: impl Into<Which>,
     ) -> Result<Self, ReplayError> {
-        if run >= scenario.runs() {
-            return Err(ReplayError::Run { run, runs: scenario.runs() });
-        }
+        let run = run.into().run(scenario)?;
         let mut names = scenario.model_names();
         let place =
             names.position(|name| model.is_none_or(|model| name == model)).ok_or_else(|| {
@@ -40,7 +39,8 @@ impl SimulatorReplay {
         let outputs = scenario.outputs().iter();
         let outputs = outputs.map(|c| (c.name().to_owned(), c.unit().unwrap_or("1").to_owned()));
         let name = scenario.model_names().nth(place).unwrap_or_default().to_owned();
-        Ok(Self { model: name, run, told, outputs: outputs.collect() })
+        let fleet = scenario.fleet();
+        Ok(Self { model: name, run, fleet, told, outputs: outputs.collect() })
     }
 
     /// What was told to and by the simulator.
@@ -52,7 +52,8 @@ impl SimulatorReplay {
 
 impl fmt::Display for SimulatorReplay {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}, run {}", self.model, self.run)?;
+        let flight = self.fleet.map(|fleet| format!(" {}", fleet.told(self.run)));
+        writeln!(f, "{}, run {}{}", self.model, self.run, flight.unwrap_or_default())?;
         let nothing = || "nothing".to_owned();
         writeln!(f, "sent: {}", self.told.request.clone().unwrap_or_else(nothing))?;
         let answer = self.told.answer.as_deref().map(str::trim_end).map(str::to_owned);

@@ -1,17 +1,20 @@
 //! A scenario of a simulator, checked: the command, what is uncertain, how often.
 
-use gyradius_campaign::{Column, Kept, Program, ProgramError};
-use gyradius_dispersion::{ModelKind, ScalarLaw};
-use std::path::Path;
+use gyradius_campaign::{Column, Kept, Program, ProgramError, Table};
+use gyradius_dispersion::{InertiaLaw, ModelKind, ScalarLaw};
+use std::{path::Path, sync::Arc};
 
 use super::{
     body::SimulatedBody,
-    file::{File, SimulatedModelFile},
+    file::{BodyName, File},
     number::{Number, check_column},
 };
 use crate::{
-    ScenarioError,
-    scenario::{Each, Joint, List, check_name, check_runs, check_seed, parse_toml, refused},
+    Fleet, ScenarioError, model,
+    scenario::{
+        Axes, Joint, Law, List, ModelFile, ModelLaw, ModelSpec, Size, check_models, check_name,
+        check_seed, parse_toml, place, refused,
+    },
 };
 
 /// Most bodies, quantities or outputs.
@@ -22,11 +25,13 @@ const MOST: usize = 300;
 #[derive(Clone, Debug)]
 pub struct SimulatorScenario {
     file: File,
+    size: Size,
     bodies: Vec<SimulatedBody>,
     quantities: Vec<Number>,
     /// What is dispersed of all numbers, by their places: those of the bodies, and then the quantities.
     dispersed: Joint<usize>,
     outputs: Vec<Column>,
+    models: Vec<ModelSpec>,
 }
 
 impl SimulatorScenario {
@@ -41,7 +46,8 @@ impl SimulatorScenario {
         let mut file = parse_toml::<File>(text)
             .map_err(|message| ScenarioError::Parse { path: None, message })?;
         check_name("name", &file.name)?;
-        check_runs(file.runs)?;
+        let size = Size::of([file.runs, file.vehicles, file.flights])?;
+        [file.runs, file.vehicles, file.flights] = size.keys();
         check_seed(file.seed)?;
         let lists = [
             ("bodies", file.bodies.len(), 0),
@@ -60,10 +66,10 @@ impl SimulatorScenario {
             file.simulation.folder = Some(std::path::absolute(&given).unwrap_or(given));
             file.simulation.files_sha256 = Some(program(&file)?.files_sha256());
         }
-        let mut list = List::default();
-        let (mut bodies, mut count) = (Vec::new(), 0);
-        for (i, body) in file.bodies.iter().enumerate() {
-            let body = SimulatedBody::new(i, body, count, &mut list)?;
+        let mut list = List::of(size.fleet());
+        let (mut bodies, mut count) = (Vec::<SimulatedBody>::new(), 0);
+        for body in &file.bodies {
+            let body = SimulatedBody::new(body, &bodies, count, &mut list)?;
             count += body.numbers.len();
             bodies.push(body);
         }
@@ -71,12 +77,13 @@ impl SimulatorScenario {
         for (i, quantity) in file.quantities.iter().enumerate() {
             let field = format!("quantities[{}]", i + 1);
             check_column(&format!("{field}.name"), &quantity.name)?;
-            let law = ScalarLaw::try_from(quantity.law.clone())
+            let law = ScalarLaw::try_from(quantity.law.form.clone())
                 .map_err(|error| refused(&format!("{field}.law"), &error))?;
+            let each = list.each(&format!("{field}.law"), quantity.law.drawn)?;
             let nominal = law.mean();
             let (unit, meaning) = (quantity.unit.clone(), quantity.meaning.clone());
             let column = Column::number(quantity.name.clone(), unit, meaning);
-            list.push(&quantity.name, "", nominal, (law, Each::Flight), count + i);
+            list.push(&quantity.name, "", nominal, (law, each), count + i);
             quantities.push(Number { column, nominal });
         }
         let dispersed = list.correlate(
@@ -89,17 +96,53 @@ impl SimulatorScenario {
             Ok(Column::number(name.clone(), unit.clone(), meaning.clone()))
         });
         let outputs = outputs.collect::<Result<Vec<_>, ScenarioError>>()?;
-        check_models(&mut file)?;
-        Ok(Self { file, bodies, quantities, dispersed, outputs })
+        let models = models(&mut file, &bodies)?;
+        let scenario = Self { file, size, bodies, quantities, dispersed, outputs, models };
+        scenario.check_columns()?;
+        Ok(scenario)
+    }
+
+    /// That the run table can have its columns.
+    fn check_columns(&self) -> Result<(), ScenarioError> {
+        let given = &self.file.simulation.outputs;
+        let outputs =
+            given.iter().enumerate().map(|(i, output)| ("simulation.outputs", i, &output.name));
+        let given = &self.file.quantities;
+        let quantities =
+            given.iter().enumerate().map(|(i, quantity)| ("quantities", i, &quantity.name));
+        for (list, i, name) in outputs.chain(quantities) {
+            if self.own().iter().any(|column| column.name() == name) {
+                let problem =
+                    format!("{name:?}: a scenario with vehicles has a column of this name");
+                return Err(ScenarioError::field(format!("{list}[{}].name", i + 1), problem));
+            }
+        }
+        Table::new("", 0, self.columns().collect())
+            .map_err(|error| ScenarioError::field("simulation.outputs", error))?;
+        Ok(())
     }
 
     /// The same scenario with another number of runs for each model.
     ///
     /// # Errors
-    /// The number is out of range.
+    /// The number is out of range, or the scenario has vehicles.
     pub fn with_runs(self, runs: u64) -> Result<Self, ScenarioError> {
-        check_runs(runs)?;
-        Ok(Self { file: File { runs, ..self.file }, ..self })
+        let size = self.size.with_runs(runs)?;
+        Ok(self.sized(size))
+    }
+
+    /// The same scenario with another number of vehicles, each with as many flights.
+    ///
+    /// # Errors
+    /// The number is out of range, or the scenario has no vehicles.
+    pub fn with_vehicles(self, vehicles: u64) -> Result<Self, ScenarioError> {
+        let size = self.size.with_vehicles(vehicles)?;
+        Ok(self.sized(size))
+    }
+
+    fn sized(self, size: Size) -> Self {
+        let [runs, vehicles, flights] = size.keys();
+        Self { file: File { runs, vehicles, flights, ..self.file }, size, ..self }
     }
 
     /// The same scenario from another seed.
@@ -130,10 +173,22 @@ impl SimulatorScenario {
         &self.file.name
     }
 
-    /// Runs of each model.
+    /// Runs of each model: the flights of all vehicles, if it has vehicles.
     #[must_use]
     pub fn runs(&self) -> u64 {
-        self.file.runs
+        self.size.runs()
+    }
+
+    /// Its vehicles and how often each flies, if it has both.
+    #[must_use]
+    pub fn fleet(&self) -> Option<Fleet> {
+        self.size.fleet()
+    }
+
+    /// The fleet, if flights of a vehicle have something in common, so that runs are not independent.
+    pub(super) fn sharing(&self) -> Option<Fleet> {
+        let inertias = self.bodies.iter().map(|body| body.inertia_drawn);
+        self.size.sharing(inertias.chain(self.dispersed.drawn_for()))
     }
 
     /// Seed of all random streams.
@@ -144,7 +199,7 @@ impl SimulatorScenario {
 
     /// Names of the models, in order.
     pub fn model_names(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.file.models.iter().map(|model| model.name.as_str())
+        self.models.iter().map(|model| model.name.as_str())
     }
 
     /// The resolved scenario as a TOML file, every default spelled out: enough to run it again.
@@ -181,8 +236,28 @@ impl SimulatorScenario {
         &self.outputs
     }
 
-    pub(super) fn models(&self) -> &[SimulatedModelFile] {
-        &self.file.models
+    pub(super) fn size(&self) -> Size {
+        self.size
+    }
+
+    /// The law of a body under a model, both by their places.
+    pub(super) fn law(
+        &self,
+        model: usize,
+        body: usize,
+    ) -> Result<Arc<dyn InertiaLaw>, ScenarioError> {
+        let (spec, body_of) = (&self.models[model], &self.bodies[body]);
+        let law = model::law(spec, body, &body_of.uncertain, &self.models, &|_| None);
+        let (law, _) = law.map_err(|error| {
+            let key = match spec.law {
+                Law::Principal(_) => ".axes",
+                Law::Matched { .. } => ".matched_to",
+                Law::Given { .. } | Law::Outside(_) => "",
+            };
+            let problem = format!("the body {}: {error}", body_of.name);
+            ScenarioError::field(place(model) + key, problem)
+        })?;
+        Ok(law)
     }
 
     pub(super) fn bodies(&self) -> &[SimulatedBody] {
@@ -195,6 +270,16 @@ impl SimulatorScenario {
 
     pub(super) fn dispersed(&self) -> &Joint<usize> {
         &self.dispersed
+    }
+
+    /// The columns of vehicle and flight, if there are vehicles.
+    pub(super) fn own(&self) -> Vec<Column> {
+        self.fleet().map_or_else(Vec::new, |_| Fleet::columns().into())
+    }
+
+    /// All columns of the run table after model, run and status.
+    pub(super) fn columns(&self) -> impl Iterator<Item = Column> {
+        self.own().into_iter().chain(self.inputs()).chain(self.outputs.iter().cloned())
     }
 
     /// The columns of what is drawn and sent, in their order.
@@ -221,29 +306,22 @@ fn program(file: &File) -> Result<Program, ScenarioError> {
     Ok(if simulation.per_run { program.per_run() } else { program })
 }
 
-fn check_models(file: &mut File) -> Result<(), ScenarioError> {
-    if file.bodies.is_empty() && file.models.is_empty() {
-        // Nothing distinguishes models without bodies.
-        let law = ModelKind::Principal;
-        file.models.push(SimulatedModelFile {
-            name: "all".to_owned(),
-            law,
-            axes: None,
-            matched_to: None,
-        });
-        return Ok(());
-    }
+/// The models of a file; one is filled in where there is none.
+fn models(file: &mut File, bodies: &[SimulatedBody]) -> Result<Vec<ModelSpec>, ScenarioError> {
     if file.models.is_empty() {
-        return Err(ScenarioError::field("models", "none: there must be at least one"));
+        // Nothing distinguishes models without bodies.
+        let (name, axes) =
+            if bodies.is_empty() { ("all", None) } else { ("principal", Some(Axes::WholeSphere)) };
+        let (name, law) = (name.to_owned(), ModelLaw::Kind(ModelKind::Principal));
+        file.models.push(ModelFile { name, law, axes, ..ModelFile::default() });
     }
-    for (i, model) in file.models.iter().enumerate() {
-        let field = format!("models[{}]", i + 1);
-        check_name(&format!("{field}.name"), &model.name)?;
-        if file.models[..i].iter().any(|other| other.name.eq_ignore_ascii_case(&model.name)) {
-            let problem =
-                format!("two are named {:?}: names must differ in more than case", model.name);
-            return Err(ScenarioError::field(format!("{field}.name"), problem));
-        }
+    if let Some(i) = file.models.iter().position(|model| model.law == ModelLaw::Outside) {
+        let problem = "\"outside\": a program gives such laws to separations only";
+        return Err(ScenarioError::field(place(i) + ".law", problem));
     }
-    Ok(())
+    let name = |body: &SimulatedBody| BodyName(body.name.clone());
+    let names: Vec<BodyName> = bodies.iter().map(name).collect();
+    file.models.iter_mut().for_each(|model| model.fill(&names));
+    let uncertain = bodies.iter().map(|body| &body.uncertain);
+    check_models(&file.models, &names.into_iter().zip(uncertain).collect::<Vec<_>>())
 }

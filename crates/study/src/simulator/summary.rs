@@ -16,7 +16,7 @@ use std::{
 
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
 use crate::{
-    Notice, Options, ScenarioError, Study, StudyError,
+    Fleet, Notice, Options, ScenarioError, Study, StudyError,
     head::Head,
     report,
     study::carry_out,
@@ -69,7 +69,7 @@ impl SimulatorScenario {
         place: usize,
     ) -> Result<ExternalSimulation<'a, SimulatorDraws<'a>>, ScenarioError> {
         let draws = SimulatorDraws::new(self, place)?;
-        let name = &self.models()[place].name;
+        let name = self.model_names().nth(place).unwrap_or_default();
         Ok(ExternalSimulation::new(simulator, self.seed(), name, draws, self.outputs().to_vec()))
     }
 }
@@ -78,7 +78,7 @@ impl Subject for SimulatorScenario {
     /// Few, for a run of a simulator may take seconds.
     const BLOCK_RUNS: u64 = 1 << 8;
     /// Machines that do a campaign together may have the simulator in different places.
-    const IMMATERIAL: &[&str] = &["runs", "rows", "columns", "simulation.folder"];
+    const IMMATERIAL: &[&str] = &["runs", "vehicles", "rows", "columns", "simulation.folder"];
 
     type Prepared = Simulator;
     type Simulation<'a> = ExternalSimulation<'a, SimulatorDraws<'a>>;
@@ -103,6 +103,14 @@ impl Subject for SimulatorScenario {
 
     fn kept(&self) -> Kept {
         self.kept()
+    }
+
+    fn fleet(&self) -> Option<Fleet> {
+        self.fleet()
+    }
+
+    fn independent_runs(&self) -> Option<u64> {
+        self.sharing().map(Fleet::vehicles)
     }
 
     fn model_names(&self) -> impl Iterator<Item = &str> {
@@ -133,8 +141,7 @@ impl Subject for SimulatorScenario {
         left: u64,
         threads: &ThreadPool,
     ) -> Result<Forecast, StudyError> {
-        let columns = self.inputs().count() + self.outputs().len();
-        Ok(Forecast::untimed(left, columns, threads.current_num_threads()))
+        Ok(Forecast::untimed(left, self.columns().count(), threads.current_num_threads()))
     }
 
     fn simulations<'a>(
@@ -148,6 +155,7 @@ impl Subject for SimulatorScenario {
 
     fn look(&self, model: &str, columns: &[Column]) -> FirstLook {
         FirstLook::new(model, columns, self.runs(), Confidence::default())
+            .in_groups_of(self.sharing().map_or(1, Fleet::flights))
     }
 
     fn judge(
@@ -178,11 +186,9 @@ impl Subject for SimulatorScenario {
 
     fn report(&self, summary: &SimulatorSummary) -> Document {
         let document = summary.overview.document();
-        report::noting_what_is_missing(document, &summary.head).section(report::inputs(
-            &summary.head,
-            &self.kept(),
-            self.to_toml(),
-        ))
+        let document = report::noting_vehicles(document, &summary.head);
+        let inputs = report::inputs(&summary.head, &self.kept(), self.to_toml());
+        report::noting_what_is_missing(document, &summary.head).section(inputs)
     }
 }
 

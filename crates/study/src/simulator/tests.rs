@@ -1,7 +1,10 @@
 //! Campaigns of simulators in scripts: what is drawn, that they go on, that one run is done again.
 
 mod again;
+mod fleets;
+mod models;
 mod refusals;
+mod vehicles;
 
 use gyradius_campaign::{Inputs, Simulation, Table};
 use proptest::prelude::*;
@@ -16,8 +19,8 @@ use std::{
 
 use super::{SimulatorDraws, SimulatorReplay, SimulatorScenario, SimulatorSummary};
 use crate::{
-    AnyScenario, CampaignError, ModelStatus, Options, Scenario, Shard, Status, Study, StudyError,
-    is_begun,
+    AnyScenario, CampaignError, ModelKind, ModelStatus, Options, Scenario, Shard, Status, Study,
+    StudyError, is_begun,
     model::{self, Separations},
     put_together, write_report,
 };
@@ -206,8 +209,17 @@ proptest! {
 #[test]
 fn bodies_draw_what_payload_and_stage_do() {
     let separation = Scenario::peck_2003().unwrap();
+    // Of each kind one with parameters of its own, and one that is matched.
+    let mut text = separation.to_toml();
+    for kind in ModelKind::ALL.into_iter().filter(|kind| *kind != ModelKind::Principal) {
+        let own: String = ["stage", "payload"].map(|body| models::parameters(kind, body)).concat();
+        for (name, fields) in [("own", own.as_str()), ("like", "matched_to = \"proposed\"")] {
+            text +=
+                &format!("\n[[models]]\nname = \"{name}-{kind}\"\nlaw = \"{kind}\"\n{fields}\n");
+        }
+    }
+    let separation = Scenario::from_toml(&text).unwrap();
     let models = model::Model::all(&separation).unwrap();
-    let text = separation.to_toml();
     let table: toml::Table = toml::from_str(&text).unwrap();
     let mut own: toml::Table = toml::from_str(&uniform()).unwrap();
     own["seed"] = table["seed"].clone();
@@ -220,16 +232,10 @@ fn bodies_draw_what_payload_and_stage_do() {
         toml::Value::Table(body)
     };
     own.insert("bodies".to_owned(), vec![body("payload"), body("stage")].into());
-    let principal_or_matched = |model: &&toml::Value| {
-        let model = model.as_table().unwrap();
-        model.contains_key("axes") || model.contains_key("matched_to")
-    };
     let given = table["models"].as_array().unwrap();
-    let kept: Vec<toml::Value> = given.iter().filter(principal_or_matched).cloned().collect();
-    assert!(kept.len() > 1);
     let names: Vec<String> =
-        kept.iter().map(|model| model["name"].as_str().unwrap().to_owned()).collect();
-    own.insert("models".to_owned(), kept.into());
+        given.iter().map(|model| model["name"].as_str().unwrap().to_owned()).collect();
+    own.insert("models".to_owned(), given.clone().into());
     let folder = folder();
     let scenario = scenario(&toml::to_string(&own).unwrap(), folder.path());
     for (place, name) in names.iter().enumerate() {

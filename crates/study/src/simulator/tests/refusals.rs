@@ -26,7 +26,6 @@ fn refusals_name_their_key() {
             HEAD.to_owned() + &quantity("x", &normal.replace("sigma = 1.0", "sigma = -1.0")),
             "quantities[1].law.sigma",
         ),
-        (HEAD.to_owned() + &body.replace("DISPERSION", ""), "models"),
         (with("mass_centre_m = 0.1"), "bodies[1].dispersion.mass_centre_m"),
         (with("inertia_follows_mass = true"), "bodies[1].dispersion.inertia_follows_mass"),
         (with("mass_kg = 1.0\nmass_percent = 1.0"), "bodies[1].dispersion.mass_percent"),
@@ -41,7 +40,8 @@ fn refusals_name_their_key() {
         (uniform() + &correlated().replace("-0.8", "-1.8"), "correlations[1].coefficient"),
         (with("").replace("axes = \"whole-sphere\"", ""), "models[1].axes"),
         (with("").replace("axes = \"whole-sphere\"", "axes = \"mean-half\""), "models[1].axes"),
-        (with("").replace("matched_to = \"proposed\"", ""), "models[2].matched_to"),
+        (with("").replace("matched_to = \"proposed\"", ""), "models[2].hub_deviation_kg_m2"),
+        (HEAD.to_owned() + &(body.clone() + &body).replace("DISPERSION", ""), "bodies[2].name"),
         (
             with("").replace("matched_to = \"proposed\"", "matched_to = \"naive\""),
             "models[2].matched_to",

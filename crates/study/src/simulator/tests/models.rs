@@ -1,0 +1,188 @@
+//! Models of bodies with parameters of their own, and the model that is there if none is given.
+
+use gyradius_dispersion::ModelParameters;
+use proptest::prelude::*;
+use toml::{Table, Value};
+
+use super::{BODY, HEAD, ModelKind, SimulatorScenario, drawn, folder, scenario, uniform};
+use crate::Scenario;
+
+/// A square matrix with so much on its diagonal.
+fn diagonal(size: usize, value: f64) -> String {
+    let row = |i: usize| (0..size).map(move |j| if i == j { value } else { 0.0 });
+    format!("{:?}", (0..size).map(|i| row(i).collect()).collect::<Vec<Vec<f64>>>())
+}
+
+fn value(key: &str) -> String {
+    match key {
+        "deviation_kg_m2" => diagonal(3, 0.1),
+        "covariance_kg2_m4" => diagonal(6, 0.01),
+        "log_cholesky_covariance" => diagonal(6, 1e-4),
+        "diagonal_bounds_kg_m2" => "[-0.5, 0.5]".to_owned(),
+        _ => "0.05".to_owned(),
+    }
+}
+
+/// All parameters that a kind needs, of a body.
+pub(super) fn parameters(kind: ModelKind, body: &str) -> String {
+    kind.needs().iter().map(|key| format!("{body}_{key} = {}\n", value(key))).collect()
+}
+
+fn model(kind: ModelKind, fields: &str) -> String {
+    format!("\n[[models]]\nname = \"own\"\nlaw = \"{kind}\"\n{fields}\n")
+}
+
+fn body(name: &str) -> String {
+    format!("\n[[bodies]]\nname = \"{name}\"{}", BODY.replace("DISPERSION", ""))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Any bodies under any kind of model, any subset of whose parameters is given for one of them: taken if it is what the
+    /// kind needs and takes, and else refused at a key of this body. What is resolved says all that the kind takes, for
+    /// every body, and a body draws the same whichever others there are.
+    #[test]
+    fn bodies_have_parameters_of_their_own(
+        names in prop::sample::subsequence(vec!["a", "b", "a_b", "delta", "stage", "x9_"], 1..5),
+        kind in 1..ModelKind::ALL.len(),
+        subset in prop::collection::vec(any::<bool>(), ModelParameters::KEYS.len()),
+        as_needed in any::<bool>(),
+        at in any::<prop::sample::Index>(),
+    ) {
+        let kind = ModelKind::ALL[kind];
+        let (needs, defaults) = (kind.needs(), kind.defaults());
+        let takes = |key: &str| needs.contains(&key) || defaults.given().any(|k| k == key);
+        let chosen: Vec<&str> = ModelParameters::KEYS
+            .iter()
+            .zip(&subset)
+            .filter(|(key, chosen)| if as_needed { needs.contains(key) } else { **chosen })
+            .map(|(key, _)| *key)
+            .collect();
+        let odd = names[at.index(names.len())];
+        let lines = |name: &&str| {
+            if *name != odd {
+                return parameters(kind, name);
+            }
+            chosen.iter().map(|key| format!("{name}_{key} = {}\n", value(key))).collect()
+        };
+        let bodies = |names: &[&str]| HEAD.to_owned() + &names.iter().map(|n| body(n)).collect::<String>();
+        // In another order than the bodies.
+        let fields: String = names.iter().rev().map(lines).collect();
+        let text = bodies(&names) + &model(kind, &fields);
+        let folder = folder();
+        let fits = needs.iter().all(|k| chosen.contains(k)) && chosen.iter().all(|k| takes(k));
+        match SimulatorScenario::from_toml(&text, folder.path()) {
+            Ok(_) => {
+                prop_assert!(fits, "{}", text);
+                let whole = scenario(&text, folder.path());
+                let resolved = whole.to_toml();
+                let (_, last) = resolved.split_once("[[models]]").unwrap();
+                for name in &names {
+                    for key in ModelParameters::KEYS {
+                        let there = last.lines().any(|l| l.starts_with(&format!("{name}_{key} = ")));
+                        prop_assert_eq!(there, takes(key), "{}_{} in {}", name, key, last);
+                    }
+                }
+                let alone = bodies(&[odd]) + &model(kind, &lines(&odd));
+                let alone = drawn(&scenario(&alone, folder.path()), 0);
+                let all = drawn(&whole, 0);
+                for column in &alone {
+                    prop_assert!(all.contains(column), "{}", column.0);
+                }
+                prop_assert!(alone.iter().any(|(_, values)| values[0] != values[1]));
+            }
+            Err(error) => {
+                let error = error.to_string();
+                prop_assert!(!fits, "{}\n{}", error, text);
+                let named = ModelParameters::KEYS.iter().any(|key| {
+                    let wrong = chosen.contains(key) != needs.contains(key);
+                    wrong && error.starts_with(&format!("models[1].{odd}_{key}: "))
+                });
+                prop_assert!(named, "{}", error);
+            }
+        }
+    }
+}
+
+/// Of payload and stage, whatever is wrong with the parameters of a model is told as separations tell it.
+#[test]
+fn messages_are_those_of_separations() {
+    let both = |key: &str, value: &str| format!("payload_{key} = {value}\nstage_{key} = {value}");
+    let separation = Scenario::peck_2003().unwrap().to_toml();
+    let (head, _) = separation.split_once("[[models]]").unwrap();
+    let table: Table = toml::from_str(&separation).unwrap();
+    let own = |name: &str| {
+        let given = table[name].as_table().unwrap();
+        let keys = ["mass_kg", "inertia_kg_m2", "dispersion"];
+        let mut body: Table =
+            keys.iter().map(|key| ((*key).to_owned(), given[*key].clone())).collect();
+        body.insert("name".to_owned(), name.into());
+        Value::Table(body)
+    };
+    let mut simulator: Table = toml::from_str(&uniform()).unwrap();
+    simulator.insert("bodies".to_owned(), vec![own("payload"), own("stage")].into());
+    let folder = folder();
+    let principal = "name = \"p\"\nlaw = \"principal\"\naxes = \"whole-sphere\"";
+    let cases = [
+        ("wishart", both("delta", "1.5")),
+        ("wishart", both("delta", "nan")),
+        ("wishart", both("delta", "[1.0]")),
+        ("wishart", "payload_delta = 0.1".to_owned()),
+        ("wishart", "stage_delta = 0.1".to_owned()),
+        ("wishart", String::new()),
+        ("wishart", both("deviation_kg_m2", &diagonal(3, 1.0))),
+        ("wishart", both("delta", "0.1") + "\nmatched_to = \"p\""),
+        ("wishart", "matched_to = \"m\"".to_owned()),
+        ("wishart", "axes = \"mean-half\"".to_owned()),
+        ("correlated-entries", both("covariance_kg2_m4", &diagonal(6, -1.0))),
+        ("realizable-entrywise", both("deviation_kg_m2", &diagonal(3, -1.0))),
+        ("log-cholesky", both("log_cholesky_covariance", &diagonal(6, 100.0))),
+        ("basilisk", both("diagonal_deviation_kg_m2", "1.0")),
+        ("principal", "axes = \"mean-half\"\nstage_delta = 0.1".to_owned()),
+        ("principal", "axes = \"mean-half\"\nmatched_to = \"p\"".to_owned()),
+        ("principal", String::new()),
+        ("wishart", "[models.outside]\npayload = \"x\"".to_owned()),
+    ];
+    for (law, fields) in cases {
+        let models = format!(
+            "[[models]]\n{principal}\n[[models]]\nname = \"m\"\nlaw = \"{law}\"\n{fields}\n"
+        );
+        let of_separation = Scenario::from_toml(&format!("{head}{models}")).unwrap_err();
+        let own = toml::to_string(&simulator).unwrap() + "\n" + &models;
+        let refused = SimulatorScenario::from_toml(&own, folder.path()).unwrap_err().to_string();
+        // Lines are others.
+        let without_line = |message: String| message.split(" (line ").next().unwrap().to_owned();
+        assert_eq!(without_line(refused), without_line(of_separation.to_string()), "{models}");
+    }
+    let with = |models: &str| {
+        let text = HEAD.to_owned() + &body("hub") + models;
+        SimulatorScenario::from_toml(&text, folder.path()).unwrap_err().to_string()
+    };
+    let nobody = with(&model(ModelKind::Wishart, "hubb_delta = 0.1"));
+    assert_eq!(nobody, "models[1].hubb_delta: there is no body \"hubb\": the bodies are hub");
+    let unknown = with(&model(ModelKind::Wishart, "hub_gamma = 0.1"));
+    assert!(unknown.starts_with("models[1].hub_gamma: unknown field"), "{unknown}");
+    assert!(unknown.contains("`<body>_delta`") && !unknown.contains("payload"), "{unknown}");
+    let outside = with("\n[[models]]\nname = \"own\"\nlaw = \"outside\"\n");
+    assert!(outside.starts_with("models[1].law: "), "{outside}");
+}
+
+/// Bodies without models are drawn by the principal law about the whole sphere, and what is resolved says so.
+#[test]
+fn bodies_have_a_model_if_none_is_given() {
+    let folder = folder();
+    let gaussian =
+        body("b").replace("axes = \"fixed\"", &format!("axes_covariance = {}", diagonal(4, 1e-3)));
+    let uniform = body("c").replace("fixed", "uniform");
+    for bodies in [body("a"), gaussian.clone(), uniform.clone(), body("a") + &gaussian + &uniform] {
+        let text = HEAD.to_owned() + &bodies;
+        let bare = scenario(&text, folder.path());
+        let said =
+            "\n[[models]]\nname = \"principal\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n";
+        assert!(bare.to_toml().ends_with(said), "{}", bare.to_toml());
+        let told = scenario(&(text + said), folder.path());
+        assert_eq!(bare.to_toml(), told.to_toml());
+        assert_eq!(drawn(&bare, 0), drawn(&told, 0));
+    }
+}
