@@ -13,19 +13,21 @@ fn diagonal(size: usize, value: f64) -> String {
     format!("{:?}", (0..size).map(|i| row(i).collect()).collect::<Vec<Vec<f64>>>())
 }
 
-fn value(key: &str) -> String {
+/// A parameter of a body, which differs between bodies.
+fn value(key: &str, body: &str) -> String {
+    let factor = 1.0 + f64::from(body.bytes().map(u32::from).sum::<u32>() % 7) / 7.0;
     match key {
-        "deviation_kg_m2" => diagonal(3, 0.1),
-        "covariance_kg2_m4" => diagonal(6, 0.01),
-        "log_cholesky_covariance" => diagonal(6, 1e-4),
-        "diagonal_bounds_kg_m2" => "[-0.5, 0.5]".to_owned(),
-        _ => "0.05".to_owned(),
+        "deviation_kg_m2" => diagonal(3, 0.1 * factor),
+        "covariance_kg2_m4" => diagonal(6, 0.01 * factor),
+        "log_cholesky_covariance" => diagonal(6, 1e-4 * factor),
+        "diagonal_bounds_kg_m2" => format!("[-0.5, {}]", 0.5 * factor),
+        _ => format!("{}", 0.05 * factor),
     }
 }
 
 /// All parameters that a kind needs, of a body.
 pub(super) fn parameters(kind: ModelKind, body: &str) -> String {
-    kind.needs().iter().map(|key| format!("{body}_{key} = {}\n", value(key))).collect()
+    kind.needs().iter().map(|key| format!("{body}_{key} = {}\n", value(key, body))).collect()
 }
 
 fn model(kind: ModelKind, fields: &str) -> String {
@@ -64,7 +66,7 @@ proptest! {
             if *name != odd {
                 return parameters(kind, name);
             }
-            chosen.iter().map(|key| format!("{name}_{key} = {}\n", value(key))).collect()
+            chosen.iter().map(|key| format!("{name}_{key} = {}\n", value(key, name))).collect()
         };
         let bodies = |names: &[&str]| HEAD.to_owned() + &names.iter().map(|n| body(n)).collect::<String>();
         // In another order than the bodies.
