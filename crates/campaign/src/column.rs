@@ -117,6 +117,15 @@ impl Column {
         self.kind
     }
 
+    /// Whether a requirement can be about it: it holds numbers, whole numbers or flags.
+    #[must_use]
+    pub fn is_measured(&self) -> bool {
+        match self.kind {
+            Kind::Number | Kind::Integer | Kind::Flag => true,
+            Kind::Text => false,
+        }
+    }
+
     /// Its unit, of numbers that have one.
     #[must_use]
     pub fn unit(&self) -> Option<&str> {

@@ -64,11 +64,13 @@ mod external;
 mod failure;
 mod folder;
 mod forecast;
+mod foreign;
 mod format;
 mod hash;
 mod identity;
 mod kept;
 mod memory;
+mod requirement;
 mod room;
 mod runs;
 mod sample;
@@ -93,11 +95,17 @@ pub use folder::{
     folder_of, missing_runs, restore, restore_all, told,
 };
 pub use forecast::{Forecast, rough_size, rough_time};
+pub use foreign::{Columns, ForeignError, ForeignTable};
 pub use format::{Extent, FormatError, TableFormat, TableWriter};
+pub use gyradius_statistics::Verdict;
 pub use hash::sha256;
 pub use identity::{Difference, Identity};
 pub use kept::{Kept, KeptError, Rows};
 pub use memory::memory_left;
+pub use requirement::{
+    Bound, FailedRuns, Judgement, JudgementError, Judging, Measured, Requirement, RequirementError,
+    RunBeyond, share_in_percent,
+};
 pub use room::disk_left;
 pub use runs::{Runs, RunsError};
 pub use sample::{SampleSummary, bounded};

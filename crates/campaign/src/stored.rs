@@ -310,7 +310,7 @@ fn open(path: &Path) -> Result<SerializedFileReader<File>, ParquetError> {
 }
 
 /// All values of a column of so many rows.
-fn read<T: DataType>(
+pub(crate) fn read<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     rows: usize,
 ) -> Result<Vec<Option<T::T>>, ParquetError> {

@@ -259,6 +259,23 @@ impl Table {
         counted.into_iter().flatten().map(of_run).collect()
     }
 
+    /// What runs have in a column, by their places: numbers, whole numbers, and flags as 1 and 0; nothing in a column of texts, and
+    /// nothing of runs that failed.
+    pub(crate) fn measured(&self, column: &str) -> impl Fn(usize) -> Option<f64> {
+        let values = self.column(column);
+        move |place| {
+            if self.failures.contains_key(&place) {
+                return None;
+            }
+            match values? {
+                Values::Numbers(numbers) => numbers.get(place),
+                Values::Integers(integers) => integers.get(place)?.map(|whole| whole as f64),
+                Values::Flags(flags) => flags.get(place)?.map(|flag| f64::from(u8::from(flag))),
+                Values::Texts(_) => None,
+            }
+        }
+    }
+
     fn column(&self, column: &str) -> Option<&Values> {
         let place = self.of_simulation().iter().position(|other| other.name() == column)?;
         self.values.get(place)

@@ -6,3 +6,4 @@ mod campaign;
 #[cfg(unix)]
 mod external;
 mod formats;
+mod requirement;

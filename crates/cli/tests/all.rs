@@ -15,6 +15,7 @@ mod killed;
 #[cfg(unix)]
 mod output;
 mod report;
+mod requirements;
 mod scratch;
 #[cfg(unix)]
 mod shards;

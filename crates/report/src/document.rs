@@ -76,6 +76,13 @@ impl Document {
         self
     }
 
+    /// With sections before all others, if there are any.
+    #[must_use]
+    pub fn led_by(mut self, sections: impl IntoIterator<Item = Section>) -> Self {
+        self.sections.splice(0..0, sections);
+        self
+    }
+
     /// The files that its forms are written to, under a name.
     #[must_use]
     pub fn pages(name: &str) -> [String; 2] {

@@ -243,7 +243,7 @@ fn failures(model: &Model) -> Option<Text> {
 /// deviation and 95th percentile are told where the pointer rests on them.
 #[must_use]
 pub fn spread(sample: Option<&SampleSummary>) -> PageCell {
-    let Some(s) = sample else { return PageCell::from("–") };
+    let Some(s) = sample.filter(|s| s.n > 0) else { return PageCell::from("–") };
     let line = Text::from(optional(s.mean, 4)).tip(interval(s.mean_interval, 4)).plain(" ± ");
     let line = line.plain(optional(s.deviation, 3)).tip(interval(s.deviation_interval, 4));
     let range = format!("{} … {}", optional(s.p05, 4), optional(s.p95, 4));

@@ -70,6 +70,31 @@ pub enum StatisticsError {
         /// The trials given.
         trials: u64,
     },
+    /// The share is none that a requirement or an expectation can state.
+    #[error("the share is {}; it must lie between 1e-9 and 1 - 1e-9", plain(*value))]
+    Share {
+        /// The share given.
+        value: f64,
+    },
+    /// The confidence is too low to decide with: a requirement could be met and not met at once.
+    #[error(
+        "a requirement is to be decided with confidence {}; it must be at least 0.5",
+        plain(*value)
+    )]
+    DecidingConfidence {
+        /// The level given.
+        value: f64,
+    },
+    /// The counts of failures and of runs do not go together.
+    #[error(
+        "{failures} failures in {runs} runs; runs must be at most {MAX_TRIALS}, failures no more"
+    )]
+    Failures {
+        /// The failures given.
+        failures: u64,
+        /// The runs given.
+        runs: u64,
+    },
     /// The number of bins is out of range.
     #[error("{bins} bins; there must be 1 to {MAX_BINS}")]
     Bins {
@@ -150,6 +175,33 @@ pub enum StatisticsError {
 fn plain(value: f64) -> String {
     let text = format!("{value:?}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// The number, if it is between 0 and 1.
+pub(crate) fn probability(value: f64) -> Result<f64, StatisticsError> {
+    if (0.0..=1.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err(StatisticsError::Probability { value })
+    }
+}
+
+/// The share, if it is one that can be stated; beyond these, floats are too coarse near one.
+pub(crate) fn share(value: f64) -> Result<f64, StatisticsError> {
+    if (1e-9..=1.0 - 1e-9).contains(&value) {
+        Ok(value)
+    } else {
+        Err(StatisticsError::Share { value })
+    }
+}
+
+/// Refuses more failures than runs, and more runs than are tested.
+pub(crate) fn failures(failures: u64, runs: u64) -> Result<(), StatisticsError> {
+    if failures <= runs && runs <= MAX_TRIALS {
+        Ok(())
+    } else {
+        Err(StatisticsError::Failures { failures, runs })
+    }
 }
 
 /// Refuses a sample with fewer than `required` values or with a value that is not finite.

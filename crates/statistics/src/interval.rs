@@ -117,6 +117,11 @@ impl Interval {
         self.upper
     }
 
+    /// The upper bound less the lower.
+    pub fn width(&self) -> f64 {
+        self.upper - self.lower
+    }
+
     /// The nominal confidence level.
     pub fn confidence(&self) -> Confidence {
         self.confidence

@@ -58,6 +58,15 @@ pub(crate) fn beta_upper(tail: f64, a: f64, b: f64) -> f64 {
     bisect(0.0, 1.0, |x| beta_cdf(b, a, 1.0 - x, x) > tail)
 }
 
+/// The probability that `n` independent trials, each a success with probability `p = 1 − q`, give `k` successes or
+/// more: `I_p(k, n−k+1)`.
+pub(crate) fn at_least(k: u64, n: u64, p: f64, q: f64) -> f64 {
+    if k == 0 {
+        return 1.0;
+    }
+    if k > n { 0.0 } else { beta_cdf(k as f64, (n - k + 1) as f64, p, q) }
+}
+
 /// The regularised incomplete beta function `I_x(a, b)`, with `y = 1 − x` given apart because it
 /// cannot be recovered from an `x` close to 1.
 pub(crate) fn beta_cdf(a: f64, b: f64, x: f64, y: f64) -> f64 {
@@ -85,12 +94,19 @@ fn beta_fraction(a: f64, b: f64, x: f64, y: f64) -> f64 {
             break;
         }
     }
-    beta_front(a, b, x, y) / fraction
+    let (root, log) = beta_front(a, b, x, y);
+    root * log.exp() / fraction
 }
 
-/// `xᵃyᵇ / B(a, b)`, after Loader (2000): the large terms of `ln B` are cancelled on paper, where
-/// a difference of three `ln_gamma` would lose `log₁₀(a + b)` digits.
-fn beta_front(a: f64, b: f64, x: f64, y: f64) -> f64 {
+/// The logarithm of `xᵃyᵇ / B(a, b)`.
+pub(crate) fn ln_beta_front(a: f64, b: f64, x: f64, y: f64) -> f64 {
+    let (root, log) = beta_front(a, b, x, y);
+    libm::log(root) + log
+}
+
+/// `xᵃyᵇ / B(a, b)` as a factor and the logarithm of another, after Loader (2000): the large terms of `ln B`
+/// are cancelled on paper, where a difference of three `ln_gamma` would lose `log₁₀(a + b)` digits.
+fn beta_front(a: f64, b: f64, x: f64, y: f64) -> (f64, f64) {
     let log_ratio = |excess: f64, ratio: f64| {
         if excess > -0.5 { excess.ln_1p() } else { ratio.ln() }
     };
@@ -101,7 +117,7 @@ fn beta_front(a: f64, b: f64, x: f64, y: f64) -> f64 {
         + stirling_remainder(sum)
         - stirling_remainder(a)
         - stirling_remainder(b);
-    (a / sum * b / TAU).sqrt() * log.exp()
+    ((a / sum * b / TAU).sqrt(), log)
 }
 
 /// `ln Γ(a) − ((a − ½) ln a − a + ½ ln 2π)`.
@@ -127,6 +143,20 @@ pub(crate) fn bisect(low: f64, high: f64, below: impl Fn(f64) -> bool) -> f64 {
         }
     }
     f64::from_bits(high)
+}
+
+/// The least of `low..=high` at which `reached` is true, or `high + 1`, for what stays true once it is.
+pub(crate) fn first(low: u64, high: u64, reached: impl Fn(u64) -> bool) -> u64 {
+    let (mut low, mut high) = (low, high + 1);
+    while low < high {
+        let middle = u64::midpoint(low, high);
+        if reached(middle) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    low
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 #![doc = include_str!("../README.md")]
 
+mod acceptance;
 mod centred;
+mod confidence_sequence;
 mod deviation;
 mod edges;
 mod error;
@@ -11,14 +13,20 @@ mod histogram;
 mod interval;
 mod law;
 mod mean;
+mod mixture;
 mod moments;
 mod proportion;
 mod quantile;
 mod ratio;
 mod selection;
+mod sequential;
 mod survey;
 pub mod tail;
+mod tolerance;
+mod verdict;
 
+pub use acceptance::Acceptance;
+pub use confidence_sequence::ConfidenceSequence;
 pub use deviation::Deviation;
 pub use edges::BinEdges;
 pub use error::StatisticsError;
@@ -29,4 +37,7 @@ pub use interval::{Confidence, Interval};
 pub use moments::Moments;
 pub use proportion::Proportion;
 pub use quantile::SortedSample;
+pub use sequential::SequentialAcceptance;
 pub use survey::{Pass, Survey};
+pub use tolerance::{Tolerance, ToleranceSide};
+pub use verdict::Verdict;

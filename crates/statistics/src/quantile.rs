@@ -1,6 +1,6 @@
 //! Order statistics: quantiles, their intervals and the empirical distribution function.
 
-use crate::error::validate;
+use crate::error::{probability, validate};
 use crate::{Confidence, Interval, StatisticsError, law};
 
 /// A sample of finite values in increasing order; at least one.
@@ -117,10 +117,6 @@ impl SortedSample {
     }
 }
 
-fn probability(p: f64) -> Result<(), StatisticsError> {
-    if (0.0..=1.0).contains(&p) { Ok(()) } else { Err(StatisticsError::Probability { value: p }) }
-}
-
 /// Where a quantile of type 7 of `n` values is: the rank below it, from 0, and its place from there to the next.
 pub(crate) fn type_7_place(n: u64, p: f64) -> (u64, f64) {
     let position = n.saturating_sub(1) as f64 * p;
@@ -131,26 +127,17 @@ pub(crate) fn type_7_place(n: u64, p: f64) -> (u64, f64) {
 /// The ranks, from 0, of the values that bound a quantile of the law that `n` values were drawn from; none where
 /// no value is a bound.
 pub(crate) fn interval_ranks(n: u64, p: f64, confidence: Confidence) -> (Option<u64>, Option<u64>) {
-    let tail = confidence.tail();
-    let rest = |k: u64| (n + 1 - k) as f64;
-    // Ranks from 1; P(B ≥ k) = I_p(k, n−k+1). The search is over ranks 1 to n.
-    let lower = first(n, |k| law::beta_cdf(rest(k), k as f64, 1.0 - p, p) > tail) - 1;
-    let upper = first(n, |k| law::beta_cdf(k as f64, rest(k), p, 1.0 - p) <= tail);
-    (lower.checked_sub(1), (upper <= n).then(|| upper - 1))
+    let (tail, rest) = (confidence.tail(), 1.0 - p);
+    // Seen from above, what bounds it from below is what bounds it from above.
+    let lower = upper_rank(n, rest, p, tail).map(|rank| n - rank);
+    (lower, upper_rank(n, p, rest, tail).map(|rank| rank - 1))
 }
 
-/// The least of `1..=n` at which `reached` is true, or `n + 1`.
-fn first(n: u64, reached: impl Fn(u64) -> bool) -> u64 {
-    let (mut low, mut high) = (1, n + 1);
-    while low < high {
-        let middle = u64::midpoint(low, high);
-        if reached(middle) {
-            high = middle;
-        } else {
-            low = middle + 1;
-        }
-    }
-    low
+/// Of `n` values the rank, from 1, of the least that bounds the quantile `p = 1 − q` from above but for a
+/// probability of `tail`; none if not even the largest does.
+fn upper_rank(n: u64, p: f64, q: f64, tail: f64) -> Option<u64> {
+    let rank = law::first(1, n, |k| law::at_least(k, n, p, q) <= tail);
+    (rank <= n).then_some(rank)
 }
 
 /// From `a` at 0 to `b` at 1, never outside, for any finite `a ≤ b`.

@@ -206,6 +206,12 @@ impl Survey {
 
     /// Takes up what was gathered from all values.
     pub fn advance(&mut self, pass: Pass) {
+        self.advance_selecting(pass, []);
+    }
+
+    /// The same, and lets what is gathered next find the order statistics of these ranks too, from 0. Ranks count after the first pass
+    /// alone, by when the number of values is known.
+    pub fn advance_selecting(&mut self, pass: Pass, ranks: impl IntoIterator<Item = u64>) {
         if let (Some(groups), Some((_, first))) = (&mut self.groups, pass.first) {
             groups.first.advance(*first);
         }
@@ -222,7 +228,7 @@ impl Survey {
                         let (lower, upper) = interval_ranks(n, *p, *confidence);
                         [lower, upper].into_iter().flatten()
                     });
-                    places.chain(bounds).chain(ends).collect()
+                    places.chain(bounds).chain(ends).chain(ranks).collect()
                 }));
             }
             (
@@ -300,6 +306,13 @@ impl Survey {
     #[must_use]
     pub fn sampled(&self) -> u64 {
         self.known.as_ref().map_or(0, |known| known.sampled)
+    }
+
+    /// The value of a rank, from 0 at the smallest, if it was [selected](Self::advance_selecting) or is that of a quantile; all of
+    /// them if all values are the same.
+    #[must_use]
+    pub fn order_statistic(&self, rank: u64) -> Option<f64> {
+        self.at(rank)
     }
 
     /// The values of every so manieth run are kept.

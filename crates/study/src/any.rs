@@ -10,7 +10,7 @@ use std::{
 use crate::{
     Fleet, Notice, Options, ResultsError, Scenario, ScenarioError, SimulatorScenario, Status,
     Study, StudyError,
-    head::{Head, Missing},
+    head::{Head, Judged, Missing},
     results,
     scenario::{parse_toml, read_file, scenario_file},
     shards,
@@ -307,6 +307,12 @@ impl Outcome {
         self.models.iter().map(|model| (model.model.as_str(), model.failed, model.runs))
     }
 
+    /// What the runs say of the requirements, model by model.
+    #[must_use]
+    pub fn requirements(&self) -> &[Judged] {
+        self.head.requirements()
+    }
+
     /// The runs that are not done; none of a complete study.
     #[must_use]
     pub fn missing(&self) -> &[Missing] {
@@ -320,7 +326,12 @@ impl fmt::Display for Outcome {
         let (head, report) = (&self.head, self.folder.join("report.html"));
         let (name, runs, seed) = (head.scenario(), head.runs_per_model(), head.seed());
         let vehicles = head.fleet().map_or_else(String::new, |fleet| format!("{fleet}, "));
-        writeln!(f, "{name}: {vehicles}{runs} runs a model, seed {seed}\n\n{}", self.table)?;
+        writeln!(f, "{name}: {vehicles}{runs} runs a model, seed {seed}\n")?;
+        for judged in head.requirements() {
+            let requirement = judged.judgement().requirement().name();
+            writeln!(f, "requirement {requirement}, {}\n{}", judged.model(), judged.judgement())?;
+        }
+        writeln!(f, "{}", self.table)?;
         head.missing().iter().try_for_each(|runs| writeln!(f, "missing: {runs}"))?;
         writeln!(f, "report: {}", report.display())
     }

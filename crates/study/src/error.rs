@@ -1,6 +1,6 @@
 //! Why a study could not be done.
 
-use gyradius_campaign::{CampaignError, FolderError, Kept, RunsError, rough_size};
+use gyradius_campaign::{CampaignError, FolderError, JudgementError, Kept, RunsError, rough_size};
 use gyradius_statistics::StatisticsError;
 use parquet::errors::ParquetError;
 use std::path::PathBuf;
@@ -82,6 +82,9 @@ pub enum StudyError {
     /// The runs cannot be summarised.
     #[error("cannot summarise the runs: {0}")]
     Statistics(#[from] StatisticsError),
+    /// The runs cannot be judged.
+    #[error("cannot judge the requirements: {0}")]
+    Judgement(#[from] JudgementError),
     /// The summary cannot be put into JSON.
     #[error("cannot write the summary: {0}")]
     Json(#[from] serde_json::Error),

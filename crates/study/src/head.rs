@@ -1,6 +1,6 @@
 //! What a summary says first: of which scenario it is, by which version, of how many runs from which seed.
 
-use gyradius_campaign::ColumnSummary;
+use gyradius_campaign::{ColumnSummary, Judgement};
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt, ops::Range};
 
@@ -28,6 +28,9 @@ pub struct Head {
     /// How many runs were done again because they had failed.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub(crate) done_again: u64,
+    /// What the runs say of the requirements, model by model.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) requirements: Vec<Judged>,
     /// Of every interval.
     pub(crate) confidence: f64,
     /// Of the run tables.
@@ -64,10 +67,38 @@ impl Head {
         self.independent_runs_per_model.unwrap_or(self.runs_per_model)
     }
 
+    /// What the runs say of the requirements, model by model.
+    #[must_use]
+    pub fn requirements(&self) -> &[Judged] {
+        &self.requirements
+    }
+
     /// The runs that are not done; none of a complete study.
     #[must_use]
     pub fn missing(&self) -> &[Missing] {
         &self.missing
+    }
+}
+
+/// What the runs of a model say of a requirement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Judged {
+    pub(crate) model: String,
+    #[serde(flatten)]
+    pub(crate) judgement: Judgement,
+}
+
+impl Judged {
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// What its runs say.
+    #[must_use]
+    pub fn judgement(&self) -> &Judgement {
+        &self.judgement
     }
 }
 

@@ -21,6 +21,7 @@ mod claims;
 mod column;
 mod compare;
 mod csv;
+mod decisions;
 mod draw;
 mod drawn;
 mod error;
@@ -60,12 +61,14 @@ pub use failure::Failure;
 pub use fleet::Fleet;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_campaign::{
-    Again, CampaignError, Cell, Column, Forecast, FormatError, Kept, KeptError, Progress, Row,
-    Rows, Runs, RunsError, Shard, ShardError, Table, TableFormat, rough_time,
+    Again, Bound, CampaignError, Cell, Column, FailedRuns, Forecast, ForeignError, ForeignTable,
+    FormatError, Judgement, JudgementError, Kept, KeptError, Progress, Requirement,
+    RequirementError, Row, Rows, Runs, RunsError, Shard, ShardError, Table, TableFormat, Verdict,
+    rough_time,
 };
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};
-pub use head::{Head, Missing};
+pub use head::{Head, Judged, Missing};
 pub use quantity::Quantity;
 pub use replay::{Replay, ReplayError, Which};
 pub use results::{Results, ResultsError};

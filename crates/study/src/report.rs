@@ -13,7 +13,7 @@ use crate::{
     body::{Body, Entry},
     claim::Verdict,
     claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED},
-    figures_of_study,
+    decisions, figures_of_study,
     head::Head,
     quantity::Quantity,
     scenario::{Comparison, Each, Scenario},
@@ -51,6 +51,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     let title = format!("gyradius study: {}", summary.head.scenario);
     let document = Document::new(title, "Separation under inertia uncertainty", lead);
     noting_what_is_missing(document, &summary.head)
+        .sections(decisions::sections(&summary.head))
         .section(results(summary))
         .section(parting(scenario, summary))
         .section(claims(summary))

@@ -10,7 +10,7 @@ use std::{ops::Range, path::Path};
 use crate::{
     Notice, Options, StudyError,
     head::Missing,
-    study::{check_kept, contents, count, foretell, identity, plan},
+    study::{check_columns, contents, count, foretell, identity, plan},
     subject::Subject,
 };
 
@@ -56,7 +56,7 @@ pub(crate) fn run_shard<C: Subject>(
     let simulations = scenario.simulations(&models)?;
     let contents = contents(scenario);
     let folder = Shared::open(&options.place(scenario.name()), &contents)?;
-    check_kept(scenario, &simulations)?;
+    check_columns(scenario, &simulations)?;
     let begun = (&identity(scenario), scenario.to_toml());
     if let Some(there) = folder.reduced(begun.0)? {
         // All is done, also what this share would have been.

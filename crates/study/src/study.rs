@@ -20,7 +20,7 @@ use std::{
 use toml::{Table as Toml, Value};
 
 use crate::{
-    Scenario, ScenarioError, StudyError, Summary,
+    Scenario, ScenarioError, StudyError, Summary, decisions,
     head::Missing,
     report,
     scenario::parse_toml,
@@ -133,7 +133,7 @@ pub(crate) fn carry_out<C: Subject>(
         contents(scenario).keeping(|name| in_place.get().is_some_and(|all| all.contains(name)));
     let mut folder = Folder::prepare(&place, &contents, options.force)?;
     let text = scenario.to_toml();
-    check_kept(scenario, &simulations)?;
+    check_columns(scenario, &simulations)?;
     let begun = (&identity(scenario), text.as_str());
     if let Some(there) = folder.reduced(begun.0)?
         && !options.force
@@ -178,7 +178,11 @@ pub(crate) fn carry_out<C: Subject>(
     }
     let done = threads.install(|| {
         let looks = looks(scenario, &simulations)?;
-        let look = |place: usize, block: &Table| looks[place].look(block);
+        let judging = decisions::judging(scenario);
+        let look = |place: usize, block: &Table| {
+            looks[place].look(block);
+            judging[place].look(block);
+        };
         let runs = run_missing(&simulations, &blocks, plan, progress, Some(&look))?;
         if let Some(none) = runs.iter().find(|runs| runs.end() == 0) {
             let problem = format!("there are no runs of the model {:?} yet", none.model());
@@ -187,6 +191,7 @@ pub(crate) fn carry_out<C: Subject>(
         let mut summary = scenario.judge(&models, looks, &runs)?;
         let head = summary.head_mut();
         (head.missing, head.done_again) = (gaps(&blocks, scenario), blocks.again());
+        head.requirements = decisions::judged(judging, &runs)?;
         Ok((runs, summary))
     });
     let (runs, summary) = done.inspect_err(|_| blocks.abandon())?;
@@ -216,15 +221,17 @@ pub(crate) fn carry_out<C: Subject>(
     Ok(Study { folder, runs, summary })
 }
 
-/// That what is to be kept are columns of the run tables.
-pub(crate) fn check_kept<C: Subject>(
+/// That what is to be kept, and what is required, are columns of the run tables.
+pub(crate) fn check_columns<C: Subject>(
     scenario: &C,
     simulations: &[(&str, C::Simulation<'_>)],
 ) -> Result<(), StudyError> {
     let tables = empty_tables(simulations)?;
     let columns = tables.first().map_or(&[][..], Table::columns);
     let known = scenario.kept().check(columns);
-    Ok(known.map_err(|error| ScenarioError::field("columns", error))?)
+    known.map_err(|error| ScenarioError::field("columns", error))?;
+    decisions::check(scenario, columns)?;
+    Ok(())
 }
 
 /// A table of each model, without runs.
@@ -399,7 +406,10 @@ pub(crate) fn identity<C: Subject>(scenario: &C) -> Identity {
     if let Ok(table) = parse_toml::<Toml>(&scenario.to_toml()) {
         flatten("", &Value::Table(table), &mut fields);
     }
-    fields.retain(|(field, _)| !C::IMMATERIAL.contains(&field.as_str()));
+    let is_of = |field: &str, key: &str| {
+        field.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with(['[', '.']))
+    };
+    fields.retain(|(field, _)| !C::IMMATERIAL.iter().any(|key| is_of(field, key)));
     fields.push(("gyradius_version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()));
     fields.push(("block_runs".to_owned(), C::BLOCK_RUNS.to_string()));
     Identity::new(fields)

@@ -1,6 +1,8 @@
 //! What a study is of: a scenario of separations, or of a simulator of the user's own.
 
-use gyradius_campaign::{Column, FirstLook, Forecast, Kept, Runs, Simulation, Table, sha256};
+use gyradius_campaign::{
+    Column, FirstLook, Forecast, Kept, Requirement, Runs, Simulation, Table, sha256,
+};
 use gyradius_report::Document;
 use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
@@ -51,6 +53,8 @@ pub(crate) trait Subject: Sync + Sized {
     }
     /// What is kept of the run tables once all runs are done.
     fn kept(&self) -> Kept;
+    /// What the runs are to show.
+    fn requirements(&self) -> &[Requirement];
     /// Names of the models, in order.
     fn model_names(&self) -> impl Iterator<Item = &str>;
     /// The resolved scenario.
@@ -120,6 +124,7 @@ pub(crate) fn head_of(scenario: &impl Subject, columns: &[Column]) -> Head {
         independent_runs_per_model: scenario.independent_runs(),
         missing: Vec::new(),
         done_again: 0,
+        requirements: Vec::new(),
         confidence: Confidence::default().level(),
         columns: columns.iter().map(Column::summary).collect(),
     }

@@ -5,14 +5,14 @@ use clap::{
     builder::{NonEmptyStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser},
     value_parser,
 };
-use gyradius_study::{CompareOptions, ModelKind, Rows, TableFormat};
+use gyradius_study::{CompareOptions, ModelKind, Requirement, Rows, TableFormat};
 use std::path::PathBuf;
 
 use crate::program::{
     examples::{
         CHECK_EXAMPLES, COMPARE_EXAMPLES, COMPLETIONS_EXAMPLES, DRAW_EXAMPLES, EXAMPLES,
         EXIT_CODES, FIT_EXAMPLES, MAN_EXAMPLES, MODEL_EXAMPLES, REPLAY_EXAMPLES, REPORT_EXAMPLES,
-        SLURM_EXAMPLES, STATUS_EXAMPLES,
+        SLURM_EXAMPLES, STATUS_EXAMPLES, VERDICT_EXAMPLES,
     },
     scheduler::AskedShard,
 };
@@ -104,6 +104,13 @@ pub(crate) enum Command {
     /// spread. What was matched, and how far it is off, is shown with it.
     #[command(after_help = COMPARE_EXAMPLES)]
     Compare(CompareArgs),
+    /// Say whether the runs in a table meet requirements, as "tip_off_deg_per_s <= 1 in 99.73 % at 90 %"
+    ///
+    /// Reads a Parquet or CSV file of anybody's Monte Carlo, one row a run, or a folder of Parquet files such as runs/proposed of a
+    /// study. For each requirement: how many runs fail it and how many may, the bound that the required share of all runs keeps, the
+    /// margin, the verdict, how many more runs would decide, how good a vehicle must be to pass, and the worst runs.
+    #[command(after_help = VERDICT_EXAMPLES)]
+    Verdict(VerdictArgs),
     /// Print a script that lets a shell complete verbs, flags and values
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions(CompletionsArgs),
@@ -214,6 +221,25 @@ pub(crate) struct StatusArgs {
     /// Folder of a study [default: target/study/peck-2003]
     #[arg(value_name = "STUDY")]
     pub(crate) study: Option<PathBuf>,
+
+    /// Write JSON, for other programs
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct VerdictArgs {
+    /// Table: a Parquet or CSV file, or a folder of Parquet files
+    #[arg(value_name = "TABLE")]
+    pub(crate) table: PathBuf,
+
+    /// Requirement, as "abs(x) <= 1 in 99.73 % at 90 %": a column x, abs(x) or norm(x, y, z); <= or >= or both; a share of all runs; a confidence
+    #[arg(long, value_name = "REQUIREMENT", required = true)]
+    pub(crate) require: Vec<Requirement>,
+
+    /// Leave out runs without a number, such as those that failed; otherwise they count against every requirement
+    #[arg(long)]
+    pub(crate) leave_out_failed: bool,
 
     /// Write JSON, for other programs
     #[arg(long)]

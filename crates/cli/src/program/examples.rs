@@ -2,7 +2,7 @@
 
 pub(crate) const EXIT_CODES: &str = "\
 Exit code: 0 if all went well, 1 if something was found or is missing (check, fit, report,
-status, study), 2 if what was asked
+status, study, verdict), 2 if what was asked
 cannot be done, with a message on standard error. A reader of the output that stops reading, as
 head does, is no error; a full disk behind it is.";
 
@@ -73,6 +73,17 @@ Examples:
       The same every two seconds
 
 Exit code: 0 if all runs are done and put together, 1 if not, 2 if there is no study.";
+
+pub(crate) const VERDICT_EXAMPLES: &str = "\
+Examples:
+  gyradius verdict runs.csv --require \"tip_off_deg_per_s <= 1 in 99.73 % at 90 %\"
+      Is the column at most 1 in 99.73 % of all runs, with 90 % confidence?
+  gyradius verdict results/runs/proposed --require \"norm(payload_w1_rad_per_s, payload_w2_rad_per_s) <= 0.02 in 99 % at 90 %\"
+      The length of a vector of columns, in the run table of a study
+  gyradius verdict runs.parquet --require \"0.9 <= ratio <= 1.1 in 95 % at 95 %\" --require \"clearance_m >= 0.1 in 99.9 % at 90 %\"
+      Two requirements, the first with two limits
+
+Exit code: 0 if all are met, 1 if one is not met or not decided, 2 if the table or a requirement could not be read.";
 
 pub(crate) const MODEL_EXAMPLES: &str = "\
 Examples:

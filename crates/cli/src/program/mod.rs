@@ -19,6 +19,7 @@ mod signals;
 mod slurm;
 mod status;
 mod study;
+mod verdict;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -30,7 +31,7 @@ const REFUSED: u8 = 2;
 
 /// Runs the program with the given arguments, the first of which is its name.
 ///
-/// Returns 0, or 2 after a message on standard error; `check`, `fit`, `report`, `status` and `study` also return 1, for what
+/// Returns 0, or 2 after a message on standard error; `check`, `fit`, `report`, `status`, `study` and `verdict` also return 1, for what
 /// was found or is missing.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::try_parse_from(arguments) {
@@ -48,6 +49,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Replay(arguments) => replay::replay(arguments).map(done),
         Command::Draw(arguments) => draw::draw(arguments),
         Command::Study(arguments) => study::study(arguments),
+        Command::Verdict(arguments) => verdict::verdict(arguments),
         Command::Compare(arguments) => compare::compare(arguments).map(done).map_err(Into::into),
         Command::Completions(arguments) => {
             shell::completions(arguments).map(done).map_err(Into::into)

@@ -2,6 +2,7 @@
 
 use gyradius_study::{
     Again, AnyScenario, CampaignError, Kept, Notice, Options, Scenario, ScenarioError, StudyError,
+    Verdict,
 };
 use serde_json::json;
 use std::{error::Error, path::Path, process::ExitCode, time::Duration};
@@ -70,6 +71,17 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     }
 
     let mut code = ExitCode::SUCCESS;
+    for judged in outcome.requirements() {
+        if judged.judgement().verdict() != Verdict::Met {
+            let requirement = judged.judgement().requirement().name();
+            complain(format_args!(
+                "{requirement}, {}: {}",
+                judged.model(),
+                judged.judgement().line()
+            ));
+            code = ExitCode::from(FAILED);
+        }
+    }
     for (model, failed, runs) in outcome.failed() {
         if failed as f64 > arguments.max_failed * runs as f64 {
             complain(format_args!(

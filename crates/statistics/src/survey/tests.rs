@@ -190,3 +190,30 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    /// Ranks that are asked for after the first pass, also those that no value has, are those of the sorted sample.
+    #[test]
+    fn order_statistics_are_those_of_the_sorted_sample(
+        values in prop::collection::vec(prop_oneof![-3.0..3.0, Just(1.0), Just(-0.0), Just(0.0)], 1..400),
+        ranks in prop::collection::vec(0_u64..450, 0..6),
+        part in 1_usize..50,
+    ) {
+        let mut survey = Survey::new(values.len() as u64);
+        while let Some(empty) = survey.pass() {
+            let mut whole = empty.clone();
+            for (i, values) in values.chunks(part).enumerate() {
+                let mut pass = empty.clone();
+                pass.extend(((i * part) as u64..).zip(values.iter().copied()));
+                whole.merge(pass);
+            }
+            survey.advance_selecting(whole, ranks.iter().copied());
+        }
+        let mut sorted: Vec<f64> = values.clone();
+        sorted.sort_by(f64::total_cmp);
+        for rank in ranks {
+            let found = survey.order_statistic(rank).map(f64::to_bits);
+            prop_assert_eq!(found, sorted.get(rank as usize).map(|x| x.to_bits()));
+        }
+    }
+}

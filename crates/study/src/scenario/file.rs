@@ -1,6 +1,6 @@
 //! A scenario as it stands in a TOML file.
 
-use gyradius_campaign::Rows;
+use gyradius_campaign::{Requirement, Rows};
 use gyradius_dispersion::ScalarLawForm;
 use gyradius_separation::{BodyParameter, LoadId, Spring, StackParameter};
 use serde::{Deserialize, Serialize};
@@ -69,6 +69,8 @@ pub(crate) struct ScenarioFile {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) correlations: Vec<CorrelationFile>,
     pub(crate) models: Vec<ModelFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) requirements: Vec<Requirement>,
     #[serde(default)]
     pub(crate) comparisons: Vec<ComparisonFile>,
 }

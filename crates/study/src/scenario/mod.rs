@@ -18,7 +18,7 @@ mod scalar;
 mod sides;
 mod vehicles;
 
-use gyradius_campaign::Kept;
+use gyradius_campaign::{Kept, Requirement};
 use gyradius_formats::read_text;
 use gyradius_separation::{Separation, SeparationError, Settings, SettingsError};
 use nalgebra::{Unit, Vector3};
@@ -178,6 +178,12 @@ impl Scenario {
     pub fn with_kept(self, kept: &Kept) -> Self {
         let (rows, columns) = (kept.rows(), kept.columns().map(<[_]>::to_vec));
         Self { file: ScenarioFile { rows, columns, ..self.file }, ..self }
+    }
+
+    /// What its runs are to show.
+    #[must_use]
+    pub fn requirements(&self) -> &[Requirement] {
+        &self.file.requirements
     }
 
     /// What is kept of its run tables once all runs are done.

@@ -1,6 +1,6 @@
 //! A scenario of a simulator as it stands in a TOML file.
 
-use gyradius_campaign::Rows;
+use gyradius_campaign::{Requirement, Rows};
 use gyradius_dispersion::ModelParameters;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -35,6 +35,8 @@ pub(super) struct File {
     pub(super) quantities: Vec<QuantityFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) correlations: Vec<CorrelationFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) requirements: Vec<Requirement>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) models: Vec<ModelFile<BodyName>>,
 }

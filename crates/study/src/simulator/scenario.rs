@@ -1,6 +1,6 @@
 //! A scenario of a simulator, checked: the command, what is uncertain, how often.
 
-use gyradius_campaign::{Column, Kept, Program, ProgramError, Table};
+use gyradius_campaign::{Column, Kept, Program, ProgramError, Requirement, Table};
 use gyradius_dispersion::{InertiaLaw, ModelKind, ScalarLaw};
 use std::{path::Path, sync::Arc};
 
@@ -159,6 +159,12 @@ impl SimulatorScenario {
     pub fn with_kept(self, kept: &Kept) -> Self {
         let (rows, columns) = (kept.rows(), kept.columns().map(<[_]>::to_vec));
         Self { file: File { rows, columns, ..self.file }, ..self }
+    }
+
+    /// What its runs are to show.
+    #[must_use]
+    pub fn requirements(&self) -> &[Requirement] {
+        &self.file.requirements
     }
 
     /// What is kept of its run tables once all runs are done.

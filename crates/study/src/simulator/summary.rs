@@ -1,8 +1,8 @@
 //! Campaigns of simulators as studies: how their runs are simulated, and what they amount to.
 
 use gyradius_campaign::{
-    Column, Doing, ExternalSimulation, FirstLook, Forecast, Kept, Progress, Runs, Simulator,
-    Surveys,
+    Column, Doing, ExternalSimulation, FirstLook, Forecast, Kept, Progress, Requirement, Runs,
+    Simulator, Surveys,
 };
 use gyradius_report::{Document, Overview, file_of, optional, with_unit};
 use gyradius_statistics::Confidence;
@@ -16,7 +16,7 @@ use std::{
 
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
 use crate::{
-    Fleet, Notice, Options, ScenarioError, Study, StudyError,
+    Fleet, Notice, Options, ScenarioError, Study, StudyError, decisions,
     head::Head,
     report,
     study::carry_out,
@@ -78,7 +78,8 @@ impl Subject for SimulatorScenario {
     /// Few, for a run of a simulator may take seconds.
     const BLOCK_RUNS: u64 = 1 << 8;
     /// Machines that do a campaign together may have the simulator in different places.
-    const IMMATERIAL: &[&str] = &["runs", "vehicles", "rows", "columns", "simulation.folder"];
+    const IMMATERIAL: &[&str] =
+        &["runs", "vehicles", "rows", "columns", "requirements", "simulation.folder"];
 
     type Prepared = Simulator;
     type Simulation<'a> = ExternalSimulation<'a, SimulatorDraws<'a>>;
@@ -111,6 +112,10 @@ impl Subject for SimulatorScenario {
 
     fn independent_runs(&self) -> Option<u64> {
         self.sharing().map(Fleet::vehicles)
+    }
+
+    fn requirements(&self) -> &[Requirement] {
+        self.requirements()
     }
 
     fn model_names(&self) -> impl Iterator<Item = &str> {
@@ -185,7 +190,7 @@ impl Subject for SimulatorScenario {
     }
 
     fn report(&self, summary: &SimulatorSummary) -> Document {
-        let document = summary.overview.document();
+        let document = summary.overview.document().led_by(decisions::sections(&summary.head));
         let document = report::noting_vehicles(document, &summary.head);
         let inputs = report::inputs(&summary.head, &self.kept(), self.to_toml());
         report::noting_what_is_missing(document, &summary.head).section(inputs)

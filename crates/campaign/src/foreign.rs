@@ -1,0 +1,325 @@
+//! Tables of numbers that other programs wrote, a row for each run: Parquet, a folder of Parquet files, or CSV.
+
+use parquet::{
+    basic::{LogicalType, Type as Physical},
+    column::reader::ColumnReader,
+    data_type::ByteArray,
+    errors::ParquetError,
+    file::reader::{FileReader, SerializedFileReader},
+};
+use std::{
+    fs::{self, File},
+    io,
+    path::{Path, PathBuf},
+};
+
+use crate::{
+    column::Column,
+    failure::OK,
+    stored::{read, said},
+};
+
+/// Rows of a CSV file that are looked at together.
+const TOGETHER: usize = 1 << 14;
+/// What stands in a cell that has no number, in small letters.
+const MISSING: [&str; 7] = ["", "nan", "na", "n/a", "null", "none", "-"];
+
+/// A table of numbers that another program wrote, a row for each run. It is read piece by piece, as often as it is scanned.
+#[derive(Clone, Debug)]
+pub struct ForeignTable {
+    path: PathBuf,
+    files: Vec<PathBuf>,
+    form: Form,
+    columns: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Parquet,
+    /// With this between the cells.
+    Csv(u8),
+}
+
+/// The numbers of some consecutive rows: of each column, one for each row, none where a cell is empty.
+pub type Columns = [Vec<Option<f64>>];
+
+impl ForeignTable {
+    /// Opens a file, or a folder of Parquet files, which are taken in the order of their names. What begins as Parquet does is
+    /// Parquet; all else is CSV, whose first line has the names of the columns, with `,`, `;` or a tab between them.
+    ///
+    /// # Errors
+    /// There is no such file, it is no regular file, or its head cannot be read.
+    pub fn open(path: &Path) -> Result<Self, ForeignError> {
+        let failed = |problem: String| ForeignError { path: path.to_owned(), problem };
+        let unread = |error: io::Error| failed(error.to_string());
+        let found = fs::metadata(path).map_err(unread)?;
+        if found.is_dir() {
+            let mut files = Vec::new();
+            for entry in fs::read_dir(path).map_err(unread)? {
+                let file = entry.map_err(unread)?.path();
+                if file.is_file() && file.extension().is_some_and(|end| end == "parquet") {
+                    files.push(file);
+                }
+            }
+            files.sort();
+            let first =
+                files.first().ok_or_else(|| failed("it has no .parquet file".to_owned()))?;
+            let columns = parquet_columns(first)?;
+            return Ok(Self { path: path.to_owned(), files, form: Form::Parquet, columns });
+        }
+        if !found.is_file() {
+            // A pipe has an end only once, and is scanned more often.
+            return Err(failed("it is not a regular file".to_owned()));
+        }
+        let files = vec![path.to_owned()];
+        let mut start = [0; 4];
+        let is_parquet = io::Read::read_exact(&mut File::open(path).map_err(unread)?, &mut start);
+        if is_parquet.is_ok() && start == *b"PAR1" {
+            let columns = parquet_columns(path)?;
+            return Ok(Self { path: path.to_owned(), files, form: Form::Parquet, columns });
+        }
+        let (separator, columns) = csv_columns(path)?;
+        Ok(Self { path: path.to_owned(), files, form: Form::Csv(separator), columns })
+    }
+
+    /// Why nothing can be said of a table without rows.
+    pub(crate) fn without_rows(&self) -> ForeignError {
+        let problem = "it has no rows: a row must be a run".to_owned();
+        ForeignError { path: self.path.clone(), problem }
+    }
+
+    /// The names of its columns.
+    #[must_use]
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// Looks at the numbers in some columns, all rows in their order, some at a time. Flags are 1 and 0. In a run table of a study, which
+    /// begins with `model`, `run` and `status`, runs that failed have no numbers, not even those that were drawn.
+    ///
+    /// # Errors
+    /// It has no such column, a cell in it is no number, or a file cannot be read.
+    pub fn scan(
+        &self,
+        columns: &[String],
+        mut look: impl FnMut(&Columns),
+    ) -> Result<(), ForeignError> {
+        for file in &self.files {
+            match self.form {
+                Form::Parquet => scan_parquet(file, columns, &mut look)?,
+                Form::Csv(separator) => scan_csv(file, separator, columns, &mut look)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Where columns are among those that there are.
+fn places(path: &Path, there: &[String], columns: &[String]) -> Result<Vec<usize>, ForeignError> {
+    let place = |name: &String| {
+        let mut found = there.iter().enumerate().filter(|(_, other)| *other == name);
+        match (found.next(), found.next()) {
+            (Some((place, _)), None) => Ok(place),
+            (Some(_), Some(_)) => Err(format!("two columns are called {name:?}")),
+            (None, _) => {
+                Err(format!("it has no column {name:?}; its columns are {}", there.join(", ")))
+            }
+        }
+    };
+    let places = columns.iter().map(place).collect::<Result<_, String>>();
+    places.map_err(|problem| ForeignError { path: path.to_owned(), problem })
+}
+
+fn parquet_columns(path: &Path) -> Result<Vec<String>, ForeignError> {
+    let columns = open(path).map(|reader| {
+        let schema = reader.metadata().file_metadata().schema_descr();
+        schema.columns().iter().map(|column| column.path().string()).collect()
+    });
+    columns.map_err(|error| unread(path, &error))
+}
+
+fn open(path: &Path) -> Result<SerializedFileReader<File>, ParquetError> {
+    SerializedFileReader::new(File::open(path)?)
+}
+
+fn unread(path: &Path, error: &ParquetError) -> ForeignError {
+    ForeignError { path: path.to_owned(), problem: said(error) }
+}
+
+fn scan_parquet(
+    path: &Path,
+    columns: &[String],
+    look: &mut impl FnMut(&Columns),
+) -> Result<(), ForeignError> {
+    let places = places(path, &parquet_columns(path)?, columns)?;
+    let failed = |error: ParquetError| unread(path, &error);
+    let reader = open(path).map_err(failed)?;
+    let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    for place in &places {
+        let column = schema.column(*place);
+        let wrong = |problem: &str| ForeignError {
+            path: path.to_owned(),
+            problem: format!("the column {:?} {problem}", column.path().string()),
+        };
+        if column.max_rep_level() > 0 {
+            return Err(wrong("is of lists, and must be of numbers"));
+        }
+        match column.physical_type() {
+            Physical::BOOLEAN
+            | Physical::INT32
+            | Physical::INT64
+            | Physical::FLOAT
+            | Physical::DOUBLE
+                if column.logical_type_ref().is_none_or(is_plain) => {}
+            Physical::BOOLEAN
+            | Physical::INT32
+            | Physical::INT64
+            | Physical::INT96
+            | Physical::FLOAT
+            | Physical::DOUBLE
+            | Physical::BYTE_ARRAY
+            | Physical::FIXED_LEN_BYTE_ARRAY => {
+                return Err(wrong("is of texts, dates or decimals, and must be of numbers"));
+            }
+        }
+    }
+    let status = status(&parquet_columns(path)?);
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group).map_err(failed)?;
+        let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+        let column = |place: &usize| numbers(group.get_column_reader(*place)?, rows);
+        let numbers = places.iter().map(column).collect::<Result<Vec<_>, ParquetError>>();
+        let mut numbers = numbers.map_err(failed)?;
+        if let Some(place) = status
+            && let ColumnReader::ByteArrayColumnReader(texts) =
+                group.get_column_reader(place).map_err(failed)?
+        {
+            let is_ok = |text: &Option<ByteArray>| {
+                text.as_ref().is_some_and(|text| text.data() == OK.as_bytes())
+            };
+            let texts = read(texts, rows).map_err(failed)?;
+            for (row, _) in texts.iter().enumerate().filter(|(_, text)| !is_ok(text)) {
+                numbers.iter_mut().for_each(|numbers| numbers[row] = None);
+            }
+        }
+        look(&numbers);
+    }
+    Ok(())
+}
+
+/// Where the status of a run is, in the run table of a study.
+fn status(columns: &[String]) -> Option<usize> {
+    let own = Column::first();
+    let is_own = columns.len() >= own.len() && own.iter().zip(columns).all(|(a, b)| a.name() == b);
+    is_own.then_some(own.len() - 1)
+}
+
+/// Whether a number means what it is.
+fn is_plain(logical: &LogicalType) -> bool {
+    matches!(logical, LogicalType::Integer(whole) if whole.is_signed)
+}
+
+fn numbers(reader: ColumnReader, rows: usize) -> Result<Vec<Option<f64>>, ParquetError> {
+    macro_rules! all {
+        ($reader:expr, $number:expr) => {
+            read($reader, rows)?.into_iter().map(|cell| cell.map($number)).collect()
+        };
+    }
+    Ok(match reader {
+        ColumnReader::BoolColumnReader(r) => all!(r, |flag| f64::from(u8::from(flag))),
+        ColumnReader::Int32ColumnReader(r) => all!(r, f64::from),
+        ColumnReader::Int64ColumnReader(r) => all!(r, |whole| whole as f64),
+        ColumnReader::FloatColumnReader(r) => all!(r, f64::from),
+        ColumnReader::DoubleColumnReader(r) => all!(r, |number| number),
+        ColumnReader::Int96ColumnReader(_)
+        | ColumnReader::ByteArrayColumnReader(_)
+        | ColumnReader::FixedLenByteArrayColumnReader(_) => {
+            return Err(ParquetError::General("a column of no numbers".to_owned()));
+        }
+    })
+}
+
+fn csv_columns(path: &Path) -> Result<(u8, Vec<String>), ForeignError> {
+    let head = |separator: u8| {
+        let names = reader(path, separator)?.headers().map_err(|e| broken(path, &e))?.clone();
+        Ok::<_, ForeignError>(names.iter().map(str::to_owned).collect::<Vec<_>>())
+    };
+    let mut best = (b',', head(b',')?);
+    for separator in [b';', b'\t'] {
+        let names = head(separator)?;
+        if names.len() > best.1.len() {
+            best = (separator, names);
+        }
+    }
+    if best.1.iter().all(String::is_empty) {
+        let problem = "it is empty: the first line must have the names of the columns".to_owned();
+        return Err(ForeignError { path: path.to_owned(), problem });
+    }
+    Ok(best)
+}
+
+fn reader(path: &Path, separator: u8) -> Result<csv::Reader<File>, ForeignError> {
+    let mut builder = csv::ReaderBuilder::new();
+    builder.delimiter(separator).comment(Some(b'#')).trim(csv::Trim::All);
+    builder.from_path(path).map_err(|error| broken(path, &error))
+}
+
+fn broken(path: &Path, error: &csv::Error) -> ForeignError {
+    ForeignError { path: path.to_owned(), problem: error.to_string() }
+}
+
+fn scan_csv(
+    path: &Path,
+    separator: u8,
+    columns: &[String],
+    look: &mut impl FnMut(&Columns),
+) -> Result<(), ForeignError> {
+    let mut reader = reader(path, separator)?;
+    let names = reader.headers().map_err(|error| broken(path, &error))?;
+    let there: Vec<String> = names.iter().map(str::to_owned).collect();
+    let places = places(path, &there, columns)?;
+    let status = status(&there);
+    let mut some: Vec<Vec<Option<f64>>> = vec![Vec::new(); columns.len()];
+    let mut row = csv::StringRecord::new();
+    while reader.read_record(&mut row).map_err(|error| broken(path, &error))? {
+        for ((place, name), numbers) in places.iter().zip(columns).zip(&mut some) {
+            let cell = row.get(*place).unwrap_or_default();
+            let number = number(cell).ok_or_else(|| {
+                let line = row.position().map_or(0, csv::Position::line);
+                let problem = format!("line {line}, column {name:?}: {cell:?} is not a number");
+                ForeignError { path: path.to_owned(), problem }
+            })?;
+            let ended = status.is_none_or(|place| row.get(place) == Some(OK));
+            numbers.push(number.filter(|_| ended));
+        }
+        if some.first().is_some_and(|numbers| numbers.len() == TOGETHER) {
+            look(&some);
+            some.iter_mut().for_each(Vec::clear);
+        }
+    }
+    if some.first().is_some_and(|numbers| !numbers.is_empty()) {
+        look(&some);
+    }
+    Ok(())
+}
+
+/// What stands in a cell: a number, or nothing; none if it is something else.
+fn number(cell: &str) -> Option<Option<f64>> {
+    if let Ok(number) = cell.parse::<f64>() {
+        return Some(Some(number).filter(|x| !x.is_nan()));
+    }
+    let small = cell.to_ascii_lowercase();
+    match small.as_str() {
+        "true" => Some(Some(1.0)),
+        "false" => Some(Some(0.0)),
+        other => MISSING.contains(&other).then_some(None),
+    }
+}
+
+/// Why a table cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}: {problem}", path.display())]
+pub struct ForeignError {
+    path: PathBuf,
+    problem: String,
+}

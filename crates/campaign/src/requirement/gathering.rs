@@ -1,0 +1,207 @@
+//! What is gathered of a requirement in passes over runs: counts, the worst runs, and the order statistics that bound it.
+
+use gyradius_statistics::{Pass, StatisticsError, Survey};
+use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
+
+use super::{Bound, FailedRuns, Requirement};
+
+/// Runs that are told of one by one.
+const WORST: usize = 10;
+
+/// A run, and how far it is beyond the bound.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunBeyond {
+    /// The run, from 0.
+    pub run: u64,
+    /// Its number.
+    pub value: f64,
+    /// How far that is beyond the bound; negative if it is within.
+    pub excess: f64,
+}
+
+/// What is gathered of a requirement.
+#[derive(Clone, Debug)]
+pub(super) struct Gathering {
+    pub(super) requirement: Requirement,
+    pub(super) tally: Tally,
+    /// Of the numbers.
+    pub(super) numbers: Survey,
+    /// Of how far numbers are beyond the bound, if that is no order of the numbers themselves.
+    pub(super) excess: Option<Survey>,
+    counted: bool,
+}
+
+/// Counts, and the worst runs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tally {
+    /// All runs, those that have no number too.
+    pub(super) runs: u64,
+    /// Runs that have no number, most often because they failed.
+    pub(super) without: u64,
+    /// Runs whose number is beyond the bound.
+    pub(super) beyond: u64,
+    /// The worst first.
+    pub(super) worst: Vec<RunBeyond>,
+}
+
+/// What one pass gathers.
+#[derive(Clone, Debug)]
+pub(super) struct Part {
+    tally: Option<Tally>,
+    numbers: Option<Pass>,
+    excess: Option<Pass>,
+}
+
+impl Gathering {
+    /// Of at most so many runs.
+    pub(super) fn new(requirement: Requirement, runs: u64) -> Self {
+        let excess = match requirement.bound() {
+            Bound::AtMost(_) | Bound::AtLeast(_) => None,
+            Bound::Between(..) => Some(Survey::new(runs)),
+        };
+        let (tally, numbers) = (Tally::default(), Survey::new(runs));
+        Self { requirement, tally, numbers, excess, counted: false }
+    }
+
+    /// What is to be gathered next, if anything is.
+    pub(super) fn part(&self) -> Option<Part> {
+        let tally = (!self.counted).then(Tally::default);
+        let (numbers, excess) = (self.numbers.pass(), self.excess.as_ref().and_then(Survey::pass));
+        let waits = tally.is_some() || numbers.is_some() || excess.is_some();
+        waits.then_some(Part { tally, numbers, excess })
+    }
+
+    /// Adds runs, each with its place, to what is gathered: what they have in the columns of the quantity, by their places.
+    pub(super) fn gather(
+        &self,
+        part: &mut Part,
+        runs: impl Iterator<Item = (u64, usize)>,
+        columns: &[impl Fn(usize) -> Option<f64>],
+    ) {
+        let bound = self.requirement.bound();
+        let (mut numbers, mut of_run) = (Vec::new(), Vec::new());
+        for (run, place) in runs {
+            of_run.clear();
+            of_run.extend(columns.iter().map(|column| column(place)));
+            let number = self.requirement.quantity().of(&of_run);
+            if let Some(tally) = &mut part.tally {
+                tally.add(run, number, bound);
+            }
+            numbers.extend(number.map(|x| (run, x)));
+        }
+        if let Some(pass) = &mut part.excess {
+            pass.extend(numbers.iter().map(|(run, x)| (*run, bound.excess(*x))));
+        }
+        if let Some(pass) = &mut part.numbers {
+            pass.extend(numbers);
+        }
+    }
+
+    /// Takes up what was gathered of all runs. After the first time, it asks for the order statistic that the allowed
+    /// failures leave.
+    pub(super) fn advance(&mut self, part: Part) -> Result<(), StatisticsError> {
+        if let Some(tally) = part.tally {
+            (self.tally, self.counted) = (tally, true);
+        }
+        let allowed = self.requirement.acceptance()?.allowed_failures(self.counted_runs());
+        let place = self.place(allowed);
+        let n = self.tally.runs - self.tally.without;
+        let from_top = place.map(|place| n - 1 - place);
+        let ranks = match self.requirement.bound() {
+            Bound::AtMost(_) => from_top,
+            Bound::AtLeast(_) => place,
+            Bound::Between(..) => None,
+        };
+        if let Some(pass) = part.numbers {
+            self.numbers.advance_selecting(pass, ranks);
+        }
+        if let (Some(survey), Some(pass)) = (&mut self.excess, part.excess) {
+            survey.advance_selecting(pass, from_top);
+        }
+        Ok(())
+    }
+
+    /// Runs that the verdict is about.
+    pub(super) fn counted_runs(&self) -> u64 {
+        match self.requirement.failed_runs() {
+            FailedRuns::Against => self.tally.runs,
+            FailedRuns::LeftOut => self.tally.runs - self.tally.without,
+        }
+    }
+
+    /// Runs that do not keep the requirement.
+    pub(super) fn failures(&self) -> u64 {
+        match self.requirement.failed_runs() {
+            FailedRuns::Against => self.tally.beyond + self.tally.without,
+            FailedRuns::LeftOut => self.tally.beyond,
+        }
+    }
+
+    /// The place, from 0 at the worst number, of the number that is the bound of the share, if so many failures are allowed; none
+    /// if there is none, for runs without a number are worse than all.
+    fn place(&self, allowed: Option<u64>) -> Option<u64> {
+        let worse = self.failures() - self.tally.beyond;
+        let place = allowed?.checked_sub(worse)?;
+        (place < self.tally.runs - self.tally.without).then_some(place)
+    }
+
+    /// How far the number that is the bound of the share is beyond the limit, if so many failures are allowed.
+    pub(super) fn excess_allowed(&self, allowed: Option<u64>) -> Option<f64> {
+        let place = self.place(allowed)?;
+        let from_top = self.tally.runs - self.tally.without - 1 - place;
+        let bound = self.requirement.bound();
+        match bound {
+            Bound::AtMost(_) => self.numbers.order_statistic(from_top).map(|x| bound.excess(x)),
+            Bound::AtLeast(_) => self.numbers.order_statistic(place).map(|x| bound.excess(x)),
+            Bound::Between(..) => self.excess.as_ref()?.order_statistic(from_top),
+        }
+    }
+}
+
+impl Part {
+    /// Takes in what was gathered of other runs.
+    pub(super) fn merge(&mut self, other: Self) {
+        if let (Some(tally), Some(more)) = (&mut self.tally, other.tally) {
+            tally.merge(more);
+        }
+        for (own, more) in [(&mut self.numbers, other.numbers), (&mut self.excess, other.excess)] {
+            if let (Some(own), Some(more)) = (own, more) {
+                own.merge(more);
+            }
+        }
+    }
+}
+
+impl Tally {
+    fn add(&mut self, run: u64, number: Option<f64>, bound: Bound) {
+        self.runs += 1;
+        let Some(value) = number else {
+            self.without += 1;
+            return;
+        };
+        let excess = bound.excess(value);
+        self.beyond += u64::from(excess > 0.0);
+        let new = RunBeyond { run, value, excess };
+        let is_worse = |last: &RunBeyond| worse(&new, last) == Ordering::Less;
+        if self.worst.len() < WORST || self.worst.last().is_some_and(is_worse) {
+            let place = self.worst.partition_point(|other| worse(other, &new) == Ordering::Less);
+            self.worst.insert(place, new);
+            self.worst.truncate(WORST);
+        }
+    }
+
+    fn merge(&mut self, other: Self) {
+        self.runs += other.runs;
+        self.without += other.without;
+        self.beyond += other.beyond;
+        self.worst.extend(other.worst);
+        self.worst.sort_by(worse);
+        self.worst.truncate(WORST);
+    }
+}
+
+/// The worse run first, of equal ones the one of the smaller number.
+fn worse(a: &RunBeyond, b: &RunBeyond) -> Ordering {
+    b.excess.total_cmp(&a.excess).then(a.run.cmp(&b.run))
+}

@@ -1,0 +1,342 @@
+//! What runs say of a requirement: how many do not keep it, the bound that the required share keeps, and the verdict.
+
+use gyradius_statistics::{Interval, Moments, Proportion, StatisticsError, Verdict};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+use super::{
+    Bound, FailedRuns, Requirement,
+    gathering::{Gathering, Part, RunBeyond},
+};
+use crate::{
+    foreign::{ForeignError, ForeignTable},
+    runs::RunsError,
+};
+
+/// Power for which it is told how good a vehicle must be.
+const NINE_TIMES_IN_TEN: f64 = 0.9;
+
+/// What runs say of a requirement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Judgement {
+    requirement: Requirement,
+    /// All runs.
+    runs: u64,
+    /// Runs without a number, most often because they failed.
+    runs_without_number: u64,
+    /// Runs whose number is beyond the bound.
+    runs_beyond: u64,
+    /// Runs that count, and those of them that do not keep the requirement.
+    counted: u64,
+    failures: u64,
+    /// How many failures so many runs may have; none if they are too few for any verdict.
+    allowed_failures: Option<u64>,
+    /// Share of the runs that keep it, and where the true share lies: Clopper and Pearson's interval, two-sided.
+    share: Option<f64>,
+    share_interval: Option<Interval>,
+    /// The bound that the required share of all runs keeps, with the confidence; none if the runs are too few or too many failed.
+    tolerance: Option<Bound>,
+    /// How far that is within the limit; negative if it is beyond.
+    margin: Option<f64>,
+    /// The same in standard deviations of the numbers.
+    margin_deviations: Option<f64>,
+    mean: Option<f64>,
+    standard_deviation: Option<f64>,
+    verdict: Verdict,
+    /// The share of runs in which a vehicle must keep it, to pass nine times in ten as many runs.
+    success_to_pass: Option<f64>,
+    /// The worst runs, the worst first.
+    worst: Vec<RunBeyond>,
+}
+
+impl Judgement {
+    /// Judges requirements by the runs of a table that another program wrote, of which a row is a run. All threads of the pool that this
+    /// is called in are used.
+    ///
+    /// # Errors
+    /// The table cannot be read, has no such column, or has no or too many rows.
+    pub fn of_table(
+        requirements: &[Requirement],
+        table: &ForeignTable,
+    ) -> Result<Vec<Self>, JudgementError> {
+        let mut names: Vec<String> = Vec::new();
+        for name in requirements.iter().flat_map(|requirement| requirement.quantity().columns()) {
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        let mut gatherings: Vec<Gathering> = requirements
+            .iter()
+            .map(|r| Gathering::new(r.clone(), Proportion::MAX_TRIALS))
+            .collect();
+        loop {
+            let mut parts: Vec<Option<Part>> = gatherings.iter().map(Gathering::part).collect();
+            if parts.iter().all(Option::is_none) {
+                if gatherings.iter().any(|gathering| gathering.tally.runs == 0) {
+                    return Err(table.without_rows().into());
+                }
+                return gatherings.iter().map(Self::of).collect();
+            }
+            let mut first = 0;
+            table.scan(&names, |numbers| {
+                let runs = numbers.first().map_or(0, Vec::len);
+                gatherings.par_iter().zip(&mut parts).for_each(|(gathering, part)| {
+                    let Some(part) = part else { return };
+                    let columns = gathering.requirement.quantity().columns().iter();
+                    let columns: Vec<_> = columns
+                        .filter_map(|name| names.iter().position(|other| other == name))
+                        .map(|column| {
+                            let numbers = &numbers[column];
+                            move |place: usize| numbers.get(place).copied().flatten()
+                        })
+                        .collect();
+                    gathering.gather(part, (first..).zip(0..runs), &columns);
+                });
+                first += runs as u64;
+            })?;
+            for (gathering, part) in gatherings.iter_mut().zip(parts) {
+                if let Some(part) = part {
+                    gathering.advance(part)?;
+                }
+            }
+        }
+    }
+
+    /// What was gathered, judged.
+    pub(super) fn of(gathering: &Gathering) -> Result<Self, JudgementError> {
+        let Gathering { requirement, tally, numbers, .. } = gathering;
+        let (counted, failures) = (gathering.counted_runs(), gathering.failures());
+        let acceptance = requirement.acceptance()?;
+        let allowed = acceptance.allowed_failures(counted);
+        let proportion =
+            (counted > 0).then(|| Proportion::new(counted - failures, counted)).transpose()?;
+        let excess = gathering.excess_allowed(allowed);
+        let moments = numbers.moments();
+        let standard_deviation = moments.map(Moments::standard_deviation);
+        let margin = excess.map(|excess| 0.0 - excess);
+        Ok(Self {
+            requirement: requirement.clone(),
+            runs: tally.runs,
+            runs_without_number: tally.without,
+            runs_beyond: tally.beyond,
+            counted,
+            failures,
+            allowed_failures: allowed,
+            share: proportion.map(|share| share.value()),
+            share_interval: proportion.map(|share| share.interval(requirement.confidence())),
+            tolerance: excess.map(|excess| requirement.bound().wider(excess)),
+            margin,
+            margin_deviations: margin
+                .zip(standard_deviation.filter(|s| *s > 0.0))
+                .map(|(m, s)| m / s),
+            mean: moments.map(Moments::mean),
+            standard_deviation,
+            verdict: acceptance.verdict(failures, counted)?,
+            success_to_pass: acceptance.success_to_pass(counted, NINE_TIMES_IN_TEN)?,
+            worst: tally.worst.clone(),
+        })
+    }
+
+    /// All runs.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        self.runs
+    }
+
+    /// What the requirement is.
+    #[must_use]
+    pub fn requirement(&self) -> &Requirement {
+        &self.requirement
+    }
+
+    /// The verdict.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        self.verdict
+    }
+
+    /// Runs that count.
+    #[must_use]
+    pub fn counted(&self) -> u64 {
+        self.counted
+    }
+
+    /// Runs of them that do not keep it.
+    #[must_use]
+    pub fn failures(&self) -> u64 {
+        self.failures
+    }
+
+    /// How many failures so many runs may have; none if they are too few.
+    #[must_use]
+    pub fn allowed_failures(&self) -> Option<u64> {
+        self.allowed_failures
+    }
+
+    /// The bound that the required share of all runs keeps, with the confidence.
+    #[must_use]
+    pub fn tolerance(&self) -> Option<Bound> {
+        self.tolerance
+    }
+
+    /// Runs without a number, most often because they failed.
+    #[must_use]
+    pub fn runs_without_number(&self) -> u64 {
+        self.runs_without_number
+    }
+
+    /// Share of the runs that count that keep it.
+    #[must_use]
+    pub fn share(&self) -> Option<f64> {
+        self.share
+    }
+
+    /// Where the true share lies, with the confidence of the requirement: Clopper and Pearson's interval, two-sided.
+    #[must_use]
+    pub fn share_interval(&self) -> Option<Interval> {
+        self.share_interval
+    }
+
+    /// How far the bound is within the limit; negative if it is beyond.
+    #[must_use]
+    pub fn margin(&self) -> Option<f64> {
+        self.margin
+    }
+
+    /// The same in standard deviations of the quantity.
+    #[must_use]
+    pub fn margin_deviations(&self) -> Option<f64> {
+        self.margin_deviations
+    }
+
+    /// The share of its runs in which a vehicle must keep it, to pass nine times in ten with as many runs.
+    #[must_use]
+    pub fn success_to_pass(&self) -> Option<f64> {
+        self.success_to_pass
+    }
+
+    /// The verdict in a line, with what it rests on.
+    #[must_use]
+    pub fn line(&self) -> String {
+        let Self { failures, counted, .. } = self;
+        let keep = if *failures == 1 { "run does not keep it" } else { "runs do not keep it" };
+        let may = self.allowed_failures.map_or_else(
+            || "so few runs show nothing yet".to_owned(),
+            |allowed| format!("{allowed} may"),
+        );
+        format!("{}: {failures} of {counted} {keep}, and {may}", words(self.verdict))
+    }
+
+    /// The worst runs, the worst first.
+    #[must_use]
+    pub fn worst(&self) -> &[RunBeyond] {
+        &self.worst
+    }
+}
+
+/// The answer first, and then what it rests on, in lines.
+impl fmt::Display for Judgement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (counted, requirement) = (self.counted, &self.requirement);
+        let (share, confidence) = (requirement.probability(), requirement.confidence().level());
+        let (share, confidence) = (share_in_percent(share), share_in_percent(confidence));
+        writeln!(f, "  {}", self.line())?;
+        if let Verdict::Undecided { if_no_more_fail, at_this_rate } = self.verdict {
+            let met = |runs: u64, if_so: &str| {
+                format!("  more runs    {runs} more would show that it is met, {if_so}\n")
+            };
+            let all = if_no_more_fail.map(|runs| met(runs, "if all of them keep it"));
+            let rate = at_this_rate.filter(|runs| Some(*runs) != if_no_more_fail);
+            let rate = rate.map(|runs| met(runs, "if as large a share of them does not keep it"));
+            f.write_str(&(all.unwrap_or_default() + &rate.unwrap_or_default()))?;
+        }
+        if self.runs_without_number > 0 {
+            let fate = match requirement.failed_runs() {
+                FailedRuns::Against => "count against it",
+                FailedRuns::LeftOut => "are left out",
+            };
+            writeln!(
+                f,
+                "  failed       {} runs without a number {fate}",
+                self.runs_without_number
+            )?;
+        }
+        match self.tolerance {
+            Some(bound) => writeln!(
+                f,
+                "  bound        {share} of all runs are {}, with {confidence} confidence",
+                bound.short()
+            )?,
+            None => writeln!(f, "  bound        none: too few runs, or too many failed")?,
+        }
+        if let Some(margin) = self.margin {
+            write!(f, "  margin       {}", short(margin))?;
+            match self.margin_deviations {
+                Some(deviations) => writeln!(f, ", which is {deviations:.1} standard deviations")?,
+                None => writeln!(f)?,
+            }
+        }
+        if let (Some(observed), Some(interval)) = (self.share, &self.share_interval) {
+            let [lower, upper] = [interval.lower(), interval.upper()].map(share_in_percent);
+            writeln!(
+                f,
+                "  share        {} of the runs keep it ({confidence} interval: {lower} to {upper})",
+                share_in_percent(observed)
+            )?;
+        }
+        if let Some(good) = self.success_to_pass {
+            writeln!(
+                f,
+                "  to pass      a vehicle must keep it in {} of all runs, to pass nine times in ten with {counted} runs",
+                share_in_percent(good)
+            )?;
+        }
+        let worst: Vec<String> =
+            self.worst.iter().map(|run| format!("{} ({})", run.run, short(run.value))).collect();
+        if worst.is_empty() { Ok(()) } else { writeln!(f, "  worst runs   {}", worst.join(", ")) }
+    }
+}
+
+/// A verdict in words, in capital letters.
+fn words(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Met => "MET",
+        Verdict::NotMet => "NOT MET",
+        Verdict::Undecided { .. } => "NOT DECIDED",
+    }
+}
+
+/// A share in percent, with the digits that tell it from 0 and 100 %.
+#[must_use]
+pub fn share_in_percent(share: f64) -> String {
+    let digits = (0..12).find(|digits| {
+        let unit = 10_f64.powi(-*digits);
+        (1.0 - share).min(share) * 100.0 >= 10.0 * unit || share == 0.0 || share == 1.0
+    });
+    let text = format!("{:.*}", digits.unwrap_or(12) as usize, share * 100.0);
+    let text =
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    format!("{text} %")
+}
+
+/// A number in five digits.
+fn short(x: f64) -> String {
+    let text = format!("{x:.4e}");
+    text.parse::<f64>().map_or(text, |rounded| rounded.to_string())
+}
+
+/// Why runs cannot be judged.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum JudgementError {
+    /// The table cannot be read.
+    #[error(transparent)]
+    Table(#[from] ForeignError),
+    /// The runs cannot be read.
+    #[error(transparent)]
+    Runs(#[from] RunsError),
+    /// The shares or the number of runs are out of range.
+    #[error(transparent)]
+    Statistics(#[from] StatisticsError),
+}

@@ -1,0 +1,89 @@
+//! Requirements judged by the runs of a campaign, block by block and in flat memory.
+
+use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
+
+use super::{
+    Judgement, JudgementError, Requirement,
+    gathering::{Gathering, Part},
+};
+use crate::{runs::Runs, table::Table};
+
+/// Requirements of which the runs of a model are looked at, while they are done.
+#[derive(Debug)]
+pub struct Judging {
+    gatherings: Vec<Gathering>,
+    /// Runs of a group, which have something in common: the first of each is independent of all others.
+    group: u64,
+    parts: Mutex<Vec<Option<Part>>>,
+}
+
+impl Judging {
+    /// Of at most so many runs. If runs come in groups that have something in common, as flights of a vehicle, the first run of
+    /// each group is judged: a verdict counts runs that are independent of each other. Without groups their size is 1.
+    #[must_use]
+    pub fn new(requirements: impl IntoIterator<Item = Requirement>, runs: u64, group: u64) -> Self {
+        let group = group.max(1);
+        let gathering = |requirement| Gathering::new(requirement, runs.div_ceil(group));
+        let gatherings: Vec<Gathering> = requirements.into_iter().map(gathering).collect();
+        let parts = Mutex::new(gatherings.iter().map(Gathering::part).collect());
+        Self { gatherings, group, parts }
+    }
+
+    /// Looks at a block, once at each and in any order.
+    pub fn look(&self, block: &Table) {
+        if self.gatherings.is_empty() {
+            return;
+        }
+        let empty: Vec<Option<Part>> = self.gatherings.iter().map(Gathering::part).collect();
+        let gathered = self.gather(empty, block);
+        let mut parts = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
+        merge(&mut parts, gathered);
+    }
+
+    /// What the runs say whose blocks have all been looked at, which are read again if need be. None if there are no runs.
+    ///
+    /// # Errors
+    /// A block cannot be read, or there are more runs than can be judged.
+    pub fn finish(mut self, runs: &Runs) -> Result<Vec<Judgement>, JudgementError> {
+        let parts = self.parts.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let mut parts = std::mem::take(parts);
+        loop {
+            for (gathering, part) in self.gatherings.iter_mut().zip(parts) {
+                part.map_or(Ok(()), |part| gathering.advance(part))?;
+            }
+            let empty: Vec<Option<Part>> = self.gatherings.iter().map(Gathering::part).collect();
+            if empty.iter().all(Option::is_none) {
+                let judged = self.gatherings.iter().filter(|gathering| gathering.tally.runs > 0);
+                return judged.map(Judgement::of).collect();
+            }
+            let whole = Mutex::new(empty.clone());
+            runs.scan(|block| {
+                let gathered = self.gather(empty.clone(), block);
+                merge(&mut whole.lock().unwrap_or_else(PoisonError::into_inner), gathered);
+            })?;
+            parts = whole.into_inner().unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Adds a block to what is gathered.
+    fn gather(&self, mut parts: Vec<Option<Part>>, block: &Table) -> Vec<Option<Part>> {
+        self.gatherings.par_iter().zip(&mut parts).for_each(|(gathering, part)| {
+            let Some(part) = part else { return };
+            let columns = gathering.requirement.quantity().columns().iter();
+            let columns: Vec<_> = columns.map(|name| block.measured(name)).collect();
+            let runs = (block.first()..).zip(0..block.len());
+            let judged = runs.filter(|(run, _)| run.is_multiple_of(self.group));
+            gathering.gather(part, judged, &columns);
+        });
+        parts
+    }
+}
+
+fn merge(whole: &mut [Option<Part>], parts: Vec<Option<Part>>) {
+    for (whole, part) in whole.iter_mut().zip(parts) {
+        if let (Some(whole), Some(part)) = (whole, part) {
+            whole.merge(part);
+        }
+    }
+}

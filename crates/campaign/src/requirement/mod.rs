@@ -1,0 +1,331 @@
+//! Requirements: that a number of a run keeps a bound in at least a share of all runs, at a confidence.
+
+mod gathering;
+mod judgement;
+mod judging;
+mod measured;
+mod text;
+
+use gyradius_statistics::{Acceptance, Confidence, StatisticsError};
+use serde::{Deserialize, Serialize};
+use std::{fmt, str::FromStr};
+
+pub use gathering::RunBeyond;
+pub use judgement::{Judgement, JudgementError, share_in_percent};
+pub use judging::Judging;
+pub use measured::Measured;
+
+/// That a number of a run keeps a bound in at least a share of all runs, at a confidence: a requirement.
+///
+/// A line of text is one, and the same stands in a scenario as a table with the keys `name`, `quantity`, one of `at_most`,
+/// `at_least` and `between`, `probability`, `confidence` and `failed_runs`.
+/// ```
+/// use gyradius_campaign::Requirement;
+///
+/// let requirement: Requirement = "abs(rate_deg_per_s) <= 1 in 99.73 % at 90 %".parse()?;
+/// assert!(requirement.is_kept(&[Some(-0.7)]));
+/// assert!(!requirement.is_kept(&[Some(-1.7)]));
+/// // A run that failed has no rate, and keeps no bound.
+/// assert!(!requirement.is_kept(&[None]));
+/// assert_eq!(requirement.probability(), 0.9973);
+/// # Ok::<(), gyradius_campaign::RequirementError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "RequirementForm", into = "RequirementForm")]
+pub struct Requirement {
+    name: String,
+    quantity: Measured,
+    bound: Bound,
+    probability: f64,
+    confidence: Confidence,
+    failed_runs: FailedRuns,
+    /// The model whose runs are judged, if not those of all.
+    model: Option<String>,
+}
+
+/// What a number has to keep.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    /// It is at most this.
+    AtMost(f64),
+    /// It is at least this.
+    AtLeast(f64),
+    /// It is between these, or one of them.
+    Between(f64, f64),
+}
+
+/// What becomes of runs that failed, or have no number for another reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FailedRuns {
+    /// They count against the requirement.
+    #[default]
+    Against,
+    /// They are left out, as if they had not been done.
+    LeftOut,
+}
+
+/// A requirement as it stands in a file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RequirementForm {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    quantity: Measured,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    at_most: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    at_least: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    between: Option<[f64; 2]>,
+    probability: f64,
+    confidence: f64,
+    #[serde(default)]
+    failed_runs: FailedRuns,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    model: Option<String>,
+}
+
+impl Requirement {
+    /// That a quantity keeps a bound in at least the share `probability` of all runs, with this confidence. Runs that failed count
+    /// against it.
+    ///
+    /// # Errors
+    /// A limit is not finite, the lower one is above the upper one, or probability or confidence is not strictly between 0 and 1.
+    pub fn new(
+        name: &str,
+        quantity: Measured,
+        bound: Bound,
+        probability: f64,
+        confidence: f64,
+    ) -> Result<Self, RequirementError> {
+        bound.check()?;
+        let refused = |field, value| RequirementError::Share { field, value };
+        if !(probability > 0.0 && probability < 1.0) {
+            return Err(refused("probability", probability));
+        }
+        let confidence =
+            Confidence::new(confidence).map_err(|_| refused("confidence", confidence))?;
+        Acceptance::new(probability, confidence)?;
+        let (name, failed_runs) = (name.to_owned(), FailedRuns::default());
+        Ok(Self { name, quantity, bound, probability, confidence, failed_runs, model: None })
+    }
+
+    /// The same, with this said of runs that failed.
+    #[must_use]
+    pub fn with_failed_runs(self, failed_runs: FailedRuns) -> Self {
+        Self { failed_runs, ..self }
+    }
+
+    /// The same, of the runs of one model alone.
+    #[must_use]
+    pub fn of_model(self, model: &str) -> Self {
+        Self { model: Some(model.to_owned()), ..self }
+    }
+
+    /// The model whose runs are judged, if not those of all models.
+    #[must_use]
+    pub fn model(&self) -> Option<&str> {
+        self.model.as_deref()
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it is about.
+    #[must_use]
+    pub fn quantity(&self) -> &Measured {
+        &self.quantity
+    }
+
+    /// What has to be kept.
+    #[must_use]
+    pub fn bound(&self) -> Bound {
+        self.bound
+    }
+
+    /// In which share of all runs, at least.
+    #[must_use]
+    pub fn probability(&self) -> f64 {
+        self.probability
+    }
+
+    /// How certain that has to be.
+    #[must_use]
+    pub fn confidence(&self) -> Confidence {
+        self.confidence
+    }
+
+    /// What becomes of runs that failed.
+    #[must_use]
+    pub fn failed_runs(&self) -> FailedRuns {
+        self.failed_runs
+    }
+
+    /// When so many runs decide it.
+    pub(crate) fn acceptance(&self) -> Result<Acceptance, StatisticsError> {
+        Acceptance::new(self.probability, self.confidence)
+    }
+
+    /// Whether a run keeps it that has these numbers in the columns of the quantity.
+    #[must_use]
+    pub fn is_kept(&self, numbers: &[Option<f64>]) -> bool {
+        self.quantity.of(numbers).is_some_and(|x| self.bound.is_kept(x))
+    }
+}
+
+impl Bound {
+    /// Whether a number keeps it.
+    #[must_use]
+    pub fn is_kept(self, x: f64) -> bool {
+        self.excess(x) <= 0.0
+    }
+
+    /// How far a number is beyond it; negative if it is within.
+    #[must_use]
+    pub fn excess(self, x: f64) -> f64 {
+        match self {
+            Self::AtMost(limit) => x - limit,
+            Self::AtLeast(limit) => limit - x,
+            Self::Between(lower, upper) => (lower - x).max(x - upper),
+        }
+    }
+
+    /// The same kind of bound, wider by so much.
+    #[must_use]
+    pub fn wider(self, by: f64) -> Self {
+        match self {
+            Self::AtMost(limit) => Self::AtMost(limit + by),
+            Self::AtLeast(limit) => Self::AtLeast(limit - by),
+            Self::Between(lower, upper) => Self::Between(lower - by, upper + by),
+        }
+    }
+
+    /// With its limits in five digits.
+    fn short(self) -> Self {
+        let short = |x: f64| format!("{x:.4e}").parse().unwrap_or(x);
+        match self {
+            Self::AtMost(limit) => Self::AtMost(short(limit)),
+            Self::AtLeast(limit) => Self::AtLeast(short(limit)),
+            Self::Between(lower, upper) => Self::Between(short(lower), short(upper)),
+        }
+    }
+
+    fn check(self) -> Result<(), RequirementError> {
+        let limits = match self {
+            Self::AtMost(limit) | Self::AtLeast(limit) => [limit, limit],
+            Self::Between(lower, upper) => [lower, upper],
+        };
+        if limits.iter().all(|limit| limit.is_finite()) && limits[0] <= limits[1] {
+            return Ok(());
+        }
+        Err(RequirementError::Limits { lower: limits[0], upper: limits[1] })
+    }
+}
+
+/// In words, after the quantity.
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::AtMost(limit) => write!(f, "at most {limit}"),
+            Self::AtLeast(limit) => write!(f, "at least {limit}"),
+            Self::Between(lower, upper) => write!(f, "between {lower} and {upper}"),
+        }
+    }
+}
+
+impl FromStr for Requirement {
+    type Err = RequirementError;
+
+    fn from_str(text: &str) -> Result<Self, RequirementError> {
+        text::parse(text)
+    }
+}
+
+impl TryFrom<RequirementForm> for Requirement {
+    type Error = RequirementError;
+
+    fn try_from(form: RequirementForm) -> Result<Self, RequirementError> {
+        let bound = match (form.at_most, form.at_least, form.between) {
+            (Some(limit), None, None) => Bound::AtMost(limit),
+            (None, Some(limit), None) => Bound::AtLeast(limit),
+            (None, None, Some([lower, upper])) => Bound::Between(lower, upper),
+            _ => return Err(RequirementError::OneBound),
+        };
+        let name = form.name.unwrap_or_else(|| format!("{} {bound}", form.quantity));
+        let requirement =
+            Self::new(&name, form.quantity, bound, form.probability, form.confidence)?;
+        let model = form.model;
+        Ok(Self { model, ..requirement.with_failed_runs(form.failed_runs) })
+    }
+}
+
+impl From<Requirement> for RequirementForm {
+    fn from(requirement: Requirement) -> Self {
+        let Requirement { name, quantity, bound, probability, confidence, failed_runs, model } =
+            requirement;
+        let (at_most, at_least, between) = match bound {
+            Bound::AtMost(limit) => (Some(limit), None, None),
+            Bound::AtLeast(limit) => (None, Some(limit), None),
+            Bound::Between(lower, upper) => (None, None, Some([lower, upper])),
+        };
+        let (name, confidence) = (Some(name), confidence.level());
+        Self {
+            name,
+            quantity,
+            at_most,
+            at_least,
+            between,
+            probability,
+            confidence,
+            failed_runs,
+            model,
+        }
+    }
+}
+
+/// Why a requirement is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RequirementError {
+    /// The line cannot be read.
+    #[error(
+        "“{text}”, at {at}: {problem}; it is written as “abs(x) <= 1 in 99.73 % at 90 %”, with the name of a column for x"
+    )]
+    Text {
+        /// The line.
+        text: String,
+        /// Where.
+        at: String,
+        /// What is wrong there.
+        problem: String,
+    },
+    /// There is no bound, or more than one.
+    #[error("there must be one of at_most, at_least and between")]
+    OneBound,
+    /// The limits are not finite, or in the wrong order.
+    #[error("the limits are {lower} and {upper}: they must be finite, and the lower one first")]
+    Limits {
+        /// The lower one, or the one that there is.
+        lower: f64,
+        /// The upper one.
+        upper: f64,
+    },
+    /// A share is too near to 0 or 1, or the confidence is below one half.
+    #[error(transparent)]
+    Extreme(#[from] StatisticsError),
+    /// A share is out of range.
+    #[error(
+        "{field} = {value}: it must lie strictly between 0 and 1, as 0.9973, or as 99.73 % in a line"
+    )]
+    Share {
+        /// Which.
+        field: &'static str,
+        /// The value.
+        value: f64,
+    },
+}

@@ -1,0 +1,301 @@
+//! Requirements judged by tables of other programs, held against counting and sorting.
+
+use gyradius_campaign::{
+    Bound, FailedRuns, ForeignTable, Judgement, Measured, Requirement, Verdict,
+};
+use parquet::{
+    data_type::{BoolType, DoubleType, FloatType, Int32Type, Int64Type},
+    file::{properties::WriterProperties, writer::SerializedFileWriter},
+    schema::parser::parse_message_type,
+};
+use proptest::prelude::*;
+use std::{fmt::Write, fs, sync::Arc};
+
+/// Numbers of three columns, some of which are missing.
+fn rows() -> impl Strategy<Value = Vec<[Option<f64>; 3]>> {
+    let number = prop_oneof![
+        6 => (-4.0..4.0).prop_map(Some),
+        2 => prop::sample::select(vec![-1.0, 0.0, 1.0, 2.0]).prop_map(Some),
+        1 => Just(None),
+    ];
+    prop::collection::vec([number.clone(), number.clone(), number], 1..400)
+}
+
+fn quantity() -> impl Strategy<Value = (&'static str, fn(&[Option<f64>; 3]) -> Option<f64>)> {
+    prop::sample::select(vec![
+        ("x", (|row| row[0]) as fn(&[Option<f64>; 3]) -> Option<f64>),
+        ("abs(\"y, as drawn\")", |row| row[1].map(f64::abs)),
+        ("norm(x, \"y, as drawn\", z[1])", |row| {
+            let [x, y, z] = [row[0]?, row[1]?, row[2]?];
+            Some(libm::hypot(libm::hypot(x.abs(), y), z))
+        }),
+    ])
+}
+
+fn bound() -> impl Strategy<Value = Bound> {
+    prop_oneof![
+        (-3.0..3.0).prop_map(Bound::AtMost),
+        (-3.0..3.0).prop_map(Bound::AtLeast),
+        Just(Bound::AtMost(1.0)),
+        (-3.0..3.0, 0.0..4.0).prop_map(|(lower, width)| Bound::Between(lower, lower + width)),
+    ]
+}
+
+/// Probability that of `n` runs, each of which fails with this probability, at most `k` do.
+fn at_most(k: u64, n: u64, failing: f64) -> f64 {
+    let mut ln = n as f64 * (-failing).ln_1p();
+    let mut sum = ln.exp();
+    for i in 0..k {
+        ln += ((n - i) as f64).ln() - ((i + 1) as f64).ln() + failing.ln() - (-failing).ln_1p();
+        sum += ln.exp();
+    }
+    sum
+}
+
+/// Failures that so many runs may have, by trying.
+fn allowed(n: u64, probability: f64, confidence: f64) -> Option<u64> {
+    (0..=n).take_while(|k| at_most(*k, n, 1.0 - probability) <= 1.0 - confidence).last()
+}
+
+fn csv(rows: &[[Option<f64>; 3]], separator: char, missing: &str) -> String {
+    let cell = |x: &Option<f64>| x.map_or(missing.to_owned(), |x| x.to_string());
+    let mut text = format!("run{separator}x{separator}\"y, as drawn\"{separator}z[1]\n");
+    for (run, row) in rows.iter().enumerate() {
+        let [x, y, z] = row.each_ref().map(cell);
+        writeln!(text, "{run}{separator}{x}{separator}{y}{separator}{z}").unwrap();
+    }
+    text
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Every number of a judgement is that of counting and sorting, whatever the quantity, bound, share and confidence.
+    #[test]
+    fn judgements_are_those_of_counting_and_sorting(
+        rows in rows(),
+        (name, value) in quantity(),
+        bound in bound(),
+        probability in prop_oneof![0.5..0.99, Just(0.9)],
+        confidence in 0.5..0.99,
+        left_out in any::<bool>(),
+        separator in prop::sample::select(vec![',', ';', '\t']),
+        missing in prop::sample::select(vec!["", "nan", "NaN", "NA"]),
+    ) {
+        let scratch = tempfile::tempdir().unwrap();
+        let path = scratch.path().join("runs.csv");
+        fs::write(&path, csv(&rows, separator, missing)).unwrap();
+        let table = ForeignTable::open(&path).unwrap();
+        let failed = if left_out { FailedRuns::LeftOut } else { FailedRuns::Against };
+        let quantity: Measured = name.parse().unwrap();
+        let requirement = Requirement::new("it", quantity, bound, probability, confidence).unwrap();
+        let requirement = requirement.with_failed_runs(failed);
+        let judged = Judgement::of_table(&[requirement], &table).unwrap();
+        let told = serde_json::to_value(&judged[0]).unwrap();
+
+        let values: Vec<(u64, f64)> =
+            (0..).zip(&rows).filter_map(|(run, row)| Some((run, value(row)?))).collect();
+        let without = (rows.len() - values.len()) as u64;
+        let beyond = values.iter().filter(|(_, x)| !bound.is_kept(*x)).count() as u64;
+        let worse = if left_out { 0 } else { without };
+        let (n, failures) = (values.len() as u64 + worse, beyond + worse);
+        prop_assert_eq!(&told["runs"], rows.len());
+        prop_assert_eq!(&told["runs_without_number"], without);
+        prop_assert_eq!((judged[0].counted(), judged[0].failures()), (n, failures));
+        let may = (n > 0).then(|| allowed(n, probability, confidence)).flatten();
+        prop_assert_eq!(judged[0].allowed_failures(), may);
+        prop_assert_eq!(judged[0].verdict() == Verdict::Met, may.is_some_and(|may| failures <= may));
+        // It is not met if the complement is shown as surely.
+        let not = n > 0 && 1.0 - at_most(failures.saturating_sub(1), n, 1.0 - probability) <= 1.0 - confidence && failures > 0;
+        prop_assert_eq!(judged[0].verdict() == Verdict::NotMet, not);
+
+        let mut excess: Vec<(f64, u64)> =
+            values.iter().map(|(run, x)| (bound.excess(*x), *run)).collect();
+        excess.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let worst: Vec<u64> = excess.iter().take(10).map(|(_, run)| *run).collect();
+        prop_assert_eq!(judged[0].worst().iter().map(|run| run.run).collect::<Vec<_>>(), worst);
+        let place = may.and_then(|may| may.checked_sub(worse));
+        let margin = place.and_then(|place| excess.get(place as usize)).map(|(excess, _)| 0.0 - excess);
+        prop_assert_eq!(told["margin"].as_f64(), margin);
+        // Met is the same as a margin that is not negative.
+        if let Some(margin) = margin {
+            prop_assert_eq!(judged[0].verdict() == Verdict::Met, margin >= 0.0);
+        }
+        let read: Judgement = serde_json::from_str(&told.to_string()).unwrap();
+        prop_assert_eq!(&read, &judged[0]);
+    }
+
+    /// A requirement that is printed is read as the same; so is one in JSON.
+    #[test]
+    fn requirements_read_back(
+        (name, _) in quantity(),
+        bound in bound(),
+        probability in 1e-6..0.999_999_f64,
+        confidence in 0.5..0.999_999_f64,
+        percent in any::<bool>(),
+    ) {
+        let said = match bound {
+            Bound::AtMost(limit) => format!("{name} <= {limit:?}"),
+            Bound::AtLeast(limit) => format!("{name}≥{limit:?}"),
+            Bound::Between(lower, upper) => format!("{lower:?}<= {name} <={upper:?}"),
+        };
+        let text = if percent {
+            format!("{said} in {} % at {}%", 100.0 * probability, 100.0 * confidence)
+        } else {
+            format!("  {said} in {probability} at {confidence} ")
+        };
+        let read: Requirement = text.parse().unwrap();
+        prop_assert_eq!(read.bound(), bound);
+        prop_assert_eq!(read.quantity().to_string(), name);
+        prop_assert!((read.probability() - probability).abs() < 1e-15);
+        prop_assert!((read.confidence().level() - confidence).abs() < 1e-15);
+        let json = serde_json::to_string(&read).unwrap();
+        prop_assert_eq!(serde_json::from_str::<Requirement>(&json).unwrap(), read);
+    }
+
+    /// No text makes the reader panic.
+    #[test]
+    fn any_text_is_read_or_refused(text in "[a-z0-9 <>=≤≥%().,\"\\\\_-]{0,40}|\\PC{0,30}") {
+        if let Ok(requirement) = text.parse::<Requirement>() {
+            prop_assert!(requirement.probability() > 0.0);
+        }
+        let _ = text.parse::<Measured>();
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_requirement_is_said() {
+    for (text, expected) in [
+        ("", "name of a column"),
+        ("x < 1 in 99 % at 90 %", "“<=” or “>=”"),
+        ("x <= one in 99 % at 90 %", "must be a number"),
+        ("x <= 1", "“in”"),
+        ("x <= 1 in 99 %", "“at”"),
+        ("x <= 1 in 99.73 at 90 %", "probability = 99.73"),
+        ("x <= 1 in 99 % at 100 %", "confidence = 1"),
+        ("x <= inf in 99 % at 90 %", "must be a number"),
+        ("2 <= x <= 1 in 99 % at 90 %", "the limits are 2 and 1"),
+        ("1 <= x >= 0 in 99 % at 90 %", "same way"),
+        ("abs(x, y) <= 1 in 99 % at 90 %", "abs is of one column"),
+        ("norm(x <= 1 in 99 % at 90 %", "“)”"),
+        ("\"x <= 1 in 99 % at 90 %", "quotation mark"),
+        ("x <= 1 in 99 % at 90 % or so", "nothing may follow"),
+    ] {
+        let error = text.parse::<Requirement>().unwrap_err().to_string();
+        assert!(error.contains(expected), "{text}: {error}");
+    }
+    for (json, expected) in [
+        (r#"{"quantity":"x","probability":0.9,"confidence":0.9}"#, "one of at_most"),
+        (
+            r#"{"quantity":"x","at_most":1,"at_least":0,"probability":0.9,"confidence":0.9}"#,
+            "one of",
+        ),
+        (r#"{"quantity":"x","at_most":1,"confidence":0.9}"#, "missing field `probability`"),
+        (
+            r#"{"quantity":"x","at_most":1,"probability":99.73,"confidence":0.9}"#,
+            "probability = 99.73",
+        ),
+    ] {
+        let error = serde_json::from_str::<Requirement>(json).unwrap_err().to_string();
+        assert!(error.contains(expected), "{json}: {error}");
+    }
+}
+
+/// Every kind of number that Parquet has, in several groups and files; texts, dates and lists are refused.
+#[test]
+fn parquet_of_any_writer_is_read() {
+    let scratch = tempfile::tempdir().unwrap();
+    let schema = "message any {
+        required boolean flag; optional int32 short; required int64 long (INTEGER(64, true)); optional float single;
+        optional double number; required int32 day (DATE); required binary text (UTF8);
+        optional group list { repeated double item; }
+    }";
+    let write = |name: &str, first: i64| {
+        let file = fs::File::create(scratch.path().join(name)).unwrap();
+        let schema = Arc::new(parse_message_type(schema).unwrap());
+        let properties = Arc::new(WriterProperties::builder().build());
+        let mut writer = SerializedFileWriter::new(file, schema, properties).unwrap();
+        for group in 0..2 {
+            let mut rows = writer.next_row_group().unwrap();
+            let long: Vec<i64> = (0..3).map(|i| first + 3 * group + i).collect();
+            macro_rules! column {
+                ($type:ty, $values:expr, $definitions:expr, $repetitions:expr) => {{
+                    let mut column = rows.next_column().unwrap().unwrap();
+                    column
+                        .typed::<$type>()
+                        .write_batch($values, $definitions, $repetitions)
+                        .unwrap();
+                    column.close().unwrap();
+                }};
+            }
+            column!(BoolType, &[true, false, true], None, None);
+            column!(Int32Type, &[7], Some(&[0, 1, 0]), None);
+            column!(Int64Type, &long, None, None);
+            column!(FloatType, &[0.5, -0.25], Some(&[1, 0, 1]), None);
+            column!(DoubleType, &[1e300, f64::NAN], Some(&[1, 0, 1]), None);
+            column!(Int32Type, &[1, 2, 3], None, None);
+            let texts: Vec<parquet::data_type::ByteArray> =
+                ["a", "b", "c"].map(Into::into).to_vec();
+            column!(parquet::data_type::ByteArrayType, &texts, None, None);
+            column!(DoubleType, &[1.0, 2.0], Some(&[2, 2, 0, 1]), Some(&[0, 1, 0, 0]));
+            rows.close().unwrap();
+        }
+        writer.close().unwrap();
+    };
+    write("b.parquet", 6);
+    write("a.parquet", 0);
+    fs::write(scratch.path().join("notes.txt"), "mine").unwrap();
+    let table = ForeignTable::open(scratch.path()).unwrap();
+    let columns = ["flag", "short", "long", "single", "number"].map(str::to_owned);
+    let mut found = vec![Vec::new(); 5];
+    table
+        .scan(&columns, |some| {
+            found.iter_mut().zip(some).for_each(|(all, some)| all.extend(some.clone()));
+        })
+        .unwrap();
+    let four = |row: [Option<f64>; 3]| row.repeat(4);
+    assert_eq!(found[0], four([Some(1.0), Some(0.0), Some(1.0)]));
+    assert_eq!(found[1], four([None, Some(7.0), None]));
+    assert_eq!(found[2], (0..12).map(|i| Some(f64::from(i))).collect::<Vec<_>>());
+    assert_eq!(found[3], four([Some(0.5), None, Some(-0.25)]));
+    assert_eq!(found[4].iter().map(|x| x.map(f64::to_bits)).collect::<Vec<_>>().len(), 12);
+    for (column, expected) in [
+        ("day", "texts, dates or decimals"),
+        ("text", "texts, dates or decimals"),
+        ("list.item", "lists"),
+        ("other", "no column \"other\"; its columns are flag, short"),
+    ] {
+        let error = table.scan(&[column.to_owned()], |_| {}).unwrap_err().to_string();
+        assert!(error.contains(expected), "{column}: {error}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_table_is_said() {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = scratch.path().join("it.csv");
+    let requirement = ["x <= 1 in 90 % at 90 %".parse::<Requirement>().unwrap()];
+    for (text, expected) in [
+        ("", "empty"),
+        ("\n\n", "empty"),
+        ("y\n1\n", "no column \"x\"; its columns are y"),
+        ("x,x\n1,2\n", "two columns are called \"x\""),
+        ("x\n1\nabout 2\n", "line 3, column \"x\": \"about 2\" is not a number"),
+        ("x,y\n1,2\n3\n", "found record with 1 fields"),
+        ("PAR1", "Parquet"),
+        ("PAR1 and so on, which is no Parquet", "Parquet"),
+        ("x\n", "no rows"),
+    ] {
+        fs::write(&path, text).unwrap();
+        let judged = ForeignTable::open(&path)
+            .map_err(|e| e.to_string())
+            .and_then(|table| Judgement::of_table(&requirement, &table).map_err(|e| e.to_string()));
+        let error = judged.unwrap_err();
+        assert!(error.contains(expected) && error.contains("it.csv"), "{text:?}: {error}");
+    }
+    for path in [scratch.path(), &scratch.path().join("none.csv")] {
+        assert!(ForeignTable::open(path).is_err());
+    }
+    #[cfg(unix)]
+    assert!(ForeignTable::open("/dev/zero".as_ref()).unwrap_err().to_string().contains("regular"));
+}

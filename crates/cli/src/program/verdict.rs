@@ -1,0 +1,40 @@
+//! `gyradius verdict`: whether the runs in a table of anybody's meet requirements.
+
+use gyradius_study::{FailedRuns, ForeignTable, Judgement, Requirement, Verdict};
+use serde_json::json;
+use std::{error::Error, fmt::Write, path::Path, process::ExitCode};
+
+use crate::program::{
+    args::VerdictArgs,
+    output::{print, print_json},
+};
+
+/// What the program returns if a requirement is not met, or not decided.
+const NOT_MET: u8 = 1;
+
+/// Runs the verb.
+pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error>> {
+    let table = ForeignTable::open(&arguments.table)?;
+    let failed = if arguments.leave_out_failed { FailedRuns::LeftOut } else { FailedRuns::Against };
+    let requirements: Vec<Requirement> =
+        arguments.require.iter().map(|r| r.clone().with_failed_runs(failed)).collect();
+    let judgements = Judgement::of_table(&requirements, &table)?;
+    if arguments.json {
+        let judged = json!({ "table": arguments.table, "requirements": judgements });
+        print_json(&serde_json::to_string_pretty(&judged)?)?;
+    } else {
+        print(&text(&arguments.table, &judgements))?;
+    }
+    let met = judgements.iter().all(|judgement| judgement.verdict() == Verdict::Met);
+    Ok(if met { ExitCode::SUCCESS } else { ExitCode::from(NOT_MET) })
+}
+
+fn text(table: &Path, judgements: &[Judgement]) -> String {
+    let runs = judgements.first().map_or(0, Judgement::runs);
+    let mut text = format!("{}: {runs} runs\n", table.display());
+    for judgement in judgements {
+        // Writing to a string does not fail.
+        let _ = write!(text, "\n{}\n{judgement}", judgement.requirement().name());
+    }
+    text
+}

@@ -1,0 +1,173 @@
+//! Requirements of scenarios and of tables: judged twice, by studies and by the verb that reads their tables.
+
+use serde_json::Value;
+use std::fs;
+
+use crate::scratch::{Scratch, files};
+
+/// The built-in study under one model, of which some runs fail, with these requirements.
+fn scenario(head: &str, requirements: &str) -> String {
+    let text = fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../study/src/scenario/peck-2003.toml"
+    ));
+    let text = text.unwrap();
+    let (first, rest) = text.split_once("# The law behind").unwrap();
+    let (_, source) = rest.split_once("# What the paper prints").unwrap();
+    let (before, after) = first.split_once("[payload.dispersion]").unwrap();
+    let before: Vec<&str> = before.lines().filter(|line| !line.starts_with("runs =")).collect();
+    let before = before.join("\n");
+    format!(
+        "{head}\n{before}\n[payload.dispersion]\nmass_percent = 60\n{after}\n{requirements}\n#{source}"
+    )
+}
+
+fn done(scratch: &Scratch, arguments: &[&str], code: i32) -> String {
+    let output = scratch.run(arguments);
+    let [out, error] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {out}{error}");
+    format!("{out}{error}")
+}
+
+/// As TOML and in a line.
+const REQUIREMENTS: [(&str, &str, &str); 4] = [
+    ("nutation", "quantity = \"nutation_deg\"\nat_most = 5.0", "nutation_deg <= 5"),
+    (
+        "speed",
+        "quantity = \"relative_speed_m_per_s\"\nbetween = [0.5, 2.0]",
+        "0.5 <= relative_speed_m_per_s <= 2",
+    ),
+    (
+        "tip-off",
+        "quantity = \"norm(payload_tip_off_1_deg_per_s, payload_tip_off_2_deg_per_s)\"\nat_least = 1.0",
+        "norm(payload_tip_off_1_deg_per_s, payload_tip_off_2_deg_per_s) >= 1",
+    ),
+    ("flag", "quantity = \"realizable\"\nat_least = 1.0", "realizable >= 1"),
+];
+
+fn tables(failed_runs: &str) -> String {
+    let table = |(name, keys, _): &(&str, &str, &str)| {
+        format!(
+            "[[requirements]]\nname = \"{name}\"\n{keys}\nprobability = 0.9\nconfidence = 0.9\nfailed_runs = \"{failed_runs}\"\n"
+        )
+    };
+    REQUIREMENTS.iter().map(table).collect()
+}
+
+/// The judgements in a JSON text, without the names that differ.
+fn judged(json: &Value) -> Vec<Value> {
+    let mut all = json["requirements"].as_array().unwrap().clone();
+    for judged in &mut all {
+        let judged = judged.as_object_mut().unwrap();
+        judged.remove("model");
+        judged["requirement"].as_object_mut().unwrap().remove("name");
+    }
+    all
+}
+
+/// A study and the verb say the same of its runs, whether failed runs count or not; in shards and after another requirement is asked
+/// for too, for which no run is done again.
+#[test]
+fn studies_and_tables_are_judged_alike() {
+    let scratch = Scratch::new();
+    for (failed_runs, flag) in [("against", None), ("left-out", Some("--leave-out-failed"))] {
+        fs::write(scratch.path("it.toml"), scenario("runs = 700", &tables(failed_runs))).unwrap();
+        let study = ["study", "--scenario", "it.toml", "--out", failed_runs];
+        let said = done(&scratch, &study, 1);
+        assert!(said.contains("requirement nutation, proposed"), "{said}");
+        let lines = REQUIREMENTS.map(|(_, _, line)| format!("{line} in 90 % at 90 %"));
+        let runs = format!("{failed_runs}/runs/proposed");
+        let mut verdict = vec!["verdict", runs.as_str(), "--json"];
+        lines.iter().for_each(|line| verdict.extend(["--require", line]));
+        verdict.extend(flag);
+        let table: Value = serde_json::from_str(&done(&scratch, &verdict, 1)).unwrap();
+        let summary = fs::read_to_string(scratch.path(failed_runs).join("summary.json")).unwrap();
+        let summary: Value = serde_json::from_str(&summary).unwrap();
+        assert_eq!(judged(&summary), judged(&table));
+        let failures = |i: usize| summary["requirements"][i]["failures"].as_u64().unwrap();
+        let failed = summary["requirements"][0]["runs_without_number"].as_u64().unwrap();
+        assert!(failed > 0 && (failed_runs == "against") == (failures(3) >= failed));
+
+        let sharded = ["study", "--scenario", "it.toml", "--out", "sharded", "--shard"];
+        for shard in ["2/2", "1/2"] {
+            done(&scratch, &[&sharded[..], &[shard]].concat(), 0);
+        }
+        done(&scratch, &["report", "sharded"], 0);
+        let content = |folder: &str| {
+            let mut files = files(&scratch.path(folder));
+            files.remove(".gyradius/lock");
+            files
+        };
+        assert_eq!(content("sharded"), content(failed_runs));
+        fs::remove_dir_all(scratch.path("sharded")).unwrap();
+    }
+
+    // Another requirement, of the same runs.
+    let blocks = |folder: &str| {
+        let mut files = files(&scratch.path(folder));
+        files.retain(|name, _| name.starts_with("runs/"));
+        files
+    };
+    let before = blocks("against");
+    let easy = "[[requirements]]\nquantity = \"nutation_deg\"\nat_most = 180.0\nprobability = 0.5\nconfidence = 0.5\n";
+    fs::write(scratch.path("it.toml"), scenario("runs = 700", easy)).unwrap();
+    let said = done(&scratch, &["study", "--scenario", "it.toml", "--out", "against"], 0);
+    assert!(said.contains("requirement nutation_deg at most 180, proposed\n  MET"), "{said}");
+    assert_eq!(blocks("against"), before);
+}
+
+/// Flights of a vehicle that have something in common are not counted as if they were independent.
+#[test]
+fn of_vehicles_the_first_flights_are_judged() {
+    let scratch = Scratch::new();
+    let require = |failed| tables(failed);
+    let text = scenario("vehicles = 40\nflights = 5", &require("against"));
+    let text =
+        text.replace("mass_percent = 60", "mass_percent = { sigma = 60, drawn = \"vehicle\" }");
+    fs::write(scratch.path("it.toml"), text).unwrap();
+    done(&scratch, &["study", "--scenario", "it.toml", "--out", "it"], 1);
+    let summary = fs::read_to_string(scratch.path("it/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    for judged in summary["requirements"].as_array().unwrap() {
+        assert_eq!((judged["runs"].as_u64(), judged["counted"].as_u64()), (Some(40), Some(40)));
+        for worst in judged["worst"].as_array().unwrap() {
+            assert_eq!(worst["run"].as_u64().unwrap() % 5, 0);
+        }
+    }
+    let report = fs::read_to_string(scratch.path("it/report.md")).unwrap();
+    assert!(report.contains("first flight of each vehicle"));
+}
+
+/// What is wrong with a requirement is named by its key, before the first run.
+#[test]
+fn wrong_requirements_are_refused() {
+    let scratch = Scratch::new();
+    let one =
+        |keys: &str| format!("[[requirements]]\n{keys}\nprobability = 0.9\nconfidence = 0.9\n");
+    for (requirement, expected) in [
+        (one("quantity = \"nutation\"\nat_most = 1"), "requirements[1].quantity: \"nutation\""),
+        (one("quantity = \"status\"\nat_most = 1"), "requirements[1].quantity: \"status\""),
+        (one("quantity = \"nutation_deg\""), "one of at_most"),
+        (one("quantity = \"nutation_deg\"\nat_most = inf"), "finite"),
+        (one("quantity = \"nutation_deg\"\nat_most = 1\nmodel = \"naive\""), "requirements[1].model: \"naive\""),
+        (one("quantity = \"nutation_deg\"\nat_most = 1\nlimit = 2"), "limit"),
+        ("[[requirements]]\nquantity = \"nutation_deg\"\nat_most = 1\n".to_owned(), "probability"),
+        (
+            "[[requirements]]\nquantity = \"nutation_deg\"\nat_most = 1\nprobability = 99.73\nconfidence = 0.9\n".to_owned(),
+            "probability = 99.73",
+        ),
+    ] {
+        fs::write(scratch.path("it.toml"), scenario("runs = 10", &requirement)).unwrap();
+        let said = done(&scratch, &["study", "--scenario", "it.toml", "--out", "it"], 2);
+        assert!(said.contains(expected), "{requirement}: {said}");
+        assert!(!scratch.path("it").exists());
+    }
+    fs::write(scratch.path("t.csv"), "x\n1\n").unwrap();
+    done(&scratch, &["verdict", "t.csv"], 2);
+    let said = done(&scratch, &["verdict", "t.csv", "--require", "x = 1"], 2);
+    assert!(said.contains("“<=” or “>=”"), "{said}");
+    let said = done(&scratch, &["verdict", "t.csv", "--require", "y <= 1 in 90 % at 90 %"], 2);
+    assert!(said.contains("t.csv") && said.contains("its columns are x"), "{said}");
+    let said = done(&scratch, &["verdict", "t.csv", "--require", "x <= 1 in 90 % at 90 %"], 1);
+    assert!(said.contains("NOT DECIDED") && said.contains("21 more"), "{said}");
+}

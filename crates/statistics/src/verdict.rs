@@ -1,0 +1,110 @@
+//! What a number of failures among a number of runs decides, and how many more runs would decide it.
+
+use crate::{StatisticsError, error, law};
+
+/// The most runs that are planned for: as a float, each number of runs up to here is exact.
+pub(crate) const MAX_PLANNED: u64 = 1_000_000_000_000_000;
+
+/// Whether a requirement "at least a share p of the flights succeed, with confidence c" is met.
+///
+/// ```
+/// use gyradius_statistics::{Acceptance, Confidence, Verdict};
+///
+/// let rule = Acceptance::new(0.9973, Confidence::new(0.9)?)?;
+/// assert_eq!(rule.verdict(2, 2000)?, Verdict::Met);
+/// assert_eq!(rule.verdict(12, 2000)?, Verdict::NotMet);
+/// // 2,473 runs allow 3 failures; at 3 failures in 2,000 runs, 6,613 allow the 10 that will have been seen.
+/// let undecided = Verdict::Undecided { if_no_more_fail: Some(473), at_this_rate: Some(4613) };
+/// assert_eq!(rule.verdict(3, 2000)?, undecided);
+/// # Ok::<(), gyradius_statistics::StatisticsError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum Verdict {
+    /// The true share of successes is at least p, with confidence c: if it were less, so few failures would be seen
+    /// with a probability of 1 − c at most.
+    Met,
+    /// The true share of successes is below p, with confidence c: if it were p or more, so many failures would be
+    /// seen with a probability of 1 − c at most.
+    NotMet,
+    /// Neither can be said yet.
+    Undecided {
+        /// The least number of further runs after which the requirement is met, if none of them fails; none if they
+        /// are more than 10¹⁵.
+        if_no_more_fail: Option<u64>,
+        /// A number of further runs after which the requirement is met, if the share of failures stays as it is,
+        /// counted up to whole failures. None if it is never met then, as the share of failures is 1 − p or more or
+        /// so near to it that 10¹⁵ runs do not do, and if there are no runs yet.
+        at_this_rate: Option<u64>,
+    },
+}
+
+/// When a requirement is met, and when it is not.
+pub(crate) trait Rule {
+    /// The largest share of failures with which the requirement is met.
+    fn failure_share(&self) -> f64;
+
+    /// Whether so many failures in so many runs show that it is met. Fewer failures or more runs do so too.
+    fn met(&self, failures: u64, runs: u64) -> bool;
+
+    /// Whether so many failures in so many runs show that it is not met. More failures or fewer runs do so too.
+    fn not_met(&self, failures: u64, runs: u64) -> bool;
+
+    /// The most failures with which it is met after so many runs; none if there are too few runs.
+    fn allowed(&self, runs: u64) -> Option<u64> {
+        let runs = runs.min(MAX_PLANNED);
+        law::first(0, runs, |failures| !self.met(failures, runs)).checked_sub(1)
+    }
+
+    /// The least failures with which it is not met after so many runs; none if there are too few runs.
+    fn refused(&self, runs: u64) -> Option<u64> {
+        let runs = runs.min(MAX_PLANNED);
+        let failures = law::first(1, runs, |failures| self.not_met(failures, runs));
+        (failures <= runs).then_some(failures)
+    }
+
+    /// The least runs after which it is met with so many failures; none if they are more than can be planned.
+    fn least_runs(&self, failures: u64) -> Option<u64> {
+        if failures >= MAX_PLANNED {
+            return None;
+        }
+        let runs = law::first(failures + 1, MAX_PLANNED, |runs| self.met(failures, runs));
+        (runs <= MAX_PLANNED).then_some(runs)
+    }
+
+    /// What so many failures in so many runs decide.
+    fn judge(&self, failures: u64, runs: u64) -> Result<Verdict, StatisticsError> {
+        error::failures(failures, runs)?;
+        if self.met(failures, runs) {
+            return Ok(Verdict::Met);
+        }
+        if self.not_met(failures, runs) {
+            return Ok(Verdict::NotMet);
+        }
+        let further = |least: Option<u64>| least.map(|least| least.saturating_sub(runs));
+        Ok(Verdict::Undecided {
+            if_no_more_fail: further(self.least_runs(failures)),
+            at_this_rate: further(self.at_rate(failures, runs)),
+        })
+    }
+
+    /// The runs after which it is met if failures go on at the rate of so many in so many runs.
+    fn at_rate(&self, failures: u64, runs: u64) -> Option<u64> {
+        if !((failures as f64) < self.failure_share() * runs as f64) {
+            return None;
+        }
+        // Have no more failures than that been seen when so many are allowed? From some number on, for what is
+        // allowed approaches 1 − p of the runs.
+        let enough = |allowed: u64| {
+            self.least_runs(allowed).is_none_or(|least| {
+                u128::from(least) * u128::from(failures) <= u128::from(allowed) * u128::from(runs)
+            })
+        };
+        let mut step = 1;
+        while !enough(failures + step) {
+            step *= 2;
+        }
+        self.least_runs(law::first(failures + step / 2, failures + step, enough))
+    }
+}

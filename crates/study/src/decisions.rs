@@ -1,0 +1,184 @@
+//! Requirements of a scenario: checked, judged by the runs, and told first in the report.
+
+use gyradius_campaign::{Bound, Column, Judging, RunBeyond, Runs, share_in_percent};
+use gyradius_report::{PageCell, PageTable, Section, Text, significant};
+use gyradius_statistics::Verdict;
+
+use crate::{
+    Fleet, ScenarioError, StudyError,
+    head::{Head, Judged},
+    subject::Subject,
+};
+
+/// Requirements of a scenario, at most.
+const MOST: usize = 100;
+
+/// That requirements are about columns of numbers that the run tables have, and about models of the scenario.
+pub(crate) fn check<C: Subject>(scenario: &C, columns: &[Column]) -> Result<(), ScenarioError> {
+    let count = scenario.requirements().len();
+    if count > MOST {
+        let problem = format!("{count} of them: there must be at most {MOST}");
+        return Err(ScenarioError::field("requirements", problem));
+    }
+    for (i, requirement) in scenario.requirements().iter().enumerate() {
+        let refused = |key: &str, problem: String| {
+            ScenarioError::field(format!("requirements[{}].{key}", i + 1), problem)
+        };
+        for name in requirement.quantity().columns() {
+            let column = columns.iter().find(|column| column.name() == name);
+            if !column.is_some_and(Column::is_measured) {
+                let known: Vec<&str> =
+                    columns.iter().filter(|c| c.is_measured()).map(Column::name).collect();
+                let problem = format!(
+                    "{name:?}: the run table has no such column of numbers; it has {}",
+                    known.join(", ")
+                );
+                return Err(refused("quantity", problem));
+            }
+        }
+        if let Some(model) = requirement.model().filter(|m| scenario.model_names().all(|n| n != *m))
+        {
+            let known: Vec<&str> = scenario.model_names().collect();
+            let problem = format!("{model:?}: the scenario has {}", known.join(", "));
+            return Err(refused("model", problem));
+        }
+    }
+    Ok(())
+}
+
+/// What looks at the requirements of each model.
+pub(crate) fn judging<C: Subject>(scenario: &C) -> Vec<Judging> {
+    // Verdicts count runs that are independent of each other.
+    let fleet = scenario.independent_runs().and_then(|_| scenario.fleet());
+    let group = fleet.map_or(1, Fleet::flights);
+    let of_model = |name: &str| {
+        let all = scenario.requirements().iter();
+        let own = all.filter(|requirement| requirement.model().is_none_or(|model| model == name));
+        Judging::new(own.cloned(), scenario.runs(), group)
+    };
+    scenario.model_names().map(of_model).collect()
+}
+
+/// What the runs of each model say of its requirements.
+pub(crate) fn judged(judging: Vec<Judging>, runs: &[Runs]) -> Result<Vec<Judged>, StudyError> {
+    let mut all = Vec::new();
+    for (judging, runs) in judging.into_iter().zip(runs) {
+        let judged = judging.finish(runs)?.into_iter();
+        all.extend(judged.map(|judgement| Judged { model: runs.model().to_owned(), judgement }));
+    }
+    Ok(all)
+}
+
+/// The answers, before everything else, and the runs that come nearest to the limits or are beyond.
+pub(crate) fn sections(head: &Head) -> Vec<Section> {
+    if head.requirements.is_empty() {
+        return Vec::new();
+    }
+    let table = PageTable::of(&head.requirements)
+        .words("requirement", |judged| {
+            let requirement = judged.judgement.requirement();
+            let text = format!(
+                "{} {}, in {} of all runs, with {} confidence",
+                requirement.quantity(),
+                requirement.bound(),
+                share_in_percent(requirement.probability()),
+                share_in_percent(requirement.confidence().level())
+            );
+            PageCell::from(Text::default().strong(requirement.name()))
+                .line(Text::default().quiet(text))
+        })
+        .words("model", |judged| judged.model.as_str())
+        .words("verdict", verdict)
+        .numbers("runs that fail it", |judged| {
+            let judgement = &judged.judgement;
+            let may = judgement.allowed_failures().map_or_else(
+                || "too few runs for any".to_owned(),
+                |allowed| format!("{allowed} may"),
+            );
+            let failures = format!("{} of {}", judgement.failures(), judgement.counted());
+            PageCell::from(Text::from(failures)).line(Text::default().quiet(may))
+        })
+        .numbers("bound that the share keeps", |judged| {
+            judged.judgement.tolerance().map_or_else(|| "–".to_owned(), bound)
+        })
+        .numbers("margin", |judged| {
+            let judgement = &judged.judgement;
+            let Some(margin) = judgement.margin() else { return PageCell::from("–") };
+            let deviations = judgement.margin_deviations().map(|d| format!("{d:.1} σ"));
+            let cell = PageCell::from(Text::from(significant(margin, 4)));
+            deviations.into_iter().fold(cell, |cell, d| cell.line(Text::default().quiet(d)))
+        })
+        .numbers("share of the runs that keep it", |judged| {
+            let (share, interval) = (judged.judgement.share(), judged.judgement.share_interval());
+            let Some((share, interval)) = share.zip(interval) else { return PageCell::from("–") };
+            let [lower, upper] = [interval.lower(), interval.upper()].map(share_in_percent);
+            PageCell::from(Text::from(share_in_percent(share)))
+                .line(Text::default().quiet(format!("{lower} … {upper}")))
+        })
+        .numbers("share to pass 9 times in 10", |judged| {
+            judged.judgement.success_to_pass().map_or_else(|| "–".to_owned(), share_in_percent)
+        });
+    let rests = "A requirement is met if so few runs fail it that a vehicle which is just not good enough would pass with the \
+                 probability 1 − confidence at most (the consumer's risk), and not met if a vehicle which is just good enough \
+                 would fail with that probability at most. The bound is an order statistic that the required share of all runs \
+                 keeps with the confidence, whatever the distribution (Wilks); the margin is its distance to the limit, also in \
+                 standard deviations σ of the quantity. The last column is the producer's side: in which share of all runs a \
+                 vehicle must keep the requirement, to pass nine times in ten with as many runs.";
+    let mut notes = vec![Text::from(rests)];
+    if head.independent_runs_per_model.is_some() {
+        notes.push(Text::from(
+            "Flights of a vehicle have something in common. Verdicts are of the first flight of each vehicle, which are \
+             independent of each other.",
+        ));
+    }
+    let section = Section::new("Requirements").table(table);
+    let section = notes.into_iter().fold(section, Section::paragraph);
+    vec![section.sections([worst(head)])]
+}
+
+/// The worst runs, each with the command that does it again.
+fn worst(head: &Head) -> Section {
+    let all: Vec<(&Judged, &RunBeyond)> = head
+        .requirements
+        .iter()
+        .flat_map(|judged| judged.judgement.worst().iter().map(move |run| (judged, run)))
+        .collect();
+    let table = PageTable::of(&all)
+        .groups(|(judged, _)| {
+            format!("{}, {}", judged.judgement.requirement().name(), judged.model)
+        })
+        .numbers("run", |(_, run)| run.run.to_string())
+        .numbers("value", |(_, run)| significant(run.value, 6))
+        .numbers("beyond the limit by", |(_, run)| significant(run.excess, 4))
+        .words("to see it, in the folder of the study", |(judged, run)| {
+            let (model, run) = (&judged.model, run.run);
+            Text::default().code(format!("gyradius replay . --model {model} --run {run}"))
+        });
+    Section::folded("The worst runs").table(table)
+}
+
+fn verdict(judged: &Judged) -> PageCell {
+    let judgement = &judged.judgement;
+    match judgement.verdict() {
+        Verdict::Met => PageCell::from(Text::default().strong("met")),
+        Verdict::NotMet => PageCell::from(Text::default().strong("not met")),
+        Verdict::Undecided { if_no_more_fail, at_this_rate } => {
+            let cell = PageCell::from(Text::default().strong("not decided"));
+            let more =
+                |runs: u64, how: &str| Text::default().quiet(format!("{runs} more runs {how}"));
+            let all = if_no_more_fail.map(|runs| more(runs, "if all keep it"));
+            let rate = at_this_rate.map(|runs| more(runs, "if failures go on at this rate"));
+            all.into_iter().chain(rate).fold(cell, PageCell::line)
+        }
+    }
+}
+
+fn bound(bound: Bound) -> String {
+    match bound {
+        Bound::AtMost(limit) => format!("≤ {}", significant(limit, 5)),
+        Bound::AtLeast(limit) => format!("≥ {}", significant(limit, 5)),
+        Bound::Between(lower, upper) => {
+            format!("{} … {}", significant(lower, 5), significant(upper, 5))
+        }
+    }
+}
