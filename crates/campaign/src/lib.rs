@@ -104,7 +104,7 @@ pub use kept::{Kept, KeptError, Rows};
 pub use memory::memory_left;
 pub use requirement::{
     Bound, FailedRuns, Judgement, JudgementError, Judging, Measured, Requirement, RequirementError,
-    RunBeyond, share_in_percent,
+    RunBeyond, VehiclesKeeping, share_in_percent,
 };
 pub use room::disk_left;
 pub use runs::{Runs, RunsError};

@@ -130,6 +130,9 @@ fn of_vehicles_the_first_flights_are_judged() {
     let summary: Value = serde_json::from_str(&summary).unwrap();
     for judged in summary["requirements"].as_array().unwrap() {
         assert_eq!((judged["runs"].as_u64(), judged["counted"].as_u64()), (Some(40), Some(40)));
+        let vehicles = &judged["vehicles"];
+        assert_eq!(vehicles["vehicles"].as_u64(), Some(40));
+        assert!(vehicles["keeping"].as_u64().unwrap() <= 40);
         for worst in judged["worst"].as_array().unwrap() {
             assert_eq!(worst["run"].as_u64().unwrap() % 5, 0);
         }

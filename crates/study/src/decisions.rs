@@ -130,6 +130,14 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
             "Flights of a vehicle have something in common. Verdicts are of the first flight of each vehicle, which are \
              independent of each other.",
         ));
+        notes.extend(head.requirements.iter().filter_map(|judged| {
+            let name = judged.judgement.requirement().name();
+            Some(Text::from(format!(
+                "{name}, {}: of the vehicles, {}.",
+                judged.model,
+                judged.judgement.vehicles()?
+            )))
+        }));
     }
     let section = Section::new("Requirements").table(table);
     let section = notes.into_iter().fold(section, Section::paragraph);

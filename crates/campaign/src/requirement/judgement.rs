@@ -8,6 +8,7 @@ use std::fmt;
 use super::{
     Bound, FailedRuns, Requirement,
     gathering::{Gathering, Part, RunBeyond},
+    groups::Groups,
 };
 use crate::{
     foreign::{ForeignError, ForeignTable},
@@ -48,6 +49,20 @@ pub struct Judgement {
     success_to_pass: Option<f64>,
     /// The worst runs, the worst first.
     worst: Vec<RunBeyond>,
+    /// How many vehicles keep it, of runs that are flights of vehicles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    vehicles: Option<VehiclesKeeping>,
+}
+
+/// How many vehicles keep a requirement: in at least the required share of their flights, those that failed counting against it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VehiclesKeeping {
+    /// Vehicles all flights of which are done.
+    pub vehicles: u64,
+    /// Those of them that keep it.
+    pub keeping: u64,
+    /// Where the true share of such vehicles lies: Clopper and Pearson's interval, two-sided, with the confidence of the requirement.
+    pub share_interval: Option<Interval>,
 }
 
 impl Judgement {
@@ -135,7 +150,17 @@ impl Judgement {
             verdict: acceptance.verdict(failures, counted)?,
             success_to_pass: acceptance.success_to_pass(counted, NINE_TIMES_IN_TEN)?,
             worst: tally.worst.clone(),
+            vehicles: None,
         })
+    }
+
+    /// The same, with what is known of groups of runs.
+    pub(super) fn of_groups(self, groups: Option<Groups>) -> Result<Self, JudgementError> {
+        let Some(Groups { whole, keeping, .. }) = groups else { return Ok(self) };
+        let share = (whole > 0).then(|| Proportion::new(keeping, whole)).transpose()?;
+        let share_interval = share.map(|share| share.interval(self.requirement.confidence()));
+        let vehicles = Some(VehiclesKeeping { vehicles: whole, keeping, share_interval });
+        Ok(Self { vehicles, ..self })
     }
 
     /// All runs.
@@ -178,6 +203,12 @@ impl Judgement {
     #[must_use]
     pub fn tolerance(&self) -> Option<Bound> {
         self.tolerance
+    }
+
+    /// How many vehicles keep it, of runs that are flights of vehicles which have something in common.
+    #[must_use]
+    pub fn vehicles(&self) -> Option<VehiclesKeeping> {
+        self.vehicles
     }
 
     /// Runs without a number, most often because they failed.
@@ -292,9 +323,24 @@ impl fmt::Display for Judgement {
                 share_in_percent(good)
             )?;
         }
+        if let Some(vehicles) = self.vehicles {
+            writeln!(f, "  vehicles     {vehicles}")?;
+        }
         let worst: Vec<String> =
             self.worst.iter().map(|run| format!("{} ({})", run.run, short(run.value))).collect();
         if worst.is_empty() { Ok(()) } else { writeln!(f, "  worst runs   {}", worst.join(", ")) }
+    }
+}
+
+/// In a line.
+impl fmt::Display for VehiclesKeeping {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { vehicles, keeping, share_interval } = self;
+        write!(f, "{keeping} of {vehicles} keep it in that share of their flights")?;
+        let Some(interval) = share_interval else { return Ok(()) };
+        let [lower, upper] = [interval.lower(), interval.upper()].map(share_in_percent);
+        let confidence = share_in_percent(interval.confidence().level());
+        write!(f, " ({confidence} interval: {lower} to {upper})")
     }
 }
 

@@ -1,11 +1,15 @@
 //! Requirements judged by the runs of a campaign, block by block and in flat memory.
 
 use rayon::prelude::*;
-use std::sync::{Mutex, PoisonError};
+use std::{
+    iter,
+    sync::{Mutex, PoisonError},
+};
 
 use super::{
     Judgement, JudgementError, Requirement,
     gathering::{Gathering, Part},
+    groups::Groups,
 };
 use crate::{runs::Runs, table::Table};
 
@@ -16,6 +20,8 @@ pub struct Judging {
     /// Runs of a group, which have something in common: the first of each is independent of all others.
     group: u64,
     parts: Mutex<Vec<Option<Part>>>,
+    /// How many groups keep each requirement; none without groups.
+    groups: Mutex<Vec<Groups>>,
 }
 
 impl Judging {
@@ -27,7 +33,9 @@ impl Judging {
         let gathering = |requirement| Gathering::new(requirement, runs.div_ceil(group));
         let gatherings: Vec<Gathering> = requirements.into_iter().map(gathering).collect();
         let parts = Mutex::new(gatherings.iter().map(Gathering::part).collect());
-        Self { gatherings, group, parts }
+        let groups =
+            Mutex::new(if group > 1 { new_groups(&gatherings, group) } else { Vec::new() });
+        Self { gatherings, group, parts, groups }
     }
 
     /// Looks at a block, once at each and in any order.
@@ -39,6 +47,28 @@ impl Judging {
         let gathered = self.gather(empty, block);
         let mut parts = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
         merge(&mut parts, gathered);
+        drop(parts);
+        if self.group > 1 {
+            let counted = self.count_groups(block);
+            let mut groups = self.groups.lock().unwrap_or_else(PoisonError::into_inner);
+            groups.iter_mut().zip(counted).for_each(|(own, more)| own.merge(more));
+        }
+    }
+
+    /// The groups of a block that keep each requirement.
+    fn count_groups(&self, block: &Table) -> Vec<Groups> {
+        let mut counted = new_groups(&self.gatherings, self.group);
+        for (gathering, groups) in self.gatherings.iter().zip(&mut counted) {
+            let requirement = &gathering.requirement;
+            let columns = requirement.quantity().columns().iter();
+            let columns: Vec<_> = columns.map(|name| block.measured(name)).collect();
+            let keeps = |place: usize| {
+                let numbers: Vec<Option<f64>> = columns.iter().map(|of| of(place)).collect();
+                requirement.is_kept(&numbers)
+            };
+            groups.add(block.first(), (0..block.len()).map(keeps));
+        }
+        counted
     }
 
     /// What the runs say whose blocks have all been looked at, which are read again if need be. None if there are no runs.
@@ -54,8 +84,13 @@ impl Judging {
             }
             let empty: Vec<Option<Part>> = self.gatherings.iter().map(Gathering::part).collect();
             if empty.iter().all(Option::is_none) {
-                let judged = self.gatherings.iter().filter(|gathering| gathering.tally.runs > 0);
-                return judged.map(Judgement::of).collect();
+                let groups = self.groups.into_inner().unwrap_or_else(PoisonError::into_inner);
+                let groups = groups.into_iter().map(Some).chain(iter::repeat(None));
+                let judged = self.gatherings.iter().zip(groups);
+                let judged = judged.filter(|(gathering, _)| gathering.tally.runs > 0);
+                return judged
+                    .map(|(gathering, groups)| Judgement::of(gathering)?.of_groups(groups))
+                    .collect();
             }
             let whole = Mutex::new(empty.clone());
             runs.scan(|block| {
@@ -78,6 +113,11 @@ impl Judging {
         });
         parts
     }
+}
+
+fn new_groups(gatherings: &[Gathering], size: u64) -> Vec<Groups> {
+    let of = |gathering: &Gathering| Groups::new(size, gathering.requirement.probability());
+    gatherings.iter().map(of).collect()
 }
 
 fn merge(whole: &mut [Option<Part>], parts: Vec<Option<Part>>) {

@@ -1,6 +1,7 @@
 //! Requirements: that a number of a run keeps a bound in at least a share of all runs, at a confidence.
 
 mod gathering;
+mod groups;
 mod judgement;
 mod judging;
 mod measured;
@@ -11,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
 pub use gathering::RunBeyond;
-pub use judgement::{Judgement, JudgementError, share_in_percent};
+pub use judgement::{Judgement, JudgementError, VehiclesKeeping, share_in_percent};
 pub use judging::Judging;
 pub use measured::Measured;
 
