@@ -19,6 +19,9 @@ use crate::{Confidence, StatisticsError, law};
 /// The verdict keeps its risk only if runs are counted once. Who looks again and again, and stops at the first
 /// success, uses [`SequentialAcceptance`](crate::SequentialAcceptance).
 ///
+/// Runs of one vehicle are not independent. Where vehicles fly several times each, count one run of each, or count
+/// vehicles.
+///
 /// Tails of the binomial law are incomplete beta functions, with a relative error of some 1e-11 up to 10⁹ runs. A tail that is
 /// larger than 1 − c by a part in 10¹² or less counts as equal, so that 0.1 is one in ten. Of p = 1 − 10⁻⁹ a float knows
 /// 1 − p to a part in 10⁷.

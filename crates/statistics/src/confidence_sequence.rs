@@ -17,8 +17,11 @@ use crate::{Confidence, Interval, StatisticsError, error, law};
 /// an event; by default Beta(½, ½). Which π it is changes widths, not the confidence: intervals are narrowest if about as many
 /// events are seen as expected.
 ///
-/// Such intervals are wider than those of one look: at 95 % and 50 events by a factor of 1.7, which grows as the
-/// root of the logarithm of the runs.
+/// Such intervals are wider than those of one look: at 95 %, if about as many events are seen as expected, 1.4 times
+/// with 5 events, 1.6 times with 50, 2.0 times with 5,000; the same width takes 1.9, 2.9 and 4.4 times the runs.
+/// The interval of one look, stopped at a width and at nothing else, loses little: in 20,000 campaigns each, with nine pairs of
+/// share and width, it held the share 89.6 % to 96.8 % of the time at a nominal 90 %. But nothing guarantees that, and where a bound
+/// itself stops the runs it fails.
 ///
 /// Bounds have a relative error of 1e-9 at most, of a share near 1 an absolute one of 1e-15.
 ///
@@ -115,3 +118,6 @@ impl TryFrom<Unchecked> for ConfidenceSequence {
         Self::about(read.about, read.confidence)
     }
 }
+
+#[cfg(test)]
+mod tests;

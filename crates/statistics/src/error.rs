@@ -188,7 +188,9 @@ pub(crate) fn probability(value: f64) -> Result<f64, StatisticsError> {
 
 /// The share, if it is one that can be stated; beyond these, floats are too coarse near one.
 pub(crate) fn share(value: f64) -> Result<f64, StatisticsError> {
-    if (1e-9..=1.0 - 1e-9).contains(&value) {
+    // Near one, floats are a part in 10⁷ of 1e-9 apart.
+    let least = 1e-9 * (1.0 - 1e-6);
+    if value >= least && 1.0 - value >= least {
         Ok(value)
     } else {
         Err(StatisticsError::Share { value })

@@ -1,6 +1,8 @@
 #![doc = include_str!("../README.md")]
 
 mod acceptance;
+#[cfg(test)]
+mod binomial_sums;
 mod centred;
 mod confidence_sequence;
 mod deviation;

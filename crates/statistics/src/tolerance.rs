@@ -106,3 +106,6 @@ impl Acceptance {
         Tolerance::Ranks { lower, upper, confidence: 1.0 - self.consumers_risk(runs) }
     }
 }
+
+#[cfg(test)]
+mod tests;

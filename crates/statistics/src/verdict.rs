@@ -13,8 +13,8 @@ pub(crate) const MAX_PLANNED: u64 = 1_000_000_000_000_000;
 /// let rule = Acceptance::new(0.9973, Confidence::new(0.9)?)?;
 /// assert_eq!(rule.verdict(2, 2000)?, Verdict::Met);
 /// assert_eq!(rule.verdict(12, 2000)?, Verdict::NotMet);
-/// // 2,473 runs allow 3 failures; at 3 failures in 2,000 runs, 6,613 allow the 10 that will have been seen.
-/// let undecided = Verdict::Undecided { if_no_more_fail: Some(473), at_this_rate: Some(4613) };
+/// // 2,473 runs allow 3 failures, and 3,899 runs the 6 that will be seen if 3 fail in each 2,000.
+/// let undecided = Verdict::Undecided { if_no_more_fail: Some(473), at_this_rate: Some(1899) };
 /// assert_eq!(rule.verdict(3, 2000)?, undecided);
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```

@@ -4,3 +4,4 @@
 mod coverage;
 #[cfg(feature = "serde")]
 mod serde;
+mod stopping;

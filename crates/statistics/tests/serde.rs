@@ -1,9 +1,10 @@
 //! What the feature `serde` writes, and what it reads back.
 
 use gyradius_statistics::{
-    BinEdges, Confidence, Deviation, GoodnessOfFit, Histogram, Moments, Proportion, SortedSample,
+    Acceptance, BinEdges, Confidence, ConfidenceSequence, Deviation, GoodnessOfFit, Histogram,
+    Moments, Proportion, SequentialAcceptance, SortedSample, Tolerance, ToleranceSide, Verdict,
 };
-use serde_json::{Value, json, to_value};
+use serde_json::{Value, from_value, json, to_value};
 
 const SAMPLE: [f64; 5] = [1.0, 2.0, 3.0, 4.0, 5.0];
 
@@ -32,8 +33,53 @@ fn results_are_written_field_by_field() {
 #[test]
 fn a_confidence_level_is_a_checked_number() {
     assert_eq!(to_value(Confidence::default()).unwrap(), json!(0.95));
-    let read = serde_json::from_value::<Confidence>;
+    let read = from_value::<Confidence>;
     assert_eq!(read(json!(0.9)).unwrap(), Confidence::new(0.9).unwrap());
     let text = read(json!(95.0)).unwrap_err().to_string();
     assert!(text.contains("95") && text.contains("between 0 and 1"), "{text}");
+}
+
+#[test]
+fn rules_and_what_they_decide_are_read_back() {
+    let confidence = Confidence::new(0.9).unwrap();
+    let rule = Acceptance::new(0.9973, confidence).unwrap();
+    let text = json!({"probability": 0.9973, "confidence": 0.9});
+    assert_eq!(to_value(rule).unwrap(), text);
+    assert_eq!(from_value::<Acceptance>(text.clone()).unwrap(), rule);
+    let looks = SequentialAcceptance::new(rule);
+    assert_eq!(to_value(looks).unwrap(), text);
+    assert_eq!(from_value::<SequentialAcceptance>(text).unwrap(), looks);
+    let sequence = ConfidenceSequence::about(0.25, confidence).unwrap();
+    assert_eq!(to_value(sequence).unwrap(), json!({"about": 0.25, "confidence": 0.9}));
+    assert_eq!(from_value::<ConfidenceSequence>(to_value(sequence).unwrap()).unwrap(), sequence);
+    for (bad, allowed) in [
+        (json!({"probability": 99.73, "confidence": 0.9}), "1 - 1e-9"),
+        (json!({"probability": 0.9973, "confidence": 90}), "between 0 and 1"),
+        (json!({"probability": 0.9973, "confidence": 0.4}), "at least 0.5"),
+        (json!({"probability": 0.9973, "confidence": 0.9, "power": 0.9}), "unknown field"),
+    ] {
+        let text = from_value::<SequentialAcceptance>(bad).unwrap_err().to_string();
+        assert!(text.contains(allowed), "{text}");
+    }
+    assert!(from_value::<ConfidenceSequence>(json!({"about": 0.0, "confidence": 0.9})).is_err());
+
+    for (verdict, text) in [
+        (Verdict::Met, json!("met")),
+        (Verdict::NotMet, json!("not_met")),
+        (
+            rule.verdict(5, 1000).unwrap(),
+            json!({"undecided": {"if_no_more_fail": 2433, "at_this_rate": null}}),
+        ),
+    ] {
+        assert_eq!(to_value(verdict).unwrap(), text);
+        assert_eq!(from_value::<Verdict>(text).unwrap(), verdict);
+    }
+    for runs in [10, 5000] {
+        for side in [ToleranceSide::AtMost, ToleranceSide::AtLeast, ToleranceSide::Between] {
+            let tolerance = rule.tolerance(side, runs, 1);
+            let text = to_value(tolerance).unwrap();
+            assert_eq!(from_value::<Tolerance>(text).unwrap(), tolerance);
+            assert_eq!(from_value::<ToleranceSide>(to_value(side).unwrap()).unwrap(), side);
+        }
+    }
 }
