@@ -1,7 +1,15 @@
 //! Studies in which things go wrong.
 
-use gyradius_study::{Options, Quantity, Replay, Scenario, Study};
-use std::fs;
+use gyradius_study::{
+    CampaignError, Kept, Options, Quantity, Replay, Rows, Scenario, Study, StudyError, Table,
+};
+use std::{
+    fs,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
 
 fn run(text: &str) -> (Study, tempfile::TempDir) {
     let scratch = tempfile::tempdir().unwrap();
@@ -163,4 +171,35 @@ fn an_outline_that_cannot_be_placed_fails_its_run() {
             assert!(status.starts_with("payload: outline: points_m has coordinate"), "{status}");
         }
     }
+}
+
+/// A study that is told to stop after its runs, while results are put together or rows are left out, leaves what was there, and goes on.
+#[test]
+fn a_study_stops_after_its_runs_too() {
+    let scratch = tempfile::tempdir().unwrap();
+    let scenario = Scenario::peck_2003().unwrap().with_runs(40).unwrap();
+    let out = Some(scratch.path().join("study"));
+    let options = Options { out, ..Options::default() };
+    let whole = Study::run(&scenario, &options, &|_| {}).unwrap();
+    let rows = |study: &Study| study.tables().unwrap().iter().map(Table::len).collect::<Vec<_>>();
+    assert_eq!(rows(&whole), [40; 4]);
+    let stop = Some(Arc::new(AtomicBool::new(true)));
+    let stopped = Options { stop, ..options.clone() };
+    let reduced = scenario.clone().with_kept(&Kept::new(Rows::None, None));
+    let error = Study::run(&reduced, &stopped, &|_| {}).unwrap_err();
+    assert!(matches!(error, StudyError::Campaign(CampaignError::Stopped)), "{error}");
+    assert_eq!(rows(&Study::run(&scenario, &options, &|_| {}).unwrap()), [40; 4]);
+    // The same when the last run sets it: nothing is put in place, and no run is lost.
+    let more = scenario.with_runs(50).unwrap();
+    let stop = Arc::new(AtomicBool::new(false));
+    let last = |done: u64| stop.fetch_or(done == 200, Ordering::Relaxed);
+    let stopped = Options { stop: Some(Arc::clone(&stop)), threads: Some(1), ..options.clone() };
+    let error = Study::run(&more, &stopped, &|done| {
+        last(done);
+    });
+    assert!(matches!(error, Err(StudyError::Campaign(CampaignError::Stopped))));
+    assert!(
+        fs::read_to_string(whole.folder().join("scenario.toml")).unwrap().contains("runs = 40")
+    );
+    assert_eq!(rows(&Study::run(&more, &options, &|_| {}).unwrap()), [50; 4]);
 }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use std::{
     ops::Range,
     sync::{
-        Mutex,
+        Arc, Mutex,
         atomic::{AtomicBool, AtomicU64, Ordering},
     },
 };
@@ -30,7 +30,7 @@ pub struct Plan<'a> {
     /// Which of the blocks that are missing.
     pub doing: Doing,
     /// Once it is true, blocks that are not finished are dropped.
-    pub stop: Option<&'a AtomicBool>,
+    pub stop: Option<&'a Arc<AtomicBool>>,
 }
 
 /// Which of the missing blocks of a campaign are done.
@@ -138,14 +138,15 @@ pub fn run_missing<S: Simulation>(
         simulations.iter().zip(&tables).zip(missing).enumerate()
     {
         if let Some(look) = look {
-            blocks.runs(empty, Vec::new()).scan(|block| look(place, block))?;
+            let there = blocks.runs(empty, Vec::new()).stopped_by(plan.stop.cloned());
+            there.scan(|block| look(place, block))?;
         }
         let held = Mutex::new(Vec::new());
         missing.into_par_iter().try_for_each(|runs| {
-            go_on(plan.stop)?;
+            go_on(plan.stop.map(Arc::as_ref))?;
             let table = run_range(simulation, empty, runs, &|runs| {
                 more(runs);
-                go_on(plan.stop)
+                go_on(plan.stop.map(Arc::as_ref))
             })?;
             blocks.write(&table)?;
             if let Some(look) = look {
@@ -164,7 +165,8 @@ pub fn run_missing<S: Simulation>(
             }
             Ok::<_, CampaignError>(())
         })?;
-        all.push(blocks.runs(empty, held.into_inner().unwrap_or_default()));
+        let runs = blocks.runs(empty, held.into_inner().unwrap_or_default());
+        all.push(runs.stopped_by(plan.stop.cloned()));
     }
     Ok(all)
 }

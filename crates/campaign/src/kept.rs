@@ -1,7 +1,7 @@
 //! What is kept of run tables once a campaign is complete.
 
 use serde::{Deserialize, Serialize};
-use std::fmt;
+use std::{collections::BTreeSet, fmt};
 
 use crate::{
     column::Column,
@@ -67,6 +67,14 @@ impl Kept {
     /// These rows, in these columns or in all. The columns that say which run a row is and how it ended are always kept.
     #[must_use]
     pub fn new(rows: Rows, columns: Option<Vec<String>>) -> Self {
+        let [model, run, status] = Column::first();
+        let own = [model, run, status, Column::status_kind()];
+        let is_own = |name: &String| own.iter().any(|column| column.name() == name);
+        // In a form that does not depend on how they were named.
+        let columns = columns.map(|names| {
+            let others = names.into_iter().filter(|name| !is_own(name));
+            others.collect::<BTreeSet<_>>().into_iter().collect()
+        });
         Self { rows, columns }
     }
 

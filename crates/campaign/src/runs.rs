@@ -5,6 +5,10 @@ use rayon::prelude::*;
 use std::{
     ops::Range,
     path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 use crate::{column::Column, stored::said, table::Table};
@@ -14,6 +18,8 @@ use crate::{column::Column, stored::said, table::Table};
 pub struct Runs {
     empty: Table,
     blocks: Vec<Block>,
+    /// Once it is true, nothing more is read.
+    stop: Option<Arc<AtomicBool>>,
 }
 
 #[derive(Clone, Debug)]
@@ -32,7 +38,13 @@ impl Runs {
             stored.map(|(runs, path)| Block::Stored { runs, path }).collect();
         blocks.extend(held.into_iter().map(Block::Held));
         blocks.sort_by_key(|block| block.range().start);
-        Self { empty: empty.from_run(0), blocks }
+        Self { empty: empty.from_run(0), blocks, stop: None }
+    }
+
+    /// The same, which are looked at no further once `stop` is true.
+    #[must_use]
+    pub fn stopped_by(self, stop: Option<Arc<AtomicBool>>) -> Self {
+        Self { stop, ..self }
     }
 
     /// An empty table of the model, and the blocks that are in memory.
@@ -80,9 +92,12 @@ impl Runs {
     /// Looks at every block once, on all threads of the pool that this is called in, in any order.
     ///
     /// # Errors
-    /// A block cannot be read.
+    /// A block cannot be read, or they are [stopped](Self::stopped_by).
     pub fn scan(&self, look: impl Fn(&Table) + Sync) -> Result<(), RunsError> {
         self.blocks.par_iter().try_for_each(|block| {
+            if self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+                return Err(RunsError::Stopped);
+            }
             match block {
                 Block::Held(table) => look(table),
                 Block::Stored { path, .. } => look(&self.read(path)?),
@@ -103,7 +118,7 @@ impl Runs {
 
     fn read(&self, path: &Path) -> Result<Table, RunsError> {
         let read = self.empty.read_parquet(path);
-        read.map_err(|source| RunsError { path: path.to_owned(), source })
+        read.map_err(|source| RunsError::Block { path: path.to_owned(), source })
     }
 }
 
@@ -125,8 +140,17 @@ impl From<Table> for Runs {
 
 /// Why a block of runs cannot be read.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {}", path.display(), said(source))]
-pub struct RunsError {
-    path: PathBuf,
-    source: ParquetError,
+#[non_exhaustive]
+pub enum RunsError {
+    /// It cannot be read.
+    #[error("{}: {}", path.display(), said(source))]
+    Block {
+        /// Its file.
+        path: PathBuf,
+        /// Why.
+        source: ParquetError,
+    },
+    /// They are looked at no further.
+    #[error("stopped")]
+    Stopped,
 }

@@ -152,7 +152,7 @@ pub enum CampaignError {
     },
     /// A block of runs that was there cannot be read.
     #[error(transparent)]
-    Runs(#[from] RunsError),
+    Runs(RunsError),
     /// A block of runs cannot be written.
     #[error(transparent)]
     Folder(#[from] FolderError),
@@ -165,4 +165,13 @@ pub enum CampaignError {
         /// What is wrong.
         problem: String,
     },
+}
+
+impl From<RunsError> for CampaignError {
+    fn from(error: RunsError) -> Self {
+        match error {
+            RunsError::Stopped => Self::Stopped,
+            block @ RunsError::Block { .. } => Self::Runs(block),
+        }
+    }
 }

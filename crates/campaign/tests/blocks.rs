@@ -14,7 +14,7 @@ use std::{
     ops::Range,
     path::{Path, PathBuf},
     sync::{
-        Mutex, OnceLock,
+        Arc, Mutex, OnceLock,
         atomic::{AtomicBool, AtomicU64, Ordering},
     },
     thread,
@@ -128,7 +128,7 @@ impl Campaign {
         stop_after: Option<u64>,
         look: Option<Look<'_>>,
     ) -> (Result<Vec<Runs>, String>, u64) {
-        let stop = AtomicBool::new(stop_after == Some(0));
+        let stop = Arc::new(AtomicBool::new(stop_after == Some(0)));
         let plan = Plan { runs, block_runs: self.block_runs, doing, stop: Some(&stop) };
         let simulations = [("cheap", Cheap::new(self.seed))];
         let simulation = &simulations[0].1;

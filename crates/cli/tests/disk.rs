@@ -120,3 +120,54 @@ fn half_a_gigabyte_is_enough() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(files(&scratch.path("it/runs")).len(), 16);
 }
+
+/// A pipe in the place of any file of a study is refused, and waited for by nobody.
+#[test]
+fn pipes_are_not_waited_for() {
+    let scratch = Scratch::new();
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new("timeout");
+        command.args(["-s", "KILL", "60", env!("CARGO_BIN_EXE_gyradius")]).args(arguments);
+        command.current_dir(scratch.folder()).output().unwrap()
+    };
+    let study =
+        |out, more: &[&str]| run(&[&["study", "--runs", "20", "--out", out], more].concat());
+    assert!(study("whole", &["-q"]).status.success());
+    assert!(study("begun", &["-q", "--shard", "1/2"]).status.success());
+    for (folder, file) in [
+        ("whole", "scenario.toml"),
+        ("whole", "summary.json"),
+        ("whole", "campaign.json"),
+        ("whole", "report.html"),
+        ("whole", ".gyradius/study.json"),
+        ("begun", ".gyradius/campaign/identity.json"),
+        ("begun", ".gyradius/campaign/mark"),
+        ("begun", ".gyradius/campaign/record"),
+        ("begun", ".gyradius/campaign/record-1-of-2"),
+        ("begun", ".gyradius/campaign/record-2-of-2"),
+    ] {
+        for (i, command) in [
+            &["study", "--runs", "20", "-q", "--out"][..],
+            &["study", "--runs", "20", "-q", "--shard", "2/2", "--out"],
+            &["study", "--runs", "20", "-q", "--force", "--out"],
+            &["status"],
+            &["report"],
+            &["replay", "--run", "1", "--out", "replay", "--force"],
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let copy = format!("{folder}-{}-{i}", file.replace('/', "-"));
+            let mut copied = Command::new("cp");
+            copied.args(["-a", folder, &copy]).current_dir(scratch.folder());
+            assert!(copied.status().unwrap().success());
+            let path = scratch.path(&copy).join(file);
+            let _ = fs::remove_file(&path);
+            assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
+            let output = run(&[command, &[&copy]].concat());
+            // Killed commands have none.
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.code().is_some_and(|code| code <= 2), "{copy}: {said}");
+        }
+    }
+}

@@ -126,3 +126,49 @@ fn columns_that_are_not_there_are_refused() {
     assert!(!scratch.path("it").exists());
     done(&scratch, &["study", "--rows", "some"], 2);
 }
+
+/// Shards must keep the same, whoever begins; a damaged file of a study that was reduced is named; columns are the same in any order; a
+/// finished study is not replaced by itself, and that is said.
+#[test]
+fn what_is_kept_is_agreed_upon() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), scenario()).unwrap();
+    let study = ["study", "--scenario", "it.toml", "--runs", "60", "--out", "it"];
+    let with = |more: &[&'static str]| [&study, more].concat();
+    done(&scratch, &with(&["--shard", "1/2", "--rows", "failed"]), 0);
+    for other in [&["--shard", "2/2"][..], &["--shard", "2/2", "--rows", "none"]] {
+        let said = done(&scratch, &with(other), 2);
+        assert!(said.contains("rows: failed") && said.contains("all shards"), "{said}");
+    }
+    done(&scratch, &with(&["--shard", "2/2", "--rows", "failed"]), 0);
+    done(&scratch, &["report", "it"], 0);
+    assert!(fs::read_to_string(scratch.path("it/campaign.json")).unwrap().contains("\"failed\""));
+
+    done(&scratch, &with(&["--force", "--columns", "wobble_deg,status,cone_deg,wobble_deg"]), 0);
+    let before = files(&scratch.path("it"));
+    done(&scratch, &with(&["--columns", "cone_deg,wobble_deg"]), 0);
+    // A finished study is not reduced by a shard.
+    done(&scratch, &with(&["--shard", "1/2"]), 2);
+    let said = done(&scratch, &with(&["--columns", "cone_deg,wobble_deg", "--quiet"]), 0);
+    assert_eq!(said, "");
+    let file = runs(&scratch.path("it")).remove(0);
+    let content = fs::read(scratch.path("it").join(&file)).unwrap();
+    let mut other = content.clone();
+    other[100] ^= 1;
+    fs::write(scratch.path("it").join(&file), other).unwrap();
+    for more in [&["--columns", "cone_deg,wobble_deg"][..], &["--force"]] {
+        let said = done(&scratch, &with(more), 2);
+        assert!(said.contains(&file), "{said}");
+    }
+    fs::write(scratch.path("it").join(&file), content).unwrap();
+    assert_eq!(files(&scratch.path("it")), before);
+
+    done(&scratch, &with(&["--force"]), 0);
+    let before = files(&scratch.path("it"));
+    let said = done(&scratch, &with(&["--force"]), 0);
+    assert!(said.contains("finished already"), "{said}");
+    let said =
+        done(&scratch, &["study", "--scenario", "it.toml", "--runs", "70", "--out", "it", "-q"], 0);
+    assert_eq!(said, "");
+    assert_ne!(files(&scratch.path("it")), before);
+}

@@ -3,7 +3,7 @@
 use gyradius_campaign::{Doing, Forecast, Kept, Progress, Shard, begun, folder_of};
 use serde::Serialize;
 use std::{
-    fmt, fs,
+    fmt,
     path::{Path, PathBuf},
 };
 
@@ -196,7 +196,7 @@ impl Status {
     /// # Errors
     /// The folder holds no study, or its files cannot be read.
     pub fn read(folder: &Path) -> Result<Self, StudyError> {
-        let complete = || fs::read_to_string(folder.join("scenario.toml")).ok();
+        let complete = || read_file(&folder.join("scenario.toml")).ok();
         let text = begun(folder).or_else(complete).ok_or_else(|| StudyError::Absent {
             path: folder.to_owned(),
             problem: "it holds no study".to_owned(),

@@ -56,14 +56,29 @@ pub enum StudyError {
     },
     /// Rows or columns of the complete study that is there were not kept.
     #[error(
-        "{}: not everything of the run tables was kept there ({kept}), so that nobody can go on with it: choose another folder \
-         with --out, or pass --force to do all runs again", path.display()
+        "{}: {}not everything of the run tables was kept there ({kept}), so that nobody can go on with it: choose another folder \
+         with --out, or pass --force to do all runs again", path.display(), damaged.as_ref().map(|file| format!("{file} is not as it was written, and ")).unwrap_or_default()
     )]
     Reduced {
         /// The folder.
         path: PathBuf,
         /// What was kept.
         kept: Kept,
+        /// A file of it that is not as it was written.
+        damaged: Option<String>,
+    },
+    /// Other processes keep other rows or columns of the same study.
+    #[error(
+        "{}: rows and columns to keep, or requirements, are others there than here ({there}; {here}): all shards of a study must say the \
+         same", path.display()
+    )]
+    Shards {
+        /// The folder.
+        path: PathBuf,
+        /// What is kept there.
+        there: Kept,
+        /// What was to be kept here.
+        here: Kept,
     },
     /// A run table cannot be written.
     #[error("cannot write the run table of {model}: {source}")]
@@ -78,20 +93,41 @@ pub enum StudyError {
     Campaign(#[from] CampaignError),
     /// Runs cannot be read.
     #[error(transparent)]
-    Runs(#[from] RunsError),
+    Runs(RunsError),
     /// The runs cannot be summarised.
     #[error("cannot summarise the runs: {0}")]
     Statistics(#[from] StatisticsError),
     /// The runs cannot be judged.
     #[error("cannot judge the requirements: {0}")]
-    Judgement(#[from] JudgementError),
+    Judgement(JudgementError),
     /// The summary cannot be put into JSON.
     #[error("cannot write the summary: {0}")]
     Json(#[from] serde_json::Error),
 }
 
+impl From<RunsError> for StudyError {
+    fn from(error: RunsError) -> Self {
+        match error {
+            RunsError::Stopped => Self::Campaign(CampaignError::Stopped),
+            other => Self::Runs(other),
+        }
+    }
+}
+
+impl From<JudgementError> for StudyError {
+    fn from(error: JudgementError) -> Self {
+        match error {
+            JudgementError::Runs(runs) => runs.into(),
+            other => Self::Judgement(other),
+        }
+    }
+}
+
 impl From<FolderError> for StudyError {
     fn from(error: FolderError) -> Self {
+        if error.is_stopped() {
+            return Self::Campaign(CampaignError::Stopped);
+        }
         Self::Folder { path: error.path().to_owned(), problem: error.problem() }
     }
 }

@@ -1,8 +1,8 @@
 //! A share of a study's runs, and what of a study is there: for studies that many processes do.
 
 use gyradius_campaign::{
-    Block, Doing, Forecast, Progress, Shard, Shared, begun, missing_runs, run_missing, threads,
-    told,
+    Block, Doing, Forecast, MANIFEST, Progress, Shard, Shared, begun, missing_runs, run_missing,
+    threads, told,
 };
 use serde::Serialize;
 use std::{ops::Range, path::Path};
@@ -10,6 +10,7 @@ use std::{ops::Range, path::Path};
 use crate::{
     Notice, Options, StudyError,
     head::Missing,
+    scenario::read_file,
     study::{check_columns, contents, count, foretell, identity, plan},
     subject::Subject,
 };
@@ -58,17 +59,19 @@ pub(crate) fn run_shard<C: Subject>(
     let folder = Shared::open(&options.place(scenario.name()), &contents)?;
     check_columns(scenario, &simulations)?;
     let begun = (&identity(scenario), scenario.to_toml());
+    agree(scenario, &options.place(scenario.name()))?;
     if let Some(there) = folder.reduced(begun.0)? {
         // All is done, also what this share would have been.
-        let (path, kept) = (options.place(scenario.name()), there.kept().clone());
+        let (path, kept, damaged) = (options.place(scenario.name()), there.kept().clone(), None);
         return if scenario.runs() <= there.runs() {
             Ok(())
         } else {
-            Err(StudyError::Reduced { path, kept })
+            Err(StudyError::Reduced { path, kept, damaged })
         };
     }
     let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), shard, &threads)?;
-    blocks.damaged().iter().for_each(|damage| say(Notice::Damaged(damage.clone())));
+    let again = true;
+    blocks.damaged().iter().for_each(|block| say(Notice::Damaged { block: block.clone(), again }));
     let plan = plan(scenario, options, Doing::Shard(shard));
     let missing = |(place, (model, _)): (usize, &(&str, _))| plan.missing(&blocks, place, model);
     let left = simulations.iter().enumerate().map(|model| count(&missing(model))).sum::<u64>();
@@ -79,6 +82,22 @@ pub(crate) fn run_shard<C: Subject>(
     }
     threads.install(|| run_missing(&simulations, &blocks, plan, progress, None))?;
     Ok(())
+}
+
+/// That the study which was begun or done in a folder keeps and requires the same: the last shard would decide for all.
+fn agree<C: Subject>(scenario: &C, folder: &Path) -> Result<(), StudyError> {
+    let done = || read_file(&folder.join("scenario.toml")).ok();
+    let there = begun(folder).or_else(done).and_then(|text| C::resolved(&text).ok());
+    match there {
+        Some(there)
+            if there.kept() != scenario.kept()
+                || there.requirements() != scenario.requirements() =>
+        {
+            let (path, there, here) = (folder.to_owned(), there.kept(), scenario.kept());
+            Err(StudyError::Shards { path, there, here })
+        }
+        Some(_) | None => Ok(()),
+    }
 }
 
 /// What of a study is there.
@@ -105,7 +124,11 @@ impl Status {
     pub(crate) fn of<C: Subject>(scenario: &C, folder: &Path) -> Result<Self, StudyError> {
         let blocks = told(folder, &contents(scenario), &identity(scenario))?;
         if blocks.is_empty() && begun(folder).is_none() {
-            let problem = "it holds no runs of a study".to_owned();
+            let problem = if folder.join(MANIFEST).exists() {
+                format!("{MANIFEST} is not as it was written, so that nobody knows its runs")
+            } else {
+                "it holds no runs of a study".to_owned()
+            };
             return Err(StudyError::Absent { path: folder.to_owned(), problem });
         }
         let (mut models, mut missing) = (Vec::new(), Vec::new());

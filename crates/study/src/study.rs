@@ -15,7 +15,10 @@ use std::{
     fs,
     ops::Range,
     path::{Path, PathBuf},
-    sync::{Arc, OnceLock, atomic::AtomicBool},
+    sync::{
+        Arc, OnceLock,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 use toml::{Table as Toml, Value};
 
@@ -57,8 +60,15 @@ pub enum Notice {
         /// Runs of all models.
         of: u64,
     },
-    /// A block of runs is not as it was written, and is done again.
-    Damaged(String),
+    /// A block of runs is not as it was written.
+    Damaged {
+        /// The block, and what is wrong.
+        block: String,
+        /// Whether its runs are done again now.
+        again: bool,
+    },
+    /// The study is finished already, and was not replaced.
+    Finished,
     /// Runs that had failed were done again.
     Again(Again),
 }
@@ -139,17 +149,20 @@ pub(crate) fn carry_out<C: Subject>(
         && !options.force
     {
         let study = reduced(scenario, &there, (&folder, &text), options, &simulations, &threads)?;
-        return study.ok_or(StudyError::Reduced { path: place, kept: there.kept().clone() });
+        let damaged = threads.install(|| there.damaged())?.into_iter().next();
+        let kept = there.kept().clone();
+        return study.ok_or(StudyError::Reduced { path: place, kept, damaged });
     }
     let blocks = folder.blocks(begun, scenario.runs(), options.force, &threads)?;
-    blocks.damaged().iter().for_each(|damage| say(Notice::Damaged(damage.clone())));
+    let again = doing == Doing::All;
+    blocks.damaged().iter().for_each(|block| say(Notice::Damaged { block: block.clone(), again }));
 
     let plan = plan(scenario, options, doing);
     let all = Plan { doing: Doing::All, ..plan };
     let mut left = 0;
     for (at, (model, _)) in simulations.iter().enumerate() {
         let missing = all.missing(&blocks, at, model);
-        folder.check_places(model, &missing)?;
+        folder.check_places(model, &missing).inspect_err(|_| blocks.abandon())?;
         left += count(&missing);
     }
     let again = options.retry_failed && doing == Doing::All && blocks.any_failed();
@@ -170,6 +183,9 @@ pub(crate) fn carry_out<C: Subject>(
     if left == 0
         && let Some(study) = finished::<C>(&folder, &text, &simulations, &blocks)?
     {
+        if options.force {
+            say(Notice::Finished);
+        }
         return Ok(study);
     }
     if left > 0 && doing == Doing::All {
@@ -199,7 +215,7 @@ pub(crate) fn carry_out<C: Subject>(
     let complete = summary.head().missing().is_empty();
     if complete {
         let empty = empty_tables(&simulations)?;
-        folder.adopt(&blocks, &empty, &scenario.kept(), &threads)?;
+        folder.adopt(&blocks, &empty, &scenario.kept(), &threads, options.stop.as_deref())?;
     }
     folder.write("scenario.toml", &text)?;
     let written = serde_json::to_string_pretty(&summary)? + "\n";
@@ -209,6 +225,9 @@ pub(crate) fn carry_out<C: Subject>(
     let report = threads.install(|| scenario.report(&summary));
     for (name, content) in report.files(report::NAME) {
         folder.write(&name, &content)?;
+    }
+    if options.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+        return Err(CampaignError::Stopped.into());
     }
     let folder = folder.publish()?;
     if complete {
@@ -251,7 +270,7 @@ fn reduced<C: Subject>(
 ) -> Result<Option<Study<C::Summary>>, StudyError> {
     let same = there.runs() == scenario.runs() && *there.kept() == scenario.kept();
     let whole = same && !options.retry_failed && folder.is_whole(text)?;
-    if !whole || !threads.install(|| there.is_whole())? {
+    if !whole || !threads.install(|| there.damaged())?.is_empty() {
         return Ok(None);
     }
     let summary = whole_summary::<C>(folder.place());
@@ -347,7 +366,7 @@ impl Options {
 
 /// How the runs of a scenario are done.
 pub(crate) fn plan<'a, C: Subject>(scenario: &C, options: &'a Options, doing: Doing) -> Plan<'a> {
-    let (runs, stop) = (scenario.runs(), options.stop.as_deref());
+    let (runs, stop) = (scenario.runs(), options.stop.as_ref());
     Plan { runs, block_runs: C::BLOCK_RUNS, doing, stop }
 }
 
@@ -391,7 +410,14 @@ pub(crate) fn contents<C: Subject>(scenario: &C) -> Contents<'_> {
     let differs = |text: &str| {
         let there = C::resolved(text).ok()?;
         let difference = identity(scenario).difference(&identity(&there));
-        let fewer = || format!("runs is {} there and {} here", there.runs(), scenario.runs());
+        let fewer = || match (there.fleet(), scenario.fleet()) {
+            (Some(there), Some(here)) => {
+                format!("vehicles is {} there and {} here", there.vehicles(), here.vehicles())
+            }
+            (Some(_) | None, _) => {
+                format!("runs is {} there and {} here", there.runs(), scenario.runs())
+            }
+        };
         Some(difference.map_or_else(fewer, |difference| difference.to_string()))
     };
     let names: Vec<String> = tables.chain(scenario.report_files()).chain(others).collect();

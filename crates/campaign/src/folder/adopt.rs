@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use std::{
     io::{self, Write},
     path::PathBuf,
+    sync::atomic::{AtomicBool, Ordering},
 };
 
 use super::{
@@ -30,18 +31,19 @@ impl Folder<'_> {
     /// table of each model, by which its runs are read if not all of their rows and columns are kept.
     ///
     /// # Errors
-    /// They cannot be read, linked or written.
+    /// They cannot be read, linked or written, or `stop` is true: see [`FolderError::is_stopped`].
     pub fn adopt(
         &mut self,
         blocks: &Blocks,
         empty: &[Table],
         kept: &Kept,
         threads: &rayon::ThreadPool,
+        stop: Option<&AtomicBool>,
     ) -> Result<(), FolderError> {
         let adopted = if kept.is_all() {
-            self.adopt_whole(blocks)
+            self.adopt_whole(blocks, stop)
         } else {
-            self.adopt_reduced(blocks, empty, kept, threads)
+            self.adopt_reduced(blocks, empty, kept, threads, stop)
         };
         let adopted = adopted.map_err(|problem| self.failed(problem))?;
         let columns = empty.first().map(|table| kept.kept_columns(table)).unwrap_or_default();
@@ -51,9 +53,14 @@ impl Folder<'_> {
         self.write(MANIFEST, &(text + "\n"))
     }
 
-    fn adopt_whole(&mut self, blocks: &Blocks) -> Result<Vec<Block>, Problem> {
+    fn adopt_whole(
+        &mut self,
+        blocks: &Blocks,
+        stop: Option<&AtomicBool>,
+    ) -> Result<Vec<Block>, Problem> {
         let all = blocks.all();
         for block in all.iter().filter(|block| !block.published) {
+            go_on(stop)?;
             let name = Name::new(&block.name())?;
             self.journal.link(&self.hidden, name, &blocks.path(block), &block.sha256)?;
         }
@@ -66,10 +73,12 @@ impl Folder<'_> {
         empty: &[Table],
         kept: &Kept,
         threads: &rayon::ThreadPool,
+        stop: Option<&AtomicBool>,
     ) -> Result<Vec<Block>, Problem> {
         let mut all = blocks.all();
         // So many are in memory at the same time.
         for some in all.chunks_mut(threads.current_num_threads()) {
+            go_on(stop)?;
             let content = |block: &Block| match empty.iter().find(|t| t.model() == block.model()) {
                 None => Ok(None),
                 Some(empty) => {
@@ -134,18 +143,29 @@ impl Reduced {
         self.blocks.iter().map(|block| block.range().end).max().unwrap_or(0)
     }
 
-    /// Whether what was kept is as it was written; to be called in the threads that are to look.
+    /// The files of what was kept that are not as they were written; to be called in the threads that are to look.
     ///
     /// # Errors
     /// The folder cannot be read.
-    pub fn is_whole(&self) -> Result<bool, FolderError> {
+    pub fn damaged(&self) -> Result<Vec<String>, FolderError> {
         let with_file = self.blocks.par_iter().filter(|block| block.has_file());
-        let whole = with_file.map(|block| {
-            let Ok(name) = Name::new(&block.name()) else { return Ok(false) };
-            Ok(matches!(look(&self.place, &name)?, Found::File { hash } if hash == block.sha256))
+        let damaged = with_file.map(|block| {
+            let Ok(name) = Name::new(&block.name()) else { return Ok(Some(block.name())) };
+            let whole =
+                matches!(look(&self.place, &name)?, Found::File { hash } if hash == block.sha256);
+            Ok((!whole).then(|| block.name()))
         });
-        let all = whole.collect::<io::Result<Vec<bool>>>();
-        let all = all.map_err(|e| FolderError { path: self.place.clone(), problem: e.into() })?;
-        Ok(all.into_iter().all(|whole| whole))
+        let damaged = damaged.collect::<io::Result<Vec<Option<String>>>>();
+        let damaged =
+            damaged.map_err(|e| FolderError { path: self.place.clone(), problem: e.into() })?;
+        Ok(damaged.into_iter().flatten().collect())
+    }
+}
+
+/// Whether it goes on, or was told to stop.
+fn go_on(stop: Option<&AtomicBool>) -> Result<(), Problem> {
+    match stop {
+        Some(stop) if stop.load(Ordering::Relaxed) => Err(Problem::Stopped),
+        Some(_) | None => Ok(()),
     }
 }

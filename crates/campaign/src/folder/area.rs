@@ -59,7 +59,7 @@ impl Area {
         }
         let name = format!("{HIDDEN}/{CAMPAIGN}/{IDENTITY}");
         let unknown = |problem: String| Problem::Unknown { name, problem };
-        match fs::read(self.0.join(IDENTITY)) {
+        match disk::read(&self.0.join(IDENTITY)) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(unknown(error.to_string())),
             Ok(text) => serde_json::from_slice(&text).map(Some).map_err(|e| unknown(e.to_string())),
@@ -88,8 +88,10 @@ impl Area {
 
     fn put(&self, name: &str, text: &str, shard: Option<Shard>) -> Result<(), Problem> {
         let path = self.0.join(name);
-        if fs::read(&path).is_ok_and(|there| there == text.as_bytes()) {
-            return Ok(());
+        match disk::read(&path) {
+            Ok(there) if there == text.as_bytes() => return Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::InvalidInput => return Err(error.into()),
+            Ok(_) | Err(_) => {}
         }
         self.replace(name, text, shard)?;
         Ok(disk::sync_folder(&self.0)?)
@@ -116,7 +118,13 @@ impl Area {
     /// The record of those who do all blocks, or of a shard, which only one process at a time holds.
     pub(super) fn record(&self, shard: Option<Shard>) -> Result<(PathBuf, File), Problem> {
         let name = shard.map_or_else(|| RECORD.to_owned(), |s| format!("{RECORD}-{}", s.name()));
-        let path = self.0.join(name);
+        let path = self.0.join(&name);
+        if let Ok(found) = fs::symlink_metadata(&path)
+            && !found.is_file()
+        {
+            let (name, is) = (format!("{HIDDEN}/{CAMPAIGN}/{name}"), said(found.file_type()));
+            return Err(Problem::Kind { name, is, should: "file" });
+        }
         let record = OpenOptions::new().append(true).create(true).open(&path)?;
         if shard.is_some() {
             match record.try_lock() {

@@ -20,6 +20,15 @@ pub(super) fn create_file(path: &Path) -> io::Result<File> {
     OpenOptions::new().read(true).write(true).create_new(true).open(path)
 }
 
+/// The content of a file, unless it is a pipe or something else that may never end.
+pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
+    if !fs::metadata(path)?.is_file() {
+        let problem = format!("{} is not a regular file", path.display());
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+    }
+    fs::read(path)
+}
+
 /// Moves a file; fails if anything is there.
 pub(super) fn move_file(from: &Path, to: &Path) -> io::Result<()> {
     step("move", to)?;

@@ -1,9 +1,9 @@
 //! What a complete campaign tells of itself: what it is, its columns, its blocks.
 
 use serde::{Deserialize, Serialize};
-use std::{fs, io, ops::Range, path::Path};
+use std::{io, ops::Range, path::Path};
 
-use super::name::Name;
+use super::{disk, name::Name};
 use crate::{
     column::{Column, ColumnSummary},
     identity::Identity,
@@ -166,7 +166,7 @@ impl Manifest {
     /// # Errors
     /// There is none, or it is none.
     pub fn read(folder: &Path) -> io::Result<Self> {
-        Ok(serde_json::from_slice(&fs::read(folder.join(MANIFEST))?)?)
+        Ok(serde_json::from_slice(&disk::read(&folder.join(MANIFEST))?)?)
     }
 
     /// The block that has a run of a model.

@@ -388,6 +388,12 @@ impl FolderError {
         &self.path
     }
 
+    /// Whether nothing is wrong but that it was told to stop.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        matches!(self.problem, Problem::Stopped)
+    }
+
     /// What is wrong with it.
     #[must_use]
     pub fn problem(&self) -> String {
@@ -400,6 +406,8 @@ impl FolderError {
 pub(crate) enum Problem {
     #[error("it cannot be written: {0}")]
     Io(#[from] io::Error),
+    #[error("stopped")]
+    Stopped,
     #[error("it is not a folder")]
     NoFolder,
     #[error("something else is being written there")]

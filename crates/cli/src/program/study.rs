@@ -59,7 +59,8 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
             }
         };
     }
-    let outcome = progress::show(total, "runs", |report| scenario.run(&options, report, &notice));
+    let outcome =
+        shown(total, arguments.quiet, |report, notice| scenario.run(&options, report, notice));
     let outcome = match outcome {
         Err(StudyError::Campaign(CampaignError::Stopped)) => return Ok(stopped(&signals)),
         other => other?,
@@ -143,7 +144,12 @@ pub(crate) fn notice(notice: Notice) {
         Notice::GoesOn { done, of } if done < of => {
             say(&format!("{done} of {of} runs are finished already; going on"));
         }
-        Notice::Damaged(block) => say(&format!("{block}: its runs are done again")),
+        Notice::Damaged { block, again: true } => say(&format!("{block}: its runs are done again")),
+        Notice::Damaged { block, again: false } => say(&format!("{block}: its runs are missing")),
+        Notice::Finished => say(
+            "this study is finished already, and --force replaces another one only: to do its runs again, choose another folder or \
+             delete this one",
+        ),
         Notice::Again(Again { runs, failed }) => {
             let s = if runs == 1 { "" } else { "s" };
             say(&format!("{runs} run{s} that had failed, done again: {failed} failed again"));
