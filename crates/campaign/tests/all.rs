@@ -6,4 +6,5 @@ mod campaign;
 #[cfg(unix)]
 mod external;
 mod formats;
+mod kept;
 mod requirement;

@@ -2,8 +2,8 @@
 
 use gyradius_campaign::{
     Blocks, Cell, Column, Contents, Doing, Failure, Folder, Identity, Kept, Kind, Look, MANIFEST,
-    Manifest, Plan, Rows, Runs, SampleSummary, Shard, Shared, Simulation, Streams, Surveys, Table,
-    TableError, begun, read_run, run, run_missing, threads,
+    Manifest, Plan, Runs, SampleSummary, Shard, Shared, Simulation, Streams, Surveys, Table,
+    TableError, begun, run, run_missing, threads,
 };
 use gyradius_statistics::Confidence;
 use proptest::prelude::*;
@@ -64,28 +64,32 @@ impl Simulation for Cheap {
 }
 
 /// A campaign of one model in a folder.
-struct Campaign {
-    place: PathBuf,
-    seed: u64,
-    block_runs: u64,
+pub(crate) struct Campaign {
+    pub(crate) place: PathBuf,
+    pub(crate) seed: u64,
+    pub(crate) block_runs: u64,
 }
 
 /// What came of a command.
-struct Done {
+pub(crate) struct Done {
     runs: Runs,
     /// Runs that were simulated.
-    simulated: u64,
+    pub(crate) simulated: u64,
     damaged: Vec<String>,
 }
 
 impl Campaign {
-    fn identity(&self) -> Identity {
+    pub(crate) fn identity(&self) -> Identity {
         let fields = [("seed", self.seed), ("block_runs", self.block_runs)];
         Identity::new(fields.map(|(name, value)| (name.to_owned(), value.to_string())))
     }
 
     /// What is to be written of so many runs; files that are in their places stay.
-    fn contents<'a>(&self, runs: u64, in_place: &'a OnceLock<BTreeSet<String>>) -> Contents<'a> {
+    pub(crate) fn contents<'a>(
+        &self,
+        runs: u64,
+        in_place: &'a OnceLock<BTreeSet<String>>,
+    ) -> Contents<'a> {
         let seed = self.seed.to_string();
         let same = move |there: &str| {
             let (there_seed, there) = there.split_once(' ').unwrap();
@@ -142,12 +146,17 @@ impl Campaign {
     }
 
     /// One command that is stopped after so many runs, if at all, and keeps all.
-    fn command(&self, runs: u64, stop_after: Option<u64>, force: bool) -> Result<Done, String> {
+    pub(crate) fn command(
+        &self,
+        runs: u64,
+        stop_after: Option<u64>,
+        force: bool,
+    ) -> Result<Done, String> {
         self.keeping(runs, stop_after, force, &Kept::default())
     }
 
     /// One command that is stopped after so many runs, if at all.
-    fn keeping(
+    pub(crate) fn keeping(
         &self,
         runs: u64,
         stop_after: Option<u64>,
@@ -178,7 +187,7 @@ impl Campaign {
         let ends = |end, (first, len): (&u64, &u64)| (*first == end).then_some(first + len);
         assert_eq!(seen.into_inner().unwrap().iter().try_fold(0, ends), Some(runs));
         let empty = [whole(self.seed, 0)];
-        folder.adopt(&blocks, &empty, kept, &pool).map_err(|e| e.to_string())?;
+        folder.adopt(&blocks, &empty, kept, &pool, None).map_err(|e| e.to_string())?;
         folder.write("mark", &text).map_err(|e| e.to_string())?;
         folder.publish().map_err(|e| e.to_string())?;
         blocks.settle().map_err(|e| e.to_string())?;
@@ -186,7 +195,7 @@ impl Campaign {
     }
 
     /// Every block that there is, finished or not.
-    fn files(&self) -> Vec<PathBuf> {
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
         let mut files = Vec::new();
         for folder in ["runs/cheap", ".gyradius/campaign/cheap"] {
             for entry in fs::read_dir(self.place.join(folder)).into_iter().flatten() {
@@ -198,12 +207,12 @@ impl Campaign {
     }
 }
 
-fn whole(seed: u64, runs: u64) -> Table {
+pub(crate) fn whole(seed: u64, runs: u64) -> Table {
     run(&Cheap::new(seed), "cheap", runs, &threads(Some(1)).unwrap(), &|_| {}).unwrap()
 }
 
 /// That the folder holds what one command would have written, however it came about.
-fn assert_whole(campaign: &Campaign, done: &Done, runs: u64) {
+pub(crate) fn assert_whole(campaign: &Campaign, done: &Done, runs: u64) {
     let expected = whole(campaign.seed, runs);
     assert!(done.runs.table().unwrap().rows().eq(expected.rows()));
     let manifest = Manifest::read(&campaign.place).unwrap();
@@ -479,97 +488,4 @@ fn what_is_dropped_by_force_does_not_come_back() {
     let done = campaign.command(20, None, false).unwrap();
     assert!(done.damaged.is_empty() && done.simulated <= 20, "{:?}", done.damaged);
     assert_whole(&campaign, &done, 20);
-}
-
-/// What a campaign keeps: rows, and columns, if not all.
-fn kept() -> impl Strategy<Value = Kept> {
-    let names = vec!["x", "y", "note", "flag", "note_kind", "status", "run"];
-    let some = prop::collection::btree_set(prop::sample::select(names), 0..4);
-    let columns = prop::option::of(some.prop_map(|s| s.into_iter().map(str::to_owned).collect()));
-    (prop::sample::select(&Rows::ALL), columns).prop_map(|(rows, columns)| Kept::new(rows, columns))
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
-
-    /// Whatever is kept: exactly these rows and columns are in the files, the same to the bit; nobody goes on with less than all,
-    /// and who begins anew by force gets all.
-    #[test]
-    fn what_is_kept_is_what_was_asked_for(
-        seed in any::<u64>(),
-        runs in 1_u64..60,
-        block_runs in 1_u64..16,
-        kept in kept(),
-        whole_first in any::<bool>(),
-    ) {
-        let scratch = tempfile::tempdir().unwrap();
-        let campaign = Campaign { place: scratch.path().join("it"), seed, block_runs };
-        if whole_first {
-            campaign.command(runs, None, false).unwrap();
-        }
-        let done = campaign.keeping(runs, None, false, &kept).unwrap();
-        prop_assert_eq!(done.simulated, if whole_first { 0 } else { runs });
-        let manifest = Manifest::read(&campaign.place).unwrap();
-        prop_assert_eq!(manifest.kept(), &kept);
-        let expected = whole(seed, runs);
-        let own = ["model", "run", "status", "status_kind"];
-        let asked = |name: &str| kept.columns().is_none_or(|c| {
-            c.iter().any(|c| c == name || name == "note_kind" && c == "note")
-        });
-        let mut files = BTreeSet::new();
-        for row in expected.rows() {
-            let block = manifest.find("cheap", row.run()).unwrap();
-            let path = campaign.place.join(block.name());
-            let stays = match kept.rows() {
-                Rows::All => true,
-                Rows::Failed => row.failure().is_some(),
-                Rows::None => false,
-            };
-            prop_assert!(!stays || block.has_file());
-            prop_assert_eq!(block.has_file(), path.exists());
-            if block.has_file() {
-                files.insert(path.clone());
-                let read = read_run(&path, ("cheap", row.run())).unwrap();
-                prop_assert_eq!(read.is_some(), stays);
-                let cells = row.cells().filter(|(c, _)| own.contains(&c.name()) || asked(c.name()));
-                let cells: Vec<_> = cells.map(|(c, cell)| (c.name().to_owned(), cell)).collect();
-                prop_assert!(read.is_none_or(|read| read == cells));
-            }
-        }
-        prop_assert_eq!(campaign.files(), files.into_iter().collect::<Vec<_>>());
-        let failed = expected.failures().len();
-        prop_assert!(!campaign.place.join(".gyradius/campaign").exists());
-        let in_place = OnceLock::new();
-        let contents = campaign.contents(runs, &in_place);
-        let folder = Folder::prepare(&campaign.place, &contents, false).unwrap();
-        let reduced = folder.reduced(&campaign.identity()).unwrap();
-        prop_assert_eq!(reduced.is_none(), kept.is_all());
-        if let Some(reduced) = reduced {
-            prop_assert_eq!((reduced.kept(), reduced.runs()), (&kept, runs));
-            prop_assert!(reduced.is_whole().unwrap());
-            if let Some(file) = campaign.files().first() {
-                fs::write(file, "other").unwrap();
-                prop_assert!(!reduced.is_whole().unwrap());
-            } else {
-                prop_assert!(kept.rows() == Rows::None || failed == 0);
-            }
-        }
-        drop(folder);
-    }
-
-    /// A study of which not all was kept is done anew by force, and then goes on as any other.
-    #[test]
-    fn what_was_not_kept_is_done_again_by_force(
-        seed in any::<u64>(),
-        runs in 1_u64..40,
-        more in 0_u64..20,
-        kept in kept().prop_filter("less than all", |kept| !kept.is_all()),
-    ) {
-        let scratch = tempfile::tempdir().unwrap();
-        let campaign = Campaign { place: scratch.path().join("it"), seed, block_runs: 8 };
-        campaign.keeping(runs, None, false, &kept).unwrap();
-        let done = campaign.command(runs + more, None, true).unwrap();
-        prop_assert_eq!(done.simulated, runs + more);
-        assert_whole(&campaign, &done, runs + more);
-    }
 }

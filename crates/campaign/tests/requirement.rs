@@ -21,9 +21,12 @@ fn rows() -> impl Strategy<Value = Vec<[Option<f64>; 3]>> {
     prop::collection::vec([number.clone(), number.clone(), number], 1..400)
 }
 
-fn quantity() -> impl Strategy<Value = (&'static str, fn(&[Option<f64>; 3]) -> Option<f64>)> {
+/// What a row has of a quantity.
+type OfRow = fn(&[Option<f64>; 3]) -> Option<f64>;
+
+fn quantity() -> impl Strategy<Value = (&'static str, OfRow)> {
     prop::sample::select(vec![
-        ("x", (|row| row[0]) as fn(&[Option<f64>; 3]) -> Option<f64>),
+        ("x", (|row| row[0]) as OfRow),
         ("abs(\"y, as drawn\")", |row| row[1].map(f64::abs)),
         ("norm(x, \"y, as drawn\", z[1])", |row| {
             let [x, y, z] = [row[0]?, row[1]?, row[2]?];

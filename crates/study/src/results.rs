@@ -143,7 +143,7 @@ pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, 
         return Err(ResultsError::Version { path: folder.to_owned(), found: version });
     }
     let scenario: C = read_resolved(&file)?;
-    let there = sha256(&scenario.to_toml());
+    let there = sha256(scenario.to_toml());
     if there != fingerprint {
         return Err(ResultsError::Fingerprint {
             path: folder.to_owned(),

@@ -117,7 +117,7 @@ pub(crate) fn head_of(scenario: &impl Subject, columns: &[Column]) -> Head {
     Head {
         gyradius_version: env!("CARGO_PKG_VERSION").into(),
         scenario: scenario.name().to_owned(),
-        fingerprint: sha256(&scenario.to_toml()),
+        fingerprint: sha256(scenario.to_toml()),
         seed: scenario.seed(),
         runs_per_model: scenario.runs(),
         fleet: scenario.fleet(),

@@ -100,7 +100,7 @@ impl Program {
         let files =
             self.words.iter().map(Path::new).filter(|word| word.is_absolute() && word.is_file());
         let hashes = files.filter_map(|file| sha256_of_file(file).ok());
-        sha256(&hashes.collect::<Vec<_>>().join("\n"))
+        sha256(hashes.collect::<Vec<_>>().join("\n"))
     }
 
     /// How long a run that begins now is waited for.

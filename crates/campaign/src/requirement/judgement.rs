@@ -155,8 +155,8 @@ impl Judgement {
     }
 
     /// The same, with what is known of groups of runs.
-    pub(super) fn of_groups(self, groups: Option<Groups>) -> Result<Self, JudgementError> {
-        let Some(Groups { whole, keeping, .. }) = groups else { return Ok(self) };
+    pub(super) fn of_groups(self, groups: Option<&Groups>) -> Result<Self, JudgementError> {
+        let Some(&Groups { whole, keeping, .. }) = groups else { return Ok(self) };
         let share = (whole > 0).then(|| Proportion::new(keeping, whole)).transpose()?;
         let share_interval = share.map(|share| share.interval(self.requirement.confidence()));
         let vehicles = Some(VehiclesKeeping { vehicles: whole, keeping, share_interval });

@@ -85,7 +85,7 @@ impl Judging {
             let empty: Vec<Option<Part>> = self.gatherings.iter().map(Gathering::part).collect();
             if empty.iter().all(Option::is_none) {
                 let groups = self.groups.into_inner().unwrap_or_else(PoisonError::into_inner);
-                let groups = groups.into_iter().map(Some).chain(iter::repeat(None));
+                let groups = groups.iter().map(Some).chain(iter::repeat(None));
                 let judged = self.gatherings.iter().zip(groups);
                 let judged = judged.filter(|(gathering, _)| gathering.tally.runs > 0);
                 return judged

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
-use super::{RequirementError, text::Words};
+use super::{RequirementError, words::Words};
 
 /// What a requirement is about. Written, it is `x`, `abs(x)` or `norm(x, y, z)` with names of columns, in quotation marks if they
 /// have more than letters, digits, `_`, `.`, `[` and `]`.

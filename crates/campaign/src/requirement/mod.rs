@@ -6,6 +6,7 @@ mod judgement;
 mod judging;
 mod measured;
 mod text;
+mod words;
 
 use gyradius_statistics::{Acceptance, Confidence, StatisticsError};
 use serde::{Deserialize, Serialize};

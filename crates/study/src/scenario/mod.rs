@@ -313,7 +313,7 @@ impl Scenario {
     /// a digest of its draws, so that this is then as sure as that the law always draws the same.
     #[must_use]
     pub fn fingerprint(&self) -> String {
-        gyradius_campaign::sha256(&self.to_toml())
+        gyradius_campaign::sha256(self.to_toml())
     }
 
     /// The axis that the payload spins about, body axes.

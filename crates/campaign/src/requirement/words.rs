@@ -1,0 +1,119 @@
+//! A text that is taken word by word: names of columns, numbers, shares, signs.
+
+use super::RequirementError;
+
+/// A text that is taken word by word.
+#[derive(Clone, Debug)]
+pub(super) struct Words<'a> {
+    text: &'a str,
+    rest: &'a str,
+}
+
+impl<'a> Words<'a> {
+    pub(super) fn new(text: &'a str) -> Self {
+        Self { text, rest: text.trim() }
+    }
+
+    /// What is wrong at this place.
+    pub(super) fn wrong(&self, problem: &str) -> RequirementError {
+        let rest: String = self.rest.chars().take(20).collect();
+        let at = if rest.is_empty() { "its end".to_owned() } else { format!("“{rest}”") };
+        RequirementError::Text { text: self.text.to_owned(), at, problem: problem.to_owned() }
+    }
+
+    /// Whether one of these letters is next.
+    pub(super) fn begins_with(&self, letters: &[char]) -> bool {
+        self.rest.starts_with(letters)
+    }
+
+    /// Takes these letters if they are next.
+    pub(super) fn take(&mut self, word: &str) -> bool {
+        let Some(rest) = self.rest.strip_prefix(word) else { return false };
+        self.rest = rest.trim_start();
+        true
+    }
+
+    pub(super) fn expect(&mut self, word: &str) -> Result<(), RequirementError> {
+        if self.take(word) {
+            Ok(())
+        } else {
+            Err(self.wrong(&format!("there must be “{word}”")))
+        }
+    }
+
+    /// That nothing is left.
+    pub(super) fn end(&self) -> Result<(), RequirementError> {
+        if self.rest.is_empty() { Ok(()) } else { Err(self.wrong("nothing may follow")) }
+    }
+
+    /// The name of a column.
+    pub(super) fn name(&mut self) -> Result<String, RequirementError> {
+        if let Some(quoted) = self.rest.strip_prefix('"') {
+            let mut name = String::new();
+            let mut letters = quoted.char_indices();
+            while let Some((place, letter)) = letters.next() {
+                match letter {
+                    '"' => {
+                        self.rest = quoted[place + 1..].trim_start();
+                        return Ok(name);
+                    }
+                    '\\' => name.extend(letters.next().map(|(_, letter)| letter)),
+                    _ => name.push(letter),
+                }
+            }
+            return Err(self.wrong("a quotation mark must end the name"));
+        }
+        let end = self.rest.find(|letter| !is_plain(letter)).unwrap_or(self.rest.len());
+        let (name, rest) = self.rest.split_at(end);
+        if name.is_empty() {
+            return Err(self.wrong(
+                "there must be the name of a column, in quotation marks if it has more than letters, digits and _.[]",
+            ));
+        }
+        self.rest = rest.trim_start();
+        Ok(name.to_owned())
+    }
+
+    /// A name as it is written.
+    pub(super) fn quoted(name: &str) -> String {
+        if !name.is_empty() && name.chars().all(is_plain) && name.parse::<f64>().is_err() {
+            return name.to_owned();
+        }
+        format!("\"{}\"", name.replace('\\', "\\\\").replace('"', "\\\""))
+    }
+
+    /// A finite number, if one is next.
+    pub(super) fn number(&mut self) -> Option<f64> {
+        let digits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '+' | '-');
+        let end = self.rest.find(|c| !digits(c)).unwrap_or(self.rest.len());
+        let (number, rest) = self.rest.split_at(end);
+        let number = number.parse::<f64>().ok().filter(|x| x.is_finite())?;
+        self.rest = rest.trim_start();
+        Some(number)
+    }
+
+    /// A share, as `99.73 %` or `0.9973`.
+    pub(super) fn share(&mut self) -> Result<f64, RequirementError> {
+        let number = self
+            .number()
+            .ok_or_else(|| self.wrong("there must be a share, as 99.73 % or 0.9973"))?;
+        // By the digits, so that 99.73 % is 0.9973 to the bit.
+        let share = |x: f64| format!("{x}e-2").parse().unwrap_or(x / 100.0);
+        Ok(if self.take("%") { share(number) } else { number })
+    }
+
+    /// At most (true) or at least.
+    pub(super) fn comparison(&mut self) -> Result<bool, RequirementError> {
+        if self.take("<=") || self.take("≤") {
+            Ok(true)
+        } else if self.take(">=") || self.take("≥") {
+            Ok(false)
+        } else {
+            Err(self.wrong("there must be “<=” or “>=”"))
+        }
+    }
+}
+
+fn is_plain(letter: char) -> bool {
+    letter.is_alphanumeric() || matches!(letter, '_' | '.' | '[' | ']')
+}
