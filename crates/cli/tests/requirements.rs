@@ -174,3 +174,18 @@ fn wrong_requirements_are_refused() {
     let said = done(&scratch, &["verdict", "t.csv", "--require", "x <= 1 in 90 % at 90 %"], 1);
     assert!(said.contains("NOT DECIDED") && said.contains("21 more"), "{said}");
 }
+
+/// What the page shows is what the program says.
+#[test]
+fn the_page_shows_what_is_said() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/requirements.md");
+    let page = fs::read_to_string(page).unwrap();
+    let (_, shown) = page.split_once("```text\n").unwrap();
+    let (shown, _) = shown.split_once("```").unwrap();
+    let scratch = Scratch::new();
+    done(&scratch, &["study", "-q"], 0);
+    let runs = "target/study/peck-2003/runs/proposed";
+    let require = "nutation_deg <= 10 in 99 % at 90 %";
+    assert!(page.contains(&format!("gyradius verdict {runs} --require \"{require}\"")));
+    assert_eq!(done(&scratch, &["verdict", runs, "--require", require], 0), shown);
+}

@@ -68,7 +68,10 @@ fn campaigns_of_vehicles_go_on() {
     assert_eq!((before.len(), after.len()), (120, 300));
     assert!(before[..60] == after[..60] && before[60..] == after[150..210]);
     assert!(rows(&run(&make(30, 5), "b", 1).unwrap()) == after);
-    for (other, told) in [(make(30, 6), "flights is 5 there and 6 here"), (make(29, 5), "vehicles is 30 there and 29 here")] {
+    for (other, told) in [
+        (make(30, 6), "flights is 5 there and 6 here"),
+        (make(29, 5), "vehicles is 30 there and 29 here"),
+    ] {
         let error = run(&other, "a", 2).unwrap_err().to_string();
         assert!(error.contains(told), "{error}");
     }
