@@ -147,7 +147,7 @@ fn every_verb_knows_simulators() {
     let sent = told.lines().find_map(|line| line.strip_prefix("sent: ")).unwrap();
     let sent: Value = serde_json::from_str(sent).unwrap();
     let y = format!("y = {:?}", sent["inputs"]["x"].as_f64().unwrap());
-    assert!(told.contains(&y), "{told}");
+    assert!(told.contains(&y) && told.contains("the same, bit for bit, as in o"), "{told}");
     let draw = scratch.run(&["draw", "s.toml", "-n", "700", "--format", "csv"]);
     let last = said(&draw)[0].lines().last().unwrap().to_owned();
     assert!(last.starts_with("all,699,ok,") && last.contains(&y[4..]), "{last}");

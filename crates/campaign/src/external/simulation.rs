@@ -47,8 +47,9 @@ pub trait Inputs: Sync {
 /// `{"run":17,"model":"proposed","seed":4503599627370496,"inputs":{"payload_mass_kg":812.3}}`, and writes one line to
 /// standard output, at once and of 1 MiB at most: `{"run":17,"outputs":{"tip_off_deg_per_s":0.4}}`, or
 /// `{"run":17,"error":"diverged at 3.2 s"}` if the run failed. `run` may be left out of the answer; with it, no
-/// answer is ever taken for that of another run. Messages belong on standard error. When standard input ends, the process
-/// should end, too.
+/// answer is ever taken for that of another run. What was written before the process read the line is no
+/// answer to it: the end of the line is sent once all before it has been read, as far as the system tells that. Messages
+/// belong on standard error. When standard input ends, the process should end, too.
 ///
 /// # With files
 /// A [`Program::per_run`](super::Program::per_run) is started for each run in a temporary folder of its own,
@@ -61,8 +62,8 @@ pub trait Inputs: Sync {
 ///
 /// # What fails
 /// A run fails, and its row says why, if its inputs cannot be drawn or are not finite; if the answer does not come in
-/// time, is too long, no JSON, out of turn, or followed by more; if a declared output is missing, repeated or not a
-/// finite number, or one is not declared; if the process ends or closes its pipes; and if the simulator says so. A process
+/// time, is too long, no JSON, written before the run was read, that of another run, or followed by more; if a declared
+/// output is missing, repeated or not a finite number, or one is not declared; if the process ends or closes its pipes; and if the simulator says so. A process
 /// that did not answer as agreed is killed with everything in its process group. If it had done runs before, the run is
 /// sent once more, to a process that is started for it alone, and what that does counts. So a run depends on its inputs
 /// alone, as long as the simulator itself keeps nothing from one run to the next, and a process that spoils itself spoils
@@ -115,6 +116,8 @@ pub struct ExternalSimulation<'a, I> {
 /// What was told to and by a simulator in one run.
 #[derive(Clone, Debug)]
 pub struct Told {
+    /// What was drawn, as far as it could be: a number or nothing for each column of the inputs, in their order.
+    pub inputs: Vec<Option<f64>>,
     /// The line or the file that was sent; none if the inputs cannot be sent.
     pub request: Option<String>,
     /// The answer as it came, if one came.
@@ -158,7 +161,14 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         let mut numbers = Vec::new();
         let request = match self.request(run, &mut numbers) {
             Ok(request) => request,
-            Err(failure) => return Told { request: None, answer: None, outputs: Err(failure) },
+            Err(failure) => {
+                return Told {
+                    inputs: numbers,
+                    request: None,
+                    answer: None,
+                    outputs: Err(failure),
+                };
+            }
         };
         let told = std::cell::RefCell::new(None);
         let outputs = self.simulator.ask(&request, &mut None, |answer| {
@@ -166,10 +176,47 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
             answer::read(answer, run, &self.outputs)
         });
         Told {
+            inputs: numbers,
             request: Some(String::from_utf8_lossy(&request).trim_end().to_owned()),
             answer: told.into_inner(),
             outputs: outputs.map_err(Trouble::failure),
         }
+    }
+
+    /// The table of a run that was done alone: the row that a campaign has of it.
+    ///
+    /// # Errors
+    /// The inputs or the outputs do not go into their columns.
+    pub fn table(&self, run: u64, told: &Told) -> Result<Table, TableError> {
+        let mut table = Table::new(&self.model, run, self.columns())?;
+        self.push(run, &told.inputs, told.outputs.clone(), &mut table)?;
+        Ok(table)
+    }
+
+    /// Pushes the row of a run. Too many numbers are refused by the table, and so are too few of a run that did not fail.
+    fn push(
+        &self,
+        run: u64,
+        inputs: &[Option<f64>],
+        outputs: Result<Vec<f64>, Failure>,
+        rows: &mut Table,
+    ) -> Result<(), TableError> {
+        let (outputs, failure) = match outputs {
+            Ok(outputs) => (outputs, None),
+            Err(failure) => (Vec::new(), Some(failure)),
+        };
+        let missing = |all: usize, there: usize| {
+            let missing = if failure.is_some() { all.saturating_sub(there) } else { 0 };
+            std::iter::repeat_n(Cell::Null, missing)
+        };
+        let drawn = inputs.iter().map(|number| Cell::from(*number));
+        let place = self.inputs.place(run).into_iter().map(Cell::Integer);
+        let cells = place
+            .chain(drawn)
+            .chain(missing(self.drawn.len(), inputs.len()))
+            .chain(outputs.iter().map(|number| Cell::Number(*number)))
+            .chain(missing(self.outputs.len(), outputs.len()));
+        rows.push(failure.clone(), cells)
     }
 
     /// The line that is sent for a run, and the numbers in it, which are there as far as they could be drawn.
@@ -222,23 +269,8 @@ impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
         let mut numbers = Vec::with_capacity(self.drawn.len());
         for run in runs {
             numbers.clear();
-            let (outputs, failure) = match self.outputs(run, &mut numbers, &mut kept) {
-                Ok(outputs) => (outputs, None),
-                Err(failure) => (Vec::new(), Some(failure)),
-            };
-            // Too many numbers are refused by the table, too few of a run that did not fail too.
-            let missing = |all: usize, there: usize| {
-                let missing = if failure.is_some() { all.saturating_sub(there) } else { 0 };
-                std::iter::repeat_n(Cell::Null, missing)
-            };
-            let drawn = numbers.iter().map(|number| Cell::from(*number));
-            let place = self.inputs.place(run).into_iter().map(Cell::Integer);
-            let cells = place
-                .chain(drawn)
-                .chain(missing(self.drawn.len(), numbers.len()))
-                .chain(outputs.iter().map(|number| Cell::Number(*number)))
-                .chain(missing(self.outputs.len(), outputs.len()));
-            rows.push(failure.clone(), cells)?;
+            let outputs = self.outputs(run, &mut numbers, &mut kept);
+            self.push(run, &numbers, outputs, rows)?;
         }
         self.simulator.keep(kept);
         Ok(())

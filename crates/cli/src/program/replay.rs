@@ -19,8 +19,11 @@ pub(crate) fn replay(arguments: &ReplayArgs) -> Result<(), Box<dyn Error>> {
     };
     if SimulatorScenario::is_in(path) {
         let scenario = SimulatorScenario::read(path)?;
-        let replay = SimulatorReplay::new(&scenario, model, which)?;
-        return Ok(print(&replay.to_string())?);
+        let mut replay = SimulatorReplay::new(&scenario, model, which)?;
+        // What was said is told before that it is not what the study has.
+        let held = if path.is_dir() { replay.hold_against(path) } else { Ok(()) };
+        print(&replay.to_string())?;
+        return Ok(held?);
     }
     let replay = Replay::open(path, model, which, arguments.coast)?;
     let folder = arguments.out.clone().unwrap_or_else(|| replay.default_folder());

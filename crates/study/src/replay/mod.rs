@@ -1,5 +1,7 @@
 //! One run of a study again, bit for bit, with all that happens in it.
 
+mod error;
+mod held;
 mod history;
 mod outlines;
 pub(crate) mod page;
@@ -7,145 +9,28 @@ mod picture;
 mod short;
 mod words;
 
-use gyradius_campaign::{
-    Column, Kept, MANIFEST, Manifest, Row, Rows, Simulation, Table, TableError, folder_of,
-    read_run, restore,
-};
+use gyradius_campaign::{Row, Simulation, Table, folder_of, restore};
 use gyradius_clearance::Clearance;
-use gyradius_formats::{WriteError, must_write, write_file};
-use gyradius_separation::{RunError, Separation, Step};
-use parquet::errors::ParquetError;
+use gyradius_formats::{must_write, write_file};
+use gyradius_separation::{Separation, Step};
 use std::{
-    collections::BTreeSet,
-    fs, io,
+    fs,
     path::{Path, PathBuf},
 };
 
 use crate::{
-    Fleet, Results, ResultsError, Scenario, ScenarioError,
+    Results, ResultsError, Scenario,
     model::{Model, Separations},
     run::{Case, End},
     subject::Subject,
 };
+use error::MOST_COAST;
+pub use error::ReplayError;
+pub(crate) use held::Held;
 use history::History;
 
-/// Longest coast, s: what a history still shows.
-const MOST_COAST: f64 = 3600.0;
-
-/// Why a run is not replayed. Nothing has been overwritten.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ReplayError {
-    /// The scenario is refused.
-    #[error(transparent)]
-    Scenario(#[from] ScenarioError),
-    /// The study cannot be read.
-    #[error(transparent)]
-    Study(#[from] ResultsError),
-    /// The run leaves no row.
-    #[error(transparent)]
-    Row(#[from] TableError),
-    /// The scenario has no such model.
-    #[error("model {model:?}: the scenario has {}", known.join(", "))]
-    Model {
-        /// What was asked for.
-        model: String,
-        /// What there is.
-        known: Vec<String>,
-    },
-    /// There is no such run.
-    #[error("run {run}: the runs are numbered from 0 to {}", runs - 1)]
-    Run {
-        /// What was asked for.
-        run: u64,
-        /// How many there are.
-        runs: u64,
-    },
-    /// There is no such vehicle or flight.
-    #[error(
-        "vehicle {vehicle}, flight {flight}: the scenario has {}, all numbered from 0",
-        fleet.map_or_else(|| "no vehicles".to_owned(), |fleet| fleet.to_string())
-    )]
-    Flight {
-        /// The vehicle that was asked for.
-        vehicle: u64,
-        /// Its flight.
-        flight: u64,
-        /// What there is.
-        fleet: Option<Fleet>,
-    },
-    /// The coast is none.
-    #[error("coast = {value:?} s: it must lie between 0 and {MOST_COAST}")]
-    Coast {
-        /// What was asked for, s.
-        value: f64,
-    },
-    /// The coast cannot be followed to its end.
-    #[error("the run ends well, but not its coast: {0}; ask for a shorter one")]
-    Coasting(RunError),
-    /// The run table cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Table {
-        /// The table.
-        path: PathBuf,
-        /// Why.
-        source: ParquetError,
-    },
-    /// What the study tells of its run tables cannot be read.
-    #[error("{}: {problem}", path.display())]
-    Manifest {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        problem: String,
-    },
-    /// The replay is not what the table says.
-    #[error(
-        "{}: {column} of the run is {table}, and the replay has {replayed}: the table was changed, or \
-         made by another build", path.display()
-    )]
-    Differs {
-        /// The table.
-        path: PathBuf,
-        /// The column.
-        column: String,
-        /// What stands in it.
-        table: String,
-        /// What the replay gives.
-        replayed: String,
-    },
-    /// A file is there already, and another.
-    #[error(
-        "{} is there already; choose another folder with --out, or pass --force to replace it",
-        path.display()
-    )]
-    Exists {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A file cannot be written.
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-}
-
-impl From<WriteError> for ReplayError {
-    fn from(error: WriteError) -> Self {
-        match error {
-            WriteError::Exists(path) => Self::Exists { path },
-            WriteError::Io { path, error } => Self::Write { path, source: error },
-            WriteError::NoFile(path) => {
-                let source = io::Error::other("it is not a regular file");
-                Self::Write { path, source }
-            }
-            other => Self::Write { path: PathBuf::new(), source: io::Error::other(other) },
-        }
-    }
-}
+/// Why a row may be another than that of the study.
+const CAUSES: &str = "the table was changed, or made by another build";
 
 /// Which run is replayed; a number is that of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -199,17 +84,6 @@ pub struct Replay {
     table: Held,
 }
 
-/// What a replay was held against.
-#[derive(Debug)]
-enum Held {
-    /// Nothing: there is no study.
-    Nowhere,
-    /// Nothing: the study did not keep the row.
-    NotKept,
-    /// What was kept of the row in a table.
-    To(PathBuf),
-}
-
 impl Replay {
     /// Replays a run of the study in a folder, and holds it against the run table there; or of a
     /// scenario file, which has none. The model is the first of the scenario if not given. The history
@@ -248,28 +122,7 @@ impl Replay {
     /// # Errors
     /// There is no such table, or it says otherwise.
     pub fn held_against(mut self, folder: &Path) -> Result<Self, ReplayError> {
-        let run = self.row().run();
-        let manifest = Manifest::read(folder).map_err(|error| ReplayError::Manifest {
-            path: folder.join(MANIFEST),
-            problem: error.to_string(),
-        })?;
-        let block = manifest.find(&self.model, run).ok_or_else(|| {
-            let problem = format!("it tells of no run {run} of {:?}", self.model);
-            ReplayError::Manifest { path: folder.join(MANIFEST), problem }
-        })?;
-        let kept = manifest.kept();
-        let is_kept = match kept.rows() {
-            Rows::All => true,
-            Rows::Failed => self.row().failure().is_some(),
-            Rows::None => false,
-        };
-        if !is_kept {
-            self.table = Held::NotKept;
-            return Ok(self);
-        }
-        let table = folder.join(block.name());
-        self.compare(&table, kept)?;
-        self.table = Held::To(table);
+        self.table = Held::against(folder, &self.own, CAUSES)?;
         Ok(self)
     }
 
@@ -369,36 +222,5 @@ impl Replay {
             write_file(path, content.as_bytes(), force)?;
         }
         Ok(files.map(|(path, _)| path).into())
-    }
-
-    /// Holds the row against that of a run table, bit by bit.
-    fn compare(&self, table: &Path, kept: &Kept) -> Result<(), ReplayError> {
-        let unreadable = |source| ReplayError::Table { path: table.to_owned(), source };
-        let differs = |column: &str, found: String, replayed: String| ReplayError::Differs {
-            path: table.to_owned(),
-            column: column.to_owned(),
-            table: found,
-            replayed,
-        };
-        let found = read_run(table, (&self.model, self.row().run())).map_err(unreadable)?;
-        let found = found
-            .ok_or_else(|| unreadable(ParquetError::General("it has no such run".to_owned())))?;
-        let columns: BTreeSet<_> =
-            kept.kept_columns(&self.own).into_iter().map(Column::name).collect();
-        if columns.len() != found.len() {
-            let count = |n: usize| format!("{n} columns");
-            return Err(differs("the number of columns", count(found.len()), count(columns.len())));
-        }
-        let row = self.row();
-        let own = row.cells().filter(|(column, _)| columns.contains(column.name()));
-        for ((column, own), (name, cell)) in own.zip(found) {
-            if column.name() != name {
-                return Err(differs("the name of a column", name, column.name().to_owned()));
-            }
-            if own != cell {
-                return Err(differs(&name, cell.to_string(), own.to_string()));
-            }
-        }
-        Ok(())
     }
 }

@@ -6,7 +6,7 @@ use std::fmt::{self, Display, Formatter};
 
 use gyradius_report::{optional, significant};
 
-use super::{Held, Replay};
+use super::Replay;
 use crate::{
     body::{Body, Entry},
     column::{CLEARANCE_NOTE, REALIZABLE, RECOMPRESSED},
@@ -47,18 +47,7 @@ impl Display for Replay {
             scenario.seed()
         )?;
         writeln!(f, "status: {}", row.status())?;
-        match &self.table {
-            Held::To(table) => {
-                writeln!(f, "the same, bit for bit, as in {}", table.display())?;
-            }
-            Held::NotKept => {
-                writeln!(
-                    f,
-                    "the study did not keep the row of this run: there is nothing to hold it against"
-                )?;
-            }
-            Held::Nowhere => writeln!(f, "there is no run table to hold it against")?,
-        }
+        writeln!(f, "{}", self.table)?;
         write!(f, "\ninertia (kg·m²)")?;
         for entry in Entry::ALL {
             write!(f, "{:>11}", Quantity::entry(Body::Payload, entry).label())?;

@@ -1,10 +1,14 @@
 //! One run of a simulator again: what was sent, what was answered.
 
-use gyradius_campaign::Told;
-use std::fmt;
+use gyradius_campaign::{Table, Told};
+use std::{fmt, path::Path};
 
 use super::scenario::SimulatorScenario;
-use crate::{Fleet, ReplayError, Which, subject::Subject};
+use crate::{Fleet, ReplayError, Which, replay::Held, subject::Subject};
+
+/// Why a row may be another than that of the study.
+const CAUSES: &str = "the table was changed, or something that the simulator uses, such as a file that it imports or the \
+                      interpreter, or the simulator answers otherwise to the same inputs and seed";
 
 /// One run of a simulator again, in a process that is started for it.
 #[derive(Clone, Debug)]
@@ -14,6 +18,9 @@ pub struct SimulatorReplay {
     fleet: Option<Fleet>,
     told: Told,
     outputs: Vec<(String, String)>,
+    /// The table of this run alone, and what it was held against; nothing is said of the latter if they differ.
+    own: Table,
+    held: Option<Held>,
 }
 
 impl SimulatorReplay {
@@ -35,12 +42,25 @@ impl SimulatorReplay {
             })?;
         let simulator = scenario.prepare(None)?;
         scenario.begin(&simulator)?;
-        let told = scenario.simulation(&simulator, place)?.replay(run);
+        let simulation = scenario.simulation(&simulator, place)?;
+        let told = simulation.replay(run);
+        let own = simulation.table(run, &told)?;
         let outputs = scenario.outputs().iter();
         let outputs = outputs.map(|c| (c.name().to_owned(), c.unit().unwrap_or("1").to_owned()));
         let name = scenario.model_names().nth(place).unwrap_or_default().to_owned();
         let fleet = scenario.fleet();
-        Ok(Self { model: name, run, fleet, told, outputs: outputs.collect() })
+        let (outputs, held) = (outputs.collect(), Some(Held::Nowhere));
+        Ok(Self { model: name, run, fleet, told, outputs, own, held })
+    }
+
+    /// Holds the row, what was drawn and what was answered, against that of the run table in the folder of a study, bit by bit.
+    ///
+    /// # Errors
+    /// There is no such table, or it says otherwise.
+    pub fn hold_against(&mut self, folder: &Path) -> Result<(), ReplayError> {
+        self.held = None;
+        self.held = Some(Held::against(folder, &self.own, CAUSES)?);
+        Ok(())
     }
 
     /// What was told to and by the simulator.
@@ -54,6 +74,9 @@ impl fmt::Display for SimulatorReplay {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let flight = self.fleet.map(|fleet| format!(" {}", fleet.told(self.run)));
         writeln!(f, "{}, run {}{}", self.model, self.run, flight.unwrap_or_default())?;
+        if let Some(held) = &self.held {
+            writeln!(f, "{held}")?;
+        }
         let nothing = || "nothing".to_owned();
         writeln!(f, "sent: {}", self.told.request.clone().unwrap_or_else(nothing))?;
         let answer = self.told.answer.as_deref().map(str::trim_end).map(str::to_owned);

@@ -1,4 +1,4 @@
-//! Failed runs of a simulator, done again.
+//! Runs of a simulator, done again: those that failed, and one that is held against its row.
 
 use std::{
     fs,
@@ -8,8 +8,10 @@ use std::{
     },
 };
 
-use super::{SimulatorSummary, folder, scenario, uniform};
-use crate::{CampaignError, Notice, Options, Status, Study, StudyError};
+use super::{SimulatorReplay, SimulatorSummary, folder, scenario, uniform};
+use crate::{
+    CampaignError, Kept, Notice, Options, ReplayError, Rows, Status, Study, StudyError, Which,
+};
 
 /// Runs that failed for a reason that is gone are done again, and no other: of a study that is complete, and of one that was
 /// stopped. Until the new blocks are there, the old ones count.
@@ -90,4 +92,105 @@ done
         assert!(status.is_complete() && status.models()[0].failed() == 0);
         assert!(!study.folder().join(".gyradius/campaign").exists());
     }
+}
+
+/// A run is held against what the study kept of its row, and an import that was changed is found wherever it shows.
+#[test]
+fn one_run_is_held_against_its_row() {
+    // What it reads besides the file that the command names. Runs fail whose quantity is between 0.4 and 0.7.
+    const IMPORTS: &str = r#"
+. ./mod.sh
+while read -r line; do
+    x=${line#*'"x":'}; x=${x%%[,\}]*}
+    case $x in
+        0.[456]*) echo "{\"error\":\"$WORDS $x\"}" ;;
+        $BAD) echo '{"error":"bad"}' ;;
+        *) echo "{\"outputs\":{\"y\":$SIGN$x}}" ;;
+    esac
+done
+"#;
+    let folder = folder();
+    let import = |sign: &str, words: &str, bad: &str| {
+        let text = format!("SIGN='{sign}'\nWORDS='{words}'\nBAD='{bad}'\n");
+        fs::write(folder.path().join("mod.sh"), text).unwrap();
+    };
+    import("", "too large:", "none");
+    fs::write(folder.path().join("answer.sh"), IMPORTS).unwrap();
+    let scenario = scenario(&uniform(), folder.path());
+    let columns = |names: &[&str]| Some(names.iter().map(|name| (*name).to_owned()).collect());
+    let studied = |rows: Rows, kept: Option<Vec<String>>, name: &str| {
+        let scenario = scenario.clone().with_kept(&Kept::new(rows, kept));
+        let out = folder.path().join(name);
+        let options = Options { out: Some(out.clone()), threads: Some(2), ..Options::default() };
+        scenario.study(&options, &|_| {}, &|_| {}).unwrap();
+        out
+    };
+    let all = studied(Rows::All, None, "all");
+    let drawn = studied(Rows::All, columns(&["x", "status_kind"]), "drawn");
+    let failed = studied(Rows::Failed, None, "failed");
+    let none = studied(Rows::None, None, "none");
+    let runs = [0, 1, 2, 3, 4, 5, 6, 7, 250, 255, 256, 257, 258, 299];
+    let held = |folder: &std::path::Path, run: u64| {
+        let mut replay = SimulatorReplay::new(&scenario, None, run).unwrap();
+        let held = replay.hold_against(folder);
+        (replay.told().outputs.clone(), held, replay.to_string())
+    };
+    const SAME: &str = "the same, bit for bit, as in ";
+    const NOT_KEPT: &str = "the study did not keep the row of this run";
+    let mut failures = 0;
+    for run in runs {
+        for (folder, fails, well) in [
+            (&all, SAME, SAME),
+            (&drawn, SAME, SAME),
+            (&failed, SAME, NOT_KEPT),
+            (&none, NOT_KEPT, NOT_KEPT),
+        ] {
+            let (outputs, held, page) = held(folder, run);
+            held.unwrap();
+            failures += usize::from(outputs.is_err());
+            let line = page.lines().nth(1).unwrap();
+            let expected = if outputs.is_err() { fails } else { well };
+            assert!(line.starts_with(expected), "{run}: {page}");
+        }
+    }
+    assert!((4..52).contains(&failures), "{failures}");
+
+    let differs = |folder: &std::path::Path, run: u64, found: [&str; 3]| {
+        let (_, held, page) = held(folder, run);
+        let error = held.unwrap_err();
+        let ReplayError::Differs { column, table, replayed, .. } = &error else {
+            panic!("{error}")
+        };
+        let [name, was, is] = found;
+        assert!(column == name && table.contains(was) && replayed.contains(is), "{error}");
+        assert!(error.to_string().contains("a file that it imports"), "{error}");
+        assert!(page.contains("\nsent: {") && !page.contains(SAME), "{page}");
+    };
+    let is_failed = |run: u64| held(&none, run).0.is_err();
+    let (fails, well): (Vec<u64>, Vec<u64>) = runs.into_iter().partition(|run| is_failed(*run));
+    for run in &well {
+        import("-", "too large:", "none");
+        differs(&all, *run, ["y", "0.", "-0."]);
+        // What is kept is the same.
+        held(&drawn, *run).1.unwrap();
+        held(&none, *run).1.unwrap();
+        import("", "too large:", "0.*");
+        differs(&all, *run, ["status", "ok", "bad"]);
+        differs(&drawn, *run, ["status_kind", "ok", "bad"]);
+        differs(&failed, *run, ["the row", "did not fail", "bad"]);
+    }
+    for run in &fails {
+        import("", "so large:", "none");
+        differs(&all, *run, ["status", "too large: 0.", "so large: 0."]);
+        differs(&failed, *run, ["status", "too large: 0.", "so large: 0."]);
+        differs(&drawn, *run, ["status_kind", "too large: #", "so large: #"]);
+    }
+
+    // What was never done is held against nothing, and a folder without tables is told of.
+    let other = scenario.clone().with_runs(301).unwrap();
+    import("", "too large:", "none");
+    let mut beyond = SimulatorReplay::new(&other, None, 300).unwrap();
+    beyond.hold_against(&all).unwrap();
+    assert!(beyond.to_string().contains("has not done this run yet"), "{beyond}");
+    assert!(matches!(beyond.hold_against(folder.path()), Err(ReplayError::Manifest { .. })));
 }

@@ -1,0 +1,127 @@
+//! Holding the row of a run that was done again against that of the study, bit by bit.
+
+use gyradius_campaign::{Cell, Column, Kept, MANIFEST, Manifest, Row, Rows, Table, read_run};
+use parquet::errors::ParquetError;
+use std::{
+    collections::BTreeSet,
+    fmt,
+    path::{Path, PathBuf},
+};
+
+use super::error::ReplayError;
+
+/// What a run that was done again was held against.
+#[derive(Clone, Debug)]
+pub(crate) enum Held {
+    /// Nothing: there is no study.
+    Nowhere,
+    /// Nothing: the study has not done the run, of which shards may be missing.
+    NotDone,
+    /// Nothing: the study did not keep the row.
+    NotKept,
+    /// What was kept of the row in a table.
+    To(PathBuf),
+}
+
+impl Held {
+    /// Holds the one row of a table against that of the same model and run in the folder of a study. `causes` says what may
+    /// have happened where they differ.
+    ///
+    /// # Errors
+    /// What the study tells of its tables cannot be read, nor the table, or the table says otherwise.
+    pub(crate) fn against(
+        folder: &Path,
+        own: &Table,
+        causes: &'static str,
+    ) -> Result<Self, ReplayError> {
+        let manifest = Manifest::read(folder).map_err(|error| ReplayError::Manifest {
+            path: folder.join(MANIFEST),
+            problem: error.to_string(),
+        })?;
+        let (model, run) = (own.model(), own.first());
+        let Some(block) = manifest.find(model, run) else { return Ok(Self::NotDone) };
+        let kept = manifest.kept();
+        let path = folder.join(block.name());
+        let comparison = Comparison { own, path: &path, causes };
+        let is_the_same = match kept.rows() {
+            Rows::None => false,
+            Rows::All => match comparison.found()? {
+                Some(found) => comparison.compare(kept, found).map(|()| true)?,
+                None => return Err(comparison.unreadable("it has no such run")),
+            },
+            Rows::Failed => match (comparison.found()?, own.failures().next()) {
+                (Some(found), _) => comparison.compare(kept, found).map(|()| true)?,
+                (None, None) => false,
+                (None, Some((_, failure))) => {
+                    let found = "not kept, for the run did not fail".to_owned();
+                    return Err(comparison.differs("the row", found, failure.to_string()));
+                }
+            },
+        };
+        Ok(if is_the_same { Self::To(path) } else { Self::NotKept })
+    }
+}
+
+impl fmt::Display for Held {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::To(table) => write!(f, "the same, bit for bit, as in {}", table.display()),
+            Self::NotDone => f.write_str(
+                "the study has not done this run yet: there is nothing to hold it against",
+            ),
+            Self::NotKept => f.write_str(
+                "the study did not keep the row of this run: there is nothing to hold it against",
+            ),
+            Self::Nowhere => f.write_str("there is no run table to hold it against"),
+        }
+    }
+}
+
+/// The row of a run that was done again, and the table that has, or had, that of the study.
+struct Comparison<'a> {
+    own: &'a Table,
+    path: &'a Path,
+    causes: &'static str,
+}
+
+impl Comparison<'_> {
+    /// What the table has of the run, if it has the run.
+    fn found(&self) -> Result<Option<Vec<(String, Cell<'static>)>>, ReplayError> {
+        let found = read_run(self.path, (self.own.model(), self.own.first()));
+        found.map_err(|source| ReplayError::Table { path: self.path.to_owned(), source })
+    }
+
+    fn unreadable(&self, problem: &str) -> ReplayError {
+        let source = ParquetError::General(problem.to_owned());
+        ReplayError::Table { path: self.path.to_owned(), source }
+    }
+
+    fn differs(&self, column: &str, table: String, replayed: String) -> ReplayError {
+        let (path, column) = (self.path.to_owned(), column.to_owned());
+        ReplayError::Differs { path, column, table, replayed, causes: self.causes }
+    }
+
+    /// Compares what was kept of the row, bit by bit.
+    fn compare(&self, kept: &Kept, found: Vec<(String, Cell<'static>)>) -> Result<(), ReplayError> {
+        let columns: BTreeSet<_> =
+            kept.kept_columns(self.own).into_iter().map(Column::name).collect();
+        if columns.len() != found.len() {
+            let count = |n: usize| format!("{n} columns");
+            let [found, own] = [found.len(), columns.len()].map(count);
+            return Err(self.differs("the number of columns", found, own));
+        }
+        let row = self.own.rows().next();
+        let own = row.iter().flat_map(Row::cells);
+        let own = own.filter(|(column, _)| columns.contains(column.name()));
+        for ((column, own), (name, cell)) in own.zip(found) {
+            if column.name() != name {
+                let own = column.name().to_owned();
+                return Err(self.differs("the name of a column", name, own));
+            }
+            if own != cell {
+                return Err(self.differs(&name, cell.to_string(), own.to_string()));
+            }
+        }
+        Ok(())
+    }
+}
