@@ -1,6 +1,8 @@
 //! Simulators in a shell script that misbehave in every way, in every place, and in Python: what they do to their own
 //! runs, and that they do nothing to others.
 
+mod order;
+
 use gyradius_campaign::{
     Column, ExternalSimulation, Failure, Inputs, Kind, Program, ProgramError, Simulator, Streams,
     Table, run, threads,
@@ -238,6 +240,28 @@ proptest! {
     }
 }
 
+/// What is left in the place of the file with the answer is called by its name.
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_told() {
+    const GONE: &str = "rm -f output.json; ";
+    for (mischief, told) in [
+        ("", "left no file `output.json`"),
+        ("mkdir output.json", "left a folder called `output.json`, which must be a regular file"),
+        ("mkfifo output.json", "left a named pipe called `output.json`"),
+        ("ln -s input.json output.json", "left a symbolic link called `output.json`"),
+        ("ln -s nowhere output.json", "left a symbolic link called `output.json`"),
+        ("touch output.json", "`output.json` is empty"),
+        ("echo > output.json", "`output.json` is empty"),
+        ("echo hi > output.json", "`output.json` does not hold a JSON object as agreed: "),
+    ] {
+        let simulator = simulator(&format!("{GONE}{mischief}\nexit 0"), true, 60.0);
+        let outputs = simulation(&simulator, BTreeSet::from([0]), 0).replay(0).outputs;
+        let message = outputs.unwrap_err().message().to_owned();
+        assert!(message.contains(told) && !message.contains("standard error"), "{message}");
+    }
+}
+
 /// Whoever hangs is killed in time, in the first run and in any other, also if it does not read what is sent.
 #[test]
 fn hanging_is_no_answer_in_time() {
@@ -262,21 +286,6 @@ fn closed_pipes_are_told() {
     let table = table(&simulator, &places, 3, 1);
     assert_rows(&table, &places, "the simulator closed its pipes", "closes");
     assert!(table.failures().next().unwrap().1.message().ends_with("standard error: no more"));
-}
-
-/// Requests that are longer than a pipe is deep arrive whole.
-#[test]
-fn long_requests_arrive() {
-    let simulator = simulator("", false, 60.0);
-    let simulation = simulation(&simulator, BTreeSet::new(), 10_000);
-    let table = run(&simulation, "any", 3, &threads(Some(2)).unwrap(), &|_| {}).unwrap();
-    assert_rows(&table, &BTreeSet::new(), "ok", "long");
-    // Who answers before it has read them is not taken at its word.
-    let early = r#"while :; do echo '{"outputs":{"y":1,"seed":2}}'; sleep 1000; done"#;
-    let early = Program::new(&["sh".into(), "-c".into(), early.into()], Path::new("/")).unwrap();
-    let early = Simulator::start(early).unwrap();
-    let told = self::simulation(&early, BTreeSet::new(), 10_000).replay(0);
-    assert_eq!(told.outputs.unwrap_err().kind(), "an answer out of turn");
 }
 
 /// Numbers that are not finite, or that cannot be drawn, are not sent; the row has what there is.

@@ -21,7 +21,7 @@ const PARTING: Duration = Duration::from_secs(1);
 /// A simulator that is ready to do runs: the processes of a [`Program`].
 ///
 /// Every thread that does runs has a process, which is kept. When the simulator is dropped, their standard input is
-/// closed, and what has not ended one second later is killed with everything that it started.
+/// closed, and what has not ended one second later is killed with everything in its process group.
 #[derive(Debug)]
 pub struct Simulator {
     program: Program,
@@ -95,7 +95,8 @@ impl Simulator {
         read: impl Fn(&[u8]) -> Result<T, Trouble>,
     ) -> Result<T, Trouble> {
         if self.program.is_per_run() {
-            return self.ask_with_files(request).and_then(|answer| read(&answer));
+            let answer = self.ask_with_files(request)?;
+            return read(&answer).map_err(Trouble::in_a_file);
         }
         let ask = |mut child: Child, kept: &mut Option<Child>| {
             let result =
@@ -140,9 +141,9 @@ impl Drop for Simulator {
 /// The file that a process left.
 fn left(file: &Path) -> Result<Vec<u8>, Trouble> {
     match fs::symlink_metadata(file) {
+        Ok(found) if found.is_file() => {}
         // A pipe would be waited for.
-        Ok(found) if !found.is_file() => return Err(Trouble::NoFile),
-        Ok(_) => {}
+        Ok(found) => return Err(Trouble::NotAFile { what: what(found.file_type()) }),
         Err(e) if e.kind() == ErrorKind::NotFound => return Err(Trouble::NoFile),
         Err(e) => return Err(Trouble::Files(e)),
     }
@@ -150,6 +151,21 @@ fn left(file: &Path) -> Result<Vec<u8>, Trouble> {
     let file = fs::File::open(file).map_err(Trouble::Files)?;
     file.take(LIMIT as u64 + 1).read_to_end(&mut answer).map_err(Trouble::Files)?;
     if answer.len() > LIMIT { Err(Trouble::TooLong { limit: LIMIT }) } else { Ok(answer) }
+}
+
+/// What is no regular file.
+fn what(kind: fs::FileType) -> &'static str {
+    if kind.is_dir() {
+        return "a folder";
+    }
+    if kind.is_symlink() {
+        return "a symbolic link";
+    }
+    #[cfg(unix)]
+    if std::os::unix::fs::FileTypeExt::is_fifo(&kind) {
+        return "a named pipe";
+    }
+    "something else, such as a socket or a device,"
 }
 
 /// Whether a program is there to be started.

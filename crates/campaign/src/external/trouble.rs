@@ -27,14 +27,20 @@ pub(super) enum Trouble {
     Closed { last_line: Option<String> },
     /// The answer has more bytes than a line may have.
     TooLong { limit: usize },
-    /// There is more after the answer, or there was something before the run was sent.
+    /// There is more after the answer.
     Twice { rest: Vec<u8> },
-    /// The answer came before the run was sent whole, or is of another run.
-    OutOfTurn { answered: Option<u64> },
+    /// There was something on standard output before the process read the run.
+    Early { text: Vec<u8> },
+    /// The answer is of another run.
+    OutOfTurn { answered: u64 },
     /// The process ended well and left no answer.
     NoFile,
+    /// What stands in the place of the file with the answer is no regular file.
+    NotAFile { what: &'static str },
     /// The answer cannot be read.
     NotJson { problem: String, line: Vec<u8> },
+    /// The file with the answer cannot be read.
+    NotJsonFile { problem: String, content: Vec<u8> },
     /// A declared output is not in the answer.
     Missing { output: String },
     /// An output is in the answer more than once.
@@ -68,9 +74,20 @@ impl Trouble {
             | Self::Closed { .. }
             | Self::TooLong { .. }
             | Self::Twice { .. }
+            | Self::Early { .. }
             | Self::OutOfTurn { .. }
             | Self::NoFile
-            | Self::NotJson { .. } => false,
+            | Self::NotAFile { .. }
+            | Self::NotJson { .. }
+            | Self::NotJsonFile { .. } => false,
+        }
+    }
+
+    /// The same, of an answer that stands in a file.
+    pub(super) fn in_a_file(self) -> Self {
+        match self {
+            Self::NotJson { problem, line } => Self::NotJsonFile { problem, content: line },
+            other => other,
         }
     }
 
@@ -120,15 +137,35 @@ impl Trouble {
                     shown(&rest, 80)
                 ),
             ),
-            Self::OutOfTurn { answered: Some(run) } => {
-                ("an answer out of turn", format!("the answer is that of run {run}"))
-            }
-            Self::OutOfTurn { answered: None } => {
-                ("an answer out of turn", "the answer came before the run was read".to_owned())
+            Self::Early { text } => (
+                "output before the run was read",
+                format!(
+                    "before the simulator read the run, it wrote to standard output: `{}`; messages belong on standard error",
+                    shown(&text, 80)
+                ),
+            ),
+            Self::OutOfTurn { answered } => {
+                ("an answer out of turn", format!("the answer is that of run {answered}"))
             }
             Self::NoFile => (
                 "no `output.json`",
                 "the simulator ended without an error and left no file `output.json`".to_owned(),
+            ),
+            Self::NotAFile { what } => (
+                "`output.json` is no file",
+                format!(
+                    "the simulator left {what} called `output.json`, which must be a regular file"
+                ),
+            ),
+            Self::NotJsonFile { content, .. } if content.trim_ascii().is_empty() => {
+                ("the answer is not as agreed", "`output.json` is empty".to_owned())
+            }
+            Self::NotJsonFile { problem, content } => (
+                "the answer is not as agreed",
+                format!(
+                    "`output.json` does not hold a JSON object as agreed: {problem}: `{}`",
+                    shown(&content, 80)
+                ),
             ),
             Self::NotJson { problem, line } => (
                 "the answer is not as agreed",
