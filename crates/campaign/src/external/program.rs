@@ -95,12 +95,13 @@ impl Program {
     }
 
     /// SHA-256 of the files that its words name, in hexadecimal: of regular files alone, for a pipe or a device has no end.
+    /// None if they name no file that is there.
     #[must_use]
-    pub fn files_sha256(&self) -> String {
+    pub fn files_sha256(&self) -> Option<String> {
         let files =
             self.words.iter().map(Path::new).filter(|word| word.is_absolute() && word.is_file());
-        let hashes = files.filter_map(|file| sha256_of_file(file).ok());
-        sha256(hashes.collect::<Vec<_>>().join("\n"))
+        let hashes: Vec<_> = files.filter_map(|file| sha256_of_file(file).ok()).collect();
+        (!hashes.is_empty()).then(|| sha256(hashes.join("\n")))
     }
 
     /// How long a run that begins now is waited for.

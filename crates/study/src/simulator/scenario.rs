@@ -20,6 +20,9 @@ use crate::{
 /// Most bodies, quantities or outputs.
 const MOST: usize = 300;
 
+/// What a resolved scenario says in the place of a SHA-256 if the command names no file that is there.
+const NO_FILES: &str = "the command names no file that is there";
+
 /// A campaign of a simulator of the user's own: its command, the bodies and the quantities that are drawn for each run,
 /// the outputs that it answers with, how many runs from which seed. Everything has been checked.
 #[derive(Clone, Debug)]
@@ -64,7 +67,7 @@ impl SimulatorScenario {
         if file.simulation.files_sha256.is_none() {
             let given = file.simulation.folder.clone().unwrap_or_else(|| folder.to_owned());
             file.simulation.folder = Some(std::path::absolute(&given).unwrap_or(given));
-            file.simulation.files_sha256 = Some(program(&file)?.files_sha256());
+            file.simulation.files_sha256 = Some(files_sha256(&program(&file)?));
         }
         let mut list = List::of(size.fleet());
         let (mut bodies, mut count) = (Vec::<SimulatedBody>::new(), 0);
@@ -228,11 +231,19 @@ impl SimulatorScenario {
 
     /// That the files that the command names are those that runs were done with.
     pub(super) fn check_files(&self, program: &Program) -> Result<(), ScenarioError> {
-        if self.file.simulation.files_sha256.as_ref() == Some(&program.files_sha256()) {
+        let now = files_sha256(program);
+        if self.file.simulation.files_sha256.as_ref() == Some(&now) {
             return Ok(());
         }
-        let problem = "a file that the command names was changed after the scenario was resolved, and its runs would not \
-                       go with those that are there";
+        let what = if now == NO_FILES {
+            "is not there any more: it was there when"
+        } else {
+            "was changed after"
+        };
+        let problem = format!(
+            "a file that the command names {what} the scenario was resolved, and its runs would not go with those that \
+             are there"
+        );
         Err(ScenarioError::field("simulation.files_sha256", problem))
     }
 
@@ -293,6 +304,11 @@ impl SimulatorScenario {
         let bodies = self.bodies.iter().flat_map(SimulatedBody::columns);
         bodies.chain(self.quantities.iter().map(|quantity| quantity.column.clone()))
     }
+}
+
+/// The SHA-256 of the files that a command names.
+fn files_sha256(program: &Program) -> String {
+    program.files_sha256().unwrap_or_else(|| NO_FILES.to_owned())
 }
 
 /// The command in its folder.

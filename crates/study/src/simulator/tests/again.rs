@@ -8,7 +8,7 @@ use std::{
     },
 };
 
-use super::{SimulatorReplay, SimulatorSummary, folder, scenario, uniform};
+use super::{SimulatorReplay, SimulatorScenario, SimulatorSummary, folder, scenario, uniform};
 use crate::{
     CampaignError, Kept, Notice, Options, ReplayError, Rows, Status, Study, StudyError, Which,
 };
@@ -176,14 +176,14 @@ done
         held(&none, *run).1.unwrap();
         import("", "too large:", "0.*");
         differs(&all, *run, ["status", "ok", "bad"]);
-        differs(&drawn, *run, ["status_kind", "ok", "bad"]);
+        differs(&drawn, *run, ["status", "ok", "bad"]);
         differs(&failed, *run, ["the row", "did not fail", "bad"]);
     }
     for run in &fails {
         import("", "so large:", "none");
         differs(&all, *run, ["status", "too large: 0.", "so large: 0."]);
         differs(&failed, *run, ["status", "too large: 0.", "so large: 0."]);
-        differs(&drawn, *run, ["status_kind", "too large: #", "so large: #"]);
+        differs(&drawn, *run, ["status", "too large: 0.", "so large: 0."]);
     }
 
     // What was never done is held against nothing, and a folder without tables is told of.
@@ -193,4 +193,18 @@ done
     beyond.hold_against(&all).unwrap();
     assert!(beyond.to_string().contains("has not done this run yet"), "{beyond}");
     assert!(matches!(beyond.hold_against(folder.path()), Err(ReplayError::Manifest { .. })));
+
+    // Without the file that the command names, it is that of which one is told, and not of the hash of nothing.
+    fs::remove_file(folder.path().join("answer.sh")).unwrap();
+    let gone = SimulatorReplay::new(&scenario, None, 0).unwrap_err().to_string();
+    assert!(gone.contains("a file that the command names is not there any more"), "{gone}");
+    let without = SimulatorScenario::from_toml(&uniform(), folder.path()).unwrap();
+    let options = Options { out: Some(all), ..Options::default() };
+    let refused = without.study(&options, &|_| {}, &|_| {}).unwrap_err().to_string();
+    assert!(refused.contains("the command names no file that is there"), "{refused}");
+    // Nor are vehicles counted where there are none.
+    let flight = Which::Flight { vehicle: 1, flight: 2 };
+    let refused = SimulatorReplay::new(&without, None, flight).unwrap_err().to_string();
+    let expected = "vehicle 1, flight 2: the scenario has no vehicles: name the run by its number";
+    assert_eq!(refused, expected);
 }
