@@ -100,7 +100,7 @@ pub(crate) struct BodyFile {
 
 /// A law of the roots and one of the axes; which fields go with which law is checked later, so that
 /// the message can say it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DispersionFile {
     /// For what the inertia is drawn, whichever the model.

@@ -28,7 +28,9 @@ pub(crate) use body::UncertainBody;
 use clearance::Outlines;
 pub(crate) use dispersions::{Dispersed, Dispersions, Joint, List, Target};
 use file::ScenarioFile;
-pub(crate) use file::{BodyFile, CorrelationFile, DispersionFile, ShapeFile};
+pub(crate) use file::{
+    AxesLawFile, BodyFile, CorrelationFile, DispersionFile, RootsFile, ShapeFile,
+};
 pub(crate) use law::{GivenLaw, refused};
 pub(crate) use load::Uncertain;
 pub(crate) use model::{Comparison, Law, ModelSpec, check_models, place};

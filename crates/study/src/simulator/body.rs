@@ -27,10 +27,11 @@ pub(super) struct SimulatedBody {
 }
 
 impl SimulatedBody {
-    /// The body in a place of the file, after others; what is dispersed of its numbers, of which the first has the number `first` among
+    /// The body in a place of the file, after others, whose roots and axes a model draws or none does; what is dispersed of its numbers, of which the first has the number `first` among
     /// all, joins the list.
     pub(super) fn new(
         file: &SimulatedBodyFile,
+        draws_roots_and_axes: bool,
         before: &[Self],
         first: usize,
         list: &mut List<usize>,
@@ -69,7 +70,7 @@ impl SimulatedBody {
             let problem = "the mass is not dispersed: it needs mass_kg or mass_percent";
             return Err(ScenarioError::field(at("inertia_follows_mass"), problem));
         }
-        let uncertain = UncertainBody::new(&field, &file.at_rest())?;
+        let uncertain = UncertainBody::new(&field, &file.at_rest(draws_roots_and_axes))?;
         let mass = Uncertain {
             name: "mass",
             unit: "kg",

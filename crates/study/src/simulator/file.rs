@@ -1,12 +1,13 @@
 //! A scenario of a simulator as it stands in a TOML file.
 
 use gyradius_campaign::{Requirement, Rows};
-use gyradius_dispersion::ModelParameters;
+use gyradius_dispersion::{ModelKind, ModelParameters};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 use crate::scenario::{
-    BodyFile, CorrelationFile, DispersionFile, ModelFile, Owner, ScalarLawFile, some_whole, whole,
+    AxesLawFile, BodyFile, CorrelationFile, DispersionFile, ModelFile, ModelLaw, Owner, RootsFile,
+    ScalarLawFile, some_whole, whole,
 };
 
 /// A scenario of a simulator, defaults filled in. Units are in the names.
@@ -78,6 +79,7 @@ pub(super) struct SimulatedBodyFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) mass_centre_m: Option<[f64; 3]>,
     pub(super) inertia_kg_m2: [[f64; 3]; 3],
+    #[serde(default, skip_serializing_if = "says_nothing")]
     pub(super) dispersion: DispersionFile,
 }
 
@@ -117,9 +119,30 @@ impl Owner for BodyName {
     }
 }
 
+impl File {
+    /// Whether a model draws the roots and the axes of bodies: one that is principal, to which any other may be matched. It is
+    /// filled in where there is none.
+    pub(super) fn draws_roots_and_axes(&self) -> bool {
+        let principal = ModelLaw::Kind(ModelKind::Principal);
+        self.models.is_empty() || self.models.iter().any(|model| model.law == principal)
+    }
+}
+
 impl SimulatedBodyFile {
-    /// As a body of a separation that rests where it is.
-    pub(super) fn at_rest(&self) -> BodyFile {
+    /// As a body of a separation that rests where it is. Where no model draws roots and axes, they may be left out, and do not
+    /// scatter.
+    pub(super) fn at_rest(&self, draws_roots_and_axes: bool) -> BodyFile {
+        let mut dispersion = self.dispersion.clone();
+        if !draws_roots_and_axes {
+            if dispersion.roots == RootsFile::Gaussian {
+                dispersion.root_second_moment_variance_kg_m2.get_or_insert([0.0; 3]);
+            }
+            if dispersion.axes == AxesLawFile::RadiallyConstrainedGaussian
+                && dispersion.axes_covariance.is_none()
+            {
+                dispersion.axes = AxesLawFile::Fixed;
+            }
+        }
         BodyFile {
             mass_kg: self.mass_kg,
             inertia_kg_m2: self.inertia_kg_m2,
@@ -127,9 +150,13 @@ impl SimulatedBodyFile {
             velocity_m_per_s: [0.0; 3],
             body_to_inertial: [0.0, 0.0, 0.0, 1.0],
             angular_velocity_rad_per_s: [0.0; 3],
-            dispersion: self.dispersion.clone(),
+            dispersion,
         }
     }
+}
+
+fn says_nothing(dispersion: &DispersionFile) -> bool {
+    *dispersion == DispersionFile::default()
 }
 
 fn default_seed() -> u64 {

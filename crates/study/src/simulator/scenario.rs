@@ -71,8 +71,9 @@ impl SimulatorScenario {
         }
         let mut list = List::of(size.fleet());
         let (mut bodies, mut count) = (Vec::<SimulatedBody>::new(), 0);
+        let drawn = file.draws_roots_and_axes();
         for body in &file.bodies {
-            let body = SimulatedBody::new(body, &bodies, count, &mut list)?;
+            let body = SimulatedBody::new(body, drawn, &bodies, count, &mut list)?;
             count += body.numbers.len();
             bodies.push(body);
         }

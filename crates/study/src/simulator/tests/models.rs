@@ -188,3 +188,72 @@ fn bodies_have_a_model_if_none_is_given() {
         assert_eq!(drawn(&bare, 0), drawn(&told, 0));
     }
 }
+
+/// How roots and axes scatter need be said only where a model draws them, which is then told of; what is left out changes no
+/// draw, and stays out of what is resolved.
+#[test]
+fn only_principal_models_need_roots_and_axes() {
+    let folder = folder();
+    let bare = "mass_kg = 120.0\ninertia_kg_m2 = [[21.0, 0.2, -0.1], [0.2, 19.0, 0.3], [-0.1, 0.3, 26.0]]\n";
+    let roots = "root_second_moment_variance_kg_m2 = [0.001, 0.001, 0.001]\n";
+    let parts = ["", "mass_kg = 2.0\n", roots, "axes = \"fixed\"\n", "axes = \"uniform\"\n"];
+    let with = |dispersion: &str, models: &str| {
+        let table = if dispersion.is_empty() { "" } else { "\n[bodies.dispersion]\n" };
+        format!("{HEAD}\n[[bodies]]\nname = \"b\"\n{bare}{table}{dispersion}{models}")
+    };
+    for kind in ModelKind::ALL {
+        let fields = parameters(kind, "b");
+        let axes = if kind == ModelKind::Principal { "axes = \"whole-sphere\"" } else { &fields };
+        let alone = model(kind, axes);
+        let principal =
+            "\n[[models]]\nname = \"proposed\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n";
+        let both = principal.to_owned() + &alone;
+        for (i, dispersion) in parts.iter().enumerate() {
+            let of_mass = drawn_inertias(&scenario(
+                &with(&(roots.to_owned() + "axes = \"fixed\"\n"), &alone),
+                folder.path(),
+            ));
+            let text = with(dispersion, &alone);
+            if kind == ModelKind::Principal {
+                let refused = SimulatorScenario::from_toml(&text, folder.path()).unwrap_err();
+                let key =
+                    if i == 2 { "axes_covariance" } else { "root_second_moment_variance_kg_m2" };
+                assert!(
+                    refused.to_string().contains(&format!("bodies[1].dispersion.{key}: missing")),
+                    "{refused}"
+                );
+                continue;
+            }
+            let less = scenario(&text, folder.path());
+            assert_eq!(less.to_toml().contains("variance_kg_m2"), i == 2, "{}", less.to_toml());
+            assert_eq!(drawn_inertias(&less), of_mass, "{kind} {dispersion}");
+            let refused = SimulatorScenario::from_toml(&with(dispersion, &both), folder.path());
+            assert!(
+                refused.unwrap_err().to_string().contains(": missing: "),
+                "{kind} {dispersion}"
+            );
+        }
+    }
+    // What is said must be right all the same.
+    let wishart = model(ModelKind::Wishart, "b_delta = 0.01");
+    for (wrong, key) in [
+        ("roots = \"uniform\"", "root_second_moment_variance_kg_m2"),
+        (
+            "root_second_moment_variance_kg_m2 = [-1.0, 0.0, 0.0]",
+            "root_second_moment_variance_kg_m2",
+        ),
+        (
+            "axes = \"fixed\"\naxes_covariance = [[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]]",
+            "axes_covariance",
+        ),
+    ] {
+        let refused = SimulatorScenario::from_toml(&with(wrong, &wishart), folder.path());
+        let refused = refused.unwrap_err().to_string();
+        assert!(refused.contains(&format!("bodies[1].dispersion.{key}")), "{refused}");
+    }
+}
+
+/// What the first model draws of inertias.
+fn drawn_inertias(scenario: &SimulatorScenario) -> Vec<(String, Vec<Option<u64>>)> {
+    drawn(scenario, 0).into_iter().filter(|(name, _)| name.contains("_i")).collect()
+}
