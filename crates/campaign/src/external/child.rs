@@ -2,7 +2,7 @@
 
 use rustix::{
     event::{PollFd, PollFlags, Timespec, poll},
-    io::{Errno, ioctl_fionbio, ioctl_fionread},
+    io::{Errno, ioctl_fionbio},
     process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid},
 };
 use std::{
@@ -19,13 +19,6 @@ use super::{LIMIT, patience::Patience, program::Program, tail::Tail, trouble::Tr
 const ENDING: Duration = Duration::from_secs(1);
 /// Shortest and longest time between two looks at whether a process has ended.
 const LOOKS: [Duration; 2] = [Duration::from_micros(200), Duration::from_millis(2)];
-
-/// Bytes of a request that are sent once the process has read all before them: without them, it is no object yet, and no line.
-const HELD_BACK: usize = 2;
-/// Nothing but that a pipe is closed, which is told in any case.
-const CLOSED: PollFlags = PollFlags::empty();
-/// How long the process is expected to be back at its standard input, so that it is looked for again and again.
-const SOON: Duration = Duration::from_micros(100);
 
 /// A process of a simulator. When it is dropped, it and everything in its group is killed.
 #[derive(Debug)]
@@ -48,14 +41,6 @@ enum Arrived {
     Bytes,
     Nothing,
     End,
-}
-
-/// Which pipes are ready: to be read, or to be written if that was asked for, or closed.
-#[derive(Clone, Copy)]
-struct Ready {
-    output: bool,
-    errors: bool,
-    input: bool,
 }
 
 impl Child {
@@ -104,21 +89,27 @@ impl Child {
         self.arrived.is_empty() && matches!(self.read_output(), Ok(Arrived::Nothing))
     }
 
-    /// Sends a line and takes the line that is the answer. What the process wrote before it read the line is none.
+    /// Sends a line, without its end, and takes the line that is the answer.
     pub(super) fn ask(&mut self, line: &[u8], patience: Patience<'_>) -> Result<Vec<u8>, Trouble> {
-        let (head, end) = line.split_at(line.len().saturating_sub(HELD_BACK));
-        self.send_before_any_answer(head, patience)?;
-        let mut left = end;
+        let mut left = line;
         // Lines that have no end yet are searched once.
         let mut searched = 0;
         loop {
-            self.write(&mut left)?;
-            let room = (!left.is_empty()).then_some(PollFlags::OUT);
-            let ready = self.wait(room, patience)?;
-            if ready.errors {
+            if !left.is_empty() {
+                match self.input.as_mut().map(|input| input.write(left)) {
+                    Some(Ok(written)) => left = &left[written..],
+                    Some(Err(e)) if waits(&e) => {}
+                    Some(Err(_)) | None => return Err(self.gone()),
+                }
+            }
+            let Some([reads, complains]) = self.wait(!left.is_empty(), patience) else {
+                let (_, last_line) = self.kill();
+                return Err(patience.over(last_line));
+            };
+            if complains {
                 self.read_errors();
             }
-            if !ready.output {
+            if !reads {
                 continue;
             }
             match self.read_output() {
@@ -133,6 +124,9 @@ impl Child {
             }
             searched = length;
             if end.is_some() {
+                if !left.is_empty() {
+                    return Err(Trouble::Early { text: std::mem::take(&mut self.arrived) });
+                }
                 let rest = self.arrived.split_off(length + 1);
                 self.arrived.truncate(length);
                 return if rest.is_empty() {
@@ -142,67 +136,6 @@ impl Child {
                 };
             }
         }
-    }
-
-    /// Sends what cannot be answered yet, and waits until the process has read it. By then, all that it wrote before it read
-    /// has arrived.
-    fn send_before_any_answer(
-        &mut self,
-        mut left: &[u8],
-        patience: Patience<'_>,
-    ) -> Result<(), Trouble> {
-        let started = Instant::now();
-        let [mut pause, longest] = LOOKS;
-        loop {
-            self.write(&mut left)?;
-            // Asked before its output is looked at: what comes in between is an answer to nothing, too.
-            let has_read = left.is_empty() && self.has_read();
-            match self.read_output() {
-                Ok(Arrived::Bytes) => {
-                    return Err(Trouble::Early { text: std::mem::take(&mut self.arrived) });
-                }
-                Ok(Arrived::Nothing) if has_read => return Ok(()),
-                Ok(Arrived::Nothing) => {}
-                Ok(Arrived::End) | Err(_) => return Err(self.gone()),
-            }
-            if left.is_empty() && started.elapsed() < SOON {
-                std::thread::yield_now();
-                continue;
-            }
-            let ready = if left.is_empty() {
-                // Nothing tells when a pipe has been read.
-                let ready = self.wait_for(pause, Some(CLOSED), patience)?;
-                pause = (2 * pause).min(longest);
-                ready
-            } else {
-                self.wait(Some(PollFlags::OUT), patience)?
-            };
-            if ready.errors {
-                self.read_errors();
-            }
-            if left.is_empty() && ready.input {
-                // It is closed.
-                return Err(self.gone());
-            }
-        }
-    }
-
-    /// Writes as much as there is room for.
-    fn write(&mut self, left: &mut &[u8]) -> Result<(), Trouble> {
-        if left.is_empty() {
-            return Ok(());
-        }
-        match self.input.as_mut().map(|input| input.write(left)) {
-            Some(Ok(written)) => *left = &left[written..],
-            Some(Err(e)) if waits(&e) => {}
-            Some(Err(_)) | None => return Err(self.gone()),
-        }
-        Ok(())
-    }
-
-    /// Whether the process has read what was sent, as far as the system tells.
-    fn has_read(&self) -> bool {
-        self.input.as_ref().is_none_or(|input| ioctl_fionread(input).unwrap_or(0) == 0)
     }
 
     /// Waits until it has ended by itself, well.
@@ -289,61 +222,34 @@ impl Child {
         }
     }
 
-    /// Waits until a pipe is ready: something to read, or what is to be known of standard input, if anything is.
-    fn wait(&mut self, input: Option<PollFlags>, patience: Patience<'_>) -> Result<Ready, Trouble> {
+    /// Waits until there is something to read on standard output or standard error, which it tells apart, or room to
+    /// write; none if there is nothing in time.
+    fn wait(&self, writes: bool, patience: Patience<'_>) -> Option<[bool; 2]> {
         loop {
-            let ready = self.wait_for(Duration::MAX, input, patience)?;
-            if ready.output || ready.errors || ready.input {
-                return Ok(ready);
+            let left = patience.next_wait().unwrap_or_default();
+            let timeout = Timespec {
+                tv_sec: left.as_secs().try_into().ok()?,
+                tv_nsec: left.subsec_nanos().into(),
+            };
+            let mut pipes = Vec::with_capacity(3);
+            let output = self.output.as_ref().map(AsFd::as_fd);
+            let errors = self.errors.as_ref().map(AsFd::as_fd);
+            let input = self.input.as_ref().map(AsFd::as_fd).filter(|_| writes);
+            pipes.extend(output.map(|pipe| PollFd::from_borrowed_fd(pipe, PollFlags::IN)));
+            pipes.extend(errors.map(|pipe| PollFd::from_borrowed_fd(pipe, PollFlags::IN)));
+            pipes.extend(input.map(|pipe| PollFd::from_borrowed_fd(pipe, PollFlags::OUT)));
+            match poll(&mut pipes, Some(&timeout)) {
+                Ok(0) if left.is_zero() => return None,
+                Ok(0) => {}
+                Ok(_) => {
+                    let mut ready = pipes.iter().map(|pipe| !pipe.revents().is_empty());
+                    let mut next = |there: bool| there && ready.next().unwrap_or(false);
+                    return Some([next(output.is_some()), next(errors.is_some())]);
+                }
+                Err(Errno::INTR) => {}
+                Err(_) => return None,
             }
         }
-    }
-
-    /// The same, but not for longer than this.
-    fn wait_for(
-        &mut self,
-        most: Duration,
-        input: Option<PollFlags>,
-        patience: Patience<'_>,
-    ) -> Result<Ready, Trouble> {
-        let left = patience.next_wait();
-        let found = self.poll(left.unwrap_or_default().min(most), input);
-        match (found, left) {
-            (Some(ready), Some(_)) => Ok(ready),
-            (Some(ready), None) if ready.output || ready.errors || ready.input => Ok(ready),
-            (Some(_), None) | (None, _) => {
-                let (_, last_line) = self.kill();
-                Err(patience.over(last_line))
-            }
-        }
-    }
-
-    /// Which pipes are ready within a time; none if the system does not say.
-    fn poll(&self, time: Duration, known: Option<PollFlags>) -> Option<Ready> {
-        let timeout = Timespec {
-            tv_sec: time.as_secs().try_into().ok()?,
-            tv_nsec: time.subsec_nanos().into(),
-        };
-        let mut pipes = Vec::with_capacity(3);
-        let output = self.output.as_ref().map(AsFd::as_fd);
-        let errors = self.errors.as_ref().map(AsFd::as_fd);
-        let input = known.and(self.input.as_ref()).map(AsFd::as_fd);
-        let known = known.unwrap_or(CLOSED);
-        pipes.extend(output.map(|pipe| PollFd::from_borrowed_fd(pipe, PollFlags::IN)));
-        pipes.extend(errors.map(|pipe| PollFd::from_borrowed_fd(pipe, PollFlags::IN)));
-        pipes.extend(input.map(|pipe| PollFd::from_borrowed_fd(pipe, known)));
-        match poll(&mut pipes, Some(&timeout)) {
-            Ok(_) => {}
-            Err(Errno::INTR) => return Some(Ready { output: false, errors: false, input: false }),
-            Err(_) => return None,
-        }
-        let mut ready = pipes.iter().map(|pipe| !pipe.revents().is_empty());
-        let mut next = |there: bool| there && ready.next().unwrap_or(false);
-        Some(Ready {
-            output: next(output.is_some()),
-            errors: next(errors.is_some()),
-            input: next(input.is_some()),
-        })
     }
 
     fn read_output(&mut self) -> io::Result<Arrived> {

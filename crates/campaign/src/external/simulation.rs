@@ -62,7 +62,7 @@ pub trait Inputs: Sync {
 ///
 /// # What fails
 /// A run fails, and its row says why, if its inputs cannot be drawn or are not finite; if the answer does not come in
-/// time, is too long, no JSON, written before the run was read, that of another run, or followed by more; if a declared
+/// time, is too long, no JSON, written before the run was sent whole, that of another run, or followed by more; if a declared
 /// output is missing, repeated or not a finite number, or one is not declared; if the process ends or closes its pipes; and if the simulator says so. A process
 /// that did not answer as agreed is killed with everything in its process group. If it had done runs before, the run is
 /// sent once more, to a process that is started for it alone, and what that does counts. So a run depends on its inputs
