@@ -117,6 +117,17 @@ fn results_do_not_depend_on_what_is_kept() {
     }
 }
 
+/// Of runs of which none failed, no file is kept, and a replay says so.
+#[test]
+fn nothing_is_kept_of_runs_that_did_not_fail() {
+    let scratch = Scratch::new();
+    done(&scratch, &["study", "--runs", "20", "--rows", "failed", "--out", "it"], 0);
+    assert_eq!(runs(&scratch.path("it")).len(), 0);
+    let said = done(&scratch, &["replay", "it", "--run", "3", "--out", "r"], 0);
+    assert!(said.contains("did not keep the row"), "{said}");
+    assert!(done(&scratch, &["status", "it"], 0).contains("put together"));
+}
+
 /// A column that is not there is refused before the first run, and nothing is written.
 #[test]
 fn columns_that_are_not_there_are_refused() {

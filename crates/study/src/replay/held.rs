@@ -49,14 +49,18 @@ impl Held {
                 Some(found) => comparison.compare(kept, found).map(|()| true)?,
                 None => return Err(comparison.unreadable("it has no such run")),
             },
-            Rows::Failed => match (comparison.found()?, own.failures().next()) {
-                (Some(found), _) => comparison.compare(kept, found).map(|()| true)?,
-                (None, None) => false,
-                (None, Some((_, failure))) => {
-                    let found = "not kept, for the run did not fail".to_owned();
-                    return Err(comparison.differs("the row", found, failure.to_string()));
+            Rows::Failed => {
+                // Without failures among its runs, the block has no file.
+                let found = if block.has_file() { comparison.found()? } else { None };
+                match (found, own.failures().next()) {
+                    (Some(found), _) => comparison.compare(kept, found).map(|()| true)?,
+                    (None, None) => false,
+                    (None, Some((_, failure))) => {
+                        let found = "not kept, for the run did not fail".to_owned();
+                        return Err(comparison.differs("the row", found, failure.to_string()));
+                    }
                 }
-            },
+            }
         };
         Ok(if is_the_same { Self::To(path) } else { Self::NotKept })
     }
