@@ -32,7 +32,7 @@ fn vehicles_take_the_place_of_runs() {
         (&["--runs", "40"][..], "runs: 40: the scenario has 3 vehicles of 4 flights each"),
         (&["--vehicles", "0"], "vehicles: 0: "),
         (&["--vehicles", "1e9"], "vehicles: 1000000000: times flights = 4"),
-        (&["--vehicles", "4"], "runs is 20 there and 16 here"),
+        (&["--vehicles", "4"], "vehicles is 5 there and 4 here"),
         (&["--vehicles", "4", "--runs", "16"], "cannot be used with"),
     ] {
         let (code, text) = study(more);
@@ -124,7 +124,7 @@ law = { law = "normal", mean = 1.0, sigma = 0.1, drawn = "vehicle" }
     for (more, expected) in [
         (&["--runs", "40"][..], "runs: 40: the scenario has 3 vehicles of 4 flights each"),
         (&["--vehicles", "0"], "vehicles: 0: "),
-        (&["--vehicles", "4"], "runs is 20 there and 16 here"),
+        (&["--vehicles", "4"], "vehicles is 5 there and 4 here"),
     ] {
         let (code, text) = study(more);
         assert!(code == Some(2) && text.contains(expected), "{text}");
