@@ -63,7 +63,7 @@ impl ForeignTable {
             }
             files.sort();
             let first =
-                files.first().ok_or_else(|| failed("it has no .parquet file".to_owned()))?;
+                files.first().ok_or_else(|| failed("it has no .parquet file; the run tables of a study are in runs/ below its folder, a folder for each model".to_owned()))?;
             let columns = parquet_columns(first)?;
             return Ok(Self { path: path.to_owned(), files, form: Form::Parquet, columns });
         }
@@ -131,11 +131,12 @@ fn places(path: &Path, there: &[String], columns: &[String]) -> Result<Vec<usize
 }
 
 fn parquet_columns(path: &Path) -> Result<Vec<String>, ForeignError> {
-    let columns = open(path).map(|reader| {
-        let schema = reader.metadata().file_metadata().schema_descr();
-        schema.columns().iter().map(|column| column.path().string()).collect()
-    });
-    columns.map_err(|error| unread(path, &error))
+    open(path).map(|reader| names(&reader)).map_err(|error| unread(path, &error))
+}
+
+fn names(reader: &SerializedFileReader<File>) -> Vec<String> {
+    let schema = reader.metadata().file_metadata().schema_descr();
+    schema.columns().iter().map(|column| column.path().string()).collect()
 }
 
 fn open(path: &Path) -> Result<SerializedFileReader<File>, ParquetError> {
@@ -151,9 +152,10 @@ fn scan_parquet(
     columns: &[String],
     look: &mut impl FnMut(&Columns),
 ) -> Result<(), ForeignError> {
-    let places = places(path, &parquet_columns(path)?, columns)?;
     let failed = |error: ParquetError| unread(path, &error);
     let reader = open(path).map_err(failed)?;
+    let there = names(&reader);
+    let places = places(path, &there, columns)?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     for place in &places {
         let column = schema.column(*place);
@@ -183,7 +185,7 @@ fn scan_parquet(
             }
         }
     }
-    let status = status(&parquet_columns(path)?);
+    let status = status(&there);
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(failed)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);

@@ -5,13 +5,10 @@ use rayon::prelude::*;
 use std::{
     ops::Range,
     path::{Path, PathBuf},
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::{Arc, atomic::AtomicBool},
 };
 
-use crate::{column::Column, stored::said, table::Table};
+use crate::{column::Column, stop::is_stopped, stored::said, table::Table};
 
 /// The runs of a model, in blocks of consecutive runs, some in memory and some on the disk.
 #[derive(Clone, Debug)]
@@ -95,7 +92,7 @@ impl Runs {
     /// A block cannot be read, or they are [stopped](Self::stopped_by).
     pub fn scan(&self, look: impl Fn(&Table) + Sync) -> Result<(), RunsError> {
         self.blocks.par_iter().try_for_each(|block| {
-            if self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+            if is_stopped(self.stop.as_deref()) {
                 return Err(RunsError::Stopped);
             }
             match block {

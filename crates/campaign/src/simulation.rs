@@ -10,6 +10,7 @@ use crate::{
     column::Column,
     folder::FolderError,
     runs::RunsError,
+    stop::is_stopped,
     table::{Table, TableError},
 };
 
@@ -114,10 +115,7 @@ pub(crate) fn run_range<S: Simulation>(
 
 /// Whether it goes on, or was told to stop.
 pub(crate) fn go_on(stop: Option<&AtomicBool>) -> Result<(), CampaignError> {
-    match stop {
-        Some(stop) if stop.load(Ordering::Relaxed) => Err(CampaignError::Stopped),
-        Some(_) | None => Ok(()),
-    }
+    if is_stopped(stop) { Err(CampaignError::Stopped) } else { Ok(()) }
 }
 
 /// So many threads, or as many as the machine has.

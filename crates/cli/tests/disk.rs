@@ -2,23 +2,10 @@
 
 use std::{
     fs,
-    path::Path,
     process::{Command, Output},
 };
 
-use crate::scratch::{Scratch, files};
-
-/// A model, so that a block of its runs has 7.6 MB.
-fn scenario() -> String {
-    let text = fs::read_to_string(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../study/src/scenario/peck-2003.toml"
-    ));
-    let text = text.unwrap();
-    let (head, rest) = text.split_once("# The law behind").unwrap();
-    let (_, source) = rest.split_once("# What the paper prints").unwrap();
-    format!("{head}#{source}")
-}
+use crate::scratch::{Scratch, content, files, one_model, text};
 
 /// Does what a shell script says where file systems can be mounted, which no other program sees; none where they cannot.
 fn with_mounts(scratch: &Scratch, script: &str) -> Option<Output> {
@@ -32,19 +19,14 @@ fn with_mounts(scratch: &Scratch, script: &str) -> Option<Output> {
     Some(command.env("GYRADIUS", env!("CARGO_BIN_EXE_gyradius")).output().unwrap())
 }
 
-fn content(folder: &Path) -> std::collections::BTreeMap<String, Vec<u8>> {
-    let mut files = files(folder);
-    files.remove(".gyradius/lock");
-    files
-}
-
 /// A disk that is full at the first block, at later ones, and when the results are written, and grows each time: the command says so
 /// with exit code 2, what was finished stays, a file of the user's is not touched, and at the end there is what a study leaves that had
 /// room.
 #[test]
 fn a_study_survives_a_full_disk() {
     let scratch = Scratch::new();
-    fs::write(scratch.path("it.toml"), scenario()).unwrap();
+    // A block of its runs has 7.6 MB.
+    fs::write(scratch.path("it.toml"), one_model()).unwrap();
     let output =
         scratch.run(&["study", "--scenario", "it.toml", "--runs", "40000", "--out", "whole", "-q"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -104,8 +86,7 @@ fn a_study_that_is_read_only_can_be_looked_at() {
         done
     "#;
     let Some(output) = with_mounts(&scratch, script) else { return };
-    let text = [output.stdout.as_slice(), &output.stderr].concat();
-    assert!(output.status.success(), "{}: {}", output.status, String::from_utf8_lossy(&text));
+    assert!(output.status.success(), "{}: {}", output.status, text(&output));
 }
 
 /// A study under a limit of 512 MB of memory, which does not grow with the runs.

@@ -2,26 +2,13 @@
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use crate::scratch::{Scratch, files};
+use crate::scratch::{Scratch, content, files, peck_2003};
 
 /// The built-in study of light bodies, a few of which have no mass that is positive: their runs fail.
 fn scenario() -> String {
-    let text = fs::read_to_string(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../study/src/scenario/peck-2003.toml"
-    ));
-    let (head, rest) = text.as_ref().unwrap().split_once("[payload.dispersion]").unwrap();
+    let text = peck_2003();
+    let (head, rest) = text.split_once("[payload.dispersion]").unwrap();
     format!("{head}[payload.dispersion]\nmass_percent = 60\n{rest}")
-}
-
-/// What the program says to these arguments, which ends with this exit code.
-#[track_caller]
-fn done(scratch: &Scratch, arguments: &[&str], code: i32) -> String {
-    let output = scratch.run(arguments);
-    let text = [output.stdout.as_slice(), &output.stderr].concat();
-    let text = String::from_utf8_lossy(&text).into_owned();
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {text}");
-    text
 }
 
 /// Every file of a study but those of its runs and those that say what is kept of them.
@@ -48,7 +35,7 @@ fn results_do_not_depend_on_what_is_kept() {
     fs::write(scratch.path("it.toml"), scenario()).unwrap();
     let study = ["study", "--scenario", "it.toml", "--runs", "300"];
     let with = |more: &[&'static str]| [&study, more].concat();
-    done(&scratch, &with(&["--out", "whole"]), 0);
+    scratch.done(&with(&["--out", "whole"]), 0);
     let whole = results(&scratch.path("whole"));
     assert_eq!(runs(&scratch.path("whole")).len(), 4);
 
@@ -66,15 +53,15 @@ fn results_do_not_depend_on_what_is_kept() {
         let command = with(&[flags, &["--out", part]].concat());
         if i == 1 {
             // A study that kept all loses the rest.
-            done(&scratch, &with(&["--out", part]), 0);
+            scratch.done(&with(&["--out", part]), 0);
         }
         if i == 3 {
             for shard in ["2/2", "1/2"] {
-                done(&scratch, &[&command[..], &["--shard", shard]].concat(), 0);
+                scratch.done(&[&command[..], &["--shard", shard]].concat(), 0);
             }
-            done(&scratch, &["report", part], 0);
+            scratch.done(&["report", part], 0);
         }
-        done(&scratch, &command, 0);
+        scratch.done(&command, 0);
         assert_eq!(results(&place), whole, "{flags:?}");
         assert_eq!(runs(&place).len(), if i == 0 { 0 } else { 4 }, "{flags:?}");
         let report = fs::read_to_string(place.join("report.md")).unwrap();
@@ -82,9 +69,9 @@ fn results_do_not_depend_on_what_is_kept() {
 
         let before = files(&place);
         let same = |what: &str| assert_eq!(files(&place), before, "{flags:?} {what}");
-        done(&scratch, &command, 0);
+        scratch.done(&command, 0);
         same("again");
-        done(&scratch, &[&command[..], &["--shard", "1/2"]].concat(), 0);
+        scratch.done(&[&command[..], &["--shard", "1/2"]].concat(), 0);
         same("a share of it");
         for more in [
             &["--runs", "301"][..],
@@ -98,22 +85,17 @@ fn results_do_not_depend_on_what_is_kept() {
             } else if more[0] == "--rows" {
                 other = with(&["--out", part]);
             }
-            let said = done(&scratch, &[&other[..], more].concat(), 2);
+            let said = scratch.done(&[&other[..], more].concat(), 2);
             assert!(said.contains("was kept") && said.contains("--force"), "{said}");
             same("refused");
         }
-        assert!(done(&scratch, &["status", part], 0).contains("put together"), "{flags:?}");
-        let replay = done(&scratch, &["replay", part, "--run", "3", "--out", "r", "--force"], 0);
+        assert!(scratch.done(&["status", part], 0).contains("put together"), "{flags:?}");
+        let replay = scratch.done(&["replay", part, "--run", "3", "--out", "r", "--force"], 0);
         let expected = if flags[0] == "--columns" { "bit for bit" } else { "did not keep the row" };
         assert!(replay.contains(expected), "{replay}");
 
-        done(&scratch, &with(&["--out", part, "--force"]), 0);
-        let all = |folder: &str| {
-            let mut all = files(&scratch.path(folder));
-            all.remove(".gyradius/lock");
-            all
-        };
-        assert_eq!(all(part), all("whole"), "{flags:?}");
+        scratch.done(&with(&["--out", part, "--force"]), 0);
+        assert_eq!(content(&place), content(&scratch.path("whole")), "{flags:?}");
     }
 }
 
@@ -121,21 +103,21 @@ fn results_do_not_depend_on_what_is_kept() {
 #[test]
 fn nothing_is_kept_of_runs_that_did_not_fail() {
     let scratch = Scratch::new();
-    done(&scratch, &["study", "--runs", "20", "--rows", "failed", "--out", "it"], 0);
+    scratch.done(&["study", "--runs", "20", "--rows", "failed", "--out", "it"], 0);
     assert_eq!(runs(&scratch.path("it")).len(), 0);
-    let said = done(&scratch, &["replay", "it", "--run", "3", "--out", "r"], 0);
+    let said = scratch.done(&["replay", "it", "--run", "3", "--out", "r"], 0);
     assert!(said.contains("did not keep the row"), "{said}");
-    assert!(done(&scratch, &["status", "it"], 0).contains("put together"));
+    assert!(scratch.done(&["status", "it"], 0).contains("put together"));
 }
 
 /// A column that is not there is refused before the first run, and nothing is written.
 #[test]
 fn columns_that_are_not_there_are_refused() {
     let scratch = Scratch::new();
-    let said = done(&scratch, &["study", "--columns", "status,wobble", "--out", "it"], 2);
+    let said = scratch.done(&["study", "--columns", "status,wobble", "--out", "it"], 2);
     assert!(said.contains("columns: \"wobble\"") && said.contains("wobble_deg"), "{said}");
     assert!(!scratch.path("it").exists());
-    done(&scratch, &["study", "--rows", "some"], 2);
+    scratch.done(&["study", "--rows", "some"], 2);
 }
 
 /// Shards must keep the same, whoever begins; a damaged file of a study that was reduced is named; columns are the same in any order; a
@@ -146,21 +128,21 @@ fn what_is_kept_is_agreed_upon() {
     fs::write(scratch.path("it.toml"), scenario()).unwrap();
     let study = ["study", "--scenario", "it.toml", "--runs", "60", "--out", "it"];
     let with = |more: &[&'static str]| [&study, more].concat();
-    done(&scratch, &with(&["--shard", "1/2", "--rows", "failed"]), 0);
+    scratch.done(&with(&["--shard", "1/2", "--rows", "failed"]), 0);
     for other in [&["--shard", "2/2"][..], &["--shard", "2/2", "--rows", "none"]] {
-        let said = done(&scratch, &with(other), 2);
+        let said = scratch.done(&with(other), 2);
         assert!(said.contains("rows: failed") && said.contains("all shards"), "{said}");
     }
-    done(&scratch, &with(&["--shard", "2/2", "--rows", "failed"]), 0);
-    done(&scratch, &["report", "it"], 0);
+    scratch.done(&with(&["--shard", "2/2", "--rows", "failed"]), 0);
+    scratch.done(&["report", "it"], 0);
     assert!(fs::read_to_string(scratch.path("it/campaign.json")).unwrap().contains("\"failed\""));
 
-    done(&scratch, &with(&["--force", "--columns", "wobble_deg,status,cone_deg,wobble_deg"]), 0);
+    scratch.done(&with(&["--force", "--columns", "wobble_deg,status,cone_deg,wobble_deg"]), 0);
     let before = files(&scratch.path("it"));
-    done(&scratch, &with(&["--columns", "cone_deg,wobble_deg"]), 0);
+    scratch.done(&with(&["--columns", "cone_deg,wobble_deg"]), 0);
     // A finished study is not reduced by a shard.
-    done(&scratch, &with(&["--shard", "1/2"]), 2);
-    let said = done(&scratch, &with(&["--columns", "cone_deg,wobble_deg", "--quiet"]), 0);
+    scratch.done(&with(&["--shard", "1/2"]), 2);
+    let said = scratch.done(&with(&["--columns", "cone_deg,wobble_deg", "--quiet"]), 0);
     assert_eq!(said, "");
     let file = runs(&scratch.path("it")).remove(0);
     let content = fs::read(scratch.path("it").join(&file)).unwrap();
@@ -168,18 +150,18 @@ fn what_is_kept_is_agreed_upon() {
     other[100] ^= 1;
     fs::write(scratch.path("it").join(&file), other).unwrap();
     for more in [&["--columns", "cone_deg,wobble_deg"][..], &["--force"]] {
-        let said = done(&scratch, &with(more), 2);
+        let said = scratch.done(&with(more), 2);
         assert!(said.contains(&file), "{said}");
     }
     fs::write(scratch.path("it").join(&file), content).unwrap();
     assert_eq!(files(&scratch.path("it")), before);
 
-    done(&scratch, &with(&["--force"]), 0);
+    scratch.done(&with(&["--force"]), 0);
     let before = files(&scratch.path("it"));
-    let said = done(&scratch, &with(&["--force"]), 0);
+    let said = scratch.done(&with(&["--force"]), 0);
     assert!(said.contains("finished already"), "{said}");
     let said =
-        done(&scratch, &["study", "--scenario", "it.toml", "--runs", "70", "--out", "it", "-q"], 0);
+        scratch.done(&["study", "--scenario", "it.toml", "--runs", "70", "--out", "it", "-q"], 0);
     assert_eq!(said, "");
     assert_ne!(files(&scratch.path("it")), before);
 }

@@ -3,30 +3,15 @@
 use serde_json::Value;
 use std::fs;
 
-use crate::scratch::{Scratch, files};
+use crate::scratch::{Scratch, content, files, one_model};
 
 /// The built-in study under one model, of which some runs fail, with these requirements.
 fn scenario(head: &str, requirements: &str) -> String {
-    let text = fs::read_to_string(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../study/src/scenario/peck-2003.toml"
-    ));
-    let text = text.unwrap();
-    let (first, rest) = text.split_once("# The law behind").unwrap();
-    let (_, source) = rest.split_once("# What the paper prints").unwrap();
-    let (before, after) = first.split_once("[payload.dispersion]").unwrap();
+    let text = one_model();
+    let (before, after) = text.split_once("[payload.dispersion]").unwrap();
     let before: Vec<&str> = before.lines().filter(|line| !line.starts_with("runs =")).collect();
     let before = before.join("\n");
-    format!(
-        "{head}\n{before}\n[payload.dispersion]\nmass_percent = 60\n{after}\n{requirements}\n#{source}"
-    )
-}
-
-fn done(scratch: &Scratch, arguments: &[&str], code: i32) -> String {
-    let output = scratch.run(arguments);
-    let [out, error] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {out}{error}");
-    format!("{out}{error}")
+    format!("{head}\n{before}\n[payload.dispersion]\nmass_percent = 60\n{after}\n{requirements}")
 }
 
 /// As TOML and in a line.
@@ -73,14 +58,14 @@ fn studies_and_tables_are_judged_alike() {
     for (failed_runs, flag) in [("against", None), ("left-out", Some("--leave-out-failed"))] {
         fs::write(scratch.path("it.toml"), scenario("runs = 700", &tables(failed_runs))).unwrap();
         let study = ["study", "--scenario", "it.toml", "--out", failed_runs];
-        let said = done(&scratch, &study, 1);
+        let said = scratch.done(&study, 1);
         assert!(said.contains("requirement nutation, proposed"), "{said}");
         let lines = REQUIREMENTS.map(|(_, _, line)| format!("{line} in 90 % at 90 %"));
         let runs = format!("{failed_runs}/runs/proposed");
         let mut verdict = vec!["verdict", runs.as_str(), "--json"];
         lines.iter().for_each(|line| verdict.extend(["--require", line]));
         verdict.extend(flag);
-        let table: Value = serde_json::from_str(&done(&scratch, &verdict, 1)).unwrap();
+        let table: Value = serde_json::from_str(&scratch.done(&verdict, 1)).unwrap();
         let summary = fs::read_to_string(scratch.path(failed_runs).join("summary.json")).unwrap();
         let summary: Value = serde_json::from_str(&summary).unwrap();
         assert_eq!(judged(&summary), judged(&table));
@@ -90,15 +75,10 @@ fn studies_and_tables_are_judged_alike() {
 
         let sharded = ["study", "--scenario", "it.toml", "--out", "sharded", "--shard"];
         for shard in ["2/2", "1/2"] {
-            done(&scratch, &[&sharded[..], &[shard]].concat(), 0);
+            scratch.done(&[&sharded[..], &[shard]].concat(), 0);
         }
-        done(&scratch, &["report", "sharded"], 0);
-        let content = |folder: &str| {
-            let mut files = files(&scratch.path(folder));
-            files.remove(".gyradius/lock");
-            files
-        };
-        assert_eq!(content("sharded"), content(failed_runs));
+        scratch.done(&["report", "sharded"], 0);
+        assert_eq!(content(&scratch.path("sharded")), content(&scratch.path(failed_runs)));
         fs::remove_dir_all(scratch.path("sharded")).unwrap();
     }
 
@@ -111,7 +91,7 @@ fn studies_and_tables_are_judged_alike() {
     let before = blocks("against");
     let easy = "[[requirements]]\nquantity = \"nutation_deg\"\nat_most = 180.0\nprobability = 0.5\nconfidence = 0.5\n";
     fs::write(scratch.path("it.toml"), scenario("runs = 700", easy)).unwrap();
-    let said = done(&scratch, &["study", "--scenario", "it.toml", "--out", "against"], 0);
+    let said = scratch.done(&["study", "--scenario", "it.toml", "--out", "against"], 0);
     assert!(said.contains("requirement nutation_deg at most 180, proposed\n  MET"), "{said}");
     assert_eq!(blocks("against"), before);
 }
@@ -125,7 +105,7 @@ fn of_vehicles_the_first_flights_are_judged() {
     let text =
         text.replace("mass_percent = 60", "mass_percent = { sigma = 60, drawn = \"vehicle\" }");
     fs::write(scratch.path("it.toml"), text).unwrap();
-    done(&scratch, &["study", "--scenario", "it.toml", "--out", "it"], 1);
+    scratch.done(&["study", "--scenario", "it.toml", "--out", "it"], 1);
     let summary = fs::read_to_string(scratch.path("it/summary.json")).unwrap();
     let summary: Value = serde_json::from_str(&summary).unwrap();
     for judged in summary["requirements"].as_array().unwrap() {
@@ -161,17 +141,17 @@ fn wrong_requirements_are_refused() {
         ),
     ] {
         fs::write(scratch.path("it.toml"), scenario("runs = 10", &requirement)).unwrap();
-        let said = done(&scratch, &["study", "--scenario", "it.toml", "--out", "it"], 2);
+        let said = scratch.done(&["study", "--scenario", "it.toml", "--out", "it"], 2);
         assert!(said.contains(expected), "{requirement}: {said}");
         assert!(!scratch.path("it").exists());
     }
     fs::write(scratch.path("t.csv"), "x\n1\n").unwrap();
-    done(&scratch, &["verdict", "t.csv"], 2);
-    let said = done(&scratch, &["verdict", "t.csv", "--require", "x = 1"], 2);
+    scratch.done(&["verdict", "t.csv"], 2);
+    let said = scratch.done(&["verdict", "t.csv", "--require", "x = 1"], 2);
     assert!(said.contains("“<=” or “>=”"), "{said}");
-    let said = done(&scratch, &["verdict", "t.csv", "--require", "y <= 1 in 90 % at 90 %"], 2);
+    let said = scratch.done(&["verdict", "t.csv", "--require", "y <= 1 in 90 % at 90 %"], 2);
     assert!(said.contains("t.csv") && said.contains("its columns are x"), "{said}");
-    let said = done(&scratch, &["verdict", "t.csv", "--require", "x <= 1 in 90 % at 90 %"], 1);
+    let said = scratch.done(&["verdict", "t.csv", "--require", "x <= 1 in 90 % at 90 %"], 1);
     assert!(said.contains("NOT DECIDED") && said.contains("21 more"), "{said}");
 }
 
@@ -183,9 +163,9 @@ fn the_page_shows_what_is_said() {
     let (_, shown) = page.split_once("```text\n").unwrap();
     let (shown, _) = shown.split_once("```").unwrap();
     let scratch = Scratch::new();
-    done(&scratch, &["study", "-q"], 0);
+    scratch.done(&["study", "-q"], 0);
     let runs = "target/study/peck-2003/runs/proposed";
     let require = "nutation_deg <= 10 in 99 % at 90 %";
     assert!(page.contains(&format!("gyradius verdict {runs} --require \"{require}\"")));
-    assert_eq!(done(&scratch, &["verdict", runs, "--require", require], 0), shown);
+    assert_eq!(scratch.done(&["verdict", runs, "--require", require], 0), shown);
 }

@@ -30,6 +30,12 @@ impl Scratch {
         command
     }
 
+    /// What the program says to these arguments, which ends with this exit code.
+    #[track_caller]
+    pub(crate) fn done(&self, arguments: &[&str], code: i32) -> String {
+        done(self.command(arguments), code)
+    }
+
     pub(crate) fn run(&self, arguments: &[&str]) -> Output {
         self.command(arguments).output().unwrap()
     }
@@ -51,4 +57,38 @@ pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
         }
     }
     found
+}
+
+/// Every file of a study with its content, but for the lock.
+pub(crate) fn content(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = files(folder);
+    files.remove(".gyradius/lock");
+    files
+}
+
+/// What a command wrote, to standard output and then to standard error.
+pub(crate) fn text(output: &Output) -> String {
+    String::from_utf8_lossy(&[output.stdout.as_slice(), &output.stderr].concat()).into_owned()
+}
+
+/// What the command says, which ends with this exit code.
+#[track_caller]
+pub(crate) fn done(mut command: Command, code: i32) -> String {
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(code), "{command:?}: {}", text(&output));
+    text(&output)
+}
+
+/// The built-in scenario as it is written.
+pub(crate) fn peck_2003() -> String {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../study/src/scenario/peck-2003.toml");
+    fs::read_to_string(file).unwrap()
+}
+
+/// The same with its first model alone.
+pub(crate) fn one_model() -> String {
+    let text = peck_2003();
+    let (head, rest) = text.split_once("# The law behind").unwrap();
+    let (_, source) = rest.split_once("# What the paper prints").unwrap();
+    format!("{head}#{source}")
 }

@@ -1,32 +1,8 @@
 //! Studies done in shards by several processes, asked for their status, and put together.
 
-use std::{
-    collections::BTreeMap,
-    fs,
-    path::Path,
-    process::{Command, Output, Stdio},
-};
+use std::{fs, process::Stdio};
 
-use crate::scratch::{Scratch, files};
-
-fn text(output: &Output) -> String {
-    String::from_utf8_lossy(&[output.stdout.as_slice(), &output.stderr].concat()).into_owned()
-}
-
-/// What the command says, which ends with this exit code.
-#[track_caller]
-fn done(mut command: Command, code: i32) -> String {
-    let output = command.output().unwrap();
-    assert_eq!(output.status.code(), Some(code), "{}", text(&output));
-    text(&output)
-}
-
-/// Every file of a study with its content, but for the lock.
-fn content(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut files = files(folder);
-    files.remove(".gyradius/lock");
-    files
-}
+use crate::scratch::{Scratch, content, done};
 
 /// Three processes, one of which is killed: what is there is told at every time, a report is made of part of the runs, and
 /// the study is the same to the byte as that of one process.

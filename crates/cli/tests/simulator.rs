@@ -8,7 +8,7 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-use crate::scratch::{Scratch, files};
+use crate::scratch::{Scratch, content};
 
 /// Answers with the quantity, and fails while there is a file and it is below 0.2.
 const SCRIPT: &str = r#"
@@ -83,11 +83,7 @@ fn a_campaign_survives_fifty_kills() {
     assert!(kills > 5, "{kills}");
     assert!(study("here").status().unwrap().success());
     assert!(study("there").status().unwrap().success());
-    let [here, there] = ["here", "there"].map(|out| {
-        let mut files = files(&scratch.path(out));
-        files.remove(".gyradius/lock");
-        files
-    });
+    let [here, there] = ["here", "there"].map(|out| content(&scratch.path(out)));
     assert!(here.keys().eq(there.keys()), "{:?} {:?}", here.keys(), there.keys());
     for (name, content) in &here {
         assert!(*content == there[name], "{name}");

@@ -8,7 +8,7 @@ use std::{
     process::{Command, Output},
 };
 
-use crate::scratch::{Scratch, files};
+use crate::scratch::{Scratch, content, files, text};
 
 /// Writes down its arguments, and does what it is given: the tasks of an array one after the other, those of which a file
 /// `skip-<number>` is there not at all.
@@ -74,17 +74,6 @@ impl Cluster {
         fs::remove_file(self.0.path("codes")).unwrap();
         codes.replace('\n', " ")
     }
-}
-
-fn text(output: &Output) -> String {
-    String::from_utf8_lossy(&[output.stdout.as_slice(), &output.stderr].concat()).into_owned()
-}
-
-/// Every file of a study, but for the lock.
-fn content(folder: &Path) -> std::collections::BTreeMap<String, Vec<u8>> {
-    let mut files = files(folder);
-    files.remove(".gyradius/lock");
-    files
 }
 
 /// In a folder whose name means much to a shell: an array of which a task never comes, and the same script again.

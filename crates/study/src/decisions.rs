@@ -92,8 +92,8 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
         .numbers("runs that fail it", |judged| {
             let judgement = &judged.judgement;
             let may = judgement.allowed_failures().map_or_else(
-                || "too few runs for any".to_owned(),
-                |allowed| format!("{allowed} may"),
+                || "none allowed with so few runs".to_owned(),
+                |allowed| format!("{allowed} allowed"),
             );
             let failures = format!("{} of {}", judgement.failures(), judgement.counted());
             PageCell::from(Text::from(failures)).line(Text::default().quiet(may))

@@ -6,8 +6,8 @@ use crate::model::{Model, Separations};
 use gyradius_campaign::run;
 use gyradius_campaign::{
     Again, Blocks, CampaignError, Contents, Doing, Folder, Forecast, Identity, MANIFEST, Plan,
-    Progress, Reduced, Runs, RunsError, Simulation, Table, disk_left, memory_left, run_again,
-    run_missing, threads,
+    Progress, Reduced, Runs, RunsError, Simulation, Table, disk_left, is_stopped, memory_left,
+    run_again, run_missing, threads,
 };
 use rayon::ThreadPool;
 use std::{
@@ -15,10 +15,7 @@ use std::{
     fs,
     ops::Range,
     path::{Path, PathBuf},
-    sync::{
-        Arc, OnceLock,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::{Arc, OnceLock, atomic::AtomicBool},
 };
 use toml::{Table as Toml, Value};
 
@@ -148,10 +145,7 @@ pub(crate) fn carry_out<C: Subject>(
     if let Some(there) = folder.reduced(begun.0)?
         && !options.force
     {
-        let study = reduced(scenario, &there, (&folder, &text), options, &simulations, &threads)?;
-        let damaged = threads.install(|| there.damaged())?.into_iter().next();
-        let kept = there.kept().clone();
-        return study.ok_or(StudyError::Reduced { path: place, kept, damaged });
+        return reduced(scenario, &there, (&folder, &text), options, &simulations, &threads);
     }
     let blocks = folder.blocks(begun, scenario.runs(), options.force, &threads)?;
     let again = doing == Doing::All;
@@ -226,7 +220,7 @@ pub(crate) fn carry_out<C: Subject>(
     for (name, content) in report.files(report::NAME) {
         folder.write(&name, &content)?;
     }
-    if options.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+    if is_stopped(options.stop.as_deref()) {
         return Err(CampaignError::Stopped.into());
     }
     let folder = folder.publish()?;
@@ -259,7 +253,7 @@ fn empty_tables<S: Simulation>(simulations: &[(&str, S)]) -> Result<Vec<Table>, 
     Ok(simulations.iter().map(table).collect::<Result<_, _>>()?)
 }
 
-/// The study in a folder, not everything of which was kept, if it is this one and as it was written.
+/// The study in a folder, not everything of which was kept, which must be this one and as it was written.
 fn reduced<C: Subject>(
     scenario: &C,
     there: &Reduced,
@@ -267,15 +261,22 @@ fn reduced<C: Subject>(
     options: &Options,
     simulations: &[(&str, C::Simulation<'_>)],
     threads: &ThreadPool,
-) -> Result<Option<Study<C::Summary>>, StudyError> {
+) -> Result<Study<C::Summary>, StudyError> {
+    let damaged = threads.install(|| there.damaged())?;
     let same = there.runs() == scenario.runs() && *there.kept() == scenario.kept();
-    let whole = same && !options.retry_failed && folder.is_whole(text)?;
-    if !whole || !threads.install(|| there.damaged())?.is_empty() {
-        return Ok(None);
+    let whole = same && !options.retry_failed && damaged.is_empty() && folder.is_whole(text)?;
+    let place = folder.place().to_owned();
+    match whole.then(|| whole_summary::<C>(&place)).flatten() {
+        Some(summary) => {
+            let runs = empty_tables(simulations)?.into_iter().map(Runs::from).collect();
+            Ok(Study { folder: place, runs, summary })
+        }
+        None => Err(StudyError::Reduced {
+            path: place,
+            kept: there.kept().clone(),
+            damaged: damaged.into_iter().next(),
+        }),
     }
-    let summary = whole_summary::<C>(folder.place());
-    let runs = empty_tables(simulations)?.into_iter().map(Runs::from).collect();
-    Ok(summary.map(|summary| Study { folder: folder.place().to_owned(), runs, summary }))
 }
 
 /// The summary of a complete study in a folder, if it is there.

@@ -1,11 +1,12 @@
 //! How long a process is waited for: until a time, or until the campaign is stopped.
 
 use std::{
-    sync::atomic::{AtomicBool, Ordering},
+    sync::atomic::AtomicBool,
     time::{Duration, Instant},
 };
 
 use super::trouble::Trouble;
+use crate::stop::is_stopped;
 
 /// Longest wait without a look at whether the campaign is stopped.
 const LOOK: Duration = Duration::from_millis(50);
@@ -27,7 +28,7 @@ impl<'a> Patience<'a> {
     /// How long to wait before the next look; none if it is over.
     pub(super) fn next_wait(&self) -> Option<Duration> {
         let left = self.deadline.saturating_duration_since(Instant::now());
-        if left.is_zero() || self.is_stopped() {
+        if left.is_zero() || is_stopped(self.stop) {
             return None;
         }
         Some(self.stop.map_or(left, |_| left.min(LOOK)))
@@ -35,14 +36,10 @@ impl<'a> Patience<'a> {
 
     /// Why it is over, of a process with this last line on standard error.
     pub(super) fn over(&self, last_line: Option<String>) -> Trouble {
-        if self.is_stopped() {
+        if is_stopped(self.stop) {
             Trouble::Stopped
         } else {
             Trouble::Timeout { timeout: self.timeout, last_line }
         }
-    }
-
-    fn is_stopped(&self) -> bool {
-        self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
 }

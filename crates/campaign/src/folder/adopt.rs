@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use std::{
     io::{self, Write},
     path::PathBuf,
-    sync::atomic::{AtomicBool, Ordering},
+    sync::atomic::AtomicBool,
 };
 
 use super::{
@@ -16,7 +16,7 @@ use super::{
     shared::Shared,
     told::published,
 };
-use crate::{hash::sha256, identity::Identity, kept::Kept, stored, table::Table};
+use crate::{hash::sha256, identity::Identity, kept::Kept, stop::is_stopped, stored, table::Table};
 
 /// A complete campaign of which not all rows and columns were kept: nobody can go on with it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -164,8 +164,5 @@ impl Reduced {
 
 /// Whether it goes on, or was told to stop.
 fn go_on(stop: Option<&AtomicBool>) -> Result<(), Problem> {
-    match stop {
-        Some(stop) if stop.load(Ordering::Relaxed) => Err(Problem::Stopped),
-        Some(_) | None => Ok(()),
-    }
+    if is_stopped(stop) { Err(Problem::Stopped) } else { Ok(()) }
 }

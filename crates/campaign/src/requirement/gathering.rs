@@ -1,6 +1,6 @@
 //! What is gathered of a requirement in passes over runs: counts, the worst runs, and the order statistics that bound it.
 
-use gyradius_statistics::{Pass, StatisticsError, Survey};
+use gyradius_statistics::{Pass, StatisticsError, Survey, Tolerance, ToleranceSide};
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
@@ -104,20 +104,12 @@ impl Gathering {
         if let Some(tally) = part.tally {
             (self.tally, self.counted) = (tally, true);
         }
-        let allowed = self.requirement.acceptance()?.allowed_failures(self.counted_runs());
-        let place = self.place(allowed);
-        let n = self.tally.runs - self.tally.without;
-        let from_top = place.map(|place| n - 1 - place);
-        let ranks = match self.requirement.bound() {
-            Bound::AtMost(_) => from_top,
-            Bound::AtLeast(_) => place,
-            Bound::Between(..) => None,
-        };
+        let rank = self.rank()?;
         if let Some(pass) = part.numbers {
-            self.numbers.advance_selecting(pass, ranks);
+            self.numbers.advance_selecting(pass, rank.filter(|_| self.excess.is_none()));
         }
         if let (Some(survey), Some(pass)) = (&mut self.excess, part.excess) {
-            survey.advance_selecting(pass, from_top);
+            survey.advance_selecting(pass, rank);
         }
         Ok(())
     }
@@ -138,24 +130,31 @@ impl Gathering {
         }
     }
 
-    /// The place, from 0 at the worst number, of the number that is the bound of the share, if so many failures are allowed; none
-    /// if there is none, for runs without a number are worse than all.
-    fn place(&self, allowed: Option<u64>) -> Option<u64> {
-        let worse = self.failures() - self.tally.beyond;
-        let place = allowed?.checked_sub(worse)?;
-        (place < self.tally.runs - self.tally.without).then_some(place)
+    /// The rank, from 0, of the number that is the bound of the share, or of its excess where that is surveyed; none if there is no
+    /// such number, for runs without one are worse than all.
+    fn rank(&self) -> Result<Option<u64>, StatisticsError> {
+        let side = match self.requirement.bound() {
+            // The largest excess is the worst.
+            Bound::AtMost(_) | Bound::Between(..) => ToleranceSide::AtMost,
+            Bound::AtLeast(_) => ToleranceSide::AtLeast,
+        };
+        let values = self.tally.runs - self.tally.without;
+        let failed = self.failures() - self.tally.beyond;
+        let tolerance = self.requirement.acceptance()?.tolerance(side, values, failed);
+        Ok(match tolerance {
+            Tolerance::Ranks { lower, upper, .. } => lower.or(upper).map(|rank| rank - 1),
+            Tolerance::TooFewRuns { .. } => None,
+        })
     }
 
-    /// How far the number that is the bound of the share is beyond the limit, if so many failures are allowed.
-    pub(super) fn excess_allowed(&self, allowed: Option<u64>) -> Option<f64> {
-        let place = self.place(allowed)?;
-        let from_top = self.tally.runs - self.tally.without - 1 - place;
+    /// How far the number that is the bound of the share is beyond the limit.
+    pub(super) fn excess_allowed(&self) -> Result<Option<f64>, StatisticsError> {
+        let Some(rank) = self.rank()? else { return Ok(None) };
         let bound = self.requirement.bound();
-        match bound {
-            Bound::AtMost(_) => self.numbers.order_statistic(from_top).map(|x| bound.excess(x)),
-            Bound::AtLeast(_) => self.numbers.order_statistic(place).map(|x| bound.excess(x)),
-            Bound::Between(..) => self.excess.as_ref()?.order_statistic(from_top),
-        }
+        Ok(match &self.excess {
+            Some(excess) => excess.order_statistic(rank),
+            None => self.numbers.order_statistic(rank).map(|x| bound.excess(x)),
+        })
     }
 }
 

@@ -126,7 +126,7 @@ impl Judgement {
         let allowed = acceptance.allowed_failures(counted);
         let proportion =
             (counted > 0).then(|| Proportion::new(counted - failures, counted)).transpose()?;
-        let excess = gathering.excess_allowed(allowed);
+        let excess = gathering.excess_allowed()?;
         let moments = numbers.moments();
         let standard_deviation = moments.map(Moments::standard_deviation);
         let margin = excess.map(|excess| 0.0 - excess);
@@ -251,12 +251,12 @@ impl Judgement {
     #[must_use]
     pub fn line(&self) -> String {
         let Self { failures, counted, .. } = self;
-        let keep = if *failures == 1 { "run does not keep it" } else { "runs do not keep it" };
-        let may = self.allowed_failures.map_or_else(
-            || "so few runs show nothing yet".to_owned(),
-            |allowed| format!("{allowed} may"),
+        let keep = if *failures == 1 { "does not keep it" } else { "do not keep it" };
+        let allowed = self.allowed_failures.map_or_else(
+            || "so few runs cannot show that it is met".to_owned(),
+            |allowed| format!("at most {allowed} may fail"),
         );
-        format!("{}: {failures} of {counted} {keep}, and {may}", words(self.verdict))
+        format!("{}: {failures} of {counted} runs {keep}; {allowed}", words(self.verdict))
     }
 
     /// The worst runs, the worst first.
@@ -275,11 +275,11 @@ impl fmt::Display for Judgement {
         writeln!(f, "  {}", self.line())?;
         if let Verdict::Undecided { if_no_more_fail, at_this_rate } = self.verdict {
             let met = |runs: u64, if_so: &str| {
-                format!("  more runs    {runs} more would show that it is met, {if_so}\n")
+                format!("  more runs    {runs} more runs would show that it is met, {if_so}\n")
             };
             let all = if_no_more_fail.map(|runs| met(runs, "if all of them keep it"));
             let rate = at_this_rate.filter(|runs| Some(*runs) != if_no_more_fail);
-            let rate = rate.map(|runs| met(runs, "if as large a share of them does not keep it"));
+            let rate = rate.map(|runs| met(runs, "if the share that fails stays as it is"));
             f.write_str(&(all.unwrap_or_default() + &rate.unwrap_or_default()))?;
         }
         if self.runs_without_number > 0 {
@@ -319,7 +319,7 @@ impl fmt::Display for Judgement {
         if let Some(good) = self.success_to_pass {
             writeln!(
                 f,
-                "  to pass      a vehicle must keep it in {} of all runs, to pass nine times in ten with {counted} runs",
+                "  to pass      a vehicle that keeps it in {} of all runs passes {counted} runs nine times in ten",
                 share_in_percent(good)
             )?;
         }

@@ -6,7 +6,7 @@ use rand_chacha::{
 };
 use std::collections::BTreeMap;
 
-use super::{AnyScenario, Inputs, SimulatorDraws, SimulatorScenario, folder, scenario};
+use super::{AnyScenario, Inputs, MODELS, SimulatorDraws, SimulatorScenario, folder, scenario};
 use crate::Fleet;
 
 const HEAD: &str = r#"
@@ -23,18 +23,6 @@ name = "y"
 name = "v"
 [[simulation.outputs]]
 name = "f"
-"#;
-
-const MODELS: &str = r#"
-[[models]]
-name = "proposed"
-law = "principal"
-axes = "whole-sphere"
-
-[[models]]
-name = "naive"
-law = "entrywise"
-matched_to = "proposed"
 "#;
 
 /// Laws of quantities and of masses and mass centres, in which DRAWN may say for what they are drawn.
