@@ -41,6 +41,10 @@ fn a_study_survives_a_full_disk() {
             [ "$(cat small/notes.txt)" = mine ] || exit 98
         done
         cp -r small/it it
+        # No room to leave rows out: what was there stays, and nothing is begun.
+        head -c $(( $(df --output=avail -B1 small | tail -1) - 1000000 )) /dev/zero > small/fill
+        "$GYRADIUS" study --scenario it.toml --runs 40000 --out small/it -q --columns wobble_deg,cone_deg,nutation_deg,spin_rate_rad_per_s
+        [ $? = 2 ] && cp -r small/it after || exit 97
     "#;
     let Some(output) = with_mounts(&scratch, script) else { return };
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -63,6 +67,7 @@ fn a_study_survives_a_full_disk() {
     assert_eq!(before, 40_000, "{said}");
     assert_eq!(done("100m").0, "0", "{said}");
     assert_eq!(content(&scratch.path("it")), content(&scratch.path("whole")));
+    assert_eq!(content(&scratch.path("after")), content(&scratch.path("whole")));
 }
 
 /// A folder that must not be written is refused before the first run, and what is in it can be read: status, replay, a report elsewhere.

@@ -138,7 +138,7 @@ pub(crate) fn carry_out<C: Subject>(
     let in_place = OnceLock::<BTreeSet<String>>::new();
     let contents =
         contents(scenario).keeping(|name| in_place.get().is_some_and(|all| all.contains(name)));
-    let mut folder = Folder::prepare(&place, &contents, options.force)?;
+    let folder = Folder::prepare(&place, &contents, options.force)?;
     let text = scenario.to_toml();
     check_columns(scenario, &simulations)?;
     let begun = (&identity(scenario), text.as_str());
@@ -165,7 +165,8 @@ pub(crate) fn carry_out<C: Subject>(
     }
     if again {
         let stop = options.stop.as_deref();
-        say(Notice::Again(threads.install(|| run_again(&simulations, &blocks, stop))?));
+        let done = threads.install(|| run_again(&simulations, &blocks, stop));
+        say(Notice::Again(done.inspect_err(|_| blocks.abandon())?));
     }
     // A complete study that is being extended stays one until all of the runs are there: its blocks and what tells of them.
     let incomplete = doing == Doing::Nothing && left > 0;
@@ -207,12 +208,34 @@ pub(crate) fn carry_out<C: Subject>(
     let (runs, summary) = done.inspect_err(|_| blocks.abandon())?;
 
     let complete = summary.head().missing().is_empty();
+    let written = write(scenario, &simulations, &blocks, folder, &summary, options, &threads);
+    let (folder, summary) = written.inspect_err(|_| blocks.abandon())?;
     if complete {
-        let empty = empty_tables(&simulations)?;
-        folder.adopt(&blocks, &empty, &scenario.kept(), &threads, options.stop.as_deref())?;
+        blocks.settle()?;
     }
-    folder.write("scenario.toml", &text)?;
-    let written = serde_json::to_string_pretty(&summary)? + "\n";
+    let runs = match scenario.kept().is_all() || !complete {
+        true => runs.into_iter().map(|runs| blocks.in_place(&runs)).collect(),
+        false => empty_tables(&simulations)?.into_iter().map(Runs::from).collect(),
+    };
+    Ok(Study { folder, runs, summary })
+}
+
+/// Writes a study and puts it in place; returns where that is, and the summary as it was written.
+fn write<C: Subject>(
+    scenario: &C,
+    simulations: &[(&str, C::Simulation<'_>)],
+    blocks: &Blocks,
+    mut folder: Folder<'_>,
+    summary: &C::Summary,
+    options: &Options,
+    threads: &ThreadPool,
+) -> Result<(PathBuf, C::Summary), StudyError> {
+    if summary.head().missing().is_empty() {
+        let empty = empty_tables(simulations)?;
+        folder.adopt(blocks, &empty, &scenario.kept(), threads, options.stop.as_deref())?;
+    }
+    folder.write("scenario.toml", &scenario.to_toml())?;
+    let written = serde_json::to_string_pretty(summary)? + "\n";
     folder.write("summary.json", &written)?;
     // The report is made from what a reader of the folder has.
     let summary: C::Summary = serde_json::from_str(&written)?;
@@ -223,15 +246,7 @@ pub(crate) fn carry_out<C: Subject>(
     if is_stopped(options.stop.as_deref()) {
         return Err(CampaignError::Stopped.into());
     }
-    let folder = folder.publish()?;
-    if complete {
-        blocks.settle()?;
-    }
-    let runs = match scenario.kept().is_all() || !complete {
-        true => runs.into_iter().map(|runs| blocks.in_place(&runs)).collect(),
-        false => empty_tables(&simulations)?.into_iter().map(Runs::from).collect(),
-    };
-    Ok(Study { folder, runs, summary })
+    Ok((folder.publish()?, summary))
 }
 
 /// That what is to be kept, and what is required, are columns of the run tables.
