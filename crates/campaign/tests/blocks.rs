@@ -14,10 +14,11 @@ use std::{
     ops::Range,
     path::{Path, PathBuf},
     sync::{
-        Arc, Mutex, OnceLock,
+        Arc, Barrier, Mutex, OnceLock,
         atomic::{AtomicBool, AtomicU64, Ordering},
     },
     thread,
+    time::Duration,
 };
 
 /// Numbers, texts and flags from a seed; it counts the runs that it does.
@@ -329,6 +330,31 @@ fn shards_at_the_same_time_are_one_campaign() {
             assert_whole(&together, &done, runs);
             assert!(content(&together) == content(&alone), "{threads} threads, {of} shards");
         }
+    }
+}
+
+/// Shards that all begin at once in a folder that is not there yet all get it.
+#[test]
+fn shards_that_begin_together_share_the_folder() {
+    let scratch = tempfile::tempdir().unwrap();
+    for round in 0..200 {
+        let place = scratch.path().join(round.to_string());
+        let campaign = Campaign { place, seed: 9, block_runs: 16 };
+        let begin = Barrier::new(24);
+        // One after the other within about a millisecond, so that one begins while another ends its check.
+        let open = &|number: u64| {
+            let in_place = OnceLock::new();
+            let contents = campaign.contents(100, &in_place);
+            begin.wait();
+            thread::sleep(Duration::from_micros(number * 7919 * (round + 1) % 400));
+            Shared::open(&campaign.place, &contents).map(drop).map_err(|e| e.to_string())
+        };
+        thread::scope(|scope| {
+            let opened: Vec<_> = (0..24).map(|number| scope.spawn(move || open(number))).collect();
+            for shard in opened {
+                assert_eq!(shard.join().unwrap(), Ok(()), "round {round}");
+            }
+        });
     }
 }
 

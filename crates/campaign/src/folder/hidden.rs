@@ -48,6 +48,19 @@ impl Hidden {
         place: &Path,
         take: fn(&File) -> Result<(), TryLockError>,
     ) -> Result<Self, Problem> {
+        match Self::taken_by(place, take) {
+            // Who held it has just removed it with the folder.
+            Err(Problem::Io(error)) if error.kind() == io::ErrorKind::NotFound => {
+                Err(Problem::Busy)
+            }
+            other => other,
+        }
+    }
+
+    fn taken_by(
+        place: &Path,
+        take: fn(&File) -> Result<(), TryLockError>,
+    ) -> Result<Self, Problem> {
         // The folder that is meant now stays meant, whatever becomes of links on the way to it.
         let place = fs::canonicalize(place)?;
         let made = match disk::create_folder(&place.join(HIDDEN)) {

@@ -117,7 +117,8 @@ pub struct Folder<'a> {
     journal: Journal,
     /// Whether the folder did not exist before.
     made: bool,
-    published: bool,
+    /// Whether the folder and the hidden one stay, with or without a study.
+    stays: bool,
 }
 
 impl<'a> Folder<'a> {
@@ -154,7 +155,7 @@ impl<'a> Folder<'a> {
         match journal {
             Ok(journal) => {
                 let place = place.to_owned();
-                Ok(Self { contents, place, hidden, journal, made, published: false })
+                Ok(Self { contents, place, hidden, journal, made, stays: false })
             }
             Err(problem) => {
                 abandon(&hidden, made);
@@ -214,8 +215,14 @@ impl<'a> Folder<'a> {
     /// that fails half-way, what was there is put back.
     pub fn publish(mut self) -> Result<PathBuf, FolderError> {
         self.put().map_err(|problem| self.failed(problem))?;
-        self.published = true;
+        self.stays = true;
         Ok(self.place.clone())
+    }
+
+    /// Lets go of an empty folder that others are about to fill: to take it away would take it from under them.
+    fn leave(mut self) {
+        self.journal.abandon(&self.hidden);
+        self.stays = true;
     }
 
     fn put(&mut self) -> Result<(), Problem> {
@@ -238,7 +245,7 @@ impl<'a> Folder<'a> {
 impl Drop for Folder<'_> {
     fn drop(&mut self) {
         // What fails here leaves hidden files behind, which the next command removes.
-        if !self.published {
+        if !self.stays {
             self.journal.abandon(&self.hidden);
             abandon(&self.hidden, self.made);
         }

@@ -9,8 +9,8 @@ use std::{
 use super::{Contents, Folder, FolderError, Problem, hidden::Hidden};
 
 /// How often and how long others are waited for that hold the folder alone for a moment.
-const TRIES: u32 = 100;
-const WAIT: Duration = Duration::from_millis(100);
+const TRIES: u32 = 500;
+const WAIT: Duration = Duration::from_millis(20);
 
 /// A folder whose lock is shared with other processes that fill it. Those who put a campaign together want it alone, and
 /// are refused meanwhile.
@@ -30,7 +30,8 @@ impl Shared {
     pub fn open(place: &Path, contents: &Contents<'_>) -> Result<Self, FolderError> {
         // Alone if nobody else is there; who is there has checked the same.
         match Folder::prepare(place, contents, false) {
-            Ok(_) | Err(FolderError { problem: Problem::Busy, .. }) => {}
+            Ok(folder) => folder.leave(),
+            Err(FolderError { problem: Problem::Busy, .. }) => {}
             Err(error) => return Err(error),
         }
         let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
