@@ -83,6 +83,7 @@ mod stream;
 mod streams;
 mod surveys;
 mod table;
+mod until;
 mod values;
 
 pub use again::{Again, run_again};
@@ -104,8 +105,8 @@ pub use identity::{Difference, Identity};
 pub use kept::{Kept, KeptError, Rows};
 pub use memory::memory_left;
 pub use requirement::{
-    Bound, FailedRuns, Judgement, JudgementError, Judging, Measured, Requirement, RequirementError,
-    RunBeyond, VehiclesKeeping, share_in_percent,
+    Bound, FailedRuns, Judgement, JudgementError, Judging, Looks, Measured, Requirement,
+    RequirementError, RunBeyond, VehiclesKeeping, share_in_percent,
 };
 pub use room::disk_left;
 pub use runs::{Runs, RunsError};
@@ -119,6 +120,7 @@ pub use stream::stream;
 pub use streams::Streams;
 pub use surveys::{FirstLook, Surveys};
 pub use table::{Row, Table, TableError};
+pub use until::{Evidence, StoppingRule, Until, UntilError, run_until};
 pub use values::Numbers;
 
 #[cfg(doctest)]

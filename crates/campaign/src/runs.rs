@@ -103,6 +103,28 @@ impl Runs {
         })
     }
 
+    /// Looks at every block that begins with a run or after it, one after the other, in the order of their runs.
+    ///
+    /// # Errors
+    /// A block cannot be read, or they are [stopped](Self::stopped_by).
+    pub(crate) fn in_order(
+        &self,
+        first: u64,
+        mut look: impl FnMut(&Table),
+    ) -> Result<(), RunsError> {
+        let from = self.blocks.partition_point(|block| block.range().start < first);
+        for block in &self.blocks[from..] {
+            if is_stopped(self.stop.as_deref()) {
+                return Err(RunsError::Stopped);
+            }
+            match block {
+                Block::Held(table) => look(table),
+                Block::Stored { path, .. } => look(&self.read(path)?),
+            }
+        }
+        Ok(())
+    }
+
     /// The block that begins with a run; none if there is none.
     pub(crate) fn block(&self, first: u64) -> Result<Option<Table>, RunsError> {
         let found = self.blocks.iter().find(|block| block.range().start == first);

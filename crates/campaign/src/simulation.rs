@@ -1,5 +1,6 @@
 //! A simulation, and its runs on many threads.
 
+use gyradius_statistics::StatisticsError;
 use rayon::prelude::*;
 use std::{
     ops::Range,
@@ -154,6 +155,9 @@ pub enum CampaignError {
     /// A block of runs cannot be written.
     #[error(transparent)]
     Folder(#[from] FolderError),
+    /// There are more runs than can be judged.
+    #[error("the runs cannot be judged: {0}")]
+    Judged(StatisticsError),
     /// The campaign was told to stop. The blocks that were finished stay.
     #[error("stopped; the runs of the blocks that were finished are kept")]
     Stopped,

@@ -24,3 +24,4 @@ mod shell;
 mod simulator;
 #[cfg(unix)]
 mod slurm;
+mod until;

@@ -95,6 +95,12 @@ pub enum StatisticsError {
         /// The runs given.
         runs: u64,
     },
+    /// A width that is to be reached is not positive and finite.
+    #[error("the width is {}; it must be positive and finite", plain(*width))]
+    Width {
+        /// The width given.
+        width: f64,
+    },
     /// The number of bins is out of range.
     #[error("{bins} bins; there must be 1 to {MAX_BINS}")]
     Bins {

@@ -1,6 +1,6 @@
 //! Which values of a sample bound a share of the law that it was drawn from.
 
-use crate::{Acceptance, SortedSample};
+use crate::{Acceptance, SequentialAcceptance, SortedSample, verdict::Rule};
 
 /// On which side values are bounded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,25 +86,45 @@ impl Acceptance {
     /// Which of `values` values, besides `failed` runs without one, bound the share p with confidence c.
     pub fn tolerance(&self, side: ToleranceSide, values: u64, failed: u64) -> Tolerance {
         let runs = values.saturating_add(failed);
-        // One is counted off on each side that is bounded, at least.
-        let spare = match side {
-            ToleranceSide::AtMost | ToleranceSide::AtLeast => 0,
-            ToleranceSide::Between => 1,
-        };
-        let left = |allowed: u64| allowed.checked_sub(failed).filter(|&left| left >= spare);
-        let Some(left) = self.allowed_failures(runs).and_then(left) else {
-            return Tolerance::TooFewRuns { needed: self.least_runs(failed.saturating_add(spare)) };
-        };
-        let (lower, upper) = match side {
-            ToleranceSide::AtMost => (None, Some(values - left)),
-            ToleranceSide::AtLeast => (Some(left + 1), None),
-            ToleranceSide::Between => {
-                let lower = left.div_ceil(2);
-                (Some(lower), Some(values - (left - lower)))
-            }
-        };
-        Tolerance::Ranks { lower, upper, confidence: 1.0 - self.consumers_risk(runs) }
+        ranks(self, side, [values, failed], || 1.0 - self.consumers_risk(runs))
     }
+}
+
+impl SequentialAcceptance {
+    /// Which of `values` values, besides `failed` runs without one, bound the share p with confidence c, however often it
+    /// is asked: the bounds after all numbers of runs hold together.
+    pub fn tolerance(&self, side: ToleranceSide, values: u64, failed: u64) -> Tolerance {
+        ranks(self, side, [values, failed], || self.requirement().confidence().level())
+    }
+}
+
+/// The values that leave as many runs out as a rule allows to fail: they bound the share p whenever those that are beyond
+/// the true bound would have met the requirement with a risk of 1 − c at most.
+fn ranks(
+    rule: &impl Rule,
+    side: ToleranceSide,
+    [values, failed]: [u64; 2],
+    confidence: impl Fn() -> f64,
+) -> Tolerance {
+    let runs = values.saturating_add(failed);
+    // One is counted off on each side that is bounded, at least.
+    let spare = match side {
+        ToleranceSide::AtMost | ToleranceSide::AtLeast => 0,
+        ToleranceSide::Between => 1,
+    };
+    let left = |allowed: u64| allowed.checked_sub(failed).filter(|&left| left >= spare);
+    let Some(left) = rule.allowed(runs).and_then(left) else {
+        return Tolerance::TooFewRuns { needed: rule.least_runs(failed.saturating_add(spare)) };
+    };
+    let (lower, upper) = match side {
+        ToleranceSide::AtMost => (None, Some(values - left)),
+        ToleranceSide::AtLeast => (Some(left + 1), None),
+        ToleranceSide::Between => {
+            let lower = left.div_ceil(2);
+            (Some(lower), Some(values - (left - lower)))
+        }
+    };
+    Tolerance::Ranks { lower, upper, confidence: confidence() }
 }
 
 #[cfg(test)]

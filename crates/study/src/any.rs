@@ -1,6 +1,6 @@
 //! A scenario of either kind, and what becomes of it: for programs that are given a file or a folder.
 
-use gyradius_campaign::{Doing, Forecast, Kept, Progress, Shard, begun, folder_of};
+use gyradius_campaign::{Forecast, Kept, Progress, Shard, StoppingRule, Until, begun, folder_of};
 use serde::Serialize;
 use std::{
     fmt,
@@ -110,6 +110,32 @@ impl AnyScenario {
         })
     }
 
+    /// The same scenario, whose runs go on until a rule ends them, and are as many at most as they would be. They are looked at
+    /// after `look_every` first, if that is said.
+    ///
+    /// # Errors
+    /// The rule is about requirements, and there are none; `look_every` is zero, or not a whole number of vehicles.
+    pub fn with_until(
+        self,
+        rule: StoppingRule,
+        look_every: Option<u64>,
+    ) -> Result<Self, ScenarioError> {
+        Ok(match self {
+            Self::Separation(scenario) => {
+                Self::Separation(Box::new(scenario.with_until(rule, look_every)?))
+            }
+            Self::Simulator(scenario) => {
+                Self::Simulator(Box::new(scenario.with_until(rule, look_every)?))
+            }
+        })
+    }
+
+    /// Until when its runs go on, if not to their number.
+    #[must_use]
+    pub fn until(&self) -> Option<&Until> {
+        of_either!(self, scenario => scenario.until())
+    }
+
     /// Its name.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -169,7 +195,7 @@ impl AnyScenario {
         say: &dyn Fn(Notice),
     ) -> Result<Outcome, StudyError> {
         of_either!(self, scenario =>
-            carry_out(&**scenario, options, Doing::All, progress, say).map(|study| Outcome::of(&study)))
+            carry_out(&**scenario, options, progress, say).map(|study| Outcome::of(&study)))
     }
 
     /// Does a share of the runs of a study, of those that are in no finished block, into its folder. Other processes may do
@@ -327,6 +353,9 @@ impl fmt::Display for Outcome {
         let (name, runs, seed) = (head.scenario(), head.runs_per_model(), head.seed());
         let vehicles = head.fleet().map_or_else(String::new, |fleet| format!("{fleet}, "));
         writeln!(f, "{name}: {vehicles}{runs} runs a model, seed {seed}\n")?;
+        if let Some(ended) = head.ended() {
+            writeln!(f, "{ended}\n")?;
+        }
         for judged in head.requirements() {
             let requirement = judged.judgement().requirement().name();
             writeln!(f, "requirement {requirement}, {}\n{}", judged.model(), judged.judgement())?;

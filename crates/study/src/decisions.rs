@@ -1,6 +1,8 @@
 //! Requirements of a scenario: checked, judged by the runs, and told first in the report.
 
-use gyradius_campaign::{Bound, Column, Judging, RunBeyond, Runs, share_in_percent};
+use gyradius_campaign::{
+    Bound, Column, Judging, Looks, Measured, RunBeyond, Runs, share_in_percent,
+};
 use gyradius_report::{PageCell, PageTable, Section, Text, significant};
 use gyradius_statistics::Verdict;
 
@@ -20,27 +22,35 @@ pub(crate) fn check<C: Subject>(scenario: &C, columns: &[Column]) -> Result<(), 
         let problem = format!("{count} of them: there must be at most {MOST}");
         return Err(ScenarioError::field("requirements", problem));
     }
+    if let Some(quantity) = scenario.until().and_then(|until| until.rule().quantity()) {
+        known(quantity, columns).map_err(|problem| ScenarioError::field("until.rule", problem))?;
+    }
     for (i, requirement) in scenario.requirements().iter().enumerate() {
         let refused = |key: &str, problem: String| {
             ScenarioError::field(format!("requirements[{}].{key}", i + 1), problem)
         };
-        for name in requirement.quantity().columns() {
-            let column = columns.iter().find(|column| column.name() == name);
-            if !column.is_some_and(Column::is_measured) {
-                let known: Vec<&str> =
-                    columns.iter().filter(|c| c.is_measured()).map(Column::name).collect();
-                let problem = format!(
-                    "{name:?}: the run table has no such column of numbers; it has {}",
-                    known.join(", ")
-                );
-                return Err(refused("quantity", problem));
-            }
-        }
+        known(requirement.quantity(), columns).map_err(|problem| refused("quantity", problem))?;
         if let Some(model) = requirement.model().filter(|m| scenario.model_names().all(|n| n != *m))
         {
             let known: Vec<&str> = scenario.model_names().collect();
             let problem = format!("{model:?}: the scenario has {}", known.join(", "));
             return Err(refused("model", problem));
+        }
+    }
+    Ok(())
+}
+
+/// That a quantity is of columns of numbers that the run tables have.
+fn known(quantity: &Measured, columns: &[Column]) -> Result<(), String> {
+    for name in quantity.columns() {
+        let column = columns.iter().find(|column| column.name() == name);
+        if !column.is_some_and(Column::is_measured) {
+            let known: Vec<&str> =
+                columns.iter().filter(|c| c.is_measured()).map(Column::name).collect();
+            return Err(format!(
+                "{name:?}: the run table has no such column of numbers; it has {}",
+                known.join(", ")
+            ));
         }
     }
     Ok(())
@@ -54,7 +64,8 @@ pub(crate) fn judging<C: Subject>(scenario: &C) -> Vec<Judging> {
     let of_model = |name: &str| {
         let all = scenario.requirements().iter();
         let own = all.filter(|requirement| requirement.model().is_none_or(|model| model == name));
-        Judging::new(own.cloned(), scenario.runs(), group)
+        let looks = if scenario.until().is_some() { Looks::Often } else { Looks::Once };
+        Judging::new(own.cloned(), scenario.runs(), group).looked_at(looks)
     };
     scenario.model_names().map(of_model).collect()
 }
@@ -125,6 +136,13 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
                  standard deviations σ of the quantity. The last column is the producer's side: in which share of all runs a \
                  vehicle must keep the requirement, to pass nine times in ten with as many runs.";
     let mut notes = vec![Text::from(rests)];
+    if let Some(ended) = &head.ended {
+        notes.push(Text::from(format!(
+            "{ended} {}. Verdicts, bounds and intervals of the requirements are those of a rule that may be asked after any number of \
+             looks.",
+            ended.until().rule().reason()
+        )));
+    }
     if head.independent_runs_per_model.is_some() {
         notes.push(Text::from(
             "Flights of a vehicle have something in common. Verdicts are of the first flight of each vehicle, which are \

@@ -4,7 +4,7 @@ use gyradius_campaign::{ColumnSummary, Judgement};
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt, ops::Range};
 
-use crate::Fleet;
+use crate::{Fleet, until::Ended};
 
 /// What a summary says first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,6 +28,9 @@ pub struct Head {
     /// How many runs were done again because they had failed.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub(crate) done_again: u64,
+    /// What ended the runs, if they were not done to a number that was stated before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) ended: Option<Ended>,
     /// What the runs say of the requirements, model by model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) requirements: Vec<Judged>,
@@ -71,6 +74,12 @@ impl Head {
     #[must_use]
     pub fn requirements(&self) -> &[Judged] {
         &self.requirements
+    }
+
+    /// What ended the runs, if they were not done to a number that was stated before.
+    #[must_use]
+    pub fn ended(&self) -> Option<&Ended> {
+        self.ended.as_ref()
     }
 
     /// The runs that are not done; none of a complete study.

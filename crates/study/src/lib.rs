@@ -51,6 +51,7 @@ mod summary;
 mod text;
 #[cfg(test)]
 mod two_loops;
+mod until;
 
 pub use any::{AnyScenario, Outcome, is_begun, put_together, write_report};
 pub use body::Entry;
@@ -63,8 +64,8 @@ pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_campaign::{
     Again, Bound, CampaignError, Cell, Column, FailedRuns, Forecast, ForeignError, ForeignTable,
     FormatError, Judgement, JudgementError, Kept, KeptError, Progress, Requirement,
-    RequirementError, Row, Rows, Runs, RunsError, Shard, ShardError, Table, TableFormat, Verdict,
-    rough_time,
+    RequirementError, Row, Rows, Runs, RunsError, Shard, ShardError, StoppingRule, Table,
+    TableFormat, Until, UntilError, Verdict, rough_time,
 };
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};
@@ -77,6 +78,7 @@ pub use shards::{ModelStatus, Status};
 pub use simulator::{SimulatorReplay, SimulatorScenario, SimulatorSummary};
 pub use study::{Notice, Options, Study, restore_studies};
 pub use summary::Summary;
+pub use until::Ended;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

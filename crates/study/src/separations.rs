@@ -1,6 +1,6 @@
 //! Separations as a study: how their runs are simulated, and what they amount to.
 
-use gyradius_campaign::{CampaignError, Column, Forecast, Kept, Requirement, Runs};
+use gyradius_campaign::{CampaignError, Column, Forecast, Kept, Requirement, Runs, Until};
 use gyradius_report::Document;
 use rayon::ThreadPool;
 use std::sync::{Arc, atomic::AtomicBool};
@@ -18,7 +18,7 @@ use crate::{
 impl Subject for Scenario {
     /// Some tenths of a second of separations.
     const BLOCK_RUNS: u64 = 1 << 14;
-    const IMMATERIAL: &[&str] = &["runs", "vehicles", "rows", "columns", "requirements"];
+    const IMMATERIAL: &[&str] = &["runs", "vehicles", "rows", "columns", "requirements", "until"];
 
     type Prepared = Vec<Model>;
     type Simulation<'a> = Separations<'a>;
@@ -55,6 +55,14 @@ impl Subject for Scenario {
 
     fn requirements(&self) -> &[Requirement] {
         self.requirements()
+    }
+
+    fn until(&self) -> Option<&Until> {
+        self.until()
+    }
+
+    fn ended_after(&self, runs: u64) -> Result<Self, ScenarioError> {
+        self.ended_after(runs)
     }
 
     fn model_names(&self) -> impl Iterator<Item = &str> {

@@ -1,14 +1,14 @@
 //! A share of a study's runs, and what of a study is there: for studies that many processes do.
 
 use gyradius_campaign::{
-    Block, Doing, Forecast, MANIFEST, Progress, Shard, Shared, begun, missing_runs, run_missing,
-    threads, told,
+    Block, Doing, Forecast, MANIFEST, Plan, Progress, Shard, Shared, Until, begun, missing_runs,
+    run_missing, threads, told,
 };
 use serde::Serialize;
 use std::{ops::Range, path::Path};
 
 use crate::{
-    Notice, Options, StudyError,
+    Notice, Options, ScenarioError, StudyError,
     head::Missing,
     scenario::read_file,
     study::{check_columns, contents, count, foretell, identity, plan},
@@ -18,7 +18,10 @@ use crate::{
 /// How many runs a process is to do if none is there: those of a shard, or of all models.
 pub(crate) fn planned_runs<C: Subject>(scenario: &C, shard: Option<Shard>) -> u64 {
     let doing = shard.map_or(Doing::All, Doing::Shard);
-    plan(scenario, &Options::default(), doing).total(scenario.model_names().count())
+    let options = Options::default();
+    let plan = plan(scenario, &options, doing);
+    let runs = scenario.until().map_or(plan.runs, Until::most_runs);
+    Plan { runs, ..plan }.total(scenario.model_names().count())
 }
 
 /// How many runs each of so many shards is to do if none is there, by their numbers. A shard without any is one too many:
@@ -52,6 +55,10 @@ pub(crate) fn run_shard<C: Subject>(
     progress: Progress<'_>,
     say: &dyn Fn(Notice),
 ) -> Result<(), StudyError> {
+    if scenario.until().is_some() {
+        let problem = "a share of the runs cannot tell when all of them are enough: give the shards a number of runs instead";
+        return Err(ScenarioError::field("until", problem).into());
+    }
     let threads = threads(options.threads)?;
     let models = scenario.prepare(options.stop.as_ref())?;
     let simulations = scenario.simulations(&models)?;

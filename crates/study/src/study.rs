@@ -25,6 +25,7 @@ use crate::{
     report,
     scenario::parse_toml,
     subject::{LookAt, Subject, Summarized},
+    until::{Ended, run_to_the_end},
 };
 
 /// How to carry out a study.
@@ -90,7 +91,7 @@ impl Study {
         options: &Options,
         progress: Progress<'_>,
     ) -> Result<Self, StudyError> {
-        carry_out(scenario, options, Doing::All, progress, &|_| {})
+        carry_out(scenario, options, progress, &|_| {})
     }
 }
 
@@ -122,12 +123,28 @@ impl<S> Study<S> {
     }
 }
 
-/// Does the runs that are to be done, and puts together what is there then: the study, if nothing is missing, and else
-/// summary and report of the runs that are there, which say what is missing.
+/// Does the runs that are to be done, to their number or until a rule ends them, and puts together what is there then.
 pub(crate) fn carry_out<C: Subject>(
     scenario: &C,
     options: &Options,
-    doing: Doing,
+    progress: Progress<'_>,
+    say: &dyn Fn(Notice),
+) -> Result<Study<C::Summary>, StudyError> {
+    match run_to_the_end(scenario, options, progress, say)? {
+        Some((scenario, ended)) => {
+            let doing = (Doing::All, Some(ended));
+            do_what_is_left(&scenario, options, doing, progress, &|_| {})
+        }
+        None => do_what_is_left(scenario, options, (Doing::All, None), progress, say),
+    }
+}
+
+/// Does the runs that are to be done, and puts together what is there then: the study, if nothing is missing, and else
+/// summary and report of the runs that are there, which say what is missing.
+fn do_what_is_left<C: Subject>(
+    scenario: &C,
+    options: &Options,
+    (doing, ended): (Doing, Option<Ended>),
     progress: Progress<'_>,
     say: &dyn Fn(Notice),
 ) -> Result<Study<C::Summary>, StudyError> {
@@ -202,6 +219,7 @@ pub(crate) fn carry_out<C: Subject>(
         let mut summary = scenario.judge(&models, looks, &runs)?;
         let head = summary.head_mut();
         (head.missing, head.done_again) = (gaps(&blocks, scenario), blocks.again());
+        head.ended = ended;
         head.requirements = decisions::judged(judging, &runs)?;
         Ok((runs, summary))
     });
@@ -309,7 +327,7 @@ pub(crate) fn put_together<C: Subject>(
     say: &dyn Fn(Notice),
 ) -> Result<Study<C::Summary>, StudyError> {
     let options = Options { out: Some(folder.to_owned()), ..options.clone() };
-    carry_out(scenario, &options, Doing::Nothing, &|_| {}, say)
+    do_what_is_left(scenario, &options, (Doing::Nothing, None), &|_| {}, say)
 }
 
 /// Says how many of the runs are done already, and what the others will take; refuses what the disk or the memory has no

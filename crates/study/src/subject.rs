@@ -1,7 +1,7 @@
 //! What a study is of: a scenario of separations, or of a simulator of the user's own.
 
 use gyradius_campaign::{
-    Column, FirstLook, Forecast, Kept, Requirement, Runs, Simulation, Table, sha256,
+    Column, FirstLook, Forecast, Kept, Requirement, Runs, Simulation, Table, Until, sha256,
 };
 use gyradius_report::Document;
 use gyradius_statistics::Confidence;
@@ -55,6 +55,10 @@ pub(crate) trait Subject: Sync + Sized {
     fn kept(&self) -> Kept;
     /// What the runs are to show.
     fn requirements(&self) -> &[Requirement];
+    /// Until when its runs go on, if not to their number.
+    fn until(&self) -> Option<&Until>;
+    /// The same, whose runs ended after so many.
+    fn ended_after(&self, runs: u64) -> Result<Self, ScenarioError>;
     /// Names of the models, in order.
     fn model_names(&self) -> impl Iterator<Item = &str>;
     /// The resolved scenario.
@@ -124,6 +128,7 @@ pub(crate) fn head_of(scenario: &impl Subject, columns: &[Column]) -> Head {
         independent_runs_per_model: scenario.independent_runs(),
         missing: Vec::new(),
         done_again: 0,
+        ended: None,
         requirements: Vec::new(),
         confidence: Confidence::default().level(),
         columns: columns.iter().map(Column::summary).collect(),

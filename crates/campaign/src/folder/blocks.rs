@@ -286,6 +286,12 @@ impl Blocks {
         missing_runs(finished.map(|block| block.range()), runs, block_runs)
     }
 
+    /// One more than the last run of a model that is in a block; none if there is no block of it.
+    pub(crate) fn end(&self, model: &str) -> Option<u64> {
+        let state = self.locked();
+        state.blocks.iter().filter(|b| b.model == model).map(|block| block.range().end).max()
+    }
+
     /// The runs of each block of a model in which runs failed.
     pub(crate) fn with_failures(&self, model: &str) -> Vec<Range<u64>> {
         let failed = |block: &Block| block.model == model && block.failed > 0;

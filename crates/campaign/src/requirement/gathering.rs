@@ -4,7 +4,10 @@ use gyradius_statistics::{Pass, StatisticsError, Survey, Tolerance, ToleranceSid
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
-use super::{Bound, FailedRuns, Requirement};
+use super::{
+    Bound, FailedRuns, Requirement,
+    deciding::{Deciding, Looks},
+};
 
 /// Runs that are told of one by one.
 const WORST: usize = 10;
@@ -30,11 +33,12 @@ pub(super) struct Gathering {
     /// Of how far numbers are beyond the bound, if that is no order of the numbers themselves.
     pub(super) excess: Option<Survey>,
     counted: bool,
+    looks: Looks,
 }
 
 /// Counts, and the worst runs.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tally {
+pub(crate) struct Tally {
     /// All runs, those that have no number too.
     pub(super) runs: u64,
     /// Runs that have no number, most often because they failed.
@@ -61,7 +65,22 @@ impl Gathering {
             Bound::Between(..) => Some(Survey::new(runs)),
         };
         let (tally, numbers) = (Tally::default(), Survey::new(runs));
-        Self { requirement, tally, numbers, excess, counted: false }
+        Self { requirement, tally, numbers, excess, counted: false, looks: Looks::Once }
+    }
+
+    /// The same, with runs that are looked at so often before a verdict.
+    pub(super) fn looked_at(self, looks: Looks) -> Self {
+        Self { looks, ..self }
+    }
+
+    /// How often they are.
+    pub(super) fn looks(&self) -> Looks {
+        self.looks
+    }
+
+    /// When so many runs decide the requirement.
+    pub(super) fn deciding(&self) -> Result<Deciding, StatisticsError> {
+        Deciding::new(&self.requirement, self.looks)
     }
 
     /// What is to be gathered next, if anything is.
@@ -114,22 +133,6 @@ impl Gathering {
         Ok(())
     }
 
-    /// Runs that the verdict is about.
-    pub(super) fn counted_runs(&self) -> u64 {
-        match self.requirement.failed_runs() {
-            FailedRuns::Against => self.tally.runs,
-            FailedRuns::LeftOut => self.tally.runs - self.tally.without,
-        }
-    }
-
-    /// Runs that do not keep the requirement.
-    pub(super) fn failures(&self) -> u64 {
-        match self.requirement.failed_runs() {
-            FailedRuns::Against => self.tally.beyond + self.tally.without,
-            FailedRuns::LeftOut => self.tally.beyond,
-        }
-    }
-
     /// The rank, from 0, of the number that is the bound of the share, or of its excess where that is surveyed; none if there is no
     /// such number, for runs without one are worse than all.
     fn rank(&self) -> Result<Option<u64>, StatisticsError> {
@@ -139,8 +142,9 @@ impl Gathering {
             Bound::AtLeast(_) => ToleranceSide::AtLeast,
         };
         let values = self.tally.runs - self.tally.without;
-        let failed = self.failures() - self.tally.beyond;
-        let tolerance = self.requirement.acceptance()?.tolerance(side, values, failed);
+        let [failures, _] = self.tally.failures_of_counted(self.requirement.failed_runs());
+        let failed = failures - self.tally.beyond;
+        let tolerance = self.deciding()?.tolerance(side, values, failed);
         Ok(match tolerance {
             Tolerance::Ranks { lower, upper, .. } => lower.or(upper).map(|rank| rank - 1),
             Tolerance::TooFewRuns { .. } => None,
@@ -173,7 +177,15 @@ impl Part {
 }
 
 impl Tally {
-    fn add(&mut self, run: u64, number: Option<f64>, bound: Bound) {
+    /// Runs that do not keep the requirement, and those that the verdict is about.
+    pub(crate) fn failures_of_counted(&self, failed_runs: FailedRuns) -> [u64; 2] {
+        match failed_runs {
+            FailedRuns::Against => [self.beyond + self.without, self.runs],
+            FailedRuns::LeftOut => [self.beyond, self.runs - self.without],
+        }
+    }
+
+    pub(crate) fn add(&mut self, run: u64, number: Option<f64>, bound: Bound) {
         self.runs += 1;
         let Some(value) = number else {
             self.without += 1;

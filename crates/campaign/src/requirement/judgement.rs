@@ -1,12 +1,15 @@
 //! What runs say of a requirement: how many do not keep it, the bound that the required share keeps, and the verdict.
 
-use gyradius_statistics::{Interval, Moments, Proportion, StatisticsError, Verdict};
+use gyradius_statistics::{
+    ConfidenceSequence, Interval, Moments, Proportion, StatisticsError, Verdict,
+};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 use super::{
     Bound, FailedRuns, Requirement,
+    deciding::Looks,
     gathering::{Gathering, Part, RunBeyond},
     groups::Groups,
 };
@@ -15,13 +18,13 @@ use crate::{
     runs::RunsError,
 };
 
-/// Power for which it is told how good a vehicle must be.
-const NINE_TIMES_IN_TEN: f64 = 0.9;
-
 /// What runs say of a requirement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     requirement: Requirement,
+    /// How often the runs were looked at, if not once: verdict, interval and bound hold for all looks then.
+    #[serde(default, skip_serializing_if = "Looks::is_once")]
+    looks: Looks,
     /// All runs.
     runs: u64,
     /// Runs without a number, most often because they failed.
@@ -121,25 +124,23 @@ impl Judgement {
     /// What was gathered, judged.
     pub(super) fn of(gathering: &Gathering) -> Result<Self, JudgementError> {
         let Gathering { requirement, tally, numbers, .. } = gathering;
-        let (counted, failures) = (gathering.counted_runs(), gathering.failures());
-        let acceptance = requirement.acceptance()?;
-        let allowed = acceptance.allowed_failures(counted);
-        let proportion =
-            (counted > 0).then(|| Proportion::new(counted - failures, counted)).transpose()?;
+        let [failures, counted] = tally.failures_of_counted(requirement.failed_runs());
+        let deciding = gathering.deciding()?;
         let excess = gathering.excess_allowed()?;
         let moments = numbers.moments();
         let standard_deviation = moments.map(Moments::standard_deviation);
         let margin = excess.map(|excess| 0.0 - excess);
         Ok(Self {
             requirement: requirement.clone(),
+            looks: gathering.looks(),
             runs: tally.runs,
             runs_without_number: tally.without,
             runs_beyond: tally.beyond,
             counted,
             failures,
-            allowed_failures: allowed,
-            share: proportion.map(|share| share.value()),
-            share_interval: proportion.map(|share| share.interval(requirement.confidence())),
+            allowed_failures: deciding.allowed_failures(counted),
+            share: (counted > 0).then(|| (counted - failures) as f64 / counted as f64),
+            share_interval: deciding.share_interval(failures, counted)?,
             tolerance: excess.map(|excess| requirement.bound().wider(excess)),
             margin,
             margin_deviations: margin
@@ -147,8 +148,8 @@ impl Judgement {
                 .map(|(m, s)| m / s),
             mean: moments.map(Moments::mean),
             standard_deviation,
-            verdict: acceptance.verdict(failures, counted)?,
-            success_to_pass: acceptance.success_to_pass(counted, NINE_TIMES_IN_TEN)?,
+            verdict: deciding.verdict(failures, counted)?,
+            success_to_pass: deciding.success_to_pass(counted)?,
             worst: tally.worst.clone(),
             vehicles: None,
         })
@@ -157,8 +158,12 @@ impl Judgement {
     /// The same, with what is known of groups of runs.
     pub(super) fn of_groups(self, groups: Option<&Groups>) -> Result<Self, JudgementError> {
         let Some(&Groups { whole, keeping, .. }) = groups else { return Ok(self) };
-        let share = (whole > 0).then(|| Proportion::new(keeping, whole)).transpose()?;
-        let share_interval = share.map(|share| share.interval(self.requirement.confidence()));
+        let confidence = self.requirement.confidence();
+        let share_interval = match self.looks {
+            _ if whole == 0 => None,
+            Looks::Once => Some(Proportion::new(keeping, whole)?.interval(confidence)),
+            Looks::Often => Some(ConfidenceSequence::new(confidence).interval(keeping, whole)?),
+        };
         let vehicles = Some(VehiclesKeeping { vehicles: whole, keeping, share_interval });
         Ok(Self { vehicles, ..self })
     }
@@ -167,6 +172,12 @@ impl Judgement {
     #[must_use]
     pub fn runs(&self) -> u64 {
         self.runs
+    }
+
+    /// How often the runs were looked at: verdict, interval and bound hold for all looks.
+    #[must_use]
+    pub fn looks(&self) -> Looks {
+        self.looks
     }
 
     /// What the requirement is.
@@ -223,7 +234,8 @@ impl Judgement {
         self.share
     }
 
-    /// Where the true share lies, with the confidence of the requirement: Clopper and Pearson's interval, two-sided.
+    /// Where the true share lies, with the confidence of the requirement: Clopper and Pearson's interval, two-sided, or, of runs
+    /// that are looked at often, that of a confidence sequence.
     #[must_use]
     pub fn share_interval(&self) -> Option<Interval> {
         self.share_interval

@@ -8,6 +8,7 @@ use std::{
 
 use super::{
     Judgement, JudgementError, Requirement,
+    deciding::Looks,
     gathering::{Gathering, Part},
     groups::Groups,
 };
@@ -36,6 +37,14 @@ impl Judging {
         let groups =
             Mutex::new(if group > 1 { new_groups(&gatherings, group) } else { Vec::new() });
         Self { gatherings, group, parts, groups }
+    }
+
+    /// The same of runs that are looked at so often before a verdict.
+    #[must_use]
+    pub fn looked_at(mut self, looks: Looks) -> Self {
+        let gatherings = std::mem::take(&mut self.gatherings).into_iter();
+        self.gatherings = gatherings.map(|gathering| gathering.looked_at(looks)).collect();
+        self
     }
 
     /// Looks at a block, once at each and in any order.

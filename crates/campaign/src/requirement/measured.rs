@@ -72,7 +72,7 @@ impl Measured {
         number.filter(|x| x.is_finite())
     }
 
-    pub(super) fn parse(words: &mut Words<'_>) -> Result<Self, RequirementError> {
+    pub(crate) fn parse(words: &mut Words<'_>) -> Result<Self, RequirementError> {
         let name = words.name()?;
         let how = How::ALL.into_iter().find(|how| *how != How::Itself && how.name() == name);
         let Some(how) = how.filter(|_| words.take("(")) else { return Ok(Self::column(&name)) };

@@ -1,5 +1,6 @@
 //! Requirements: that a number of a run keeps a bound in at least a share of all runs, at a confidence.
 
+mod deciding;
 mod gathering;
 mod groups;
 mod judgement;
@@ -8,14 +9,17 @@ mod measured;
 mod text;
 mod words;
 
-use gyradius_statistics::{Acceptance, Confidence, StatisticsError};
+use gyradius_statistics::{Acceptance, Confidence, SequentialAcceptance, StatisticsError};
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
+pub use deciding::Looks;
 pub use gathering::RunBeyond;
+pub(crate) use gathering::Tally;
 pub use judgement::{Judgement, JudgementError, VehiclesKeeping, share_in_percent};
 pub use judging::Judging;
 pub use measured::Measured;
+pub(crate) use words::Words;
 
 /// That a number of a run keeps a bound in at least a share of all runs, at a confidence: a requirement.
 ///
@@ -171,6 +175,11 @@ impl Requirement {
     /// When so many runs decide it.
     pub(crate) fn acceptance(&self) -> Result<Acceptance, StatisticsError> {
         Acceptance::new(self.probability, self.confidence)
+    }
+
+    /// The same, if the runs are looked at as often as one likes.
+    pub(crate) fn sequential(&self) -> Result<SequentialAcceptance, StatisticsError> {
+        self.acceptance().map(SequentialAcceptance::new)
     }
 
     /// Whether a run keeps it that has these numbers in the columns of the quantity.

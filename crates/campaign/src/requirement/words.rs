@@ -4,36 +4,36 @@ use super::RequirementError;
 
 /// A text that is taken word by word.
 #[derive(Clone, Debug)]
-pub(super) struct Words<'a> {
+pub(crate) struct Words<'a> {
     text: &'a str,
     rest: &'a str,
 }
 
 impl<'a> Words<'a> {
-    pub(super) fn new(text: &'a str) -> Self {
+    pub(crate) fn new(text: &'a str) -> Self {
         Self { text, rest: text.trim() }
     }
 
     /// What is wrong at this place.
-    pub(super) fn wrong(&self, problem: &str) -> RequirementError {
+    pub(crate) fn wrong(&self, problem: &str) -> RequirementError {
         let rest: String = self.rest.chars().take(20).collect();
         let at = if rest.is_empty() { "its end".to_owned() } else { format!("“{rest}”") };
         RequirementError::Text { text: self.text.to_owned(), at, problem: problem.to_owned() }
     }
 
     /// Whether one of these letters is next.
-    pub(super) fn begins_with(&self, letters: &[char]) -> bool {
+    pub(crate) fn begins_with(&self, letters: &[char]) -> bool {
         self.rest.starts_with(letters)
     }
 
     /// Takes these letters if they are next.
-    pub(super) fn take(&mut self, word: &str) -> bool {
+    pub(crate) fn take(&mut self, word: &str) -> bool {
         let Some(rest) = self.rest.strip_prefix(word) else { return false };
         self.rest = rest.trim_start();
         true
     }
 
-    pub(super) fn expect(&mut self, word: &str) -> Result<(), RequirementError> {
+    pub(crate) fn expect(&mut self, word: &str) -> Result<(), RequirementError> {
         if self.take(word) {
             Ok(())
         } else {
@@ -42,12 +42,12 @@ impl<'a> Words<'a> {
     }
 
     /// That nothing is left.
-    pub(super) fn end(&self) -> Result<(), RequirementError> {
+    pub(crate) fn end(&self) -> Result<(), RequirementError> {
         if self.rest.is_empty() { Ok(()) } else { Err(self.wrong("nothing may follow")) }
     }
 
     /// The name of a column.
-    pub(super) fn name(&mut self) -> Result<String, RequirementError> {
+    pub(crate) fn name(&mut self) -> Result<String, RequirementError> {
         if let Some(quoted) = self.rest.strip_prefix('"') {
             let mut name = String::new();
             let mut letters = quoted.char_indices();
@@ -75,7 +75,7 @@ impl<'a> Words<'a> {
     }
 
     /// A name as it is written.
-    pub(super) fn quoted(name: &str) -> String {
+    pub(crate) fn quoted(name: &str) -> String {
         if !name.is_empty() && name.chars().all(is_plain) && name.parse::<f64>().is_err() {
             return name.to_owned();
         }
@@ -83,7 +83,7 @@ impl<'a> Words<'a> {
     }
 
     /// A finite number, if one is next.
-    pub(super) fn number(&mut self) -> Option<f64> {
+    pub(crate) fn number(&mut self) -> Option<f64> {
         let digits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '+' | '-');
         let end = self.rest.find(|c| !digits(c)).unwrap_or(self.rest.len());
         let (number, rest) = self.rest.split_at(end);
@@ -93,7 +93,7 @@ impl<'a> Words<'a> {
     }
 
     /// A share, as `99.73 %` or `0.9973`.
-    pub(super) fn share(&mut self) -> Result<f64, RequirementError> {
+    pub(crate) fn share(&mut self) -> Result<f64, RequirementError> {
         let number = self
             .number()
             .ok_or_else(|| self.wrong("there must be a share, as 99.73 % or 0.9973"))?;
@@ -103,7 +103,7 @@ impl<'a> Words<'a> {
     }
 
     /// At most (true) or at least.
-    pub(super) fn comparison(&mut self) -> Result<bool, RequirementError> {
+    pub(crate) fn comparison(&mut self) -> Result<bool, RequirementError> {
         if self.take("<=") || self.take("≤") {
             Ok(true)
         } else if self.take(">=") || self.take("≥") {

@@ -5,7 +5,7 @@ use clap::{
     builder::{NonEmptyStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser},
     value_parser,
 };
-use gyradius_study::{CompareOptions, ModelKind, Requirement, Rows, TableFormat};
+use gyradius_study::{CompareOptions, ModelKind, Requirement, Rows, StoppingRule, TableFormat};
 use std::path::PathBuf;
 
 use crate::program::{
@@ -173,6 +173,17 @@ pub(crate) struct StudyArgs {
     /// Columns of the run tables to keep once all runs are done, besides model, run and status [default: as in the scenario]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) columns: Option<Vec<String>>,
+
+    /// Go on until the runs show enough, and to --runs at most: “decided”, “share within 0.1 %”, “mean(wobble_deg) within 0.02”
+    ///
+    /// decided: each requirement is met or not met, by a rule that keeps its risk however often the runs are looked at. share within:
+    /// the share of runs that fail is known to ± this for each requirement. mean within: so is the mean of a column.
+    #[arg(long, value_name = "RULE", conflicts_with = "shard")]
+    pub(crate) until: Option<StoppingRule>,
+
+    /// Runs before the first look of --until, and between the first of them [default: 1000, or 256 of a simulator]
+    #[arg(long, value_name = "N", value_parser = whole, requires = "until")]
+    pub(crate) look_every: Option<u64>,
 
     /// Do only a share of the runs, as 2/8, while other processes do the others: `gyradius report` puts them together
     ///

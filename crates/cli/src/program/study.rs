@@ -25,6 +25,10 @@ const PATIENCE: Duration = Duration::from_secs(20);
 pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
     let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
     let scenario = sized(scenario, arguments.runs, arguments.vehicles)?;
+    let scenario = match &arguments.until {
+        Some(rule) => scenario.with_until(rule.clone(), arguments.look_every)?,
+        None => scenario,
+    };
     let kept = scenario.kept();
     let columns = arguments.columns.clone().or_else(|| kept.columns().map(<[_]>::to_vec));
     let scenario = scenario.with_kept(&Kept::new(arguments.rows.unwrap_or(kept.rows()), columns));

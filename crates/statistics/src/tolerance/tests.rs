@@ -1,6 +1,8 @@
 //! Bounds against verdicts, against intervals of quantiles and against what they hold.
 
 use proptest::prelude::*;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::binomial_sums::masses;
@@ -165,4 +167,35 @@ proptest! {
         let lower = interval(rule.failure_share()).lower();
         prop_assert_eq!(below.map_or(f64::NEG_INFINITY, |bounds| bounds.0), lower);
     }
+}
+
+/// Looked at after each 50 runs, the bounds of all looks hold together with the confidence; those of one look do not.
+#[test]
+fn bounds_of_all_looks_hold_together() {
+    let confidence = Confidence::new(0.9).unwrap();
+    let once = Acceptance::new(0.95, confidence).unwrap();
+    let often = SequentialAcceptance::new(once);
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let campaigns = 1000;
+    let mut broken = [0, 0];
+    for _ in 0..campaigns {
+        // Of a uniform law, the bound of the share 0.95 is 0.95.
+        let mut values: Vec<f64> = Vec::new();
+        let mut ever = [false, false];
+        for _ in 0..40 {
+            values.extend((0..50).map(|_| rng.random::<f64>()));
+            values.sort_by(f64::total_cmp);
+            let n = values.len() as u64;
+            let side = ToleranceSide::AtMost;
+            let tolerances = [once.tolerance(side, n, 0), often.tolerance(side, n, 0)];
+            for (ever, tolerance) in ever.iter_mut().zip(tolerances) {
+                if let Tolerance::Ranks { upper: Some(rank), .. } = tolerance {
+                    *ever |= values[rank as usize - 1] < 0.95;
+                }
+            }
+        }
+        broken.iter_mut().zip(ever).for_each(|(count, ever)| *count += i32::from(ever));
+    }
+    assert!(broken[0] > 250, "one look at a time: {broken:?}");
+    assert!((10..=100).contains(&broken[1]), "{broken:?}");
 }

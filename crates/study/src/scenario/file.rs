@@ -1,11 +1,12 @@
 //! A scenario as it stands in a TOML file.
 
-use gyradius_campaign::{Requirement, Rows};
+use gyradius_campaign::{Requirement, Rows, Until};
 use gyradius_dispersion::ScalarLawForm;
 use gyradius_separation::{BodyParameter, LoadId, Spring, StackParameter};
 use serde::{Deserialize, Serialize};
 
 use super::{
+    ScenarioError,
     each::Each,
     follows::Follows,
     law::{GivenLaw, VectorLawFile},
@@ -13,6 +14,8 @@ use super::{
     model_file::ModelFile,
     parse,
     scalar::ScalarLawFile,
+    until::UntilFile,
+    vehicles::Size,
 };
 
 /// A scenario as it stands in a TOML file, defaults filled in. Units are in the names.
@@ -46,6 +49,9 @@ pub(crate) struct ScenarioFile {
     pub(crate) rows: Rows,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) columns: Option<Vec<String>>,
+    /// Until when the runs go on, if not to their number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) until: Option<UntilFile>,
     #[serde(default = "default_spin_axis")]
     pub(crate) spin_axis: [f64; 3],
     /// Inertial axes; the force of the springs at the start if not given.
@@ -75,7 +81,17 @@ pub(crate) struct ScenarioFile {
     pub(crate) comparisons: Vec<ComparisonFile>,
 }
 
+/// Runs between looks, if nothing is said: some hundredths of a second.
+const LOOK_EVERY: u64 = 1000;
+
 impl ScenarioFile {
+    /// Until when the runs go on, all of it filled in.
+    pub(super) fn until(&mut self, size: Size) -> Result<Option<Until>, ScenarioError> {
+        let requirements = self.requirements.len();
+        let fill = |until: &mut UntilFile| until.fill(size, LOOK_EVERY, requirements);
+        self.until.as_mut().map(fill).transpose()
+    }
+
     /// The loads between the bodies and which they are, kind by kind, in the order of the fields that hold them.
     pub(crate) fn loads(&self) -> impl Iterator<Item = (LoadId, &dyn GivenLoad)> {
         load::given(&self.springs)

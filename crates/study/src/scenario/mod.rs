@@ -16,9 +16,10 @@ mod outside;
 mod parse;
 mod scalar;
 mod sides;
+mod until;
 mod vehicles;
 
-use gyradius_campaign::{Kept, Requirement};
+use gyradius_campaign::{Kept, Requirement, StoppingRule, Until};
 use gyradius_formats::read_text;
 use gyradius_separation::{Separation, SeparationError, Settings, SettingsError};
 use nalgebra::{Unit, Vector3};
@@ -39,7 +40,7 @@ use outside::OutsideLaws;
 pub use parse::{parse_toml, whole_number};
 pub(crate) use parse::{some_whole, whole};
 pub(crate) use scalar::ScalarLawFile;
-pub(crate) use {each::Each, vehicles::Size};
+pub(crate) use {each::Each, until::UntilFile, vehicles::Size};
 
 use crate::{body::Body, fleet::Fleet};
 
@@ -99,6 +100,7 @@ impl ScenarioError {
 pub struct Scenario {
     file: ScenarioFile,
     size: Size,
+    until: Option<Until>,
     spin_axis: Unit<Vector3<f64>>,
     separation_direction: Option<Unit<Vector3<f64>>>,
     momentum_direction: Unit<Vector3<f64>>,
@@ -161,9 +163,44 @@ impl Scenario {
         Ok(self.sized(size))
     }
 
+    /// As many as there may be, if its runs end by a rule.
     fn sized(self, size: Size) -> Self {
+        let most = |until: UntilFile| until.with_most_runs(size.runs());
+        let file = ScenarioFile { until: self.file.until.map(most), ..self.file };
+        let until = self.until.map(|until| until.with_most_runs(size.runs()));
+        Self { file, until, ..self }.ended(size)
+    }
+
+    fn ended(self, size: Size) -> Self {
         let [runs, vehicles, flights] = size.keys();
         Self { file: ScenarioFile { runs, vehicles, flights, ..self.file }, size, ..self }
+    }
+
+    /// The same, whose runs ended after so many.
+    pub(crate) fn ended_after(&self, runs: u64) -> Result<Self, ScenarioError> {
+        let size = self.size.of_all(runs)?;
+        Ok(self.clone().ended(size))
+    }
+
+    /// The same scenario, whose runs go on until a rule ends them, and are as many at most as they would be. They are looked at
+    /// after `look_every` first, if that is said.
+    ///
+    /// # Errors
+    /// The rule is about requirements, and there are none; `look_every` is zero, or not a whole number of vehicles.
+    pub fn with_until(
+        self,
+        rule: StoppingRule,
+        look_every: Option<u64>,
+    ) -> Result<Self, ScenarioError> {
+        let mut file = ScenarioFile { until: Some(UntilFile::new(rule, look_every)), ..self.file };
+        let until = file.until(self.size)?;
+        Ok(Self { file, until, ..self })
+    }
+
+    /// Until when its runs go on, if not to their number.
+    #[must_use]
+    pub fn until(&self) -> Option<&Until> {
+        self.until.as_ref()
     }
 
     /// The same scenario from another seed.
@@ -197,8 +234,10 @@ impl Scenario {
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
         file.models.iter_mut().for_each(|model| model.fill(&Body::BOTH));
         check_name("name", &file.name)?;
-        let size = Size::of([file.runs, file.vehicles, file.flights])?;
+        let keys = [file.runs, file.vehicles, file.flights];
+        let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
         [file.runs, file.vehicles, file.flights] = size.keys();
+        let until = file.until(size)?;
         check_seed(file.seed)?;
         let spin_axis = direction("spin_axis", file.spin_axis)?;
         if let Some(source) = &file.source {
@@ -249,6 +288,7 @@ impl Scenario {
         Ok(Self {
             file,
             size,
+            until,
             spin_axis,
             separation_direction,
             momentum_direction,

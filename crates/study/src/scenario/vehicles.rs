@@ -87,6 +87,14 @@ impl Size {
         }
     }
 
+    /// With so many runs: flights of as many vehicles as make them, if there are vehicles.
+    pub(crate) fn of_all(self, runs: u64) -> Result<Self, ScenarioError> {
+        match self.fleet() {
+            None => self.with_runs(runs),
+            Some(fleet) => self.with_vehicles(runs / fleet.flights().max(1)),
+        }
+    }
+
     /// Runs of each model: the flights of all vehicles, if there are vehicles.
     pub(crate) fn runs(self) -> u64 {
         match self {

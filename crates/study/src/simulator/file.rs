@@ -1,13 +1,16 @@
 //! A scenario of a simulator as it stands in a TOML file.
 
-use gyradius_campaign::{Requirement, Rows};
+use gyradius_campaign::{Requirement, Rows, Until};
 use gyradius_dispersion::{ModelKind, ModelParameters};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-use crate::scenario::{
-    AxesLawFile, BodyFile, CorrelationFile, DispersionFile, ModelFile, ModelLaw, Owner, RootsFile,
-    ScalarLawFile, some_whole, whole,
+use crate::{
+    ScenarioError,
+    scenario::{
+        AxesLawFile, BodyFile, CorrelationFile, DispersionFile, ModelFile, ModelLaw, Owner,
+        RootsFile, ScalarLawFile, Size, UntilFile, some_whole, whole,
+    },
 };
 
 /// A scenario of a simulator, defaults filled in. Units are in the names.
@@ -29,6 +32,9 @@ pub(super) struct File {
     pub(super) rows: Rows,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) columns: Option<Vec<String>>,
+    /// Until when the runs go on, if not to their number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) until: Option<UntilFile>,
     pub(super) simulation: SimulationFile,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) bodies: Vec<SimulatedBodyFile>,
@@ -40,6 +46,18 @@ pub(super) struct File {
     pub(super) requirements: Vec<Requirement>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) models: Vec<ModelFile<BodyName>>,
+}
+
+/// Runs between looks, if nothing is said: a block.
+const LOOK_EVERY: u64 = 256;
+
+impl File {
+    /// Until when the runs go on, all of it filled in.
+    pub(super) fn until(&mut self, size: Size) -> Result<Option<Until>, ScenarioError> {
+        let requirements = self.requirements.len();
+        let fill = |until: &mut UntilFile| until.fill(size, LOOK_EVERY, requirements);
+        self.until.as_mut().map(fill).transpose()
+    }
 }
 
 /// How the simulator is started, and what it answers with.

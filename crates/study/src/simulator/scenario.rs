@@ -1,6 +1,8 @@
 //! A scenario of a simulator, checked: the command, what is uncertain, how often.
 
-use gyradius_campaign::{Column, Kept, Program, ProgramError, Requirement, Table};
+use gyradius_campaign::{
+    Column, Kept, Program, ProgramError, Requirement, StoppingRule, Table, Until,
+};
 use gyradius_dispersion::{InertiaLaw, ModelKind, ScalarLaw};
 use std::{path::Path, sync::Arc};
 
@@ -12,8 +14,8 @@ use super::{
 use crate::{
     Fleet, ScenarioError, model,
     scenario::{
-        Axes, Joint, Law, List, ModelFile, ModelLaw, ModelSpec, Size, check_models, check_name,
-        check_seed, parse_toml, place, refused,
+        Axes, Joint, Law, List, ModelFile, ModelLaw, ModelSpec, Size, UntilFile, check_models,
+        check_name, check_seed, parse_toml, place, refused,
     },
 };
 
@@ -29,6 +31,7 @@ const NO_FILES: &str = "the command names no file that is there";
 pub struct SimulatorScenario {
     file: File,
     size: Size,
+    until: Option<Until>,
     bodies: Vec<SimulatedBody>,
     quantities: Vec<Number>,
     /// What is dispersed of all numbers, by their places: those of the bodies, and then the quantities.
@@ -49,8 +52,10 @@ impl SimulatorScenario {
         let mut file = parse_toml::<File>(text)
             .map_err(|message| ScenarioError::Parse { path: None, message })?;
         check_name("name", &file.name)?;
-        let size = Size::of([file.runs, file.vehicles, file.flights])?;
+        let keys = [file.runs, file.vehicles, file.flights];
+        let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
         [file.runs, file.vehicles, file.flights] = size.keys();
+        let until = file.until(size)?;
         check_seed(file.seed)?;
         let lists = [
             ("bodies", file.bodies.len(), 0),
@@ -101,7 +106,7 @@ impl SimulatorScenario {
         });
         let outputs = outputs.collect::<Result<Vec<_>, ScenarioError>>()?;
         let models = models(&mut file, &bodies)?;
-        let scenario = Self { file, size, bodies, quantities, dispersed, outputs, models };
+        let scenario = Self { file, size, until, bodies, quantities, dispersed, outputs, models };
         scenario.check_columns()?;
         Ok(scenario)
     }
@@ -144,9 +149,44 @@ impl SimulatorScenario {
         Ok(self.sized(size))
     }
 
+    /// As many as there may be, if its runs end by a rule.
     fn sized(self, size: Size) -> Self {
+        let most = |until: UntilFile| until.with_most_runs(size.runs());
+        let file = File { until: self.file.until.map(most), ..self.file };
+        let until = self.until.map(|until| until.with_most_runs(size.runs()));
+        Self { file, until, ..self }.ended(size)
+    }
+
+    fn ended(self, size: Size) -> Self {
         let [runs, vehicles, flights] = size.keys();
         Self { file: File { runs, vehicles, flights, ..self.file }, size, ..self }
+    }
+
+    /// The same, whose runs ended after so many.
+    pub(crate) fn ended_after(&self, runs: u64) -> Result<Self, ScenarioError> {
+        let size = self.size.of_all(runs)?;
+        Ok(self.clone().ended(size))
+    }
+
+    /// The same scenario, whose runs go on until a rule ends them, and are as many at most as they would be. They are looked at
+    /// after `look_every` first, if that is said.
+    ///
+    /// # Errors
+    /// The rule is about requirements, and there are none; `look_every` is zero, or not a whole number of vehicles.
+    pub fn with_until(
+        self,
+        rule: StoppingRule,
+        look_every: Option<u64>,
+    ) -> Result<Self, ScenarioError> {
+        let mut file = File { until: Some(UntilFile::new(rule, look_every)), ..self.file };
+        let until = file.until(self.size)?;
+        Ok(Self { file, until, ..self })
+    }
+
+    /// Until when its runs go on, if not to their number.
+    #[must_use]
+    pub fn until(&self) -> Option<&Until> {
+        self.until.as_ref()
     }
 
     /// The same scenario from another seed.

@@ -1,8 +1,8 @@
 //! Campaigns of simulators as studies: how their runs are simulated, and what they amount to.
 
 use gyradius_campaign::{
-    Column, Doing, ExternalSimulation, FirstLook, Forecast, Kept, Progress, Requirement, Runs,
-    Simulator, Surveys,
+    Column, ExternalSimulation, FirstLook, Forecast, Kept, Progress, Requirement, Runs, Simulator,
+    Surveys, Until,
 };
 use gyradius_report::{Document, Overview, file_of, optional, with_unit};
 use gyradius_statistics::Confidence;
@@ -59,7 +59,7 @@ impl SimulatorScenario {
         progress: Progress<'_>,
         say: &dyn Fn(Notice),
     ) -> Result<Study<SimulatorSummary>, StudyError> {
-        carry_out(self, options, Doing::All, progress, say)
+        carry_out(self, options, progress, say)
     }
 
     /// The runs of the model in a place.
@@ -79,7 +79,7 @@ impl Subject for SimulatorScenario {
     const BLOCK_RUNS: u64 = 1 << 8;
     /// Machines that do a campaign together may have the simulator in different places.
     const IMMATERIAL: &[&str] =
-        &["runs", "vehicles", "rows", "columns", "requirements", "simulation.folder"];
+        &["runs", "vehicles", "rows", "columns", "requirements", "until", "simulation.folder"];
 
     type Prepared = Simulator;
     type Simulation<'a> = ExternalSimulation<'a, SimulatorDraws<'a>>;
@@ -116,6 +116,14 @@ impl Subject for SimulatorScenario {
 
     fn requirements(&self) -> &[Requirement] {
         self.requirements()
+    }
+
+    fn until(&self) -> Option<&Until> {
+        self.until()
+    }
+
+    fn ended_after(&self, runs: u64) -> Result<Self, ScenarioError> {
+        self.ended_after(runs)
     }
 
     fn model_names(&self) -> impl Iterator<Item = &str> {

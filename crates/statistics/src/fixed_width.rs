@@ -1,0 +1,117 @@
+//! When to stop: once a mean is known to ± a number.
+
+use crate::{Confidence, StatisticsError, law};
+
+/// A mean that is to be known to ± d with a confidence, looked at as often as one likes.
+///
+/// One goes on until Student's interval of the runs so far is no wider than 2 d, and takes that interval. The number of runs
+/// depends on what they show then, but less and less as d becomes small beside the standard deviation: the interval
+/// covers the mean with the stated confidence in the limit, for every law with a variance (Chow & Robbins 1965,
+/// doi:10.1214/aoms/1177700156). It needs a least number of runs, [`FEWEST`](Self::FEWEST), for a few runs may be near
+/// each other by chance.
+///
+/// Measured by 4,000 campaigns of each law with d = s/16 and 95 %, looked at after each run: 95.3 % of the intervals cover
+/// the mean of a normal law, 95.0 % that of an exponential law, and 93.3 % that of a log-normal law of σ = 1. What
+/// happens once in more runs than [`FEWEST`](Self::FEWEST), and then much, is not seen by such a rule.
+///
+/// ```
+/// use gyradius_statistics::{Confidence, FixedWidth};
+///
+/// let rule = FixedWidth::new(0.1, Confidence::new(0.95)?)?;
+/// // (1.96 / 0.1)² is 384.
+/// assert!(!rule.is_reached(380, 1.0));
+/// assert!(rule.is_reached(390, 1.0));
+/// # Ok::<(), gyradius_statistics::StatisticsError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FixedWidth {
+    within: f64,
+    confidence: Confidence,
+}
+
+impl FixedWidth {
+    /// Fewer runs are never enough.
+    pub const FEWEST: u64 = 100;
+
+    /// To ± `within`, in the unit of the mean.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::Width`] unless that is positive and finite.
+    pub fn new(within: f64, confidence: Confidence) -> Result<Self, StatisticsError> {
+        if within > 0.0 && within.is_finite() {
+            Ok(Self { within, confidence })
+        } else {
+            Err(StatisticsError::Width { width: within })
+        }
+    }
+
+    /// Whether `n` runs with this sample variance are enough.
+    pub fn is_reached(&self, n: u64, variance: f64) -> bool {
+        if n < Self::FEWEST {
+            return false;
+        }
+        let error = libm::sqrt(variance / n as f64);
+        let narrow = |quantile: f64| quantile * error <= self.within;
+        // The normal quantile is the smaller one and the quicker one.
+        narrow(law::normal(self.confidence.tail()))
+            && narrow(law::students_t(self.confidence.tail(), n as f64 - 1.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, Exp1, LogNormal, StandardNormal};
+
+    /// Share of 4,000 campaigns whose interval covers the mean.
+    fn covered(mean: f64, deviation: f64, law: impl Distribution<f64>) -> f64 {
+        let confidence = Confidence::default();
+        let within = deviation / 16.0;
+        let rule = FixedWidth::new(within, confidence).unwrap();
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        let campaigns = 4000;
+        let covers = (0..campaigns).filter(|_| {
+            // Welford's recurrence.
+            let (mut n, mut so_far, mut squares) = (0_u64, 0.0, 0.0);
+            loop {
+                let x = law.sample(&mut rng);
+                n += 1;
+                let before = x - so_far;
+                so_far += before / n as f64;
+                squares += before * (x - so_far);
+                if n > 1 && rule.is_reached(n, squares / (n as f64 - 1.0)) {
+                    return (so_far - mean).abs() <= within;
+                }
+            }
+        });
+        covers.count() as f64 / f64::from(campaigns)
+    }
+
+    /// The figures of the documentation.
+    #[test]
+    fn intervals_at_the_stop_cover_the_mean() {
+        let lognormal_mean = libm::exp(0.5);
+        let lognormal_deviation = lognormal_mean * libm::sqrt(libm::exp(1.0) - 1.0);
+        let found = [
+            covered(0.0, 1.0, StandardNormal),
+            covered(1.0, 1.0, Exp1),
+            covered(lognormal_mean, lognormal_deviation, LogNormal::new(0.0, 1.0).unwrap()),
+        ];
+        assert_eq!(found.map(|share| (1000.0 * share).round()), [953.0, 950.0, 933.0]);
+    }
+
+    #[test]
+    fn widths_are_positive_and_few_runs_are_not_enough() {
+        let confidence = Confidence::default();
+        for width in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(FixedWidth::new(width, confidence).is_err(), "{width}");
+        }
+        let rule = FixedWidth::new(1.0, confidence).unwrap();
+        assert!(!rule.is_reached(99, 0.0) && rule.is_reached(100, 0.0));
+        assert!(!rule.is_reached(0, 0.0) && !rule.is_reached(1000, f64::NAN));
+        assert!(!rule.is_reached(1000, f64::INFINITY));
+    }
+}

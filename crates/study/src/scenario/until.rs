@@ -1,0 +1,85 @@
+//! Until when the runs of a scenario go on, as it stands in a file.
+
+use gyradius_campaign::{StoppingRule, Until};
+use serde::{Deserialize, Serialize};
+
+use super::{ScenarioError, parse, vehicles::Size};
+
+/// The table `until` of a scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct UntilFile {
+    rule: StoppingRule,
+    /// Filled in.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "parse::some_whole"
+    )]
+    look_every: Option<u64>,
+    /// Filled in: the runs of the scenario.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "parse::some_whole"
+    )]
+    most_runs: Option<u64>,
+}
+
+const FIELD: &str = "until";
+
+impl UntilFile {
+    /// A rule, and after how many runs they are looked at first, if that is said.
+    pub(crate) fn new(rule: StoppingRule, look_every: Option<u64>) -> Self {
+        Self { rule, look_every, most_runs: None }
+    }
+
+    /// The runs of a scenario that says how many there may be, and not how many there are.
+    pub(crate) fn runs(given: Option<&Self>, keys: [Option<u64>; 3]) -> [Option<u64>; 3] {
+        match (given.and_then(|until| until.most_runs), keys) {
+            (Some(most), [None, None, None]) => [Some(most), None, None],
+            (_, keys) => keys,
+        }
+    }
+
+    /// With another greatest number of runs.
+    pub(crate) fn with_most_runs(self, runs: u64) -> Self {
+        Self { most_runs: Some(runs), ..self }
+    }
+
+    /// Fills in what is not said, of a scenario of this size; `usual` is how many runs there are between looks if nothing is
+    /// said.
+    pub(crate) fn fill(
+        &mut self,
+        size: Size,
+        usual: u64,
+        requirements: usize,
+    ) -> Result<Until, ScenarioError> {
+        let refused = |key: &str, problem: String| {
+            Err(ScenarioError::field(format!("{FIELD}.{key}"), problem))
+        };
+        if requirements == 0 && self.rule.needs_requirements() {
+            let problem = format!("“{}”: there must be requirements for that", self.rule);
+            return refused("rule", problem);
+        }
+        let flights = size.fleet().map_or(1, |fleet| fleet.flights());
+        let every = *self.look_every.get_or_insert(usual.next_multiple_of(flights));
+        let most = *self.most_runs.get_or_insert(size.runs());
+        for (key, number) in [("look_every", every), ("most_runs", most)] {
+            if !number.is_multiple_of(flights) {
+                let problem = format!(
+                    "{number}: it must be so many times the {flights} flights of a vehicle"
+                );
+                return refused(key, problem);
+            }
+        }
+        if most < size.runs() {
+            let problem =
+                format!("{most}: it must be at least the {} runs that there are", size.runs());
+            return refused("most_runs", problem);
+        }
+        size.of_all(most).map_err(|problem| ScenarioError::field("until.most_runs", problem))?;
+        Until::new(self.rule.clone(), every, most)
+            .map_err(|error| ScenarioError::field(FIELD, error))
+    }
+}

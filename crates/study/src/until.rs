@@ -1,0 +1,115 @@
+//! A study whose runs go on until they have shown enough.
+
+use gyradius_campaign::{
+    Doing, Evidence, Folder, Plan, Progress, Requirement, Until, run_until, threads,
+};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+use crate::{
+    Fleet, Notice, Options, StudyError,
+    study::{check_columns, contents, count, foretell, identity, plan},
+    subject::Subject,
+};
+
+/// What ended the runs of a study.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ended {
+    #[serde(flatten)]
+    until: Until,
+    runs: u64,
+    /// How often they were looked at, if nothing was there before.
+    looks: u64,
+    /// Whether that was enough, and not the greatest number of runs.
+    enough: bool,
+}
+
+impl Ended {
+    /// The rule, and how many runs there might have been.
+    #[must_use]
+    pub fn until(&self) -> &Until {
+        &self.until
+    }
+
+    /// Whether that was enough, and not the greatest number of runs.
+    #[must_use]
+    pub fn is_enough(&self) -> bool {
+        self.enough
+    }
+}
+
+/// In a sentence.
+impl fmt::Display for Ended {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { until, runs, looks, enough } = self;
+        let (rule, most, s) = (until.rule(), until.most_runs(), if *looks == 1 { "" } else { "s" });
+        if *enough {
+            write!(
+                f,
+                "The rule “{rule}” ended the runs after {runs} a model, at {looks} look{s}; there might have been {most}."
+            )
+        } else {
+            write!(
+                f,
+                "The rule “{rule}” did not end the runs: {runs} a model are the most, at {looks} look{s}."
+            )
+        }
+    }
+}
+
+/// Does the runs of a scenario until they have shown enough, in blocks that are not put together. Returns the scenario with
+/// as many runs as there are then, and what ended them; none if its runs go to their number, or if all of them are put
+/// together already and not all of them kept.
+pub(crate) fn run_to_the_end<C: Subject>(
+    scenario: &C,
+    options: &Options,
+    progress: Progress<'_>,
+    say: &dyn Fn(Notice),
+) -> Result<Option<(C, Ended)>, StudyError> {
+    let Some(until) = scenario.until() else { return Ok(None) };
+    let scenario = &scenario.ended_after(until.most_runs())?;
+    let threads = threads(options.threads)?;
+    let models = scenario.prepare(options.stop.as_ref())?;
+    let simulations = scenario.simulations(&models)?;
+    let contents = contents(scenario);
+    let folder = Folder::prepare(&options.place(scenario.name()), &contents, options.force)?;
+    check_columns(scenario, &simulations)?;
+    let ended = |runs: u64, enough: bool| {
+        let looks = until.looks().take_while(|look| *look <= runs).count() as u64;
+        let ended = Ended { until: until.clone(), runs, looks, enough };
+        Ok(Some((scenario.ended_after(runs)?, ended)))
+    };
+    let begun = (&identity(scenario), scenario.to_toml());
+    if let Some(there) = folder.reduced(begun.0)?
+        && !options.force
+    {
+        // Nothing can be added to it, whatever it shows.
+        return ended(there.runs(), true);
+    }
+    let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), options.force, &threads)?;
+    let again = true;
+    blocks.damaged().iter().for_each(|block| say(Notice::Damaged { block: block.clone(), again }));
+    let plan = plan(scenario, options, Doing::All);
+    let mut left = 0;
+    for (at, (model, _)) in simulations.iter().enumerate() {
+        let missing = plan.missing(&blocks, at, model);
+        folder.check_places(model, &missing).inspect_err(|_| blocks.abandon())?;
+        left += count(&missing);
+    }
+    let group =
+        scenario.independent_runs().and_then(|_| scenario.fleet()).map_or(1, Fleet::flights);
+    let own = |model: &str| -> Vec<Requirement> {
+        let all = scenario.requirements().iter();
+        all.filter(|own| own.model().is_none_or(|name| name == model)).cloned().collect()
+    };
+    let own = scenario.model_names().map(own).collect();
+    let evidence = Evidence::new(until.rule().clone(), own, group);
+    let done = (|| {
+        scenario.begin(&models)?;
+        foretell(scenario, &simulations, [left, left], options, &threads, say)?;
+        let plan = Plan { doing: Doing::All, ..plan };
+        Ok(threads.install(|| run_until(&simulations, &blocks, plan, progress, until, evidence))?)
+    })();
+    let (runs, enough) = done.inspect_err(|_: &StudyError| blocks.abandon())?;
+    ended(runs, enough)
+}
