@@ -175,6 +175,24 @@ pub enum StatisticsError {
         /// The number of parameters fitted to the same data.
         fitted: usize,
     },
+    /// The number of groups of inputs is out of range.
+    #[error("{groups} groups of inputs; there must be 1 to {most}")]
+    GroupCount {
+        /// The number of groups given.
+        groups: usize,
+        /// The most that are allowed.
+        most: usize,
+    },
+    /// A base run does not have one output for each group of inputs.
+    #[error(
+        "{outputs} outputs with one group drawn anew; there must be one for each of {groups} groups"
+    )]
+    GroupOutputs {
+        /// The number of outputs given.
+        outputs: usize,
+        /// The number of groups.
+        groups: usize,
+    },
 }
 
 /// A number as it reads: 1000, 0.5, 1e300. Never in hundreds of digits.
