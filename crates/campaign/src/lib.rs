@@ -60,6 +60,7 @@ mod again;
 mod campaign;
 mod cell;
 mod column;
+mod designs;
 mod external;
 mod failure;
 mod folder;
@@ -90,6 +91,7 @@ pub use again::{Again, run_again};
 pub use campaign::{Doing, Look, Plan, run_missing};
 pub use cell::Cell;
 pub use column::{Column, ColumnSummary, Kind};
+pub use designs::{Designs, DesignsError, Mix, Output};
 pub use external::{ExternalSimulation, Inputs, Program, ProgramError, Simulator, Told};
 pub use failure::Failure;
 pub use folder::{

@@ -134,6 +134,18 @@ impl Correlation {
             }
         }
     }
+
+    /// Pairs of quantities by which all that depend on each other hang together: a quantity without a pair is independent of
+    /// all others.
+    pub fn related(&self) -> impl Iterator<Item = (usize, usize)> {
+        let members = &self.members;
+        self.rows.iter().zip(members).flat_map(move |(row, &own)| {
+            let others = row.iter().zip(members);
+            others
+                .filter(move |(l, other)| **l != 0.0 && **other != own)
+                .map(move |(_, &other)| (own, other))
+        })
+    }
 }
 
 #[cfg(test)]

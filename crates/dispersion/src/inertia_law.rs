@@ -1,7 +1,7 @@
 //! Any law of inertia, also one of a user's own, behind one object-safe trait.
 
 use gyradius_inertia::{Inertia, InertiaMatrix};
-use nalgebra::UnitQuaternion;
+use nalgebra::{Matrix3, UnitQuaternion};
 use rand::Rng;
 use std::{borrow::Cow, fmt::Debug};
 
@@ -46,6 +46,12 @@ pub trait InertiaLaw: Debug + Send + Sync {
         None
     }
 
+    /// Whether the attitude of the principal axes is drawn independently of the principal moments, so that the axes of one draw
+    /// and the moments of another are a draw too. No, unless a law says so.
+    fn has_independent_axes(&self) -> bool {
+        false
+    }
+
     /// Fills six columns, I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ in kg·m², with independent draws: those of
     /// [`draw`](Self::draw) unless a law says otherwise.
     ///
@@ -73,6 +79,19 @@ pub struct ModelDraw {
     pub inertia: InertiaMatrix,
     /// The attitude that takes body components to principal components, as drawn.
     pub axes: Option<UnitQuaternion<f64>>,
+}
+
+impl ModelDraw {
+    /// The principal moments of this draw about the axes of another; itself if one of them has no axes.
+    #[must_use]
+    pub fn about_axes_of(self, other: &Self) -> Self {
+        let (Some(own), Some(axes)) = (self.axes, other.axes) else { return self };
+        let (own, turn) = (own.to_rotation_matrix(), axes.to_rotation_matrix());
+        let moments = (own.matrix() * self.inertia.matrix() * own.matrix().transpose()).diagonal();
+        let inertia = turn.matrix().transpose() * Matrix3::from_diagonal(&moments) * turn.matrix();
+        let inertia = InertiaMatrix::new((inertia + inertia.transpose()) * 0.5);
+        inertia.map_or(self, |inertia| Self { inertia, axes: Some(axes) })
+    }
 }
 
 impl From<Inertia> for ModelDraw {

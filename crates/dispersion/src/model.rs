@@ -249,6 +249,10 @@ impl InertiaLaw for DispersionModel {
         self.law().acceptance()
     }
 
+    fn has_independent_axes(&self) -> bool {
+        self.law().has_independent_axes()
+    }
+
     fn draw_columns(
         &self,
         rng: &mut dyn Rng,

@@ -124,6 +124,10 @@ where
         true
     }
 
+    fn has_independent_axes(&self) -> bool {
+        true
+    }
+
     fn expected_moments(&self) -> Option<EntryMoments> {
         Some(EntryMoments::of(self))
     }

@@ -9,7 +9,7 @@ use std::{
 
 use crate::{
     Fleet, Notice, Options, ResultsError, Scenario, ScenarioError, SimulatorScenario, Status,
-    Study, StudyError,
+    Study, StudyError, drivers,
     head::{Head, Judged, Missing},
     results,
     scenario::{parse_toml, read_file, scenario_file},
@@ -128,6 +128,30 @@ impl AnyScenario {
                 Self::Simulator(Box::new(scenario.with_until(rule, look_every)?))
             }
         })
+    }
+
+    /// The same scenario, of which it is found what drives the outcome, by so many base runs: each of them is done once for each
+    /// group of inputs and twice more.
+    ///
+    /// # Errors
+    /// There are fewer than 100, or more than ten million.
+    pub fn with_drivers(self, base_runs: u64) -> Result<Self, ScenarioError> {
+        Ok(match self {
+            Self::Separation(scenario) => {
+                Self::Separation(Box::new(scenario.with_drivers(base_runs)?))
+            }
+            Self::Simulator(scenario) => {
+                Self::Simulator(Box::new(scenario.with_drivers(base_runs)?))
+            }
+        })
+    }
+
+    /// How many runs it takes to find what drives the outcome, of all models; 0 if that is not asked.
+    ///
+    /// # Errors
+    /// A model cannot be made.
+    pub fn driver_runs(&self) -> Result<u64, StudyError> {
+        of_either!(self, scenario => drivers::runs(&**scenario))
     }
 
     /// Until when its runs go on, if not to their number.

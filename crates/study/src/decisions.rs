@@ -1,7 +1,7 @@
 //! Requirements of a scenario: checked, judged by the runs, and told first in the report.
 
 use gyradius_campaign::{
-    Bound, Column, Judging, Looks, Measured, RunBeyond, Runs, share_in_percent,
+    Bound, Column, Judging, Looks, Measured, Requirement, RunBeyond, Runs, share_in_percent,
 };
 use gyradius_report::{PageCell, PageTable, Section, Text, significant};
 use gyradius_statistics::Verdict;
@@ -56,16 +56,20 @@ fn known(quantity: &Measured, columns: &[Column]) -> Result<(), String> {
     Ok(())
 }
 
+/// The requirements that are about a model.
+pub(crate) fn requirements_of<C: Subject>(scenario: &C, model: &str) -> Vec<Requirement> {
+    let all = scenario.requirements().iter();
+    all.filter(|own| own.model().is_none_or(|name| name == model)).cloned().collect()
+}
+
 /// What looks at the requirements of each model.
 pub(crate) fn judging<C: Subject>(scenario: &C) -> Vec<Judging> {
     // Verdicts count runs that are independent of each other.
     let fleet = scenario.independent_runs().and_then(|_| scenario.fleet());
     let group = fleet.map_or(1, Fleet::flights);
     let of_model = |name: &str| {
-        let all = scenario.requirements().iter();
-        let own = all.filter(|requirement| requirement.model().is_none_or(|model| model == name));
         let looks = if scenario.until().is_some() { Looks::Often } else { Looks::Once };
-        Judging::new(own.cloned(), scenario.runs(), group).looked_at(looks)
+        Judging::new(requirements_of(scenario, name), scenario.runs(), group).looked_at(looks)
     };
     scenario.model_names().map(of_model).collect()
 }

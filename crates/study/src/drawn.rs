@@ -25,12 +25,18 @@ impl Draws {
     }
 
     /// The values of a run, in the order of what is dispersed: a score from the stream of each, mixed
-    /// where they are correlated. `stream` is the number of the stream of what is drawn for vehicles, or for flights.
-    pub(crate) fn values<T>(&self, joint: &Joint<T>, stream: impl Fn(Each) -> u64) -> Vec<f64> {
-        let score = |(streams, d): (&Streams, &Dispersed<T>)| {
-            StandardNormal.sample(&mut streams.run(stream(d.each)))
+    /// where they are correlated. `stream` is the number of the stream of what stands in a place, and is drawn for
+    /// vehicles or for flights.
+    pub(crate) fn values<T>(
+        &self,
+        joint: &Joint<T>,
+        stream: impl Fn(usize, Each) -> u64,
+    ) -> Vec<f64> {
+        let score = |(place, (streams, d)): (usize, (&Streams, &Dispersed<T>))| {
+            StandardNormal.sample(&mut streams.run(stream(place, d.each)))
         };
-        let mut values: Vec<f64> = self.streams.iter().zip(&joint.all).map(score).collect();
+        let each = self.streams.iter().zip(&joint.all).enumerate();
+        let mut values: Vec<f64> = each.map(score).collect();
         joint.correlation.mix(&mut values);
         for (value, d) in values.iter_mut().zip(&joint.all) {
             *value = d.law.at_score(*value);
@@ -39,9 +45,13 @@ impl Draws {
     }
 
     /// The values of a run of a separation.
-    pub(crate) fn run(&self, scenario: &Scenario, run: u64) -> Box<[f64]> {
+    pub(crate) fn run(
+        &self,
+        scenario: &Scenario,
+        stream: impl Fn(usize, Each) -> u64,
+    ) -> Box<[f64]> {
         let dispersions = scenario.dispersions();
-        let mut values = self.values(&dispersions.joint, |each| scenario.stream(each, run));
+        let mut values = self.values(&dispersions.joint, stream);
         let all = dispersions.all();
         // A load that is not late starts as it should.
         for late in 0..values.len() {

@@ -1,6 +1,8 @@
 //! Why a study could not be done.
 
-use gyradius_campaign::{CampaignError, FolderError, JudgementError, Kept, RunsError, rough_size};
+use gyradius_campaign::{
+    CampaignError, DesignsError, FolderError, JudgementError, Kept, RunsError, rough_size,
+};
 use gyradius_statistics::StatisticsError;
 use parquet::errors::ParquetError;
 use std::path::PathBuf;
@@ -110,6 +112,15 @@ impl From<RunsError> for StudyError {
         match error {
             RunsError::Stopped => Self::Campaign(CampaignError::Stopped),
             other => Self::Runs(other),
+        }
+    }
+}
+
+impl From<DesignsError> for StudyError {
+    fn from(error: DesignsError) -> Self {
+        match error {
+            DesignsError::Runs(error) => error.into(),
+            DesignsError::Statistics(error) => error.into(),
         }
     }
 }

@@ -4,7 +4,7 @@ use gyradius_campaign::{ColumnSummary, Judgement};
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt, ops::Range};
 
-use crate::{Fleet, until::Ended};
+use crate::{Drivers, Fleet, until::Ended};
 
 /// What a summary says first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,6 +34,9 @@ pub struct Head {
     /// What the runs say of the requirements, model by model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) requirements: Vec<Judged>,
+    /// What drives the outcome, model by model, if that was asked.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) drivers: Vec<Drivers>,
     /// Of every interval.
     pub(crate) confidence: f64,
     /// Of the run tables.
@@ -80,6 +83,12 @@ impl Head {
     #[must_use]
     pub fn ended(&self) -> Option<&Ended> {
         self.ended.as_ref()
+    }
+
+    /// What drives the outcome, model by model; none if that was not asked.
+    #[must_use]
+    pub fn drivers(&self) -> &[Drivers] {
+        &self.drivers
     }
 
     /// The runs that are not done; none of a complete study.

@@ -1,9 +1,9 @@
 //! Inertia models ready to draw, and the runs that their draws make.
 
-use gyradius_campaign::{Column as RunColumn, Failure, Simulation, Streams, Table, TableError};
-use gyradius_dispersion::{
-    DispersionModel, EntryMoments, InertiaLaw, ModelDraw, ModelKind, ModelParameters,
+use gyradius_campaign::{
+    Column as RunColumn, Failure, Mix, Simulation, Streams, Table, TableError,
 };
+use gyradius_dispersion::{DispersionModel, EntryMoments, InertiaLaw, ModelKind, ModelParameters};
 use gyradius_separation::Batch;
 use std::{ops::Range, sync::Arc};
 
@@ -11,6 +11,7 @@ use crate::{
     body::Body,
     column::Column,
     drawn::{self, Draws},
+    groups::Groups,
     run::{Case, Run},
     scenario::{Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
 };
@@ -25,6 +26,7 @@ pub(crate) struct Model {
     payload: BodyModel,
     stage: BodyModel,
     draws: Draws,
+    groups: Groups,
 }
 
 #[derive(Debug)]
@@ -54,7 +56,10 @@ impl Model {
             let streams = Streams::new(scenario.seed(), &spec.name, &purpose);
             BodyModel { law, streams }
         };
+        let bodies = [(Body::Payload, &payload), (Body::Stage, &stage)];
+        let bodies = bodies.map(|(body, law)| (body.name(), &**law));
         Ok(Self {
+            groups: Groups::new(bodies, &scenario.dispersions().joint),
             name: spec.name.clone(),
             law: spec.law.named(),
             given: payload_given.zip(stage_given).map(<[_; 2]>::from),
@@ -90,13 +95,29 @@ impl Model {
         self.given
     }
 
+    /// The groups of inputs that it draws independently of each other.
+    pub(crate) fn groups(&self) -> &Groups {
+        &self.groups
+    }
+
     /// Draws the bodies of one run.
     pub(crate) fn draw(&self, scenario: &Scenario, run: u64) -> Case {
-        let drawn = self.draws.run(scenario, run);
-        let inertia = scenario.dispersions().inertia;
-        let [payload, stage] = inertia.map(|each| scenario.stream(each, run));
-        let mut payload = self.payload.draw(payload);
-        let mut stage = self.stage.draw(stage);
+        self.draw_mixed(scenario, Mix::plain(run))
+    }
+
+    /// Draws the bodies of a run, of which some groups of inputs may be those of a second draw.
+    fn draw_mixed(&self, scenario: &Scenario, mix: Mix) -> Case {
+        let (run, groups) = (mix.base(), &self.groups);
+        let drawn = self
+            .draws
+            .run(scenario, |place, each| groups.stream_of(place, mix, scenario.stream(each, run)));
+        let inertia = |body: Body, model: &BodyModel| {
+            let each = scenario.dispersions().inertia[body as usize];
+            let first = scenario.stream(each, run);
+            groups.inertia(body as usize, mix, first, (&*model.law, &model.streams))
+        };
+        let mut payload = inertia(Body::Payload, &self.payload);
+        let mut stage = inertia(Body::Stage, &self.stage);
         for (body, draw) in [(Body::Payload, &mut payload), (Body::Stage, &mut stage)] {
             draw.inertia = drawn::scaled(scenario, body, &drawn, draw.inertia);
         }
@@ -119,12 +140,28 @@ pub(crate) struct Separations<'a> {
     scenario: &'a Scenario,
     model: &'a Model,
     columns: Vec<Column>,
+    /// Whether its runs are those of the designs that exchange groups of inputs.
+    exchanging: bool,
 }
 
 impl<'a> Separations<'a> {
     pub(crate) fn new(scenario: &'a Scenario, model: &'a Model) -> Self {
         let columns = Column::of(scenario);
-        Self { scenario, model, columns }
+        Self { scenario, model, columns, exchanging: false }
+    }
+
+    /// The runs of the designs that exchange the groups of inputs of the model.
+    pub(crate) fn exchanging(self) -> Self {
+        Self { exchanging: true, ..self }
+    }
+
+    fn draw(&self, run: u64) -> Case {
+        if self.exchanging {
+            let mix = self.model.groups.mix(run, self.scenario.fleet());
+            self.model.draw_mixed(self.scenario, mix)
+        } else {
+            self.model.draw(self.scenario, run)
+        }
     }
 
     /// What is drawn for a run, by column, with every digit.
@@ -162,7 +199,7 @@ impl Simulation for Separations<'_> {
     /// Draws the bodies of several runs and separates them together, to the bits that each has alone.
     fn run(&self, runs: Range<u64>, batch: &mut Batch, rows: &mut Table) -> Result<(), TableError> {
         let scenario = self.scenario;
-        let cases: Vec<Case> = runs.map(|run| self.model.draw(scenario, run)).collect();
+        let cases: Vec<Case> = runs.map(|run| self.draw(run)).collect();
         let sound = |i: &usize| cases[*i].separation.is_ok();
         let places: Vec<usize> = (0..cases.len()).filter(sound).collect();
         let mut results: Vec<_> = cases.iter().map(|_| None).collect();
@@ -172,12 +209,6 @@ impl Simulation for Separations<'_> {
             self.push(&case.ended(scenario, result), rows)?;
         }
         Ok(())
-    }
-}
-
-impl BodyModel {
-    fn draw(&self, stream: u64) -> ModelDraw {
-        self.law.draw(&mut self.streams.run(stream))
     }
 }
 

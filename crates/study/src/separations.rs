@@ -9,7 +9,9 @@ use crate::{
     Fleet, Scenario, ScenarioError, StudyError, Summary, claims,
     compare::Section,
     figures_of_study,
+    groups::Groups,
     model::{Model, Separations},
+    quantity::Quantity,
     report,
     seen::{Looking, Seen},
     subject::Subject,
@@ -18,7 +20,8 @@ use crate::{
 impl Subject for Scenario {
     /// Some tenths of a second of separations.
     const BLOCK_RUNS: u64 = 1 << 14;
-    const IMMATERIAL: &[&str] = &["runs", "vehicles", "rows", "columns", "requirements", "until"];
+    const IMMATERIAL: &[&str] =
+        &["runs", "vehicles", "rows", "columns", "requirements", "until", "drivers"];
 
     type Prepared = Vec<Model>;
     type Simulation<'a> = Separations<'a>;
@@ -98,6 +101,26 @@ impl Subject for Scenario {
         models: &'a Vec<Model>,
     ) -> Result<Vec<(&'a str, Separations<'a>)>, ScenarioError> {
         Ok(models.iter().map(|model| (model.name(), Separations::new(self, model))).collect())
+    }
+
+    fn drivers(&self) -> Option<u64> {
+        self.drivers()
+    }
+
+    fn groups(&self, models: &Vec<Model>, place: usize) -> Result<Groups, ScenarioError> {
+        Ok(models[place].groups().clone())
+    }
+
+    fn exchanging<'a>(
+        &'a self,
+        models: &'a Vec<Model>,
+        place: usize,
+    ) -> Result<Separations<'a>, ScenarioError> {
+        Ok(Separations::new(self, &models[place]).exchanging())
+    }
+
+    fn is_outcome(&self, column: &Column) -> bool {
+        Quantity::ALL.iter().any(|q| !q.is_drawn() && q.column() == column.name())
     }
 
     fn look(&self, model: &str, columns: &[Column]) -> Looking<'_> {

@@ -21,6 +21,7 @@ use toml::{Table as Toml, Value};
 
 use crate::{
     Scenario, ScenarioError, StudyError, Summary, decisions,
+    drivers::Finding,
     head::Missing,
     report,
     scenario::parse_toml,
@@ -192,8 +193,10 @@ fn do_what_is_left<C: Subject>(
     // What is not all kept is written anew.
     let _ = in_place.set(published.filter(|_| incomplete || scenario.kept().is_all()).collect());
     let of = scenario.runs() * simulations.len() as u64;
+    // Who puts together what others did does no runs.
+    let asked = scenario.drivers().is_some() && doing == Doing::All;
     if left == 0
-        && let Some(study) = finished::<C>(&folder, &text, &simulations, &blocks)?
+        && let Some(study) = finished::<C>(&folder, &text, &simulations, &blocks, asked)?
     {
         if options.force {
             say(Notice::Finished);
@@ -223,14 +226,26 @@ fn do_what_is_left<C: Subject>(
         head.requirements = decisions::judged(judging, &runs)?;
         Ok((runs, summary))
     });
-    let (runs, summary) = done.inspect_err(|_| blocks.abandon())?;
+    let (runs, mut summary) = done.inspect_err(|_| blocks.abandon())?;
 
     let complete = summary.head().missing().is_empty();
+    let mut beside = None;
+    if doing == Doing::All {
+        let before = whole_summary::<C>(&place);
+        let (folder, threads, identity) = (&folder, &threads, begun.0);
+        let finding = Finding { scenario, models: &models, options, folder, identity, threads };
+        let own = of;
+        let found =
+            finding.find(before.as_ref().map(Summarized::head), &|runs| progress(own + runs));
+        let (drivers, blocks) = found.inspect_err(|_| blocks.abandon())?;
+        (summary.head_mut().drivers, beside) = (drivers, blocks);
+    }
     let written = write(scenario, &simulations, &blocks, folder, &summary, options, &threads);
     let (folder, summary) = written.inspect_err(|_| blocks.abandon())?;
     if complete {
         blocks.settle()?;
     }
+    beside.map_or(Ok(()), |beside: Blocks| beside.settle())?;
     let runs = match scenario.kept().is_all() || !complete {
         true => runs.into_iter().map(|runs| blocks.in_place(&runs)).collect(),
         false => empty_tables(&simulations)?.into_iter().map(Runs::from).collect(),
@@ -362,18 +377,22 @@ pub(crate) fn foretell<C: Subject>(
     }
 }
 
-/// The study in a folder, if all of it is there as it was written.
+/// The study in a folder, if all of it is there as it was written, what drives its outcome too if that is asked.
 fn finished<C: Subject>(
     folder: &Folder<'_>,
     text: &str,
     simulations: &[(&str, C::Simulation<'_>)],
     blocks: &Blocks,
+    drivers: bool,
 ) -> Result<Option<Study<C::Summary>>, StudyError> {
     if !(blocks.all_in_place() && folder.is_whole(text)?) {
         return Ok(None);
     }
     let place = folder.place().to_owned();
     let Some(summary) = whole_summary::<C>(&place) else { return Ok(None) };
+    if summary.head().drivers().is_empty() && drivers {
+        return Ok(None);
+    }
     let empty = empty_tables(simulations)?;
     let runs = empty.iter().map(|empty| blocks.runs(empty, Vec::new())).collect();
     blocks.settle()?;

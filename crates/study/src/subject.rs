@@ -13,7 +13,7 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
 };
 
-use crate::{Fleet, ScenarioError, StudyError, head::Head};
+use crate::{Fleet, ScenarioError, StudyError, groups::Groups, head::Head};
 
 /// What a study is of: models whose runs are simulated, what they amount to, and the pages that show it.
 pub(crate) trait Subject: Sync + Sized {
@@ -79,6 +79,18 @@ pub(crate) trait Subject: Sync + Sized {
         &'a self,
         models: &'a Self::Prepared,
     ) -> Result<Vec<(&'a str, Self::Simulation<'a>)>, ScenarioError>;
+    /// Base runs by which it is found what drives the outcome, if that is asked.
+    fn drivers(&self) -> Option<u64>;
+    /// The groups of inputs that the model in a place draws independently of each other.
+    fn groups(&self, models: &Self::Prepared, place: usize) -> Result<Groups, ScenarioError>;
+    /// The runs of the model in a place in which these groups are exchanged.
+    fn exchanging<'a>(
+        &'a self,
+        models: &'a Self::Prepared,
+        place: usize,
+    ) -> Result<Self::Simulation<'a>, ScenarioError>;
+    /// Whether a column is a number that comes of a run, and is not drawn for it.
+    fn is_outcome(&self, column: &Column) -> bool;
     /// A look at the runs of a model, which have these columns.
     fn look(&self, model: &str, columns: &[Column]) -> Self::Look<'_>;
     /// What the runs amount to: every number, judgement and figure, before any page is made.
@@ -129,6 +141,7 @@ pub(crate) fn head_of(scenario: &impl Subject, columns: &[Column]) -> Head {
         missing: Vec::new(),
         done_again: 0,
         ended: None,
+        drivers: Vec::new(),
         requirements: Vec::new(),
         confidence: Confidence::default().level(),
         columns: columns.iter().map(Column::summary).collect(),

@@ -1,13 +1,12 @@
 //! A study whose runs go on until they have shown enough.
 
-use gyradius_campaign::{
-    Doing, Evidence, Folder, Plan, Progress, Requirement, Until, run_until, threads,
-};
+use gyradius_campaign::{Doing, Evidence, Folder, Plan, Progress, Until, run_until, threads};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 use crate::{
     Fleet, Notice, Options, StudyError,
+    decisions::requirements_of,
     study::{check_columns, contents, count, foretell, identity, plan},
     subject::Subject,
 };
@@ -98,11 +97,7 @@ pub(crate) fn run_to_the_end<C: Subject>(
     }
     let group =
         scenario.independent_runs().and_then(|_| scenario.fleet()).map_or(1, Fleet::flights);
-    let own = |model: &str| -> Vec<Requirement> {
-        let all = scenario.requirements().iter();
-        all.filter(|own| own.model().is_none_or(|name| name == model)).cloned().collect()
-    };
-    let own = scenario.model_names().map(own).collect();
+    let own = scenario.model_names().map(|model| requirements_of(scenario, model)).collect();
     let evidence = Evidence::new(until.rule().clone(), own, group);
     let done = (|| {
         scenario.begin(&models)?;

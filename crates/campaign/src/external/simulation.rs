@@ -31,6 +31,11 @@ pub trait Inputs: Sync {
         Vec::new()
     }
 
+    /// The stream that the seed of a run is from: that of its number, unless it says otherwise.
+    fn seed_stream(&self, run: u64) -> u64 {
+        run
+    }
+
     /// Pushes the numbers of a run, one for each column, in their order; none for what the run does not have, which is not
     /// sent. What run i has must depend on i alone: draw it from [`Streams`].
     ///
@@ -228,7 +233,7 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
             let name = column.name().to_owned();
             return Err(Trouble::Input { name, value }.failure());
         }
-        let seed = self.seeds.run(run).next_u64() >> 11;
+        let seed = self.seeds.run(self.inputs.seed_stream(run)).next_u64() >> 11;
         let place: Vec<_> = self.inputs.place(run).into_iter().map(Some).collect();
         let (place, inputs) = (Named(&self.places, &place), Named(&self.drawn, numbers));
         let request = Request { run, place, model: &self.model, seed, inputs };

@@ -30,7 +30,18 @@ pub(super) struct Area(PathBuf);
 impl Area {
     /// That in a folder.
     pub(super) fn of(place: &Path) -> Self {
-        Self(place.join(HIDDEN).join(CAMPAIGN))
+        Self::called(place, CAMPAIGN)
+    }
+
+    /// One beside it, of runs that are put nowhere.
+    pub(super) fn called(place: &Path, name: &str) -> Self {
+        Self(place.join(HIDDEN).join(name))
+    }
+
+    /// What it is called from the folder on.
+    fn name(&self) -> String {
+        let name = self.0.file_name().unwrap_or_default().to_string_lossy();
+        format!("{HIDDEN}/{name}")
     }
 
     pub(super) fn path(&self) -> &Path {
@@ -53,11 +64,11 @@ impl Area {
             Err(error) => return Err(error.into()),
             Ok(metadata) if metadata.is_dir() => {}
             Ok(metadata) => {
-                let (name, is) = (format!("{HIDDEN}/{CAMPAIGN}"), said(metadata.file_type()));
+                let (name, is) = (self.name(), said(metadata.file_type()));
                 return Err(Problem::Kind { name, is, should: "folder" });
             }
         }
-        let name = format!("{HIDDEN}/{CAMPAIGN}/{IDENTITY}");
+        let name = format!("{}/{IDENTITY}", self.name());
         let unknown = |problem: String| Problem::Unknown { name, problem };
         match disk::read(&self.0.join(IDENTITY)) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
@@ -122,7 +133,7 @@ impl Area {
         if let Ok(found) = fs::symlink_metadata(&path)
             && !found.is_file()
         {
-            let (name, is) = (format!("{HIDDEN}/{CAMPAIGN}/{name}"), said(found.file_type()));
+            let (name, is) = (format!("{}/{name}", self.name()), said(found.file_type()));
             return Err(Problem::Kind { name, is, should: "file" });
         }
         let record = OpenOptions::new().append(true).create(true).open(&path)?;

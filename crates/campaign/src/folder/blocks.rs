@@ -75,8 +75,34 @@ impl Folder<'_> {
         force: bool,
         threads: &rayon::ThreadPool,
     ) -> Result<Blocks, FolderError> {
-        let folder = (&self.hidden, self.contents.what);
-        let opened = Blocks::open(folder, (identity, mark), None, (runs, force), threads);
+        let folder = (&self.hidden, Some(self.contents.what));
+        let area = Area::of(self.hidden.place());
+        let opened = Blocks::open(folder, area, (identity, mark), None, (runs, force), threads);
+        opened.map_err(|problem| self.failed(problem))
+    }
+
+    /// The finished blocks of another campaign of the same folder, which has a name and is put nowhere: only what comes of it
+    /// is. [`settle`](Blocks::settle) removes them.
+    ///
+    /// # Errors
+    /// As [`blocks`](Self::blocks).
+    pub fn blocks_beside(
+        &self,
+        name: &str,
+        (identity, mark): (&Identity, &str),
+        runs: u64,
+        force: bool,
+        threads: &rayon::ThreadPool,
+    ) -> Result<Blocks, FolderError> {
+        let area = Area::called(self.hidden.place(), name);
+        let opened = Blocks::open(
+            (&self.hidden, None),
+            area,
+            (identity, mark),
+            None,
+            (runs, force),
+            threads,
+        );
         opened.map_err(|problem| self.failed(problem))
     }
 
@@ -109,8 +135,10 @@ impl Shared {
         shard: Shard,
         threads: &rayon::ThreadPool,
     ) -> Result<Blocks, FolderError> {
-        let folder = (&self.hidden, self.what);
-        let opened = Blocks::open(folder, (identity, mark), Some(shard), (runs, false), threads);
+        let folder = (&self.hidden, Some(self.what));
+        let area = Area::of(self.hidden.place());
+        let opened =
+            Blocks::open(folder, area, (identity, mark), Some(shard), (runs, false), threads);
         opened.map_err(|problem| FolderError { path: self.place.clone(), problem })
     }
 }
@@ -118,13 +146,13 @@ impl Shared {
 impl Blocks {
     /// Takes up what was finished before, and tells how the campaign goes on.
     fn open(
-        (hidden, what): (&Hidden, &str),
+        (hidden, what): (&Hidden, Option<&str>),
+        area: Area,
         (identity, mark): (&Identity, &str),
         shard: Option<Shard>,
         (runs, force): (u64, bool),
         threads: &rayon::ThreadPool,
     ) -> Result<Self, Problem> {
-        let area = Area::of(hidden.place());
         if let Some(difference) = area.identity()?.and_then(|there| identity.difference(&there)) {
             if !force {
                 return Err(Problem::Unfinished { difference });
@@ -136,10 +164,14 @@ impl Blocks {
         let state = Mutex::new(State { blocks: Vec::new(), record: file });
         let (place, identity) = (hidden.place().to_owned(), identity.clone());
         let mut opened = Self { place, area, identity, shard, record, state, damaged: Vec::new() };
-        let (kept, mut blocks) =
-            published(&opened.place, &hidden.record(what)?.0, &opened.identity);
-        if !kept.is_all() {
-            blocks.clear();
+        let mut blocks = Vec::new();
+        if let Some(what) = what {
+            let record = hidden.record(what)?.0;
+            let (kept, there) = published(&opened.place, &record, &opened.identity);
+            blocks = there;
+            if !kept.is_all() {
+                blocks.clear();
+            }
         }
         let unfinished = opened.area.recorded()?;
         blocks.extend(unfinished.clone());
@@ -302,6 +334,13 @@ impl Blocks {
     #[must_use]
     pub fn any_failed(&self) -> bool {
         self.locked().blocks.iter().any(|block| block.failed > 0)
+    }
+
+    /// How many runs of a model failed.
+    #[must_use]
+    pub fn failed(&self, model: &str) -> u64 {
+        let state = self.locked();
+        state.blocks.iter().filter(|b| b.model == model).map(|block| block.failed).sum()
     }
 
     /// How many runs of all blocks were done again because they had failed.

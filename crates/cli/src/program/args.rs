@@ -185,6 +185,13 @@ pub(crate) struct StudyArgs {
     #[arg(long, value_name = "N", value_parser = whole, requires = "until")]
     pub(crate) look_every: Option<u64>,
 
+    /// Find what drives the outcome, by so many base runs of each model: Sobol' indices of the groups of inputs, in the report
+    ///
+    /// Each base run is done once for each group of inputs that are drawn independently, and twice more. 1000 tell the large
+    /// ones from the small ones.
+    #[arg(long, value_name = "N", value_parser = whole, conflicts_with = "shard")]
+    pub(crate) drivers: Option<u64>,
+
     /// Do only a share of the runs, as 2/8, while other processes do the others: `gyradius report` puts them together
     ///
     /// auto/8 takes the number from the environment, as a scheduler says it: Slurm, Kubernetes, HyperQueue, MPI.

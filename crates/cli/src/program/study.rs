@@ -29,6 +29,10 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
         Some(rule) => scenario.with_until(rule.clone(), arguments.look_every)?,
         None => scenario,
     };
+    let scenario = match arguments.drivers {
+        Some(base_runs) => scenario.with_drivers(base_runs)?,
+        None => scenario,
+    };
     let kept = scenario.kept();
     let columns = arguments.columns.clone().or_else(|| kept.columns().map(<[_]>::to_vec));
     let scenario = scenario.with_kept(&Kept::new(arguments.rows.unwrap_or(kept.rows()), columns));
@@ -63,6 +67,7 @@ pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
             }
         };
     }
+    let total = total + scenario.driver_runs()?;
     let outcome =
         shown(total, arguments.quiet, |report, notice| scenario.run(&options, report, notice));
     let outcome = match outcome {

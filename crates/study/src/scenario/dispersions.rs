@@ -22,6 +22,8 @@ use crate::{body::Body, fleet::Fleet};
 pub(crate) struct Dispersed<T = Target> {
     /// Its name in correlations and in the run table, and of its random stream.
     pub(crate) column: String,
+    /// What it is part of: its parameter, without the component.
+    pub(crate) part_of: String,
     pub(crate) nominal: f64,
     pub(crate) law: ScalarLaw,
     /// For what it is drawn.
@@ -147,17 +149,18 @@ impl<T> List<T> {
         Self { fleet, all: Vec::new(), pairs: Vec::new(), fields: Vec::new() }
     }
 
-    /// A number with a name that ends in its unit, if it has one.
+    /// A number with a name that ends in its unit, if it has one, and what it is part of.
     pub(crate) fn push(
         &mut self,
-        name: &str,
+        [name, part_of]: [&str; 2],
         unit: &str,
         nominal: f64,
         (law, each): (ScalarLaw, Each),
         target: T,
     ) {
         let column = if unit.is_empty() { name.to_owned() } else { format!("{name}_{unit}") };
-        self.all.push(Dispersed { column, nominal, law, each, target });
+        let part_of = part_of.to_owned();
+        self.all.push(Dispersed { column, part_of, nominal, law, each, target });
     }
 
     /// A parameter of what stands at a place of the file, and is called by a name.
@@ -216,7 +219,7 @@ impl<T> List<T> {
         let each = self.each(field, law.drawn)?;
         let law = law::about(&law.form, field, nominal, unit)?;
         positive(field, nominal, &law)?;
-        self.push(&place.name, place.unit, nominal, (law, each), target);
+        self.push([&place.name; 2], place.unit, nominal, (law, each), target);
         Ok(())
     }
 
@@ -234,7 +237,7 @@ impl<T> List<T> {
             let name = format!("{}_{}", place.name, i + 1);
             let (each, field) = law.drawn(&place.field, i);
             let each = self.each(&field, each)?;
-            self.push(&name, place.unit, *nominal, (scalar, each), target(i));
+            self.push([&name, &place.name], place.unit, *nominal, (scalar, each), target(i));
         }
         for (a, b, coefficient) in vector.pairs {
             self.pairs.push((first + a, first + b, coefficient));
@@ -361,7 +364,7 @@ impl List {
             let each = self.each(&field, given.drawn)?;
             let law = ScalarLaw::bernoulli(given.probability)
                 .map_err(|e| ScenarioError::field(given.key(&field), e))?;
-            self.push(&format!("{name}_{chance}"), "", 0.0, (law, each), target);
+            self.push([&format!("{name}_{chance}"); 2], "", 0.0, (law, each), target);
             Ok(())
         };
         if let (Some(_), Some(start)) = (d.late_probability, d.start) {

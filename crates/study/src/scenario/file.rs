@@ -49,6 +49,13 @@ pub(crate) struct ScenarioFile {
     pub(crate) rows: Rows,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) columns: Option<Vec<String>>,
+    /// Base runs by which it is found what drives the outcome.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "parse::some_whole"
+    )]
+    pub(crate) drivers: Option<u64>,
     /// Until when the runs go on, if not to their number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) until: Option<UntilFile>,

@@ -42,7 +42,7 @@ pub(crate) use parse::{some_whole, whole};
 pub(crate) use scalar::ScalarLawFile;
 pub(crate) use {each::Each, until::UntilFile, vehicles::Size};
 
-use crate::{body::Body, fleet::Fleet};
+use crate::{body::Body, drivers, fleet::Fleet};
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
 
@@ -197,6 +197,23 @@ impl Scenario {
         Ok(Self { file, until, ..self })
     }
 
+    /// The same scenario, of which it is found what drives the outcome, by so many base runs: each of them is done once for each
+    /// group of inputs and twice more.
+    ///
+    /// # Errors
+    /// There are fewer than 100, or more than ten million.
+    pub fn with_drivers(self, base_runs: u64) -> Result<Self, ScenarioError> {
+        let drivers = Some(base_runs);
+        drivers::check(drivers)?;
+        Ok(Self { file: ScenarioFile { drivers, ..self.file }, ..self })
+    }
+
+    /// Base runs by which it is found what drives the outcome, if that is asked.
+    #[must_use]
+    pub fn drivers(&self) -> Option<u64> {
+        self.file.drivers
+    }
+
     /// Until when its runs go on, if not to their number.
     #[must_use]
     pub fn until(&self) -> Option<&Until> {
@@ -238,6 +255,7 @@ impl Scenario {
         let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
         [file.runs, file.vehicles, file.flights] = size.keys();
         let until = file.until(size)?;
+        drivers::check(file.drivers)?;
         check_seed(file.seed)?;
         let spin_axis = direction("spin_axis", file.spin_axis)?;
         if let Some(source) = &file.source {

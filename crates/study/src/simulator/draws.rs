@@ -1,6 +1,8 @@
 //! What a model draws of the bodies and the quantities of a simulator.
 
-use gyradius_campaign::{Cell, Column, Failure, Inputs, Simulation, Streams, Table, TableError};
+use gyradius_campaign::{
+    Cell, Column, Failure, Inputs, Mix, Simulation, Streams, Table, TableError,
+};
 use gyradius_dispersion::InertiaLaw;
 use std::{ops::Range, sync::Arc};
 
@@ -8,7 +10,8 @@ use super::{body::SimulatedBody, number::Number, scenario::SimulatorScenario};
 use crate::{
     ScenarioError,
     drawn::{self, following},
-    scenario::{Joint, Size},
+    groups::Groups,
+    scenario::{Each, Joint, Size},
 };
 
 /// What a model draws of the bodies and the quantities of a simulator: inputs that are sent, or rows of their own.
@@ -22,7 +25,13 @@ pub(crate) struct SimulatorDraws<'a> {
     quantities: &'a [Number],
     dispersed: &'a Joint<usize>,
     draws: drawn::Draws,
+    groups: Groups,
+    /// Whether its runs are those of the designs that exchange groups of inputs.
+    exchanging: bool,
 }
+
+/// What the random numbers of the simulator itself are called.
+const SIMULATOR: &str = "the simulator's own random numbers";
 
 #[derive(Debug)]
 struct BodyDraws<'a> {
@@ -44,15 +53,36 @@ impl<'a> SimulatorDraws<'a> {
             Ok(BodyDraws { body, law, inertias })
         };
         let bodies = scenario.bodies().iter().enumerate().map(body);
+        let bodies: Vec<BodyDraws<'_>> = bodies.collect::<Result<_, ScenarioError>>()?;
+        let laws = bodies.iter().map(|draws| (draws.body.name.as_str(), &*draws.law));
         Ok(Self {
+            groups: Groups::new(laws, scenario.dispersed()).and(SIMULATOR),
+            exchanging: false,
             size: scenario.size(),
             own: scenario.own(),
             columns: scenario.inputs().collect(),
-            bodies: bodies.collect::<Result<_, ScenarioError>>()?,
+            bodies,
             quantities: scenario.quantities(),
             dispersed: scenario.dispersed(),
             draws: drawn::Draws::new(seed, name, &scenario.dispersed().all),
         })
+    }
+}
+
+impl SimulatorDraws<'_> {
+    /// The groups of inputs that are drawn independently of each other.
+    pub(crate) fn groups(&self) -> &Groups {
+        &self.groups
+    }
+
+    /// The runs of the designs that exchange these groups.
+    pub(crate) fn exchanging(self) -> Self {
+        Self { exchanging: true, ..self }
+    }
+
+    /// Which draws a run takes.
+    fn mix(&self, run: u64) -> Mix {
+        if self.exchanging { self.groups.mix(run, self.size.fleet()) } else { Mix::plain(run) }
     }
 }
 
@@ -66,25 +96,35 @@ impl Inputs for SimulatorDraws<'_> {
     }
 
     fn place(&self, run: u64) -> Vec<i64> {
-        self.size.fleet().map_or_else(Vec::new, |fleet| fleet.numbers(run).into())
+        let base = self.mix(run).base();
+        self.size.fleet().map_or_else(Vec::new, |fleet| fleet.numbers(base).into())
+    }
+
+    fn seed_stream(&self, run: u64) -> u64 {
+        let mix = self.mix(run);
+        mix.stream(self.groups.names().len() - 1, mix.base())
     }
 
     fn draw(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<(), Failure> {
         let of_bodies = self.bodies.iter().flat_map(|draws| &draws.body.numbers);
         let mut values: Vec<f64> =
             of_bodies.chain(self.quantities).map(|number| number.nominal).collect();
-        let drawn = self.draws.values(self.dispersed, |each| self.size.stream(each, run));
+        let mix = self.mix(run);
+        let stream = |each: Each| self.size.stream(each, mix.base());
+        let drawn = self
+            .draws
+            .values(self.dispersed, |place, each| self.groups.stream_of(place, mix, stream(each)));
         for (d, value) in self.dispersed.all.iter().zip(drawn) {
             values[d.target] = value;
         }
         let (mut first, mut failure) = (0, None);
-        for draws in &self.bodies {
+        for (place, draws) in self.bodies.iter().enumerate() {
             let body = draws.body;
             let own = &values[first..first + body.numbers.len()];
             first += own.len();
             let mass = own[0];
-            let drawn =
-                draws.law.draw(&mut draws.inertias.run(self.size.stream(body.inertia_drawn, run)));
+            let law = (&*draws.law, &draws.inertias);
+            let drawn = self.groups.inertia(place, mix, stream(body.inertia_drawn), law);
             let inertia = following(drawn.inertia, mass / body.mass_kg, body.follows);
             numbers.extend(own.iter().copied().map(Some));
             numbers.extend(inertia.entries().map(Some));

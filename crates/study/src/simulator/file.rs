@@ -32,6 +32,9 @@ pub(super) struct File {
     pub(super) rows: Rows,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) columns: Option<Vec<String>>,
+    /// Base runs by which it is found what drives the outcome.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "some_whole")]
+    pub(super) drivers: Option<u64>,
     /// Until when the runs go on, if not to their number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) until: Option<UntilFile>,

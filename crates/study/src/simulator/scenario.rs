@@ -12,7 +12,7 @@ use super::{
     number::{Number, check_column},
 };
 use crate::{
-    Fleet, ScenarioError, model,
+    Fleet, ScenarioError, drivers, model,
     scenario::{
         Axes, Joint, Law, List, ModelFile, ModelLaw, ModelSpec, Size, UntilFile, check_models,
         check_name, check_seed, parse_toml, place, refused,
@@ -56,6 +56,7 @@ impl SimulatorScenario {
         let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
         [file.runs, file.vehicles, file.flights] = size.keys();
         let until = file.until(size)?;
+        drivers::check(file.drivers)?;
         check_seed(file.seed)?;
         let lists = [
             ("bodies", file.bodies.len(), 0),
@@ -92,7 +93,7 @@ impl SimulatorScenario {
             let nominal = law.mean();
             let (unit, meaning) = (quantity.unit.clone(), quantity.meaning.clone());
             let column = Column::number(quantity.name.clone(), unit, meaning);
-            list.push(&quantity.name, "", nominal, (law, each), count + i);
+            list.push([&quantity.name; 2], "", nominal, (law, each), count + i);
             quantities.push(Number { column, nominal });
         }
         let dispersed = list.correlate(
@@ -181,6 +182,23 @@ impl SimulatorScenario {
         let mut file = File { until: Some(UntilFile::new(rule, look_every)), ..self.file };
         let until = file.until(self.size)?;
         Ok(Self { file, until, ..self })
+    }
+
+    /// The same scenario, of which it is found what drives the outcome, by so many base runs: each of them is done once for each
+    /// group of inputs and twice more.
+    ///
+    /// # Errors
+    /// There are fewer than 100, or more than ten million.
+    pub fn with_drivers(self, base_runs: u64) -> Result<Self, ScenarioError> {
+        let drivers = Some(base_runs);
+        drivers::check(drivers)?;
+        Ok(Self { file: File { drivers, ..self.file }, ..self })
+    }
+
+    /// Base runs by which it is found what drives the outcome, if that is asked.
+    #[must_use]
+    pub fn drivers(&self) -> Option<u64> {
+        self.file.drivers
     }
 
     /// Until when its runs go on, if not to their number.

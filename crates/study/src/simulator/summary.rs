@@ -17,6 +17,7 @@ use std::{
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
 use crate::{
     Fleet, Notice, Options, ScenarioError, Study, StudyError, decisions,
+    groups::Groups,
     head::Head,
     report,
     study::carry_out,
@@ -68,7 +69,15 @@ impl SimulatorScenario {
         simulator: &'a Simulator,
         place: usize,
     ) -> Result<ExternalSimulation<'a, SimulatorDraws<'a>>, ScenarioError> {
-        let draws = SimulatorDraws::new(self, place)?;
+        self.simulation_of(simulator, place, SimulatorDraws::new(self, place)?)
+    }
+
+    fn simulation_of<'a>(
+        &'a self,
+        simulator: &'a Simulator,
+        place: usize,
+        draws: SimulatorDraws<'a>,
+    ) -> Result<ExternalSimulation<'a, SimulatorDraws<'a>>, ScenarioError> {
         let name = self.model_names().nth(place).unwrap_or_default();
         Ok(ExternalSimulation::new(simulator, self.seed(), name, draws, self.outputs().to_vec()))
     }
@@ -78,8 +87,16 @@ impl Subject for SimulatorScenario {
     /// Few, for a run of a simulator may take seconds.
     const BLOCK_RUNS: u64 = 1 << 8;
     /// Machines that do a campaign together may have the simulator in different places.
-    const IMMATERIAL: &[&str] =
-        &["runs", "vehicles", "rows", "columns", "requirements", "until", "simulation.folder"];
+    const IMMATERIAL: &[&str] = &[
+        "runs",
+        "vehicles",
+        "rows",
+        "columns",
+        "requirements",
+        "until",
+        "drivers",
+        "simulation.folder",
+    ];
 
     type Prepared = Simulator;
     type Simulation<'a> = ExternalSimulation<'a, SimulatorDraws<'a>>;
@@ -164,6 +181,26 @@ impl Subject for SimulatorScenario {
         let simulation =
             |(place, name): (usize, &'a str)| Ok((name, self.simulation(simulator, place)?));
         self.model_names().enumerate().map(simulation).collect()
+    }
+
+    fn drivers(&self) -> Option<u64> {
+        self.drivers()
+    }
+
+    fn groups(&self, _: &Simulator, place: usize) -> Result<Groups, ScenarioError> {
+        Ok(SimulatorDraws::new(self, place)?.groups().clone())
+    }
+
+    fn exchanging<'a>(
+        &'a self,
+        simulator: &'a Simulator,
+        place: usize,
+    ) -> Result<Self::Simulation<'a>, ScenarioError> {
+        self.simulation_of(simulator, place, SimulatorDraws::new(self, place)?.exchanging())
+    }
+
+    fn is_outcome(&self, column: &Column) -> bool {
+        self.outputs().iter().any(|output| output.name() == column.name())
     }
 
     fn look(&self, model: &str, columns: &[Column]) -> FirstLook {

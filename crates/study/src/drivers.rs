@@ -1,0 +1,213 @@
+//! What drives the outcome: Sobol' indices of the groups of inputs that are drawn independently of each other.
+
+use gyradius_campaign::{
+    Blocks, Column, Doing, Folder, Identity, Output, Plan, Progress, Simulation, run_missing,
+    sha256,
+};
+use gyradius_statistics::{Confidence, SobolIndex, SobolIndices};
+use rayon::ThreadPool;
+use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
+
+use crate::{
+    Options, ScenarioError, StudyError, decisions::requirements_of, head::Head, subject::Subject,
+};
+
+/// Base runs that there may be: fewer tell nothing.
+const BASE_RUNS: RangeInclusive<u64> = 100..=10_000_000;
+/// Where their runs are until they are counted.
+const BESIDE: &str = "drivers";
+const KEY: &str = "drivers";
+
+/// What drives the outcome of the runs of a model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Drivers {
+    model: String,
+    base_runs: u64,
+    /// Runs in all, and those of them that failed.
+    runs: u64,
+    failed: u64,
+    /// The groups of inputs.
+    groups: Vec<String>,
+    outputs: Vec<Driven>,
+    /// SHA-256 of what the runs depend on, and of the requirements.
+    identity: String,
+}
+
+/// What drives an output.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Driven {
+    output: String,
+    /// Of a column; none of whether a requirement is kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    unit: Option<String>,
+    /// Of the groups, in their order.
+    indices: SobolIndices,
+}
+
+impl Drivers {
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// Base runs, each of which is done once for each group of inputs and twice more.
+    #[must_use]
+    pub fn base_runs(&self) -> u64 {
+        self.base_runs
+    }
+
+    /// Runs in all.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        self.runs
+    }
+
+    /// Runs that failed.
+    #[must_use]
+    pub fn failed(&self) -> u64 {
+        self.failed
+    }
+
+    /// The groups of inputs.
+    #[must_use]
+    pub fn groups(&self) -> &[String] {
+        &self.groups
+    }
+
+    /// The outputs that vary.
+    #[must_use]
+    pub fn outputs(&self) -> &[Driven] {
+        &self.outputs
+    }
+}
+
+impl Driven {
+    /// The name of the column, or of the requirement, of which it is whether a run does not keep it.
+    #[must_use]
+    pub fn output(&self) -> &str {
+        &self.output
+    }
+
+    /// The unit of the column; none of a requirement.
+    #[must_use]
+    pub fn unit(&self) -> Option<&str> {
+        self.unit.as_deref()
+    }
+
+    /// What each group drives, in their order.
+    #[must_use]
+    pub fn indices(&self) -> &[SobolIndex] {
+        self.indices.groups()
+    }
+
+    /// The estimates from all runs.
+    #[must_use]
+    pub fn whole(&self) -> &SobolIndices {
+        &self.indices
+    }
+}
+
+/// That so many base runs can be done.
+pub(crate) fn check(base_runs: Option<u64>) -> Result<(), ScenarioError> {
+    match base_runs.filter(|runs| !BASE_RUNS.contains(runs)) {
+        None => Ok(()),
+        Some(runs) => {
+            let (least, most) = BASE_RUNS.into_inner();
+            let problem = format!("{runs} base runs: there must be {least} to {most}");
+            Err(ScenarioError::field(KEY, problem))
+        }
+    }
+}
+
+/// The runs that the drivers of all models take.
+pub(crate) fn runs<C: Subject>(scenario: &C) -> Result<u64, StudyError> {
+    let Some(base) = scenario.drivers() else { return Ok(0) };
+    let models = scenario.prepare(None)?;
+    let groups = (0..scenario.model_names().count()).map(|place| scenario.groups(&models, place));
+    let runs = groups.map(|groups| Ok(groups?.designs().runs(base)));
+    runs.sum::<Result<u64, ScenarioError>>().map_err(StudyError::from)
+}
+
+/// What drives the outcome of each model, if the scenario asks for that: as it was found before, or from runs of their own
+/// that are put nowhere.
+pub(crate) struct Finding<'a, 'f, C: Subject> {
+    pub(crate) scenario: &'a C,
+    pub(crate) models: &'a C::Prepared,
+    pub(crate) options: &'a Options,
+    pub(crate) folder: &'a Folder<'f>,
+    pub(crate) identity: &'a Identity,
+    pub(crate) threads: &'a ThreadPool,
+}
+
+impl<C: Subject> Finding<'_, '_, C> {
+    /// Finds them; `before` is the summary that is there already, and `progress` is told of runs.
+    pub(crate) fn find(
+        &self,
+        before: Option<&Head>,
+        progress: Progress<'_>,
+    ) -> Result<(Vec<Drivers>, Option<Blocks>), StudyError> {
+        let Some(base) = self.scenario.drivers() else { return Ok((Vec::new(), None)) };
+        let requirements = self.scenario.requirements();
+        let identity = sha256(serde_json::to_string(&(self.identity, requirements))?);
+        let simulations = self.scenario.simulations(self.models)?;
+        let known = |head: &Head| {
+            let same =
+                |drivers: &Drivers| drivers.identity == identity && drivers.base_runs == base;
+            head.drivers.len() == simulations.len() && head.drivers.iter().all(same)
+        };
+        if let Some(head) = before.filter(|head| known(head)) {
+            return Ok((head.drivers.clone(), None));
+        }
+        let groups = (0..simulations.len()).map(|place| self.scenario.groups(self.models, place));
+        let groups = groups.collect::<Result<Vec<_>, _>>()?;
+        let most = groups.iter().map(|groups| groups.designs().runs(base)).max().unwrap_or(0);
+        // What was begun otherwise is of no use to anybody.
+        let (mark, force) = (self.scenario.to_toml(), true);
+        let blocks =
+            self.folder.blocks_beside(BESIDE, (self.identity, &mark), most, force, self.threads)?;
+        let (mut all, mut done) = (Vec::new(), 0);
+        for ((place, (model, plain)), groups) in simulations.iter().enumerate().zip(&groups) {
+            let designs = groups.designs();
+            let simulation = [(*model, self.scenario.exchanging(self.models, place)?)];
+            let plan = Plan {
+                runs: designs.runs(base),
+                block_runs: C::BLOCK_RUNS,
+                doing: Doing::All,
+                stop: self.options.stop.as_ref(),
+            };
+            let more = |runs| progress(done + runs);
+            let runs =
+                self.threads.install(|| run_missing(&simulation, &blocks, plan, &more, None))?;
+            done += plan.runs;
+            let columns = plain.columns();
+            let asked = requirements_of(self.scenario, model);
+            let fails = asked.iter().map(|r| Output::Fails(Box::new(r.clone())));
+            let outcomes: Vec<&Column> =
+                columns.iter().filter(|c| self.scenario.is_outcome(c)).collect();
+            let numbers = outcomes.iter().map(|column| Output::Column(column.name().to_owned()));
+            let outputs: Vec<Output> = fails.chain(numbers).collect();
+            let runs = &runs[0];
+            let confidence = Confidence::default();
+            let indices = self.threads.install(|| designs.indices(runs, &outputs, confidence))?;
+            let names = asked.iter().map(|r| (r.name().to_owned(), None));
+            let names = names.chain(outcomes.iter().map(|column| {
+                (column.name().to_owned(), Some(column.unit().unwrap_or_default().to_owned()))
+            }));
+            let driven = names.zip(indices).filter_map(|((output, unit), indices)| {
+                Some(Driven { output, unit, indices: indices? })
+            });
+            all.push(Drivers {
+                model: (*model).to_owned(),
+                base_runs: base,
+                runs: plan.runs,
+                failed: blocks.failed(model),
+                groups: groups.names().to_vec(),
+                outputs: driven.collect(),
+                identity: identity.clone(),
+            });
+        }
+        Ok((all, Some(blocks)))
+    }
+}

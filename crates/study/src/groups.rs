@@ -1,0 +1,114 @@
+//! The groups of inputs that are drawn independently of each other, and what of them a run draws.
+
+use gyradius_campaign::{Designs, Mix, Streams};
+use gyradius_dispersion::{InertiaLaw, ModelDraw};
+
+use crate::{
+    fleet::Fleet,
+    scenario::{Dispersed, Joint},
+};
+
+/// The groups of inputs of a model that are drawn independently of each other.
+#[derive(Clone, Debug)]
+pub(crate) struct Groups {
+    names: Vec<String>,
+    /// Of the principal moments and of the axes of each body; the same if they are not drawn independently.
+    inertias: Vec<[usize; 2]>,
+    /// Of each number that is dispersed.
+    dispersed: Vec<usize>,
+}
+
+impl Groups {
+    /// Of bodies with names and laws, and of what else is dispersed: the components of a parameter, and all that is
+    /// correlated with them, are a group.
+    pub(crate) fn new<'a, T>(
+        bodies: impl IntoIterator<Item = (&'a str, &'a dyn InertiaLaw)>,
+        joint: &Joint<T>,
+    ) -> Self {
+        let mut groups = Self { names: Vec::new(), inertias: Vec::new(), dispersed: Vec::new() };
+        for (body, law) in bodies {
+            let first = groups.names.len();
+            if law.has_independent_axes() {
+                groups.names.extend(["roots", "axes"].map(|part| format!("{body} {part}")));
+            } else {
+                groups.names.push(format!("{body} inertia"));
+            }
+            groups.inertias.push([first, groups.names.len() - 1]);
+        }
+        // The first of those that hang together stands for all.
+        let mut leader: Vec<usize> = (0..joint.all.len()).collect();
+        let same = joint.all.iter().enumerate().filter_map(|(i, d)| {
+            Some((i, joint.all[..i].iter().position(|other| other.part_of == d.part_of)?))
+        });
+        for (a, b) in same.chain(joint.correlation.related()).collect::<Vec<_>>() {
+            let (a, b) = (leader[a], leader[b]);
+            leader.iter_mut().filter(|of| **of == a.max(b)).for_each(|of| *of = a.min(b));
+        }
+        let mut places: Vec<Option<usize>> = vec![None; leader.len()];
+        for (i, &of) in leader.iter().enumerate() {
+            let place = *places[of].get_or_insert_with(|| {
+                let members = (i..leader.len()).filter(|j| leader[*j] == of);
+                groups.names.push(name(members.map(|j| &joint.all[j])));
+                groups.names.len() - 1
+            });
+            groups.dispersed.push(place);
+        }
+        groups
+    }
+
+    /// With one more.
+    pub(crate) fn and(mut self, name: &str) -> Self {
+        self.names.push(name.to_owned());
+        self
+    }
+
+    /// What they are called.
+    pub(crate) fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The runs in which they are exchanged.
+    pub(crate) fn designs(&self) -> Designs {
+        Designs::new(self.names.len())
+    }
+
+    /// Which draws a run of these designs takes, each base run being the first flight of a vehicle of its own.
+    pub(crate) fn mix(&self, run: u64, fleet: Option<Fleet>) -> Mix {
+        let mix = self.designs().of(run);
+        mix.at(mix.base().saturating_mul(fleet.map_or(1, Fleet::flights)))
+    }
+
+    /// The stream of the number in a place of what is dispersed.
+    pub(crate) fn stream_of(&self, place: usize, mix: Mix, first: u64) -> u64 {
+        self.dispersed.get(place).map_or(first, |group| mix.stream(*group, first))
+    }
+
+    /// The draw of the inertia of the body in a place.
+    pub(crate) fn inertia(
+        &self,
+        body: usize,
+        mix: Mix,
+        first: u64,
+        (law, streams): (&dyn InertiaLaw, &Streams),
+    ) -> ModelDraw {
+        let of = self.inertias.get(body).map(|groups| groups.map(|group| mix.stream(group, first)));
+        let [moments, axes] = of.unwrap_or([first; 2]);
+        let draw = law.draw(&mut streams.run(moments));
+        if moments == axes { draw } else { draw.about_axes_of(&law.draw(&mut streams.run(axes))) }
+    }
+}
+
+/// What a group is called: after the parameters in it.
+fn name<'a, T: 'a>(members: impl Iterator<Item = &'a Dispersed<T>>) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    for member in members {
+        let part = member.part_of.replace('_', " ");
+        if !parts.contains(&part) {
+            parts.push(part);
+        }
+    }
+    let more = parts.len().saturating_sub(3);
+    parts.truncate(3);
+    let name = parts.join(", ");
+    if more > 0 { format!("{name} and {more} more, correlated") } else { name }
+}
