@@ -175,6 +175,14 @@ pub enum StatisticsError {
         /// The number of parameters fitted to the same data.
         fitted: usize,
     },
+    /// Two columns of the same runs are not of the same length.
+    #[error("one column has {first} values and the other {second}; there must be as many of each")]
+    Columns {
+        /// The values of the first.
+        first: usize,
+        /// The values of the second.
+        second: usize,
+    },
     /// The number of groups of inputs is out of range.
     #[error("{groups} groups of inputs; there must be 1 to {most}")]
     GroupCount {
