@@ -107,8 +107,9 @@ pub use identity::{Difference, Identity};
 pub use kept::{Kept, KeptError, Rows};
 pub use memory::memory_left;
 pub use requirement::{
-    Bound, FailedRuns, Judgement, JudgementError, Judging, Looks, Measured, Requirement,
-    RequirementError, RunBeyond, VehiclesKeeping, share_in_percent,
+    Bound, Distribution, DistributionPoint, Estimate, FailedRuns, Judgement, JudgementError,
+    Judging, Looks, Measured, Requirement, RequirementError, RunBeyond, VehiclesKeeping,
+    share_in_percent,
 };
 pub use room::disk_left;
 pub use runs::{Runs, RunsError};

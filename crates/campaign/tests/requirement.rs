@@ -1,7 +1,8 @@
 //! Requirements judged by tables of other programs, held against counting and sorting.
 
 use gyradius_campaign::{
-    Bound, FailedRuns, ForeignTable, Judgement, Measured, Requirement, Verdict,
+    Bound, Cell, Column, Distribution, FailedRuns, ForeignTable, Judgement, Judging, Measured,
+    Requirement, Runs, Table, Verdict,
 };
 use parquet::{
     data_type::{BoolType, DoubleType, FloatType, Int32Type, Int64Type},
@@ -9,6 +10,8 @@ use parquet::{
     schema::parser::parse_message_type,
 };
 use proptest::prelude::*;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::{fmt::Write, fs, sync::Arc};
 
 /// Numbers of three columns, some of which are missing.
@@ -70,6 +73,38 @@ fn csv(rows: &[[Option<f64>; 3]], separator: char, missing: &str) -> String {
     text
 }
 
+/// That distribution and estimates of a judgement are those of sorting and counting the numbers of all runs.
+fn told_of_all(judged: &Judgement, numbers: &[Option<f64>], left_out: bool) {
+    let bound = judged.requirement().bound();
+    let mut sorted: Vec<f64> = numbers.iter().copied().flatten().collect();
+    sorted.sort_by(f64::total_cmp);
+    let without = if left_out { 0 } else { numbers.len() - sorted.len() };
+    let below = if matches!(bound, Bound::AtLeast(_)) { without } else { 0 };
+    let n = (sorted.len() + without) as f64;
+    let points = judged.distribution().map_or(&[][..], Distribution::points);
+    // The least and the greatest are there, and all of few.
+    assert_eq!(points.first().map(|p| p.value), sorted.first().copied());
+    assert_eq!(points.last().map(|p| p.value), sorted.last().copied());
+    assert!(points.len() == sorted.len() || points.len() < sorted.len() && points.len() >= 10);
+    for point in points {
+        assert_eq!(point.value, sorted[point.rank as usize - below - 1]);
+        assert_eq!(point.share, (point.rank as f64 - 0.5) / n);
+        assert!(0.0 <= point.lower && point.lower < point.share && point.share < point.upper);
+    }
+    assert!(points.windows(2).all(|p| p[0].lower <= p[1].lower && p[0].upper <= p[1].upper));
+    let counted = numbers.iter().filter(|x| x.is_some() || !left_out);
+    let fails: Vec<bool> = counted.map(|x| x.is_none_or(|x| !bound.is_kept(x))).collect();
+    let told = judged.convergence();
+    assert_eq!(
+        told.last().map(|all| (all.runs, all.failures)),
+        (!fails.is_empty()).then(|| (judged.counted(), judged.failures()))
+    );
+    for estimate in told {
+        let failures = fails[..estimate.runs as usize].iter().filter(|fails| **fails).count();
+        assert_eq!(estimate.failures, failures as u64);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
@@ -126,6 +161,46 @@ proptest! {
         }
         let read: Judgement = serde_json::from_str(&told.to_string()).unwrap();
         prop_assert_eq!(&read, &judged[0]);
+        let numbers: Vec<Option<f64>> = rows.iter().map(value).collect();
+        told_of_all(&judged[0], &numbers, left_out);
+    }
+
+    /// Runs in blocks of any size, flights of vehicles or not, with ties and failures: the order statistics are those of sorting,
+    /// and the estimates those of counting.
+    #[test]
+    fn blocks_of_any_size_tell_the_same_distribution(
+        n in prop_oneof![1..300_usize, 33_000..90_000_usize],
+        (ties, failing) in (prop::sample::select(vec![0.0, 7.0, 1e5]), prop::sample::select(vec![0.0, 1e-4, 0.3, 1.0])),
+        bound in bound(),
+        (group, block) in (1_usize..5, 1_usize..40),
+        left_out in any::<bool>(),
+        seed in any::<u64>(),
+    ) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let numbers: Vec<Option<f64>> = (0..n)
+            .map(|_| {
+                let (u, v): (f64, f64) = (rng.random(), rng.random());
+                let x = (2.0 * u - 1.0).powi(3) * 4.0;
+                (v >= failing).then(|| if ties > 0.0 { (x * ties).round() / ties } else { x })
+            })
+            .collect();
+        let failed = if left_out { FailedRuns::LeftOut } else { FailedRuns::Against };
+        let requirement = Requirement::new("it", Measured::column("x"), bound, 0.9, 0.8).unwrap();
+        let judging = Judging::new([requirement.with_failed_runs(failed)], n as u64, group as u64);
+        let column = || vec![Column::number("x", "1", "A number.")];
+        let mut whole = Table::new("model", 0, column()).unwrap();
+        let size = n.div_ceil(block);
+        for (i, block) in numbers.chunks(size).enumerate() {
+            let mut table = Table::new("model", (i * size) as u64, column()).unwrap();
+            for x in block {
+                table.push(None, [Cell::from(*x)]).unwrap();
+                whole.push(None, [Cell::from(*x)]).unwrap();
+            }
+            judging.look(&table);
+        }
+        let judged = judging.finish(&Runs::from(whole)).unwrap();
+        let of_first: Vec<Option<f64>> = numbers.iter().copied().step_by(group).collect();
+        told_of_all(&judged[0], &of_first, left_out);
     }
 
     /// A requirement that is printed is read as the same; so is one in JSON.

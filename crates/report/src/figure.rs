@@ -66,6 +66,11 @@ pub struct Drawing {
 }
 
 impl Drawing {
+    /// A figure of a name, with what stands below it.
+    pub(crate) fn new(name: &str, caption: &str, svg: String) -> Self {
+        Self { name: name.to_owned(), caption: caption.to_owned(), svg }
+    }
+
     pub(crate) fn file(&self) -> String {
         file_of(&self.name)
     }

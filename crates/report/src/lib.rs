@@ -29,8 +29,11 @@
 
 mod axis;
 mod bins;
+mod convergence;
 mod curves;
+mod distribution;
 mod document;
+mod field;
 mod figure;
 mod histogram;
 mod html;
@@ -54,7 +57,9 @@ mod table;
 mod text;
 mod visible;
 
+pub use convergence::convergence_figure;
 pub use curves::{Chart, Colours, Curve, time_charts};
+pub use distribution::distribution_figure;
 pub use document::{Document, Section};
 pub use figure::{Drawing, Figure, Picture, file_of};
 pub use histogram::HistogramGrid;

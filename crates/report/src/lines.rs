@@ -169,7 +169,7 @@ fn marker_pen(line: &Line, hollow: bool) -> String {
 }
 
 /// A shape for each colour, for those who do not tell the colours apart.
-fn marker(shape: usize, x: f64, y: f64) -> String {
+pub(crate) fn marker(shape: usize, x: f64, y: f64) -> String {
     let from = |dx: f64, dy: f64| format!("M{} {}", px(x + dx), px(y + dy));
     match shape {
         1 => from(-2.5, -2.5) + "h5v5h-5z",

@@ -76,22 +76,33 @@ impl Deciding {
     }
 
     /// Where the share of the runs lies that keep it; none if there are no runs.
-    pub(super) fn share_interval(
+    pub(super) fn kept(
         self,
         failures: u64,
         runs: u64,
     ) -> Result<Option<Interval>, StatisticsError> {
-        if runs == 0 {
-            return Ok(None);
-        }
-        let kept = runs - failures;
-        Ok(Some(match self {
-            Self::Once(rule) => Proportion::new(kept, runs)?.interval(rule.confidence()),
+        (runs > 0)
+            .then(|| self.interval(runs - failures, runs, Acceptance::probability))
+            .transpose()
+    }
+
+    /// Where the share of the runs lies that do not.
+    pub(super) fn failing(self, failures: u64, runs: u64) -> Result<Interval, StatisticsError> {
+        self.interval(failures, runs, Acceptance::failure_share)
+    }
+
+    fn interval(
+        self,
+        events: u64,
+        runs: u64,
+        about: fn(&Acceptance) -> f64,
+    ) -> Result<Interval, StatisticsError> {
+        match self {
+            Self::Once(rule) => Ok(Proportion::new(events, runs)?.interval(rule.confidence())),
             Self::Often(rule) => {
-                let (about, confidence) =
-                    (rule.requirement().probability(), rule.requirement().confidence());
-                ConfidenceSequence::about(about, confidence)?.interval(kept, runs)?
+                let rule = rule.requirement();
+                ConfidenceSequence::about(about(&rule), rule.confidence())?.interval(events, runs)
             }
-        }))
+        }
     }
 }

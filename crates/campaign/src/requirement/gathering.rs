@@ -6,7 +6,9 @@ use std::cmp::Ordering;
 
 use super::{
     Bound, FailedRuns, Requirement,
+    convergence::Prefixes,
     deciding::{Deciding, Looks},
+    distribution::Ranks,
 };
 
 /// Runs that are told of one by one.
@@ -32,6 +34,8 @@ pub(super) struct Gathering {
     pub(super) numbers: Survey,
     /// Of how far numbers are beyond the bound, if that is no order of the numbers themselves.
     pub(super) excess: Option<Survey>,
+    /// Runs of a group, of which the first alone is gathered.
+    group: u64,
     counted: bool,
     looks: Looks,
 }
@@ -47,6 +51,8 @@ pub(crate) struct Tally {
     pub(super) beyond: u64,
     /// The worst first.
     pub(super) worst: Vec<RunBeyond>,
+    /// The runs that count, by their numbers.
+    pub(super) prefixes: Prefixes,
 }
 
 /// What one pass gathers.
@@ -58,14 +64,16 @@ pub(super) struct Part {
 }
 
 impl Gathering {
-    /// Of at most so many runs.
-    pub(super) fn new(requirement: Requirement, runs: u64) -> Self {
+    /// Of at most so many runs, which come in groups of so many: of each the first is gathered.
+    pub(super) fn new(requirement: Requirement, runs: u64, group: u64) -> Self {
+        let runs = runs.div_ceil(group.max(1));
         let excess = match requirement.bound() {
             Bound::AtMost(_) | Bound::AtLeast(_) => None,
             Bound::Between(..) => Some(Survey::new(runs)),
         };
         let (tally, numbers) = (Tally::default(), Survey::new(runs));
-        Self { requirement, tally, numbers, excess, counted: false, looks: Looks::Once }
+        let (group, looks) = (group.max(1), Looks::Once);
+        Self { requirement, tally, numbers, excess, group, counted: false, looks }
     }
 
     /// The same, with runs that are looked at so often before a verdict.
@@ -106,6 +114,10 @@ impl Gathering {
             let number = self.requirement.quantity().of(&of_run);
             if let Some(tally) = &mut part.tally {
                 tally.add(run, number, bound);
+                let fails = number.is_none_or(|x| !bound.is_kept(x));
+                if number.is_some() || self.requirement.failed_runs() == FailedRuns::Against {
+                    tally.prefixes.add(run / self.group, fails);
+                }
             }
             numbers.extend(number.map(|x| (run, x)));
         }
@@ -125,12 +137,24 @@ impl Gathering {
         }
         let rank = self.rank()?;
         if let Some(pass) = part.numbers {
-            self.numbers.advance_selecting(pass, rank.filter(|_| self.excess.is_none()));
+            let rank = rank.filter(|_| self.excess.is_none());
+            self.numbers.advance_selecting(pass, self.ranks().selected().chain(rank));
         }
         if let (Some(survey), Some(pass)) = (&mut self.excess, part.excess) {
             survey.advance_selecting(pass, rank);
         }
         Ok(())
+    }
+
+    /// The order of the runs that count. Those without a number stand beyond the limit.
+    pub(super) fn ranks(&self) -> Ranks {
+        let [_, runs] = self.tally.failures_of_counted(self.requirement.failed_runs());
+        let values = self.tally.runs - self.tally.without;
+        let below = match self.requirement.bound() {
+            Bound::AtLeast(_) => runs - values,
+            Bound::AtMost(_) | Bound::Between(..) => 0,
+        };
+        Ranks { runs, below, values }
     }
 
     /// The rank, from 0, of the number that is the bound of the share, or of its excess where that is surveyed; none if there is no
@@ -206,6 +230,7 @@ impl Tally {
         self.runs += other.runs;
         self.without += other.without;
         self.beyond += other.beyond;
+        self.prefixes.merge(&other.prefixes);
         self.worst.extend(other.worst);
         self.worst.sort_by(worse);
         self.worst.truncate(WORST);

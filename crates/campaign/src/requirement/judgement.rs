@@ -9,7 +9,9 @@ use std::fmt;
 
 use super::{
     Bound, FailedRuns, Requirement,
+    convergence::Estimate,
     deciding::Looks,
+    distribution::Distribution,
     gathering::{Gathering, Part, RunBeyond},
     groups::Groups,
 };
@@ -52,6 +54,12 @@ pub struct Judgement {
     success_to_pass: Option<f64>,
     /// The worst runs, the worst first.
     worst: Vec<RunBeyond>,
+    /// The distribution of the numbers; none without a number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    distribution: Option<Distribution>,
+    /// The share that fails it among the first so many runs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    convergence: Vec<Estimate>,
     /// How many vehicles keep it, of runs that are flights of vehicles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     vehicles: Option<VehiclesKeeping>,
@@ -86,7 +94,7 @@ impl Judgement {
         }
         let mut gatherings: Vec<Gathering> = requirements
             .iter()
-            .map(|r| Gathering::new(r.clone(), Proportion::MAX_TRIALS))
+            .map(|r| Gathering::new(r.clone(), Proportion::MAX_TRIALS, 1))
             .collect();
         loop {
             let mut parts: Vec<Option<Part>> = gatherings.iter().map(Gathering::part).collect();
@@ -140,7 +148,7 @@ impl Judgement {
             failures,
             allowed_failures: deciding.allowed_failures(counted),
             share: (counted > 0).then(|| (counted - failures) as f64 / counted as f64),
-            share_interval: deciding.share_interval(failures, counted)?,
+            share_interval: deciding.kept(failures, counted)?,
             tolerance: excess.map(|excess| requirement.bound().wider(excess)),
             margin,
             margin_deviations: margin
@@ -151,6 +159,14 @@ impl Judgement {
             verdict: deciding.verdict(failures, counted)?,
             success_to_pass: deciding.success_to_pass(counted)?,
             worst: tally.worst.clone(),
+            distribution: Distribution::new(
+                gathering.ranks(),
+                |rank| numbers.order_statistic(rank),
+                requirement.confidence(),
+            )?,
+            convergence: tally
+                .prefixes
+                .estimates(|failures, runs| deciding.failing(failures, runs))?,
             vehicles: None,
         })
     }
@@ -257,6 +273,18 @@ impl Judgement {
     #[must_use]
     pub fn success_to_pass(&self) -> Option<f64> {
         self.success_to_pass
+    }
+
+    /// The distribution of the numbers, with a band that holds it with the confidence of the requirement; none without a number.
+    #[must_use]
+    pub fn distribution(&self) -> Option<&Distribution> {
+        self.distribution.as_ref()
+    }
+
+    /// The share of runs that fail it among the first so many, the fewest first.
+    #[must_use]
+    pub fn convergence(&self) -> &[Estimate] {
+        &self.convergence
     }
 
     /// The verdict in a line, with what it rests on.

@@ -31,7 +31,7 @@ impl Judging {
     #[must_use]
     pub fn new(requirements: impl IntoIterator<Item = Requirement>, runs: u64, group: u64) -> Self {
         let group = group.max(1);
-        let gathering = |requirement| Gathering::new(requirement, runs.div_ceil(group));
+        let gathering = |requirement| Gathering::new(requirement, runs, group);
         let gatherings: Vec<Gathering> = requirements.into_iter().map(gathering).collect();
         let parts = Mutex::new(gatherings.iter().map(Gathering::part).collect());
         let groups =

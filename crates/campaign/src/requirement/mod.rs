@@ -1,6 +1,8 @@
 //! Requirements: that a number of a run keeps a bound in at least a share of all runs, at a confidence.
 
+mod convergence;
 mod deciding;
+mod distribution;
 mod gathering;
 mod groups;
 mod judgement;
@@ -13,7 +15,9 @@ use gyradius_statistics::{Acceptance, Confidence, SequentialAcceptance, Statisti
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
+pub use convergence::Estimate;
 pub use deciding::Looks;
+pub use distribution::{Distribution, DistributionPoint};
 pub use gathering::RunBeyond;
 pub(crate) use gathering::Tally;
 pub use judgement::{Judgement, JudgementError, VehiclesKeeping, share_in_percent};

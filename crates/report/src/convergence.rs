@@ -1,0 +1,105 @@
+//! How the share of runs that fail a requirement comes to rest with the number of runs: a line a model, with its interval.
+
+use gyradius_campaign::{Estimate, Judgement, Requirement, share_in_percent};
+
+use crate::Drawing;
+use crate::axis::{Spacing, Tick, Units, decades, ticks};
+use crate::field::{ACROSS, Field, HIGH, band_pen, line_pen, required_pen};
+use crate::lines::marker;
+use crate::style;
+use crate::svg::px;
+use crate::text::significant;
+
+/// The share of runs that fail a requirement among the first so many, under models. Nothing is computed here but places: the numbers
+/// are those of the judgements.
+#[must_use]
+pub fn convergence_figure(
+    name: &str,
+    caption: &str,
+    requirement: &Requirement,
+    models: &[(&str, &Judgement)],
+) -> Drawing {
+    Drawing::new(name, caption, svg(requirement, models))
+}
+
+fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
+    let title = format!("Convergence: {}", requirement.name());
+    let allowed = 1.0 - requirement.probability();
+    let estimates = || models.iter().flat_map(|(_, judgement)| judgement.convergence());
+    let last = models.iter().filter_map(|(_, judgement)| judgement.convergence().last());
+    // Wide intervals of a few runs leave the plot, so that what matters can be read.
+    let top = last.map(|e| 1.8 * e.interval.upper()).fold(2.2 * allowed, f64::max);
+    let top = 100.0 * top.min(1.02);
+    let units = Units::for_range(0.0, top);
+    let spacing = Spacing { length: HIGH, most: 6, side_by_side: None, whole: false };
+    let up = ticks(0.0, units.of(top), spacing).into_iter();
+    let up: Vec<Tick> =
+        up.map(|tick| Tick { at: tick.at / units.of(top) * HIGH, ..tick }).collect();
+    let y = |share: f64| px(HIGH - (100.0 * share / top).clamp(0.0, 1.0) * HIGH);
+
+    let logs = estimates().map(|e| (e.runs as f64).log10());
+    let (first, end) =
+        logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), x| (l.min(x), u.max(x)));
+    let (first, end) = if first <= end { (first, end.max(first + 0.5)) } else { (1.0, 2.0) };
+    let place = |log: f64| (log - first) / (end - first) * ACROSS;
+    let x = |e: &Estimate| px(place((e.runs as f64).log10()));
+    let across = decades([first, end]).into_iter();
+    let across: Vec<Tick> = across.map(|tick| Tick { at: place(tick.at), ..tick }).collect();
+
+    let shares = format!("share of the runs that fail it (%)  {}", units.note());
+    let mut field = Field::new(&across, &up, ["runs that count", shares.trim_end()]);
+    for (i, (model, judgement)) in models.iter().enumerate() {
+        let estimates = judgement.convergence();
+        let upper = estimates.iter().map(|e| format!("{} {}", x(e), y(e.interval.upper())));
+        let lower = estimates.iter().rev().map(|e| format!("{} {}", x(e), y(e.interval.lower())));
+        let band: Vec<String> = upper.chain(lower).collect();
+        if !band.is_empty() {
+            field.plot.path(&band_pen(i), &format!("M{}z", band.join("L")));
+        }
+        field.entry(*model, |swatch| {
+            swatch.path(&band_pen(i), "M0 -6h26v12h-26z");
+            swatch.path(&line_pen(i), "M0 0h26");
+            swatch.path(&format!("fill=\"{}\"", style::model(i)), &marker(i, 13.0, 0.0));
+        });
+    }
+    field.plot.path(&required_pen(), &format!("M0 {}h{}", y(allowed), px(ACROSS)));
+    for (i, (_, judgement)) in models.iter().enumerate() {
+        let (mut d, mut marks) = (String::new(), String::new());
+        for (k, e) in judgement.convergence().iter().enumerate() {
+            d.push_str(&format!("{}{} {}", if k > 0 { "L" } else { "M" }, x(e), y(e.failing)));
+            // What is above the plot is not a point in it.
+            if 100.0 * e.failing <= top {
+                let above = HIGH - 100.0 * e.failing / top * HIGH;
+                marks.push_str(&marker(i, place((e.runs as f64).log10()), above));
+            }
+        }
+        field.plot.path(&line_pen(i), &d);
+        let colour = style::model(i);
+        field.plot.path(&format!("fill=\"{colour}\" stroke=\"{colour}\""), &marks);
+    }
+    field.entry(format!("allowed: {}", share_in_percent(allowed)), |swatch| {
+        swatch.path(&required_pen(), "M0 0h26");
+    });
+    let confidence = share_in_percent(requirement.confidence().level());
+    field.entry(format!("shaded: {confidence} interval at each number of runs"), |swatch| {
+        let pen = format!("fill=\"{}\" fill-opacity=\"0.3\"", style::MUTED);
+        swatch.path(&pen, "M0 -6h26v12h-26z");
+    });
+    field.finish(&title, &description(models))
+}
+
+/// The figure in words.
+fn description(models: &[(&str, &Judgement)]) -> String {
+    let mut text = "Share of the runs that fail it, against the number of runs.".to_owned();
+    for (model, judgement) in models {
+        let told: Vec<String> = judgement
+            .convergence()
+            .iter()
+            .rev()
+            .step_by(6)
+            .map(|e| format!("{} % of {}", significant(100.0 * e.failing, 3), e.runs))
+            .collect();
+        text.push_str(&format!(" {model}: {}.", told.join(", ")));
+    }
+    text
+}

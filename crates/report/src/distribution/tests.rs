@@ -1,0 +1,111 @@
+//! Figures of requirements of any runs: well-formed, in view, and readable on a telephone.
+
+use super::*;
+use crate::convergence_figure;
+use crate::svg::tests::read;
+use gyradius_campaign::{Cell, Column, Judging, Measured, Runs, Table};
+use proptest::prelude::*;
+
+fn judged(numbers: &[Option<f64>], requirement: &Requirement) -> Option<Judgement> {
+    let columns = vec![Column::number("x", "1", "A number.")];
+    let mut table = Table::new("model", 0, columns).unwrap();
+    for x in numbers {
+        table.push(None, [Cell::from(*x)]).unwrap();
+    }
+    let judging = Judging::new([requirement.clone()], numbers.len() as u64, 1);
+    judging.look(&table);
+    judging.finish(&Runs::from(table)).unwrap().pop()
+}
+
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        8 => -3.0..3.0,
+        1 => prop::sample::select(vec![0.0, -0.0, 1.0, f64::MAX, f64::MIN, 5e-324, 1e300, -1e-300, 1e9]),
+    ]
+}
+
+fn bound() -> impl Strategy<Value = Bound> {
+    prop_oneof![
+        number().prop_map(Bound::AtMost),
+        number().prop_map(Bound::AtLeast),
+        (number(), number()).prop_map(|(a, b)| Bound::Between(a.min(b), a.max(b))),
+    ]
+}
+
+/// Sizes of all texts, but for exponents, which are a share of them.
+fn sizes(svg: &str) -> Vec<f64> {
+    let sizes = svg.split("font-size=\"").skip(1);
+    sizes.filter_map(|rest| rest.split('"').next().unwrap().parse().ok()).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    /// Whatever the numbers there are figures, whose texts are at least 9 pixels high when they are 360 wide; limits, failures and
+    /// models are named.
+    #[test]
+    fn any_runs_give_figures(
+        models in prop::collection::vec(prop::collection::vec(prop::option::weighted(0.9, number()), 1..60), 1..5),
+        bound in bound(),
+        probability in 0.05..0.99999_f64,
+        confidence in 0.5..0.999_f64,
+        left_out in any::<bool>(),
+    ) {
+        let failed = if left_out { FailedRuns::LeftOut } else { FailedRuns::Against };
+        let quantity = Measured::column("x");
+        let Ok(requirement) = Requirement::new("a <name>", quantity, bound, probability, confidence) else { return Ok(()) };
+        let requirement = requirement.with_failed_runs(failed);
+        let judged: Vec<Judgement> = models.iter().filter_map(|numbers| judged(numbers, &requirement)).collect();
+        let names: Vec<String> = (0..judged.len()).map(|i| format!("model {i}")).collect();
+        let models: Vec<(&str, &Judgement)> = names.iter().map(String::as_str).zip(&judged).collect();
+        for drawing in [distribution_figure("f", "c", &requirement, &models), convergence_figure("f", "c", &requirement, &models)] {
+            let seen = read(&drawing.svg);
+            prop_assert!(seen.contains("a <name>"));
+            prop_assert!(names.iter().all(|name| seen.contains(name)));
+            let least = sizes(&drawing.svg).into_iter().fold(f64::INFINITY, f64::min);
+            prop_assert!(least * 360.0 / crate::field::WIDTH >= 9.0, "{}", least);
+        }
+        let seen = read(&distribution_figure("f", "c", &requirement, &models).svg);
+        prop_assert!(seen.contains("limit"));
+        let any_failed = judged.iter().any(|judgement| judgement.runs_without_number() > 0);
+        prop_assert_eq!(seen.contains("failed or have no number"), any_failed);
+        let any_bound = judged.iter().any(|judgement| judgement.tolerance().is_some());
+        prop_assert_eq!(seen.contains("tolerance point"), any_bound);
+    }
+
+    /// The axis is that of the normal law, from its own tail.
+    #[test]
+    fn the_axis_is_that_of_the_normal_law(share in prop_oneof![1e-9..0.5_f64, 0.5..0.999_999_9_f64]) {
+        let z = probit(share);
+        prop_assert!((tail::normal(-z) - share).abs() < 1e-9 * share.min(1.0 - share).max(1e-6), "{z}");
+    }
+}
+
+/// A line a model through all its runs: the extreme runs of both tails are markers in the plot, the line passes the median at half,
+/// and the band is about it.
+#[test]
+fn the_line_reaches_both_tails() {
+    let numbers: Vec<Option<f64>> = (0..2001).map(|i| Some(f64::from(i))).collect();
+    let requirement: Requirement = "x <= 1999 in 99 % at 90 %".parse().unwrap();
+    let judgement = judged(&numbers, &requirement).unwrap();
+    let up = Up::new(&requirement, &[("m", &judgement)]);
+    let (across, far) = across(requirement.bound(), &[("m", &judgement)]);
+    assert!(far.is_empty());
+    for point in points(&judgement) {
+        let y = up.y(point.share);
+        assert!(y > 0.0 && y < HIGH, "{point:?}");
+        assert!(up.y(point.upper) <= y && y <= up.y(point.lower));
+        let x = across.x(point.value);
+        assert!(x > 0.0 && x < ACROSS, "{point:?}");
+    }
+    assert!((up.y(0.5) - 0.5 * HIGH).abs() < 1.0, "both tails are alike");
+    let labels: Vec<String> = up.ticks().into_iter().map(|tick| tick.label).collect();
+    for label in ["0.1", "1", "5", "20", "50", "80", "95", "99", "99.9"] {
+        assert!(labels.iter().any(|l| l == label), "{label}: {labels:?}");
+    }
+    // A limit that is far away leaves the runs readable.
+    let far: Requirement = "x <= 1e6 in 99 % at 90 %".parse().unwrap();
+    let judgement = judged(&numbers, &far).unwrap();
+    let seen = read(&svg(&far, &[("m", &judgement)]));
+    assert!(seen.contains("is far off this axis"), "{seen}");
+}

@@ -1,0 +1,147 @@
+//! A figure of one panel that can be read on a telephone: 480 wide, and no text below 12, so that it is 9 in 360 pixels.
+
+use crate::axis::{Spacing, Tick, Units, ticks};
+use crate::legend::{Entry, legend};
+use crate::style::{self, MARGIN};
+use crate::svg::{Anchor, Look, Svg, px};
+use crate::text::{fit, width, wrap};
+
+/// Width of the figure, and what it is shown in at most.
+pub(crate) const WIDTH: f64 = 480.0;
+const WIDEST: f64 = 640.0;
+/// The plot.
+pub(crate) const ACROSS: f64 = WIDTH - 2.0 * MARGIN - LABELS - 8.0;
+pub(crate) const HIGH: f64 = 270.0;
+/// Room of the labels of the vertical axis.
+const LABELS: f64 = 58.0;
+
+pub(crate) const TICK: Look = Look::new(12.0, style::MUTED);
+pub(crate) const LABEL: Look = Look::new(12.5, style::INK);
+
+/// A figure under construction: title, legend, and a plot whose origin is its upper left corner.
+pub(crate) struct Field {
+    pub(crate) plot: Svg,
+    entries: Vec<Entry>,
+    notes: Vec<String>,
+}
+
+/// A horizontal axis, linear in the units that it is labelled in.
+pub(crate) struct Across {
+    units: Units,
+    lower: f64,
+    upper: f64,
+}
+
+impl Across {
+    /// Of values between `lower ≤ upper`, with some room at both ends.
+    pub(crate) fn new(lower: f64, upper: f64) -> Self {
+        let units = Units::for_range(lower, upper);
+        let (low, high) = (units.of(lower), units.of(upper));
+        let room = 0.04 * (high - low);
+        let room = if room > 0.0 { room } else { 0.05 * high.abs().max(1e-3) };
+        Self { units, lower: low - room, upper: high + room }
+    }
+
+    /// Where a value is.
+    pub(crate) fn x(&self, value: f64) -> f64 {
+        self.at(self.units.of(value))
+    }
+
+    fn at(&self, in_units: f64) -> f64 {
+        ((in_units - self.lower) / (self.upper - self.lower)).clamp(-1.0, 2.0) * ACROSS
+    }
+
+    fn ticks(&self) -> Vec<Tick> {
+        let spacing =
+            Spacing { length: ACROSS, most: 6, side_by_side: Some(TICK.size), whole: false };
+        let ticks = ticks(self.lower, self.upper, spacing).into_iter();
+        ticks.map(|tick| Tick { at: self.at(tick.at), ..tick }).collect()
+    }
+}
+
+impl Field {
+    /// A plot with ticks, whose places are from the lower left corner of the plot, and what is on the axes.
+    pub(crate) fn new(across: &[Tick], up: &[Tick], [x_label, y_label]: [&str; 2]) -> Self {
+        let mut plot = Svg::new();
+        let line = |y: f64| format!("M0 {}h{}", px(y), px(ACROSS));
+        let grid: String = up.iter().map(|tick| line(HIGH - tick.at)).collect();
+        plot.path(&format!("stroke=\"{}\"", style::GRID), &grid);
+        for tick in up {
+            plot.text(-6.0, HIGH - tick.at + 4.0, TICK.at(Anchor::End), &tick.label);
+        }
+        let marks: String =
+            across.iter().map(|tick| format!("M{} {}v4", px(tick.at), px(HIGH))).collect();
+        plot.path(&format!("stroke=\"{}\"", style::AXIS), &(line(HIGH) + &marks));
+        for tick in across {
+            plot.text(tick.at, HIGH + 17.0, TICK.at(Anchor::Middle), &tick.label);
+        }
+        let middle = 0.5 * (ACROSS - LABELS);
+        let name = fit(x_label, LABEL.size, ACROSS + LABELS);
+        plot.text(middle, HIGH + 37.0, LABEL.at(Anchor::Middle), &name);
+        plot.text(-LABELS, -24.0, TICK, &fit(y_label, TICK.size, ACROSS + LABELS));
+        Self { plot, entries: Vec::new(), notes: Vec::new() }
+    }
+
+    /// The same with a linear horizontal axis, which says in which units it is labelled.
+    pub(crate) fn linear(axis: &Across, up: &[Tick], [x_label, y_label]: [&str; 2]) -> Self {
+        let label = format!("{x_label}  {}", axis.units.note());
+        Self::new(&axis.ticks(), up, [label.trim_end(), y_label])
+    }
+
+    /// An entry of the legend: its name, and how it is drawn, from the origin 26 to the right.
+    pub(crate) fn entry(&mut self, name: impl Into<String>, draw: impl FnOnce(&mut Svg)) {
+        let mut swatch = Svg::new();
+        draw(&mut swatch);
+        self.entries.push(Entry { name: name.into(), width: 26.0, swatch });
+    }
+
+    /// What is said below the plot.
+    pub(crate) fn note(&mut self, text: impl Into<String>) {
+        self.notes.push(text.into());
+    }
+
+    /// The vertical line of a limit, with its name above the plot, before or after it, where there is room.
+    pub(crate) fn limit(&mut self, x: f64, name: &str) {
+        let x = x.clamp(0.0, ACROSS);
+        self.plot.path(&limit_pen(), &format!("M{} 0v{}", px(x), px(HIGH)));
+        let half = 0.5 * width(name, TICK.size);
+        let at = x.clamp(half - LABELS, ACROSS - half);
+        self.plot.text(at, -6.0, Look::new(TICK.size, style::INK).at(Anchor::Middle), name);
+    }
+
+    /// The whole figure.
+    pub(crate) fn finish(self, title: &str, description: &str) -> String {
+        let mut svg = Svg::new();
+        let y = svg.heading(title, WIDTH);
+        let y = legend(&mut svg, self.entries, y + 4.0, WIDTH) + 42.0;
+        svg.place(MARGIN + LABELS, y, &self.plot);
+        let mut y = y + HIGH + 42.0;
+        for note in &self.notes {
+            for line in wrap(note, TICK.size, WIDTH - 2.0 * MARGIN, 3) {
+                y += 17.0;
+                svg.text(MARGIN, y - 3.0, TICK, &line);
+            }
+        }
+        svg.finish_within(WIDEST, (WIDTH, y + 8.0), title, description)
+    }
+}
+
+/// The pen of limits.
+pub(crate) fn limit_pen() -> String {
+    format!("stroke=\"{}\" stroke-width=\"1.6\"", style::INK)
+}
+
+/// The pen of what is required.
+pub(crate) fn required_pen() -> String {
+    format!("stroke=\"{}\" stroke-width=\"1.3\" stroke-dasharray=\"5 4\"", style::MUTED)
+}
+
+/// The fill of a band about the line of a model.
+pub(crate) fn band_pen(model: usize) -> String {
+    format!("fill=\"{}\" fill-opacity=\"0.16\"", style::model(model))
+}
+
+/// The line of a model.
+pub(crate) fn line_pen(model: usize) -> String {
+    format!("stroke=\"{}\" stroke-width=\"1.6\"", style::model(model))
+}
