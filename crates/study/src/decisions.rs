@@ -1,9 +1,13 @@
 //! Requirements of a scenario: checked, judged by the runs, and told first in the report.
 
 use gyradius_campaign::{
-    Bound, Column, Judging, Looks, Measured, Requirement, RunBeyond, Runs, share_in_percent,
+    Bound, Column, Judgement, Judging, Looks, Measured, Requirement, RunBeyond, Runs,
+    share_in_percent,
 };
-use gyradius_report::{PageCell, PageTable, Section, Text, significant};
+use gyradius_report::{
+    Drawing, PageCell, PageTable, Section, Text, convergence_figure, distribution_figure,
+    significant,
+};
 use gyradius_statistics::Verdict;
 
 use crate::{
@@ -11,6 +15,10 @@ use crate::{
     head::{Head, Judged},
     subject::Subject,
 };
+
+/// Figures of a requirement, whose number follows.
+const DISTRIBUTION: &str = "distribution";
+const CONVERGENCE: &str = "convergence";
 
 /// Requirements of a scenario, at most.
 const MOST: usize = 100;
@@ -163,7 +171,65 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
     }
     let section = Section::new("Requirements").table(table);
     let section = notes.into_iter().fold(section, Section::paragraph);
-    vec![section.sections([worst(head)])]
+    vec![section.sections([distributions(head), worst(head), convergence(head)])]
+}
+
+/// The figures that requirements may have, by name: known before the runs.
+pub(crate) fn figure_names(requirements: &[Requirement]) -> impl Iterator<Item = String> {
+    (1..=requirements.len())
+        .flat_map(|number| [DISTRIBUTION, CONVERGENCE].map(|of| of_requirement(of, number)))
+}
+
+fn of_requirement(figure: &str, number: usize) -> String {
+    format!("{figure}-{number}")
+}
+
+/// A figure of each requirement, numbered from 1, of what the runs of each model say.
+fn figures(
+    head: &Head,
+    draw: impl Fn(usize, &Requirement, &[(&str, &Judgement)]) -> Drawing,
+) -> Vec<Drawing> {
+    let mut of: Vec<(&Requirement, Vec<(&str, &Judgement)>)> = Vec::new();
+    for Judged { model, judgement } in &head.requirements {
+        let requirement = judgement.requirement();
+        match of.iter_mut().find(|(known, _)| *known == requirement) {
+            Some((_, models)) => models.push((model, judgement)),
+            None => of.push((requirement, vec![(model, judgement)])),
+        }
+    }
+    let numbered = of.iter().zip(1..);
+    numbered.map(|((requirement, models), number)| draw(number, requirement, models)).collect()
+}
+
+/// What the quantities of the requirements look like, to the extreme runs.
+fn distributions(head: &Head) -> Section {
+    let reading = "Each line goes through order statistics of the runs: the value with the rank k of n runs is drawn at the share \
+                   (k − ½)/n, on the axis of a normal law, on which a normal distribution is a straight line. The extreme runs of \
+                   both tails are always among the points. The shaded band holds the whole distribution of all runs at once, with \
+                   the confidence of the requirement and whatever the distribution: at each of the K points stand Clopper and \
+                   Pearson’s bounds with the confidence 1 − (1 − c)/K, and between the points the band follows from the fact that \
+                   a distribution function never decreases. The tolerance point is the bound of the table above. A point is a run \
+                   as it is: tails are not fitted.";
+    let drawings = figures(head, |number, requirement, models| {
+        let caption = format!(
+            "Distribution of {}, to the extreme runs of both tails",
+            requirement.quantity()
+        );
+        distribution_figure(&of_requirement(DISTRIBUTION, number), &caption, requirement, models)
+    });
+    Section::new("Distributions").paragraph(reading).figures(drawings)
+}
+
+/// How the shares that fail come to rest.
+fn convergence(head: &Head) -> Section {
+    let reading = "The share of the runs that fail each requirement among the first so many runs, in the order of their numbers. \
+                   Each interval is what these runs would tell if nobody had looked before (Clopper and Pearson, with the confidence \
+                   of the requirement): whoever looks often, and stops when it pleases, takes a greater risk.";
+    let drawings = figures(head, |number, requirement, models| {
+        let caption = format!("Runs that fail “{}” among the first so many", requirement.name());
+        convergence_figure(&of_requirement(CONVERGENCE, number), &caption, requirement, models)
+    });
+    Section::folded("Convergence").paragraph(reading).figures(drawings)
 }
 
 /// The worst runs, each with the command that does it again.

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::{
     body::{Body, Entry},
     compare::EVERY_MODEL,
+    decisions,
     quantity::Quantity,
     scenario::Scenario,
     seen::Seen,
@@ -34,6 +35,7 @@ pub(crate) fn names(scenario: &Scenario) -> Vec<String> {
         let paired = [RATIO_AND_WOBBLE, INERTIA_OF_PAYLOAD, INERTIA_OF_STAGE, ANGLES];
         names.extend(paired.map(|name| of_pair(name, physical, naive)));
     }
+    names.extend(decisions::figure_names(scenario.requirements()));
     names
 }
 

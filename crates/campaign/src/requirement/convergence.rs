@@ -123,7 +123,10 @@ mod tests {
         for n in [11_u64, 2000, 1_000_000] {
             let mut all = Prefixes::default();
             (0..n).for_each(|run| all.add(run, false));
-            let told = all.estimates(Confidence::default()).unwrap();
+            let interval = |failures, runs| {
+                Ok(Proportion::new(failures, runs)?.interval(Confidence::default()))
+            };
+            let told = all.estimates(interval).unwrap();
             assert_eq!(told.last().unwrap().runs, n);
             assert!(n < 1000 || (20..=30).contains(&told.len()), "{}", told.len());
         }

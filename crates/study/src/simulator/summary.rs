@@ -231,7 +231,12 @@ impl Subject for SimulatorScenario {
 
     fn report_files(&self) -> Vec<String> {
         let figures = Overview::figure_names().iter().map(|name| file_of(name));
-        figures.chain(Document::pages(report::NAME)).chain(["figures/".to_owned()]).collect()
+        let required = decisions::figure_names(self.requirements()).map(|name| file_of(&name));
+        figures
+            .chain(required)
+            .chain(Document::pages(report::NAME))
+            .chain(["figures/".to_owned()])
+            .collect()
     }
 
     fn report(&self, summary: &SimulatorSummary) -> Document {
