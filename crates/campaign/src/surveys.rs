@@ -8,6 +8,7 @@ use crate::{
     column::{Column, Kind},
     runs::{Runs, RunsError},
     sample::surveyed,
+    subset::Subset,
     table::Table,
 };
 
@@ -18,10 +19,21 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Surveys {
     model: String,
-    numbers: Vec<(String, Survey)>,
+    numbers: Vec<Numbered>,
+    /// Runs of which some columns are surveyed apart.
+    subsets: Vec<Subset>,
     counts: Counts,
     /// Of the runs that are independent, if not all are.
     independent: Option<Box<Surveys>>,
+}
+
+/// A column that is surveyed.
+#[derive(Clone, Debug)]
+struct Numbered {
+    column: String,
+    /// Place among the subsets, if not all runs are looked at.
+    subset: Option<usize>,
+    survey: Survey,
 }
 
 /// How often there is a text of each kind, and in which run first.
@@ -35,6 +47,8 @@ struct Counts {
     texts: BTreeMap<String, Tally>,
     flags: BTreeMap<String, [u64; 2]>,
     failures: Tally,
+    /// Runs of each subset, and those of them that failed.
+    of_subsets: Vec<[u64; 2]>,
 }
 
 /// Surveys whose first look at the runs is under way.
@@ -64,8 +78,13 @@ impl FirstLook {
         let surveys = Surveys {
             model: model.to_owned(),
             numbers: of_numbers
-                .map(|column| (column.name().to_owned(), surveyed(runs, confidence)))
+                .map(|column| Numbered {
+                    column: column.name().to_owned(),
+                    subset: None,
+                    survey: surveyed(runs, confidence),
+                })
                 .collect(),
+            subsets: Vec::new(),
             counts: Counts::default(),
             independent: None,
         };
@@ -85,14 +104,39 @@ impl FirstLook {
     pub fn in_groups_of(self, size: u64) -> Self {
         let mut surveys = self.surveys;
         let numbers = mem::take(&mut surveys.numbers).into_iter();
-        surveys.numbers = numbers.map(|(name, survey)| (name, survey.in_groups_of(size))).collect();
+        surveys.numbers = numbers
+            .map(|numbered| Numbered { survey: numbered.survey.in_groups_of(size), ..numbered })
+            .collect();
         Self::of(surveys, size.max(1))
+    }
+
+    /// The same, which looks at these columns of some runs apart too: at all runs of each subset, at most so many.
+    #[must_use]
+    pub fn given(
+        self,
+        subsets: Vec<Subset>,
+        columns: &[String],
+        runs: u64,
+        confidence: Confidence,
+    ) -> Self {
+        let mut surveys = self.surveys;
+        for place in 0..subsets.len() {
+            surveys.numbers.extend(columns.iter().map(|column| Numbered {
+                column: column.clone(),
+                subset: Some(place),
+                survey: surveyed(runs, confidence),
+            }));
+        }
+        surveys.subsets = subsets;
+        Self::of(surveys, self.size)
     }
 
     /// Looks at a block, once at each and in any order.
     pub fn look(&self, block: &Table) {
         let passes = self.surveys.gather(&self.empty, block);
-        let counts = Counts::of(block, |_| true);
+        let mut counts = Counts::of(block, |_| true);
+        counts.of_subsets =
+            self.surveys.subsets.iter().map(|subset| counted(subset, block)).collect();
         let of_first =
             (self.size > 1).then(|| Counts::of(block, |run| run.is_multiple_of(self.size)));
         // Nobody panics with the lock in hand.
@@ -149,9 +193,13 @@ impl Surveys {
 
     /// The runs that are independent, of which these are the counts.
     fn of_independent(&self, counts: Counts) -> Self {
-        let numbers = self.numbers.iter();
-        let numbers = numbers.map(|(name, survey)| (name.clone(), survey.independent().clone()));
-        Self { model: self.model.clone(), numbers: numbers.collect(), counts, independent: None }
+        let numbers = self.numbers.iter().filter(|numbered| numbered.subset.is_none());
+        let numbers = numbers.map(|numbered| Numbered {
+            survey: numbered.survey.independent().clone(),
+            ..numbered.clone()
+        });
+        let (numbers, subsets) = (numbers.collect(), Vec::new());
+        Self { model: self.model.clone(), numbers, subsets, counts, independent: None }
     }
 
     /// Of the runs that are independent of each other, as far as is known: the first of each group, or all runs if there
@@ -163,24 +211,30 @@ impl Surveys {
 
     /// What is to be gathered next of each column of numbers.
     fn passes(&self) -> Vec<Option<Pass>> {
-        self.numbers.iter().map(|(_, survey)| survey.pass()).collect()
+        self.numbers.iter().map(|numbered| numbered.survey.pass()).collect()
     }
 
     /// What the passes gather of a block.
     fn gather(&self, passes: &[Option<Pass>], block: &Table) -> Vec<Option<Pass>> {
         let columns = self.numbers.par_iter().zip(passes);
-        let gather = |((name, _), empty): (&(String, Survey), &Option<Pass>)| {
+        let masks: Vec<Vec<bool>> = self.subsets.iter().map(|subset| subset.of(block)).collect();
+        let gather = |(numbered, empty): (&Numbered, &Option<Pass>)| {
             let mut pass = empty.clone()?;
-            pass.extend(block.numbers(name)?.of_runs(block.first()));
+            let first = block.first();
+            let numbers = block.numbers(&numbered.column)?.of_runs(first);
+            match numbered.subset.map(|place| &masks[place]) {
+                None => pass.extend(numbers),
+                Some(mask) => pass.extend(numbers.filter(|(run, _)| mask[(run - first) as usize])),
+            }
             Some(pass)
         };
         columns.map(gather).collect()
     }
 
     fn advance(&mut self, gathered: Vec<Option<Pass>>) {
-        self.numbers.par_iter_mut().zip(gathered).for_each(|((_, survey), pass)| {
+        self.numbers.par_iter_mut().zip(gathered).for_each(|(numbered, pass)| {
             if let Some(pass) = pass {
-                survey.advance(pass);
+                numbered.survey.advance(pass);
             }
         });
     }
@@ -200,8 +254,24 @@ impl Surveys {
     /// What a column of numbers looks like; none if there is no such column.
     #[must_use]
     pub fn column(&self, column: &str) -> Option<&Survey> {
-        let (_, survey) = self.numbers.iter().find(|(name, _)| name == column)?;
-        Some(survey)
+        self.survey(column, None)
+    }
+
+    /// What a column of numbers looks like in the runs of the subset in a place; none if it was not looked at.
+    #[must_use]
+    pub fn column_given(&self, subset: usize, column: &str) -> Option<&Survey> {
+        self.survey(column, Some(subset))
+    }
+
+    /// How many runs the subset in a place has, and how many of them failed.
+    #[must_use]
+    pub fn runs_given(&self, subset: usize) -> [u64; 2] {
+        self.counts.of_subsets.get(subset).copied().unwrap_or_default()
+    }
+
+    fn survey(&self, column: &str, subset: Option<usize>) -> Option<&Survey> {
+        let is_it = |numbered: &&Numbered| numbered.column == column && numbered.subset == subset;
+        self.numbers.iter().find(is_it).map(|numbered| &numbered.survey)
     }
 
     /// The kinds of texts in a column with how often each is there, in the order of the first runs that have
@@ -222,6 +292,13 @@ impl Surveys {
     pub fn failures(&self) -> Vec<(&str, u64)> {
         self.counts.failures.in_order()
     }
+}
+
+/// Runs of a block that are of a subset, and those of them that failed.
+fn counted(subset: &Subset, block: &Table) -> [u64; 2] {
+    let mask = subset.of(block);
+    let failures = block.failures().filter(|(run, _)| mask[(run - block.first()) as usize]);
+    [mask.iter().filter(|is_one| **is_one).count() as u64, failures.count() as u64]
 }
 
 fn take_up(whole: &mut [Option<Pass>], part: Vec<Option<Pass>>) {
@@ -269,6 +346,10 @@ impl Counts {
     fn merge(&mut self, other: Self) {
         self.runs += other.runs;
         self.failures.merge(&other.failures);
+        self.of_subsets.resize(self.of_subsets.len().max(other.of_subsets.len()), [0; 2]);
+        for (own, more) in self.of_subsets.iter_mut().zip(&other.of_subsets) {
+            *own = [own[0] + more[0], own[1] + more[1]];
+        }
         for (column, tally) in &other.texts {
             self.texts.entry(column.clone()).or_default().merge(tally);
         }

@@ -7,7 +7,7 @@ use gyradius_statistics::tail;
 
 use crate::Drawing;
 use crate::axis::Tick;
-use crate::field::{ACROSS, Across, Field, HIGH, band_pen, limit_pen, line_pen, required_pen};
+use crate::field::{ACROSS, Across, Field, HIGH, band_pen, line_pen, required_pen};
 use crate::lines::marker;
 use crate::style;
 use crate::svg::{Svg, px};
@@ -65,7 +65,6 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
             swatch.path(&pen, "M0 -6h26v12h-26z");
         },
     );
-    field.entry("limit", |swatch| swatch.path(&limit_pen(), "M13 -7v14"));
     if !required.is_empty() {
         field.entry(format!("required: {probability}"), |swatch| {
             swatch.path(&required_pen(), "M0 0h26");

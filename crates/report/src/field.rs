@@ -103,7 +103,8 @@ impl Field {
     /// The vertical line of a limit, with its name above the plot, before or after it, where there is room.
     pub(crate) fn limit(&mut self, x: f64, name: &str) {
         let x = x.clamp(0.0, ACROSS);
-        self.plot.path(&limit_pen(), &format!("M{} 0v{}", px(x), px(HIGH)));
+        let pen = format!("stroke=\"{}\" stroke-width=\"1.6\"", style::INK);
+        self.plot.path(&pen, &format!("M{} 0v{}", px(x), px(HIGH)));
         let half = 0.5 * width(name, TICK.size);
         let at = x.clamp(half - LABELS, ACROSS - half);
         self.plot.text(at, -6.0, Look::new(TICK.size, style::INK).at(Anchor::Middle), name);
@@ -124,11 +125,6 @@ impl Field {
         }
         svg.finish_within(WIDEST, (WIDTH, y + 8.0), title, description)
     }
-}
-
-/// The pen of limits.
-pub(crate) fn limit_pen() -> String {
-    format!("stroke=\"{}\" stroke-width=\"1.6\"", style::INK)
 }
 
 /// The pen of what is required.

@@ -4,7 +4,7 @@ use gyradius_campaign::{ColumnSummary, Judgement};
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt, ops::Range};
 
-use crate::{Drivers, Fleet, until::Ended};
+use crate::{Drivers, Fleet, alerts::Alert, until::Ended};
 
 /// What a summary says first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,6 +31,9 @@ pub struct Head {
     /// What ended the runs, if they were not done to a number that was stated before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) ended: Option<Ended>,
+    /// What a reader should know before the results.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) alerts: Vec<Alert>,
     /// What the runs say of the requirements, model by model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) requirements: Vec<Judged>,

@@ -14,6 +14,7 @@
 //! # Ok::<(), gyradius_study::StudyError>(())
 //! ```
 
+mod alerts;
 mod any;
 mod body;
 mod claim;
@@ -27,6 +28,7 @@ mod drawn;
 mod drivers;
 mod error;
 mod failure;
+mod faults;
 mod figures_of_study;
 mod fleet;
 mod fragment;

@@ -271,6 +271,11 @@ impl Quantity {
         found
     }
 
+    /// Whether the report shows it as an outcome.
+    pub(crate) fn is_told(self) -> bool {
+        matches!(self.declaration().shown, Shown::Behaviour(_) | Shown::Parting(_))
+    }
+
     /// Name of the column in the run table, with its unit.
     #[must_use]
     pub fn column(self) -> Cow<'static, str> {

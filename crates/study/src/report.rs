@@ -10,10 +10,11 @@ use nalgebra::{Unit, Vector3};
 use rayon::prelude::*;
 
 use crate::{
+    alerts,
     body::{Body, Entry},
     claim::Verdict,
     claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED},
-    decisions, figures_of_study,
+    decisions, faults, figures_of_study,
     head::Head,
     quantity::Quantity,
     scenario::{Comparison, Each, Scenario},
@@ -51,9 +52,11 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     let title = format!("gyradius study: {}", summary.head.scenario);
     let document = Document::new(title, "Separation under inertia uncertainty", lead);
     noting_what_is_missing(document, &summary.head)
+        .sections(alerts::section(&summary.head.alerts))
         .sections(decisions::sections(&summary.head))
         .section(results(summary))
         .section(parting(scenario, summary))
+        .sections(faults(summary))
         .section(claims(summary))
         .sections(ratios(summary))
         .sections(deviations(scenario, summary))
@@ -94,17 +97,13 @@ fn results(summary: &Summary) -> Section {
             )
             .numbers_of(&heading, "p95", of(|s| number(s.p95, 4, interval(s.p95_interval, 4))));
     }
-    let failures = summary.models.iter().filter(|m| m.failed > 0).map(|model| {
-        let (name, failed, of) = (&model.name, model.failed, summary.head.runs_per_model);
-        let kinds = model.failures.iter().take(5);
-        let kinds: String = kinds.map(|(reason, count)| format!("{count} × {reason}; ")).collect();
-        Text::default()
-            .strong(format!("{name}: {failed} of {of} runs failed"))
-            .plain(format!(" and are left out: {kinds}see "))
-            .code("status")
-            .plain(" in the run table.")
-    });
-    Section::new("What the payload does").table(table).warnings(failures)
+    Section::new("What the payload does").table(table)
+}
+
+fn faults(summary: &Summary) -> Option<Section> {
+    let models = summary.models.iter();
+    let models: Vec<_> = models.map(|m| (m.name.as_str(), m.faults.as_slice())).collect();
+    faults::section(&models)
 }
 
 fn sample(model: &ModelSummary, quantity: Quantity) -> Option<&SampleSummary> {
@@ -276,8 +275,8 @@ fn ratios(summary: &Summary) -> Option<Section> {
     }
     let section = Section::new("Variation under the naive models").paragraph(
         "Deviation under the naive model over deviation under the physical one. The interval holds for \
-         distributions of any shape whose kurtosis the runs show; where the kurtosis is above 10 it covers the \
-         true ratio less often than it says.",
+         distributions of any shape whose kurtosis the runs show; where the tails are heavy, which is told before \
+         the results, it covers the true ratio less often than it says.",
     );
     (!summary.comparisons.is_empty()).then(|| section.table(table))
 }

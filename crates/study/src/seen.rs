@@ -6,7 +6,14 @@ use nalgebra::UnitQuaternion;
 use std::sync::Mutex;
 
 use crate::{
-    Fleet, body::Body, column::attitudes, quantity::Quantity, scenario::Scenario, subject::LookAt,
+    Fleet,
+    alerts::near_boundary,
+    body::Body,
+    column::attitudes,
+    faults::{Faults, GivenFault},
+    quantity::Quantity,
+    scenario::Scenario,
+    subject::LookAt,
 };
 
 /// Attitudes that are kept, at most: of every so manieth run.
@@ -20,8 +27,12 @@ pub(crate) struct Seen {
     pub(crate) drawn: [u64; 2],
     /// How many of them are in the half sphere away from the mean, where that is known.
     pub(crate) far: [Option<u64>; 2],
+    /// How many inertias of payload and stage are near the boundary of what is realizable, and how many there are.
+    pub(crate) near_boundary: [[u64; 2]; 2],
     /// Attitudes of the payload, of some runs that are evenly spaced, in their order.
     pub(crate) attitudes: Vec<UnitQuaternion<f64>>,
+    /// What happens given each fault.
+    pub(crate) faults: Vec<GivenFault>,
 }
 
 /// What is seen of the runs of a model, block by block, while they are done.
@@ -29,6 +40,7 @@ pub(crate) struct Seen {
 pub(crate) struct Looking<'a> {
     scenario: &'a Scenario,
     columns: FirstLook,
+    faults: Faults<'a>,
     blocks: Mutex<Vec<Drawn>>,
 }
 
@@ -38,15 +50,19 @@ struct Drawn {
     first: u64,
     drawn: [u64; 2],
     far: [Option<u64>; 2],
+    near_boundary: [[u64; 2]; 2],
     kept: Vec<UnitQuaternion<f64>>,
 }
 
 impl<'a> Looking<'a> {
     /// At the runs of a model of a scenario, in these columns.
     pub(crate) fn new(scenario: &'a Scenario, model: &str, columns: &[Column]) -> Self {
-        let columns = FirstLook::new(model, columns, scenario.runs(), Confidence::default())
+        let (runs, confidence) = (scenario.runs(), Confidence::default());
+        let columns = FirstLook::new(model, columns, runs, confidence)
             .in_groups_of(scenario.sharing().map_or(1, Fleet::flights));
-        Self { scenario, columns, blocks: Mutex::default() }
+        let faults = Faults::new(scenario, model);
+        let columns = faults.watched_by(columns, runs, confidence);
+        Self { scenario, columns, faults, blocks: Mutex::default() }
     }
 
     /// What is seen once all blocks have been looked at; they are read again.
@@ -60,14 +76,18 @@ impl<'a> Looking<'a> {
         let far = [0, 1].map(|body: usize| {
             known(body).then(|| sum(&|block| block.far[body].unwrap_or_default()))
         });
+        let near = |body: usize| [0, 1].map(|i: usize| sum(&|block| block.near_boundary[body][i]));
+        let near_boundary = [near(0), near(1)];
         let attitudes = blocks.into_iter().flat_map(|block| block.kept).collect();
-        Ok(Seen { surveys, drawn, far, attitudes })
+        let faults = self.faults.finish(&surveys, Confidence::default());
+        Ok(Seen { surveys, drawn, far, near_boundary, attitudes, faults })
     }
 }
 
 impl LookAt for Looking<'_> {
     fn look(&self, block: &Table) {
         self.columns.look(block);
+        self.faults.look(block);
         let stride = self.scenario.runs().div_ceil(ATTITUDES).max(1);
         let drawn = Drawn::new(self.scenario, block, stride);
         if let Ok(mut blocks) = self.blocks.lock() {
@@ -105,6 +125,7 @@ impl Drawn {
             first: block.first(),
             drawn: [0, 1].map(|body: usize| all[body].len() as u64),
             far,
+            near_boundary: Body::BOTH.map(|body| near_boundary(block, body)),
             kept: kept.filter(|(run, _)| run.is_multiple_of(stride)).map(|(_, q)| *q).collect(),
         }
     }

@@ -142,6 +142,7 @@ pub(crate) fn head_of(scenario: &impl Subject, columns: &[Column]) -> Head {
         done_again: 0,
         ended: None,
         drivers: Vec::new(),
+        alerts: Vec::new(),
         requirements: Vec::new(),
         confidence: Confidence::default().level(),
         columns: columns.iter().map(Column::summary).collect(),

@@ -9,10 +9,12 @@ use std::borrow::Cow;
 
 use crate::{
     Fleet,
+    alerts::Alert,
     body::Body,
     claim::Claim,
     column::{CLEARANCE_NOTE, REALIZABLE},
     compare::Section,
+    faults::GivenFault,
     head::Head,
     model::Model,
     quantity::Quantity,
@@ -70,6 +72,9 @@ pub(crate) struct ModelSummary {
     /// What else was drawn, in all runs, those that failed too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) dispersed: Vec<DispersedSummary>,
+    /// What happens given each fault, where loads may fail or be late.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) faults: Vec<GivenFault>,
 }
 
 /// A dispersed quantity: its law, and what one model drew of it.
@@ -206,8 +211,10 @@ impl Summary {
                 }
             })
             .collect();
+        let alerts = models.iter().zip(runs).flat_map(|(model, seen)| model.alerts(scenario, seen));
+        let head = Head { alerts: alerts.collect(), ..head_of(scenario, columns) };
         Ok(Self {
-            head: head_of(scenario, columns),
+            head,
             nominal,
             models,
             comparisons,
@@ -327,7 +334,24 @@ impl ModelSummary {
             releases: Releases::new(&seen.surveys, scenario.outlines().is_some(), confidence)?,
             quantities: all(scenario).map(|q| QuantitySummary::new(q, seen, confidence)).collect(),
             dispersed: dispersed(scenario, seen),
+            faults: seen.faults.clone(),
         })
+    }
+
+    /// What a reader should know of it first.
+    fn alerts(&self, scenario: &Scenario, seen: &Seen) -> Vec<Alert> {
+        let name = &self.name;
+        let failed = Alert::failed(name, seen.runs(), &self.failures);
+        let unmoved = scenario.dispersions().all().iter().filter_map(|dispersed| {
+            let column = &dispersed.column;
+            Alert::unmoved(name, column, seen.surveys.column(column)?)
+        });
+        let outcomes = self.quantities.iter().filter(|q| q.quantity.is_told());
+        let heavy = outcomes.map(|q| (q.quantity.label().into_owned(), &q.sample));
+        let near = Body::BOTH.into_iter().zip(seen.near_boundary);
+        let near = near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body, near, of));
+        let first = failed.into_iter().chain(unmoved);
+        first.chain(Alert::heavy_tails(name, heavy)).chain(near).collect()
     }
 
     pub(crate) fn quantity(&self, quantity: Quantity) -> Option<&QuantitySummary> {

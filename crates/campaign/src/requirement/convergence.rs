@@ -7,9 +7,9 @@ use std::sync::LazyLock;
 /// Numbers of runs that are told of, at most.
 const TOLD: usize = 30;
 
-/// After so many runs is counted: twelve times a decade, from ten on.
+/// After so many runs is counted: nine times a decade, from ten on.
 static ENDS: LazyLock<Vec<u64>> = LazyLock::new(|| {
-    let ends = (12..).map(|i| libm::exp10(f64::from(i) / 12.0).round() as u64);
+    let ends = (9..).map(|i| libm::exp10(f64::from(i) / 9.0).round() as u64);
     ends.take_while(|end| *end < Proportion::MAX_TRIALS).collect()
 });
 
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn numbers_of_runs_are_even_on_a_logarithmic_axis() {
-        assert_eq!(ENDS[..13], [10, 12, 15, 18, 22, 26, 32, 38, 46, 56, 68, 83, 100]);
+        assert_eq!(ENDS[..10], [10, 13, 17, 22, 28, 36, 46, 60, 77, 100]);
         for n in [11_u64, 2000, 1_000_000] {
             let mut all = Prefixes::default();
             (0..n).for_each(|run| all.add(run, false));

@@ -191,6 +191,16 @@ impl Requirement {
     pub fn is_kept(&self, numbers: &[Option<f64>]) -> bool {
         self.quantity.of(numbers).is_some_and(|x| self.bound.is_kept(x))
     }
+
+    /// Whether a run with these numbers fails it; none if it is left out, for it has no number.
+    #[must_use]
+    pub fn fails(&self, numbers: &[Option<f64>]) -> Option<bool> {
+        match (self.quantity.of(numbers), self.failed_runs) {
+            (Some(x), _) => Some(!self.bound.is_kept(x)),
+            (None, FailedRuns::Against) => Some(true),
+            (None, FailedRuns::LeftOut) => None,
+        }
+    }
 }
 
 impl Bound {

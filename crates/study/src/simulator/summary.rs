@@ -16,7 +16,9 @@ use std::{
 
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
 use crate::{
-    Fleet, Notice, Options, ScenarioError, Study, StudyError, decisions,
+    Fleet, Notice, Options, ScenarioError, Study, StudyError,
+    alerts::{self, Alert},
+    decisions,
     groups::Groups,
     head::Head,
     report,
@@ -61,6 +63,20 @@ impl SimulatorScenario {
         say: &dyn Fn(Notice),
     ) -> Result<Study<SimulatorSummary>, StudyError> {
         carry_out(self, options, progress, say)
+    }
+
+    /// What a reader should know first of the model in a place.
+    fn alerts(&self, overview: &Overview, place: usize, surveys: &Surveys) -> Vec<Alert> {
+        let name = surveys.model();
+        let unmoved = self.dispersed().all.iter().filter_map(|dispersed| {
+            let column = &dispersed.column;
+            Alert::unmoved(name, column, surveys.column(column)?)
+        });
+        let is_output = |column: &str| self.outputs().iter().any(|o| o.name() == column);
+        let outputs = overview.quantities().filter(|(column, ..)| is_output(column));
+        let heavy = outputs
+            .filter_map(|(column, _, samples)| Some((column.to_owned(), samples.get(place)?)));
+        unmoved.chain(Alert::heavy_tails(name, heavy)).collect()
     }
 
     /// The runs of the model in a place.
@@ -222,11 +238,11 @@ impl Subject for SimulatorScenario {
         let (outputs, inputs): (Vec<_>, Vec<_>) = columns.iter().partition(is_output);
         let shown: Vec<Column> = outputs.into_iter().chain(inputs).cloned().collect();
         let title = format!("gyradius campaign: {}", self.name());
-        Ok(SimulatorSummary {
-            head: head_of(self, columns),
-            command: self.command().to_vec(),
-            overview: Overview::of_surveys(&title, &shown, &surveys)?,
-        })
+        let overview = Overview::of_surveys(&title, &shown, &surveys)?;
+        let alerts = surveys.iter().enumerate();
+        let alerts = alerts.flat_map(|(place, surveys)| self.alerts(&overview, place, surveys));
+        let head = Head { alerts: alerts.collect(), ..head_of(self, columns) };
+        Ok(SimulatorSummary { head, command: self.command().to_vec(), overview })
     }
 
     fn report_files(&self) -> Vec<String> {
@@ -240,7 +256,9 @@ impl Subject for SimulatorScenario {
     }
 
     fn report(&self, summary: &SimulatorSummary) -> Document {
-        let document = summary.overview.document().led_by(decisions::sections(&summary.head));
+        let first = alerts::section(&summary.head.alerts).into_iter();
+        let first = first.chain(decisions::sections(&summary.head));
+        let document = summary.overview.document().led_by(first);
         let document = report::noting_vehicles(document, &summary.head);
         let inputs = report::inputs(&summary.head, &self.kept(), self.to_toml());
         report::noting_what_is_missing(document, &summary.head).section(inputs)

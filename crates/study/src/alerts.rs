@@ -1,0 +1,163 @@
+//! What a reader should know before the results: only what is so.
+
+use gyradius_campaign::{SampleSummary, Table};
+use gyradius_report::{Section, Text, significant};
+use gyradius_statistics::Survey;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    body::{Body, Entry},
+    quantity::Quantity,
+};
+
+/// A kurtosis above which tails are heavy: intervals of standard deviations then cover less often than they say.
+pub(crate) const HEAVY: f64 = 10.0;
+/// A share of the trace: the margin of a body that is near the boundary of what is realizable.
+pub(crate) const NEAR: f64 = 0.01;
+/// A share of the drawn bodies: more of them must be near the boundary, that it is told.
+const MANY: f64 = 0.001;
+
+/// What a reader should know before the results. Each is told only if it is so.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "alert")]
+pub(crate) enum Alert {
+    /// Runs failed.
+    Failed {
+        model: String,
+        failed: u64,
+        runs: u64,
+        /// Kinds of failure, with how often.
+        kinds: Vec<(String, u64)>,
+    },
+    /// What is declared as dispersed is the same in all runs.
+    Unmoved { model: String, column: String, value: f64, runs: u64 },
+    /// The fourth moment of outcomes is large.
+    HeavyTails {
+        model: String,
+        /// Labels of outcomes, with their kurtosis.
+        outcomes: Vec<(String, f64)>,
+    },
+    /// Many of the bodies that were drawn are hardly realizable, or not.
+    NearBoundary { model: String, body: String, near: u64, drawn: u64, margin: f64 },
+}
+
+impl Alert {
+    /// That runs of a model failed, if any did.
+    pub(crate) fn failed(model: &str, runs: u64, kinds: &[(String, u64)]) -> Option<Self> {
+        let failed = kinds.iter().map(|(_, count)| count).sum();
+        let (model, kinds) = (model.to_owned(), kinds.to_vec());
+        (failed > 0).then_some(Self::Failed { model, failed, runs, kinds })
+    }
+
+    /// That a column which is declared as dispersed is the same in all of several runs.
+    pub(crate) fn unmoved(model: &str, column: &str, survey: &Survey) -> Option<Self> {
+        let (value, runs) = (survey.minimum()?.0, survey.n());
+        let is_constant = runs > 1 && survey.maximum()?.0 == value;
+        let (model, column) = (model.to_owned(), column.to_owned());
+        is_constant.then_some(Self::Unmoved { model, column, value, runs })
+    }
+
+    /// That outcomes, by their labels, have heavy tails.
+    pub(crate) fn heavy_tails<'a>(
+        model: &str,
+        outcomes: impl IntoIterator<Item = (String, &'a SampleSummary)>,
+    ) -> Option<Self> {
+        let heavy = |sample: &SampleSummary| sample.kurtosis.filter(|kurtosis| *kurtosis > HEAVY);
+        let outcomes = outcomes.into_iter();
+        let outcomes: Vec<(String, f64)> =
+            outcomes.filter_map(|(label, sample)| Some((label, heavy(sample)?))).collect();
+        let model = model.to_owned();
+        (!outcomes.is_empty()).then_some(Self::HeavyTails { model, outcomes })
+    }
+
+    /// That so many of the drawn bodies are near the boundary of what is realizable, if these are many.
+    pub(crate) fn near_boundary(model: &str, body: Body, near: u64, drawn: u64) -> Option<Self> {
+        let (model, body) = (model.to_owned(), body.name().to_owned());
+        (near as f64 > MANY * drawn as f64).then_some(Self::NearBoundary {
+            model,
+            body,
+            near,
+            drawn,
+            margin: NEAR,
+        })
+    }
+
+    fn text(&self) -> Text {
+        match self {
+            Self::Failed { model, failed, runs, kinds } => {
+                let kinds = kinds.iter().take(5);
+                let kinds: String =
+                    kinds.map(|(reason, count)| format!("{count} × {reason}; ")).collect();
+                Text::default()
+                    .strong(format!("{model}: {failed} of {runs} runs failed"))
+                    .plain(format!(" and are left out of means, deviations and percentiles: {kinds}see "))
+                    .code("status")
+                    .plain(" in the run table.")
+            }
+            Self::Unmoved { model, column, value, runs } => Text::default()
+                .strong(format!("{model}: a dispersion moved nothing"))
+                .plain(": ")
+                .code(column)
+                .plain(format!(
+                    " is declared as dispersed, and is {} in all {runs} runs. The results say nothing of what it does.",
+                    significant(*value, 5)
+                )),
+            Self::HeavyTails { model, outcomes } => {
+                let said: Vec<String> = outcomes
+                    .iter()
+                    .map(|(label, kurtosis)| format!("{label} ({})", significant(*kurtosis, 3)))
+                    .collect();
+                Text::default().strong(format!("{model}: heavy tails")).plain(format!(
+                    ". A few runs lie far from all others in {}; in brackets the kurtosis, which is 3 for a normal \
+                     distribution. Above {HEAVY}, the interval of a standard deviation covers the true one less often than \
+                     it says: read percentiles and the worst runs instead.",
+                    said.join(", ")
+                ))
+            }
+            Self::NearBoundary { model, body, near, drawn, margin } => {
+                let share = significant(100.0 * *near as f64 / *drawn as f64, 3);
+                Text::default()
+                    .strong(format!("{model}: {share} % of the drawn inertias of the {body} are near the boundary"))
+                    .plain(format!(
+                        " of what a body can have, or beyond it: their smallest second moment is less than {} % of the \
+                         trace of the inertia matrix ({near} of {drawn}). Is the {body} so nearly a plate, or is its \
+                         uncertainty too large?",
+                        100.0 * margin
+                    ))
+            }
+        }
+    }
+}
+
+/// What a reader should know first, if there is anything.
+pub(crate) fn section(alerts: &[Alert]) -> Option<Section> {
+    let texts = alerts.iter().map(Alert::text);
+    (!alerts.is_empty()).then(|| Section::new("Before you read the results").warnings(texts))
+}
+
+/// How many of the inertias of a body in a run table have a margin below [`NEAR`], and how many there are. The margin is the smallest
+/// second moment over the trace, and every margin is above a number if ½ tr(I)·1 − I less that share of the trace is positive definite.
+pub(crate) fn near_boundary(table: &Table, body: Body) -> [u64; 2] {
+    let columns = Entry::ALL.map(|entry| table.numbers(&Quantity::entry(body, entry).column()));
+    let inertia = |place: usize| {
+        let mut of_run = [0.0; 6];
+        for (entry, numbers) in of_run.iter_mut().zip(&columns) {
+            *entry = (*numbers)?.get(place)?;
+        }
+        Some(of_run)
+    };
+    let mut counts = [0; 2];
+    for [i11, i22, i33, i12, i13, i23] in (0..table.len()).filter_map(inertia) {
+        let trace = i11 + i22 + i33;
+        let most = (0.5 - NEAR) * trace;
+        let [a, b, c] = [most - i11, most - i22, most - i33];
+        let minor = a * b - i12 * i12;
+        let determinant = c * minor - a * i23 * i23 - b * i13 * i13 - 2.0 * i12 * i13 * i23;
+        let is_far = a > 0.0 && minor > 0.0 && determinant > 0.0;
+        counts = [counts[0] + u64::from(!is_far), counts[1] + 1];
+    }
+    counts
+}
+
+#[cfg(test)]
+mod tests;

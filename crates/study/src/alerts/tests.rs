@@ -1,0 +1,136 @@
+//! Alerts held against what the run tables say, and an ordinary scenario, which has none.
+
+use super::*;
+use crate::{
+    Scenario, Summary,
+    model::Model,
+    study::{all_runs, judged},
+    subject::Subject,
+};
+use gyradius_campaign::Runs;
+use gyradius_inertia::{InertiaMatrix, RealizabilityReport};
+use gyradius_statistics::Confidence;
+use proptest::prelude::*;
+
+fn study(scenario: &Scenario) -> (Summary, Vec<Runs>) {
+    let models = Model::all(scenario).unwrap();
+    (judged(scenario, &models), all_runs(scenario, &models))
+}
+
+/// A satellite of three tonnes on a stage, with four like springs, of which little is uncertain.
+fn ordinary(runs: u64, spread: f64, springs: &str) -> Scenario {
+    let body = |name: &str, mass: f64, inertia: f64, z: f64, factor: f64| {
+        let matrix = [[inertia, 0.0, 0.0], [0.0, factor * inertia, 0.0], [0.0, 0.0, 0.9 * inertia]];
+        let variance = [spread * spread * inertia * 0.4; 3];
+        format!(
+            "[{name}]\nmass_kg = {mass:?}\ninertia_kg_m2 = {matrix:?}\nposition_m = [0.0, 0.0, {z:?}]\n\
+             angular_velocity_rad_per_s = [0.0, 0.0, 0.05]\n\
+             [{name}.dispersion]\naxes = \"fixed\"\nroot_second_moment_variance_kg_m2 = {variance:?}\n"
+        )
+    };
+    let bodies =
+        body("payload", 3000.0, 2000.0, 1.0, 1.1) + &body("stage", 2000.0, 3000.0, -1.0, 1.05);
+    let springs: String = [[0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]]
+        .map(|[x, y]| {
+            format!(
+                "[[springs]]\nstiffness_n_per_m = 2e4\nstroke_m = 0.05\npayload_point_m = [{x:?}, {y:?}, -0.9]\n\
+                 stage_point_m = [{x:?}, {y:?}, 0.9]\ndispersion = {{ {springs} }}\n"
+            )
+        })
+        .concat();
+    let text = format!(
+        "name = \"ordinary\"\nruns = {runs}\nspin_axis = [0.0, 0.0, 1.0]\n{bodies}{springs}\
+         [[models]]\nname = \"principal\"\nlaw = \"principal\"\naxes = \"fixed\"\n"
+    );
+    Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+const NORMAL: &str = "stiffness_n_per_m = { law = \"normal\", sigma = 200.0 }";
+
+#[test]
+fn an_ordinary_scenario_has_no_alert() {
+    let scenario = ordinary(2000, 0.05, NORMAL);
+    let (summary, _) = study(&scenario);
+    assert_eq!(summary.head().alerts, []);
+    assert!(!scenario.report(&summary).html().contains("Before you read the results"));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Scenarios with little and much uncertainty, with faults of any probability: each alert is there exactly if the run table
+    /// says so, and the page has it before everything else.
+    #[test]
+    fn alerts_are_what_the_tables_say(
+        runs in 2..400_u64,
+        spread in prop::sample::select(vec![0.02, 0.3, 1.0]),
+        springs in prop::sample::select(vec![
+            NORMAL.to_owned(),
+            "failure_probability = 0.0".to_owned(),
+            format!("{NORMAL}, failure_probability = 0.01"),
+            "failure_probability = 1.0".to_owned(),
+            "stroke_m = { law = \"normal\", sigma = 0.02 }, late_probability = 0.05, start_s = { law = \"uniform\", low = 0.0, high = 0.1 }".to_owned(),
+        ]),
+    ) {
+        let scenario = ordinary(runs, spread, &springs);
+        let (summary, tables) = study(&scenario);
+        let table = tables[0].table().unwrap();
+        let mut expected: Vec<(&str, String)> = Vec::new();
+        let failed = table.failures().len() as u64;
+        if failed > 0 {
+            expected.push(("failed", format!("{failed} of {runs}")));
+        }
+        for dispersed in scenario.dispersions().all() {
+            let values = table.values(&dispersed.column).unwrap();
+            if values.len() > 1 && values.iter().all(|x| *x == values[0]) {
+                expected.push(("unmoved", dispersed.column.clone()));
+            }
+        }
+        let outcomes = Quantity::of(scenario.separation()).filter(|q| !q.is_drawn());
+        let shown = Quantity::behaviour().into_iter().chain(Quantity::parting());
+        let shown: Vec<Quantity> = shown.collect();
+        let heavy: Vec<String> = outcomes
+            .filter(|q| shown.contains(q))
+            .filter(|q| SampleSummary::new(&q.in_table(&table), Confidence::default()).kurtosis.is_some_and(|k| k > 10.0))
+            .map(|q| q.label().into_owned())
+            .collect();
+        if !heavy.is_empty() {
+            expected.push(("heavy", heavy.len().to_string()));
+        }
+        for body in Body::BOTH {
+            let entries = Entry::ALL.map(|entry| Quantity::entry(body, entry));
+            let near = table.rows().filter(|row| {
+                let [a, b, c, d, e, f] = entries.map(|entry| entry.in_row(row).unwrap());
+                let matrix = InertiaMatrix::from_entries([a, b, c], [d, e, f]).unwrap();
+                RealizabilityReport::of(matrix.matrix()).margin().unwrap() < 0.01
+            });
+            let near = near.count() as u64;
+            prop_assert_eq!(near_boundary(&table, body), [near, runs]);
+            if near as f64 > 0.001 * runs as f64 {
+                expected.push(("near", format!("{near} {}", body.name())));
+            }
+        }
+        let told = summary.head().alerts.iter().map(|alert| match alert {
+            Alert::Failed { failed, runs, kinds, .. } => {
+                assert_eq!(kinds.iter().map(|(_, count)| count).sum::<u64>(), *failed);
+                ("failed", format!("{failed} of {runs}"))
+            }
+            Alert::Unmoved { column, .. } => ("unmoved", column.clone()),
+            Alert::HeavyTails { outcomes, .. } => {
+                assert!(outcomes.iter().all(|(label, _)| heavy.contains(label)), "{outcomes:?} {heavy:?}");
+                ("heavy", outcomes.len().to_string())
+            }
+            Alert::NearBoundary { near, body, .. } => ("near", format!("{near} {body}")),
+        });
+        prop_assert_eq!(told.collect::<Vec<_>>(), expected);
+        let written = serde_json::to_string(&summary).unwrap();
+        let read: Summary = serde_json::from_str(&written).unwrap();
+        prop_assert_eq!(&read.head().alerts, &summary.head().alerts);
+        let page = scenario.report(&read).markdown();
+        let place = page.find("Before you read the results");
+        prop_assert_eq!(place.is_some(), !summary.head().alerts.is_empty());
+        if let Some(place) = place {
+            prop_assert!(place < page.find("What the payload does").unwrap());
+        }
+    }
+}

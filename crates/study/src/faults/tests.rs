@@ -1,0 +1,105 @@
+//! What happens given each fault, held against counting in the run table.
+
+use super::*;
+use crate::{
+    model::Model,
+    study::{all_runs, judged},
+};
+use proptest::prelude::*;
+use std::fmt::Write;
+
+/// The built-in study with faults of these probabilities of its springs, none where there is none.
+fn scenario(runs: u64, faults: &[[Option<f64>; 2]], requirements: &str) -> Scenario {
+    let paper = Scenario::peck_2003().unwrap().to_toml();
+    let paper = paper.replacen("runs = 2000", &format!("runs = {runs}"), 1);
+    let mut parts = paper.split("[[springs]]");
+    let mut text = parts.next().unwrap().to_owned();
+    for (part, [fails, late]) in parts.zip(faults) {
+        let mut dispersion = "\n[springs.dispersion]\n".to_owned();
+        for (key, p) in [("failure", fails), ("late", late)] {
+            if let Some(p) = p {
+                write!(dispersion, "{key}_probability = {p:?}\n").unwrap();
+            }
+        }
+        if late.is_some() {
+            dispersion += "start_s = { law = \"uniform\", low = 0.0, high = 0.02 }\n";
+        }
+        let (own, rest) = part.split_once("\n\n").unwrap_or((part, ""));
+        let dispersion = if fails.is_some() || late.is_some() { dispersion } else { String::new() };
+        write!(text, "[[springs]]{own}\n{dispersion}\n{rest}").unwrap();
+    }
+    let text = text.replacen("[[comparisons]]", &format!("{requirements}\n[[comparisons]]"), 1);
+    Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+const REQUIREMENTS: &str = "[[requirements]]\nname = \"slow\"\nquantity = \"nutation_deg\"\nat_most = 7.0\n\
+    probability = 0.9\nconfidence = 0.9\n[[requirements]]\nname = \"fast\"\nquantity = \"relative_speed_m_per_s\"\n\
+    at_least = 0.9\nprobability = 0.9\nconfidence = 0.9\nmodel = \"naive\"\n";
+
+fn probability() -> impl Strategy<Value = Option<f64>> {
+    prop_oneof![Just(None), (0.0..0.7).prop_map(Some), Just(Some(0.0)), Just(Some(1.0))]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// Any subset of faults, of any probabilities: runs, failures, outcomes and requirements are those of counting in the table.
+    #[test]
+    fn given_faults_are_those_of_counting(faults in prop::collection::vec([probability(), probability()], 4), runs in 20..120_u64) {
+        let scenario = scenario(runs, &faults, REQUIREMENTS);
+        let models = Model::all(&scenario).unwrap();
+        let summary = judged(&scenario, &models);
+        let possible = faults.iter().flatten().flatten().count();
+        for (model, runs) in summary.models.iter().zip(all_runs(&scenario, &models)) {
+            if possible == 0 {
+                prop_assert!(model.faults.is_empty());
+                continue;
+            }
+            prop_assert_eq!(model.faults.len(), possible + 1);
+            let table = runs.table().unwrap();
+            let columns: Vec<String> = (1..=4)
+                .flat_map(|spring| ["late", "failure"].map(|what| format!("spring_{spring}_{what}")))
+                .filter(|column| table.numbers(column).is_some())
+                .collect();
+            for (place, given) in model.faults.iter().enumerate() {
+                let there = |row: &gyradius_campaign::Row<'_>, column: &str| row.number(column) == Some(1.0);
+                let mut rows: Vec<_> = table.rows().collect();
+                rows.retain(|row| match place.checked_sub(1) {
+                    Some(fault) => there(row, &columns[fault]),
+                    None => columns.iter().all(|column| !there(row, column)),
+                });
+                match place.checked_sub(1).map(|fault| columns[fault].split('_').collect::<Vec<_>>()) {
+                    Some(words) => {
+                        let what = if words[2] == "late" { "is late" } else { "fails" };
+                        prop_assert_eq!(given.fault.clone(), Some(format!("spring {} {what}", words[1])));
+                    }
+                    None => prop_assert_eq!(&given.fault, &None),
+                }
+                prop_assert_eq!(given.runs, rows.len() as u64);
+                prop_assert_eq!(given.failed, rows.iter().filter(|row| row.failure().is_some()).count() as u64);
+                for quantity in OUTCOMES {
+                    let values: Vec<f64> = rows.iter().filter_map(|row| quantity.in_row(row)).collect();
+                    let expected = SampleSummary::new(&values, Confidence::default());
+                    prop_assert_eq!(given.outcome(quantity).unwrap().mean, expected.mean);
+                    prop_assert_eq!(given.outcome(quantity).unwrap(), &expected);
+                }
+                let own: &[_] = if model.name == "naive" { &["slow", "fast"] } else { &["slow"] };
+                let names: Vec<&str> = given.requirements.iter().map(|f| f.requirement.as_str()).collect();
+                prop_assert_eq!(names, own);
+                for failing in &given.requirements {
+                    let keeps = |row: &&gyradius_campaign::Row<'_>| match failing.requirement.as_str() {
+                        "slow" => row.number("nutation_deg").is_some_and(|x| x <= 7.0),
+                        _ => row.number("relative_speed_m_per_s").is_some_and(|x| x >= 0.9),
+                    };
+                    prop_assert_eq!(failing.counted, rows.len() as u64);
+                    prop_assert_eq!(failing.failures, (rows.len() - rows.iter().filter(keeps).count()) as u64);
+                }
+            }
+        }
+        let models: Vec<_> = summary.models.iter().map(|m| (m.name.as_str(), m.faults.as_slice())).collect();
+        prop_assert_eq!(section(&models).is_some(), possible > 0);
+        let written = serde_json::to_string(&summary).unwrap();
+        let read: crate::Summary = serde_json::from_str(&written).unwrap();
+        prop_assert!(read.models.iter().zip(&summary.models).all(|(a, b)| a.faults.len() == b.faults.len()));
+    }
+}
