@@ -43,6 +43,16 @@ impl Units {
         if k < -300 { x * 1e300 * power(-k - 300) } else { shift(x, -k) }
     }
 
+    /// The value that is `u` in these units, to a thousandth of `step`, which is in them too.
+    pub(crate) fn back(self, u: f64, step: f64) -> f64 {
+        let x = self.base + shift(u, self.exponent);
+        let decimals = 3 - i64::from(order(step)) - i64::from(self.exponent);
+        match usize::try_from(decimals) {
+            Ok(decimals) if decimals < 300 => format!("{x:.decimals$}").parse().unwrap_or(x),
+            _ => x,
+        }
+    }
+
     /// What to write beside an axis labelled in these units.
     pub(crate) fn note(self) -> String {
         let exponent = times(self.exponent);
@@ -222,6 +232,10 @@ mod tests {
             assert_eq!(units.note(), note);
             for x in [lower, upper] {
                 assert!(units.of(x).abs() < 1e6, "{x}");
+                // To a thousandth of a step, and of rounding.
+                let near = 1e-5 * (upper / 2.0 - lower / 2.0) + 1e-15 * x.abs();
+                let back = units.back(units.of(x), units.of(upper) - units.of(lower));
+                assert!((back / 2.0 - x / 2.0).abs() <= near.max(1e-300), "{x}: {back}");
             }
         }
     }

@@ -4,6 +4,7 @@ use gyradius_statistics::{BinEdges, Histogram, SortedSample};
 use serde::{Deserialize, Serialize};
 
 use crate::axis::Units;
+use crate::data::Field;
 use crate::samples::{Panel, Series};
 
 /// The histograms of one panel, in units that read well.
@@ -106,6 +107,28 @@ impl Binned {
             width.map_or(0.0, |width| self.height(series, count, *width, density))
         };
         [at(&self.below, widths.first()), at(&self.above, widths.last())]
+    }
+
+    /// Bounds and counts of the bins, in the unit of the panel's label.
+    pub(crate) fn rows(&self) -> Vec<Vec<Field>> {
+        let step =
+            self.edges.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        let edge = |u: Option<&f64>| Field::Number(u.map(|u| self.units.back(*u, step)));
+        let row = |from, to, counts: Vec<u64>| -> Vec<Field> {
+            let counts = counts.into_iter().map(|count| Field::number(count as f64));
+            [edge(from), edge(to)].into_iter().chain(counts).collect()
+        };
+        let beyond = |from, to, beyond: &[Beyond]| {
+            let counts: Vec<u64> = beyond.iter().map(|beyond| beyond.count as u64).collect();
+            counts.iter().any(|count| *count > 0).then(|| row(from, to, counts))
+        };
+        let count = |bin| self.counts.iter().map(|of| of.get(bin).copied().unwrap_or(0)).collect();
+        let bins = self.edges.windows(2).enumerate();
+        beyond(None, self.edges.first(), &self.below)
+            .into_iter()
+            .chain(bins.map(|(bin, pair)| row(Some(&pair[0]), Some(&pair[1]), count(bin))))
+            .chain(beyond(self.edges.last(), None, &self.above))
+            .collect()
     }
 
     fn height(&self, series: usize, count: u64, width: f64, density: bool) -> f64 {

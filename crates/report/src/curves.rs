@@ -1,26 +1,38 @@
 //! Quantities against time, in two columns of charts.
 
 use crate::axis::{Spacing, Units, ticks};
-use crate::style::{self, MARGIN};
+use crate::style::{self, Colour, MARGIN};
 use crate::svg::{Anchor, Look, Svg, px};
 use crate::text::{fit, width};
 
 const TICK: Look = Look::new(11.0, style::MUTED);
 const LABEL: Look = Look::new(12.0, style::INK);
-const NOTE: Look = Look::new(10.5, style::MUTED);
+const NOTE: Look = Look::new(11.0, style::MUTED);
 const WIDTH: f64 = 372.0;
 const HEIGHT: f64 = 118.0;
 const GUTTER: f64 = 28.0;
 /// Names of a chart's curves at most.
 const NAMES: usize = 12;
 
-/// What colours the curves of a chart have.
-#[derive(Clone, Copy, Debug)]
-pub enum Colours {
-    /// Those of axes 1, 2, 3.
-    Axes,
-    /// One after the other.
-    Series,
+/// The colour of a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hue {
+    /// That of the words.
+    Ink,
+    /// That of an axis, from 0.
+    Axis(usize),
+    /// That of a place among the colours of models, from 0.
+    Series(usize),
+}
+
+impl Hue {
+    fn colour(self) -> Colour {
+        match self {
+            Self::Ink => Colour { pen: style::INK, words: style::INK },
+            Self::Axis(axis) => style::AXES[axis % style::AXES.len()],
+            Self::Series(place) => style::model_colour(place),
+        }
+    }
 }
 
 /// A quantity against time.
@@ -28,6 +40,8 @@ pub enum Colours {
 pub struct Curve {
     /// What it is called beside the label; may be empty.
     pub name: String,
+    /// Its colour, which it has in all charts.
+    pub hue: Hue,
     /// Time and value; what is not finite is left out.
     pub points: Vec<(f64, f64)>,
 }
@@ -37,8 +51,6 @@ pub struct Curve {
 pub struct Chart {
     /// What is shown, with its unit.
     pub label: String,
-    /// How its curves are told apart.
-    pub colours: Colours,
     /// The curves.
     pub curves: Vec<Curve>,
     /// The end of the time axis.
@@ -148,11 +160,7 @@ fn draw(svg: &mut Svg, chart: &Chart, scale: &Scale, origin: (f64, f64), marks: 
     svg.text(left + WIDTH, base + 29.0, NOTE.at(Anchor::End), seconds.trim_end());
     releases(svg, origin, until, marks);
 
-    let colour = |i: usize| match chart.colours {
-        Colours::Axes => style::AXES[i % 3],
-        Colours::Series => style::model(i),
-    };
-    for (i, curve) in chart.curves.iter().enumerate() {
+    for curve in &chart.curves {
         let mut d = String::new();
         let mut last = f64::NEG_INFINITY;
         let points: Vec<_> = shown(curve, chart.until).collect();
@@ -166,7 +174,7 @@ fn draw(svg: &mut Svg, chart: &Chart, scale: &Scale, origin: (f64, f64), marks: 
                 last = across;
             }
         }
-        svg.path(&format!("stroke=\"{}\" stroke-width=\"1.5\"", colour(i)), &d);
+        svg.path(&format!("stroke=\"{}\" stroke-width=\"1.5\"", curve.hue.colour().pen), &d);
     }
 
     let note = scale.units.note();
@@ -182,7 +190,7 @@ fn draw(svg: &mut Svg, chart: &Chart, scale: &Scale, origin: (f64, f64), marks: 
         if name.is_empty() || across + wide > left + WIDTH {
             continue;
         }
-        let look = Look::new(LABEL.size, colour(i)).bold();
+        let look = Look::new(LABEL.size, curve.hue.colour().words).bold();
         svg.text(across, top - 20.0, look, name);
         across += wide + 10.0;
     }
@@ -229,8 +237,7 @@ mod tests {
         let points = (0..2000).map(|i| f64::from(i) * 0.01).map(|t| (t, values(t))).collect();
         Chart {
             label: "rate (deg/s)".to_owned(),
-            colours: Colours::Axes,
-            curves: vec![Curve { name: "ω₁".to_owned(), points }],
+            curves: vec![Curve { name: "ω₁".to_owned(), hue: Hue::Axis(0), points }],
             until: 15.0,
         }
     }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::{self, Sheet};
 use crate::{AttitudeSpheres, HistogramGrid, LineGrid, RangeGrid};
 
 /// A figure with what it shows. Kept as data it can be drawn again, to the byte, from results that were
@@ -47,7 +48,17 @@ impl Figure {
     #[must_use]
     pub fn drawn(&self) -> Drawing {
         let (name, caption) = (self.name.clone(), self.caption.clone());
-        Drawing { name, caption, svg: self.svg() }
+        Drawing { name, caption, svg: self.svg(), numbers: data::json(&self.sheets()) }
+    }
+
+    /// Its numbers, where they are few enough for a page.
+    fn sheets(&self) -> Vec<Sheet> {
+        match &self.picture {
+            Picture::Histograms(histograms) => histograms.sheets(),
+            Picture::Attitudes(_) => Vec::new(),
+            Picture::Ranges(ranges) => ranges.sheets(),
+            Picture::Lines(lines) => lines.sheets(),
+        }
     }
 }
 
@@ -63,15 +74,33 @@ pub struct Drawing {
     pub(crate) name: String,
     pub(crate) caption: String,
     pub(crate) svg: String,
+    /// Its numbers as JSON, in which nothing ends a script.
+    pub(crate) numbers: Option<String>,
 }
 
 impl Drawing {
     /// A figure of a name, with what stands below it.
     pub(crate) fn new(name: &str, caption: &str, svg: String) -> Self {
-        Self { name: name.to_owned(), caption: caption.to_owned(), svg }
+        Self { name: name.to_owned(), caption: caption.to_owned(), svg, numbers: None }
     }
 
     pub(crate) fn file(&self) -> String {
         file_of(&self.name)
     }
+
+    /// Its file as a page beside the folder of figures names it.
+    pub(crate) fn address(&self) -> String {
+        address(&self.file())
+    }
+}
+
+/// The path of a file as an address.
+fn address(path: &str) -> String {
+    let byte = |b: u8| match b {
+        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'/' => {
+            char::from(b).to_string()
+        }
+        _ => format!("%{b:02X}"),
+    };
+    path.bytes().map(byte).collect()
 }

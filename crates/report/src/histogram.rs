@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::Sheet;
 use crate::legend::{Entry, legend};
 use crate::panel::{Cell, Counted, Frame, GUTTER, nominal_pen, outline_pen};
 use crate::samples::Panel;
@@ -37,6 +38,11 @@ impl HistogramGrid {
     #[must_use]
     pub fn svg(&self) -> String {
         draw(&self.title, &self.panels, self.columns.max(1))
+    }
+
+    /// Bins and counts, as a sheet for each panel that has any.
+    pub(crate) fn sheets(&self) -> Vec<Sheet> {
+        self.panels.iter().flatten().filter_map(Counted::sheet).collect()
     }
 }
 

@@ -31,6 +31,7 @@ mod axis;
 mod bins;
 mod convergence;
 mod curves;
+mod data;
 mod distribution;
 mod document;
 mod field;
@@ -45,6 +46,7 @@ mod numbers;
 mod overview;
 mod page;
 mod panel;
+mod paper;
 mod ranges;
 #[cfg(test)]
 mod read_back;
@@ -58,7 +60,7 @@ mod text;
 mod visible;
 
 pub use convergence::convergence_figure;
-pub use curves::{Chart, Colours, Curve, time_charts};
+pub use curves::{Chart, Curve, Hue, time_charts};
 pub use distribution::distribution_figure;
 pub use document::{Document, Section};
 pub use figure::{Drawing, Figure, Picture, file_of};

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::axis::{Tick, decades};
+use crate::data::{Field, Sheet};
 use crate::legend::{Entry, legend};
 use crate::style::{self, MARGIN};
 use crate::svg::{Anchor, Look, Svg, px};
@@ -10,7 +11,7 @@ use crate::text::{fit, significant, width};
 
 const TICK: Look = Look::new(11.0, style::MUTED);
 const LABEL: Look = Look::new(12.0, style::INK).at(Anchor::Middle);
-const NOTE: Look = Look::new(10.5, style::MUTED);
+const NOTE: Look = Look::new(11.0, style::MUTED);
 const NAME: Look = Look::new(12.5, style::INK).bold();
 
 const SIZE: (f64, f64) = (350.0, 190.0);
@@ -90,6 +91,28 @@ impl LineGrid {
     pub fn svg(&self) -> String {
         let Self { title, panels, x_label, y_label, levels, range } = self;
         line_grid(title, panels, x_label, y_label, levels, *range)
+    }
+
+    /// The points, as a sheet for each panel.
+    pub(crate) fn sheets(&self) -> Vec<Sheet> {
+        let point = |line: &Line, point: &LinePoint| {
+            let ends = [0, 1].map(|i| Field::Number(point.interval.map(|ends| ends[i])));
+            let at = [Field::words(&line.name), Field::number(point.x), Field::number(point.y)];
+            at.into_iter().chain(ends).collect()
+        };
+        let rows = |panel: &LinePanel| {
+            let points =
+                |line: &'_ Line| line.points.iter().map(|p| point(line, p)).collect::<Vec<_>>();
+            panel.lines.iter().flat_map(points).collect()
+        };
+        let sheet = |panel: &LinePanel| Sheet {
+            panel: panel.title.clone(),
+            columns: ["line", &self.x_label, &self.y_label, "lower", "upper"]
+                .map(str::to_owned)
+                .into(),
+            rows: rows(panel),
+        };
+        self.panels.iter().map(sheet).collect()
     }
 }
 

@@ -35,7 +35,7 @@ fn block(out: &mut String, block: &Block, level: usize) {
         Block::Figure(figure) => {
             let caption = words(&format!("{}.", figure.caption), Place::Line);
             let alternative = words(&figure.caption, Place::Alternative);
-            lines(out, "", &format!("![{alternative}]({})", address(&figure.file())));
+            lines(out, "", &format!("![{alternative}]({})", figure.address()));
             lines(out, "", &caption);
         }
         Block::File(language, text) => {
@@ -215,15 +215,4 @@ fn code(out: &mut String, text: &str, place: Place) {
 /// How many backticks follow each other at most.
 fn longest_run(text: &str) -> usize {
     text.split(|c| c != '`').map(str::len).max().unwrap_or(0)
-}
-
-/// The path of a file as an address.
-fn address(path: &str) -> String {
-    let byte = |b: u8| match b {
-        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'/' => {
-            char::from(b).to_string()
-        }
-        _ => format!("%{b:02X}"),
-    };
-    path.bytes().map(byte).collect()
 }

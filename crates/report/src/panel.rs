@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::axis::{Spacing, Tick, Units, ticks, times};
 use crate::bins::{Beyond, Binned};
+use crate::data::Sheet;
 use crate::samples::{Panel, Series};
 use crate::style;
 use crate::svg::{Anchor, Look, Svg, px};
@@ -11,7 +12,7 @@ use crate::text::{count, fit, significant, width};
 
 const TICK: Look = Look::new(11.0, style::MUTED);
 const LABEL: Look = Look::new(12.0, style::INK).at(Anchor::Middle);
-const NOTE: Look = Look::new(10.5, style::MUTED);
+const NOTE: Look = Look::new(11.0, style::MUTED);
 
 /// Space between the columns.
 pub(crate) const GUTTER: f64 = 26.0;
@@ -90,6 +91,14 @@ impl Counted {
             series: panel.series.iter().map(series).collect(),
             bins: Binned::new(panel, (width / STEP) as usize),
         }
+    }
+
+    /// Bins and counts of each series, if there are any; what lies beyond the bins has one bound.
+    pub(crate) fn sheet(&self) -> Option<Sheet> {
+        let rows = self.bins.as_ref()?.rows();
+        let names = self.series.iter().map(|series| series.name.clone());
+        let columns = ["from".to_owned(), "to".to_owned()].into_iter().chain(names).collect();
+        Some(Sheet { panel: self.label.clone(), columns, rows })
     }
 }
 
@@ -222,7 +231,7 @@ impl<'a> Cell<'a> {
                     if place > 0 {
                         runs.push((style::MUTED, " · "));
                     }
-                    runs.push((style::model(self.models[*i]), text));
+                    runs.push((style::model_colour(self.models[*i]).words, text));
                 }
                 line(&runs);
             }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::axis::{Spacing, Units, ticks};
+use crate::data::{Field, Sheet};
 use crate::panel::nominal_pen;
 use crate::style::{self, MARGIN};
 use crate::svg::{Anchor, Look, Svg, px};
@@ -63,6 +64,20 @@ impl RangeGrid {
     #[must_use]
     pub fn svg(&self) -> String {
         range_grid(&self.title, &self.rows, &self.panels)
+    }
+
+    /// The ranges, as a sheet for each panel.
+    pub(crate) fn sheets(&self) -> Vec<Sheet> {
+        let row = |(row, range): (&Label, &Option<[f64; 3]>)| -> Vec<Field> {
+            let ends = [0, 1, 2].map(|i| Field::Number(range.map(|range| range[i])));
+            [Field::words(&row.name)].into_iter().chain(ends).collect()
+        };
+        let sheet = |panel: &RangePanel| Sheet {
+            panel: panel.label.clone(),
+            columns: ["name", "lower", "middle", "upper"].map(str::to_owned).into(),
+            rows: self.rows.iter().zip(&panel.ranges).map(row).collect(),
+        };
+        self.panels.iter().map(sheet).collect()
     }
 }
 

@@ -138,7 +138,7 @@ fn entries() -> Vec<Entry> {
         swatch.path(&pen, "M4 0h0");
         Entry { name: name.to_owned(), width: 8.0, swatch }
     };
-    let [first, second, third] = style::AXES;
+    let [first, second, third] = style::AXES.map(|colour| colour.pen);
     let mut mean = Svg::new();
     spoke(&mut mean, style::INK, (0.0, 0.0), (18.0, 0.0), true);
     vec![
@@ -218,15 +218,15 @@ impl Sphere {
         svg.path("fill=\"#fafafa\"", &circle(self.centre, self.radius));
         for near in [false, true] {
             self.graticule(svg, near);
-            for (axis, colour) in style::AXES.into_iter().enumerate() {
-                self.dots(svg, chosen.iter().map(|tips| tips[axis]), colour, near);
+            for (axis, colour) in style::AXES.iter().enumerate() {
+                self.dots(svg, chosen.iter().map(|tips| tips[axis]), colour.pen, near);
             }
         }
         svg.path(&format!("stroke=\"{}\"", style::AXIS), &circle(self.centre, self.radius));
         self.body_axes(svg);
         for (tip, colour) in mean.iter().flatten().zip(style::AXES) {
             let (to, near) = self.spot(tip);
-            spoke(svg, colour, self.centre, to, near);
+            spoke(svg, colour.pen, self.centre, to, near);
         }
 
         let mut note = match (cloud.all.saturating_sub(cloud.not_finite), cloud.drawn.len()) {

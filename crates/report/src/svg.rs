@@ -121,7 +121,7 @@ impl Svg {
         format!(
             // Without `xml:space` some renderers drop a space after a subscript.
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" \
-             viewBox=\"0 0 {w} {h}\" style=\"max-width:{widest};height:auto\" role=\"img\" \
+             viewBox=\"0 0 {w} {h}\" style=\"max-width:{widest};height:auto;--natural:{w}px\" role=\"img\" \
              xml:space=\"preserve\" \
              font-family=\"{}\" font-weight=\"400\" fill=\"none\" stroke-linejoin=\"round\">\n\
              <title>{}</title>\n<desc>{}</desc>\n\

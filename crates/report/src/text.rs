@@ -113,7 +113,7 @@ pub(crate) fn rich(runs: &[(Option<&str>, &str)]) -> String {
 }
 
 /// Size of superscripts and subscripts.
-const SMALL: f64 = 0.72;
+const SMALL: f64 = 0.82;
 
 /// The text as runs of one level each.
 fn levels(text: &str) -> Vec<(Option<Level>, String)> {
@@ -234,8 +234,8 @@ mod tests {
         assert_eq!(rich(&[(None, "a<b")]), "a&lt;b");
         assert_eq!(
             rich(&[(None, "I₁₂ m²"), (Some("red"), "x")]),
-            "I<tspan font-size=\"72%\" dy=\"0.222em\">12</tspan><tspan dy=\"-0.160em\"> m</tspan>\
-             <tspan font-size=\"72%\" dy=\"-0.472em\">2</tspan>\
+            "I<tspan font-size=\"82%\" dy=\"0.195em\">12</tspan><tspan dy=\"-0.160em\"> m</tspan>\
+             <tspan font-size=\"82%\" dy=\"-0.415em\">2</tspan>\
              <tspan fill=\"red\" dy=\"0.340em\">x</tspan>"
         );
     }

@@ -15,10 +15,12 @@ const PHRASING: [&str; 21] = [
     "select", "small", "span", "strong", "sub", "sup", "svg", "script", "option",
 ];
 /// Elements whose content is phrasing.
-const LINES: [&str; 15] = [
-    "p", "h1", "h2", "h3", "span", "strong", "em", "small", "code", "summary", "button", "label",
-    "pre", "title", "output",
+const LINES: [&str; 16] = [
+    "p", "h1", "h2", "h3", "h4", "span", "strong", "em", "small", "code", "caption", "button",
+    "label", "pre", "title", "output",
 ];
+/// Elements that a folded section is called by.
+const HEADINGS: [&str; 3] = ["h2", "h3", "h4"];
 
 /// An open element.
 struct Open {
@@ -35,7 +37,7 @@ struct Open {
 fn check(page: &str) {
     let mut rest = page.strip_prefix("<!DOCTYPE html>").expect("a document type");
     let mut open: Vec<Open> = Vec::new();
-    let mut ids = BTreeSet::new();
+    let (mut ids, mut links, mut level) = (BTreeSet::new(), BTreeSet::new(), 0);
     let mut cells = 0_usize;
     while !rest.is_empty() {
         let (text, after) = rest.split_at(rest.find('<').unwrap_or(rest.len()));
@@ -59,9 +61,18 @@ fn check(page: &str) {
         for (key, value) in &attributes {
             let may_be_empty = ["d", "value"].contains(&key.as_str());
             assert!(!value.trim().is_empty() || may_be_empty, "{key} of {name} is empty");
+            if let Some(id) = value.strip_prefix('#').filter(|_| key == "href") {
+                links.insert(id.to_owned());
+            }
+            let whole = key == "href" && value.contains(':') || key == "src";
+            assert!(!whole, "{name} leads out of the folder: {value}");
             assert!(key != "id" || ids.insert(value.clone()), "id {value} twice");
             let scopes = ["row", "col", "rowgroup", "colgroup"];
             assert!(key != "scope" || (name == "th" && scopes.contains(&value.as_str())));
+        }
+        if let Some(deep) = name.strip_prefix('h').and_then(|deep| deep.parse::<u32>().ok()) {
+            assert!(deep <= level + 1, "{name} after a heading of level {level}");
+            level = deep;
         }
         let keys: BTreeSet<_> = attributes.iter().map(|(key, _)| key).collect();
         assert_eq!(keys.len(), attributes.len(), "an attribute of {name} twice");
@@ -99,6 +110,7 @@ fn check(page: &str) {
             open.push(Open { name, children: Vec::new(), spans: Vec::new(), width: None });
         }
     }
+    assert!(links.is_subset(&ids), "{links:?} lead nowhere");
     assert!(open.is_empty(), "not closed: {}", open.last().map_or("", |o| &o.name));
 }
 
@@ -120,8 +132,8 @@ fn close(closed: &Open, table: Option<&mut Open>, cells: usize) {
         }
         "table" => assert!(count("thead") <= 1 && count("tbody") >= 1, "{:?}", closed.children),
         "html" => assert_eq!(closed.children, ["head", "body"]),
-        "head" => assert_eq!((count("title"), count("meta")), (1, 2)),
-        "body" => assert_eq!(closed.children, ["main"]),
+        "head" => assert_eq!((count("title"), count("meta")), (1, 3)),
+        "body" => assert_eq!(closed.children, ["a", "main", "script"]),
         "main" => assert_eq!(count("h1"), 1),
         "details" => assert_eq!((closed.children[0].as_str(), count("summary")), ("summary", 1)),
         "figure" => {
@@ -144,6 +156,7 @@ fn allowed(parent: &str, name: &str, before: &[String]) {
         "ul" => only(&["li"]),
         "select" => only(&["option"]),
         "head" => only(&["meta", "title", "style"]),
+        "summary" => only(&HEADINGS),
         line if LINES.contains(&line) => only(&PHRASING),
         _ => {
             let inner =
@@ -224,8 +237,9 @@ fn comparisons_are_valid() {
 fn bad_pages_are_refused() {
     let page = |body: &str| {
         format!(
-            "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"v\"><title>t</title>\
-             </head><body><main><h1>t</h1>{body}</main></body></html>"
+            "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"v\"><meta name=\"w\">\
+             <title>t</title></head><body><a href=\"#c\">c</a><main id=\"c\"><h1>t</h1>{body}</main>\
+             <script>a</script></body></html>"
         )
     };
     check(&page(
@@ -243,6 +257,12 @@ fn bad_pages_are_refused() {
         "<p>a & b</p>".to_owned(),
         "<ul><p>a</p></ul>".to_owned(),
         "<p>a".to_owned(),
+        "<p title=a>a</p>".to_owned(),
+        "<p hidden>a</p>".to_owned(),
+        "<details><summary>a</summary></details>".to_owned(),
+        "<h3>a</h3>".to_owned(),
+        "<a href=\"https://example.org\">a</a>".to_owned(),
+        "<a href=\"#nowhere\">a</a>".to_owned(),
     ] {
         let refused = std::panic::catch_unwind(|| check(&page(&bad)));
         assert!(refused.is_err(), "{bad}");
