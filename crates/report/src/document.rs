@@ -30,6 +30,8 @@ pub struct Section {
     pub(crate) heading: String,
     /// Whether it is shown when it is asked for.
     pub(crate) folded: bool,
+    /// Whether it stands in a box: what is to be read first.
+    pub(crate) boxed: bool,
     pub(crate) blocks: Vec<Block>,
 }
 
@@ -101,13 +103,19 @@ impl Section {
     /// A section without anything in it.
     #[must_use]
     pub fn new(heading: impl Into<String>) -> Self {
-        Self { heading: heading.into(), folded: false, blocks: Vec::new() }
+        Self { heading: heading.into(), folded: false, boxed: false, blocks: Vec::new() }
     }
 
     /// A section that is shown when it is asked for.
     #[must_use]
     pub fn folded(heading: impl Into<String>) -> Self {
         Self { folded: true, ..Self::new(heading) }
+    }
+
+    /// The same in a box: what is to be read first.
+    #[must_use]
+    pub fn boxed(self) -> Self {
+        Self { boxed: true, ..self }
     }
 
     /// With a paragraph.

@@ -36,6 +36,8 @@ fn section(section: &Section, level: usize) -> Markup {
     html! {
         @if section.folded {
             details { summary { (heading) } (blocks) }
+        } @else if section.boxed {
+            div.box { (heading) (blocks) }
         } @else {
             (heading) (blocks)
         }

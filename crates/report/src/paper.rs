@@ -28,9 +28,14 @@ pub(crate) struct Part {
 
 /// The table in parts that fit on a sheet; one if all of it does. Columns that share a heading stay together if they can.
 pub(crate) fn parts(table: &PageTable) -> Vec<Part> {
-    let needs: Vec<f64> = (0..table.columns.len()).map(|i| SPACE + need(table, i)).collect();
+    let needs = |tight| -> Vec<f64> {
+        (0..table.columns.len()).map(|i| SPACE + need(table, i, tight)).collect()
+    };
+    let fits = |needs: &Vec<f64>| needs.iter().sum::<f64>() <= SHEET;
+    let (loose, tight) = (needs(false), needs(true));
+    let needs = if !fits(&loose) && fits(&tight) { tight } else { loose };
     let Some((first, others)) = needs.split_first() else { return Vec::new() };
-    if needs.iter().sum::<f64>() <= SHEET || others.is_empty() {
+    if fits(&needs) || others.is_empty() {
         return vec![part(&needs, 1..needs.len())];
     }
     let mut parts = Vec::new();
@@ -62,18 +67,24 @@ fn part(needs: &[f64], columns: Range<usize>) -> Part {
     Part { columns, em }
 }
 
-/// What a column needs: numbers stand on one line, and words wrap.
-fn need(table: &PageTable, i: usize) -> f64 {
+/// What a column needs: numbers stand on one line, and words wrap; if it must be tight, what words stand among numbers
+/// wraps as well.
+fn need(table: &PageTable, i: usize, tight: bool) -> f64 {
     let PageColumn { label, align, group: _ } = &table.columns[i];
     let cells = || table.rows.iter().map(|row| &row.cells[i]);
     let longest = |of: fn(&PageCell) -> f64| cells().map(of).fold(0.0, f64::max);
     let whole = longest(whole);
     let words = longest(word).max(word(label));
-    let wraps = match align {
-        Align::Left => true,
-        Align::Right => whole > WRAPPED,
-    };
-    if wraps { words.max(whole.min(WRAPPED)) } else { words.max(whole) }
+    let is_word = |word: &str| word.chars().filter(|c| c.is_alphabetic()).count() > 2;
+    let says = |line: &Text| line.words().split(' ').any(is_word);
+    if tight && cells().flat_map(PageCell::lines).any(says) {
+        return words;
+    }
+    match align {
+        Align::Left => words.max(whole.min(WRAPPED)),
+        Align::Right if whole > WRAPPED => words.max(WRAPPED),
+        Align::Right => words.max(whole),
+    }
 }
 
 /// The width of the longest line of a cell.

@@ -100,8 +100,13 @@ fn section() -> impl Strategy<Value = Section> {
         figure().prop_map(Block::Figure),
         nasty().prop_map(|text| Block::File("toml", text)),
     ];
-    let leaf = (nasty(), any::<bool>(), prop::collection::vec(block.boxed(), 0..5));
-    let leaf = leaf.prop_map(|(heading, folded, blocks)| Section { heading, folded, blocks });
+    let leaf = (nasty(), any::<[bool; 2]>(), prop::collection::vec(block.boxed(), 0..5));
+    let leaf = leaf.prop_map(|(heading, [folded, boxed], blocks)| Section {
+        heading,
+        folded,
+        boxed,
+        blocks,
+    });
     leaf.prop_recursive(2, 6, 2, |inner| {
         (inner.clone(), prop::collection::vec(inner, 0..2))
             .prop_map(|(section, below)| section.sections(below))

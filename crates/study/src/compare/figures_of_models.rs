@@ -1,7 +1,7 @@
 //! The figures of a comparison.
 
 use gyradius_dispersion::ModelKind;
-use gyradius_report::{Figure, Line, LineGrid, LinePanel, LinePoint, Picture, Range};
+use gyradius_report::{Figure, Line, LineGrid, LinePanel, LinePoint, Picture, Range, with_unit};
 
 use super::{BodyResult, LevelResult, ModelComparison, contest::Results, measure::Measure};
 
@@ -31,13 +31,6 @@ struct Words {
     caption: String,
 }
 
-/// Whether a value is divided by its level, which takes out what all models have in common.
-#[derive(Clone, Copy)]
-enum Scale {
-    Plain,
-    PerPercent,
-}
-
 const UNREALIZABLE: &str = "compare-unrealizable";
 
 /// Measures whose spread has a figure.
@@ -56,16 +49,12 @@ pub(super) fn names() -> Vec<String> {
 
 type Value<'a> = &'a dyn Fn(&Results) -> Option<(f64, Option<[f64; 2]>)>;
 
-fn line(body: &BodyResult, kind: ModelKind, value: Value<'_>, scale: Scale) -> Line {
+fn line(body: &BodyResult, kind: ModelKind, value: Value<'_>) -> Line {
     let (colour, dashed) = pen(kind);
     let point = |level: &LevelResult| {
         let r = level.cell(kind)?.results.as_ref()?;
         let (y, interval) = value(r)?;
         let x = level.level_percent?;
-        let y = match scale {
-            Scale::Plain => y,
-            Scale::PerPercent => y / x,
-        };
         Some(LinePoint { x, y, interval, hollow: r.fit.is_poor() })
     };
     Line {
@@ -107,20 +96,18 @@ impl ModelComparison {
                 },
                 may_fail,
                 &share,
-                Scale::Plain,
             ));
         }
         for measure in SPREAD {
             figures.push(self.figure(
                 &Words {
                     name: name_of(measure),
-                    title: format!("{}, for each percent of uncertainty", capital(measure)),
-                    label: unit(measure),
+                    title: capital(measure),
+                    label: with_unit(measure.headline().0, measure.unit()),
                     caption: String::new(),
                 },
                 |_| true,
                 &move |r| headline(r, measure),
-                Scale::PerPercent,
             ));
         }
         figures
@@ -131,7 +118,6 @@ impl ModelComparison {
         Words { name, title, label, caption }: &Words,
         shown: impl Fn(&ModelKind) -> bool,
         value: Value<'_>,
-        scale: Scale,
     ) -> Figure {
         let panels: Vec<LinePanel> = self
             .bodies
@@ -143,7 +129,7 @@ impl ModelComparison {
                     .models
                     .iter()
                     .filter(|kind| shown(kind))
-                    .map(|kind| line(body, *kind, value, scale))
+                    .map(|kind| line(body, *kind, value))
                     .collect(),
             })
             .collect();
@@ -153,10 +139,8 @@ impl ModelComparison {
             x_label: "uncertainty (% of the largest moment)".to_owned(),
             y_label: label.clone(),
             levels: self.settings.levels_percent.clone(),
-            range: match scale {
-                Scale::Plain => Range::Common,
-                Scale::PerPercent => Range::Own,
-            },
+            // Bodies are to be compared.
+            range: Range::Common,
         };
         Figure {
             name: name.clone(),
@@ -168,13 +152,6 @@ impl ModelComparison {
 
 fn headline(results: &Results, measure: Measure) -> Option<(f64, Option<[f64; 2]>)> {
     Some((results.spread(measure)?.headline()?, None))
-}
-
-fn unit(measure: Measure) -> String {
-    match measure.unit() {
-        "1" => "per %".to_owned(),
-        unit => format!("{unit} per %"),
-    }
 }
 
 /// Measure and what is told of it, the first letter large.

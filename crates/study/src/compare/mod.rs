@@ -1,6 +1,7 @@
 //! The models of inertia uncertainty head to head: about the same nominal bodies, with the same mean
 //! and covariance of the entries as far as each can, over a growing uncertainty.
 
+mod answer;
 mod body;
 mod contest;
 mod figures_of_models;

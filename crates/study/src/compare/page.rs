@@ -4,6 +4,7 @@ use gyradius_report::{Document, Figure, PageTable, Section, Text, optional, perc
 
 use super::{
     BodyResult, ModelComparison,
+    answer::answer,
     contest::Cell,
     measure::Measure,
     text::{Block, heading, is_poor, kinds, matched, remarks},
@@ -49,6 +50,7 @@ impl ModelComparison {
             .plain(".");
         let title = "gyradius: models of inertia uncertainty compared";
         Document::new(title, "Models of inertia uncertainty, head to head", lead)
+            .section(Section::new("In short").boxed().list(answer(self)))
             .section(reading(s.reference_meaning))
             .section(Section::new("Figures").figures(self.figures().iter().map(Figure::drawn)))
             .sections(self.bodies.iter().map(of_body))

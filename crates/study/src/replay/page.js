@@ -4,7 +4,10 @@ const canvas = el("scene"), pen = canvas.getContext("2d");
 const frames = data.frames, end = frames[frames.length - 1][0];
 const last = data.releases.length ? data.releases[data.releases.length - 1][1] : end;
 const body = ["#0072b2", "#d55e00"], axes = ["#332288", "#2a9d8f", "#cc6677"];
-const NEAREST = "#c1121f", SPRING = "#009e73", MOMENTUM = "#8a2d6b", INK = "#222222";
+const NEAREST = "#c1121f", SPRING = "#009e73", MOMENTUM = "#8a2d6b", INK = "#222222", MUTED = "#5b6675", IDLE = "#8c8c8c";
+const FAILED = "#86210d", LATE = "#6f4a00", WORDS = ["#332288", "#1d7a70", "#b04456"];
+// What stands below the scene, and nothing of the scene with it.
+const STRIP = 70;
 
 // Vectors and quaternions, scalar last.
 const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
@@ -17,6 +20,8 @@ const turn = (q, v) => {
   return add(add(v, times(t, q[3])), cross(u, t));
 };
 
+// What may be missing.
+const between = (k, a, b, share) => (a[k] === null || b[k] === null ? null : a[k] + (b[k] - a[k]) * share);
 // The frame at a time: between two, straight but for attitudes brought back to unit norm.
 function at(time) {
   let i = 0, j = frames.length - 1;
@@ -36,12 +41,14 @@ function at(time) {
   };
   return {
     x: [mix(1, 4), mix(11, 14)], q: [attitude(4), attitude(14)], w: [mix(8, 11), mix(18, 21)],
-    h: mix(21, 24), nutation: a.length > 24 && b.length > 24 ? mix(24, 25)[0] : null,
+    h: mix(21, 24), nutation: between(24, a, b, share), apart: between(25, a, b, share),
   };
 }
 
-const radius = data.boxes.map((box) => norm(box.sides) / 2);
-// What has to be seen: boxes and the points of the springs.
+// With outlines the boxes are drawn if they are asked for.
+const boxes = el("boxes"), withBoxes = () => !boxes || boxes.checked;
+const radius = data.boxes.map((box) => (data.outlines ? 0 : norm(box.sides) / 2));
+// What has to be seen: bodies and the points of the springs.
 data.springs.forEach((spring) => {
   radius[0] = Math.max(radius[0], norm(spring.p)); radius[1] = Math.max(radius[1], norm(spring.s));
 });
@@ -66,9 +73,27 @@ function shadow(points) {
   return half(sorted).concat(half(sorted.reverse()));
 }
 const most = Math.max(...frames.map((f) => norm(f.slice(21, 24)))) || 1;
-let yaw = 0.9, pitch = 0.32, zoom = 1, time = 0, playing = true, before = null;
+const VIEW = [0.9, 0.32, 1];
+let [yaw, pitch, zoom] = VIEW, time = 0, playing = true, before = null;
+// The first half of the slider and of the charts are the springs, where they are over soon.
+const knee = data.releases.length && last < end / 4 ? 1.2 * last : end;
+const share = (t) => (end > 0 ? (knee === end ? t / end : t <= knee ? 0.5 * t / knee : 0.5 + 0.5 * (t - knee) / (end - knee)) : 0);
+const timeAt = (x) => (knee === end ? x * end : x <= 0.5 ? 2 * x * knee : knee + (2 * x - 1) * (end - knee));
+const shown = (t) => t.toFixed(end < 1 ? 5 : 3);
+
 // One that fails has no start.
 const isPushing = (spring) => spring.from !== null && time >= spring.from && (spring.free === null || time < spring.free);
+
+// From the stage's point of a spring to its free end, in stage axes: where it is held until it starts, and as long as it is
+// when it lets go.
+const still = (spring, t) => {
+  const now = at(t), [x, y, z, w] = now.q[1], a = add(now.x[1], turn(now.q[1], spring.s)), b = add(now.x[0], turn(now.q[0], spring.p));
+  return turn([-x, -y, -z, w], add(b, times(a, -1)));
+};
+data.springs.forEach((spring) => {
+  spring.held = still(spring, 0);
+  spring.loose = spring.free === null ? spring.held : still(spring, spring.free);
+});
 
 // Inertial 3 up; returns across, up and towards the eye.
 function view(v) {
@@ -95,9 +120,10 @@ function draw() {
     lift = Math.max(lift, v[1] + radius[i]); sink = Math.min(sink, v[1] - radius[i]);
     wide = Math.max(wide, Math.abs(v[0]) + radius[i]);
   });
-  const scale = zoom * Math.min(0.94 * height / (lift - sink), 0.47 * width / wide) || 1;
+  const high = height - STRIP;
+  const scale = zoom * Math.min(0.94 * high / (lift - sink), 0.47 * width / wide) || 1;
   const middle = (lift + sink) / 2;
-  const point = (v) => { const p = view(v); return [width / 2 + p[0] * scale, height / 2 - (p[1] - middle) * scale, p[2]]; };
+  const point = (v) => { const p = view(v); return [width / 2 + p[0] * scale, high / 2 - (p[1] - middle) * scale, p[2]]; };
   const things = [];
   const line = (a, b, colour, thick, alpha) => {
     const p = point(a), q = point(b);
@@ -118,7 +144,7 @@ function draw() {
       pen.lineTo(q[0] - tip * u + tip * 0.45 * v, q[1] - tip * v - tip * 0.45 * u); pen.fill();
     } });
   };
-  data.boxes.forEach((box, i) => {
+  if (withBoxes()) data.boxes.forEach((box, i) => {
     const corners = CORNERS.map((c) =>
       add(now.x[i], turn(now.q[i], turn(box.q, [c[0] * box.sides[0], c[1] * box.sides[1], c[2] * box.sides[2]]))));
     const flat = corners.map(point);
@@ -132,12 +158,11 @@ function draw() {
         pen.strokeStyle = body[i]; pen.lineWidth = data.outlines ? 0.8 : 1.2; pen.globalAlpha = data.outlines ? 0.3 : 0.75; pen.stroke(); pen.globalAlpha = 1;
       } });
     });
-    const arm = 0.75 * radius[i];
-    axes.forEach((colour, k) => {
-      const unit = [0, 0, 0]; unit[k] = arm;
-      arrow(now.x[i], turn(now.q[i], unit), colour, 1.6);
-    });
   });
+  data.boxes.forEach((_, i) => axes.forEach((colour, k) => {
+    const unit = [0, 0, 0]; unit[k] = 0.75 * radius[i];
+    arrow(now.x[i], turn(now.q[i], unit), colour, 1.6);
+  }));
   shapes.forEach((list, i) => list.forEach((shape) => {
     const place = (v) => add(now.x[i], turn(now.q[i], v));
     const path = (points) => { pen.beginPath(); points.forEach((p) => pen.lineTo(p[0], p[1])); };
@@ -176,58 +201,166 @@ function draw() {
     const size = norm(now.h);
     if (size > 1e-9 * most) arrow(now.x[0], times(now.h, (1.35 * radius[0]) * Math.max(0.15, size / most) / size), MOMENTUM, 3);
   }
+  // Springs stand on the stage, and push the payload by their other end.
+  const labels = [];
+  const centre = point(now.x[1]);
   data.springs.forEach((spring) => {
-    const a = add(now.x[1], turn(now.q[1], spring.s)), b = add(now.x[0], turn(now.q[0], spring.p));
-    const p = point(a), q = point(b), pushes = isPushing(spring);
+    const pushes = isPushing(spring), a = add(now.x[1], turn(now.q[1], spring.s)), pad = add(now.x[0], turn(now.q[0], spring.p));
+    const waits = spring.from !== null && time < spring.from;
+    const b = pushes ? pad : add(a, turn(now.q[1], spring.from === null || waits ? spring.held : spring.loose));
+    const p = point(a), q = point(b), o = point(pad);
     things.push({ depth: (p[2] + q[2]) / 2, draw() {
-      pen.fillStyle = INK;
-      [p, q].forEach((o) => { pen.beginPath(); pen.arc(o[0], o[1], 2.2, 0, 7); pen.fill(); });
-      if (!pushes) return;
-      const x = q[0] - p[0], y = q[1] - p[1], size = Math.hypot(x, y) || 1, wave = Math.min(7, 0.3 * size + 2);
-      pen.strokeStyle = SPRING; pen.lineWidth = 2.4; pen.beginPath(); pen.moveTo(p[0], p[1]);
+      const x = q[0] - p[0], y = q[1] - p[1], size = Math.hypot(x, y) || 1, wave = Math.min(7, 0.3 * size + 2), u = -y / size, v = x / size;
+      pen.strokeStyle = pushes ? SPRING : IDLE; pen.lineWidth = pushes ? 2.4 : 1.5; pen.beginPath(); pen.moveTo(p[0], p[1]);
       for (let k = 1; k < 10; k++) {
-        const side = (k % 2 ? 1 : -1) * wave, share = k / 10;
-        pen.lineTo(p[0] + x * share - y / size * side, p[1] + y * share + x / size * side);
+        const side = (k % 2 ? 1 : -1) * wave, part = k / 10;
+        pen.lineTo(p[0] + x * part + u * side, p[1] + y * part + v * side);
       }
-      pen.lineTo(q[0], q[1]); pen.stroke();
+      pen.lineTo(q[0], q[1]);
+      if (!pushes) { pen.moveTo(q[0] - u * wave, q[1] - v * wave); pen.lineTo(q[0] + u * wave, q[1] + v * wave); }
+      pen.stroke();
+      [[o, body[0]], [p, body[1]]].forEach(([at, colour]) => { pen.fillStyle = colour; pen.fillRect(at[0] - 3.5, at[1] - 2, 7, 4); });
     } });
+    const late = spring.late ? " late" : "";
+    labels.push([p, centre, spring.name + (spring.from === null ? " ✕" : late), spring.from === null ? FAILED : waits ? LATE : INK]);
   });
   things.sort((a, b) => a.depth - b.depth).forEach((thing) => thing.draw());
-  // Inertial axes in the corner, and a rule.
-  const corner = [46, height - 46];
+  // Names, which lie on no other.
+  const taken = [];
+  pen.font = "600 12px system-ui, sans-serif"; pen.textAlign = "center"; pen.textBaseline = "middle";
+  labels.forEach(([p, from, text, colour]) => {
+    const x = p[0] - from[0], y = p[1] - from[1], size = Math.hypot(x, y) || 1, wide = pen.measureText(text).width + 6;
+    for (let away = 18; away < 120; away += 9) {
+      const box = [p[0] + x / size * (away + wide / 3) - wide / 2, p[1] + y / size * away - 8, wide, 16];
+      if (taken.some((t) => box[0] < t[0] + t[2] && t[0] < box[0] + box[2] && box[1] < t[1] + t[3] && t[1] < box[1] + box[3])) continue;
+      taken.push(box);
+      pen.fillStyle = "#ffffffcc"; pen.fillRect(...box);
+      pen.fillStyle = colour; pen.fillText(text, box[0] + wide / 2, box[1] + 8);
+      break;
+    }
+  });
+  pen.textBaseline = "alphabetic";
+  // Inertial axes and a rule, in a strip of their own.
+  pen.fillStyle = "#ffffff"; pen.fillRect(0, high, width, STRIP);
+  const corner = [44, height - 34];
   axes.forEach((colour, k) => {
-    const unit = [0, 0, 0]; unit[k] = 26;
+    const unit = [0, 0, 0]; unit[k] = 20;
     const v = view(unit);
     pen.strokeStyle = "#8c8c8c"; pen.lineWidth = 1.2; pen.beginPath(); pen.moveTo(...corner);
     pen.lineTo(corner[0] + v[0], corner[1] - v[1]); pen.stroke();
-    pen.fillStyle = "#5b6675"; pen.font = "11px system-ui, sans-serif"; pen.textAlign = "center";
-    pen.fillText(k + 1, corner[0] + 1.35 * v[0], corner[1] - 1.35 * v[1] + 4);
+    pen.fillStyle = MUTED; pen.font = "11px system-ui, sans-serif"; pen.textAlign = "center";
+    pen.fillText(k + 1, corner[0] + 1.45 * v[0], corner[1] - 1.45 * v[1] + 4);
   });
   pen.textAlign = "left";
-  pen.fillText("inertial", 12, height - 8);
+  pen.fillText("inertial axes", 88, height - 12);
   const decade = 10 ** Math.floor(Math.log10(120 / scale)), metres = [5, 2, 1].find((m) => m * decade * scale < 130) * decade;
-  pen.strokeStyle = "#5b6675"; pen.beginPath();
+  pen.strokeStyle = MUTED; pen.beginPath();
   const right = width - 16, low = height - 16;
   pen.moveTo(right - metres * scale, low - 4); pen.lineTo(right - metres * scale, low); pen.lineTo(right, low); pen.lineTo(right, low - 4); pen.stroke();
   pen.textAlign = "right"; pen.fillText(`${+metres.toPrecision(2)} m`, right, low - 8);
 
   const pushing = data.springs.filter(isPushing).length;
-  el("clock").textContent = `${time.toFixed(end < 1 ? 5 : 3)} of ${end.toFixed(end < 1 ? 5 : 3)} s`;
-  el("time").value = end > 0 ? 1000 * time / end : 0;
+  el("clock").textContent = `${shown(time)} of ${shown(end)} s`;
+  el("time").value = 1000 * share(time);
+  el("time").setAttribute("aria-valuetext", `${shown(time)} seconds`);
   const rate = (w) => w.map((x) => x.toFixed(4).replace("-", "−")).join(", ");
   const away = norm(add(now.x[0], times(now.x[1], -1)));
+  const named = (of) => data.springs.filter(of).map((spring) => spring.name).join(", ");
+  const failed = named((spring) => spring.from === null), late = data.springs.filter((spring) => spring.late);
   const rows = [
     ["springs that push", `${pushing} of ${data.springs.length}`],
+    ...(failed ? [["springs that never push", failed]] : []),
+    ...(late.length ? [["springs that start late", late.map((spring) => `${spring.name} at ${spring.from} s`).join(", ")]] : []),
     ["distance of the mass centres", `${away.toFixed(4)} m`],
+    ...(now.apart === null ? [] : [["distance of the outlines", `${now.apart.toFixed(4)} m`]]),
     ["payload rates 1, 2, 3", `${rate(now.w[0])} deg/s`],
     ["stage rates 1, 2, 3", `${rate(now.w[1])} deg/s`],
-    ...(data.closest ? [["clearance", data.closest.d > 0 ? `${data.closest.d} m at ${data.closest.t} s` : `touch at ${data.closest.t} s`]] : []),
+    ...(data.closest ? [["clearance after the last release", data.closest.d > 0 ? `${data.closest.d} m at ${data.closest.t} s` : `touch at ${data.closest.t} s`]] : []),
     ["nutation", now.nutation === null ? "–" : `${now.nutation.toFixed(4)}°`],
   ];
   const table = el("now");
-  while (table.rows.length < rows.length) { const row = table.insertRow(); row.append(document.createElement("th")); row.insertCell(); }
+  while (table.rows.length < rows.length) {
+    const row = table.insertRow(), head = document.createElement("th");
+    head.scope = "row"; row.append(head); row.insertCell();
+  }
   rows.forEach((row, i) => row.forEach((text, k) => { table.rows[i].cells[k].textContent = text; }));
+  cursors.forEach((cursor) => cursor.setAttribute("transform", `translate(${share(time) * PLOT[0]} 0)`));
 }
+
+// Charts beside the scene, over the same time as the slider.
+const PLOT = [300, 64], LEFT = 58, TOP = 22, cursors = [];
+function chart(label, colour, lines) {
+  const make = (name, within, attributes, text) => {
+    const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+    Object.entries(attributes).forEach(([key, value]) => made.setAttribute(key, value));
+    if (text !== undefined) made.textContent = text;
+    within.append(made);
+    return made;
+  };
+  const values = lines.flatMap(([, of]) => frames.map(of)).filter((y) => y !== null);
+  if (!values.length) return;
+  let low = Math.min(...values), high = Math.max(...values);
+  const words = (y) => (y === 0 ? "0" : Math.abs(y) >= 1e-3 && Math.abs(y) < 1e5 ? `${+y.toPrecision(4)}` : y.toExponential(2)).replace(/-/g, "−");
+  const [wide, tall] = [LEFT + PLOT[0] + 10, TOP + PLOT[1] + 22];
+  const svg = make("svg", el("charts"), { viewBox: `0 0 ${wide} ${tall}`, role: "img", "font-size": 11, "font-family": "system-ui, sans-serif", fill: "none" });
+  make("title", svg, {}, label);
+  make("desc", svg, {}, `From ${words(low)} to ${words(high)} over ${shown(end)} seconds.`);
+  if (!(high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)))) { const pad = Math.abs(high) || 1; low -= 0.05 * pad; high += 0.05 * pad; }
+  const y = (value) => PLOT[1] * (1 - (value - low) / (high - low));
+  make("text", svg, { x: LEFT, y: 13, fill: colour, "font-weight": 600 }, label);
+  lines.length > 1 && lines.forEach(([, , , ink], k) => make("text", svg, { x: wide - 10 - 16 * (lines.length - 1 - k), y: 13, fill: ink, "font-weight": 600, "text-anchor": "end" }, k + 1));
+  const plot = make("g", svg, { transform: `translate(${LEFT} ${TOP})` });
+  make("rect", plot, { width: PLOT[0], height: PLOT[1], fill: "#ffffff", stroke: "#d8dee6" });
+  if (low < 0 && high > 0) make("path", plot, { d: `M0 ${y(0)}h${PLOT[0]}`, stroke: "#d8dee6" });
+  [[low, PLOT[1]], [high, 8]].forEach(([value, at]) => make("text", svg, { x: LEFT - 5, y: TOP + at, fill: MUTED, "text-anchor": "end" }, words(value)));
+  const ticks = knee === end ? [0, end] : [0, knee, end];
+  ticks.forEach((t, k) => make("text", svg, { x: LEFT + share(t) * PLOT[0], y: tall - 7, fill: MUTED, "text-anchor": ["start", "middle", "end"][k === ticks.length - 1 ? 2 : k] }, `${+t.toPrecision(3)} s`));
+  data.releases.forEach(([, t]) => make("path", plot, { d: `M${share(t) * PLOT[0]} 0v${PLOT[1]}`, stroke: IDLE, "stroke-width": 0.7, "stroke-dasharray": "3 3" }));
+  lines.forEach(([, of, ink]) => {
+    let d = "", on = false;
+    frames.forEach((frame) => {
+      const value = of(frame);
+      if (value !== null) d += `${on ? "L" : "M"}${(share(frame[0]) * PLOT[0]).toFixed(1)} ${y(value).toFixed(1)}`;
+      on = value !== null;
+    });
+    make("path", plot, { d, stroke: ink, "stroke-width": 1.5 });
+  });
+  cursors.push(make("path", plot, { d: `M0 0v${PLOT[1]}`, stroke: INK, "stroke-width": 1.2 }));
+}
+const rates = (label, colour, from) => chart(label, colour, axes.map((ink, k) => [k + 1, (f) => f[from + k], ink, WORDS[k]]));
+chart("distance of the mass centres (m)", INK, [["", (f) => Math.hypot(f[1] - f[11], f[2] - f[12], f[3] - f[13]), INK]]);
+chart("distance of the outlines (m)", INK, [["", (f) => f[25], INK]]);
+rates("payload rates (deg/s)", "#0072b2", 8);
+rates("stage rates (deg/s)", "#b34f00", 18);
+chart("nutation of the payload (deg)", "#0072b2", [["", (f) => f[24], body[0]]]);
+
+// What happens, marked on the slider: buttons that go there; what is near another shares its mark.
+const events = [
+  ...data.springs.filter((spring) => spring.late).map((spring) => [spring.from, spring.name, `${spring.label} starts`]),
+  ...data.releases.map(([name, t, label]) => [t, name, `${label} lets go`]),
+].sort((a, b) => a[0] - b[0]);
+const marks = [];
+events.forEach(([t, name, text]) => {
+  const mark = marks[marks.length - 1];
+  if (mark && share(t) - share(mark.t) < 0.035) { mark.names.push(name); mark.texts.push(text); } else marks.push({ t, names: [name], texts: [text] });
+});
+marks.forEach(({ t, names, texts }) => {
+  const button = document.createElement("button");
+  button.type = "button"; button.style.left = `${100 * share(t)}%`;
+  button.textContent = names.length > 3 ? `${names[0]} … ${names[names.length - 1]}` : names.join(" ");
+  button.title = button.ariaLabel = `${texts.join(", ")}: ${t} s`;
+  button.onclick = () => go(t);
+  el("marks").append(button);
+});
+function go(t) { time = Math.max(0, Math.min(end, t)); play(false); draw(); }
+const step = (by) => go(timeAt(Math.max(0, Math.min(1, share(time) + by / 200))));
+// A hair beyond, for times are rounded.
+const jump = (by) => {
+  const times = [0, ...events.map(([t]) => t), end], hair = 1e-6 * end;
+  const found = by > 0 ? times.find((t) => t > time + hair) : times.findLast((t) => t < time - hair);
+  if (found !== undefined) go(found);
+};
+function reset() { [yaw, pitch, zoom] = VIEW; go(0); }
 
 // Springs in eight seconds at first, the coast a tenth as slow as needed.
 const speeds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
@@ -237,21 +370,41 @@ speeds.forEach((s) => el("speed").append(new Option(`× ${s}`, s, false, s === s
 el("speed").onchange = () => { speed = +el("speed").value; };
 function play(on) { playing = on; el("play").textContent = on ? "Pause" : "Play"; before = null; }
 el("play").onclick = () => { if (!playing && time >= end) time = 0; play(!playing); };
-el("time").oninput = () => { time = el("time").value / 1000 * end; play(false); draw(); };
+el("time").oninput = () => go(timeAt(el("time").value / 1000));
+el("back").onclick = () => step(-1); el("on").onclick = () => step(1);
+el("last").onclick = () => jump(-1); el("next").onclick = () => jump(1);
+el("reset").onclick = reset;
+if (boxes) boxes.onchange = draw;
+const tilt = (by) => { pitch = Math.max(-1.57, Math.min(1.57, pitch + by)); };
+const scaled = (by) => { zoom = Math.max(0.1, Math.min(20, zoom * by)); };
 document.onkeydown = (event) => {
-  if (event.code === "Space" && !["BUTTON", "SELECT"].includes(event.target.tagName)) { event.preventDefault(); el("play").click(); }
+  const on = event.target.tagName;
+  if (event.ctrlKey || event.altKey || event.metaKey || on === "SELECT") return;
+  const keys = {
+    ",": () => step(-1), ".": () => step(1), "[": () => jump(-1), "]": () => jump(1), r: reset, "+": () => scaled(1.2), "-": () => scaled(1 / 1.2),
+    ...(on === "BUTTON" || on === "INPUT" ? {} : { " ": () => el("play").click() }),
+    ...(event.target === canvas ? { ArrowLeft: () => { yaw += 0.1; }, ArrowRight: () => { yaw -= 0.1; }, ArrowUp: () => tilt(0.1), ArrowDown: () => tilt(-0.1) } : {}),
+  };
+  if (!Object.hasOwn(keys, event.key)) return;
+  event.preventDefault(); keys[event.key](); draw();
 };
+// One finger or the mouse turns; two fingers zoom.
 const held = new Map();
 canvas.onpointerdown = (event) => { canvas.setPointerCapture(event.pointerId); held.set(event.pointerId, [event.clientX, event.clientY]); };
 canvas.onpointermove = (event) => {
-  const was = held.get(event.pointerId);
+  const was = held.get(event.pointerId), is = [event.clientX, event.clientY];
   if (!was) return;
-  yaw -= (event.clientX - was[0]) * 0.008;
-  pitch = Math.max(-1.57, Math.min(1.57, pitch + (event.clientY - was[1]) * 0.008));
-  held.set(event.pointerId, [event.clientX, event.clientY]); draw();
+  const other = [...held].find(([id]) => id !== event.pointerId);
+  if (other) {
+    const apart = (p) => Math.hypot(p[0] - other[1][0], p[1] - other[1][1]) || 1;
+    scaled(apart(is) / apart(was));
+  } else {
+    yaw -= (is[0] - was[0]) * 0.008; tilt((is[1] - was[1]) * 0.008);
+  }
+  held.set(event.pointerId, is); draw();
 };
 canvas.onpointerup = canvas.onpointercancel = (event) => held.delete(event.pointerId);
-canvas.addEventListener("wheel", (event) => { event.preventDefault(); zoom = Math.max(0.1, Math.min(20, zoom * Math.exp(-event.deltaY * 0.0015))); draw(); }, { passive: false });
+canvas.addEventListener("wheel", (event) => { event.preventDefault(); scaled(Math.exp(-event.deltaY * 0.0015)); draw(); }, { passive: false });
 window.onresize = draw;
 // A page opened at #t=0.2 stands still there.
 const start = /^#t=([0-9.]+)$/.exec(location.hash);

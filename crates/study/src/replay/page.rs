@@ -1,6 +1,6 @@
 //! The animation of a run: one page of HTML that needs nothing but itself.
 
-use gyradius_clearance::Clearance;
+use gyradius_clearance::{Clearance, Outline};
 use gyradius_inertia::InertiaMatrix;
 use gyradius_report::page;
 use gyradius_separation::MovingBody;
@@ -9,7 +9,7 @@ use nalgebra::UnitQuaternion;
 use serde_json::{Value, json};
 
 use super::{Replay, history::Moment, outlines, short::short};
-use crate::{column::REALIZABLE, drawn};
+use crate::{column::REALIZABLE, drawn, loads::Short, scenario::distance_m};
 
 const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");
@@ -23,35 +23,59 @@ pub(crate) fn html(replay: &Replay) -> String {
     let (model, run) = (&replay.model, replay.row().run());
     // JSON in a script must not end it.
     let data = data(replay).to_string().replace('<', "\\u003c");
+    let outlines = replay.scenario.outlines().is_some();
+    let late_or_failed = replay.case.separation.iter().flat_map(|s| s.loads());
+    let late_or_failed = late_or_failed.into_iter().any(|(_, load)| load.start_s() != Some(0.0));
     let content = html! {
         h1 { "Run " (run) " of " (model) }
         p.lead {
-            "Scenario " strong { (name) } ": payload and stage, seen from their common mass centre. Each is "
-            "drawn as the uniform box that has its mass and inertia, which is not its shape; boxes may "
-            "overlap."
-            @if replay.scenario.outlines().is_some() { " Outlines are drawn over the boxes, as the scenario gives them." }
-            @if replay.row().flag(REALIZABLE) == Some(false) {
-                " No distribution of mass has the inertia drawn: boxes are flat where they would be less."
+            "Scenario " strong { (name) } ": payload and stage, seen from their common mass centre. "
+            @if outlines {
+                "Each is drawn by its outline, as the scenario gives it."
+            } @else {
+                "Each is drawn as the uniform box that has its mass and inertia, which is not its shape; boxes may overlap."
+                @if replay.row().flag(REALIZABLE) == Some(false) {
+                    " No distribution of mass has the inertia drawn: boxes are flat where they would be less."
+                }
             }
         }
         @if replay.row().failure().is_some() { p.warning { (replay.row().status()) } }
-        div.scene { canvas #scene tabindex="0" aria-label="Payload, stage and springs in three dimensions" {} }
+        div.view {
+            div.scene { canvas #scene tabindex="0" role="img" aria-label="Payload, stage and springs in three dimensions" {} }
+            div #charts {}
+        }
+        div.slider {
+            input #time type="range" min="0" max="1000" step="any" value="0" aria-label="time";
+            div #marks {}
+        }
         div.controls {
             button #play type="button" { "Pause" }
-            input #time type="range" min="0" max="1000" step="any" value="0" aria-label="time";
+            button #last type="button" { "Last event" }
+            button #back type="button" { "Step back" }
+            button #on type="button" { "Step" }
+            button #next type="button" { "Next event" }
+            button #reset type="button" { "Reset" }
             output #clock {}
             label { "speed " select #speed {} }
+            @if outlines { label { input #boxes type="checkbox" value="on"; " boxes of the same inertia" } }
         }
         p.key {
             span.payload { "payload" } " " span.stage { "stage" } " "
             span.spring { "springs that push" } " "
+            @if late_or_failed { span.failed { "✕ never pushes" } " " span.late { "late: has not started yet" } " " }
             span.momentum { "angular momentum of the payload" } " "
             span.spin { "spin axis" } " "
             @if replay.clearance.is_some() { span.nearest { "where they come nearest" } " " }
             span.one { "1" } " " span.two { "2" } " " span.three { "3" } " body axes"
         }
-        table.now { tbody #now {} }
-        p { small { "Drag to turn, wheel to zoom, space to stop and go." } }
+        div.wide { table.now { caption { "At the time shown" } tbody #now {} } }
+        p { small {
+            "Drag to turn, wheel or two fingers to zoom. Keys: space to stop and go, comma and full stop for a step, [ and ] for \
+             the last and the next event, r to reset; arrows, + and − turn and zoom the scene once it is chosen."
+        } }
+        @if !replay.history.releases.is_empty() {
+            p { small { "Where the springs are over soon, they have the first half of the slider and of the charts. Dashed: a spring lets go." } }
+        }
         script { (PreEscaped("const data = ")) (PreEscaped(data)) (PreEscaped(";\n")) (PreEscaped(SCRIPT)) }
     };
     page(&format!("{name}: {model}, run {run}"), STYLE, &content)
@@ -60,7 +84,11 @@ pub(crate) fn html(replay: &Replay) -> String {
 /// What the script draws. Numbers have as many digits as can be seen.
 fn data(replay: &Replay) -> Value {
     let history = &replay.history;
-    let frames: Vec<Value> = frames(replay).iter().map(|m| frame(replay, m)).collect();
+    let centres = drawn::mass_centres(replay.scenario.dispersions(), &replay.case.drawn);
+    let outlines = replay.scenario.outlines();
+    let shapes = outlines.and_then(|outlines| outlines.about(&centres).ok());
+    let shown = frames(replay);
+    let frames: Vec<Value> = shown.iter().map(|m| frame(replay, m, shapes.as_ref())).collect();
     let separation = replay.case.separation.as_ref().ok();
     let loads: Vec<Value> = separation
         .iter()
@@ -73,6 +101,9 @@ fn data(replay: &Replay) -> Value {
                 released.is_some() || (load.can_push() && replay.row().failure().is_some());
             let [payload, stage] = load.points_m();
             json!({
+                "name": Short(id).to_string(),
+                "label": id.to_string(),
+                "late": pushes && load.start_s().is_some_and(|start| start > 0.0),
                 "p": short(payload.as_slice()),
                 "s": short(stage.as_slice()),
                 "from": load.start_s().filter(|_| pushes).map(|s| short(&[s])[0].clone()),
@@ -81,8 +112,7 @@ fn data(replay: &Replay) -> Value {
         })
         .collect();
     let bodies = separation.map(|s| [cuboid(s.payload()), cuboid(s.stage())]);
-    let centres = drawn::mass_centres(replay.scenario.dispersions(), &replay.case.drawn);
-    let outlines = replay.scenario.outlines().map(|outlines| {
+    let outlines = outlines.map(|outlines| {
         let shapes = outlines.shapes();
         [0, 1].map(|i| outlines::drawn(&shapes[i], &centres[i]))
     });
@@ -102,7 +132,7 @@ fn data(replay: &Replay) -> Value {
         "boxes": bodies.map_or_else(Vec::new, Vec::from),
         "spin": short(replay.scenario.spin_axis().as_slice()),
         "releases": history.releases.iter().take(LOADS).map(|(load, time)| {
-            json!([load.number + 1, short(&[*time])[0]])
+            json!([Short(*load).to_string(), short(&[*time])[0], load.to_string()])
         }).collect::<Vec<_>>(),
     })
 }
@@ -123,8 +153,8 @@ fn frames(replay: &Replay) -> Vec<&Moment> {
 }
 
 /// Time, then of payload and stage position, attitude and rates (deg/s), then the payload's angular
-/// momentum (inertial axes) and nutation (deg).
-fn frame(replay: &Replay, moment: &Moment) -> Value {
+/// momentum (inertial axes), nutation (deg) and the distance of the outlines (m), null where there is none.
+fn frame(replay: &Replay, moment: &Moment, outlines: Option<&[Outline; 2]>) -> Value {
     let now = &moment.now;
     let (payload, stage) = (now.payload(), now.stage());
     let (mp, ml) = (payload.body().mass_kg(), stage.body().mass_kg());
@@ -138,8 +168,11 @@ fn frame(replay: &Replay, moment: &Moment) -> Value {
         values.extend(state.angular_velocity.iter().map(|w| w.to_degrees()));
     }
     values.extend(payload.inertial_spin_angular_momentum().iter());
-    values.extend(replay.history.nutation_deg(payload, replay.scenario.spin_axis()));
-    Value::Array(short(&values))
+    let nutation = replay.history.nutation_deg(payload, replay.scenario.spin_axis());
+    let apart = outlines.and_then(|outlines| distance_m(outlines, [payload, stage]));
+    let mut values = short(&values);
+    values.extend([nutation, apart].map(|x| x.map_or(Value::Null, |x| short(&[x])[0].clone())));
+    Value::Array(values)
 }
 
 /// Sides and attitude of the uniform box with the mass and inertia of a body: sides √(12 K/m) along the

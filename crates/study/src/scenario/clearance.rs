@@ -1,8 +1,8 @@
 //! What of the bodies may touch after the separation.
 
 use gyradius_clearance::{
-    Clearance, ClearanceError, ClearanceSettings, Coast, FreeBody, Outline, OutlineError,
-    OutlineShape, RigidState,
+    Approach, Clearance, ClearanceError, ClearanceSettings, Coast, FreeBody, Motion, MotionLimits,
+    Outline, OutlineError, OutlineShape, RigidState, ShapeClearance,
 };
 use gyradius_separation::{MovingBody, Outcome};
 use nalgebra::Vector3;
@@ -57,18 +57,24 @@ impl Outlines {
         self.coast
     }
 
+    /// The outlines of payload and stage about mass centres that lie so far off the nominal ones, body axes, m.
+    pub(crate) fn about(&self, centres: &[Vector3<f64>; 2]) -> Result<[Outline; 2], Failure> {
+        let about = |body: Body, outline: &Outline, centre: &Vector3<f64>| {
+            outline.about(*centre).map_err(|source| Failure::Outline { body: body.name(), source })
+        };
+        let [payload, stage] = centres;
+        let payload = about(Body::Payload, &self.payload, payload)?;
+        Ok([payload, about(Body::Stage, &self.stage, stage)?])
+    }
+
     /// The clearance over the coast after the last release, of outlines about mass centres that lie
     /// so far off the nominal ones, body axes, m. That it cannot be found fails no run.
     pub(crate) fn clearance(
         &self,
         outcome: &Outcome,
-        [payload, stage]: &[Vector3<f64>; 2],
+        centres: &[Vector3<f64>; 2],
     ) -> Result<Result<Clearance, ClearanceError>, Failure> {
-        let about = |body: Body, outline: &Outline, centre: &Vector3<f64>| {
-            outline.about(*centre).map_err(|source| Failure::Outline { body: body.name(), source })
-        };
-        let payload = about(Body::Payload, &self.payload, payload)?;
-        let stage = about(Body::Stage, &self.stage, stage)?;
+        let [payload, stage] = self.about(centres)?;
         let from = outcome.release_time();
         let mut coast = Coast::new(&free(outcome.payload()), &free(outcome.stage()), from);
         let settings = ClearanceSettings::default();
@@ -88,16 +94,47 @@ impl ShapeFile {
     }
 }
 
+/// The distance of the outlines of payload and stage at an instant, m: 0 where any of their shapes touch. None if it
+/// cannot be found.
+pub(crate) fn distance_m([payload, stage]: &[Outline; 2], bodies: [&MovingBody; 2]) -> Option<f64> {
+    let mut still = Still(bodies.map(rigid));
+    let settings = ClearanceSettings::default();
+    let found = Clearance::new(payload, stage, &mut still, 0.0, 0.0, &settings).ok()?;
+    let distance = |shapes: &ShapeClearance| {
+        let apart = shapes.closest().map(Approach::distance_m);
+        if shapes.is_mated() { Some(0.0) } else { apart }
+    };
+    found.shapes().iter().filter_map(distance).reduce(f64::min)
+}
+
+/// Bodies that stay where they are.
+struct Still([RigidState; 2]);
+
+impl Motion for Still {
+    fn states(&mut self, _: f64) -> Option<[RigidState; 2]> {
+        Some(self.0)
+    }
+
+    fn limits(&mut self, _: f64, _: f64) -> MotionLimits {
+        MotionLimits::default()
+    }
+}
+
+fn rigid(moving: &MovingBody) -> RigidState {
+    let state = moving.state();
+    RigidState {
+        position: state.position,
+        velocity: state.velocity,
+        attitude: state.attitude,
+        angular_velocity: state.angular_velocity,
+    }
+}
+
 /// The body as nothing pushes it any more.
 fn free(moving: &MovingBody) -> FreeBody {
-    let (state, body) = (moving.state(), moving.body());
+    let body = moving.body();
     FreeBody {
-        state: RigidState {
-            position: state.position,
-            velocity: state.velocity,
-            attitude: state.attitude,
-            angular_velocity: state.angular_velocity,
-        },
+        state: rigid(moving),
         inertia: *body.inertia().matrix(),
         inverse_inertia: *body.inverse_inertia(),
         principal_moments: body.inertia().principal_axes().moments(),

@@ -27,6 +27,7 @@ use std::path::{Path, PathBuf};
 
 pub(crate) use body::UncertainBody;
 use clearance::Outlines;
+pub(crate) use clearance::distance_m;
 pub(crate) use dispersions::{Dispersed, Dispersions, Joint, List, Target};
 use file::ScenarioFile;
 pub(crate) use file::{
