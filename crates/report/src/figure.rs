@@ -84,6 +84,11 @@ impl Drawing {
         Self { name: name.to_owned(), caption: caption.to_owned(), svg, numbers: None }
     }
 
+    /// With its numbers as JSON, in which nothing ends a script.
+    pub(crate) fn with_numbers(self, numbers: Option<String>) -> Self {
+        Self { numbers, ..self }
+    }
+
     pub(crate) fn file(&self) -> String {
         file_of(&self.name)
     }

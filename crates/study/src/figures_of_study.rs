@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::{
     body::{Body, Entry},
     compare::EVERY_MODEL,
-    decisions,
+    decisions, drivers,
     quantity::Quantity,
     scenario::Scenario,
     seen::Seen,
@@ -36,6 +36,7 @@ pub(crate) fn names(scenario: &Scenario) -> Vec<String> {
         names.extend(paired.map(|name| of_pair(name, physical, naive)));
     }
     names.extend(decisions::figure_names(scenario.requirements()));
+    names.extend(drivers::figure_names(scenario.drivers(), scenario.model_names()));
     names
 }
 

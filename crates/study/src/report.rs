@@ -14,7 +14,7 @@ use crate::{
     body::{Body, Entry},
     claim::Verdict,
     claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED},
-    decisions, faults, figures_of_study,
+    decisions, drivers, faults, figures_of_study,
     head::Head,
     quantity::Quantity,
     scenario::{Comparison, Each, Scenario},
@@ -49,6 +49,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     ));
     let lead = lead.plain(dependence(&summary.head));
     let drawn: Vec<_> = summary.figures.par_iter().map(Figure::drawn).collect();
+    let main: Vec<String> = Quantity::behaviour().iter().map(|q| q.column().into_owned()).collect();
     let title = format!("gyradius study: {}", summary.head.scenario);
     let document = Document::new(title, "Separation under inertia uncertainty", lead);
     noting_what_is_missing(document, &summary.head)
@@ -56,6 +57,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         .sections(decisions::sections(&summary.head))
         .section(results(summary))
         .section(parting(scenario, summary))
+        .sections(drivers::section(&summary.head, &main))
         .sections(faults(summary))
         .section(claims(summary))
         .sections(ratios(summary))

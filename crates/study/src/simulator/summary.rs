@@ -18,7 +18,7 @@ use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
 use crate::{
     Fleet, Notice, Options, ScenarioError, Study, StudyError,
     alerts::{self, Alert},
-    decisions,
+    decisions, drivers,
     groups::Groups,
     head::Head,
     report,
@@ -248,8 +248,10 @@ impl Subject for SimulatorScenario {
     fn report_files(&self) -> Vec<String> {
         let figures = Overview::figure_names().iter().map(|name| file_of(name));
         let required = decisions::figure_names(self.requirements()).map(|name| file_of(&name));
+        let driven = drivers::figure_names(self.drivers(), self.model_names());
         figures
             .chain(required)
+            .chain(driven.map(|name| file_of(&name)))
             .chain(Document::pages(report::NAME))
             .chain(["figures/".to_owned()])
             .collect()
@@ -258,7 +260,10 @@ impl Subject for SimulatorScenario {
     fn report(&self, summary: &SimulatorSummary) -> Document {
         let first = alerts::section(&summary.head.alerts).into_iter();
         let first = first.chain(decisions::sections(&summary.head));
-        let document = summary.overview.document().led_by(first);
+        let outputs = self.outputs().iter().map(|column| column.name().to_owned()).take(4);
+        let outputs: Vec<String> = outputs.collect();
+        let driven = drivers::section(&summary.head, &outputs);
+        let document = summary.overview.document().led_by(first).sections(driven);
         let document = report::noting_vehicles(document, &summary.head);
         let inputs = report::inputs(&summary.head, &self.kept(), self.to_toml());
         report::noting_what_is_missing(document, &summary.head).section(inputs)

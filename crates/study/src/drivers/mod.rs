@@ -1,5 +1,7 @@
 //! What drives the outcome: Sobol' indices of the groups of inputs that are drawn independently of each other.
 
+mod section;
+
 use gyradius_campaign::{
     Blocks, Column, Doing, Folder, Identity, Output, Plan, Progress, Simulation, run_missing,
     sha256,
@@ -12,6 +14,8 @@ use std::ops::RangeInclusive;
 use crate::{
     Options, ScenarioError, StudyError, decisions::requirements_of, head::Head, subject::Subject,
 };
+
+pub(crate) use section::{figure_names, section};
 
 /// Base runs that there may be: fewer tell nothing.
 const BASE_RUNS: RangeInclusive<u64> = 100..=10_000_000;

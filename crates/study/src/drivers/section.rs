@@ -1,0 +1,129 @@
+//! What drives the outcome, as the report tells it.
+
+use gyradius_report::{
+    DrivenOutput, DrivingGroup, PageCell, PageTable, Section, Text, drivers_figure, interval,
+    significant, with_unit,
+};
+use gyradius_statistics::{Estimate, SobolIndex};
+
+use super::{Driven, Drivers};
+use crate::head::Head;
+
+/// Outputs in a figure, at most.
+const DRAWN: usize = 6;
+/// Groups that are told of an output in the table.
+const TOLD: usize = 3;
+const FIGURE: &str = "drivers";
+
+/// The figures that there may be, if drivers are asked for, by the names of the models.
+pub(crate) fn figure_names<'a>(
+    base_runs: Option<u64>,
+    models: impl Iterator<Item = &'a str>,
+) -> impl Iterator<Item = String> {
+    models.filter(move |_| base_runs.is_some()).map(|model| format!("{FIGURE}-{model}"))
+}
+
+/// What drives the requirements, or, without any, the main outcomes of a run; nothing if it was not asked.
+pub(crate) fn section(head: &Head, main: &[String]) -> Option<Section> {
+    let base = head.drivers.first()?.base_runs;
+    let reading = format!(
+        "The inputs that are drawn independently of each other are groups. Of each output the figure shows which share of its \
+         variance a group explains alone (the first-order Sobol’ index), and which share would be left if all other groups were \
+         known (the total index): what a group has in all beyond what it has alone are its interactions. A total index near 0 \
+         means that the group may as well be fixed. Found from {base} base runs, each done with two draws of all groups, and once \
+         for each group with its second draw alone (pick and freeze), whatever the laws. Lines show intervals of 95 % each; a \
+         number is that of the total index. Of a requirement the output is whether a run fails it: with few failures the \
+         intervals are wide, and rather too narrow."
+    );
+    let mut section = Section::new("What drives the outcome").paragraph(reading);
+    for drivers in &head.drivers {
+        if drivers.failed > 0 {
+            let (failed, runs, model) = (drivers.failed, drivers.runs, &drivers.model);
+            section = section.paragraph(Text::default().strong(model).plain(format!(
+                ": {failed} of the {runs} runs failed. A number of a run is missing then, and the group leaves the base run out."
+            )));
+        }
+        let shown: Vec<DrivenOutput> =
+            shown(head, drivers, main).map(|driven| driven.drawn(drivers)).collect();
+        if !shown.is_empty() {
+            let caption = format!("What drives the outcome, {}", drivers.model);
+            let name = format!("{FIGURE}-{}", drivers.model);
+            section = section.figures([drivers_figure(&name, &caption, &shown)]);
+        }
+    }
+    Some(section.sections(head.drivers.iter().filter_map(all)))
+}
+
+/// What the figure of a model shows: the requirements and what they are about, or the main outcomes.
+fn shown<'a>(
+    head: &'a Head,
+    drivers: &'a Drivers,
+    main: &'a [String],
+) -> impl Iterator<Item = &'a Driven> {
+    let about = |driven: &Driven| {
+        head.requirements.iter().any(|judged| {
+            let columns = judged.judgement.requirement().quantity().columns();
+            judged.model == drivers.model && columns.contains(&driven.output)
+        })
+    };
+    let required = drivers.outputs.iter().any(|driven| driven.unit.is_none() || about(driven));
+    let is_shown = move |driven: &&Driven| match required {
+        true => driven.unit.is_none() || about(driven),
+        false => main.contains(&driven.output),
+    };
+    drivers.outputs.iter().filter(is_shown).take(DRAWN)
+}
+
+/// A row of each output of a model, with the groups that drive most of it.
+fn all(drivers: &Drivers) -> Option<Section> {
+    if drivers.outputs.is_empty() {
+        return None;
+    }
+    let mut table = PageTable::of(&drivers.outputs).words("output", |driven| driven.label());
+    for place in 0..TOLD.min(drivers.groups.len()) {
+        let heading = ["most of it", "then", "and then"][place];
+        table = table.words(heading, |driven| {
+            let mut ranked: Vec<(&String, &SobolIndex)> =
+                drivers.groups.iter().zip(driven.indices.groups()).collect();
+            let total = |index: &SobolIndex| index.total().map_or(-1.0, Estimate::value);
+            ranked.sort_by(|a, b| total(b.1).total_cmp(&total(a.1)));
+            let Some((group, index)) = ranked.get(place) else { return PageCell::from("–") };
+            let Some(total) = index.total() else { return PageCell::from("–") };
+            let total = total.clipped(0.0, 1.0);
+            let share = significant(total.value(), 2);
+            PageCell::from(Text::from(group.as_str())).line(
+                Text::default().quiet(format!("{share} {}", interval(Some(total.interval()), 2))),
+            )
+        });
+    }
+    let heading = format!("All outputs: {}", drivers.model);
+    Some(
+        Section::folded(heading)
+            .paragraph("Groups by their total index, with its interval.")
+            .table(table),
+    )
+}
+
+impl Driven {
+    /// The output with its unit, or the requirement that is not kept.
+    fn label(&self) -> String {
+        match &self.unit {
+            Some(unit) => with_unit(&self.output, unit),
+            None => format!("fails: {}", self.output),
+        }
+    }
+
+    fn drawn(&self, drivers: &Drivers) -> DrivenOutput {
+        let share = |estimate: Option<&Estimate>| {
+            let shown = estimate?.clipped(0.0, 1.0);
+            Some([shown.interval().lower(), shown.value(), shown.interval().upper()])
+        };
+        let group = |(name, index): (&String, &SobolIndex)| DrivingGroup {
+            name: name.clone(),
+            first: share(index.first()),
+            total: share(index.total()),
+        };
+        let groups = drivers.groups.iter().zip(self.indices.groups()).map(group).collect();
+        DrivenOutput { label: self.label(), groups }
+    }
+}
