@@ -183,6 +183,24 @@ pub enum StatisticsError {
         /// The values of the second.
         second: usize,
     },
+    /// The logarithm of a weight is NaN or too large.
+    #[error("the logarithm of a weight is {}; it must be a number up to {most}", plain(*value))]
+    LogWeight {
+        /// The logarithm given.
+        value: f64,
+        /// The largest that is allowed.
+        most: f64,
+    },
+    /// A plan of subset simulations is too small or too large.
+    #[error(
+        "{per_level} runs of a level and {replicas} replicas; there must be 100 to 10000000 runs and 2 to 1000 replicas"
+    )]
+    SubsetPlan {
+        /// The runs of a level given.
+        per_level: usize,
+        /// The replicas given.
+        replicas: usize,
+    },
     /// The number of groups of inputs is out of range.
     #[error("{groups} groups of inputs; there must be 1 to {most}")]
     GroupCount {

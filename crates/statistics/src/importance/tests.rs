@@ -1,0 +1,160 @@
+//! Weighted estimates against known probabilities, and against plain counts.
+
+use proptest::prelude::*;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Exp1, StandardNormal};
+
+use super::*;
+use crate::tail;
+
+fn estimate(
+    seed: u64,
+    runs: usize,
+    mut run: impl FnMut(&mut ChaCha8Rng) -> (f64, bool),
+) -> ImportanceEstimate {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut sums = ImportanceSampling::new();
+    for _ in 0..runs {
+        let (log_weight, hit) = run(&mut rng);
+        sums.push(log_weight, hit).unwrap();
+    }
+    sums.finish(Confidence::default()).unwrap()
+}
+
+/// The share of repetitions whose interval covers the truth, and the mean of the estimates over the truth.
+fn coverage(truth: f64, runs: usize, run: impl Fn(&mut ChaCha8Rng) -> (f64, bool)) -> (f64, f64) {
+    let repetitions = 500;
+    let (mut covered, mut sum) = (0.0, 0.0);
+    for seed in 0..repetitions {
+        let estimate = estimate(seed, runs, &run);
+        covered += f64::from(u8::from(estimate.interval().contains(truth)));
+        sum += estimate.probability() / truth;
+    }
+    (covered / repetitions as f64, sum / repetitions as f64)
+}
+
+/// A normal law moved by so much, and divided by a spread.
+fn moved(by: f64, spread: f64, limit: f64) -> impl Fn(&mut ChaCha8Rng) -> (f64, bool) {
+    move |rng| {
+        let z: f64 = StandardNormal.sample(rng);
+        let x = by + spread * z;
+        (0.5 * (z * z - x * x) + spread.ln(), x > limit)
+    }
+}
+
+#[test]
+fn known_probabilities_are_covered() {
+    // A half space: up to 1e-15.
+    for limit in [1.0, 3.0, 5.2, 7.9] {
+        let (covered, mean) = coverage(tail::normal(limit), 300, moved(limit, 1.0, limit));
+        println!("half space {limit}: {covered} {mean}");
+        assert!(covered > 0.92 && (mean - 1.0).abs() < 0.03, "{covered} {mean}");
+    }
+    // The sum of five exponentials above 30: e⁻ˢ Σ sᵏ/k!, 3.6e-9. Each drawn with a mean of 6.
+    let truth = (-30_f64).exp() * (1.0 + 30.0 + 450.0 + 4500.0 + 33_750.0);
+    let (covered, mean) = coverage(truth, 500, |rng| {
+        let sum: f64 = (0..5).map(|_| 6.0 * Distribution::<f64>::sample(&Exp1, rng)).sum();
+        (-sum + sum / 6.0 + 5.0 * 6_f64.ln(), sum > 30.0)
+    });
+    println!("exponentials: {covered} {mean}");
+    assert!(covered > 0.92 && (mean - 1.0).abs() < 0.03, "{covered} {mean}");
+    // Either of two normal numbers, by a mixture of both moves and the law itself.
+    let either = 1.0 - (1.0 - tail::normal(4.5)).powi(2);
+    let (covered, mean) = coverage(either, 1000, |rng| {
+        let mut x: [f64; 2] = [StandardNormal.sample(rng), StandardNormal.sample(rng)];
+        match rng.random_range(0..10) {
+            0 | 1 => {}
+            part => x[part % 2] += 4.5,
+        }
+        let ratio = |x: f64| (4.5 * x - 0.5 * 4.5 * 4.5).exp();
+        let log = -(0.2 + 0.4 * ratio(x[0]) + 0.4 * ratio(x[1])).ln();
+        (log, x[0].max(x[1]) > 4.5)
+    });
+    println!("either: {covered} {mean}");
+    assert!(covered > 0.92 && (mean - 1.0).abs() < 0.03, "{covered} {mean}");
+}
+
+/// A law with lighter tails than its own has weights without a variance: intervals do not cover, and most runs say so.
+#[test]
+fn a_law_that_hardly_reaches_the_event_is_told_of() {
+    let limit = 3.0;
+    let narrow = moved(0.0, 0.7, limit);
+    let (mut covered, mut told) = (0, 0);
+    for seed in 0..200 {
+        let estimate = estimate(seed, 2000, &narrow);
+        covered +=
+            u32::from(estimate.interval().contains(tail::normal(limit)) && estimate.hits() > 0);
+        told += u32::from(!estimate.warnings().is_empty());
+    }
+    println!("{covered} {told}");
+    assert!(told == 200, "{told}");
+}
+
+/// Half of an event that is out of sight: nothing shows it but the mean weight, as the documentation says.
+#[test]
+fn what_was_not_seen_is_not_told_of() {
+    let truth = 2.0 * tail::normal(5.0);
+    let estimate = estimate(1, 2000, |rng| {
+        let x = 5.0 + Distribution::<f64>::sample(&StandardNormal, rng);
+        (12.5 - 5.0 * x, x.abs() > 5.0)
+    });
+    assert!(estimate.warnings().is_empty() && estimate.interval().upper() < truth * 0.6);
+    assert!(estimate.mean_weight() < 0.5, "{estimate:?}");
+}
+
+#[test]
+fn what_cannot_be_answered_is_refused() {
+    let mut sums = ImportanceSampling::default();
+    for value in [f64::NAN, f64::INFINITY, 701.0] {
+        assert!(matches!(sums.push(value, true), Err(StatisticsError::LogWeight { .. })));
+    }
+    let finish = |sums: &ImportanceSampling| sums.finish(Confidence::default());
+    sums.push(0.0, true).unwrap();
+    assert_eq!(finish(&sums), Err(StatisticsError::TooFew { n: 1, required: 2 }));
+    let mut none = ImportanceSampling::new();
+    (0..9).for_each(|_| none.push(f64::NEG_INFINITY, true).unwrap());
+    let none = finish(&none).unwrap();
+    assert_eq!((none.probability(), none.coefficient_of_variation()), (0.0, None));
+    assert_eq!((none.interval().upper(), none.warnings()), (1.0, &[WeightWarning::NoHit][..]));
+    // Weights of e in the place of 1.
+    let mut wrong = ImportanceSampling::new();
+    (0..99).for_each(|i| wrong.push(1.0, i % 2 == 0).unwrap());
+    let wrong = finish(&wrong).unwrap();
+    assert!(matches!(wrong.warnings(), [WeightWarning::MeanWeightAboveOne { .. }]), "{wrong:?}");
+}
+
+proptest! {
+    /// Runs of weight 1 are a plain count, with its standard error; another unit of all weights moves the estimate alone.
+    #[test]
+    fn equal_weights_are_a_count(hits in prop::collection::vec(any::<bool>(), 2..200), unit in -600.0..600.0_f64) {
+        let of = |unit: f64| {
+            let mut sums = ImportanceSampling::new();
+            hits.iter().for_each(|hit| sums.push(unit, *hit).unwrap());
+            sums.finish(Confidence::default()).unwrap()
+        };
+        let (plain, moved) = (of(0.0), of(unit));
+        let (n, k) = (hits.len() as f64, hits.iter().filter(|hit| **hit).count() as f64);
+        prop_assert!((plain.probability() - k / n).abs() < 1e-12);
+        prop_assert!((plain.effective_hits() - k).abs() < 1e-9 * n && (plain.effective_runs() - n).abs() < 1e-9 * n);
+        if let Some(coefficient) = plain.coefficient_of_variation() {
+            let p = k / n;
+            prop_assert!((coefficient * p - (p * (1.0 - p) / (n - 1.0)).sqrt()).abs() < 1e-9);
+        }
+        prop_assert_eq!(plain.coefficient_of_variation(), moved.coefficient_of_variation());
+        prop_assert!((moved.probability() / plain.probability().max(1e-300)).ln().abs() < 601.0 || k == 0.0);
+    }
+
+    #[test]
+    fn every_weight_gives_numbers(runs in prop::collection::vec((any::<f64>(), any::<bool>()), 0..20)) {
+        let mut sums = ImportanceSampling::new();
+        for (weight, hit) in runs {
+            let _ = sums.push(weight, hit);
+            let _ = sums.push(weight % 700.0, hit);
+        }
+        if let Ok(estimate) = sums.finish(Confidence::default()) {
+            prop_assert!(estimate.probability() >= 0.0 && estimate.interval().contains(estimate.probability()));
+            prop_assert!((0.0..=1.0).contains(&estimate.largest_share()));
+        }
+    }
+}

@@ -1,0 +1,324 @@
+//! The probability of a rare event in steps that are not rare, by redrawing one group of inputs at a time.
+
+mod replica;
+
+pub use replica::SubsetReplica;
+
+use crate::error::share;
+use crate::{Confidence, Interval, Proportion, StatisticsError, law};
+
+/// The most groups of inputs, runs of a level, and replicas.
+const MAX_GROUPS: usize = 100_000;
+const MAX_RUNS: usize = 10_000_000;
+const MAX_REPLICAS: usize = 1000;
+/// The probability below which a simulation gives up, unless told otherwise.
+const LEAST: f64 = 1e-9;
+/// Acceptance below which chains hardly move, and families below which the last runs are relatives.
+const SLOW: f64 = 0.05;
+const FEW: usize = 5;
+/// Events that an estimate shows.
+const SHOWN: usize = 10;
+
+/// A model of which the probability of an event is wanted.
+pub trait RareEvent {
+    /// How far the run with these draws is beyond the limit: the event is an excess of 0 or more.
+    ///
+    /// `draws` has a number for each group of inputs. The values of a group depend on its own number alone, as
+    /// those of a stream of random numbers that is keyed by the group and has this number. NaN is a run that failed: it is
+    /// not the event, and stands below all others. Return infinity where failing is the event.
+    fn excess(&self, draws: &[u64]) -> f64;
+}
+
+impl<F: Fn(&[u64]) -> f64> RareEvent for F {
+    fn excess(&self, draws: &[u64]) -> f64 {
+        self(draws)
+    }
+}
+
+/// A plan of subset simulations (Au & Beck 2001, doi:10.1016/S0266-8920(01)00019-4): a small probability as a product
+/// of larger ones, `P(event) = P(y ≥ b₁) P(y ≥ b₂ | y ≥ b₁) …` for the excess y of a run.
+///
+/// The first level has n plain runs. The limit b of the next is the n/10-th largest excess, so that one run in ten
+/// stands above. From each of these a chain goes on until there are n runs again: a step draws one group of inputs anew
+/// from its own law, the groups by turns, and stays where it was if the excess falls below b. That leaves the law of the runs
+/// above b as it is, whatever the laws of the groups are, for it is a step of Gibbs' sampler with rejection. When a tenth of the
+/// runs reach 0, their share completes the product.
+///
+/// Runs of one chain are correlated, and so are chains with common ancestors. Therefore the whole simulation is
+/// done several times, in independent replicas. The estimate is their mean; its coefficient of variation c is that between
+/// replicas over √R, which takes account of all correlation without a model of it, where the formula of
+/// Au & Beck takes chains for independent. The interval is log-normal, `p exp(± t σ)` with `σ² = ln(1 + c²)` and t of R − 1
+/// degrees of freedom. An estimate is biased upwards by some c² of one replica (Au & Beck 2001, eq. 31): let
+/// n be 500 or more, and R some ten.
+///
+/// **Where it works, and where not.** An event that several groups bring about together is reached in as many levels as its probability
+/// has digits. If one group alone has to be as rare as the event (its step to the limit is then as rare too), chains
+/// do not move, and the simulation knows no more than its n first runs: such replicas end without an event. The
+/// interval is wide then, or reaches from 0 to a bound, and [`warnings`](SubsetEstimate::warnings) say so. Divide such a group,
+/// if it can be divided, or use [`ImportanceSampling`](crate::ImportanceSampling).
+///
+/// Ties are no difficulty: all runs at a level belong to it. If all runs are at one level, the next value that occurs is the next level, so
+/// that an excess of whole numbers, or of two values, is simulated too (of two values as plain runs). A simulation
+/// ends if no value is higher, or if the probability falls below [`with_least`](Self::with_least).
+///
+/// Coverage at a nominal 95 %, over 100 repetitions each with 10 replicas of 500 runs: 91 % to 98 % for sums of normal and
+/// exponential numbers, of directions and of counts, from 1e-3 to 1e-7.
+///
+/// The numbers of all draws follow from the plan alone: replica r has the draws from r · 2⁴⁰ on. The result depends on
+/// no order of runs and on no number of threads.
+///
+/// ```
+/// use gyradius_statistics::{Confidence, SubsetSimulation};
+///
+/// // Ten numbers, uniform from 0 to 1: how often is their sum below 1? 1/10! = 2.8e-7.
+/// let uniform = |group: usize, draw: u64| {
+///     let mut x = (draw << 8 | group as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+///     x = (x ^ x >> 32).wrapping_mul(0xd6e8_feb8_6659_fd93);
+///     x = (x ^ x >> 32).wrapping_mul(0xd6e8_feb8_6659_fd93);
+///     ((x ^ x >> 32) >> 11) as f64 * 2_f64.powi(-53)
+/// };
+/// let excess = |draws: &[u64]| {
+///     1.0 - draws.iter().enumerate().map(|(group, draw)| uniform(group, *draw)).sum::<f64>()
+/// };
+/// let estimate = SubsetSimulation::new(10, 500, 10)?.run(&excess, Confidence::default())?;
+/// assert!(estimate.interval().contains(1.0 / 3_628_800.0));
+/// assert!(estimate.evaluations() < 40_000);
+/// # Ok::<(), gyradius_statistics::StatisticsError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SubsetSimulation {
+    groups: usize,
+    per_level: usize,
+    replicas: usize,
+    least: f64,
+}
+
+impl SubsetSimulation {
+    /// With so many groups of inputs, runs of a level, and replicas. Each level but the first costs nine tenths of its runs.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::GroupCount`] unless there are 1 to 100,000 groups, [`StatisticsError::SubsetPlan`] unless there are 100
+    /// to 10⁷ runs of a level and 2 to 1000 replicas.
+    pub fn new(groups: usize, per_level: usize, replicas: usize) -> Result<Self, StatisticsError> {
+        if !(1..=MAX_GROUPS).contains(&groups) {
+            return Err(StatisticsError::GroupCount { groups, most: MAX_GROUPS });
+        }
+        if !(100..=MAX_RUNS).contains(&per_level) || !(2..=MAX_REPLICAS).contains(&replicas) {
+            return Err(StatisticsError::SubsetPlan { per_level, replicas });
+        }
+        Ok(Self { groups, per_level, replicas, least: LEAST })
+    }
+
+    /// Gives up below this probability; below 1e-9 else.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::Share`] unless it lies between 1e-9 and 1 − 1e-9.
+    pub fn with_least(self, least: f64) -> Result<Self, StatisticsError> {
+        Ok(Self { least: share(least)?, ..self })
+    }
+
+    /// The pilot, which finds the levels.
+    pub fn pilot(&self) -> SubsetReplica {
+        SubsetReplica::pilot(self.groups, self.per_level, self.least)
+    }
+
+    /// The replicas, with the levels of the pilot.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::TooFew`] if the pilot is not done.
+    pub fn replicas(&self, pilot: &SubsetReplica) -> Result<Vec<SubsetReplica>, StatisticsError> {
+        if !pilot.is_done() {
+            return Err(StatisticsError::TooFew { n: 0, required: 1 });
+        }
+        Ok((1..=self.replicas as u64).map(|number| pilot.alike(number)).collect())
+    }
+
+    /// Does all runs one after the other, and says what they show.
+    ///
+    /// # Errors
+    ///
+    /// None for a plan as it is made; those of [`finish`](Self::finish).
+    pub fn run(
+        &self,
+        event: &impl RareEvent,
+        confidence: Confidence,
+    ) -> Result<SubsetEstimate, StatisticsError> {
+        let simulate = |replica: &mut SubsetReplica| {
+            while !replica.is_done() {
+                let run = |draws: &Vec<u64>| event.excess(draws);
+                let excesses: Vec<f64> = replica.asks().iter().map(run).collect();
+                replica.tell(&excesses)?;
+            }
+            Ok::<(), StatisticsError>(())
+        };
+        let mut pilot = self.pilot();
+        simulate(&mut pilot)?;
+        let mut replicas = self.replicas(&pilot)?;
+        replicas.iter_mut().try_for_each(simulate)?;
+        self.finish(&pilot, &replicas, confidence)
+    }
+
+    /// What replicas that are done show together.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::TooFew`] if fewer than two are done. Those that are not count for nothing.
+    pub fn finish(
+        &self,
+        pilot: &SubsetReplica,
+        replicas: &[SubsetReplica],
+        confidence: Confidence,
+    ) -> Result<SubsetEstimate, StatisticsError> {
+        let done: Vec<&SubsetReplica> = replicas.iter().filter(|r| r.is_done()).collect();
+        if done.len() < 2 {
+            return Err(StatisticsError::TooFew { n: done.len(), required: 2 });
+        }
+        let estimates: Vec<f64> =
+            done.iter().map(|r| if r.reached() { r.probability() } else { 0.0 }).collect();
+        let count = done.len() as f64;
+        let probability = estimates.iter().sum::<f64>() / count;
+        let squares: f64 = estimates.iter().map(|p| (p / probability - 1.0).powi(2)).sum();
+        let coefficient = (probability > 0.0).then(|| (squares / (count - 1.0) / count).sqrt());
+        let interval = match coefficient {
+            Some(c) => log_normal(&estimates, probability, c, confidence),
+            None => {
+                // The event is rarer than the last level by what its runs allow, relatives counted once.
+                let bounds = done.iter().map(|replica| {
+                    let none = Proportion::new(0, replica.families().max(1) as u64)?;
+                    Ok(replica.probability() * none.interval(confidence).upper())
+                });
+                let sum = bounds.sum::<Result<f64, StatisticsError>>()?;
+                Interval::ordered(0.0, sum / count, confidence)
+            }
+        };
+        let reached: Vec<_> = done.iter().filter(|replica| replica.reached()).collect();
+        let mut warnings = Vec::new();
+        if reached.len() < done.len() {
+            let not_reached = done.len() - reached.len();
+            warnings.push(SubsetWarning::NotReached { replicas: not_reached });
+        }
+        let acceptance = done.iter().filter_map(|r| r.acceptance()).reduce(f64::min);
+        if let Some(acceptance) = acceptance.filter(|share| *share < SLOW) {
+            warnings.push(SubsetWarning::ChainsHardlyMove { acceptance });
+        }
+        let families = reached.iter().map(|replica| replica.families()).min();
+        if let Some(families) = families.filter(|families| *families < FEW) {
+            warnings.push(SubsetWarning::FewFamilies { families });
+        }
+        let runs = |count: fn(&SubsetReplica) -> u64| {
+            count(pilot) + done.iter().map(|replica| count(replica)).sum::<u64>()
+        };
+        Ok(SubsetEstimate {
+            probability,
+            coefficient_of_variation: coefficient,
+            interval,
+            evaluations: runs(SubsetReplica::evaluations),
+            failed: runs(SubsetReplica::failed),
+            events: reached.iter().flat_map(|replica| replica.events()).take(SHOWN).collect(),
+            replicas: estimates,
+            warnings,
+        })
+    }
+}
+
+/// The interval for the mean of estimates whose mean and coefficient of variation are these.
+fn log_normal(estimates: &[f64], mean: f64, coefficient: f64, confidence: Confidence) -> Interval {
+    let n = estimates.len() as f64;
+    let t = law::students_t(confidence.tail(), n - 1.0);
+    let (centre, sigma) = if estimates.iter().all(|p| *p > 0.0) {
+        let logs: Vec<f64> = estimates.iter().map(|p| libm::log(*p)).collect();
+        let middle = logs.iter().sum::<f64>() / n;
+        let variance = logs.iter().map(|x| (x - middle).powi(2)).sum::<f64>() / (n - 1.0);
+        let error = variance / n + variance * variance / (2.0 * (n - 1.0));
+        (libm::exp(middle + variance / 2.0), error.sqrt())
+    } else {
+        (mean, libm::log1p(coefficient * coefficient).sqrt())
+    };
+    let interval = Interval::around_log(centre, t * sigma, confidence);
+    Interval::ordered(interval.lower().min(mean), interval.upper().clamp(mean, 1.0), confidence)
+}
+
+/// A probability by subset simulation, and how far to trust it.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SubsetEstimate {
+    probability: f64,
+    coefficient_of_variation: Option<f64>,
+    interval: Interval,
+    evaluations: u64,
+    failed: u64,
+    replicas: Vec<f64>,
+    events: Vec<Vec<u64>>,
+    warnings: Vec<SubsetWarning>,
+}
+
+/// Why a subset simulation should not be trusted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[non_exhaustive]
+pub enum SubsetWarning {
+    /// So many replicas found no event: it cannot be, is rarer than the least probability, or chains do not move.
+    NotReached {
+        /// How many.
+        replicas: usize,
+    },
+    /// So few of the redrawn runs of a last level stayed above it, below a twentieth.
+    ChainsHardlyMove {
+        /// Their share, in the replica where it is least.
+        acceptance: f64,
+    },
+    /// The events of a replica descend from so few of its first runs, below 5.
+    FewFamilies {
+        /// How many, in the replica where they are fewest.
+        families: usize,
+    },
+}
+
+impl SubsetEstimate {
+    /// The estimate of the probability: the mean of the replicas.
+    pub fn probability(&self) -> f64 {
+        self.probability
+    }
+
+    /// Its standard error over the estimate, from the spread between replicas; none if no replica found an event.
+    pub fn coefficient_of_variation(&self) -> Option<f64> {
+        self.coefficient_of_variation
+    }
+
+    /// The interval. If no replica found an event, from 0 to a bound.
+    pub fn interval(&self) -> Interval {
+        self.interval
+    }
+
+    /// Number of runs that were done, those of the pilot and those that failed too.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    /// How many of them failed.
+    pub fn failed(&self) -> u64 {
+        self.failed
+    }
+
+    /// The estimate of each replica, 0 for one that found no event.
+    pub fn replicas(&self) -> &[f64] {
+        &self.replicas
+    }
+
+    /// Some runs that are the event, ten at most: for each the number of the draw of every group.
+    pub fn events(&self) -> &[Vec<u64>] {
+        &self.events
+    }
+
+    /// Why not to trust the estimate, as far as the runs can show it.
+    pub fn warnings(&self) -> &[SubsetWarning] {
+        &self.warnings
+    }
+}
+
+#[cfg(test)]
+mod tests;
