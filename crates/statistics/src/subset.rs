@@ -13,9 +13,10 @@ const MAX_RUNS: usize = 10_000_000;
 const MAX_REPLICAS: usize = 1000;
 /// The probability below which a simulation gives up, unless told otherwise.
 const LEAST: f64 = 1e-9;
-/// Acceptance below which chains hardly move, and families below which the last runs are relatives.
+/// Acceptance below which chains hardly move.
 const SLOW: f64 = 0.05;
-const FEW: usize = 5;
+/// Coefficient of variation of one replica from which replicas differ too much.
+const WIDE: f64 = 1.5;
 /// Events that an estimate shows.
 const SHOWN: usize = 10;
 
@@ -39,32 +40,36 @@ impl<F: Fn(&[u64]) -> f64> RareEvent for F {
 /// of larger ones, `P(event) = P(y ≥ b₁) P(y ≥ b₂ | y ≥ b₁) …` for the excess y of a run.
 ///
 /// The first level has n plain runs. The limit b of the next is the n/10-th largest excess, so that one run in ten
-/// stands above. From each of these a chain goes on until there are n runs again: a step draws one group of inputs anew
-/// from its own law, the groups by turns, and stays where it was if the excess falls below b. That leaves the law of the runs
-/// above b as it is, whatever the laws of the groups are, for it is a step of Gibbs' sampler with rejection. When a tenth of the
-/// runs reach 0, their share completes the product.
+/// stands above. From each of these a chain goes on until there are n runs again: a step draws some groups of inputs anew
+/// from their own laws, all groups by turns, and stays where it was if the excess falls below b. That leaves the law of the
+/// runs above b as it is, whatever the laws of the groups are. One group is drawn anew at a time where steps are seldom
+/// accepted, and twice as many in the next level where they often are. When a tenth of the runs reach 0, their share completes the product.
 ///
-/// Runs of one chain are correlated, and so are chains with common ancestors. Therefore the whole simulation is
-/// done several times, in independent replicas. The estimate is their mean; its coefficient of variation c is that between
-/// replicas over √R, which takes account of all correlation without a model of it, where the formula of
-/// Au & Beck takes chains for independent. The interval is log-normal, `p exp(± t σ)` with `σ² = ln(1 + c²)` and t of R − 1
-/// degrees of freedom. An estimate is biased upwards by some c² of one replica (Au & Beck 2001, eq. 31): let
-/// n be 500 or more, and R some ten.
+/// Runs of one chain are correlated, and so are chains with common ancestors. Therefore a pilot finds the levels, and
+/// the simulation is then done R times with these levels, in independent replicas. Each replica's product is
+/// an unbiased estimate, for its levels do not depend on its own runs; the estimate is their mean. Its coefficient of variation c is
+/// that between replicas over √R, which takes account of all correlation without a model of it, where the formula of Au & Beck
+/// takes chains for independent. The interval is that for the mean of a log-normal law, with the mean m and the variance s²
+/// of the replicas' logarithms: `exp(m + s²/2 ± t √(s²/R + s⁴/(2 (R − 1))))` with t of R − 1 degrees of freedom (Olsson 2005,
+/// doi:10.1080/10691898.2005.11910638). If some replica found no event, it is `p exp(± t σ)` with `σ² = ln(1 + c²)`. Let n be 500 or
+/// more, and R some ten.
 ///
 /// **Where it works, and where not.** An event that several groups bring about together is reached in as many levels as its probability
 /// has digits. If one group alone has to be as rare as the event (its step to the limit is then as rare too), chains
-/// do not move, and the simulation knows no more than its n first runs: such replicas end without an event. The
+/// do not move, and a replica knows no more than its n first runs: most replicas end without an event. The
 /// interval is wide then, or reaches from 0 to a bound, and [`warnings`](SubsetEstimate::warnings) say so. Divide such a group,
-/// if it can be divided, or use [`ImportanceSampling`](crate::ImportanceSampling).
+/// if it can be divided, or use [`ImportanceSampling`](crate::ImportanceSampling). A second kind of event that the pilot's levels hardly lead
+/// to is found by few replicas or by none, and nothing shows the latter.
 ///
 /// Ties are no difficulty: all runs at a level belong to it. If all runs are at one level, the next value that occurs is the next level, so
-/// that an excess of whole numbers, or of two values, is simulated too (of two values as plain runs). A simulation
+/// that an excess of whole numbers, or of two values, is simulated too (of two values as plain runs). A pilot
 /// ends if no value is higher, or if the probability falls below [`with_least`](Self::with_least).
 ///
-/// Coverage at a nominal 95 %, over 100 repetitions each with 10 replicas of 500 runs: 91 % to 98 % for sums of normal and
-/// exponential numbers, of directions and of counts, from 1e-3 to 1e-7.
+/// Coverage at a nominal 95 %, over 400 repetitions each with 10 replicas of 500 runs: 92 % to 97 % for sums of normal and
+/// exponential numbers, of directions and of counts, for either of two sums and with runs that fail, from 1e-3 to 1e-7,
+/// with 18,000 to 38,000 runs. The means of the estimates were within 3 % of the truth.
 ///
-/// The numbers of all draws follow from the plan alone: replica r has the draws from r · 2⁴⁰ on. The result depends on
+/// The numbers of all draws follow from the plan alone: the pilot has those from 0 on, replica r those from r · 2⁴⁰ on. The result depends on
 /// no order of runs and on no number of threads.
 ///
 /// ```
@@ -94,7 +99,8 @@ pub struct SubsetSimulation {
 }
 
 impl SubsetSimulation {
-    /// With so many groups of inputs, runs of a level, and replicas. Each level but the first costs nine tenths of its runs.
+    /// With so many groups of inputs, runs of a level, and replicas. Each level but the first
+    /// costs nine tenths of its runs, and the pilot is one replica more.
     ///
     /// # Errors
     ///
@@ -204,9 +210,9 @@ impl SubsetSimulation {
         if let Some(acceptance) = acceptance.filter(|share| *share < SLOW) {
             warnings.push(SubsetWarning::ChainsHardlyMove { acceptance });
         }
-        let families = reached.iter().map(|replica| replica.families()).min();
-        if let Some(families) = families.filter(|families| *families < FEW) {
-            warnings.push(SubsetWarning::FewFamilies { families });
+        let spread = coefficient.map(|c| c * count.sqrt());
+        if let Some(coefficient) = spread.filter(|c| *c >= WIDE) {
+            warnings.push(SubsetWarning::ReplicasDiffer { coefficient });
         }
         let runs = |count: fn(&SubsetReplica) -> u64| {
             count(pilot) + done.iter().map(|replica| count(replica)).sum::<u64>()
@@ -271,10 +277,10 @@ pub enum SubsetWarning {
         /// Their share, in the replica where it is least.
         acceptance: f64,
     },
-    /// The events of a replica descend from so few of its first runs, below 5.
-    FewFamilies {
-        /// How many, in the replica where they are fewest.
-        families: usize,
+    /// The standard deviation between replicas is 1.5 times the estimate or more: more runs of a level are needed.
+    ReplicasDiffer {
+        /// How many times as large as the estimate.
+        coefficient: f64,
     },
 }
 

@@ -5,7 +5,7 @@
 //! controls.
 
 use gyradius_statistics::{
-    Confidence, Deviation, GoodnessOfFit, Interval, Moments, SortedSample, Survey,
+    Confidence, Deviation, GoodnessOfFit, Interval, Moments, RankCorrelation, SortedSample, Survey,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -333,4 +333,35 @@ fn intervals_of_groups() {
             assert!(common == 0.0 || naive < 0.8, "{naive}");
         }
     }
+}
+
+/// Of bivariate normal laws, of any rising functions of them, and of independent columns with ties.
+#[test]
+fn rank_correlation_intervals() {
+    let r = 2000;
+    let covers = |n: usize, rho: f64| {
+        // Pearson's ρ of normal laws to Spearman's.
+        let truth = 6.0 / std::f64::consts::PI * (rho / 2.0).asin();
+        share(r, |rng| {
+            let x = Law::Normal.draw(rng, n);
+            let own = Law::Normal.draw(rng, n);
+            let mix = |(x, own): (&f64, &f64)| (rho * x + (1.0 - rho * rho).sqrt() * own).exp();
+            let y: Vec<f64> = x.iter().zip(&own).map(mix).collect();
+            let rank = RankCorrelation::new(&x, &y).unwrap();
+            rank.estimate(Confidence::default()).interval().contains(truth)
+        })
+    };
+    for (n, rho) in [(25, 0.0), (25, 0.6), (300, 0.3), (300, -0.8)] {
+        assert_share("rank correlation", covers(n, rho), 0.95, r, 0.01);
+    }
+    // Negative control: where the transformed correlation is no longer normal.
+    assert!(covers(300, 0.99) < 0.94);
+    let ties = share(r, |rng| {
+        let [x, y] = [3.0, 2.0].map(|values: f64| -> Vec<f64> {
+            Law::Uniform.draw(rng, 100).iter().map(|u| (u * values).floor()).collect()
+        });
+        let rank = RankCorrelation::new(&x, &y).unwrap();
+        rank.estimate(Confidence::default()).interval().contains(0.0)
+    });
+    assert_share("ties", ties, 0.95, r, 0.01);
 }

@@ -1,8 +1,10 @@
 //! What the feature `serde` writes, and what it reads back.
 
 use gyradius_statistics::{
-    Acceptance, BinEdges, Confidence, ConfidenceSequence, Deviation, GoodnessOfFit, Histogram,
-    Moments, Proportion, SequentialAcceptance, SortedSample, Tolerance, ToleranceSide, Verdict,
+    Acceptance, BinEdges, Confidence, ConfidenceSequence, Deviation, Estimate, GoodnessOfFit,
+    Histogram, ImportanceEstimate, ImportanceSampling, Moments, PairSeparation, Proportion,
+    QuantileCells, RankCorrelation, SequentialAcceptance, SobolIndices, SobolSums, SortedSample,
+    SubsetEstimate, SubsetSimulation, SuccessByDecile, Tolerance, ToleranceSide, Verdict,
 };
 use serde_json::{Value, from_value, json, to_value};
 
@@ -81,5 +83,42 @@ fn rules_and_what_they_decide_are_read_back() {
             assert_eq!(from_value::<Tolerance>(text).unwrap(), tolerance);
             assert_eq!(from_value::<ToleranceSide>(to_value(side).unwrap()).unwrap(), side);
         }
+    }
+}
+
+/// What drives outputs and how rare events are stands in results that are read back, to the bit.
+#[test]
+fn drivers_and_rare_events_are_read_back() {
+    fn back<T>(value: &T)
+    where
+        T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,
+    {
+        let text = serde_json::to_string(value).unwrap();
+        assert_eq!(serde_json::from_str::<T>(&text).unwrap(), *value, "{text}");
+    }
+    let confidence = Confidence::default();
+    let (x, y) = ([1.0, 2.0, 3.5, 4.0, 9.0], [0.3, 0.1, 0.2, 0.9, 0.7]);
+    let mut sums = SobolSums::new(2).unwrap();
+    for (x, y) in x.into_iter().zip(y) {
+        sums.push(Some(x), Some(y), &[Some(x * y), None]).unwrap();
+    }
+    let indices = sums.finish(confidence).unwrap();
+    back::<SobolIndices>(&indices);
+    assert_eq!(to_value(&indices).unwrap()["groups"][1]["total"], Value::Null);
+    let rank = RankCorrelation::new(&x, &y).unwrap();
+    back::<RankCorrelation>(&rank);
+    back::<Estimate>(&rank.estimate(confidence));
+    let failed = [false, true, true, false, false];
+    back::<SuccessByDecile>(&SuccessByDecile::new(&x, &failed, confidence).unwrap());
+    let [of_x, of_y] = [x, y].map(|column| QuantileCells::new(&column, 2).unwrap());
+    back::<PairSeparation>(&PairSeparation::new(&of_x, &of_y, &failed).unwrap());
+    let mut weights = ImportanceSampling::new();
+    weights.push(-3.0, true).unwrap();
+    weights.push(0.5, false).unwrap();
+    back::<ImportanceEstimate>(&weights.finish(confidence).unwrap());
+    let plan = SubsetSimulation::new(2, 100, 2).unwrap();
+    for limit in [50.0, 95.0, 200.0] {
+        let excess = |draws: &[u64]| (draws[0] % 97) as f64 - limit;
+        back::<SubsetEstimate>(&plan.run(&excess, confidence).unwrap());
     }
 }

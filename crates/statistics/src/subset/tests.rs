@@ -38,17 +38,22 @@ fn estimate(groups: usize, model: Model, seed: u64) -> SubsetEstimate {
     plan.run(&|draws: &[u64]| model(seed, draws), Confidence::default()).unwrap()
 }
 
-/// Asserts that intervals cover the truth in 95 of 100 repetitions or nearly so, and that the mean estimate is near it.
+/// Asserts that intervals cover the truth in 95 % of the repetitions or nearly so, and that the mean estimate is near it.
 fn assert_covers(what: &str, groups: usize, truth: f64, model: Model) {
-    let (mut covered, mut mean, mut runs, repetitions) = (0, 0.0, 0, 400);
+    let (mut covered, mut mean, mut runs, mut warned, repetitions) = (0, 0.0, 0, 0, 40);
     for seed in 0..repetitions {
         let estimate = estimate(groups, model, seed);
         covered += u32::from(estimate.interval().contains(truth));
         mean += estimate.probability() / truth / repetitions as f64;
-        runs += estimate.evaluations() / repetitions;
+        runs += estimate.evaluations();
+        warned += u32::from(!estimate.warnings().is_empty());
     }
-    println!("{what}: {truth:e} covered {covered}, mean {mean:.3} of it, {runs} runs");
-    assert!(covered >= 87 && (0.85..1.2).contains(&mean), "{what}: {covered} {mean}");
+    println!(
+        "{what}: {truth:e} covered {covered}, mean {mean:.3} of it, {} runs, warned {warned}",
+        runs / repetitions
+    );
+    assert!(covered >= 34 && (0.85..1.2).contains(&mean), "{what}: {covered} {mean}");
+    assert!(warned <= 20, "{what}: {warned}");
 }
 
 #[test]
@@ -56,8 +61,8 @@ fn sums_of_normal_numbers_down_to_a_ten_millionth() {
     assert_covers("1e-3", 10, tail::normal(3.09), |seed, draws| {
         sum(draws, |group, draw| normal(seed, group, draw, 0)) / 10_f64.sqrt() - 3.09
     });
-    assert_covers("1e-7", 20, tail::normal(5.2), |seed, draws| {
-        sum(draws, |group, draw| normal(seed, group, draw, 0)) / 20_f64.sqrt() - 5.2
+    assert_covers("1e-7", 10, tail::normal(5.2), |seed, draws| {
+        sum(draws, |group, draw| normal(seed, group, draw, 0)) / 10_f64.sqrt() - 5.2
     });
 }
 
@@ -131,11 +136,11 @@ fn the_largest_of_several_is_out_of_reach() {
         }
     };
     let plan = SubsetSimulation::new(5, 500, 10).unwrap();
-    for (limit, told, least) in [(3.0, 0, 90), (4.5, 99, 85), (5.61, 100, 99)] {
+    for (limit, told, least) in [(3.0, 0, 36), (4.5, 38, 34), (5.61, 40, 40)] {
         // 6.7e-3, 1.7e-5 and 5e-8.
         let truth = 1.0 - (1.0 - tail::normal(limit)).powi(5);
         let (mut covered, mut warned) = (0, 0);
-        for seed in 0..100 {
+        for seed in 0..40 {
             let model = largest(limit);
             let estimate =
                 plan.run(&|draws: &[u64]| model(seed, draws), Confidence::default()).unwrap();
