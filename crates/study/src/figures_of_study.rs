@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::{
     body::{Body, Entry},
     compare::EVERY_MODEL,
+    configuration::CONFIGURATION,
     decisions, drivers,
     quantity::Quantity,
     scenario::Scenario,
@@ -28,7 +29,7 @@ fn of_pair(name: &str, physical: &str, naive: &str) -> String {
 /// The names of all figures that a study of a scenario may have: known before the runs, so that what is
 /// in their way is.
 pub(crate) fn names(scenario: &Scenario) -> Vec<String> {
-    let mut names = [ATTITUDES, CLEARANCE, EVERY_MODEL].map(str::to_owned).to_vec();
+    let mut names = [ATTITUDES, CLEARANCE, EVERY_MODEL, CONFIGURATION].map(str::to_owned).to_vec();
     let models: Vec<&str> = scenario.model_names().collect();
     for comparison in scenario.comparisons() {
         let (physical, naive) = (models[comparison.physical], models[comparison.naive]);

@@ -4,13 +4,16 @@ use gyradius_campaign::{ColumnSummary, Judgement};
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt, ops::Range};
 
-use crate::{Drivers, Fleet, alerts::Alert, until::Ended};
+use crate::{Drivers, Fleet, about::About, alerts::Alert, until::Ended};
 
 /// What a summary says first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Head {
     pub(crate) gyradius_version: Cow<'static, str>,
     pub(crate) scenario: String,
+    /// What the scenario says of itself.
+    #[serde(default, skip_serializing_if = "About::is_empty")]
+    pub(crate) about: About,
     /// SHA-256 of the resolved scenario.
     pub(crate) fingerprint: String,
     pub(crate) seed: u64,

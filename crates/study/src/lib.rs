@@ -14,6 +14,7 @@
 //! # Ok::<(), gyradius_study::StudyError>(())
 //! ```
 
+mod about;
 mod alerts;
 mod any;
 mod body;
@@ -21,6 +22,7 @@ mod claim;
 mod claims;
 mod column;
 mod compare;
+mod configuration;
 mod csv;
 mod decisions;
 mod draw;
@@ -49,6 +51,7 @@ mod seen;
 mod separations;
 mod shards;
 mod simulator;
+mod solid;
 mod study;
 mod subject;
 mod summary;

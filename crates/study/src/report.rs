@@ -2,8 +2,8 @@
 
 use gyradius_campaign::{Kept, Rows, SampleSummary};
 use gyradius_report::{
-    Document, Figure, PageCell, PageTable, Section, Text, Tone, file_of, interval, optional,
-    percent, significant, spread,
+    Document, Drawing, Figure, PageCell, PageTable, Section, Text, Tone, file_of, interval,
+    optional, percent, significant, spread,
 };
 use gyradius_statistics::Interval;
 use nalgebra::{Unit, Vector3};
@@ -14,6 +14,7 @@ use crate::{
     body::{Body, Entry},
     claim::Verdict,
     claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED},
+    configuration::sketch,
     decisions, drivers, faults, figures_of_study,
     head::Head,
     quantity::Quantity,
@@ -53,6 +54,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     let title = format!("gyradius study: {}", summary.head.scenario);
     let document = Document::new(title, "Separation under inertia uncertainty", lead);
     noting_what_is_missing(document, &summary.head)
+        .sections(summary.head.about.section())
         .sections(alerts::section(&summary.head.alerts))
         .sections(decisions::sections(&summary.head))
         .section(results(summary))
@@ -66,7 +68,12 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         .sections(dispersed(summary))
         .sections(summary.every_model.section())
         .section(Section::new("Figures").figures(drawn))
-        .section(inputs(&summary.head, &scenario.kept(), scenario.to_toml()))
+        .section(inputs(
+            &summary.head,
+            &scenario.kept(),
+            scenario.to_toml(),
+            Some(sketch(scenario)),
+        ))
 }
 
 fn results(summary: &Summary) -> Section {
@@ -99,7 +106,25 @@ fn results(summary: &Summary) -> Section {
             )
             .numbers_of(&heading, "p95", of(|s| number(s.p95, 4, interval(s.p95_interval, 4))));
     }
-    Section::new("What the payload does").table(table)
+    let terms = Text::default()
+        .strong("Wobble")
+        .plain(
+            ": the angle between the axis that the payload is meant to spin about, fixed in the body, and its nearest \
+             principal axis of inertia. It follows from the inertia alone. ",
+        )
+        .strong("Nutation")
+        .plain(
+            ": the angle between that principal axis and the angular momentum after the last release, about which the body \
+             moves like a top. ",
+        )
+        .strong("Cone")
+        .plain(
+            ": the angle between the intended spin axis and the angular momentum, about which the spin axis then sweeps a \
+             cone: wobble and nutation together. ",
+        )
+        .strong("Inertia ratio")
+        .plain(": of the moment about the spin axis to those about the other two, above 1 where it is the largest of the three");
+    Section::new("What the payload does").paragraph(terms).table(table)
 }
 
 fn faults(summary: &Summary) -> Option<Section> {
@@ -423,7 +448,7 @@ pub(crate) fn noting_what_is_missing(mut document: Document, head: &Head) -> Doc
 }
 
 /// The resolved scenario, and where what is.
-pub(crate) fn inputs(head: &Head, kept: &Kept, toml: String) -> Section {
+pub(crate) fn inputs(head: &Head, kept: &Kept, toml: String, sketch: Option<Drawing>) -> Section {
     let version = &head.gyradius_version;
     let origin = Text::from(format!(
         "Run by gyradius {version} from the scenario below, every default spelled out; its SHA-256 is "
@@ -447,5 +472,6 @@ pub(crate) fn inputs(head: &Head, kept: &Kept, toml: String) -> Section {
         .plain(".")
         .plain(some);
     let text = Section::folded("scenario.toml").file("toml", toml);
-    Section::new("What went in").paragraph(origin).paragraph(files).sections([text])
+    let section = Section::new("What went in").figures(sketch);
+    section.paragraph(origin).paragraph(files).sections([text])
 }

@@ -6,7 +6,9 @@ use rayon::ThreadPool;
 use std::sync::{Arc, atomic::AtomicBool};
 
 use crate::{
-    Fleet, Scenario, ScenarioError, StudyError, Summary, claims,
+    Fleet, Scenario, ScenarioError, StudyError, Summary,
+    about::About,
+    claims,
     compare::Section,
     figures_of_study,
     groups::Groups,
@@ -34,6 +36,10 @@ impl Subject for Scenario {
 
     fn name(&self) -> &str {
         self.name()
+    }
+
+    fn about(&self) -> About {
+        self.about()
     }
 
     fn seed(&self) -> u64 {

@@ -20,7 +20,9 @@ use std::{
 use toml::{Table as Toml, Value};
 
 use crate::{
-    Scenario, ScenarioError, StudyError, Summary, decisions,
+    Scenario, ScenarioError, StudyError, Summary,
+    about::About,
+    decisions,
     drivers::Finding,
     head::Missing,
     report,
@@ -488,7 +490,8 @@ pub(crate) fn identity<C: Subject>(scenario: &C) -> Identity {
     let is_of = |field: &str, key: &str| {
         field.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with(['[', '.']))
     };
-    fields.retain(|(field, _)| !C::IMMATERIAL.iter().any(|key| is_of(field, key)));
+    let immaterial = || C::IMMATERIAL.iter().chain(&About::KEYS);
+    fields.retain(|(field, _)| !immaterial().any(|key| is_of(field, key)));
     fields.push(("gyradius_version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()));
     fields.push(("block_runs".to_owned(), C::BLOCK_RUNS.to_string()));
     Identity::new(fields)

@@ -13,7 +13,7 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
 };
 
-use crate::{Fleet, ScenarioError, StudyError, groups::Groups, head::Head};
+use crate::{Fleet, ScenarioError, StudyError, about::About, groups::Groups, head::Head};
 
 /// What a study is of: models whose runs are simulated, what they amount to, and the pages that show it.
 pub(crate) trait Subject: Sync + Sized {
@@ -39,6 +39,8 @@ pub(crate) trait Subject: Sync + Sized {
     fn resolved(text: &str) -> Result<Self, ScenarioError>;
     /// Its name.
     fn name(&self) -> &str;
+    /// What it says of itself.
+    fn about(&self) -> About;
     /// Seed of all random streams.
     fn seed(&self) -> u64;
     /// Runs of each model.
@@ -133,6 +135,7 @@ pub(crate) fn head_of(scenario: &impl Subject, columns: &[Column]) -> Head {
     Head {
         gyradius_version: env!("CARGO_PKG_VERSION").into(),
         scenario: scenario.name().to_owned(),
+        about: scenario.about(),
         fingerprint: sha256(scenario.to_toml()),
         seed: scenario.seed(),
         runs_per_model: scenario.runs(),

@@ -40,7 +40,7 @@ fn ordinary(runs: u64, spread: f64, springs: &str) -> Scenario {
         .concat();
     let text = format!(
         "name = \"ordinary\"\nruns = {runs}\nspin_axis = [0.0, 0.0, 1.0]\n{bodies}{springs}\
-         [[models]]\nname = \"principal\"\nlaw = \"principal\"\naxes = \"fixed\"\n"
+         [[models]]\nname = \"principal\"\nlaw = \"principal\"\n"
     );
     Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }

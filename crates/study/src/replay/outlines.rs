@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use serde_json::{Value, json};
 
 use super::short::short;
-use crate::scenario::ShapeFile;
+use crate::{scenario::ShapeFile, solid::radii};
 
 /// Corners of a hull up to which its edges are looked for; beyond, its shadow is drawn alone.
 const MOST_CORNERS: usize = 160;
@@ -25,12 +25,7 @@ pub(super) fn drawn(shapes: &[ShapeFile], centre: &Vector3<f64>) -> Vec<Value> {
             json!({ "hull": list(&points), "edges": edges(&points) })
         }
         ShapeFile::Ring { centre_m, axis, radius_m } => {
-            let axis = Vector3::from(*axis);
-            let axis = axis / axis.amax();
-            let mut across = Vector3::zeros();
-            across[axis.iamin()] = 1.0;
-            let across = axis.cross(&across).normalize() * *radius_m;
-            let other = axis.normalize().cross(&across);
+            let [across, other] = radii(*axis, *radius_m);
             json!({ "ring": list(&[moved(centre_m), across, other]) })
         }
     };

@@ -1,15 +1,13 @@
 //! The animation of a run: one page of HTML that needs nothing but itself.
 
 use gyradius_clearance::{Clearance, Outline};
-use gyradius_inertia::InertiaMatrix;
 use gyradius_report::page;
 use gyradius_separation::MovingBody;
 use maud::{PreEscaped, html};
-use nalgebra::UnitQuaternion;
 use serde_json::{Value, json};
 
 use super::{Replay, history::Moment, outlines, short::short};
-use crate::{column::REALIZABLE, drawn, loads::Short, scenario::distance_m};
+use crate::{column::REALIZABLE, drawn, loads::Short, scenario::distance_m, solid::uniform_box};
 
 const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");
@@ -175,14 +173,9 @@ fn frame(replay: &Replay, moment: &Moment, outlines: Option<&[Outline; 2]>) -> V
     Value::Array(values)
 }
 
-/// Sides and attitude of the uniform box with the mass and inertia of a body: sides √(12 K/m) along the
-/// principal axes, zero where K is negative.
+/// The uniform box with the mass and inertia of a body.
 fn cuboid(body: &MovingBody) -> Value {
-    let inertia: &InertiaMatrix = body.body().inertia();
-    let principal = inertia.principal_axes();
-    let sides =
-        principal.second_moments().map(|k| (12.0 * k.max(0.0) / body.body().mass_kg()).sqrt());
-    let attitude = UnitQuaternion::from_rotation_matrix(&principal.axes());
+    let (sides, attitude) = uniform_box(body);
     let (sides, attitude) = (short(&sides), short(attitude.coords.as_slice()));
     json!({ "sides": sides, "q": attitude })
 }

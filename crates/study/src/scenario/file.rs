@@ -5,6 +5,8 @@ use gyradius_dispersion::ScalarLawForm;
 use gyradius_separation::{BodyParameter, LoadId, Spring, StackParameter};
 use serde::{Deserialize, Serialize};
 
+use crate::about::About;
+
 use super::{
     ScenarioError,
     each::Each,
@@ -23,6 +25,15 @@ use super::{
 #[serde(deny_unknown_fields)]
 pub(crate) struct ScenarioFile {
     pub(crate) name: String,
+    /// What it is about, in words of the user.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) vehicle: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) question: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) author: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) date: Option<String>,
     /// Filled in unless there are vehicles and flights.
     #[serde(
         default,
@@ -97,6 +108,12 @@ impl ScenarioFile {
         let requirements = self.requirements.len();
         let fill = |until: &mut UntilFile| until.fill(size, LOOK_EVERY, requirements);
         self.until.as_mut().map(fill).transpose()
+    }
+
+    /// What it says of itself.
+    pub(crate) fn about(&self) -> About {
+        let Self { vehicle, question, author, date, .. } = self.clone();
+        About { vehicle, question, author, date }
     }
 
     /// The loads between the bodies and which they are, kind by kind, in the order of the fields that hold them.

@@ -43,7 +43,7 @@ pub(crate) use parse::{some_whole, whole};
 pub(crate) use scalar::ScalarLawFile;
 pub(crate) use {each::Each, until::UntilFile, vehicles::Size};
 
-use crate::{body::Body, drivers, fleet::Fleet};
+use crate::{about::About, body::Body, drivers, fleet::Fleet};
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
 
@@ -237,6 +237,11 @@ impl Scenario {
         Self { file: ScenarioFile { rows, columns, ..self.file }, ..self }
     }
 
+    /// What it says of itself.
+    pub(crate) fn about(&self) -> About {
+        self.file.about()
+    }
+
     /// What its runs are to show.
     #[must_use]
     pub fn requirements(&self) -> &[Requirement] {
@@ -252,6 +257,7 @@ impl Scenario {
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
         file.models.iter_mut().for_each(|model| model.fill(&Body::BOTH));
         check_name("name", &file.name)?;
+        file.about().check()?;
         let keys = [file.runs, file.vehicles, file.flights];
         let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
         [file.runs, file.vehicles, file.flights] = size.keys();

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use crate::{
     ScenarioError,
+    about::About,
     scenario::{
         AxesLawFile, BodyFile, CorrelationFile, DispersionFile, ModelFile, ModelLaw, Owner,
         RootsFile, ScalarLawFile, Size, UntilFile, some_whole, whole,
@@ -18,6 +19,15 @@ use crate::{
 #[serde(deny_unknown_fields)]
 pub(super) struct File {
     pub(super) name: String,
+    /// What it is about, in words of the user.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) vehicle: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) question: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) author: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) date: Option<String>,
     /// Filled in unless there are vehicles and flights.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "some_whole")]
     pub(super) runs: Option<u64>,
@@ -141,6 +151,12 @@ impl Owner for BodyName {
 }
 
 impl File {
+    /// What it says of itself.
+    pub(super) fn about(&self) -> About {
+        let Self { vehicle, question, author, date, .. } = self.clone();
+        About { vehicle, question, author, date }
+    }
+
     /// Whether a model draws the roots and the axes of bodies: one that is principal, to which any other may be matched. It is
     /// filled in where there is none.
     pub(super) fn draws_roots_and_axes(&self) -> bool {

@@ -12,7 +12,9 @@ use super::{
     number::{Number, check_column},
 };
 use crate::{
-    Fleet, ScenarioError, drivers, model,
+    Fleet, ScenarioError,
+    about::About,
+    drivers, model,
     scenario::{
         Axes, Joint, Law, List, ModelFile, ModelLaw, ModelSpec, Size, UntilFile, check_models,
         check_name, check_seed, parse_toml, place, refused,
@@ -52,6 +54,7 @@ impl SimulatorScenario {
         let mut file = parse_toml::<File>(text)
             .map_err(|message| ScenarioError::Parse { path: None, message })?;
         check_name("name", &file.name)?;
+        file.about().check()?;
         let keys = [file.runs, file.vehicles, file.flights];
         let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
         [file.runs, file.vehicles, file.flights] = size.keys();
@@ -227,6 +230,11 @@ impl SimulatorScenario {
     #[must_use]
     pub fn requirements(&self) -> &[Requirement] {
         &self.file.requirements
+    }
+
+    /// What it says of itself.
+    pub(super) fn about(&self) -> About {
+        self.file.about()
     }
 
     /// What is kept of its run tables once all runs are done.

@@ -17,6 +17,7 @@ use std::{
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
 use crate::{
     Fleet, Notice, Options, ScenarioError, Study, StudyError,
+    about::About,
     alerts::{self, Alert},
     decisions, drivers,
     groups::Groups,
@@ -125,6 +126,10 @@ impl Subject for SimulatorScenario {
 
     fn name(&self) -> &str {
         self.name()
+    }
+
+    fn about(&self) -> About {
+        self.about()
     }
 
     fn seed(&self) -> u64 {
@@ -258,14 +263,15 @@ impl Subject for SimulatorScenario {
     }
 
     fn report(&self, summary: &SimulatorSummary) -> Document {
-        let first = alerts::section(&summary.head.alerts).into_iter();
+        let first = summary.head.about.section().into_iter();
+        let first = first.chain(alerts::section(&summary.head.alerts));
         let first = first.chain(decisions::sections(&summary.head));
         let outputs = self.outputs().iter().map(|column| column.name().to_owned()).take(4);
         let outputs: Vec<String> = outputs.collect();
         let driven = drivers::section(&summary.head, &outputs);
         let document = summary.overview.document().led_by(first).sections(driven);
         let document = report::noting_vehicles(document, &summary.head);
-        let inputs = report::inputs(&summary.head, &self.kept(), self.to_toml());
+        let inputs = report::inputs(&summary.head, &self.kept(), self.to_toml(), None);
         report::noting_what_is_missing(document, &summary.head).section(inputs)
     }
 }
