@@ -3,6 +3,7 @@
 use parquet::errors::ParquetError;
 use rayon::prelude::*;
 use std::{
+    collections::BTreeSet,
     ops::Range,
     path::{Path, PathBuf},
     sync::{Arc, atomic::AtomicBool},
@@ -91,7 +92,27 @@ impl Runs {
     /// # Errors
     /// A block cannot be read, or they are [stopped](Self::stopped_by).
     pub fn scan(&self, look: impl Fn(&Table) + Sync) -> Result<(), RunsError> {
-        self.blocks.par_iter().try_for_each(|block| {
+        self.scan_blocks(|_| true, look)
+    }
+
+    /// The same of the blocks alone that have one of these runs.
+    ///
+    /// # Errors
+    /// A block cannot be read, or they are [stopped](Self::stopped_by).
+    pub fn scan_those_with(
+        &self,
+        runs: &BTreeSet<u64>,
+        look: impl Fn(&Table) + Sync,
+    ) -> Result<(), RunsError> {
+        self.scan_blocks(|range| runs.range(range).next().is_some(), look)
+    }
+
+    fn scan_blocks(
+        &self,
+        which: impl Fn(Range<u64>) -> bool + Sync,
+        look: impl Fn(&Table) + Sync,
+    ) -> Result<(), RunsError> {
+        self.blocks.par_iter().filter(|block| which(block.range())).try_for_each(|block| {
             if is_stopped(self.stop.as_deref()) {
                 return Err(RunsError::Stopped);
             }

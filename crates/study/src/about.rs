@@ -72,7 +72,7 @@ impl About {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Scenario, study::identity, subject::Subject};
+    use crate::{Scenario, study::identity};
     use proptest::prelude::*;
 
     /// The keys, with a text for each that has one.

@@ -14,6 +14,7 @@ use crate::{
     Fleet, ScenarioError, StudyError,
     head::{Head, Judged},
     subject::Subject,
+    unusual::UnusualInput,
 };
 
 /// Figures of a requirement, whose number follows.
@@ -87,7 +88,12 @@ pub(crate) fn judged(judging: Vec<Judging>, runs: &[Runs]) -> Result<Vec<Judged>
     let mut all = Vec::new();
     for (judging, runs) in judging.into_iter().zip(runs) {
         let judged = judging.finish(runs)?.into_iter();
-        all.extend(judged.map(|judgement| Judged { model: runs.model().to_owned(), judgement }));
+        let model = || runs.model().to_owned();
+        all.extend(judged.map(|judgement| Judged {
+            model: model(),
+            judgement,
+            unusual: Vec::new(),
+        }));
     }
     Ok(all)
 }
@@ -190,7 +196,7 @@ fn figures(
     draw: impl Fn(usize, &Requirement, &[(&str, &Judgement)]) -> Drawing,
 ) -> Vec<Drawing> {
     let mut of: Vec<(&Requirement, Vec<(&str, &Judgement)>)> = Vec::new();
-    for Judged { model, judgement } in &head.requirements {
+    for Judged { model, judgement, .. } in &head.requirements {
         let requirement = judgement.requirement();
         match of.iter_mut().find(|(known, _)| *known == requirement) {
             Some((_, models)) => models.push((model, judgement)),
@@ -246,11 +252,28 @@ fn worst(head: &Head) -> Section {
         .numbers("run", |(_, run)| run.run.to_string())
         .numbers("value", |(_, run)| significant(run.value, 6))
         .numbers("beyond the limit by", |(_, run)| significant(run.excess, 4))
+        .words("unusual in what it drew", |(judged, run)| unusual(judged, run.run))
         .words("to see it, in the folder of the study", |(judged, run)| {
             let (model, run) = (&judged.model, run.run);
             Text::default().code(format!("gyradius replay . --model {model} --run {run}"))
         });
-    Section::folded("The worst runs").table(table)
+    let reading = "Unusual is what lies at least two standard deviations from the mean of all runs of the model, in brackets by \
+                   how many: the three most unusual numbers of what the run drew, which need not be the reason.";
+    Section::folded("The worst runs").paragraph(reading).table(table)
+}
+
+/// What is unusual in what a run drew, a line each.
+fn unusual(judged: &Judged, run: u64) -> PageCell {
+    let found = judged.unusual.iter().find(|unusual| unusual.run == run);
+    let line = |input: &UnusualInput| {
+        let sign = if input.score < 0.0 { "−" } else { "+" };
+        let score = significant(input.score.abs(), 2);
+        Text::default()
+            .code(&input.column)
+            .plain(format!(" {} ({sign}{score} σ)", significant(input.value, 4)))
+    };
+    let lines: Vec<Text> = found.iter().flat_map(|unusual| &unusual.inputs).map(line).collect();
+    if lines.is_empty() { "–".into() } else { lines.into_iter().collect() }
 }
 
 fn verdict(judged: &Judged) -> PageCell {

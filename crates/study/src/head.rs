@@ -4,7 +4,7 @@ use gyradius_campaign::{ColumnSummary, Judgement};
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt, ops::Range};
 
-use crate::{Drivers, Fleet, about::About, alerts::Alert, until::Ended};
+use crate::{Drivers, Fleet, about::About, alerts::Alert, until::Ended, unusual::Unusual};
 
 /// What a summary says first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -110,6 +110,9 @@ pub struct Judged {
     pub(crate) model: String,
     #[serde(flatten)]
     pub(crate) judgement: Judgement,
+    /// What is unusual among what its worst runs have drawn.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) unusual: Vec<Unusual>,
 }
 
 impl Judged {

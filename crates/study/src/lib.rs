@@ -59,6 +59,7 @@ mod text;
 #[cfg(test)]
 mod two_loops;
 mod until;
+mod unusual;
 
 pub use any::{AnyScenario, Outcome, is_begun, put_together, write_report};
 pub use body::Entry;

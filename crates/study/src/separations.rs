@@ -17,6 +17,8 @@ use crate::{
     report,
     seen::{Looking, Seen},
     subject::Subject,
+    summary::ModelSummary,
+    unusual::DrawnInput,
 };
 
 impl Subject for Scenario {
@@ -146,6 +148,10 @@ impl Subject for Scenario {
         summary.claims = claims::judge(self, &summary, &seen);
         summary.figures = figures_of_study::of_study(self, &summary, &seen);
         Ok(summary)
+    }
+
+    fn drawn_inputs(&self, summary: &Summary, model: &str) -> Vec<DrawnInput> {
+        summary.model(model).map_or_else(Vec::new, ModelSummary::drawn_inputs)
     }
 
     fn report_files(&self) -> Vec<String> {

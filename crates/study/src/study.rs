@@ -29,6 +29,7 @@ use crate::{
     scenario::parse_toml,
     subject::{LookAt, Subject, Summarized},
     until::{Ended, run_to_the_end},
+    unusual,
 };
 
 /// How to carry out a study.
@@ -226,6 +227,7 @@ fn do_what_is_left<C: Subject>(
         (head.missing, head.done_again) = (gaps(&blocks, scenario), blocks.again());
         head.ended = ended;
         head.requirements = decisions::judged(judging, &runs)?;
+        unusual::tell(scenario, &mut summary, &runs)?;
         Ok((runs, summary))
     });
     let (runs, mut summary) = done.inspect_err(|_| blocks.abandon())?;

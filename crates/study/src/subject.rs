@@ -13,7 +13,9 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
 };
 
-use crate::{Fleet, ScenarioError, StudyError, about::About, groups::Groups, head::Head};
+use crate::{
+    Fleet, ScenarioError, StudyError, about::About, groups::Groups, head::Head, unusual::DrawnInput,
+};
 
 /// What a study is of: models whose runs are simulated, what they amount to, and the pages that show it.
 pub(crate) trait Subject: Sync + Sized {
@@ -102,6 +104,8 @@ pub(crate) trait Subject: Sync + Sized {
         looks: Vec<Self::Look<'_>>,
         runs: &[Runs],
     ) -> Result<Self::Summary, StudyError>;
+    /// What runs of a model draw, with what it amounts to.
+    fn drawn_inputs(&self, summary: &Self::Summary, model: &str) -> Vec<DrawnInput>;
     /// What may be written of the report, as files and folders.
     fn report_files(&self) -> Vec<String>;
     /// The report, from a summary that was read back.

@@ -22,6 +22,7 @@ use crate::{
     scenario::{Dispersed, Each, ModelLaw, Scenario},
     seen::Seen,
     subject::{Summarized, head_of},
+    unusual::DrawnInput,
 };
 
 /// Every number that the report shows.
@@ -352,6 +353,17 @@ impl ModelSummary {
         let near = near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body, near, of));
         let first = failed.into_iter().chain(unmoved);
         first.chain(Alert::heavy_tails(name, heavy)).chain(near).collect()
+    }
+
+    /// What its runs draw, the entries of the inertias too.
+    pub(crate) fn drawn_inputs(&self) -> Vec<DrawnInput> {
+        let entries = self.quantities.iter().filter(|q| q.quantity.is_drawn());
+        let entries = entries.filter_map(|q| {
+            DrawnInput::new(&q.quantity.column(), q.sample.mean, q.sample.deviation)
+        });
+        let others = self.dispersed.iter();
+        let others = others.filter_map(|d| DrawnInput::new(&d.quantity, d.mean, d.deviation));
+        entries.chain(others).collect()
     }
 
     pub(crate) fn quantity(&self, quantity: Quantity) -> Option<&QuantitySummary> {

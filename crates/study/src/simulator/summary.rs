@@ -1,8 +1,8 @@
 //! Campaigns of simulators as studies: how their runs are simulated, and what they amount to.
 
 use gyradius_campaign::{
-    Column, ExternalSimulation, FirstLook, Forecast, Kept, Progress, Requirement, Runs, Simulator,
-    Surveys, Until,
+    Column, ExternalSimulation, FirstLook, Forecast, Kept, Progress, Requirement, Runs,
+    SampleSummary, Simulator, Surveys, Until,
 };
 use gyradius_report::{Document, Overview, file_of, optional, with_unit};
 use gyradius_statistics::Confidence;
@@ -25,7 +25,11 @@ use crate::{
     report,
     study::carry_out,
     subject::{Subject, Summarized, head_of},
+    unusual::DrawnInput,
 };
+
+/// Unit of the entries of inertia matrices.
+const ENTRY: &str = "kg·m²";
 
 /// Every number that the report of a campaign of a simulator shows, and of what it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -248,6 +252,28 @@ impl Subject for SimulatorScenario {
         let alerts = alerts.flat_map(|(place, surveys)| self.alerts(&overview, place, surveys));
         let head = Head { alerts: alerts.collect(), ..head_of(self, columns) };
         Ok(SimulatorSummary { head, command: self.command().to_vec(), overview })
+    }
+
+    fn drawn_inputs(&self, summary: &SimulatorSummary, model: &str) -> Vec<DrawnInput> {
+        let overview = &summary.overview;
+        let Some(place) = overview.failed().position(|(name, ..)| name == model) else {
+            return Vec::new();
+        };
+        // Not the components of attitudes, which are no scores.
+        let dispersed = &self.dispersed().all;
+        let inputs: Vec<Column> = self
+            .inputs()
+            .filter(|column| {
+                column.unit() == Some(ENTRY) || dispersed.iter().any(|d| d.column == column.name())
+            })
+            .collect();
+        let drawn = overview.quantities();
+        let drawn = drawn.filter(|(name, ..)| inputs.iter().any(|column| column.name() == *name));
+        let input = |(name, _, samples): (&str, &str, &[SampleSummary])| {
+            let sample = samples.get(place)?;
+            DrawnInput::new(name, sample.mean, sample.deviation)
+        };
+        drawn.filter_map(input).collect()
     }
 
     fn report_files(&self) -> Vec<String> {

@@ -1,0 +1,148 @@
+//! What is unusual among what the worst runs have drawn.
+
+use gyradius_campaign::{Runs, RunsError};
+use serde::{Deserialize, Serialize};
+use std::{collections::BTreeSet, sync::Mutex, sync::PoisonError};
+
+use crate::subject::{Subject, Summarized};
+
+/// Inputs of a run that are told of, at most.
+const TOLD: usize = 3;
+/// Standard deviations from the mean of the runs from which on an input is unusual.
+const UNUSUAL: f64 = 2.0;
+
+/// What is unusual among what a run has drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Unusual {
+    pub(crate) run: u64,
+    /// The most unusual first.
+    pub(crate) inputs: Vec<UnusualInput>,
+}
+
+/// A number that a run has drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct UnusualInput {
+    pub(crate) column: String,
+    pub(crate) value: f64,
+    /// How many standard deviations it lies above the mean of all runs of the model.
+    pub(crate) score: f64,
+}
+
+/// A number that runs draw, with its mean and standard deviation over the runs.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct DrawnInput {
+    pub(crate) column: String,
+    pub(crate) mean: f64,
+    pub(crate) deviation: f64,
+}
+
+impl DrawnInput {
+    /// None if runs do not differ in it.
+    pub(crate) fn new(column: &str, mean: Option<f64>, deviation: Option<f64>) -> Option<Self> {
+        let (mean, deviation) = (mean?, deviation.filter(|d| *d > 0.0 && d.is_finite())?);
+        Some(Self { column: column.to_owned(), mean, deviation })
+    }
+}
+
+/// Adds to each requirement what its worst runs have drawn that is unusual. Their blocks are read again.
+pub(crate) fn tell<C: Subject>(
+    scenario: &C,
+    summary: &mut C::Summary,
+    runs: &[Runs],
+) -> Result<(), RunsError> {
+    for runs in runs {
+        let of_model = summary.head().requirements.iter();
+        let of_model = of_model.filter(|judged| judged.model == runs.model());
+        let worst = of_model.flat_map(|judged| judged.judgement.worst());
+        let worst: BTreeSet<u64> = worst.map(|worst| worst.run).collect();
+        let found = unusual(&scenario.drawn_inputs(summary, runs.model()), &worst, runs)?;
+        for judged in &mut summary.head_mut().requirements {
+            if judged.model == runs.model() {
+                let own = |run: &u64| found.iter().find(|unusual| unusual.run == *run).cloned();
+                let worst = judged.judgement.worst().iter().map(|worst| worst.run);
+                judged.unusual = worst.filter_map(|run| own(&run)).collect();
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What some runs have drawn that is unusual, of those that have something.
+fn unusual(
+    inputs: &[DrawnInput],
+    worst: &BTreeSet<u64>,
+    runs: &Runs,
+) -> Result<Vec<Unusual>, RunsError> {
+    let found = Mutex::new(Vec::new());
+    runs.scan_those_with(worst, |block| {
+        let last = block.first() + block.len() as u64;
+        for run in worst.range(block.first()..last) {
+            let place = (run - block.first()) as usize;
+            let scored = |input: &DrawnInput| {
+                let value = block.numbers(&input.column)?.get(place)?;
+                let score = (value - input.mean) / input.deviation;
+                let column = input.column.clone();
+                (score.abs() >= UNUSUAL).then_some(UnusualInput { column, value, score })
+            };
+            let mut inputs: Vec<UnusualInput> = inputs.iter().filter_map(scored).collect();
+            inputs.sort_by(|a, b| b.score.abs().total_cmp(&a.score.abs()));
+            inputs.truncate(TOLD);
+            if !inputs.is_empty() {
+                let unusual = Unusual { run: *run, inputs };
+                found.lock().unwrap_or_else(PoisonError::into_inner).push(unusual);
+            }
+        }
+    })?;
+    Ok(found.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gyradius_campaign::{Cell, Column, Table};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Against looking at every number of every run.
+        #[test]
+        fn the_most_unusual_inputs_are_told(
+            rows in prop::collection::vec(prop::collection::vec(prop::option::weighted(0.9, -5.0..5.0_f64), 5), 1..40),
+            worst in prop::collection::btree_set(0..40_u64, 0..12),
+        ) {
+            let names: Vec<String> = (0..5).map(|i| format!("x{i}")).collect();
+            let columns = names.iter().map(|name| Column::number(name.clone(), "1", "A number."));
+            let mut table = Table::new("model", 0, columns.collect()).unwrap();
+            for row in &rows {
+                table.push(None, row.iter().map(|x| Cell::from(*x))).unwrap();
+            }
+            let inputs: Vec<DrawnInput> =
+                names.iter().zip(1..).map(|(name, i)| DrawnInput::new(name, Some(0.1), Some(0.5 * f64::from(i))).unwrap()).collect();
+            let found = unusual(&inputs, &worst, &Runs::from(table)).unwrap();
+            let mut expected = Vec::new();
+            for run in worst.iter().filter(|run| **run < rows.len() as u64) {
+                let scores = rows[*run as usize].iter().zip(1..).enumerate();
+                let mut scores: Vec<(usize, f64)> = scores
+                    .filter_map(|(column, (x, i))| Some((column, ((*x)? - 0.1) / (0.5 * f64::from(i)))))
+                    .filter(|(_, score)| score.abs() >= 2.0)
+                    .collect();
+                scores.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+                scores.truncate(3);
+                if !scores.is_empty() {
+                    expected.push((*run, scores));
+                }
+            }
+            let told: Vec<(u64, Vec<(usize, f64)>)> = found
+                .iter()
+                .map(|u| (u.run, u.inputs.iter().map(|i| (i.column[1..].parse().unwrap(), i.score)).collect()))
+                .collect();
+            prop_assert_eq!(told, expected);
+        }
+    }
+
+    #[test]
+    fn what_does_not_differ_is_not_unusual() {
+        assert_eq!(DrawnInput::new("x", Some(1.0), Some(0.0)), None);
+        assert_eq!(DrawnInput::new("x", None, Some(1.0)), None);
+        assert_eq!(DrawnInput::new("x", Some(1.0), None), None);
+    }
+}
