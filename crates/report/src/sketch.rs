@@ -12,6 +12,8 @@ const NUMBER: Look = Look::new(12.0, style::INK).bold();
 /// Room for a view: all of it, and what is left around the bodies for numbers.
 const VIEW: (f64, f64) = (222.0, 250.0);
 const ROOM: f64 = 26.0;
+/// From the top of a view to that of the one below it, with room for its axes.
+const PITCH: f64 = VIEW.1 + 42.0;
 /// The place of springs among the colours of models, after those of the bodies.
 const SPRINGS: usize = 2;
 
@@ -66,10 +68,10 @@ fn svg(title: &str, views: &[SketchView]) -> String {
     let scale = if scale.is_finite() { scale } else { 1.0 };
     for (place, view) in views.iter().enumerate() {
         let left = MARGIN + (VIEW.0 + 12.0) * (place % 2) as f64;
-        let top = y + (VIEW.1 + 30.0) * (place / 2) as f64;
+        let top = y + PITCH * (place / 2) as f64;
         draw(&mut svg, view, (left, top), scale);
     }
-    let y = y + (VIEW.1 + 30.0) * views.len().div_ceil(2) as f64;
+    let y = y + PITCH * views.len().div_ceil(2) as f64;
     let metres = round_length(120.0 / scale);
     let d = format!("M{} {}v8m0 -4h{}m0 -4v8", px(MARGIN), px(y), px(metres * scale));
     svg.path(&format!("stroke=\"{}\" stroke-width=\"1.4\"", style::INK), &d);
@@ -219,7 +221,7 @@ fn draw(svg: &mut Svg, view: &SketchView, (left, top): (f64, f64), scale: f64) {
         mass_centre(svg, at(&body.mass_centre), style::model(i));
     }
     numbers(svg, view, centre[0], at);
-    axes(svg, &view.axes, (left, top + VIEW.1 + 8.0));
+    axes(svg, &view.axes, (left, top + VIEW.1 + 40.0));
 }
 
 /// Numbers of springs beside them, away from the middle; of those that are behind each other together.

@@ -16,6 +16,8 @@ pub(crate) const HEAVY: f64 = 10.0;
 pub(crate) const NEAR: f64 = 0.01;
 /// A share of the drawn bodies: more of them must be near the boundary, that it is told.
 const MANY: f64 = 0.001;
+/// Outcomes with heavy tails that are named.
+const NAMED: usize = 4;
 
 /// What a reader should know before the results. Each is told only if it is so.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -103,14 +105,18 @@ impl Alert {
                     significant(*value, 5)
                 )),
             Self::HeavyTails { model, outcomes } => {
-                let said: Vec<String> = outcomes
-                    .iter()
-                    .map(|(label, kurtosis)| format!("{label} ({})", significant(*kurtosis, 3)))
-                    .collect();
+                let mut heaviest: Vec<&(String, f64)> = outcomes.iter().collect();
+                heaviest.sort_by(|a, b| b.1.total_cmp(&a.1));
+                let said = heaviest.iter().take(NAMED);
+                let said = said.map(|(label, kurtosis)| format!("{label} ({})", significant(*kurtosis, 3)));
+                let said: Vec<String> = said.collect();
+                let others = match outcomes.len().saturating_sub(NAMED) {
+                    0 => String::new(),
+                    others => format!(" and {others} more"),
+                };
                 Text::default().strong(format!("{model}: heavy tails")).plain(format!(
-                    ". A few runs lie far from all others in {}; in brackets the kurtosis, which is 3 for a normal \
-                     distribution. Above {HEAVY}, the interval of a standard deviation covers the true one less often than \
-                     it says: read percentiles and the worst runs instead.",
+                    " in {}{others}: a few runs lie far from all others. In brackets is the kurtosis, 3 for a normal \
+                     distribution; above {HEAVY}, standard deviations are less certain than their intervals say.",
                     said.join(", ")
                 ))
             }

@@ -212,8 +212,8 @@ pub(crate) fn section(models: &[(&str, &[GivenFault])]) -> Option<Section> {
             });
         }
     }
-    let reading = "Runs with each fault, beside those without any. A run with several faults counts with each of them. Mean ± \
-                   standard deviation, and below it the 95th percentile.";
+    let reading = "Runs with each fault, beside those without any. A run with several faults counts with each of them. Of \
+                   each outcome the mean, below it the standard deviation and the 95th percentile.";
     (!rows.is_empty())
         .then(|| Section::new("What happens given each fault").paragraph(reading).table(table))
 }
@@ -230,8 +230,10 @@ fn share(failing: &Failing) -> PageCell {
 
 fn cell(sample: &SampleSummary) -> PageCell {
     let deviation = sample.deviation.filter(|_| sample.n > 1);
-    let spread = format!("{} ± {}", optional(sample.mean, 4), optional(deviation, 3));
-    PageCell::from(spread).line(Text::default().quiet(format!("p95 {}", optional(sample.p95, 4))))
+    let quiet = |text: String| Text::default().quiet(text);
+    PageCell::from(optional(sample.mean, 4))
+        .line(quiet(format!("± {}", optional(deviation, 2))))
+        .line(quiet(format!("p95 {}", optional(sample.p95, 4))))
 }
 
 #[cfg(test)]

@@ -123,7 +123,7 @@ fn results(summary: &Summary) -> Section {
              cone: wobble and nutation together. ",
         )
         .strong("Inertia ratio")
-        .plain(": of the moment about the spin axis to those about the other two, above 1 where it is the largest of the three");
+        .plain(": of the moment about the spin axis to those about the other two, above 1 where it is the largest of the three.");
     Section::new("What the payload does").paragraph(terms).table(table)
 }
 
