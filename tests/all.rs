@@ -1,6 +1,7 @@
 //! The tests of the whole system, in one program, which is linked once.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod browser;
 mod conservation;
 mod dispersions;
 mod documents;

@@ -3,7 +3,10 @@
 (() => {
   const found = [], say = (what) => { if (found.length < 60) found.push(String(what).slice(0, 300)); };
   for (const level of ["error", "warn", "log", "info", "debug"]) console[level] = (...words) => say(`console.${level}: ${words.join(" ")}`);
-  addEventListener("error", (event) => say(`error: ${event.message} at ${event.lineno}`), true);
+  addEventListener("error", (event) => {
+    const asked = event.target.src || event.target.href;
+    say(asked ? `asks for ${asked}` : `error: ${event.message} at ${event.lineno}`);
+  }, true);
   addEventListener("unhandledrejection", (event) => say(`rejected: ${event.reason}`));
   addEventListener("securitypolicyviolation", (event) => say(`asks for ${event.blockedURI}, ${event.violatedDirective}`));
 
@@ -47,7 +50,9 @@
       const range = document.createRange();
       range.selectNodeContents(cell);
       const lines = new Set([...range.getClientRects()].map((line) => Math.round(line.bottom / 4))).size;
-      const words = cell.textContent.trim().split(/[\s-]+/).length + cell.querySelectorAll("p").length;
+      const texts = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+      let words = 0;
+      while (texts.nextNode()) words += texts.currentNode.data.split(/[\s-]+/).filter(Boolean).length;
       if (!cell.querySelector("code") && lines > words + 1) say(`cut into letters: ${name(cell)}`);
     }
     for (const box of document.querySelectorAll(".wide, .picture")) {

@@ -6,6 +6,7 @@ use gyradius_report::{Text, significant};
 use super::{
     BodyResult, LevelResult, ModelComparison,
     contest::Results,
+    figures_of_models::capital,
     measure::Measure,
     text::{heading, kinds},
 };
@@ -43,7 +44,7 @@ fn impossible(comparison: &ModelComparison) -> Text {
     }
     Text::default().strong("Some models draw matrices that no body has: ").plain(format!(
         "{}. {}",
-        said.join("; "),
+        said.join(". "),
         if said.len() < comparison.settings.models.len() {
             "The others drew none."
         } else {
@@ -67,7 +68,10 @@ fn draws_of(comparison: &ModelComparison, kind: ModelKind) -> Option<String> {
         .filter_map(|(body, level, _, _)| Some((body, level.level_percent?)))
         .min_by(|a, b| a.1.total_cmp(&b.1));
     if let Some((body, level)) = first {
-        text.push_str(&format!(", and one in a hundred from {level} % on ({})", body.name));
+        text.push_str(&format!(
+            "; at least one draw in a hundred from {level} % on ({})",
+            body.name
+        ));
     }
     Some(text)
 }
@@ -107,9 +111,9 @@ fn disagreement(comparison: &ModelComparison, measure: Measure) -> Option<Text> 
         }
     }
     let (ratio, place) = widest?;
-    let what = format!("{}, {}: ", measure.label(), measure.headline().0);
+    let what = format!("{}. ", capital(measure));
     let text = format!(
-        "models with like covariance differ by a factor of {} at most: {place}.",
+        "Models with like covariance differ by a factor of {} at most: {place}.",
         significant(ratio, 2)
     );
     Some(Text::default().strong(what).plain(text))

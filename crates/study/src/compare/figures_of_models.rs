@@ -155,7 +155,7 @@ fn headline(results: &Results, measure: Measure) -> Option<(f64, Option<[f64; 2]
 }
 
 /// Measure and what is told of it, the first letter large.
-fn capital(measure: Measure) -> String {
+pub(super) fn capital(measure: Measure) -> String {
     let text = format!("{}: {}", measure.label(), measure.headline().0);
     let mut chars = text.chars();
     chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())

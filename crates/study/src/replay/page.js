@@ -336,7 +336,7 @@ chart("nutation of the payload (deg)", "#0072b2", [["", (f) => f[24], body[0]]])
 
 // What happens, marked on the slider: buttons that go there; what is near another shares its mark.
 const events = [
-  ...data.springs.filter((spring) => spring.late).map((spring) => [spring.from, spring.name, `${spring.label} starts`]),
+  ...data.springs.filter((spring) => spring.late).map((spring) => [spring.from, `${spring.name} starts`, `${spring.label} starts`]),
   ...data.releases.map(([name, t, label]) => [t, name, `${label} lets go`]),
 ].sort((a, b) => a[0] - b[0]);
 const marks = [];
@@ -348,7 +348,8 @@ marks.forEach(({ t, names, texts }) => {
   const button = document.createElement("button");
   button.type = "button"; button.style.left = `${100 * share(t)}%`;
   button.textContent = names.length > 3 ? `${names[0]} … ${names[names.length - 1]}` : names.join(" ");
-  button.title = button.ariaLabel = `${texts.join(", ")}: ${t} s`;
+  button.title = `${texts.join(", ")}: ${t} s`;
+  button.ariaLabel = `${button.textContent}: ${button.title}`;
   button.onclick = () => go(t);
   el("marks").append(button);
 });

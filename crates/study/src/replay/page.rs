@@ -48,7 +48,7 @@ pub(crate) fn html(replay: &Replay) -> String {
         }
         div.controls {
             button #play type="button" { "Pause" }
-            button #last type="button" { "Last event" }
+            button #last type="button" { "Previous event" }
             button #back type="button" { "Step back" }
             button #on type="button" { "Step" }
             button #next type="button" { "Next event" }
@@ -69,10 +69,11 @@ pub(crate) fn html(replay: &Replay) -> String {
         div.wide { table.now { caption { "At the time shown" } tbody #now {} } }
         p { small {
             "Drag to turn, wheel or two fingers to zoom. Keys: space to stop and go, comma and full stop for a step, [ and ] for \
-             the last and the next event, r to reset; arrows, + and − turn and zoom the scene once it is chosen."
+             the previous and the next event, r to reset; arrows, + and − turn and zoom the scene once it is chosen."
         } }
         @if !replay.history.releases.is_empty() {
-            p { small { "Where the springs are over soon, they have the first half of the slider and of the charts. Dashed: a spring lets go." } }
+            p { small { "Marks on the slider, and dashed lines in the charts: springs let go, by their numbers. If that is over soon, it has the \
+                 first half of both." } }
         }
         script { (PreEscaped("const data = ")) (PreEscaped(data)) (PreEscaped(";\n")) (PreEscaped(SCRIPT)) }
     };
