@@ -7,6 +7,7 @@ mod compare;
 #[cfg(target_os = "linux")]
 mod disk;
 mod draw;
+mod drivers;
 mod fit;
 mod fleet;
 mod kept;

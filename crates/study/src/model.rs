@@ -278,6 +278,8 @@ fn matched(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::Target;
+    use gyradius_inertia::InertiaMatrix;
     use std::fmt::Write;
     use toml::{Table as Toml, Value};
 
@@ -327,5 +329,103 @@ mod tests {
             let name = format!("its law {:?} is a program's own", model.payload.law.name());
             assert!(refused.contains(&name) && refused.starts_with("models["), "{refused}");
         }
+    }
+
+    /// What a group exchanges is that of the second draw, and all else that of the first, for every group of a scenario in
+    /// which everything is dispersed and some of it correlated, under models that draw axes and models that do not.
+    #[test]
+    fn groups_exchange_what_they_hold_and_nothing_else() {
+        let text = include_str!("../tests/data/dispersed.toml");
+        let naive = "\n[[models]]\nname = \"naive\"\nlaw = \"entrywise\"\nmatched_to = \"MODEL\"\n";
+        let own = Scenario::from_toml(text).unwrap();
+        let naive = naive.replace("MODEL", own.model_names().next().unwrap());
+        let scenario = Scenario::from_toml(&format!("{text}{naive}")).unwrap();
+        let all = scenario.dispersions().all();
+        let near = |a: &InertiaMatrix, b: &InertiaMatrix| {
+            (a.matrix() - b.matrix()).norm() < 1e-9 * b.matrix().norm()
+        };
+        for model in Model::all(&scenario).unwrap() {
+            let groups = model.groups();
+            let names = groups.names();
+            assert!(
+                names.iter().enumerate().all(|(i, name)| !names[..i].contains(name)),
+                "{names:?}"
+            );
+            let splits = model.payload.law.has_independent_axes();
+            assert_eq!(splits, names.contains(&"payload axes".to_owned()), "{names:?}");
+            for base in 0..20 {
+                let first = groups.designs().runs(base);
+                let draw =
+                    |design: u64| model.draw_mixed(&scenario, groups.mix(first + design, None));
+                let (a, b) = (draw(0), draw(1));
+                assert_eq!(format!("{a:?}"), format!("{:?}", model.draw(&scenario, base)));
+                for (place, name) in names.iter().enumerate() {
+                    let c = draw(place as u64 + 2);
+                    for (i, d) in all.iter().enumerate() {
+                        let mine =
+                            groups.stream_of(i, groups.mix(first + place as u64 + 2, None), 0) != 0;
+                        // When a load starts also says whether it is late.
+                        let late = all.iter().any(|other| match other.target {
+                            Target::Late(load, start) => d.target == Target::Load(load, start, 0),
+                            _ => false,
+                        });
+                        let expected = if mine { b.drawn[i] } else { a.drawn[i] };
+                        assert!(
+                            late || c.drawn[i].to_bits() == expected.to_bits(),
+                            "{name}: {}",
+                            d.column
+                        );
+                    }
+                    let moments = |case: &Case| case.payload.principal_axes().moments();
+                    let follows = scenario.dispersions().inertia_follows_mass[0] != 0.0;
+                    if follows {
+                        continue;
+                    }
+                    match name.as_str() {
+                        "payload roots" => {
+                            assert_eq!(c.payload_axes, a.payload_axes);
+                            let (found, expected) = (moments(&c), moments(&b));
+                            let apart = (0..3).map(|i| (found[i] - expected[i]).abs()).sum::<f64>();
+                            assert!(apart < 1e-8 * expected[0].abs(), "{found:?} {expected:?}");
+                        }
+                        "payload axes" => {
+                            assert_eq!(c.payload_axes, b.payload_axes);
+                            let (found, expected) = (moments(&c), moments(&a));
+                            let apart = (0..3).map(|i| (found[i] - expected[i]).abs()).sum::<f64>();
+                            assert!(apart < 1e-8 * expected[0].abs(), "{found:?} {expected:?}");
+                        }
+                        "payload inertia" => assert!(near(&c.payload, &b.payload)),
+                        _ => assert!(near(&c.payload, &a.payload), "{name}"),
+                    }
+                }
+            }
+        }
+    }
+
+    /// What is correlated is exchanged together, under one name.
+    #[test]
+    fn correlated_numbers_are_one_group() {
+        let text = Scenario::peck_2003().unwrap().to_toml();
+        let springs = text.matches("[[springs]]").count();
+        let with = |correlation: &str| {
+            let text = text.replace(
+                "[[springs]]",
+                "[[springs]]\ndispersion = { stiffness_percent = 1.0, stage_point_m = 0.01, failure_probability = 0.1 }",
+            );
+            let scenario = Scenario::from_toml(&format!("{text}\n{correlation}")).unwrap();
+            let models = Model::all(&scenario).unwrap();
+            models[0].groups().names().to_vec()
+        };
+        let alone = with("");
+        // Roots and axes of two bodies; of each spring its stiffness, the point as a whole, and its failure.
+        assert_eq!(alone.len(), 4 + 3 * springs, "{alone:?}");
+        assert!(alone.contains(&"spring 3 stiffness".to_owned()), "{alone:?}");
+        let tied = with(
+            "[[correlations]]\nbetween = [\"spring_1_stiffness_n_per_m\", \"spring_2_stiffness_n_per_m\", \"spring_4_stage_point_2_m\"]\n\
+             coefficient = 0.3",
+        );
+        assert_eq!(tied.len(), alone.len() - 2, "{tied:?}");
+        let name = "spring 1 stiffness, spring 2 stiffness, spring 4 stage point";
+        assert!(tied.contains(&name.to_owned()), "{tied:?}");
     }
 }
