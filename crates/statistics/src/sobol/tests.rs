@@ -310,6 +310,30 @@ fn what_cannot_be_answered_is_refused() {
     assert!(matches!(finish(&sums), Err(StatisticsError::TooSpread { .. })));
 }
 
+/// A first deviation that is tiny beside the others sets no scale for them: any order gives the same to rounding.
+#[test]
+fn deviations_of_any_size_may_come_first() {
+    let mut runs = outputs(11, 40);
+    runs.insert(0, [0.0; 4]);
+    runs.insert(1, [1e-30, 0.0, 3e-30, 0.0]);
+    let of = |runs: &mut dyn Iterator<Item = &[f64; 4]>| {
+        let mut sums = SobolSums::new(2).unwrap();
+        runs.for_each(|y| push(&mut sums, y[0], y[1], &y[2..]));
+        sums.finish(Confidence::default()).unwrap()
+    };
+    let (forward, backward) = (of(&mut runs.iter()), of(&mut runs.iter().rev()));
+    let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+    near(forward.variance(), backward.variance());
+    near(forward.mean(), backward.mean());
+    for (a, b) in forward.groups().iter().zip(backward.groups()) {
+        for (a, b) in both(a).iter().zip(both(b)) {
+            near(a.value(), b.value());
+            near(a.interval().lower(), b.interval().lower());
+            near(a.interval().upper(), b.interval().upper());
+        }
+    }
+}
+
 /// What is missing is left out of its own group alone.
 #[test]
 fn missing_outputs_leave_the_rest_as_it_is() {
