@@ -13,8 +13,8 @@ use gyradius_statistics::Verdict;
 use crate::{
     Fleet, ScenarioError, StudyError,
     head::{Head, Judged},
-    subject::Subject,
-    unusual::UnusualInput,
+    subject::{Subject, Summarized},
+    unusual::{UnusualInput, unusual},
 };
 
 /// Figures of a requirement, whose number follows.
@@ -83,19 +83,27 @@ pub(crate) fn judging<C: Subject>(scenario: &C) -> Vec<Judging> {
     scenario.model_names().map(of_model).collect()
 }
 
-/// What the runs of each model say of its requirements.
-pub(crate) fn judged(judging: Vec<Judging>, runs: &[Runs]) -> Result<Vec<Judged>, StudyError> {
+/// Tells in a summary what the runs of each model say of its requirements. Blocks of the worst runs are read again.
+pub(crate) fn judged<C: Subject>(
+    scenario: &C,
+    summary: &mut C::Summary,
+    judging: Vec<Judging>,
+    runs: &[Runs],
+) -> Result<(), StudyError> {
     let mut all = Vec::new();
     for (judging, runs) in judging.into_iter().zip(runs) {
-        let judged = judging.finish(runs)?.into_iter();
-        let model = || runs.model().to_owned();
-        all.extend(judged.map(|judgement| Judged {
-            model: model(),
-            judgement,
-            unusual: Vec::new(),
+        let model = runs.model();
+        let judged = judging.finish(runs)?;
+        let worst = judged.iter().flat_map(Judgement::worst).map(|worst| worst.run).collect();
+        let found = unusual(&scenario.drawn_inputs(summary, model), &worst, runs)?;
+        all.extend(judged.into_iter().map(|judgement| {
+            let of_run = |run: u64| found.iter().find(|unusual| unusual.run == run).cloned();
+            let unusual = judgement.worst().iter().filter_map(|worst| of_run(worst.run)).collect();
+            Judged { model: model.to_owned(), judgement, unusual }
         }));
     }
-    Ok(all)
+    summary.head_mut().requirements = all;
+    Ok(())
 }
 
 /// The answers, before everything else, and the runs that come nearest to the limits or are beyond.
@@ -252,7 +260,7 @@ fn worst(head: &Head) -> Section {
         .numbers("run", |(_, run)| run.run.to_string())
         .numbers("value", |(_, run)| significant(run.value, 6))
         .numbers("beyond the limit by", |(_, run)| significant(run.excess, 4))
-        .words("unusual in what it drew", |(judged, run)| unusual(judged, run.run))
+        .words("unusual in what it drew", |(judged, run)| told_unusual(judged, run.run))
         .words("to see it, in the folder of the study", |(judged, run)| {
             let (model, run) = (&judged.model, run.run);
             Text::default().code(format!("gyradius replay . --model {model} --run {run}"))
@@ -263,7 +271,7 @@ fn worst(head: &Head) -> Section {
 }
 
 /// What is unusual in what a run drew, a line each.
-fn unusual(judged: &Judged, run: u64) -> PageCell {
+fn told_unusual(judged: &Judged, run: u64) -> PageCell {
     let found = judged.unusual.iter().find(|unusual| unusual.run == run);
     let line = |input: &UnusualInput| {
         let sign = if input.score < 0.0 { "−" } else { "+" };

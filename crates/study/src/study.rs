@@ -29,7 +29,6 @@ use crate::{
     scenario::parse_toml,
     subject::{LookAt, Subject, Summarized},
     until::{Ended, run_to_the_end},
-    unusual,
 };
 
 /// How to carry out a study.
@@ -226,8 +225,7 @@ fn do_what_is_left<C: Subject>(
         let head = summary.head_mut();
         (head.missing, head.done_again) = (gaps(&blocks, scenario), blocks.again());
         head.ended = ended;
-        head.requirements = decisions::judged(judging, &runs)?;
-        unusual::tell(scenario, &mut summary, &runs)?;
+        decisions::judged(scenario, &mut summary, judging, &runs)?;
         Ok((runs, summary))
     });
     let (runs, mut summary) = done.inspect_err(|_| blocks.abandon())?;

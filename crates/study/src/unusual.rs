@@ -4,8 +4,6 @@ use gyradius_campaign::{Runs, RunsError};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeSet, sync::Mutex, sync::PoisonError};
 
-use crate::subject::{Subject, Summarized};
-
 /// Inputs of a run that are told of, at most.
 const TOLD: usize = 3;
 /// Standard deviations from the mean of the runs from which on an input is unusual.
@@ -44,31 +42,8 @@ impl DrawnInput {
     }
 }
 
-/// Adds to each requirement what its worst runs have drawn that is unusual. Their blocks are read again.
-pub(crate) fn tell<C: Subject>(
-    scenario: &C,
-    summary: &mut C::Summary,
-    runs: &[Runs],
-) -> Result<(), RunsError> {
-    for runs in runs {
-        let of_model = summary.head().requirements.iter();
-        let of_model = of_model.filter(|judged| judged.model == runs.model());
-        let worst = of_model.flat_map(|judged| judged.judgement.worst());
-        let worst: BTreeSet<u64> = worst.map(|worst| worst.run).collect();
-        let found = unusual(&scenario.drawn_inputs(summary, runs.model()), &worst, runs)?;
-        for judged in &mut summary.head_mut().requirements {
-            if judged.model == runs.model() {
-                let own = |run: &u64| found.iter().find(|unusual| unusual.run == *run).cloned();
-                let worst = judged.judgement.worst().iter().map(|worst| worst.run);
-                judged.unusual = worst.filter_map(|run| own(&run)).collect();
-            }
-        }
-    }
-    Ok(())
-}
-
 /// What some runs have drawn that is unusual, of those that have something.
-fn unusual(
+pub(crate) fn unusual(
     inputs: &[DrawnInput],
     worst: &BTreeSet<u64>,
     runs: &Runs,

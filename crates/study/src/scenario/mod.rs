@@ -257,7 +257,8 @@ impl Scenario {
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
         file.models.iter_mut().for_each(|model| model.fill(&Body::BOTH));
         check_name("name", &file.name)?;
-        file.about().check()?;
+        let said = file.about().check();
+        said.map_err(|(key, problem)| ScenarioError::field(key, problem))?;
         let keys = [file.runs, file.vehicles, file.flights];
         let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
         [file.runs, file.vehicles, file.flights] = size.keys();

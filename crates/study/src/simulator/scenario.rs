@@ -54,7 +54,8 @@ impl SimulatorScenario {
         let mut file = parse_toml::<File>(text)
             .map_err(|message| ScenarioError::Parse { path: None, message })?;
         check_name("name", &file.name)?;
-        file.about().check()?;
+        let said = file.about().check();
+        said.map_err(|(key, problem)| ScenarioError::field(key, problem))?;
         let keys = [file.runs, file.vehicles, file.flights];
         let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
         [file.runs, file.vehicles, file.flights] = size.keys();
