@@ -261,7 +261,6 @@ impl Table {
 
     /// What runs have in a column, by their places: numbers, whole numbers, and flags as 1 and 0; nothing in a column of texts, and
     /// nothing of runs that failed.
-    #[must_use]
     pub fn measured(&self, column: &str) -> impl Fn(usize) -> Option<f64> {
         let values = self.column(column);
         move |place| {

@@ -18,7 +18,7 @@ fn scenario(runs: u64, faults: &[[Option<f64>; 2]], requirements: &str) -> Scena
         let mut dispersion = "\n[springs.dispersion]\n".to_owned();
         for (key, p) in [("failure", fails), ("late", late)] {
             if let Some(p) = p {
-                write!(dispersion, "{key}_probability = {p:?}\n").unwrap();
+                writeln!(dispersion, "{key}_probability = {p:?}").unwrap();
             }
         }
         if late.is_some() {
