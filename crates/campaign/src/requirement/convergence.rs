@@ -128,6 +128,7 @@ mod tests {
             };
             let told = all.estimates(interval).unwrap();
             assert_eq!(told.last().unwrap().runs, n);
+            assert!(told.iter().all(|e| ENDS.contains(&e.runs) || e.runs == n), "{told:?}");
             assert!(n < 1000 || (20..=30).contains(&told.len()), "{}", told.len());
         }
     }
