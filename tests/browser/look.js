@@ -142,6 +142,7 @@
       if (heading.hasAttribute("aria-sort")) say(`${name(table)} stays sorted`);
       order().forEach((rows, i) => { if (rows.length !== bodies[i].length || rows.some((one, k) => one !== bodies[i][k])) say(`${name(table)} has another order`); });
     }
+    if (document.getElementById("scene")) replay();
     const saved = [], make = URL.createObjectURL;
     URL.createObjectURL = (blob) => { saved.push(blob); return make.call(URL, blob); };
     HTMLAnchorElement.prototype.click = () => {};
@@ -159,6 +160,37 @@
       }[form];
       if (!right || !right()) say(`${button.ariaLabel}: not what it should be: ${text.slice(0, 80)}`);
     }
+  };
+
+  // Steps, events, keys, fingers and the way back of a replay.
+  const replay = () => {
+    const el = (id) => document.getElementById(id), clock = () => Number(el("time").value);
+    const press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+    const is = (what, right) => { if (!right) say(`replay: ${what}, at ${el("clock").textContent}`); };
+    const mark = el("marks").firstElementChild, picture = () => el("scene").toDataURL();
+    is("a mark", mark && parseFloat(mark.style.left) > 0);
+    el("reset").click(); is("reset", clock() === 0);
+    el("next").click(); const first = clock(); is("next event", first > 0);
+    press("]"); is("key for the next event", clock() > first);
+    press("["); is("key for the previous event", Math.abs(clock() - first) < 1e-4);
+    press("."); const on = clock(); is("key for a step", on > first);
+    el("back").click(); is("step back", clock() < on);
+    mark.click(); is("the first mark", Math.abs(clock() - first) < 1e-4);
+    const still = picture(), scene = el("scene");
+    is("the picture", new Set(scene.getContext("2d").getImageData(0, 0, scene.width, scene.height).data).size > 50);
+    scene.setPointerCapture = () => {};
+    const finger = (type, pointerId, clientX) => scene.dispatchEvent(new PointerEvent(type, { pointerId, clientX, clientY: 200 }));
+    finger("pointerdown", 1, 300); finger("pointerdown", 2, 400); finger("pointermove", 2, 450);
+    is("two fingers zoom", picture() !== still);
+    finger("pointermove", 2, 400); finger("pointerup", 1, 300); finger("pointerup", 2, 400);
+    is("and back", picture() === still);
+    finger("pointerdown", 1, 300); finger("pointermove", 1, 350); finger("pointerup", 1, 350);
+    is("one finger turns", picture() !== still);
+    el("reset").click(); mark.click(); is("reset turns back", picture() === still);
+    if (el("boxes")) { el("boxes").click(); is("boxes", picture() !== still); el("boxes").click(); }
+    // In charts and table the same as on the clock.
+    const cursor = document.querySelector("#charts g path:last-child").getAttribute("transform");
+    is("charts follow", /translate\((?!0 )/.test(cursor) && document.querySelectorAll("#charts svg").length >= 4);
   };
 
   addEventListener("load", async () => {

@@ -180,3 +180,48 @@ fn cuboid(body: &MovingBody) -> Value {
     let (sides, attitude) = (short(&sides), short(attitude.coords.as_slice()));
     json!({ "sides": sides, "q": attitude })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Scenario;
+    use nalgebra::{Quaternion, Vector3};
+
+    fn three(values: &Value, from: usize) -> Vector3<f64> {
+        Vector3::from_fn(|i, _| values[from + i].as_f64().unwrap())
+    }
+
+    /// From positions and attitudes of every frame alone.
+    #[test]
+    fn the_outlines_are_as_far_apart_as_their_points() {
+        let points = [
+            [[0.4, -0.3, -0.8], [1.0, 1.0, -0.2], [-1.3, 0.2, 0.1]],
+            [[1.0, 1.0, 0.9], [-0.5, 0.3, 0.7], [0.2, -1.0, 0.2]],
+        ];
+        let text = format!(
+            "{}\n[clearance]\npayload = [{{ points_m = {:?} }}]\nstage = [{{ points_m = {:?} }}]\n",
+            Scenario::peck_2003().unwrap().to_toml(),
+            points[0],
+            points[1]
+        );
+        let replay = Replay::new(&Scenario::from_toml(&text).unwrap(), None, 3, 30.0).unwrap();
+        let data = data(&replay);
+        let frames = data["frames"].as_array().unwrap();
+        for frame in frames {
+            let placed = [0, 1].map(|body| {
+                let at = 1 + 10 * body;
+                let [x, y, z, w] = [3, 4, 5, 6].map(|i| frame[at + i].as_f64().unwrap());
+                let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+                points[body].map(|p| three(frame, at) + turn * Vector3::from(p))
+            });
+            let pairs =
+                placed[0].iter().flat_map(|p| placed[1].iter().map(move |s| (p - s).norm()));
+            let (least, found) = (pairs.fold(f64::INFINITY, f64::min), frame[25].as_f64().unwrap());
+            assert!((least - found).abs() < 1e-4 * least.max(1.0), "{frame}: {least}");
+        }
+        assert!(frames.len() > 100);
+        // Without outlines there is no such distance.
+        let paper = Replay::new(&Scenario::peck_2003().unwrap(), None, 3, 1.0).unwrap();
+        assert!(super::data(&paper)["frames"][0][25].is_null());
+    }
+}
