@@ -259,7 +259,7 @@ fn bad_pages_are_refused() {
         "<p>a".to_owned(),
         "<p title=a>a</p>".to_owned(),
         "<p hidden>a</p>".to_owned(),
-        "<details><summary>a</summary></details>".to_owned(),
+        "<details><summary><p>a</p></summary></details>".to_owned(),
         "<h3>a</h3>".to_owned(),
         "<a href=\"https://example.org\">a</a>".to_owned(),
         "<a href=\"#nowhere\">a</a>".to_owned(),
