@@ -22,17 +22,19 @@ pub struct Designs {
 
 /// Which draws a run takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Mix {
+pub struct Mix<'a> {
     base: u64,
-    draws: Draws,
+    draws: Draws<'a>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Draws {
+enum Draws<'a> {
     First,
     Second,
     /// The second draw of a group, and the first of all others.
     SecondOf(u64),
+    /// The draw of this number of each group.
+    Given(&'a [u64]),
 }
 
 impl Designs {
@@ -50,7 +52,7 @@ impl Designs {
 
     /// Which draws a run takes.
     #[must_use]
-    pub fn of(self, run: u64) -> Mix {
+    pub fn of(self, run: u64) -> Mix<'static> {
         let draws = match run % self.each() {
             0 => Draws::First,
             1 => Draws::Second,
@@ -99,7 +101,13 @@ impl Designs {
     }
 }
 
-impl Mix {
+impl<'a> Mix<'a> {
+    /// The draw of this number of each group; of a group without one the first.
+    #[must_use]
+    pub fn given(base: u64, draws: &'a [u64]) -> Self {
+        Self { base, draws: Draws::Given(draws) }
+    }
+
     /// The first draw of all groups.
     #[must_use]
     pub fn plain(run: u64) -> Self {
@@ -125,6 +133,7 @@ impl Mix {
             Draws::First => first,
             Draws::SecondOf(second) if second != group as u64 => first,
             Draws::Second | Draws::SecondOf(_) => first | SECOND,
+            Draws::Given(draws) => draws.get(group).copied().unwrap_or(first),
         }
     }
 }
@@ -142,26 +151,18 @@ impl Output {
     /// What the runs of a block have of it.
     #[must_use]
     pub fn of(&self, block: &Table) -> Vec<Option<f64>> {
-        let (quantity, requirement) = match self {
-            Self::Column(name) => (Measured::column(name), None),
-            Self::Fails(requirement) => (requirement.quantity().clone(), Some(requirement.clone())),
+        let requirement = match self {
+            Self::Column(name) => return Measured::column(name).numbers(block),
+            Self::Fails(requirement) => requirement,
         };
-        let columns: Vec<_> = quantity.columns().iter().map(|name| block.measured(name)).collect();
-        let mut numbers = Vec::new();
-        let mut of_run = |place: usize| {
-            numbers.clear();
-            numbers.extend(columns.iter().map(|column| column(place)));
-            let x = quantity.of(&numbers);
-            let Some(requirement) = &requirement else { return x };
-            match (x, requirement.failed_runs()) {
-                (None, FailedRuns::LeftOut) => None,
-                (None, FailedRuns::Against) => Some(1.0),
-                (Some(x), FailedRuns::Against | FailedRuns::LeftOut) => {
-                    Some(f64::from(u8::from(!requirement.bound().is_kept(x))))
-                }
+        let fails = |x: Option<f64>| match (x, requirement.failed_runs()) {
+            (None, FailedRuns::LeftOut) => None,
+            (None, FailedRuns::Against) => Some(1.0),
+            (Some(x), FailedRuns::Against | FailedRuns::LeftOut) => {
+                Some(f64::from(u8::from(!requirement.bound().is_kept(x))))
             }
         };
-        (0..block.len()).map(&mut of_run).collect()
+        requirement.quantity().numbers(block).into_iter().map(fails).collect()
     }
 }
 
@@ -190,7 +191,7 @@ mod tests {
             let designs = Designs::new(groups);
             let runs = designs.runs(base)..designs.runs(base + 1);
             prop_assert_eq!(runs.end - runs.start, groups as u64 + 2);
-            let mixes: Vec<Mix> = runs.map(|run| designs.of(run)).collect();
+            let mixes: Vec<Mix<'_>> = runs.map(|run| designs.of(run)).collect();
             for group in 0..groups {
                 let second: Vec<usize> =
                     (0..mixes.len()).filter(|i| mixes[*i].stream(group, first) != first).collect();
@@ -211,7 +212,7 @@ mod tests {
         let streams = ["x1", "x2", "x3", "x4"].map(|name| Streams::new(3, "m", name));
         let designs = Designs::new(4);
         let base = 4000;
-        let angle = |mix: Mix, i: usize| {
+        let angle = |mix: Mix<'_>, i: usize| {
             let pi = std::f64::consts::PI;
             streams[i].run(mix.stream(i, mix.base())).random_range(-pi..pi)
         };

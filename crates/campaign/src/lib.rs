@@ -108,7 +108,7 @@ pub use identity::{Difference, Identity};
 pub use kept::{Kept, KeptError, Rows};
 pub use memory::memory_left;
 pub use requirement::{
-    Bound, Distribution, DistributionPoint, Estimate, FailedRuns, Judgement, JudgementError,
+    Bound, Distribution, DistributionPoint, Estimate, Event, FailedRuns, Judgement, JudgementError,
     Judging, Looks, Measured, Requirement, RequirementError, RunBeyond, VehiclesKeeping,
     share_in_percent,
 };

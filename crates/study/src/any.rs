@@ -1,6 +1,8 @@
 //! A scenario of either kind, and what becomes of it: for programs that are given a file or a folder.
 
-use gyradius_campaign::{Forecast, Kept, Progress, Shard, StoppingRule, Until, begun, folder_of};
+use gyradius_campaign::{
+    Event, Forecast, Kept, Progress, Shard, StoppingRule, Until, begun, folder_of,
+};
 use serde::Serialize;
 use std::{
     fmt,
@@ -8,10 +10,10 @@ use std::{
 };
 
 use crate::{
-    Fleet, Notice, Options, ResultsError, Scenario, ScenarioError, SimulatorScenario, Status,
-    Study, StudyError, drivers,
+    Fleet, Notice, Options, Rare, RareOptions, ResultsError, Scenario, ScenarioError,
+    SimulatorScenario, Status, Study, StudyError, drivers,
     head::{Head, Judged, Missing},
-    results,
+    rare, results,
     scenario::{parse_toml, read_file, scenario_file},
     shards,
     study::{self, carry_out},
@@ -220,6 +222,20 @@ impl AnyScenario {
     ) -> Result<Outcome, StudyError> {
         of_either!(self, scenario =>
             carry_out(&**scenario, options, progress, say).map(|study| Outcome::of(&study)))
+    }
+
+    /// Finds how often a rare event happens, by subset simulation (Au & Beck 2001) that draws one group of inputs anew at a time:
+    /// see [`SubsetSimulation`](gyradius_statistics::SubsetSimulation). Nothing is written.
+    ///
+    /// # Errors
+    /// There is no such model or column, or the numbers of runs are out of range; a simulator cannot be started; it was stopped.
+    pub fn rare(
+        &self,
+        event: &Event,
+        options: &RareOptions,
+        progress: Progress<'_>,
+    ) -> Result<Rare, StudyError> {
+        of_either!(self, scenario => rare::find(&**scenario, event, options, progress))
     }
 
     /// Does a share of the runs of a study, of those that are in no finished block, into its folder. Other processes may do

@@ -50,7 +50,7 @@ pub(crate) fn check<C: Subject>(scenario: &C, columns: &[Column]) -> Result<(), 
 }
 
 /// That a quantity is of columns of numbers that the run tables have.
-fn known(quantity: &Measured, columns: &[Column]) -> Result<(), String> {
+pub(crate) fn known(quantity: &Measured, columns: &[Column]) -> Result<(), String> {
     for name in quantity.columns() {
         let column = columns.iter().find(|column| column.name() == name);
         if !column.is_some_and(Column::is_measured) {

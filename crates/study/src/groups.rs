@@ -2,6 +2,7 @@
 
 use gyradius_campaign::{Designs, Mix, Streams};
 use gyradius_dispersion::{InertiaLaw, ModelDraw};
+use std::sync::Arc;
 
 use crate::{
     fleet::Fleet,
@@ -16,6 +17,18 @@ pub(crate) struct Groups {
     inertias: Vec<[usize; 2]>,
     /// Of each number that is dispersed.
     dispersed: Vec<usize>,
+}
+
+/// What the runs of a simulation draw.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum Drawing {
+    /// What the runs of a study draw.
+    #[default]
+    Plain,
+    /// The designs that exchange groups of inputs.
+    Exchanging,
+    /// For each run and each group the draw of this number.
+    Given(Arc<[Vec<u64>]>),
 }
 
 impl Groups {
@@ -72,14 +85,24 @@ impl Groups {
         Designs::new(self.names.len())
     }
 
-    /// Which draws a run of these designs takes, each base run being the first flight of a vehicle of its own.
-    pub(crate) fn mix(&self, run: u64, fleet: Option<Fleet>) -> Mix {
-        let mix = self.designs().of(run);
-        mix.at(mix.base().saturating_mul(fleet.map_or(1, Fleet::flights)))
+    /// Which draws a run takes; where groups are exchanged, each base run is the first flight of a vehicle of its own.
+    pub(crate) fn mix<'d>(&self, drawing: &'d Drawing, run: u64, fleet: Option<Fleet>) -> Mix<'d> {
+        let flights = fleet.map_or(1, Fleet::flights);
+        match drawing {
+            Drawing::Plain => Mix::plain(run),
+            Drawing::Exchanging => {
+                let mix = self.designs().of(run);
+                mix.at(mix.base().saturating_mul(flights))
+            }
+            Drawing::Given(draws) => {
+                let of_run = usize::try_from(run).ok().and_then(|run| draws.get(run));
+                Mix::given(run.saturating_mul(flights), of_run.map_or(&[], Vec::as_slice))
+            }
+        }
     }
 
     /// The stream of the number in a place of what is dispersed.
-    pub(crate) fn stream_of(&self, place: usize, mix: Mix, first: u64) -> u64 {
+    pub(crate) fn stream_of(&self, place: usize, mix: Mix<'_>, first: u64) -> u64 {
         self.dispersed.get(place).map_or(first, |group| mix.stream(*group, first))
     }
 
@@ -87,7 +110,7 @@ impl Groups {
     pub(crate) fn inertia(
         &self,
         body: usize,
-        mix: Mix,
+        mix: Mix<'_>,
         first: u64,
         (law, streams): (&dyn InertiaLaw, &Streams),
     ) -> ModelDraw {

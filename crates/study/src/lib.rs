@@ -41,6 +41,7 @@ mod model;
 #[cfg(test)]
 mod pages;
 mod quantity;
+mod rare;
 mod releases;
 mod replay;
 mod report;
@@ -71,8 +72,8 @@ pub use failure::Failure;
 pub use fleet::Fleet;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_campaign::{
-    Again, Bound, CampaignError, Cell, Column, FailedRuns, Forecast, ForeignError, ForeignTable,
-    FormatError, Judgement, JudgementError, Kept, KeptError, Progress, Requirement,
+    Again, Bound, CampaignError, Cell, Column, Event, FailedRuns, Forecast, ForeignError,
+    ForeignTable, FormatError, Judgement, JudgementError, Kept, KeptError, Progress, Requirement,
     RequirementError, Row, Rows, Runs, RunsError, Shard, ShardError, StoppingRule, Table,
     TableFormat, Until, UntilError, Verdict, rough_time,
 };
@@ -80,6 +81,7 @@ pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};
 pub use head::{Head, Judged, Missing};
 pub use quantity::Quantity;
+pub use rare::{Rare, RareOptions};
 pub use replay::{Replay, ReplayError, Which};
 pub use results::{Results, ResultsError};
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};

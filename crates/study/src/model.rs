@@ -11,7 +11,7 @@ use crate::{
     body::Body,
     column::Column,
     drawn::{self, Draws},
-    groups::Groups,
+    groups::{Drawing, Groups},
     run::{Case, Run},
     scenario::{Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
 };
@@ -106,7 +106,7 @@ impl Model {
     }
 
     /// Draws the bodies of a run, of which some groups of inputs may be those of a second draw.
-    fn draw_mixed(&self, scenario: &Scenario, mix: Mix) -> Case {
+    fn draw_mixed(&self, scenario: &Scenario, mix: Mix<'_>) -> Case {
         let (run, groups) = (mix.base(), &self.groups);
         let drawn = self
             .draws
@@ -140,28 +140,23 @@ pub(crate) struct Separations<'a> {
     scenario: &'a Scenario,
     model: &'a Model,
     columns: Vec<Column>,
-    /// Whether its runs are those of the designs that exchange groups of inputs.
-    exchanging: bool,
+    drawing: Drawing,
 }
 
 impl<'a> Separations<'a> {
     pub(crate) fn new(scenario: &'a Scenario, model: &'a Model) -> Self {
         let columns = Column::of(scenario);
-        Self { scenario, model, columns, exchanging: false }
+        Self { scenario, model, columns, drawing: Drawing::Plain }
     }
 
-    /// The runs of the designs that exchange the groups of inputs of the model.
-    pub(crate) fn exchanging(self) -> Self {
-        Self { exchanging: true, ..self }
+    /// The same, whose runs draw this.
+    pub(crate) fn drawing(self, drawing: Drawing) -> Self {
+        Self { drawing, ..self }
     }
 
     fn draw(&self, run: u64) -> Case {
-        if self.exchanging {
-            let mix = self.model.groups.mix(run, self.scenario.fleet());
-            self.model.draw_mixed(self.scenario, mix)
-        } else {
-            self.model.draw(self.scenario, run)
-        }
+        let mix = self.model.groups.mix(&self.drawing, run, self.scenario.fleet());
+        self.model.draw_mixed(self.scenario, mix)
     }
 
     /// What is drawn for a run, by column, with every digit.
@@ -355,15 +350,22 @@ mod tests {
             assert_eq!(splits, names.contains(&"payload axes".to_owned()), "{names:?}");
             for base in 0..20 {
                 let first = groups.designs().runs(base);
-                let draw =
-                    |design: u64| model.draw_mixed(&scenario, groups.mix(first + design, None));
+                let draw = |design: u64| {
+                    model.draw_mixed(
+                        &scenario,
+                        groups.mix(&Drawing::Exchanging, first + design, None),
+                    )
+                };
                 let (a, b) = (draw(0), draw(1));
                 assert_eq!(format!("{a:?}"), format!("{:?}", model.draw(&scenario, base)));
                 for (place, name) in names.iter().enumerate() {
                     let c = draw(place as u64 + 2);
                     for (i, d) in all.iter().enumerate() {
-                        let mine =
-                            groups.stream_of(i, groups.mix(first + place as u64 + 2, None), 0) != 0;
+                        let mine = groups.stream_of(
+                            i,
+                            groups.mix(&Drawing::Exchanging, first + place as u64 + 2, None),
+                            0,
+                        ) != 0;
                         // When a load starts also says whether it is late.
                         let late = all.iter().any(|other| match other.target {
                             Target::Late(load, start) => d.target == Target::Load(load, start, 0),

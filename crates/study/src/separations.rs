@@ -11,7 +11,7 @@ use crate::{
     claims,
     compare::Section,
     figures_of_study,
-    groups::Groups,
+    groups::{Drawing, Groups},
     model::{Model, Separations},
     quantity::Quantity,
     report,
@@ -119,12 +119,13 @@ impl Subject for Scenario {
         Ok(models[place].groups().clone())
     }
 
-    fn exchanging<'a>(
+    fn drawing<'a>(
         &'a self,
         models: &'a Vec<Model>,
         place: usize,
+        drawing: Drawing,
     ) -> Result<Separations<'a>, ScenarioError> {
-        Ok(Separations::new(self, &models[place]).exchanging())
+        Ok(Separations::new(self, &models[place]).drawing(drawing))
     }
 
     fn is_outcome(&self, column: &Column) -> bool {

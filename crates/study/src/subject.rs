@@ -14,7 +14,11 @@ use std::{
 };
 
 use crate::{
-    Fleet, ScenarioError, StudyError, about::About, groups::Groups, head::Head, unusual::DrawnInput,
+    Fleet, ScenarioError, StudyError,
+    about::About,
+    groups::{Drawing, Groups},
+    head::Head,
+    unusual::DrawnInput,
 };
 
 /// What a study is of: models whose runs are simulated, what they amount to, and the pages that show it.
@@ -87,11 +91,12 @@ pub(crate) trait Subject: Sync + Sized {
     fn drivers(&self) -> Option<u64>;
     /// The groups of inputs that the model in a place draws independently of each other.
     fn groups(&self, models: &Self::Prepared, place: usize) -> Result<Groups, ScenarioError>;
-    /// The runs of the model in a place in which these groups are exchanged.
-    fn exchanging<'a>(
+    /// The runs of the model in a place that draw this of these groups.
+    fn drawing<'a>(
         &'a self,
         models: &'a Self::Prepared,
         place: usize,
+        drawing: Drawing,
     ) -> Result<Self::Simulation<'a>, ScenarioError>;
     /// Whether a column is a number that comes of a run, and is not drawn for it.
     fn is_outcome(&self, column: &Column) -> bool;

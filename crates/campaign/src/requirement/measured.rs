@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
 use super::{RequirementError, words::Words};
+use crate::table::Table;
 
 /// What a requirement is about. Written, it is `x`, `abs(x)` or `norm(x, y, z)` with names of columns, in quotation marks if they
 /// have more than letters, digits, `_`, `.`, `[` and `]`.
@@ -70,6 +71,19 @@ impl Measured {
             How::Length => numbers.iter().try_fold(0.0, |sum, x| Some(libm::hypot(sum, (*x)?))),
         };
         number.filter(|x| x.is_finite())
+    }
+
+    /// What the runs of a block have of it.
+    #[must_use]
+    pub fn numbers(&self, block: &Table) -> Vec<Option<f64>> {
+        let columns: Vec<_> = self.columns.iter().map(|name| block.measured(name)).collect();
+        let mut of_run = Vec::with_capacity(columns.len());
+        let number = |place: usize| {
+            of_run.clear();
+            of_run.extend(columns.iter().map(|column| column(place)));
+            self.of(&of_run)
+        };
+        (0..block.len()).map(number).collect()
     }
 
     pub(crate) fn parse(words: &mut Words<'_>) -> Result<Self, RequirementError> {

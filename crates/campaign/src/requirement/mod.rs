@@ -3,6 +3,7 @@
 mod convergence;
 mod deciding;
 mod distribution;
+mod event;
 mod gathering;
 mod groups;
 mod judgement;
@@ -18,6 +19,7 @@ use std::{fmt, str::FromStr};
 pub use convergence::Estimate;
 pub use deciding::Looks;
 pub use distribution::{Distribution, DistributionPoint};
+pub use event::Event;
 pub use gathering::RunBeyond;
 pub(crate) use gathering::Tally;
 pub use judgement::{Judgement, JudgementError, VehiclesKeeping, share_in_percent};

@@ -8,16 +8,27 @@ const SIGNS: [char; 4] = ['<', '>', '≤', '≥'];
 /// Reads a requirement from a line, which is its name too.
 pub(super) fn parse(text: &str) -> Result<Requirement, RequirementError> {
     let mut words = Words::new(text);
+    let (measured, bound) = bounded(&mut words)?;
+    words.expect("in")?;
+    let probability = words.share()?;
+    words.expect("at")?;
+    let confidence = words.share()?;
+    words.end()?;
+    Requirement::new(text.trim(), measured, bound, probability, confidence)
+}
+
+/// Reads what is bounded, and how.
+pub(super) fn bounded(words: &mut Words<'_>) -> Result<(Measured, Bound), RequirementError> {
     let before = words.clone();
     let first = match words.number() {
         // A name may begin as a number does.
         Some(number) if words.begins_with(&SIGNS) => Some((number, words.comparison()?)),
         Some(_) | None => {
-            words = before;
+            *words = before;
             None
         }
     };
-    let measured = Measured::parse(&mut words)?;
+    let measured = Measured::parse(words)?;
     let bound = match first {
         None => {
             let at_most = words.comparison()?;
@@ -40,10 +51,5 @@ pub(super) fn parse(text: &str) -> Result<Requirement, RequirementError> {
             if rising { Bound::Between(limit, other) } else { Bound::Between(other, limit) }
         }
     };
-    words.expect("in")?;
-    let probability = words.share()?;
-    words.expect("at")?;
-    let confidence = words.share()?;
-    words.end()?;
-    Requirement::new(text.trim(), measured, bound, probability, confidence)
+    Ok((measured, bound))
 }

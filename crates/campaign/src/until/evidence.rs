@@ -52,18 +52,19 @@ impl Evidence {
     /// Looks at a block of the model in a place, once at each, and in the order of its runs.
     pub fn look(&mut self, place: usize, block: &Table) {
         let Some(model) = self.models.get_mut(place) else { return };
-        let runs = || {
-            let runs = (block.first()..).zip(0..block.len());
-            runs.filter(|(run, _)| run.is_multiple_of(self.group))
+        let group = self.group;
+        let judged = |quantity: &Measured| {
+            let numbers = (block.first()..).zip(quantity.numbers(block));
+            numbers.filter(move |(run, _)| run.is_multiple_of(group))
         };
         for (requirement, tally) in &mut model.requirements {
-            for (run, number) in numbers(requirement.quantity(), block, runs()) {
+            for (run, number) in judged(requirement.quantity()) {
                 tally.add(run, number, requirement.bound());
             }
         }
         if let Some(mean) = &mut model.mean {
-            let quantity = mean.quantity.clone();
-            numbers(&quantity, block, runs()).filter_map(|(_, x)| x).for_each(|x| mean.add(x));
+            let numbers = judged(&mean.quantity).filter_map(|(_, x)| x).collect::<Vec<_>>();
+            numbers.into_iter().for_each(|x| mean.add(x));
         }
     }
 
@@ -121,19 +122,4 @@ impl RunningMean {
     fn is_known(&self, rule: FixedWidth) -> bool {
         self.n > 1 && rule.is_reached(self.n, self.squares / (self.n - 1) as f64)
     }
-}
-
-/// What these runs of a block have of a quantity.
-fn numbers(
-    quantity: &Measured,
-    block: &Table,
-    runs: impl Iterator<Item = (u64, usize)>,
-) -> impl Iterator<Item = (u64, Option<f64>)> {
-    let columns: Vec<_> = quantity.columns().iter().map(|name| block.measured(name)).collect();
-    let mut of_run = Vec::new();
-    runs.map(move |(run, place)| {
-        of_run.clear();
-        of_run.extend(columns.iter().map(|column| column(place)));
-        (run, quantity.of(&of_run))
-    })
 }

@@ -5,14 +5,16 @@ use clap::{
     builder::{NonEmptyStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser},
     value_parser,
 };
-use gyradius_study::{CompareOptions, ModelKind, Requirement, Rows, StoppingRule, TableFormat};
+use gyradius_study::{
+    CompareOptions, Event, ModelKind, RareOptions, Requirement, Rows, StoppingRule, TableFormat,
+};
 use std::path::PathBuf;
 
 use crate::program::{
     examples::{
         CHECK_EXAMPLES, COMPARE_EXAMPLES, COMPLETIONS_EXAMPLES, DRAW_EXAMPLES, EXAMPLES,
-        EXIT_CODES, FIT_EXAMPLES, MAN_EXAMPLES, MODEL_EXAMPLES, REPLAY_EXAMPLES, REPORT_EXAMPLES,
-        SLURM_EXAMPLES, STATUS_EXAMPLES, VERDICT_EXAMPLES,
+        EXIT_CODES, FIT_EXAMPLES, MAN_EXAMPLES, MODEL_EXAMPLES, RARE_EXAMPLES, REPLAY_EXAMPLES,
+        REPORT_EXAMPLES, SLURM_EXAMPLES, STATUS_EXAMPLES, VERDICT_EXAMPLES,
     },
     scheduler::AskedShard,
 };
@@ -111,6 +113,13 @@ pub(crate) enum Command {
     /// margin, the verdict, how many more runs would decide, how good a vehicle must be to pass, and the worst runs.
     #[command(after_help = VERDICT_EXAMPLES)]
     Verdict(VerdictArgs),
+    /// Find how often a rare event happens, as "cone_deg >= 8": probabilities down to 1e-9, with an interval
+    ///
+    /// Subset simulation: a first level of plain runs, of which the tenth nearest to the event goes on; some of their inputs are drawn
+    /// anew from their own laws, one group of inputs at a time, and so on to the event. It takes some thousand runs for each digit
+    /// of the probability, where plain runs take ten times as many for each. Nothing is written.
+    #[command(after_help = RARE_EXAMPLES)]
+    Rare(RareArgs),
     /// Print a script that lets a shell complete verbs, flags and values
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions(CompletionsArgs),
@@ -239,6 +248,45 @@ pub(crate) struct StatusArgs {
     /// Folder of a study [default: target/study/peck-2003]
     #[arg(value_name = "STUDY")]
     pub(crate) study: Option<PathBuf>,
+
+    /// Write JSON, for other programs
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct RareArgs {
+    /// Event, as "abs(x) >= 1": a column x, abs(x) or norm(x, y, z); <= or >= or both
+    #[arg(value_name = "EVENT")]
+    pub(crate) event: Event,
+
+    /// Scenario file (TOML) [default: the built-in study of Peck (2003)]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scenario: Option<PathBuf>,
+
+    /// Model [default: the first of the scenario]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) model: Option<String>,
+
+    /// Seed of all random numbers [default: as in the scenario]
+    #[arg(long, value_name = "S", value_parser = whole)]
+    pub(crate) seed: Option<u64>,
+
+    /// Runs of a level, 100 or more
+    #[arg(long, value_name = "N", default_value_t = RareOptions::default().per_level)]
+    pub(crate) per_level: usize,
+
+    /// Independent repetitions, from which the interval is found, 2 or more
+    #[arg(long, value_name = "R", default_value_t = RareOptions::default().replicas)]
+    pub(crate) replicas: usize,
+
+    /// Give up below this probability
+    #[arg(long, value_name = "P", default_value_t = RareOptions::default().least)]
+    pub(crate) least: f64,
+
+    /// Number of threads [default: one for each core]
+    #[arg(long, value_name = "T")]
+    pub(crate) threads: Option<usize>,
 
     /// Write JSON, for other programs
     #[arg(long)]

@@ -85,6 +85,17 @@ Examples:
 
 Exit code: 0 if all are met, 1 if one is not met or not decided, 2 if the table or a requirement could not be read.";
 
+pub(crate) const RARE_EXAMPLES: &str = "\
+Examples:
+  gyradius rare \"cone_deg >= 8\"
+      How often the cone of the built-in study is 8 deg or more
+  gyradius rare \"clearance_m <= 0\" --scenario my-vehicle.toml --per-level 5000
+      How often the bodies touch, with more runs of a level
+  gyradius rare \"norm(payload_w1_rad_per_s, payload_w2_rad_per_s) >= 0.1\" --json
+      The length of a vector of columns, for other programs
+
+Exit code: 0 if it was estimated, also with warnings; 2 if it could not be.";
+
 pub(crate) const MODEL_EXAMPLES: &str = "\
 Examples:
   gyradius model payload.toml

@@ -11,6 +11,7 @@ mod number;
 mod output;
 mod progress;
 mod quote;
+mod rare;
 mod replay;
 mod report;
 mod scheduler;
@@ -49,6 +50,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Replay(arguments) => replay::replay(arguments).map(done),
         Command::Draw(arguments) => draw::draw(arguments),
         Command::Study(arguments) => study::study(arguments),
+        Command::Rare(arguments) => rare::rare(arguments),
         Command::Verdict(arguments) => verdict::verdict(arguments),
         Command::Compare(arguments) => compare::compare(arguments).map(done).map_err(Into::into),
         Command::Completions(arguments) => {

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 use crate::{
-    Options, ScenarioError, StudyError, decisions::requirements_of, head::Head, subject::Subject,
+    Options, ScenarioError, StudyError, decisions::requirements_of, groups::Drawing, head::Head,
+    subject::Subject,
 };
 
 pub(crate) use section::{figure_names, section};
@@ -174,7 +175,8 @@ impl<C: Subject> Finding<'_, '_, C> {
         let (mut all, mut done) = (Vec::new(), 0);
         for ((place, (model, plain)), groups) in simulations.iter().enumerate().zip(&groups) {
             let designs = groups.designs();
-            let simulation = [(*model, self.scenario.exchanging(self.models, place)?)];
+            let simulation =
+                [(*model, self.scenario.drawing(self.models, place, Drawing::Exchanging)?)];
             let plan = Plan {
                 runs: designs.runs(base),
                 block_runs: C::BLOCK_RUNS,

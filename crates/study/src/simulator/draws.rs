@@ -10,7 +10,7 @@ use super::{body::SimulatedBody, number::Number, scenario::SimulatorScenario};
 use crate::{
     ScenarioError,
     drawn::{self, following},
-    groups::Groups,
+    groups::{Drawing, Groups},
     scenario::{Each, Joint, Size},
 };
 
@@ -26,8 +26,7 @@ pub(crate) struct SimulatorDraws<'a> {
     dispersed: &'a Joint<usize>,
     draws: drawn::Draws,
     groups: Groups,
-    /// Whether its runs are those of the designs that exchange groups of inputs.
-    exchanging: bool,
+    drawing: Drawing,
 }
 
 /// What the random numbers of the simulator itself are called.
@@ -57,7 +56,7 @@ impl<'a> SimulatorDraws<'a> {
         let laws = bodies.iter().map(|draws| (draws.body.name.as_str(), &*draws.law));
         Ok(Self {
             groups: Groups::new(laws, scenario.dispersed()).and(SIMULATOR),
-            exchanging: false,
+            drawing: Drawing::Plain,
             size: scenario.size(),
             own: scenario.own(),
             columns: scenario.inputs().collect(),
@@ -75,14 +74,14 @@ impl SimulatorDraws<'_> {
         &self.groups
     }
 
-    /// The runs of the designs that exchange these groups.
-    pub(crate) fn exchanging(self) -> Self {
-        Self { exchanging: true, ..self }
+    /// The same, which draw this.
+    pub(crate) fn drawing(self, drawing: Drawing) -> Self {
+        Self { drawing, ..self }
     }
 
     /// Which draws a run takes.
-    fn mix(&self, run: u64) -> Mix {
-        if self.exchanging { self.groups.mix(run, self.size.fleet()) } else { Mix::plain(run) }
+    fn mix(&self, run: u64) -> Mix<'_> {
+        self.groups.mix(&self.drawing, run, self.size.fleet())
     }
 }
 

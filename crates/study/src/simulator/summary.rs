@@ -20,7 +20,7 @@ use crate::{
     about::About,
     alerts::{self, Alert},
     decisions, drivers,
-    groups::Groups,
+    groups::{Drawing, Groups},
     head::Head,
     report,
     study::carry_out,
@@ -216,12 +216,13 @@ impl Subject for SimulatorScenario {
         Ok(SimulatorDraws::new(self, place)?.groups().clone())
     }
 
-    fn exchanging<'a>(
+    fn drawing<'a>(
         &'a self,
         simulator: &'a Simulator,
         place: usize,
+        drawing: Drawing,
     ) -> Result<Self::Simulation<'a>, ScenarioError> {
-        self.simulation_of(simulator, place, SimulatorDraws::new(self, place)?.exchanging())
+        self.simulation_of(simulator, place, SimulatorDraws::new(self, place)?.drawing(drawing))
     }
 
     fn is_outcome(&self, column: &Column) -> bool {
