@@ -193,9 +193,11 @@ pub enum StatisticsError {
     },
     /// A plan of subset simulations is too small or too large.
     #[error(
-        "{per_level} runs of a level and {replicas} replicas; there must be 100 to 10000000 runs and 2 to 1000 replicas"
+        "{groups} groups of inputs, {per_level} runs of a level and {replicas} replicas; there must be 1, 100 and 2 or more, 1000 replicas at most, and 100000000 draws of a level in all"
     )]
     SubsetPlan {
+        /// The groups of inputs given.
+        groups: usize,
         /// The runs of a level given.
         per_level: usize,
         /// The replicas given.

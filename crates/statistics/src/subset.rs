@@ -7,10 +7,9 @@ pub use replica::SubsetReplica;
 use crate::error::share;
 use crate::{Confidence, Interval, Proportion, StatisticsError, law};
 
-/// The most groups of inputs, runs of a level, and replicas.
-const MAX_GROUPS: usize = 100_000;
-const MAX_RUNS: usize = 10_000_000;
+/// The most replicas, and the most draws that are kept at once: a number for each group, run of a level and replica.
 const MAX_REPLICAS: usize = 1000;
+const MAX_DRAWS: usize = 100_000_000;
 /// The probability below which a simulation gives up, unless told otherwise.
 const LEAST: f64 = 1e-9;
 /// Acceptance below which chains hardly move.
@@ -47,7 +46,7 @@ impl<F: Fn(&[u64]) -> f64> RareEvent for F {
 ///
 /// Runs of one chain are correlated, and so are chains with common ancestors. Therefore a pilot finds the levels, and
 /// the simulation is then done R times with these levels, in independent replicas. Each replica's product is
-/// an unbiased estimate, for its levels do not depend on its own runs; the estimate is their mean. Its coefficient of variation c is
+/// unbiased, but for chains that are one run longer than others, for its levels do not depend on its own runs; the estimate is their mean. Its coefficient of variation c is
 /// that between replicas over √R, which takes account of all correlation without a model of it, where the formula of Au & Beck
 /// takes chains for independent. The interval is that for the mean of a log-normal law, with the mean m and the variance s²
 /// of the replicas' logarithms: `exp(m + s²/2 ± t √(s²/R + s⁴/(2 (R − 1))))` with t of R − 1 degrees of freedom (Olsson 2005,
@@ -104,14 +103,13 @@ impl SubsetSimulation {
     ///
     /// # Errors
     ///
-    /// [`StatisticsError::GroupCount`] unless there are 1 to 100,000 groups, [`StatisticsError::SubsetPlan`] unless there are 100
-    /// to 10⁷ runs of a level and 2 to 1000 replicas.
+    /// [`StatisticsError::SubsetPlan`] unless there are 1 group, 100 runs of a level and 2 replicas or more, 1000 replicas at
+    /// most, and 10⁸ for the product of all three.
     pub fn new(groups: usize, per_level: usize, replicas: usize) -> Result<Self, StatisticsError> {
-        if !(1..=MAX_GROUPS).contains(&groups) {
-            return Err(StatisticsError::GroupCount { groups, most: MAX_GROUPS });
-        }
-        if !(100..=MAX_RUNS).contains(&per_level) || !(2..=MAX_REPLICAS).contains(&replicas) {
-            return Err(StatisticsError::SubsetPlan { per_level, replicas });
+        let draws = groups.saturating_mul(per_level).saturating_mul(replicas);
+        let least = groups >= 1 && per_level >= 100 && replicas >= 2;
+        if !(least && replicas <= MAX_REPLICAS && draws <= MAX_DRAWS) {
+            return Err(StatisticsError::SubsetPlan { groups, per_level, replicas });
         }
         Ok(Self { groups, per_level, replicas, least: LEAST })
     }

@@ -145,6 +145,32 @@ proptest! {
         prop_assert!((moved.probability() / plain.probability().max(1e-300)).ln().abs() < 601.0 || k == 0.0);
     }
 
+    /// Against sums of the weights themselves, in whatever order they grow.
+    #[test]
+    fn sums_are_those_of_the_weights(runs in prop::collection::vec((-9.0..9.0_f64, any::<bool>()), 2..40)) {
+        let mut sums = ImportanceSampling::new();
+        runs.iter().for_each(|(log, hit)| sums.push(*log, *hit).unwrap());
+        let estimate = sums.finish(Confidence::default()).unwrap();
+        let n = runs.len() as f64;
+        let hits: Vec<f64> = runs.iter().map(|(log, hit)| if *hit { log.exp() } else { 0.0 }).collect();
+        let all: Vec<f64> = runs.iter().map(|(log, _)| log.exp()).collect();
+        let near = |found: f64, expected: f64| (found - expected).abs() <= 1e-9 * expected.abs();
+        let effective = |weights: &[f64]| {
+            weights.iter().sum::<f64>().powi(2) / weights.iter().map(|w| w * w).sum::<f64>()
+        };
+        prop_assert!(near(estimate.mean_weight(), all.iter().sum::<f64>() / n));
+        prop_assert!(near(estimate.effective_runs(), effective(&all)));
+        let p = hits.iter().sum::<f64>() / n;
+        prop_assert!(near(estimate.probability(), p));
+        if p > 0.0 {
+            prop_assert!(near(estimate.effective_hits(), effective(&hits)));
+            prop_assert!(near(estimate.largest_share(), hits.iter().copied().fold(0.0, f64::max) / (p * n)));
+            let variance = hits.iter().map(|z| (z - p).powi(2)).sum::<f64>() / (n - 1.0) / n;
+            let found = estimate.coefficient_of_variation().unwrap();
+            prop_assert!((found - variance.sqrt() / p).abs() < 1e-6, "{} {}", found, variance.sqrt() / p);
+        }
+    }
+
     #[test]
     fn every_weight_gives_numbers(runs in prop::collection::vec((any::<f64>(), any::<bool>()), 0..20)) {
         let mut sums = ImportanceSampling::new();

@@ -315,7 +315,9 @@ fn what_cannot_be_answered_is_refused() {
 fn deviations_of_any_size_may_come_first() {
     let mut runs = outputs(11, 40);
     runs.insert(0, [0.0; 4]);
-    runs.insert(1, [1e-30, 0.0, 3e-30, 0.0]);
+    // The others are up to 2⁶⁰ times as large, which leaves the scale, and the last is larger.
+    runs.insert(1, [2_f64.powi(-50), 0.0, 0.0, 0.0]);
+    runs.push([3000.0, 100.0, 2000.0, 50.0]);
     let of = |runs: &mut dyn Iterator<Item = &[f64; 4]>| {
         let mut sums = SobolSums::new(2).unwrap();
         runs.for_each(|y| push(&mut sums, y[0], y[1], &y[2..]));

@@ -235,9 +235,14 @@ fn draws_are_never_given_twice() {
 
 #[test]
 fn what_cannot_be_done_is_refused() {
-    for (groups, runs, replicas) in
-        [(0, 100, 2), (1, 99, 2), (1, 100, 1), (1, usize::MAX, 2), (1, 100, 1001)]
-    {
+    for (groups, runs, replicas) in [
+        (0, 100, 2),
+        (1, 99, 2),
+        (1, 100, 1),
+        (1, usize::MAX, 2),
+        (1, 100, 1001),
+        (usize::MAX, 100, 2),
+    ] {
         assert!(SubsetSimulation::new(groups, runs, replicas).is_err());
     }
     let plan = SubsetSimulation::new(1, 100, 2).unwrap();
