@@ -125,10 +125,9 @@ mod tests {
         let mut of = PageTable::of(&rows).words("name", |row| format!("row {row}"));
         for (i, wide) in widths.iter().enumerate() {
             let cell = move |_: &i32| "8".repeat(*wide);
-            of = if shared == 0 {
-                of.numbers(format!("c{i}"), cell)
-            } else {
-                of.numbers_of(&format!("g{}", i / shared), format!("c{i}"), cell)
+            of = match i.checked_div(shared) {
+                None => of.numbers(format!("c{i}"), cell),
+                Some(group) => of.numbers_of(&format!("g{group}"), format!("c{i}"), cell),
             };
         }
         of.into()

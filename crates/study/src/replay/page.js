@@ -288,10 +288,11 @@ function draw() {
 }
 
 // Charts beside the scene, over the same time as the slider.
+const SVG = Object.assign(document.createElement("template"), { innerHTML: "<svg></svg>" }).content.firstChild.namespaceURI;
 const PLOT = [300, 64], LEFT = 58, TOP = 22, cursors = [];
 function chart(label, colour, lines) {
   const make = (name, within, attributes, text) => {
-    const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+    const made = document.createElementNS(SVG, name);
     Object.entries(attributes).forEach(([key, value]) => made.setAttribute(key, value));
     if (text !== undefined) made.textContent = text;
     within.append(made);

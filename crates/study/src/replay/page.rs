@@ -2,7 +2,7 @@
 
 use gyradius_clearance::{Clearance, Outline};
 use gyradius_report::page;
-use gyradius_separation::MovingBody;
+use gyradius_separation::{MovingBody, Separation};
 use maud::{PreEscaped, html};
 use serde_json::{Value, json};
 
@@ -22,8 +22,8 @@ pub(crate) fn html(replay: &Replay) -> String {
     // JSON in a script must not end it.
     let data = data(replay).to_string().replace('<', "\\u003c");
     let outlines = replay.scenario.outlines().is_some();
-    let late_or_failed = replay.case.separation.iter().flat_map(|s| s.loads());
-    let late_or_failed = late_or_failed.into_iter().any(|(_, load)| load.start_s() != Some(0.0));
+    let mut loads = replay.case.separation.iter().flat_map(Separation::loads);
+    let late_or_failed = loads.any(|(_, load)| load.start_s() != Some(0.0));
     let content = html! {
         h1 { "Run " (run) " of " (model) }
         p.lead {
