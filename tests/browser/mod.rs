@@ -43,7 +43,7 @@ struct Mode {
 const MODES: [Mode; 5] = [
     Mode { name: "screen", width: 1280, dark: false, paper: false, tried: true, axe: false },
     Mode { name: "phone", width: 390, dark: false, paper: false, tried: false, axe: true },
-    Mode { name: "dark", width: 1280, dark: true, paper: false, tried: false, axe: true },
+    Mode { name: "dark", width: 1280, dark: true, paper: false, tried: false, axe: false },
     Mode { name: "A4", width: A4, dark: false, paper: true, tried: false, axe: false },
     Mode { name: "Letter", width: LETTER, dark: false, paper: true, tried: false, axe: false },
 ];
