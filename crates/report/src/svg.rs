@@ -101,10 +101,10 @@ impl Svg {
 
     /// The whole document. Without a title it is called by its description.
     pub(crate) fn finish(self, size: (f64, f64), title: &str, description: &str) -> String {
-        self.whole("100%", size, title, description)
+        self.whole("max-width:100%;height:auto", size, title, description)
     }
 
-    /// The same, which is shown no wider than so many pixels.
+    /// The same, which is as wide as the page, but no wider than so many pixels.
     pub(crate) fn finish_within(
         self,
         widest: f64,
@@ -112,16 +112,17 @@ impl Svg {
         title: &str,
         description: &str,
     ) -> String {
-        self.whole(&format!("min(100%,{}px)", px(widest)), size, title, description)
+        let style = format!("width:100%;min-width:0;max-width:{}px;height:auto", px(widest));
+        self.whole(&style, size, title, description)
     }
 
-    fn whole(self, widest: &str, size: (f64, f64), title: &str, description: &str) -> String {
+    fn whole(self, style: &str, size: (f64, f64), title: &str, description: &str) -> String {
         let (w, h) = (px(size.0.ceil()), px(size.1.ceil()));
         let title = if title.trim().is_empty() { description } else { title };
         format!(
             // Without `xml:space` some renderers drop a space after a subscript.
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" \
-             viewBox=\"0 0 {w} {h}\" style=\"max-width:{widest};height:auto;--natural:{w}px\" role=\"img\" \
+             viewBox=\"0 0 {w} {h}\" style=\"{style};--natural:{w}px\" role=\"img\" \
              xml:space=\"preserve\" \
              font-family=\"{}\" font-weight=\"400\" fill=\"none\" stroke-linejoin=\"round\">\n\
              <title>{}</title>\n<desc>{}</desc>\n\

@@ -276,9 +276,12 @@ fn told_unusual(judged: &Judged, run: u64) -> PageCell {
     let line = |input: &UnusualInput| {
         let sign = if input.score < 0.0 { "−" } else { "+" };
         let score = significant(input.score.abs(), 2);
-        Text::default()
-            .code(&input.column)
-            .plain(format!(" {} ({sign}{score} σ)", significant(input.value, 4)))
+        // Events are whole numbers.
+        let value = match input.value {
+            whole if whole.fract() == 0.0 && whole.abs() < 1e6 => whole.to_string(),
+            other => significant(other, 4),
+        };
+        Text::default().code(&input.column).plain(format!(" {value} ({sign}{score} σ)"))
     };
     let lines: Vec<Text> = found.iter().flat_map(|unusual| &unusual.inputs).map(line).collect();
     if lines.is_empty() { "–".into() } else { lines.into_iter().collect() }
