@@ -8,3 +8,4 @@ mod external;
 mod formats;
 mod kept;
 mod requirement;
+mod together;

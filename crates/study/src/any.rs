@@ -11,12 +11,14 @@ use std::{
 
 use crate::{
     Fleet, Notice, Options, Rare, RareOptions, ResultsError, Scenario, ScenarioError,
-    SimulatorScenario, Status, Study, StudyError, drivers,
+    SimulatorScenario, Status, Study, StudyError,
+    carry_out::carry_out,
+    drivers,
     head::{Head, Judged, Missing},
     rare, results,
     scenario::{parse_toml, read_file, scenario_file},
     shards,
-    study::{self, carry_out},
+    study::{self},
     subject::{Subject, Summarized},
 };
 

@@ -4,7 +4,7 @@ use gyradius_campaign::{ColumnSummary, Judgement};
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt, ops::Range};
 
-use crate::{Drivers, Fleet, about::About, alerts::Alert, until::Ended, unusual::Unusual};
+use crate::{Fleet, about::About, alerts::Alert, driven::Drivers, ended::Ended, unusual::Unusual};
 
 /// What a summary says first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

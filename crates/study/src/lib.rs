@@ -18,16 +18,20 @@ mod about;
 mod alerts;
 mod any;
 mod body;
+mod carry_out;
 mod claim;
 mod claims;
 mod column;
 mod compare;
 mod configuration;
+mod contents;
 mod csv;
 mod decisions;
 mod draw;
 mod drawn;
+mod driven;
 mod drivers;
+mod ended;
 mod error;
 mod failure;
 mod faults;
@@ -38,6 +42,7 @@ mod groups;
 mod head;
 mod loads;
 mod model;
+mod options;
 #[cfg(test)]
 mod pages;
 mod quantity;
@@ -66,7 +71,8 @@ pub use any::{AnyScenario, Outcome, is_begun, put_together, write_report};
 pub use body::Entry;
 pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
 pub use draw::{Draw, DrawError, DrawOptions};
-pub use drivers::{Driven, Drivers};
+pub use driven::{Driven, Drivers};
+pub use ended::Ended;
 pub use error::StudyError;
 pub use failure::Failure;
 pub use fleet::Fleet;
@@ -80,6 +86,7 @@ pub use gyradius_campaign::{
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};
 pub use head::{Head, Judged, Missing};
+pub use options::{Notice, Options};
 pub use quantity::Quantity;
 pub use rare::{Rare, RareOptions};
 pub use replay::{Replay, ReplayError, Which};
@@ -87,9 +94,8 @@ pub use results::{Results, ResultsError};
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
 pub use shards::{ModelStatus, Status};
 pub use simulator::{SimulatorReplay, SimulatorScenario, SimulatorSummary};
-pub use study::{Notice, Options, Study, restore_studies};
+pub use study::{Study, restore_studies};
 pub use summary::Summary;
-pub use until::Ended;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -9,9 +9,10 @@ use std::{ops::Range, path::Path};
 
 use crate::{
     Notice, Options, ScenarioError, StudyError,
+    contents::{contents, identity},
     head::Missing,
     scenario::read_file,
-    study::{check_columns, contents, count, foretell, identity, plan},
+    study::{check_columns, count, foretell, plan},
     subject::Subject,
 };
 

@@ -1,13 +1,15 @@
 //! A study: a scenario, run and reported into a folder.
 
 #[cfg(test)]
-use crate::model::{Model, Separations};
+use crate::{
+    Scenario,
+    model::{Model, Separations},
+};
 #[cfg(test)]
 use gyradius_campaign::run;
 use gyradius_campaign::{
-    Again, Blocks, CampaignError, Contents, Doing, Folder, Forecast, Identity, MANIFEST, Plan,
-    Progress, Reduced, Runs, RunsError, Simulation, Table, disk_left, is_stopped, memory_left,
-    run_again, run_missing, threads,
+    Blocks, CampaignError, Doing, Folder, MANIFEST, Plan, Progress, Reduced, Runs, RunsError,
+    Simulation, Table, disk_left, is_stopped, memory_left, run_again, run_missing, threads,
 };
 use rayon::ThreadPool;
 use std::{
@@ -15,64 +17,19 @@ use std::{
     fs,
     ops::Range,
     path::{Path, PathBuf},
-    sync::{Arc, OnceLock, atomic::AtomicBool},
+    sync::OnceLock,
 };
-use toml::{Table as Toml, Value};
 
 use crate::{
-    Scenario, ScenarioError, StudyError, Summary,
-    about::About,
+    Notice, Options, ScenarioError, StudyError, Summary,
+    contents::{contents, identity},
     decisions,
     drivers::Finding,
+    ended::Ended,
     head::Missing,
     report,
-    scenario::parse_toml,
     subject::{LookAt, Subject, Summarized},
-    until::{Ended, run_to_the_end},
 };
-
-/// How to carry out a study.
-#[derive(Clone, Debug, Default)]
-pub struct Options {
-    /// Where to; `target/study/<scenario name>` if not given.
-    pub out: Option<PathBuf>,
-    /// How many threads; as many as the machine has if not given.
-    pub threads: Option<usize>,
-    /// Replace another study in the folder.
-    pub force: bool,
-    /// Begin even if the disk has no room for the run tables, or the memory for the study.
-    pub even_if_full: bool,
-    /// Do runs again that failed.
-    pub retry_failed: bool,
-    /// Set from elsewhere to stop: blocks of runs that are finished stay, and the same study goes on.
-    pub stop: Option<Arc<AtomicBool>>,
-}
-
-/// What a study says before its runs.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub enum Notice {
-    /// What the runs will take that are to be done.
-    Forecast(Forecast),
-    /// So many runs of all models are there already.
-    GoesOn {
-        /// Runs that are there.
-        done: u64,
-        /// Runs of all models.
-        of: u64,
-    },
-    /// A block of runs is not as it was written.
-    Damaged {
-        /// The block, and what is wrong.
-        block: String,
-        /// Whether its runs are done again now.
-        again: bool,
-    },
-    /// The study is finished already, and was not replaced.
-    Finished,
-    /// Runs that had failed were done again.
-    Again(Again),
-}
 
 /// A study carried out and written: of separations, unless it is said that its summary is another.
 #[derive(Debug)]
@@ -80,22 +37,6 @@ pub struct Study<S = Summary> {
     folder: PathBuf,
     runs: Vec<Runs>,
     summary: S,
-}
-
-impl Study {
-    /// Runs a scenario and writes its folder: the resolved scenario, run tables, summary, figures
-    /// and report.
-    ///
-    /// # Errors
-    /// The folder holds another study and `force` is not set, or something cannot be written. What
-    /// was there stays as it was.
-    pub fn run(
-        scenario: &Scenario,
-        options: &Options,
-        progress: Progress<'_>,
-    ) -> Result<Self, StudyError> {
-        carry_out(scenario, options, progress, &|_| {})
-    }
 }
 
 impl<S> Study<S> {
@@ -126,25 +67,9 @@ impl<S> Study<S> {
     }
 }
 
-/// Does the runs that are to be done, to their number or until a rule ends them, and puts together what is there then.
-pub(crate) fn carry_out<C: Subject>(
-    scenario: &C,
-    options: &Options,
-    progress: Progress<'_>,
-    say: &dyn Fn(Notice),
-) -> Result<Study<C::Summary>, StudyError> {
-    match run_to_the_end(scenario, options, progress, say)? {
-        Some((scenario, ended)) => {
-            let doing = (Doing::All, Some(ended));
-            do_what_is_left(&scenario, options, doing, progress, &|_| {})
-        }
-        None => do_what_is_left(scenario, options, (Doing::All, None), progress, say),
-    }
-}
-
 /// Does the runs that are to be done, and puts together what is there then: the study, if nothing is missing, and else
 /// summary and report of the runs that are there, which say what is missing.
-fn do_what_is_left<C: Subject>(
+pub(crate) fn do_what_is_left<C: Subject>(
     scenario: &C,
     options: &Options,
     (doing, ended): (Doing, Option<Ended>),
@@ -411,14 +336,6 @@ pub fn restore_studies(path: &Path) -> Result<(), StudyError> {
     Ok(gyradius_campaign::restore_all(path)?)
 }
 
-impl Options {
-    /// The folder that a study of a scenario with a name goes to.
-    pub(crate) fn place(&self, name: &str) -> PathBuf {
-        let default = || Path::new("target/study").join(name);
-        self.out.clone().unwrap_or_else(default)
-    }
-}
-
 /// How the runs of a scenario are done.
 pub(crate) fn plan<'a, C: Subject>(scenario: &C, options: &'a Options, doing: Doing) -> Plan<'a> {
     let (runs, stop) = (scenario.runs(), options.stop.as_ref());
@@ -449,70 +366,6 @@ fn looks<'a, C: Subject>(
         Ok(scenario.look(model, table.columns()))
     };
     simulations.iter().map(look).collect()
-}
-
-/// What a study writes, and the figures that it may write.
-pub(crate) fn contents<C: Subject>(scenario: &C) -> Contents<'_> {
-    let tables = scenario.model_names().map(|model| format!("runs/{model}/"));
-    let others = ["scenario.toml", "summary.json", "runs/", MANIFEST].map(str::to_owned);
-    let extends = |text: &str| {
-        // Fewer runs would take some away.
-        C::resolved(text).is_ok_and(|there| {
-            there.runs() <= scenario.runs()
-                && identity(scenario).difference(&identity(&there)).is_none()
-        })
-    };
-    let differs = |text: &str| {
-        let there = C::resolved(text).ok()?;
-        let difference = identity(scenario).difference(&identity(&there));
-        let fewer = || match (there.fleet(), scenario.fleet()) {
-            (Some(there), Some(here)) => {
-                format!("vehicles is {} there and {} here", there.vehicles(), here.vehicles())
-            }
-            (Some(_) | None, _) => {
-                format!("runs is {} there and {} here", there.runs(), scenario.runs())
-            }
-        };
-        Some(difference.map_or_else(fewer, |difference| difference.to_string()))
-    };
-    let names: Vec<String> = tables.chain(scenario.report_files()).chain(others).collect();
-    Contents::new("study", "scenario.toml", names, extends)
-        .telling(differs)
-        .trusting(|name| name.starts_with("runs/"))
-}
-
-/// What the runs of a scenario depend on.
-pub(crate) fn identity<C: Subject>(scenario: &C) -> Identity {
-    let mut fields = Vec::new();
-    if let Ok(table) = parse_toml::<Toml>(&scenario.to_toml()) {
-        flatten("", &Value::Table(table), &mut fields);
-    }
-    let is_of = |field: &str, key: &str| {
-        field.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with(['[', '.']))
-    };
-    let immaterial = || C::IMMATERIAL.iter().chain(&About::KEYS);
-    fields.retain(|(field, _)| !immaterial().any(|key| is_of(field, key)));
-    fields.push(("gyradius_version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()));
-    fields.push(("block_runs".to_owned(), C::BLOCK_RUNS.to_string()));
-    Identity::new(fields)
-}
-
-/// Every value in a table by the path to it.
-fn flatten(path: &str, value: &Value, fields: &mut Vec<(String, String)>) {
-    match value {
-        Value::Table(table) => {
-            for (key, value) in table {
-                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-                flatten(&path, value, fields);
-            }
-        }
-        Value::Array(values) if values.iter().any(Value::is_table) => {
-            for (i, value) in values.iter().enumerate() {
-                flatten(&format!("{path}[{}]", i + 1), value, fields);
-            }
-        }
-        other => fields.push((path.to_owned(), other.to_string())),
-    }
 }
 
 /// What the runs of a scenario amount to, made in memory.

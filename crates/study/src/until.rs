@@ -1,60 +1,15 @@
 //! A study whose runs go on until they have shown enough.
 
-use gyradius_campaign::{Doing, Evidence, Folder, Plan, Progress, Until, run_until, threads};
-use serde::{Deserialize, Serialize};
-use std::fmt;
+use gyradius_campaign::{Doing, Evidence, Folder, Plan, Progress, run_until, threads};
 
 use crate::{
     Fleet, Notice, Options, StudyError,
+    contents::{contents, identity},
     decisions::requirements_of,
-    study::{check_columns, contents, count, foretell, identity, plan},
+    ended::Ended,
+    study::{check_columns, count, foretell, plan},
     subject::Subject,
 };
-
-/// What ended the runs of a study.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ended {
-    #[serde(flatten)]
-    until: Until,
-    runs: u64,
-    /// How often they were looked at, if nothing was there before.
-    looks: u64,
-    /// Whether that was enough, and not the greatest number of runs.
-    enough: bool,
-}
-
-impl Ended {
-    /// The rule, and how many runs there might have been.
-    #[must_use]
-    pub fn until(&self) -> &Until {
-        &self.until
-    }
-
-    /// Whether that was enough, and not the greatest number of runs.
-    #[must_use]
-    pub fn is_enough(&self) -> bool {
-        self.enough
-    }
-}
-
-/// In a sentence.
-impl fmt::Display for Ended {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { until, runs, looks, enough } = self;
-        let (rule, most, s) = (until.rule(), until.most_runs(), if *looks == 1 { "" } else { "s" });
-        if *enough {
-            write!(
-                f,
-                "The rule “{rule}” ended the runs after {runs} a model, at {looks} look{s}; there might have been {most}."
-            )
-        } else {
-            write!(
-                f,
-                "The rule “{rule}” did not end the runs: {runs} a model are the most, at {looks} look{s}."
-            )
-        }
-    }
-}
 
 /// Does the runs of a scenario until they have shown enough, in blocks that are not put together. Returns the scenario with
 /// as many runs as there are then, and what ended them; none if its runs go to their number, or if all of them are put
@@ -74,8 +29,7 @@ pub(crate) fn run_to_the_end<C: Subject>(
     let folder = Folder::prepare(&options.place(scenario.name()), &contents, options.force)?;
     check_columns(scenario, &simulations)?;
     let ended = |runs: u64, enough: bool| {
-        let looks = until.looks().take_while(|look| *look <= runs).count() as u64;
-        let ended = Ended { until: until.clone(), runs, looks, enough };
+        let ended = Ended::new(until, runs, enough);
         Ok(Some((scenario.ended_after(runs)?, ended)))
     };
     let begun = (&identity(scenario), scenario.to_toml());

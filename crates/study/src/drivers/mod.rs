@@ -6,125 +6,22 @@ use gyradius_campaign::{
     Blocks, Column, Doing, Folder, Identity, Output, Plan, Progress, Simulation, run_missing,
     sha256,
 };
-use gyradius_statistics::{Confidence, SobolIndex, SobolIndices};
+use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
-use serde::{Deserialize, Serialize};
-use std::ops::RangeInclusive;
 
 use crate::{
-    Options, ScenarioError, StudyError, decisions::requirements_of, groups::Drawing, head::Head,
+    Options, ScenarioError, StudyError,
+    decisions::requirements_of,
+    driven::{Driven, Drivers},
+    groups::Drawing,
+    head::Head,
     subject::Subject,
 };
 
 pub(crate) use section::{figure_names, section};
 
-/// Base runs that there may be: fewer tell nothing.
-const BASE_RUNS: RangeInclusive<u64> = 100..=10_000_000;
 /// Where their runs are until they are counted.
 const BESIDE: &str = "drivers";
-const KEY: &str = "drivers";
-
-/// What drives the outcome of the runs of a model.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Drivers {
-    model: String,
-    base_runs: u64,
-    /// Runs in all, and those of them that failed.
-    runs: u64,
-    failed: u64,
-    /// The groups of inputs.
-    groups: Vec<String>,
-    outputs: Vec<Driven>,
-    /// SHA-256 of what the runs depend on, and of the requirements.
-    identity: String,
-}
-
-/// What drives an output.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Driven {
-    output: String,
-    /// Of a column; none of whether a requirement is kept.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    unit: Option<String>,
-    /// Of the groups, in their order.
-    indices: SobolIndices,
-}
-
-impl Drivers {
-    /// The model.
-    #[must_use]
-    pub fn model(&self) -> &str {
-        &self.model
-    }
-
-    /// Base runs, each of which is done once for each group of inputs and twice more.
-    #[must_use]
-    pub fn base_runs(&self) -> u64 {
-        self.base_runs
-    }
-
-    /// Runs in all.
-    #[must_use]
-    pub fn runs(&self) -> u64 {
-        self.runs
-    }
-
-    /// Runs that failed.
-    #[must_use]
-    pub fn failed(&self) -> u64 {
-        self.failed
-    }
-
-    /// The groups of inputs.
-    #[must_use]
-    pub fn groups(&self) -> &[String] {
-        &self.groups
-    }
-
-    /// The outputs that vary.
-    #[must_use]
-    pub fn outputs(&self) -> &[Driven] {
-        &self.outputs
-    }
-}
-
-impl Driven {
-    /// The name of the column, or of the requirement, of which it is whether a run does not keep it.
-    #[must_use]
-    pub fn output(&self) -> &str {
-        &self.output
-    }
-
-    /// The unit of the column; none of a requirement.
-    #[must_use]
-    pub fn unit(&self) -> Option<&str> {
-        self.unit.as_deref()
-    }
-
-    /// What each group drives, in their order.
-    #[must_use]
-    pub fn indices(&self) -> &[SobolIndex] {
-        self.indices.groups()
-    }
-
-    /// The estimates from all runs.
-    #[must_use]
-    pub fn whole(&self) -> &SobolIndices {
-        &self.indices
-    }
-}
-
-/// That so many base runs can be done.
-pub(crate) fn check(base_runs: Option<u64>) -> Result<(), ScenarioError> {
-    match base_runs.filter(|runs| !BASE_RUNS.contains(runs)) {
-        None => Ok(()),
-        Some(runs) => {
-            let (least, most) = BASE_RUNS.into_inner();
-            let problem = format!("{runs} base runs: there must be {least} to {most}");
-            Err(ScenarioError::field(KEY, problem))
-        }
-    }
-}
 
 /// The runs that the drivers of all models take.
 pub(crate) fn runs<C: Subject>(scenario: &C) -> Result<u64, StudyError> {

@@ -6,8 +6,10 @@ use gyradius_report::{
 };
 use gyradius_statistics::{Estimate, SobolIndex};
 
-use super::{Driven, Drivers};
-use crate::head::Head;
+use crate::{
+    driven::{Driven, Drivers},
+    head::Head,
+};
 
 /// Outputs in a figure, at most.
 const DRAWN: usize = 6;

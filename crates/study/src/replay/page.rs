@@ -185,7 +185,7 @@ fn cuboid(body: &MovingBody) -> Value {
 mod tests {
     use super::*;
     use crate::Scenario;
-    use nalgebra::{Quaternion, Vector3};
+    use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
     fn three(values: &Value, from: usize) -> Vector3<f64> {
         Vector3::from_fn(|i, _| values[from + i].as_f64().unwrap())

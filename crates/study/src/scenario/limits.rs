@@ -2,6 +2,8 @@
 
 use gyradius_separation::{AnyLoad, BodyParameter, Parameter};
 
+use std::ops::RangeInclusive;
+
 use super::{
     ScenarioError,
     file::{ScenarioFile, ShapeFile},
@@ -10,9 +12,6 @@ use super::{
 
 /// Bytes of the largest file that is read: a hundred thousand samples of roots.
 pub(super) const BYTES: u64 = 16 << 20;
-
-/// Most runs of a model: nine digits number them in the names of files, and weeks pass until they are done.
-pub(super) const RUNS: u64 = 1_000_000_000;
 
 /// Most loads of a kind: each is a release in every run and a column of the run table.
 const LOADS: usize = 300;
@@ -26,6 +25,21 @@ const REACH: f64 = 1e4;
 
 /// Longest coast, s.
 pub(super) const COAST: f64 = 1e6;
+
+/// Base runs by which it is found what drives the outcome: fewer tell nothing.
+const BASE_RUNS: RangeInclusive<u64> = 100..=10_000_000;
+
+/// That so many base runs can be done.
+pub(crate) fn base_runs(given: Option<u64>) -> Result<(), ScenarioError> {
+    match given.filter(|runs| !BASE_RUNS.contains(runs)) {
+        None => Ok(()),
+        Some(runs) => {
+            let (least, most) = BASE_RUNS.into_inner();
+            let problem = format!("{runs} base runs: there must be {least} to {most}");
+            Err(ScenarioError::field("drivers", problem))
+        }
+    }
+}
 
 /// That a scenario does not ask for more.
 pub(super) fn check(file: &ScenarioFile) -> Result<(), ScenarioError> {

@@ -2,6 +2,7 @@
 
 mod body;
 mod chance;
+mod changed;
 mod clearance;
 mod dispersions;
 mod each;
@@ -26,6 +27,7 @@ use nalgebra::{Unit, Vector3};
 use std::path::{Path, PathBuf};
 
 pub(crate) use body::UncertainBody;
+pub(crate) use changed::changed;
 use clearance::Outlines;
 pub(crate) use clearance::distance_m;
 pub(crate) use dispersions::{Dispersed, Dispersions, Joint, List, Target};
@@ -34,6 +36,7 @@ pub(crate) use file::{
     AxesLawFile, BodyFile, CorrelationFile, DispersionFile, RootsFile, ShapeFile,
 };
 pub(crate) use law::{GivenLaw, refused};
+pub(crate) use limits::base_runs;
 pub(crate) use load::Uncertain;
 pub(crate) use model::{Comparison, Law, ModelSpec, check_models, place};
 pub(crate) use model_file::{AxesFile as Axes, ModelFile, ModelLaw, Owner};
@@ -43,7 +46,7 @@ pub(crate) use parse::{some_whole, whole};
 pub(crate) use scalar::ScalarLawFile;
 pub(crate) use {each::Each, until::UntilFile, vehicles::Size};
 
-use crate::{about::About, body::Body, drivers, fleet::Fleet};
+use crate::{about::About, body::Body, fleet::Fleet};
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
 
@@ -117,6 +120,8 @@ pub struct Scenario {
     outside: OutsideLaws,
 }
 
+changed!(Scenario, ScenarioFile);
+
 impl Scenario {
     /// The separation study of Peck (2003: Table 1, Eq. 27, 30 and 31), under four models.
     ///
@@ -146,112 +151,9 @@ impl Scenario {
         Self::check(file)
     }
 
-    /// The same scenario with another number of runs for each model.
-    ///
-    /// # Errors
-    /// The number is zero or beyond ten million, or the scenario has vehicles.
-    pub fn with_runs(self, runs: u64) -> Result<Self, ScenarioError> {
-        let size = self.size.with_runs(runs)?;
-        Ok(self.sized(size))
-    }
-
-    /// The same scenario with another number of vehicles, each with as many flights.
-    ///
-    /// # Errors
-    /// The number is zero, or there are more than a thousand million runs then, or the scenario has no vehicles.
-    pub fn with_vehicles(self, vehicles: u64) -> Result<Self, ScenarioError> {
-        let size = self.size.with_vehicles(vehicles)?;
-        Ok(self.sized(size))
-    }
-
-    /// As many as there may be, if its runs end by a rule.
-    fn sized(self, size: Size) -> Self {
-        let most = |until: UntilFile| until.with_most_runs(size.runs());
-        let file = ScenarioFile { until: self.file.until.map(most), ..self.file };
-        let until = self.until.map(|until| until.with_most_runs(size.runs()));
-        Self { file, until, ..self }.ended(size)
-    }
-
-    fn ended(self, size: Size) -> Self {
-        let [runs, vehicles, flights] = size.keys();
-        Self { file: ScenarioFile { runs, vehicles, flights, ..self.file }, size, ..self }
-    }
-
-    /// The same, whose runs ended after so many.
-    pub(crate) fn ended_after(&self, runs: u64) -> Result<Self, ScenarioError> {
-        let size = self.size.of_all(runs)?;
-        Ok(self.clone().ended(size))
-    }
-
-    /// The same scenario, whose runs go on until a rule ends them, and are as many at most as they would be. They are looked at
-    /// after `look_every` first, if that is said.
-    ///
-    /// # Errors
-    /// The rule is about requirements, and there are none; `look_every` is zero, or not a whole number of vehicles.
-    pub fn with_until(
-        self,
-        rule: StoppingRule,
-        look_every: Option<u64>,
-    ) -> Result<Self, ScenarioError> {
-        let mut file = ScenarioFile { until: Some(UntilFile::new(rule, look_every)), ..self.file };
-        let until = file.until(self.size)?;
-        Ok(Self { file, until, ..self })
-    }
-
-    /// The same scenario, of which it is found what drives the outcome, by so many base runs: each of them is done once for each
-    /// group of inputs and twice more.
-    ///
-    /// # Errors
-    /// There are fewer than 100, or more than ten million.
-    pub fn with_drivers(self, base_runs: u64) -> Result<Self, ScenarioError> {
-        let drivers = Some(base_runs);
-        drivers::check(drivers)?;
-        Ok(Self { file: ScenarioFile { drivers, ..self.file }, ..self })
-    }
-
-    /// Base runs by which it is found what drives the outcome, if that is asked.
-    #[must_use]
-    pub fn drivers(&self) -> Option<u64> {
-        self.file.drivers
-    }
-
-    /// Until when its runs go on, if not to their number.
-    #[must_use]
-    pub fn until(&self) -> Option<&Until> {
-        self.until.as_ref()
-    }
-
-    /// The same scenario from another seed.
-    ///
-    /// # Errors
-    /// The seed does not fit into a TOML integer.
-    pub fn with_seed(self, seed: u64) -> Result<Self, ScenarioError> {
-        check_seed(seed)?;
-        Ok(Self { file: ScenarioFile { seed, ..self.file }, ..self })
-    }
-
-    /// The same scenario, which keeps so much of its run tables.
-    #[must_use]
-    pub fn with_kept(self, kept: &Kept) -> Self {
-        let (rows, columns) = (kept.rows(), kept.columns().map(<[_]>::to_vec));
-        Self { file: ScenarioFile { rows, columns, ..self.file }, ..self }
-    }
-
     /// What it says of itself.
     pub(crate) fn about(&self) -> About {
         self.file.about()
-    }
-
-    /// What its runs are to show.
-    #[must_use]
-    pub fn requirements(&self) -> &[Requirement] {
-        &self.file.requirements
-    }
-
-    /// What is kept of its run tables once all runs are done.
-    #[must_use]
-    pub fn kept(&self) -> Kept {
-        Kept::new(self.file.rows, self.file.columns.clone())
     }
 
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
@@ -263,7 +165,7 @@ impl Scenario {
         let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
         [file.runs, file.vehicles, file.flights] = size.keys();
         let until = file.until(size)?;
-        drivers::check(file.drivers)?;
+        base_runs(file.drivers)?;
         check_seed(file.seed)?;
         let spin_axis = direction("spin_axis", file.spin_axis)?;
         if let Some(source) = &file.source {

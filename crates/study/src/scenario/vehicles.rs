@@ -1,6 +1,6 @@
 //! How many runs a scenario has: so many, or the flights of vehicles; and what vehicles allow.
 
-use super::{ScenarioError, each::Each, limits};
+use super::{ScenarioError, each::Each};
 use crate::fleet::Fleet;
 
 /// How many runs a scenario has of each model.
@@ -11,6 +11,9 @@ pub(crate) enum Size {
     /// The flights of vehicles.
     Fleet(Fleet),
 }
+
+/// Most runs of a model: nine digits number them in the names of files, and weeks pass until they are done.
+const RUNS_AT_MOST: u64 = 1_000_000_000;
 
 /// Runs if neither they nor vehicles are given.
 const DEFAULT_RUNS: u64 = 2000;
@@ -44,10 +47,10 @@ impl Size {
     }
 
     fn of_runs(runs: u64) -> Result<Self, ScenarioError> {
-        if (1..=limits::RUNS).contains(&runs) {
+        if (1..=RUNS_AT_MOST).contains(&runs) {
             return Ok(Self::Runs(runs));
         }
-        let problem = format!("{runs}: it must be between 1 and {}", limits::RUNS);
+        let problem = format!("{runs}: it must be between 1 and {}", RUNS_AT_MOST);
         Err(ScenarioError::field(RUNS, problem))
     }
 
@@ -135,14 +138,14 @@ fn check(fleet: Fleet) -> Result<(), ScenarioError> {
         }
     }
     let runs = fleet.vehicles().checked_mul(fleet.flights());
-    if runs.is_some_and(|runs| runs <= limits::RUNS) {
+    if runs.is_some_and(|runs| runs <= RUNS_AT_MOST) {
         return Ok(());
     }
     let problem = format!(
         "{}: times flights = {} it must be at most {} runs",
         fleet.vehicles(),
         fleet.flights(),
-        limits::RUNS
+        RUNS_AT_MOST
     );
     Err(ScenarioError::field(VEHICLES, problem))
 }

@@ -14,10 +14,10 @@ use super::{
 use crate::{
     Fleet, ScenarioError,
     about::About,
-    drivers, model,
+    model,
     scenario::{
-        Axes, Joint, Law, List, ModelFile, ModelLaw, ModelSpec, Size, UntilFile, check_models,
-        check_name, check_seed, parse_toml, place, refused,
+        Axes, Joint, Law, List, ModelFile, ModelLaw, ModelSpec, Size, UntilFile, base_runs,
+        changed, check_models, check_name, check_seed, parse_toml, place, refused,
     },
 };
 
@@ -42,6 +42,8 @@ pub struct SimulatorScenario {
     models: Vec<ModelSpec>,
 }
 
+changed!(SimulatorScenario, File);
+
 impl SimulatorScenario {
     /// Whether the text of a scenario file is of a simulator: whether it has a table `[simulation]`.
     #[must_use]
@@ -60,7 +62,7 @@ impl SimulatorScenario {
         let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
         [file.runs, file.vehicles, file.flights] = size.keys();
         let until = file.until(size)?;
-        drivers::check(file.drivers)?;
+        base_runs(file.drivers)?;
         check_seed(file.seed)?;
         let lists = [
             ("bodies", file.bodies.len(), 0),
@@ -136,112 +138,9 @@ impl SimulatorScenario {
         Ok(())
     }
 
-    /// The same scenario with another number of runs for each model.
-    ///
-    /// # Errors
-    /// The number is out of range, or the scenario has vehicles.
-    pub fn with_runs(self, runs: u64) -> Result<Self, ScenarioError> {
-        let size = self.size.with_runs(runs)?;
-        Ok(self.sized(size))
-    }
-
-    /// The same scenario with another number of vehicles, each with as many flights.
-    ///
-    /// # Errors
-    /// The number is out of range, or the scenario has no vehicles.
-    pub fn with_vehicles(self, vehicles: u64) -> Result<Self, ScenarioError> {
-        let size = self.size.with_vehicles(vehicles)?;
-        Ok(self.sized(size))
-    }
-
-    /// As many as there may be, if its runs end by a rule.
-    fn sized(self, size: Size) -> Self {
-        let most = |until: UntilFile| until.with_most_runs(size.runs());
-        let file = File { until: self.file.until.map(most), ..self.file };
-        let until = self.until.map(|until| until.with_most_runs(size.runs()));
-        Self { file, until, ..self }.ended(size)
-    }
-
-    fn ended(self, size: Size) -> Self {
-        let [runs, vehicles, flights] = size.keys();
-        Self { file: File { runs, vehicles, flights, ..self.file }, size, ..self }
-    }
-
-    /// The same, whose runs ended after so many.
-    pub(crate) fn ended_after(&self, runs: u64) -> Result<Self, ScenarioError> {
-        let size = self.size.of_all(runs)?;
-        Ok(self.clone().ended(size))
-    }
-
-    /// The same scenario, whose runs go on until a rule ends them, and are as many at most as they would be. They are looked at
-    /// after `look_every` first, if that is said.
-    ///
-    /// # Errors
-    /// The rule is about requirements, and there are none; `look_every` is zero, or not a whole number of vehicles.
-    pub fn with_until(
-        self,
-        rule: StoppingRule,
-        look_every: Option<u64>,
-    ) -> Result<Self, ScenarioError> {
-        let mut file = File { until: Some(UntilFile::new(rule, look_every)), ..self.file };
-        let until = file.until(self.size)?;
-        Ok(Self { file, until, ..self })
-    }
-
-    /// The same scenario, of which it is found what drives the outcome, by so many base runs: each of them is done once for each
-    /// group of inputs and twice more.
-    ///
-    /// # Errors
-    /// There are fewer than 100, or more than ten million.
-    pub fn with_drivers(self, base_runs: u64) -> Result<Self, ScenarioError> {
-        let drivers = Some(base_runs);
-        drivers::check(drivers)?;
-        Ok(Self { file: File { drivers, ..self.file }, ..self })
-    }
-
-    /// Base runs by which it is found what drives the outcome, if that is asked.
-    #[must_use]
-    pub fn drivers(&self) -> Option<u64> {
-        self.file.drivers
-    }
-
-    /// Until when its runs go on, if not to their number.
-    #[must_use]
-    pub fn until(&self) -> Option<&Until> {
-        self.until.as_ref()
-    }
-
-    /// The same scenario from another seed.
-    ///
-    /// # Errors
-    /// The seed does not fit into a TOML integer.
-    pub fn with_seed(self, seed: u64) -> Result<Self, ScenarioError> {
-        check_seed(seed)?;
-        Ok(Self { file: File { seed, ..self.file }, ..self })
-    }
-
-    /// The same scenario, which keeps so much of its run tables.
-    #[must_use]
-    pub fn with_kept(self, kept: &Kept) -> Self {
-        let (rows, columns) = (kept.rows(), kept.columns().map(<[_]>::to_vec));
-        Self { file: File { rows, columns, ..self.file }, ..self }
-    }
-
-    /// What its runs are to show.
-    #[must_use]
-    pub fn requirements(&self) -> &[Requirement] {
-        &self.file.requirements
-    }
-
     /// What it says of itself.
-    pub(super) fn about(&self) -> About {
+    pub(crate) fn about(&self) -> About {
         self.file.about()
-    }
-
-    /// What is kept of its run tables once all runs are done.
-    #[must_use]
-    pub fn kept(&self) -> Kept {
-        Kept::new(self.file.rows, self.file.columns.clone())
     }
 
     /// Its name.

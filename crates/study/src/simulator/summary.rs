@@ -19,11 +19,11 @@ use crate::{
     Fleet, Notice, Options, ScenarioError, Study, StudyError,
     about::About,
     alerts::{self, Alert},
+    carry_out::carry_out,
     decisions, drivers,
     groups::{Drawing, Groups},
     head::Head,
     report,
-    study::carry_out,
     subject::{Subject, Summarized, head_of},
     unusual::DrawnInput,
 };

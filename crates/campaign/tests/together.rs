@@ -1,0 +1,69 @@
+//! Shards that are done at the same time, of one campaign in one folder.
+
+use gyradius_campaign::{Shard, Shared};
+use std::{
+    fs,
+    sync::{Barrier, OnceLock},
+    thread,
+    time::Duration,
+};
+
+use crate::blocks::{Campaign, assert_whole};
+
+/// Shards that are done at the same time, on any number of threads and in any numbers, leave the same files as one
+/// command.
+#[test]
+fn shards_at_the_same_time_are_one_campaign() {
+    let scratch = tempfile::tempdir().unwrap();
+    let campaign =
+        |name: String| Campaign { place: scratch.path().join(name), seed: 9, block_runs: 16 };
+    let runs = 1000;
+    let alone = campaign("alone".to_owned());
+    alone.command(runs, None, false).unwrap();
+    let content = |campaign: &Campaign| -> Vec<Vec<u8>> {
+        campaign.files().iter().map(|path| fs::read(path).unwrap()).collect()
+    };
+    for threads in [1, 2, 3, 8] {
+        for of in [1, 4, 7] {
+            let together = campaign(format!("{threads}-{of}"));
+            let simulated: u64 = thread::scope(|scope| {
+                let shards = (1..=of).map(|number| {
+                    let (together, shard) = (&together, Shard::new(number, of).unwrap());
+                    scope.spawn(move || together.shard(runs, shard, threads, None).unwrap())
+                });
+                let shards: Vec<_> = shards.collect();
+                shards.into_iter().map(|shard| shard.join().unwrap()).sum()
+            });
+            assert_eq!(simulated, runs, "each run once");
+            let done = together.command(runs, None, false).unwrap();
+            assert_eq!(done.simulated, 0);
+            assert_whole(&together, &done, runs);
+            assert!(content(&together) == content(&alone), "{threads} threads, {of} shards");
+        }
+    }
+}
+
+/// Shards that all begin at once in a folder that is not there yet all get it.
+#[test]
+fn shards_that_begin_together_share_the_folder() {
+    let scratch = tempfile::tempdir().unwrap();
+    for round in 0..200 {
+        let place = scratch.path().join(round.to_string());
+        let campaign = Campaign { place, seed: 9, block_runs: 16 };
+        let begin = Barrier::new(24);
+        // One after the other within about a millisecond, so that one begins while another ends its check.
+        let open = &|number: u64| {
+            let in_place = OnceLock::new();
+            let contents = campaign.contents(100, &in_place);
+            begin.wait();
+            thread::sleep(Duration::from_micros(number * 7919 * (round + 1) % 400));
+            Shared::open(&campaign.place, &contents).map(drop).map_err(|e| e.to_string())
+        };
+        thread::scope(|scope| {
+            let opened: Vec<_> = (0..24).map(|number| scope.spawn(move || open(number))).collect();
+            for shard in opened {
+                assert_eq!(shard.join().unwrap(), Ok(()), "round {round}");
+            }
+        });
+    }
+}

@@ -1,0 +1,56 @@
+//! What ended the runs of a study, if they were not done to a number that was stated before.
+
+use gyradius_campaign::Until;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// What ended the runs of a study.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ended {
+    #[serde(flatten)]
+    until: Until,
+    runs: u64,
+    /// How often they were looked at, if nothing was there before.
+    looks: u64,
+    /// Whether that was enough, and not the greatest number of runs.
+    enough: bool,
+}
+
+impl Ended {
+    /// After so many runs, which were enough or not.
+    pub(crate) fn new(until: &Until, runs: u64, enough: bool) -> Self {
+        let looks = until.looks().take_while(|look| *look <= runs).count() as u64;
+        Self { until: until.clone(), runs, looks, enough }
+    }
+
+    /// The rule, and how many runs there might have been.
+    #[must_use]
+    pub fn until(&self) -> &Until {
+        &self.until
+    }
+
+    /// Whether that was enough, and not the greatest number of runs.
+    #[must_use]
+    pub fn is_enough(&self) -> bool {
+        self.enough
+    }
+}
+
+/// In a sentence.
+impl fmt::Display for Ended {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { until, runs, looks, enough } = self;
+        let (rule, most, s) = (until.rule(), until.most_runs(), if *looks == 1 { "" } else { "s" });
+        if *enough {
+            write!(
+                f,
+                "The rule “{rule}” ended the runs after {runs} a model, at {looks} look{s}; there might have been {most}."
+            )
+        } else {
+            write!(
+                f,
+                "The rule “{rule}” did not end the runs: {runs} a model are the most, at {looks} look{s}."
+            )
+        }
+    }
+}
