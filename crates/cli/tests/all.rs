@@ -15,6 +15,7 @@ mod kept;
 mod killed;
 #[cfg(unix)]
 mod output;
+mod rare;
 mod report;
 mod requirements;
 mod scratch;

@@ -1,0 +1,101 @@
+//! Rare events on the command line.
+
+use serde_json::Value;
+use std::fs;
+
+use crate::scratch::{Scratch, one_model};
+
+/// The built-in study under one model, with mass centres and springs that are dispersed.
+fn scenario() -> String {
+    let centres = "mass_centre_m = { sigma = 0.01 }";
+    one_model()
+        .replace("[payload.dispersion]\n", &format!("[payload.dispersion]\n{centres}\n"))
+        .replace("[stage.dispersion]\n", &format!("[stage.dispersion]\n{centres}\n"))
+        .replace("[[springs]]", "[[springs]]\ndispersion = { stiffness_percent = 5.0 }")
+}
+
+/// The length of two components of either mass centre is that of a normal vector in four dimensions: its tail is known. The same
+/// from any number of threads.
+#[test]
+fn known_probabilities_are_found() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), scenario()).unwrap();
+    for (sigmas, exact) in [(3.0_f64, None), (5.5, None), (40.0, Some(0.0))] {
+        let names = "payload_mass_centre_1_m, payload_mass_centre_2_m, stage_mass_centre_1_m, stage_mass_centre_2_m";
+        let event = format!("norm({names}) >= {}", 0.01 * sigmas);
+        let rare = |threads: &str| {
+            let arguments = [
+                "rare",
+                &event,
+                "--scenario",
+                "it.toml",
+                "--json",
+                "--per-level",
+                "1500",
+                "--threads",
+                threads,
+            ];
+            scratch.done(&arguments, 0)
+        };
+        let (text, again) = (rare("1"), rare("2"));
+        assert_eq!(text, again);
+        let found: Value = serde_json::from_str(&text).unwrap();
+        let probability = found["probability"].as_f64().unwrap();
+        let half = 0.5 * sigmas * sigmas;
+        let exact = exact.unwrap_or_else(|| (-half).exp() * (1.0 + half));
+        if exact > 0.0 {
+            let off = (probability / exact).ln().abs();
+            assert!(off < 0.7, "{sigmas}: {probability} {exact}");
+            let (lower, upper) = (&found["interval"]["lower"], &found["interval"]["upper"]);
+            assert!(
+                lower.as_f64().unwrap() < 1.2 * exact && 0.8 * exact < upper.as_f64().unwrap(),
+                "{text}"
+            );
+        } else {
+            assert!(
+                probability == 0.0 && !found["warnings"].as_array().unwrap().is_empty(),
+                "{text}"
+            );
+        }
+    }
+}
+
+/// An event that is not rare is as frequent as in a study.
+#[test]
+fn frequent_events_are_those_of_a_study() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), scenario()).unwrap();
+    let study = ["study", "--scenario", "it.toml", "--runs", "4000", "--out", "it"];
+    scratch.done(&study, 0);
+    let verdict =
+        ["verdict", "it/runs/proposed", "--require", "cone_deg <= 5 in 50 % at 90 %", "--json"];
+    let plain: Value = serde_json::from_slice(&scratch.run(&verdict).stdout).unwrap();
+    let plain = 1.0 - plain["requirements"][0]["share"].as_f64().unwrap();
+    let rare = scratch.done(&["rare", "cone_deg >= 5", "--scenario", "it.toml", "--json"], 0);
+    let rare: Value = serde_json::from_str(&rare).unwrap();
+    let found = rare["probability"].as_f64().unwrap();
+    assert!((found / plain - 1.0).abs() < 0.2, "{found} {plain}");
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let scratch = Scratch::new();
+    for (arguments, expected) in [
+        (&["rare", "cone_deg"][..], "“cone_deg”"),
+        (&["rare", "cone >= 5"], "event: \"cone\": the run table has no such column"),
+        (
+            &["rare", "cone_deg >= 5", "--model", "other"],
+            "model: \"other\": the scenario has proposed",
+        ),
+        (&["rare", "cone_deg >= 5", "--per-level", "99"], "99"),
+        (&["rare", "cone_deg >= 5", "--replicas", "1"], "1"),
+        (&["rare", "cone_deg >= 5", "--least", "0"], "0"),
+        (&["rare", "cone_deg >= 5", "--least", "nan"], "NaN"),
+        (&["rare", "cone_deg >= 5", "--scenario", "none.toml"], "none.toml"),
+        (&["rare"], "EVENT"),
+    ] {
+        let said = scratch.done(arguments, 2);
+        assert!(said.contains(expected), "{arguments:?}: {said}");
+    }
+    assert_eq!(fs::read_dir(scratch.folder()).unwrap().count(), 0, "nothing is written");
+}
