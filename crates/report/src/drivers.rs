@@ -97,7 +97,7 @@ fn panel(svg: &mut Svg, output: &DrivenOutput, top: f64) -> f64 {
         MARGIN,
         top + 12.0,
         TITLE,
-        &fit(&output.label, TITLE.size * 1.06, WIDTH - 2.0 * MARGIN),
+        &fit(&output.label, TITLE.size * 1.2, WIDTH - 2.0 * MARGIN),
     );
     let (left, first) = (MARGIN + NAMES, top + 22.0);
     let base = first + ROW * shown.len() as f64;

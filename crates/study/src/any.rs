@@ -201,6 +201,14 @@ impl AnyScenario {
         of_either!(self, scenario => shards::planned_shares(&**scenario, shards))
     }
 
+    /// That its runs can be shared out to shards: that their number does not follow from all of them.
+    ///
+    /// # Errors
+    /// A rule ends them.
+    pub fn check_shards(&self) -> Result<(), ScenarioError> {
+        of_either!(self, scenario => shards::check(&**scenario))
+    }
+
     /// What all runs would take in one process, by the time of a few of them; without the time where trying one may cost
     /// much.
     ///
@@ -401,6 +409,18 @@ impl fmt::Display for Outcome {
         for judged in head.requirements() {
             let requirement = judged.judgement().requirement().name();
             writeln!(f, "requirement {requirement}, {}\n{}", judged.model(), judged.judgement())?;
+        }
+        for drivers in head.drivers() {
+            for driven in drivers.outputs().iter().filter(|driven| driven.unit().is_none()) {
+                let ranked = driven.ranked(drivers.groups()).into_iter().take(3);
+                let shares = ranked.filter_map(|(group, index)| {
+                    let total = index.total()?.clipped(0.0, 1.0).value();
+                    Some(format!("{group} {total:.2}"))
+                });
+                let shares = shares.collect::<Vec<_>>().join(", ");
+                let (output, model) = (driven.output(), drivers.model());
+                writeln!(f, "what fails {output}, {model}, by total Sobol' indices: {shares}\n")?;
+            }
         }
         writeln!(f, "{}", self.table)?;
         head.missing().iter().try_for_each(|runs| writeln!(f, "missing: {runs}"))?;

@@ -1,6 +1,6 @@
 //! What drives outputs, as it was found.
 
-use gyradius_statistics::{SobolIndex, SobolIndices};
+use gyradius_statistics::{Estimate, SobolIndex, SobolIndices};
 use serde::{Deserialize, Serialize};
 
 /// What drives the outcome of the runs of a model.
@@ -84,6 +84,16 @@ impl Driven {
     #[must_use]
     pub fn indices(&self) -> &[SobolIndex] {
         self.indices.groups()
+    }
+
+    /// The groups that drive most of it, by their total indices, the first of them first; those without an index last.
+    #[must_use]
+    pub fn ranked<'a>(&'a self, groups: &'a [String]) -> Vec<(&'a str, &'a SobolIndex)> {
+        let all = groups.iter().map(String::as_str).zip(self.indices.groups());
+        let mut ranked: Vec<(&str, &SobolIndex)> = all.collect();
+        let total = |index: &SobolIndex| index.total().map_or(-1.0, Estimate::value);
+        ranked.sort_by(|a, b| total(b.1).total_cmp(&total(a.1)));
+        ranked
     }
 
     /// The estimates from all runs.

@@ -16,6 +16,15 @@ use crate::{
     subject::Subject,
 };
 
+/// That the runs of a scenario can be shared out: that their number does not follow from all of them.
+pub(crate) fn check<C: Subject>(scenario: &C) -> Result<(), ScenarioError> {
+    if scenario.until().is_none() {
+        return Ok(());
+    }
+    let problem = "a share of the runs cannot tell when all of them are enough: give the shards a number of runs instead";
+    Err(ScenarioError::field("until", problem))
+}
+
 /// How many runs a process is to do if none is there: those of a shard, or of all models.
 pub(crate) fn planned_runs<C: Subject>(scenario: &C, shard: Option<Shard>) -> u64 {
     let doing = shard.map_or(Doing::All, Doing::Shard);
@@ -56,10 +65,7 @@ pub(crate) fn run_shard<C: Subject>(
     progress: Progress<'_>,
     say: &dyn Fn(Notice),
 ) -> Result<(), StudyError> {
-    if scenario.until().is_some() {
-        let problem = "a share of the runs cannot tell when all of them are enough: give the shards a number of runs instead";
-        return Err(ScenarioError::field("until", problem).into());
-    }
+    check(scenario)?;
     let threads = threads(options.threads)?;
     let models = scenario.prepare(options.stop.as_ref())?;
     let simulations = scenario.simulations(&models)?;

@@ -85,15 +85,12 @@ fn all(drivers: &Drivers) -> Option<Section> {
     for place in 0..TOLD.min(drivers.groups.len()) {
         let heading = ["most of it", "then", "and then"][place];
         table = table.words(heading, |driven| {
-            let mut ranked: Vec<(&String, &SobolIndex)> =
-                drivers.groups.iter().zip(driven.indices.groups()).collect();
-            let total = |index: &SobolIndex| index.total().map_or(-1.0, Estimate::value);
-            ranked.sort_by(|a, b| total(b.1).total_cmp(&total(a.1)));
+            let ranked = driven.ranked(&drivers.groups);
             let Some((group, index)) = ranked.get(place) else { return PageCell::from("–") };
             let Some(total) = index.total() else { return PageCell::from("–") };
             let total = total.clipped(0.0, 1.0);
             let share = significant(total.value(), 2);
-            PageCell::from(Text::from(group.as_str())).line(
+            PageCell::from(Text::from(*group)).line(
                 Text::default().quiet(format!("{share} {}", interval(Some(total.interval()), 2))),
             )
         });

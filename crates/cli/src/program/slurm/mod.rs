@@ -26,6 +26,7 @@ use shards::{LARGEST_ARRAY, choose};
 pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
     let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
     let scenario = sized(scenario, arguments.runs, arguments.vehicles)?;
+    scenario.check_shards()?;
     let script = script(arguments, &scenario)?.to_string();
     let Some(path) = arguments.output.as_deref().filter(|path| *path != Path::new("-")) else {
         return Ok(to_standard_output(&script)?);
