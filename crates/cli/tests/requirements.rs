@@ -45,6 +45,8 @@ fn judged(json: &Value) -> Vec<Value> {
     for judged in &mut all {
         let judged = judged.as_object_mut().unwrap();
         judged.remove("model");
+        // What a study alone knows: what was drawn.
+        judged.remove("unusual");
         judged["requirement"].as_object_mut().unwrap().remove("name");
     }
     all

@@ -194,7 +194,7 @@ fn what_cannot_end_is_refused() {
     let said =
         scratch.done(&["study", "--scenario", "it.toml", "--out", "it", "--shard", "1/2"], 2);
     assert!(said.contains("until: a share of the runs"), "{said}");
-    let said = scratch.done(&["slurm", "--scenario", "it.toml"], 2);
+    let said = scratch.done(&["slurm", "--scenario", "it.toml", "--out", "it"], 2);
     assert!(said.contains("until: a share of the runs"), "{said}");
     let said = scratch.done(&["study", "--until", "decided", "--out", "it"], 2);
     assert!(said.contains("there must be requirements"), "{said}");
