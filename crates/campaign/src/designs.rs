@@ -66,12 +66,14 @@ impl Designs {
         self.groups as u64 + 2
     }
 
-    /// Which share of the variance of each output each group drives, as the runs tell that stand in the order of the designs.
+    /// Which share of the variance of each output each group drives, as the runs of so many base runs tell, which stand in the
+    /// order of the designs.
     ///
     /// # Errors
     /// A block cannot be read, or there are no groups.
     pub fn indices(
         self,
+        base: u64,
         runs: &Runs,
         outputs: &[Output],
         confidence: Confidence,
@@ -81,8 +83,10 @@ impl Designs {
         let mut of_base: Vec<Vec<Option<f64>>> = vec![Vec::new(); outputs.len()];
         let mut refused = None;
         runs.in_order(0, |block| {
+            let left = self.runs(base).saturating_sub(block.first());
+            let count = usize::try_from(left).unwrap_or(usize::MAX);
             for ((output, sums), of_base) in outputs.iter().zip(&mut sums).zip(&mut of_base) {
-                for y in output.of(block) {
+                for y in output.of(block).into_iter().take(count) {
                     of_base.push(y);
                     if let [a, b, exchanged @ ..] = &of_base[..]
                         && exchanged.len() == self.groups
@@ -243,8 +247,10 @@ mod tests {
         let column = |name: &str| Output::Column(name.to_owned());
         let outputs =
             [column("y"), column("same"), column("none"), Output::Fails(Box::new(requirement))];
-        let found = designs.indices(&runs, &outputs, Confidence::new(0.99).unwrap()).unwrap();
+        let found = designs.indices(base, &runs, &outputs, Confidence::new(0.99).unwrap()).unwrap();
         assert!(found[1..].iter().all(Option::is_none), "nothing drives what is constant");
+        let fewer = designs.indices(base - 1, &runs, &outputs[..1], Confidence::default()).unwrap();
+        assert_eq!(fewer[0].as_ref().unwrap().runs(), base - 1);
         let found = found[0].as_ref().unwrap();
         assert_eq!(found.runs(), base);
         // Homma & Saltelli (1996), a = 7, b = 0.1.

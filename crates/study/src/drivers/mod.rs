@@ -62,6 +62,7 @@ impl<C: Subject> Finding<'_, '_, C> {
         if let Some(head) = before.filter(|head| known(head)) {
             return Ok((head.drivers.clone(), None));
         }
+        self.scenario.begin(self.models)?;
         let groups = (0..simulations.len()).map(|place| self.scenario.groups(self.models, place));
         let groups = groups.collect::<Result<Vec<_>, _>>()?;
         let most = groups.iter().map(|groups| groups.designs().runs(base)).max().unwrap_or(0);
@@ -93,7 +94,8 @@ impl<C: Subject> Finding<'_, '_, C> {
             let outputs: Vec<Output> = fails.chain(numbers).collect();
             let runs = &runs[0];
             let confidence = Confidence::default();
-            let indices = self.threads.install(|| designs.indices(runs, &outputs, confidence))?;
+            let indices =
+                self.threads.install(|| designs.indices(base, runs, &outputs, confidence))?;
             let names = asked.iter().map(|r| (r.name().to_owned(), None));
             let names = names.chain(outcomes.iter().map(|column| {
                 (column.name().to_owned(), Some(column.unit().unwrap_or_default().to_owned()))
