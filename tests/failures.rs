@@ -90,7 +90,7 @@ fn what_users_write_is_escaped() {
     let text = paper().replace("title = \"As published\"", "title = \"<script>alert(1)</script>\"");
     let (study, _scratch) = run(&text);
     let report = fs::read_to_string(study.folder().join("report.html")).unwrap();
-    assert!(!report.contains("<script>") && report.contains("&lt;script&gt;"));
+    assert!(!report.contains("<script>alert") && report.contains("&lt;script&gt;alert(1)"));
 }
 
 /// Outlines that come near and touch again: an outcome of a run, not its failure.

@@ -47,12 +47,15 @@
       if (!shown(cell)) continue;
       if (cell.scrollWidth > cell.clientWidth + 1) say(`clipped in its cell: ${name(cell)}`);
       // Words in more lines than there are words are cut within.
-      const range = document.createRange();
-      range.selectNodeContents(cell);
-      const lines = new Set([...range.getClientRects()].map((line) => Math.round(line.bottom / 4))).size;
       const texts = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+      const range = document.createRange(), bottoms = new Set();
       let words = 0;
-      while (texts.nextNode()) words += texts.currentNode.data.split(/[\s-]+/).filter(Boolean).length;
+      while (texts.nextNode()) {
+        words += texts.currentNode.data.split(/[\s-]+/).filter(Boolean).length;
+        range.selectNodeContents(texts.currentNode);
+        for (const line of range.getClientRects()) bottoms.add(Math.round(line.bottom / 4));
+      }
+      const lines = bottoms.size;
       if (!cell.querySelector("code") && lines > words + 1) say(`cut into letters: ${name(cell)}`);
     }
     for (const box of document.querySelectorAll(".wide, .picture")) {

@@ -118,7 +118,8 @@ impl Field {
         svg.place(MARGIN + LABELS, y, &self.plot);
         let mut y = y + HIGH + 42.0;
         for note in &self.notes {
-            for line in wrap(note, TICK.size, WIDTH - 2.0 * MARGIN, 3) {
+            // Other faces than Helvetica are a tenth wider.
+            for line in wrap(note, TICK.size, (WIDTH - 2.0 * MARGIN) / 1.15, 3) {
                 y += 17.0;
                 svg.text(MARGIN, y - 3.0, TICK, &line);
             }

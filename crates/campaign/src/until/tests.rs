@@ -1,3 +1,5 @@
+//! Rules against what they are written as, looks against their rise, and evidence against counting.
+
 use proptest::prelude::*;
 
 use super::*;
