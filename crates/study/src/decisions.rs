@@ -15,6 +15,7 @@ use crate::{
     head::{Head, Judged},
     subject::{Subject, Summarized},
     unusual::{UnusualInput, unusual},
+    where_runs_fail::{self, Asked},
 };
 
 /// Figures of a requirement, whose number follows.
@@ -73,14 +74,18 @@ pub(crate) fn requirements_of<C: Subject>(scenario: &C, model: &str) -> Vec<Requ
 
 /// What looks at the requirements of each model.
 pub(crate) fn judging<C: Subject>(scenario: &C) -> Vec<Judging> {
-    // Verdicts count runs that are independent of each other.
-    let fleet = scenario.independent_runs().and_then(|_| scenario.fleet());
-    let group = fleet.map_or(1, Fleet::flights);
+    let group = group(scenario);
     let of_model = |name: &str| {
         let looks = if scenario.until().is_some() { Looks::Often } else { Looks::Once };
         Judging::new(requirements_of(scenario, name), scenario.runs(), group).looked_at(looks)
     };
     scenario.model_names().map(of_model).collect()
+}
+
+/// Verdicts count runs that are independent of each other: the first of so many.
+fn group<C: Subject>(scenario: &C) -> u64 {
+    let fleet = scenario.independent_runs().and_then(|_| scenario.fleet());
+    fleet.map_or(1, Fleet::flights)
 }
 
 /// Tells in a summary what the runs of each model say of its requirements. Blocks of the worst runs are read again.
@@ -90,7 +95,9 @@ pub(crate) fn judged<C: Subject>(
     judging: Vec<Judging>,
     runs: &[Runs],
 ) -> Result<(), StudyError> {
-    let mut all = Vec::new();
+    let (mut all, mut where_they_fail) = (Vec::new(), Vec::new());
+    let (inputs, main, group) =
+        (scenario.drawn_columns(), scenario.main_outcomes(), group(scenario));
     for (judging, runs) in judging.into_iter().zip(runs) {
         let model = runs.model();
         let judged = judging.finish(runs)?;
@@ -101,8 +108,12 @@ pub(crate) fn judged<C: Subject>(
             let unusual = judgement.worst().iter().filter_map(|worst| of_run(worst.run)).collect();
             Judged { model: model.to_owned(), judgement, unusual }
         }));
+        let requirements = requirements_of(scenario, model);
+        let asked = Asked { requirements: &requirements, inputs: &inputs, main: &main, group };
+        where_they_fail.extend(where_runs_fail::found(runs, asked)?);
     }
-    summary.head_mut().requirements = all;
+    let head = summary.head_mut();
+    (head.requirements, head.where_runs_fail) = (all, where_they_fail);
     Ok(())
 }
 
@@ -186,6 +197,11 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
     let section = Section::new("Requirements").table(table);
     let section = notes.into_iter().fold(section, Section::paragraph);
     vec![section.sections([distributions(head), worst(head), convergence(head)])]
+}
+
+/// Where runs fail the requirements, and with which inputs outcomes rise and fall.
+pub(crate) fn where_runs_fail(head: &Head) -> Vec<Section> {
+    where_runs_fail::sections(&head.where_runs_fail, head.independent_runs_per_model.is_some())
 }
 
 /// The figures that requirements may have, by name: known before the runs.

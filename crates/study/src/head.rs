@@ -4,7 +4,10 @@ use gyradius_campaign::{ColumnSummary, Judgement};
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt, ops::Range};
 
-use crate::{Fleet, about::About, alerts::Alert, driven::Drivers, ended::Ended, unusual::Unusual};
+use crate::{
+    Fleet, about::About, alerts::Alert, driven::Drivers, ended::Ended, unusual::Unusual,
+    where_runs_fail::WhereRunsFail,
+};
 
 /// What a summary says first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,6 +46,9 @@ pub struct Head {
     /// What drives the outcome, model by model, if that was asked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) drivers: Vec<Drivers>,
+    /// Where runs fail, model by model, if there is anything to tell.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) where_runs_fail: Vec<WhereRunsFail>,
     /// Of every interval.
     pub(crate) confidence: f64,
     /// Of the run tables.

@@ -66,6 +66,7 @@ mod text;
 mod two_loops;
 mod until;
 mod unusual;
+mod where_runs_fail;
 
 pub use any::{AnyScenario, Outcome, is_begun, put_together, write_report};
 pub use body::Entry;

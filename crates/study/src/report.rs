@@ -19,6 +19,7 @@ use crate::{
     head::Head,
     quantity::Quantity,
     scenario::{Comparison, Each, Scenario},
+    subject::Subject,
     summary::{ClearanceSummary, ModelSummary, Summary},
 };
 
@@ -50,7 +51,6 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     ));
     let lead = lead.plain(dependence(&summary.head));
     let drawn: Vec<_> = summary.figures.par_iter().map(Figure::drawn).collect();
-    let main: Vec<String> = Quantity::behaviour().iter().map(|q| q.column().into_owned()).collect();
     let title = format!("gyradius study: {}", summary.head.scenario);
     let document = Document::new(title, "Separation under inertia uncertainty", lead);
     noting_what_is_missing(document, &summary.head)
@@ -59,7 +59,8 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         .sections(decisions::sections(&summary.head))
         .section(results(summary))
         .section(parting(scenario, summary))
-        .sections(drivers::section(&summary.head, &main))
+        .sections(drivers::section(&summary.head, &scenario.main_outcomes()))
+        .sections(decisions::where_runs_fail(&summary.head))
         .sections(faults(summary))
         .section(claims(summary))
         .sections(ratios(summary))

@@ -1,6 +1,6 @@
 //! Separations as a study: how their runs are simulated, and what they amount to.
 
-use gyradius_campaign::{CampaignError, Column, Forecast, Kept, Requirement, Runs, Until};
+use gyradius_campaign::{CampaignError, Column, Forecast, Kept, Kind, Requirement, Runs, Until};
 use gyradius_report::Document;
 use rayon::ThreadPool;
 use std::sync::{Arc, atomic::AtomicBool};
@@ -9,6 +9,7 @@ use crate::{
     Fleet, Scenario, ScenarioError, StudyError, Summary,
     about::About,
     claims,
+    column::Column as Declared,
     compare::Section,
     figures_of_study,
     groups::{Drawing, Groups},
@@ -130,6 +131,18 @@ impl Subject for Scenario {
 
     fn is_outcome(&self, column: &Column) -> bool {
         Quantity::ALL.iter().any(|q| !q.is_drawn() && q.column() == column.name())
+    }
+
+    fn drawn_columns(&self) -> Vec<String> {
+        let names = self.dispersions().columns();
+        let drawn = Declared::of(self).into_iter().filter(|column| column.is_drawn());
+        let drawn = drawn.map(|column| column.declaration(&names));
+        let numbers = drawn.filter(|column| column.kind() == Kind::Number);
+        numbers.map(|column| column.name().to_owned()).collect()
+    }
+
+    fn main_outcomes(&self) -> Vec<String> {
+        Quantity::behaviour().iter().map(|quantity| quantity.column().into_owned()).collect()
     }
 
     fn look(&self, model: &str, columns: &[Column]) -> Looking<'_> {

@@ -100,6 +100,10 @@ pub(crate) trait Subject: Sync + Sized {
     ) -> Result<Self::Simulation<'a>, ScenarioError>;
     /// Whether a column is a number that comes of a run, and is not drawn for it.
     fn is_outcome(&self, column: &Column) -> bool;
+    /// The columns of numbers that are drawn for a run.
+    fn drawn_columns(&self) -> Vec<String>;
+    /// The columns of the outcomes that are told of first.
+    fn main_outcomes(&self) -> Vec<String>;
     /// A look at the runs of a model, which have these columns.
     fn look(&self, model: &str, columns: &[Column]) -> Self::Look<'_>;
     /// What the runs amount to: every number, judgement and figure, before any page is made.
@@ -154,6 +158,7 @@ pub(crate) fn head_of(scenario: &impl Subject, columns: &[Column]) -> Head {
         done_again: 0,
         ended: None,
         drivers: Vec::new(),
+        where_runs_fail: Vec::new(),
         alerts: Vec::new(),
         requirements: Vec::new(),
         confidence: Confidence::default().level(),

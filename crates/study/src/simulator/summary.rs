@@ -30,6 +30,8 @@ use crate::{
 
 /// Unit of the entries of inertia matrices.
 const ENTRY: &str = "kg·m²";
+/// Outputs that are told of first.
+const MAIN: usize = 4;
 
 /// Every number that the report of a campaign of a simulator shows, and of what it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -229,6 +231,14 @@ impl Subject for SimulatorScenario {
         self.outputs().iter().any(|output| output.name() == column.name())
     }
 
+    fn drawn_columns(&self) -> Vec<String> {
+        self.inputs().map(|column| column.name().to_owned()).collect()
+    }
+
+    fn main_outcomes(&self) -> Vec<String> {
+        self.outputs().iter().map(|column| column.name().to_owned()).take(MAIN).collect()
+    }
+
     fn look(&self, model: &str, columns: &[Column]) -> FirstLook {
         FirstLook::new(model, columns, self.runs(), Confidence::default())
             .in_groups_of(self.sharing().map_or(1, Fleet::flights))
@@ -293,10 +303,9 @@ impl Subject for SimulatorScenario {
         let first = summary.head.about.section().into_iter();
         let first = first.chain(alerts::section(&summary.head.alerts));
         let first = first.chain(decisions::sections(&summary.head));
-        let outputs = self.outputs().iter().map(|column| column.name().to_owned()).take(4);
-        let outputs: Vec<String> = outputs.collect();
-        let driven = drivers::section(&summary.head, &outputs);
+        let driven = drivers::section(&summary.head, &self.main_outcomes());
         let document = summary.overview.document().led_by(first).sections(driven);
+        let document = document.sections(decisions::where_runs_fail(&summary.head));
         let document = report::noting_vehicles(document, &summary.head);
         let inputs = report::inputs(&summary.head, &self.kept(), self.to_toml(), None);
         report::noting_what_is_missing(document, &summary.head).section(inputs)

@@ -1,6 +1,7 @@
 //! Campaigns of simulators in scripts: what is drawn, that they go on, that one run is done again.
 
 mod again;
+mod failing;
 mod fleets;
 mod models;
 mod refusals;
