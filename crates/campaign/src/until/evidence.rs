@@ -82,24 +82,15 @@ impl Evidence {
     }
 
     fn is_enough_of(&self, model: &OfModel) -> Result<bool, StatisticsError> {
-        let all = |enough: &dyn Fn(&Requirement, [u64; 2]) -> Result<bool, StatisticsError>| {
-            for (requirement, tally) in &model.requirements {
-                let counted = tally.failures_of_counted(requirement.failed_runs());
-                if !enough(requirement, counted)? {
-                    return Ok(false);
-                }
-            }
-            Ok(true)
-        };
         match &self.rule {
-            StoppingRule::Decided => all(&|requirement, [failures, counted]| {
+            StoppingRule::Decided => model.all(|requirement, [failures, counted]| {
                 let verdict = requirement.sequential()?.verdict(failures, counted)?;
                 Ok(match verdict {
                     Verdict::Met | Verdict::NotMet => true,
                     Verdict::Undecided { .. } => false,
                 })
             }),
-            StoppingRule::Share(within) => all(&|requirement, [failures, counted]| {
+            StoppingRule::Share(within) => model.all(|requirement, [failures, counted]| {
                 let interval = requirement.sequential()?.interval(failures, counted)?;
                 Ok(interval.width() <= 2.0 * within)
             }),
@@ -108,6 +99,21 @@ impl Evidence {
                 Ok(model.mean.as_ref().is_some_and(|mean| mean.is_known(rule)))
             }
         }
+    }
+}
+
+impl OfModel {
+    /// Whether it is enough for all requirements, by the failures of each among the runs that count.
+    fn all(
+        &self,
+        enough: impl Fn(&Requirement, [u64; 2]) -> Result<bool, StatisticsError>,
+    ) -> Result<bool, StatisticsError> {
+        for (requirement, tally) in &self.requirements {
+            if !enough(requirement, tally.failures_of_counted(requirement.failed_runs()))? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 }
 

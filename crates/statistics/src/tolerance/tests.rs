@@ -69,7 +69,7 @@ fn bounds_are_values_or_none() {
 #[test]
 fn bounds_hold_their_share_of_laws_with_steps_and_failures() {
     use rand::{RngExt, SeedableRng};
-    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(4);
+    let mut rng = ChaCha8Rng::seed_from_u64(4);
     let (rule, runs, trials) = (rule(0.9, 0.9), 180_usize, 4000);
     for (steps, failing) in [(0.0, 0.0), (0.0, 0.03), (50.0, 0.02), (3.0, 0.04), (0.0, 0.1)] {
         // Up to where the law of a value lies: whole multiples of a step.

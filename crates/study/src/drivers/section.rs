@@ -81,7 +81,7 @@ fn all(drivers: &Drivers) -> Option<Section> {
     if drivers.outputs.is_empty() {
         return None;
     }
-    let mut table = PageTable::of(&drivers.outputs).words("output", |driven| driven.label());
+    let mut table = PageTable::of(&drivers.outputs).words("output", Driven::label);
     for place in 0..TOLD.min(drivers.groups.len()) {
         let heading = ["most of it", "then", "and then"][place];
         table = table.words(heading, |driven| {

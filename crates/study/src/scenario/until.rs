@@ -4,6 +4,7 @@ use gyradius_campaign::{StoppingRule, Until};
 use serde::{Deserialize, Serialize};
 
 use super::{ScenarioError, parse, vehicles::Size};
+use crate::fleet::Fleet;
 
 /// The table `until` of a scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,7 +63,7 @@ impl UntilFile {
             let problem = format!("“{}”: there must be requirements for that", self.rule);
             return refused("rule", problem);
         }
-        let flights = size.fleet().map_or(1, |fleet| fleet.flights());
+        let flights = size.fleet().map_or(1, Fleet::flights);
         let every = *self.look_every.get_or_insert(usual.next_multiple_of(flights));
         let most = *self.most_runs.get_or_insert(size.runs());
         for (key, number) in [("look_every", every), ("most_runs", most)] {

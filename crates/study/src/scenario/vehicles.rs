@@ -50,7 +50,7 @@ impl Size {
         if (1..=RUNS_AT_MOST).contains(&runs) {
             return Ok(Self::Runs(runs));
         }
-        let problem = format!("{runs}: it must be between 1 and {}", RUNS_AT_MOST);
+        let problem = format!("{runs}: it must be between 1 and {RUNS_AT_MOST}");
         Err(ScenarioError::field(RUNS, problem))
     }
 

@@ -6,6 +6,9 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
+/// Whether each run fails a requirement; none of runs that are not there or are left out.
+type Fails = Vec<Option<bool>>;
+
 /// The first runs of a model that are independent of each other, each with a place, in run order.
 pub(super) struct FirstRuns<'a> {
     runs: &'a Runs,
@@ -27,7 +30,7 @@ impl<'a> FirstRuns<'a> {
     pub(super) fn failing(
         &self,
         requirements: &[Requirement],
-    ) -> Result<(u64, Vec<Vec<Option<bool>>>), RunsError> {
+    ) -> Result<(u64, Vec<Fails>), RunsError> {
         let fails = |block: &Table| {
             let of = |requirement: &Requirement| {
                 let columns = requirement.quantity().columns().iter();
