@@ -10,4 +10,5 @@ mod paper;
 mod replay;
 mod repository;
 mod reproducibility;
+mod reproduction;
 mod statements;

@@ -7,7 +7,7 @@ use crate::{
     contents::{contents, identity},
     decisions::requirements_of,
     ended::Ended,
-    study::{check_columns, count, foretell, plan},
+    study::{check_columns, plan},
     subject::Subject,
 };
 
@@ -43,19 +43,17 @@ pub(crate) fn run_to_the_end<C: Subject>(
     let again = true;
     blocks.damaged().iter().for_each(|block| say(Notice::Damaged { block: block.clone(), again }));
     let plan = plan(scenario, options, Doing::All);
-    let mut left = 0;
     for (at, (model, _)) in simulations.iter().enumerate() {
         let missing = plan.missing(&blocks, at, model);
         folder.check_places(model, &missing).inspect_err(|_| blocks.abandon())?;
-        left += count(&missing);
     }
     let group =
         scenario.independent_runs().and_then(|_| scenario.fleet()).map_or(1, Fleet::flights);
     let own = scenario.model_names().map(|model| requirements_of(scenario, model)).collect();
     let evidence = Evidence::new(until.rule().clone(), own, group);
     let done = (|| {
+        // Nobody knows how many runs there will be: nothing is foretold, and nothing refused for want of room.
         scenario.begin(&models)?;
-        foretell(scenario, &simulations, [left, left], options, &threads, say)?;
         let plan = Plan { doing: Doing::All, ..plan };
         Ok(threads.install(|| run_until(&simulations, &blocks, plan, progress, until, evidence))?)
     })();
