@@ -4,7 +4,7 @@ use gyradius_campaign::share_in_percent;
 use gyradius_report::{PageCell, PageTable, Section, Text, interval, significant};
 use gyradius_statistics::{Confidence, Estimate, Tenth};
 
-use super::{Correlation, Failures, LEAST, Pair, RUNS, Tenths, WhereRunsFail};
+use super::{Correlation, Failures, LEAST, Pair, RANKED, RUNS, Tenths, WhereRunsFail};
 
 /// Adjusted p-values below this are shown.
 const SHOWN_BELOW: f64 = 0.01;
@@ -59,7 +59,7 @@ fn separating(found: &[WhereRunsFail], vehicles: bool) -> Option<Section> {
         "A difference between tenths shows that failures and an input go together, not that the input is the cause: inputs that depend on \
          each other, as the entries of an inertia matrix do, each show what the other one does. {} A run that \
          failed counts as a failure if it has the input, unless the requirement leaves such runs out.",
-        which(vehicles)
+        which(RUNS, vehicles)
     );
     let mut section = Section::new("Where runs fail").paragraph(reading).paragraph(caution);
     if !inputs.is_empty() {
@@ -78,9 +78,9 @@ fn separating(found: &[WhereRunsFail], vehicles: bool) -> Option<Section> {
 }
 
 /// Which runs are looked at.
-fn which(vehicles: bool) -> String {
+fn which(most: u64, vehicles: bool) -> String {
     let of = if vehicles { ", the first flight of each vehicle alone" } else { "" };
-    let runs = RUNS / 1000;
+    let runs = most / 1000;
     format!(
         "Counted are the runs of each model in the order of their numbers, at most the first {runs},000{of}."
     )
@@ -187,7 +187,7 @@ fn correlations(found: &[WhereRunsFail], vehicles: bool) -> Option<Section> {
          then. For each outcome the inputs are shown whose interval of 95 % leaves out 0, at most {CORRELATIONS}, the strongest first. \
          About one in twenty inputs without any effect is shown by chance. {} Runs without the outcome, as those that failed, are \
          left out.",
-        which(vehicles)
+        which(RANKED as u64, vehicles)
     );
     let table = PageTable::of(&rows)
         .words("input", |(_, input, _)| Text::default().code(*input))
