@@ -82,7 +82,7 @@ impl Designs {
         let mut sums = outputs.iter().map(new).collect::<Result<Vec<_>, _>>()?;
         let mut of_base: Vec<Vec<Option<f64>>> = vec![Vec::new(); outputs.len()];
         let mut refused = None;
-        runs.in_order(0, |block| {
+        runs.in_order(0..self.runs(base), |block| {
             let left = self.runs(base).saturating_sub(block.first());
             let count = usize::try_from(left).unwrap_or(usize::MAX);
             for ((output, sums), of_base) in outputs.iter().zip(&mut sums).zip(&mut of_base) {

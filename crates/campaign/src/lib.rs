@@ -125,7 +125,7 @@ pub use streams::Streams;
 pub use subset::Subset;
 pub use surveys::{FirstLook, Surveys};
 pub use table::{Row, Table, TableError};
-pub use until::{Evidence, StoppingRule, Until, UntilError, run_until};
+pub use until::{End, Evidence, StoppingRule, Until, UntilError, run_until};
 pub use values::Numbers;
 
 #[cfg(doctest)]

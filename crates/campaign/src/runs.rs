@@ -124,17 +124,20 @@ impl Runs {
         })
     }
 
-    /// Looks at every block that begins with a run or after it, one after the other, in the order of their runs.
+    /// Looks at every block that has some of these runs, one after the other, in their order.
     ///
     /// # Errors
     /// A block cannot be read, or they are [stopped](Self::stopped_by).
     pub(crate) fn in_order(
         &self,
-        first: u64,
+        some: Range<u64>,
         mut look: impl FnMut(&Table),
     ) -> Result<(), RunsError> {
-        let from = self.blocks.partition_point(|block| block.range().start < first);
-        for block in &self.blocks[from..] {
+        let has = |block: &&Block| {
+            let runs = block.range();
+            runs.start < some.end && some.start < runs.end
+        };
+        for block in self.blocks.iter().filter(has) {
             if is_stopped(self.stop.as_deref()) {
                 return Err(RunsError::Stopped);
             }

@@ -92,6 +92,9 @@ fn what_cannot_be_is_refused() {
         (&["rare", "cone_deg >= 5", "--least", "0"], "0"),
         (&["rare", "cone_deg >= 5", "--least", "nan"], "NaN"),
         (&["rare", "cone_deg >= 5", "--scenario", "none.toml"], "none.toml"),
+        (&["rare", "clearance_m <= 0"], "event: none of 1000 runs has a number of clearance_m"),
+        (&["rare", "run >= 5"], "event: \"run\": the run table has no such column"),
+        (&["rare", "cone_deg > 5"], "“abs(x) >= 1”"),
         (&["rare"], "EVENT"),
     ] {
         let said = scratch.done(arguments, 2);

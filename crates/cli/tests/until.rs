@@ -115,11 +115,46 @@ fn what_is_there_stays() {
         ],
         0,
     );
-    assert_eq!(runs(&scratch.path("more")), 2000);
+    assert_eq!(runs(&scratch.path("more")), 1234);
+    // The rule would have ended them before, which the scenario tells, so that a fresh folder gives the same.
+    let resolved = fs::read_to_string(scratch.path("more/scenario.toml")).unwrap();
+    assert!(resolved.contains("first_look = 1234"), "{resolved}");
+    let report = fs::read_to_string(scratch.path("more/report.md")).unwrap();
+    assert!(report.contains("1234 runs a model were there before the rule was asked"), "{report}");
+    scratch.done(&["study", "--scenario", "more/scenario.toml", "--out", "fresh"], 0);
+    let numbers = |folder: &str| summary(&scratch.path(folder))["models"].clone();
+    assert_eq!(numbers("fresh"), numbers("more"));
     let few =
         ["study", "--scenario", "all.toml", "--runs", "900", "--until", "decided", "--out", "more"];
     let said = scratch.done(&few, 2);
-    assert!(said.contains("runs is 2000 there and 900 here"), "{said}");
+    assert!(said.contains("runs is 1234 there and 900 here"), "{said}");
+}
+
+/// A report of a study that a rule is to end, made before it has, keeps nobody from going on.
+#[test]
+fn a_report_meanwhile_is_no_end() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), scenario("", 10.0, 0.99)).unwrap();
+    let study = |out: &str| {
+        let until =
+            ["--until", "decided", "--look-every", "200", "--runs", "20000", "--threads", "1"];
+        scratch.command(&[&["study", "--scenario", "it.toml", "--out", out][..], &until].concat())
+    };
+    crate::scratch::done(study("whole"), 0);
+    let mut child = study("it").spawn().unwrap();
+    let blocks = scratch.path("it/.gyradius/campaign/proposed");
+    let some = || fs::read_dir(&blocks).is_ok_and(|files| files.count() > 3);
+    while !some() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    if scratch.path("it/.gyradius/campaign").exists() {
+        scratch.run(&["report", "it"]);
+        assert!(runs(&scratch.path("it")) < 20_000);
+    }
+    crate::scratch::done(study("it"), 0);
+    assert_eq!(content(&scratch.path("it")), content(&scratch.path("whole")));
 }
 
 /// Of vehicles, whole vehicles are looked at, and their first flights count.

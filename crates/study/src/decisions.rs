@@ -52,11 +52,13 @@ pub(crate) fn check<C: Subject>(scenario: &C, columns: &[Column]) -> Result<(), 
 
 /// That a quantity is of columns of numbers that the run tables have.
 pub(crate) fn known(quantity: &Measured, columns: &[Column]) -> Result<(), String> {
+    // Which run it is, is nothing that comes of it.
+    let is_result = |column: &&Column| {
+        column.is_measured() && !["run", "vehicle", "flight"].contains(&column.name())
+    };
     for name in quantity.columns() {
-        let column = columns.iter().find(|column| column.name() == name);
-        if !column.is_some_and(Column::is_measured) {
-            let known: Vec<&str> =
-                columns.iter().filter(|c| c.is_measured()).map(Column::name).collect();
+        if !columns.iter().filter(is_result).any(|column| column.name() == name) {
+            let known: Vec<&str> = columns.iter().filter(is_result).map(Column::name).collect();
             return Err(format!(
                 "{name:?}: the run table has no such column of numbers; it has {}",
                 known.join(", ")

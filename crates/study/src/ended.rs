@@ -40,6 +40,12 @@ impl Ended {
 impl fmt::Display for Ended {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { until, runs, looks, enough } = self;
+        if let Some(there) = until.first_look() {
+            write!(
+                f,
+                "{there} runs a model were there before the rule was asked, more than it would have asked for. "
+            )?;
+        }
         let (rule, most, s) = (until.rule(), until.most_runs(), if *looks == 1 { "" } else { "s" });
         if *enough {
             write!(

@@ -4,7 +4,7 @@ use gyradius_campaign::{
     CampaignError, Event, Progress, Simulation, Table, is_stopped, run, threads,
 };
 use gyradius_statistics::{
-    Confidence, SubsetEstimate, SubsetReplica, SubsetSimulation, SubsetWarning,
+    Confidence, StatisticsError, SubsetEstimate, SubsetReplica, SubsetSimulation, SubsetWarning,
 };
 use serde::Serialize;
 use std::{
@@ -156,8 +156,10 @@ pub(crate) fn find<C: Subject>(
     known(event.quantity(), columns.columns())
         .map_err(|problem| ScenarioError::field("event", problem))?;
     let groups = scenario.groups(&models, at)?;
-    let plan = SubsetSimulation::new(groups.names().len(), options.per_level, options.replicas)?;
-    let plan = plan.with_least(options.least)?;
+    let plan = SubsetSimulation::new(groups.names().len(), options.per_level, options.replicas);
+    let refused = |field: &str, error: StatisticsError| ScenarioError::field(field, error);
+    let plan = plan.map_err(|error| refused("per-level, replicas", error))?;
+    let plan = plan.with_least(options.least).map_err(|error| refused("least", error))?;
     scenario.begin(&models)?;
     let done = AtomicU64::new(0);
     let simulate = |replica: &mut SubsetReplica| {
@@ -169,7 +171,16 @@ pub(crate) fn find<C: Subject>(
             let runs = draws.len() as u64;
             let simulation = scenario.drawing(&models, at, Drawing::Given(draws))?;
             let table = run(&simulation, model, runs, &threads, &|_| {})?;
-            replica.tell(&event.excesses(&table))?;
+            let excesses = event.excesses(&table);
+            if excesses.iter().all(|excess| excess.is_nan()) {
+                let failure = table.failures().next();
+                let why = failure.map_or_else(
+                    || format!("none of {runs} runs has a number of {}", event.quantity()),
+                    |(_, failure)| format!("all of {runs} runs failed, the first by “{failure}”"),
+                );
+                return Err(ScenarioError::field("event", why).into());
+            }
+            replica.tell(&excesses)?;
             progress(done.fetch_add(runs, Ordering::Relaxed) + runs);
         }
         Ok(())

@@ -62,7 +62,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         .sections(drivers::section(&summary.head, &scenario.main_outcomes()))
         .sections(decisions::where_runs_fail(&summary.head))
         .sections(faults(summary))
-        .section(claims(summary))
+        .sections(scenario.source().map(|_| claims(summary)))
         .sections(ratios(summary))
         .sections(deviations(scenario, summary))
         .sections(far_lobe(summary))

@@ -73,8 +73,8 @@ impl Subject for Scenario {
         self.until()
     }
 
-    fn ended_after(&self, runs: u64) -> Result<Self, ScenarioError> {
-        self.ended_after(runs)
+    fn ended_after(&self, runs: u64, first_look: Option<u64>) -> Result<Self, ScenarioError> {
+        self.ended_after(runs, first_look)
     }
 
     fn model_names(&self) -> impl Iterator<Item = &str> {

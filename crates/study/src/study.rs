@@ -9,7 +9,7 @@ use crate::{
 use gyradius_campaign::run;
 use gyradius_campaign::{
     Blocks, CampaignError, Doing, Folder, MANIFEST, Plan, Progress, Reduced, Runs, RunsError,
-    Simulation, Table, disk_left, is_stopped, memory_left, run_again, run_missing, threads,
+    Simulation, Table, disk_left, is_stopped, memory_left, run_again, run_missing, threads, told,
 };
 use rayon::ThreadPool;
 use std::{
@@ -21,7 +21,7 @@ use std::{
 };
 
 use crate::{
-    Notice, Options, ScenarioError, StudyError, Summary,
+    Fleet, Notice, Options, ScenarioError, StudyError, Summary,
     contents::{contents, identity},
     decisions,
     drivers::Finding,
@@ -269,7 +269,15 @@ pub(crate) fn put_together<C: Subject>(
     say: &dyn Fn(Notice),
 ) -> Result<Study<C::Summary>, StudyError> {
     let options = Options { out: Some(folder.to_owned()), ..options.clone() };
-    do_what_is_left(scenario, &options, (Doing::Nothing, None), &|_| {}, say)
+    let Some(until) = scenario.until() else {
+        return do_what_is_left(scenario, &options, (Doing::Nothing, None), &|_| {}, say);
+    };
+    // Of runs that a rule is to end, those that are there are all that there are to be so far.
+    let blocks = told(folder, &contents(scenario), &identity(scenario))?;
+    let end = blocks.iter().map(|block| block.range().end).max().unwrap_or(scenario.runs());
+    let end = end.next_multiple_of(scenario.fleet().map_or(1, Fleet::flights));
+    let scenario = scenario.ended_after(end.min(until.most_runs()), until.first_look())?;
+    do_what_is_left(&scenario, &options, (Doing::Nothing, None), &|_| {}, say)
 }
 
 /// Says how many of the runs are done already, and what the others will take; refuses what the disk or the memory has no

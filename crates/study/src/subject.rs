@@ -65,8 +65,8 @@ pub(crate) trait Subject: Sync + Sized {
     fn requirements(&self) -> &[Requirement];
     /// Until when its runs go on, if not to their number.
     fn until(&self) -> Option<&Until>;
-    /// The same, whose runs ended after so many.
-    fn ended_after(&self, runs: u64) -> Result<Self, ScenarioError>;
+    /// The same, whose runs ended after so many, and were looked at first after so many, if that is said.
+    fn ended_after(&self, runs: u64, first_look: Option<u64>) -> Result<Self, ScenarioError>;
     /// Names of the models, in order.
     fn model_names(&self) -> impl Iterator<Item = &str>;
     /// The resolved scenario.

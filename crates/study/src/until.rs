@@ -1,6 +1,8 @@
 //! A study whose runs go on until they have shown enough.
 
-use gyradius_campaign::{Doing, Evidence, Folder, Plan, Progress, run_until, threads};
+use gyradius_campaign::{
+    Doing, End, Evidence, Folder, Plan, Progress, run_again, run_until, threads,
+};
 
 use crate::{
     Fleet, Notice, Options, StudyError,
@@ -21,23 +23,25 @@ pub(crate) fn run_to_the_end<C: Subject>(
     say: &dyn Fn(Notice),
 ) -> Result<Option<(C, Ended)>, StudyError> {
     let Some(until) = scenario.until() else { return Ok(None) };
-    let scenario = &scenario.ended_after(until.most_runs())?;
+    let scenario = &scenario.ended_after(until.most_runs(), until.first_look())?;
     let threads = threads(options.threads)?;
     let models = scenario.prepare(options.stop.as_ref())?;
     let simulations = scenario.simulations(&models)?;
     let contents = contents(scenario);
     let folder = Folder::prepare(&options.place(scenario.name()), &contents, options.force)?;
     check_columns(scenario, &simulations)?;
-    let ended = |runs: u64, enough: bool| {
-        let ended = Ended::new(until, runs, enough);
-        Ok(Some((scenario.ended_after(runs)?, ended)))
+    let ended = |End { runs, enough, first_look }: End| {
+        let until = until.clone().with_first_look(first_look);
+        let ended = Ended::new(&until, runs, enough);
+        Ok(Some((scenario.ended_after(runs, first_look)?, ended)))
     };
     let begun = (&identity(scenario), scenario.to_toml());
     if let Some(there) = folder.reduced(begun.0)?
         && !options.force
     {
         // Nothing can be added to it, whatever it shows.
-        return ended(there.runs(), true);
+        let first_look = until.first_look();
+        return ended(End { runs: there.runs(), enough: true, first_look });
     }
     let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), options.force, &threads)?;
     let again = true;
@@ -49,14 +53,21 @@ pub(crate) fn run_to_the_end<C: Subject>(
     }
     let group =
         scenario.independent_runs().and_then(|_| scenario.fleet()).map_or(1, Fleet::flights);
-    let own = scenario.model_names().map(|model| requirements_of(scenario, model)).collect();
-    let evidence = Evidence::new(until.rule().clone(), own, group);
+    let evidence = || {
+        let own = scenario.model_names().map(|model| requirements_of(scenario, model)).collect();
+        Evidence::new(until.rule().clone(), own, group)
+    };
     let done = (|| {
         // Nobody knows how many runs there will be: nothing is foretold, and nothing refused for want of room.
         scenario.begin(&models)?;
+        if options.retry_failed && blocks.any_failed() {
+            // Before the rule is asked, which these runs may change.
+            let stop = options.stop.as_deref();
+            let done = threads.install(|| run_again(&simulations, &blocks, stop))?;
+            say(Notice::Again(done));
+        }
         let plan = Plan { doing: Doing::All, ..plan };
         Ok(threads.install(|| run_until(&simulations, &blocks, plan, progress, until, evidence))?)
     })();
-    let (runs, enough) = done.inspect_err(|_: &StudyError| blocks.abandon())?;
-    ended(runs, enough)
+    ended(done.inspect_err(|_: &StudyError| blocks.abandon())?)
 }

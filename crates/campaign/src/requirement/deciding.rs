@@ -81,27 +81,16 @@ impl Deciding {
         failures: u64,
         runs: u64,
     ) -> Result<Option<Interval>, StatisticsError> {
-        (runs > 0)
-            .then(|| self.interval(runs - failures, runs, Acceptance::probability))
-            .transpose()
+        (runs > 0).then(|| self.share(runs - failures, runs)).transpose()
     }
 
-    /// Where the share of the runs lies that do not.
-    pub(super) fn failing(self, failures: u64, runs: u64) -> Result<Interval, StatisticsError> {
-        self.interval(failures, runs, Acceptance::failure_share)
-    }
-
-    fn interval(
-        self,
-        events: u64,
-        runs: u64,
-        about: fn(&Acceptance) -> f64,
-    ) -> Result<Interval, StatisticsError> {
+    /// Where the share of so many events lies.
+    pub(super) fn share(self, events: u64, runs: u64) -> Result<Interval, StatisticsError> {
         match self {
             Self::Once(rule) => Ok(Proportion::new(events, runs)?.interval(rule.confidence())),
             Self::Often(rule) => {
-                let rule = rule.requirement();
-                ConfidenceSequence::about(about(&rule), rule.confidence())?.interval(events, runs)
+                let confidence = rule.requirement().confidence();
+                ConfidenceSequence::new(confidence).interval(events, runs)
             }
         }
     }

@@ -37,8 +37,8 @@ impl FromStr for Event {
 
     fn from_str(text: &str) -> Result<Self, RequirementError> {
         let mut words = Words::new(text);
-        let (quantity, bound) = text::bounded(&mut words)?;
-        words.end()?;
+        let read = text::bounded(&mut words).and_then(|read| words.end().map(|()| read));
+        let (quantity, bound) = read.map_err(|error| error.as_event())?;
         bound.check()?;
         Ok(Self { quantity, bound })
     }

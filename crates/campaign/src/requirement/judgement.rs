@@ -166,7 +166,7 @@ impl Judgement {
             )?,
             convergence: tally
                 .prefixes
-                .estimates(|failures, runs| deciding.failing(failures, runs))?,
+                .estimates(|failures, runs| deciding.share(failures, runs))?,
             vehicles: None,
         })
     }

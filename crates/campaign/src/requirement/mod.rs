@@ -331,6 +331,18 @@ pub enum RequirementError {
         /// What is wrong there.
         problem: String,
     },
+    /// The line of an event cannot be read.
+    #[error(
+        "“{text}”, at {at}: {problem}; it is written as “abs(x) >= 1”, with the name of a column for x"
+    )]
+    Event {
+        /// The line.
+        text: String,
+        /// Where.
+        at: String,
+        /// What is wrong there.
+        problem: String,
+    },
     /// There is no bound, or more than one.
     #[error("there must be one of at_most, at_least and between")]
     OneBound,
@@ -355,4 +367,14 @@ pub enum RequirementError {
         /// The value.
         value: f64,
     },
+}
+
+impl RequirementError {
+    /// The same of the line of an event.
+    fn as_event(self) -> Self {
+        match self {
+            Self::Text { text, at, problem } => Self::Event { text, at, problem },
+            other => other,
+        }
+    }
 }

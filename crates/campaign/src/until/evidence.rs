@@ -1,6 +1,7 @@
 //! What the runs have shown so far of that which ends a campaign.
 
-use gyradius_statistics::{Confidence, FixedWidth, StatisticsError, Verdict};
+use gyradius_statistics::{Confidence, ConfidenceSequence, FixedWidth, StatisticsError, Verdict};
+use std::ops::Range;
 
 use super::StoppingRule;
 use crate::{
@@ -49,13 +50,14 @@ impl Evidence {
         Self { rule, group: group.max(1), models }
     }
 
-    /// Looks at a block of the model in a place, once at each, and in the order of its runs.
-    pub fn look(&mut self, place: usize, block: &Table) {
+    /// Looks at some runs of a block of the model in a place: at each once, and in their order.
+    pub fn look(&mut self, place: usize, block: &Table, some: Range<u64>) {
         let Some(model) = self.models.get_mut(place) else { return };
         let group = self.group;
         let judged = |quantity: &Measured| {
             let numbers = (block.first()..).zip(quantity.numbers(block));
-            numbers.filter(move |(run, _)| run.is_multiple_of(group))
+            let some = some.clone();
+            numbers.filter(move |(run, _)| some.contains(run) && run.is_multiple_of(group))
         };
         for (requirement, tally) in &mut model.requirements {
             for (run, number) in judged(requirement.quantity()) {
@@ -91,7 +93,8 @@ impl Evidence {
                 })
             }),
             StoppingRule::Share(within) => model.all(|requirement, [failures, counted]| {
-                let interval = requirement.sequential()?.interval(failures, counted)?;
+                let sequence = ConfidenceSequence::new(requirement.confidence());
+                let interval = sequence.interval(failures, counted)?;
                 Ok(interval.width() <= 2.0 * within)
             }),
             StoppingRule::Mean(_, within) => {

@@ -10,16 +10,19 @@ use std::{fmt, str::FromStr};
 use crate::requirement::{Measured, Words};
 
 pub use evidence::Evidence;
-pub use work::run_until;
+pub use work::{End, run_until};
 
 /// Until when a campaign goes on, looked at how often, and how many runs it may have at most.
 ///
-/// The runs are looked at after the first `look_every`, and then each time when they are a tenth more, in whole `look_every`.
+/// The runs are looked at after the first `look_every`, and then after each `look_every` more, or a tenth more in whole
+/// `look_every`, if that is more.
 /// In a file it is a table with the keys `rule`, `look_every` and `most_runs`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Form", into = "Form")]
 pub struct Until {
     rule: StoppingRule,
+    /// After how many runs the first look is, if there were more runs than the rule asks for before it was asked.
+    first_look: Option<u64>,
     look_every: u64,
     most_runs: u64,
 }
@@ -52,6 +55,8 @@ pub enum StoppingRule {
 #[serde(deny_unknown_fields)]
 struct Form {
     rule: StoppingRule,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    first_look: Option<u64>,
     look_every: u64,
     most_runs: u64,
 }
@@ -67,7 +72,7 @@ impl Until {
                 return Err(UntilError::None { field });
             }
         }
-        Ok(Self { rule, look_every, most_runs })
+        Ok(Self { rule, first_look: None, look_every, most_runs })
     }
 
     /// The same with another greatest number of runs, at least one.
@@ -94,16 +99,16 @@ impl Until {
         self.most_runs
     }
 
-    /// After how many runs there is a look, if there are so many already, all of which it takes in.
+    /// The same, with no look before so many runs, at least one: for there were so many before the rule was asked.
     #[must_use]
-    pub fn first_look(&self, there: u64) -> u64 {
-        self.looks().find(|look| *look >= there).unwrap_or(self.most_runs)
+    pub fn with_first_look(self, runs: Option<u64>) -> Self {
+        Self { first_look: runs.map(|runs| runs.max(1)), ..self }
     }
 
-    /// After how many runs the next look is.
+    /// After how many runs the first look is, if that is said.
     #[must_use]
-    pub fn next_look(&self, look: u64) -> Option<u64> {
-        self.looks().find(|next| *next > look)
+    pub fn first_look(&self) -> Option<u64> {
+        self.first_look
     }
 
     /// After how many runs the looks are.
@@ -113,7 +118,7 @@ impl Until {
             let more = (look / 10 / every).max(1).saturating_mul(every);
             (*look < most).then(|| look.saturating_add(more).min(most))
         };
-        std::iter::successors(Some(every.min(most)), next)
+        std::iter::successors(Some(self.first_look.unwrap_or(every).min(most)), next)
     }
 }
 
@@ -226,14 +231,16 @@ impl From<StoppingRule> for String {
 impl TryFrom<Form> for Until {
     type Error = UntilError;
 
-    fn try_from(Form { rule, look_every, most_runs }: Form) -> Result<Self, UntilError> {
-        Self::new(rule, look_every, most_runs)
+    fn try_from(form: Form) -> Result<Self, UntilError> {
+        let Form { rule, first_look, look_every, most_runs } = form;
+        Ok(Self::new(rule, look_every, most_runs)?.with_first_look(first_look))
     }
 }
 
 impl From<Until> for Form {
-    fn from(Until { rule, look_every, most_runs }: Until) -> Self {
-        Self { rule, look_every, most_runs }
+    fn from(until: Until) -> Self {
+        let Until { rule, first_look, look_every, most_runs } = until;
+        Self { rule, first_look, look_every, most_runs }
     }
 }
 

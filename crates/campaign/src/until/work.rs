@@ -9,9 +9,20 @@ use crate::{
     simulation::{CampaignError, Progress, Simulation},
 };
 
-/// Does the planned runs of some simulations that are in no block yet, until there is enough evidence; returns how many
-/// runs each of them has then, and whether it was enough. What is there already is looked at as it is: first after all
-/// runs that there are. To be called in the threads that are to do it.
+/// How a campaign ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct End {
+    /// Runs of each simulation.
+    pub runs: u64,
+    /// Whether they were enough, and not the greatest number.
+    pub enough: bool,
+    /// After how many runs the first look that counts was, if there were more before than the rule would have asked for.
+    pub first_look: Option<u64>,
+}
+
+/// Does the planned runs of some simulations that are in no block yet, until there is enough evidence. If there are more runs
+/// already than were enough, none is dropped: all of them are looked at first, and the rule goes on from there. To be called
+/// in the threads that are to do it; `evidence` makes what has seen nothing.
 ///
 /// # Errors
 /// As [`run_missing`]; or there are more runs than can be judged.
@@ -21,21 +32,38 @@ pub fn run_until<S: Simulation>(
     plan: Plan<'_>,
     progress: Progress<'_>,
     until: &Until,
-    mut evidence: Evidence,
-) -> Result<(u64, bool), CampaignError> {
+    evidence: impl Fn() -> Evidence,
+) -> Result<End, CampaignError> {
     let there = simulations.iter().filter_map(|(model, _)| blocks.end(model)).max().unwrap_or(0);
-    let mut look = until.first_look(there);
-    let mut seen = 0;
-    loop {
+    let end = ended(simulations, blocks, plan, progress, until, evidence())?;
+    if !end.enough || there <= end.runs {
+        return Ok(end);
+    }
+    let late = until.clone().with_first_look(Some(there));
+    ended(simulations, blocks, plan, progress, &late, evidence())
+}
+
+fn ended<S: Simulation>(
+    simulations: &[(&str, S)],
+    blocks: &Blocks,
+    plan: Plan<'_>,
+    progress: Progress<'_>,
+    until: &Until,
+    mut evidence: Evidence,
+) -> Result<End, CampaignError> {
+    let (mut seen, mut end) = (0, End { runs: 0, enough: false, first_look: until.first_look() });
+    for look in until.looks() {
         let all = run_missing(simulations, blocks, Plan { runs: look, ..plan }, progress, None)?;
         for (place, runs) in all.into_iter().enumerate() {
             runs.stopped_by(plan.stop.map(Arc::clone))
-                .in_order(seen, |block| evidence.look(place, block))?;
+                .in_order(seen..look, |block| evidence.look(place, block, seen..look))?;
         }
         let enough = evidence.is_enough().map_err(CampaignError::Judged)?;
-        match until.next_look(look).filter(|_| !enough) {
-            None => return Ok((look, enough)),
-            Some(next) => (seen, look) = (look, next),
+        end = End { runs: look, enough, ..end };
+        if enough {
+            break;
         }
+        seen = look;
     }
+    Ok(end)
 }

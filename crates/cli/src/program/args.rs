@@ -257,7 +257,7 @@ pub(crate) struct StatusArgs {
 #[derive(Args, Debug)]
 pub(crate) struct RareArgs {
     /// Event, as "abs(x) >= 1": a column x, abs(x) or norm(x, y, z); <= or >= or both
-    #[arg(value_name = "EVENT")]
+    #[arg(value_name = "EVENT", allow_hyphen_values = true)]
     pub(crate) event: Event,
 
     /// Scenario file (TOML) [default: the built-in study of Peck (2003)]
@@ -273,12 +273,12 @@ pub(crate) struct RareArgs {
     pub(crate) seed: Option<u64>,
 
     /// Runs of a level, 100 or more
-    #[arg(long, value_name = "N", default_value_t = RareOptions::default().per_level)]
-    pub(crate) per_level: usize,
+    #[arg(long, value_name = "N", value_parser = whole, default_value_t = RareOptions::default().per_level as u64)]
+    pub(crate) per_level: u64,
 
     /// Independent repetitions, from which the interval is found, 2 or more
-    #[arg(long, value_name = "R", default_value_t = RareOptions::default().replicas)]
-    pub(crate) replicas: usize,
+    #[arg(long, value_name = "R", value_parser = whole, default_value_t = RareOptions::default().replicas as u64)]
+    pub(crate) replicas: u64,
 
     /// Give up below this probability
     #[arg(long, value_name = "P", default_value_t = RareOptions::default().least)]

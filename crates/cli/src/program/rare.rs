@@ -5,10 +5,10 @@ use std::{error::Error, process::ExitCode};
 
 use crate::program::{
     args::RareArgs,
-    output::{print, print_json},
+    output::{complain, print, print_json},
     progress,
     signals::Signals,
-    study::{scenario, stopped},
+    study::scenario,
 };
 
 /// Levels that there may be, for the progress: one for each digit of the least probability.
@@ -20,8 +20,8 @@ pub(crate) fn rare(arguments: &RareArgs) -> Result<ExitCode, Box<dyn Error>> {
     let signals = Signals::watch()?;
     let options = RareOptions {
         model: arguments.model.clone(),
-        per_level: arguments.per_level,
-        replicas: arguments.replicas,
+        per_level: usize::try_from(arguments.per_level).unwrap_or(usize::MAX),
+        replicas: usize::try_from(arguments.replicas).unwrap_or(usize::MAX),
         least: arguments.least,
         threads: arguments.threads,
         stop: Some(signals.stop()),
@@ -32,7 +32,10 @@ pub(crate) fn rare(arguments: &RareArgs) -> Result<ExitCode, Box<dyn Error>> {
         scenario.rare(&arguments.event, &options, report)
     });
     let found = match found {
-        Err(StudyError::Campaign(CampaignError::Stopped)) => return Ok(stopped(&signals)),
+        Err(StudyError::Campaign(CampaignError::Stopped)) => {
+            complain("stopped: nothing is kept of the runs");
+            return Ok(signals.code());
+        }
         other => other?,
     };
     if arguments.json {

@@ -168,7 +168,7 @@ pub(crate) fn notice(notice: Notice) {
     }
 }
 
-pub(crate) fn stopped(signals: &Signals) -> ExitCode {
+fn stopped(signals: &Signals) -> ExitCode {
     complain("stopped: the runs that were finished are kept, and the same command goes on");
     signals.code()
 }

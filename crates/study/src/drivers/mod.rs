@@ -54,9 +54,12 @@ impl<C: Subject> Finding<'_, '_, C> {
         let requirements = self.scenario.requirements();
         let identity = sha256(serde_json::to_string(&(self.identity, requirements))?);
         let simulations = self.scenario.simulations(self.models)?;
+        let again = self.options.retry_failed;
         let known = |head: &Head| {
-            let same =
-                |drivers: &Drivers| drivers.identity == identity && drivers.base_runs == base;
+            let same = |drivers: &Drivers| {
+                let is_stale = again && drivers.failed > 0;
+                drivers.identity == identity && drivers.base_runs == base && !is_stale
+            };
             head.drivers.len() == simulations.len() && head.drivers.iter().all(same)
         };
         if let Some(head) = before.filter(|head| known(head)) {

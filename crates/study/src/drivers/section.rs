@@ -53,6 +53,9 @@ pub(crate) fn section(head: &Head, main: &[String]) -> Option<Section> {
             section = section.figures([drivers_figure(&name, &caption, &shown)]);
         }
     }
+    if head.drivers.iter().all(|drivers| drivers.outputs.is_empty()) {
+        section = section.paragraph("Nothing drives anything here: every output is the same in all of these runs, or missing.");
+    }
     Some(section.sections(head.drivers.iter().filter_map(all)))
 }
 
@@ -88,8 +91,9 @@ fn all(drivers: &Drivers) -> Option<Section> {
             let ranked = driven.ranked(&drivers.groups);
             let Some((group, index)) = ranked.get(place) else { return PageCell::from("–") };
             let Some(total) = index.total() else { return PageCell::from("–") };
-            let total = total.clipped(0.0, 1.0);
-            let share = significant(total.value(), 2);
+            // Differences of rounding are none.
+            let nothing = total.value().abs() < 1e-12;
+            let share = if nothing { "0".to_owned() } else { significant(total.value(), 2) };
             PageCell::from(Text::from(*group)).line(
                 Text::default().quiet(format!("{share} {}", interval(Some(total.interval()), 2))),
             )

@@ -35,10 +35,18 @@ macro_rules! changed {
                 Self { file: $file { runs, vehicles, flights, ..self.file }, size, ..self }
             }
 
-            /// The same, whose runs ended after so many.
-            pub(crate) fn ended_after(&self, runs: u64) -> Result<Self, ScenarioError> {
+            /// The same, whose runs ended after so many, and were looked at first after so many, if that is said.
+            pub(crate) fn ended_after(
+                &self,
+                runs: u64,
+                first_look: Option<u64>,
+            ) -> Result<Self, ScenarioError> {
                 let size = self.size.of_all(runs)?;
-                Ok(self.clone().ended(size))
+                let Self { file, until, .. } = self.clone();
+                let file_until = file.until.clone().map(|until| until.with_first_look(first_look));
+                let file = $file { until: file_until, ..file };
+                let until = until.map(|until| until.with_first_look(first_look));
+                Ok(Self { file, until, ..self.clone() }.ended(size))
             }
 
             /// The same scenario from another seed.

@@ -11,6 +11,13 @@ use crate::fleet::Fleet;
 #[serde(deny_unknown_fields)]
 pub(crate) struct UntilFile {
     rule: StoppingRule,
+    /// Filled in if there were more runs before than the rule would have asked for.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "parse::some_whole"
+    )]
+    first_look: Option<u64>,
     /// Filled in.
     #[serde(
         default,
@@ -32,7 +39,7 @@ const FIELD: &str = "until";
 impl UntilFile {
     /// A rule, and after how many runs they are looked at first, if that is said.
     pub(crate) fn new(rule: StoppingRule, look_every: Option<u64>) -> Self {
-        Self { rule, look_every, most_runs: None }
+        Self { rule, first_look: None, look_every, most_runs: None }
     }
 
     /// The runs of a scenario that says how many there may be, and not how many there are.
@@ -46,6 +53,11 @@ impl UntilFile {
     /// With another greatest number of runs.
     pub(crate) fn with_most_runs(self, runs: u64) -> Self {
         Self { most_runs: Some(runs), ..self }
+    }
+
+    /// With no look before so many runs.
+    pub(crate) fn with_first_look(self, runs: Option<u64>) -> Self {
+        Self { first_look: runs, ..self }
     }
 
     /// Fills in what is not said, of a scenario of this size; `usual` is how many runs there are between looks if nothing is
@@ -75,12 +87,12 @@ impl UntilFile {
             }
         }
         if most < size.runs() {
-            let problem =
-                format!("{most}: it must be at least the {} runs that there are", size.runs());
+            let problem = format!("{most}: it must be at least runs, which is {}", size.runs());
             return refused("most_runs", problem);
         }
         size.of_all(most).map_err(|problem| ScenarioError::field("until.most_runs", problem))?;
-        Until::new(self.rule.clone(), every, most)
-            .map_err(|error| ScenarioError::field(FIELD, error))
+        let until = Until::new(self.rule.clone(), every, most);
+        let until = until.map_err(|error| ScenarioError::field(FIELD, error))?;
+        Ok(until.with_first_look(self.first_look))
     }
 }
