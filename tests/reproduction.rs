@@ -155,7 +155,7 @@ stage's row comes out under no reading that was tried. Figures 5 and 8 are `figu
 ";
 
 const CLAIMS: &str = "\
-What counts as “considerably more” and the like is in the report. With 2,000 runs some claims cannot be decided that a million decide.
+What counts as “considerably more” and the like is in the report. The verdicts are the same with both numbers of runs.
 ";
 
 const SEED: &str = "

@@ -38,7 +38,7 @@ impl FromStr for Event {
     fn from_str(text: &str) -> Result<Self, RequirementError> {
         let mut words = Words::new(text);
         let read = text::bounded(&mut words).and_then(|read| words.end().map(|()| read));
-        let (quantity, bound) = read.map_err(|error| error.as_event())?;
+        let (quantity, bound) = read.map_err(RequirementError::of_event)?;
         bound.check()?;
         Ok(Self { quantity, bound })
     }

@@ -371,7 +371,7 @@ pub enum RequirementError {
 
 impl RequirementError {
     /// The same of the line of an event.
-    fn as_event(self) -> Self {
+    fn of_event(self) -> Self {
         match self {
             Self::Text { text, at, problem } => Self::Event { text, at, problem },
             other => other,
