@@ -40,6 +40,9 @@ pub enum Kind {
 }
 
 impl Column {
+    /// The column of the number of the run, in every table.
+    pub const RUN: &str = "run";
+
     /// Numbers in a unit, `1` if they have none.
     pub fn number(
         name: impl Into<Cow<'static, str>>,
@@ -148,7 +151,7 @@ impl Column {
     pub(crate) fn first() -> [Self; 3] {
         [
             Self::new("model", Kind::Text, "Name of the model.").required(),
-            Self::new("run", Kind::Integer, "Number of the run, from 0.").required(),
+            Self::new(Self::RUN, Kind::Integer, "Number of the run, from 0.").required(),
             Self::new("status", Kind::Text, "`ok`, or the reason why the run failed.").required(),
         ]
     }

@@ -3,7 +3,7 @@
 use gyradius_statistics::{Confidence, SobolIndices, SobolSums, StatisticsError};
 
 use crate::{
-    requirement::{FailedRuns, Measured, Requirement},
+    requirement::{Measured, Requirement},
     runs::{Runs, RunsError},
     table::Table,
 };
@@ -155,18 +155,13 @@ impl Output {
     /// What the runs of a block have of it.
     #[must_use]
     pub fn of(&self, block: &Table) -> Vec<Option<f64>> {
-        let requirement = match self {
-            Self::Column(name) => return Measured::column(name).numbers(block),
-            Self::Fails(requirement) => requirement,
-        };
-        let fails = |x: Option<f64>| match (x, requirement.failed_runs()) {
-            (None, FailedRuns::LeftOut) => None,
-            (None, FailedRuns::Against) => Some(1.0),
-            (Some(x), FailedRuns::Against | FailedRuns::LeftOut) => {
-                Some(f64::from(u8::from(!requirement.bound().is_kept(x))))
+        match self {
+            Self::Column(name) => Measured::column(name).numbers(block),
+            Self::Fails(requirement) => {
+                let failing = requirement.failing(block).into_iter();
+                failing.map(|fails| fails.map(|fails| f64::from(u8::from(fails)))).collect()
             }
-        };
-        requirement.quantity().numbers(block).into_iter().map(fails).collect()
+        }
     }
 }
 

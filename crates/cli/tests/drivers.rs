@@ -8,12 +8,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::scratch::{Scratch, content, one_model};
+use crate::scratch::{Scratch, content, one_model, summary};
 
 fn drivers(folder: &Path) -> Value {
-    let summary = fs::read(folder.join("summary.json")).unwrap();
-    let summary: Value = serde_json::from_slice(&summary).unwrap();
-    summary["drivers"].clone()
+    summary(folder)["drivers"].clone()
 }
 
 /// Of an output, by the names of the groups: first-order and total index, and how many base runs were left out.

@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::fs;
 
-use crate::scratch::{Scratch, content, files, one_model};
+use crate::scratch::{Scratch, content, files, one_model, summary};
 
 /// The built-in study under one model, of which some runs fail, with these requirements.
 fn scenario(head: &str, requirements: &str) -> String {
@@ -68,8 +68,7 @@ fn studies_and_tables_are_judged_alike() {
         lines.iter().for_each(|line| verdict.extend(["--require", line]));
         verdict.extend(flag);
         let table: Value = serde_json::from_str(&scratch.done(&verdict, 1)).unwrap();
-        let summary = fs::read_to_string(scratch.path(failed_runs).join("summary.json")).unwrap();
-        let summary: Value = serde_json::from_str(&summary).unwrap();
+        let summary = summary(&scratch.path(failed_runs));
         assert_eq!(judged(&summary), judged(&table));
         let failures = |i: usize| summary["requirements"][i]["failures"].as_u64().unwrap();
         let failed = summary["requirements"][0]["runs_without_number"].as_u64().unwrap();
@@ -108,8 +107,7 @@ fn of_vehicles_the_first_flights_are_judged() {
         text.replace("mass_percent = 60", "mass_percent = { sigma = 60, drawn = \"vehicle\" }");
     fs::write(scratch.path("it.toml"), text).unwrap();
     scratch.done(&["study", "--scenario", "it.toml", "--out", "it"], 1);
-    let summary = fs::read_to_string(scratch.path("it/summary.json")).unwrap();
-    let summary: Value = serde_json::from_str(&summary).unwrap();
+    let summary = summary(&scratch.path("it"));
     for judged in summary["requirements"].as_array().unwrap() {
         assert_eq!((judged["runs"].as_u64(), judged["counted"].as_u64()), (Some(40), Some(40)));
         let vehicles = &judged["vehicles"];

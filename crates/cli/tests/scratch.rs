@@ -1,5 +1,6 @@
 //! A folder of its own in which the program runs, and what is in a folder.
 
+use serde_json::Value;
 use std::{
     collections::BTreeMap,
     fs,
@@ -91,4 +92,9 @@ pub(crate) fn one_model() -> String {
     let (head, rest) = text.split_once("# The law behind").unwrap();
     let (_, source) = rest.split_once("# What the paper prints").unwrap();
     format!("{head}#{source}")
+}
+
+/// The summary of a study in a folder.
+pub(crate) fn summary(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap()
 }

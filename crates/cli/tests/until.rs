@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::{fs, path::Path};
 
-use crate::scratch::{Scratch, content, one_model};
+use crate::scratch::{Scratch, content, done, one_model, summary};
 
 /// The built-in study under one model, with this at its head and one requirement.
 fn scenario(head: &str, at_most: f64, probability: f64) -> String {
@@ -14,10 +14,6 @@ fn scenario(head: &str, at_most: f64, probability: f64) -> String {
         "{head}\n{text}\n[[requirements]]\nquantity = \"nutation_deg\"\nat_most = {at_most:?}\nprobability = {probability}\n\
          confidence = 0.9\n"
     )
-}
-
-fn summary(folder: &Path) -> Value {
-    serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap()
 }
 
 fn runs(folder: &Path) -> u64 {
@@ -78,7 +74,7 @@ fn runs_end_at_the_first_look_that_is_enough() {
         // The runs are those of a study of so many.
         let plain = ["study", "--scenario", &file, "--runs", &found.to_string(), "--out", "plain"];
         scratch.command(&plain).output().unwrap();
-        let plain = self::summary(&scratch.path("plain"));
+        let plain = crate::scratch::summary(&scratch.path("plain"));
         for key in ["models", "nominal"] {
             assert_eq!(plain[key], summary[key], "{name}: {key}");
         }
@@ -140,7 +136,7 @@ fn a_report_meanwhile_is_no_end() {
             ["--until", "decided", "--look-every", "200", "--runs", "20000", "--threads", "1"];
         scratch.command(&[&["study", "--scenario", "it.toml", "--out", out][..], &until].concat())
     };
-    crate::scratch::done(study("whole"), 0);
+    done(study("whole"), 0);
     let mut child = study("it").spawn().unwrap();
     let blocks = scratch.path("it/.gyradius/campaign/proposed");
     let some = || fs::read_dir(&blocks).is_ok_and(|files| files.count() > 3);
@@ -153,7 +149,7 @@ fn a_report_meanwhile_is_no_end() {
         scratch.run(&["report", "it"]);
         assert!(runs(&scratch.path("it")) < 20_000);
     }
-    crate::scratch::done(study("it"), 0);
+    done(study("it"), 0);
     assert_eq!(content(&scratch.path("it")), content(&scratch.path("whole")));
 }
 
@@ -242,4 +238,42 @@ fn what_cannot_end_is_refused() {
         said.contains("there might have been 500") && runs(&scratch.path("it")) <= 500,
         "{said}"
     );
+}
+
+/// Runs that failed are done again once, before the rule is asked.
+#[test]
+#[cfg(unix)]
+fn failed_runs_are_retried_once() {
+    let scratch = Scratch::new();
+    let script = r#"while read -r line; do
+    run=${line#*'"run":'}; run=${run%%,*}
+    case $run in *7) echo '{"error":"no licence"}' ;; *) echo '{"outputs":{"y":1}}' ;; esac
+done"#;
+    fs::write(scratch.path("answer.sh"), script).unwrap();
+    let text = r#"name = "it"
+runs = 2000
+[until]
+rule = "decided"
+[simulation]
+command = ["sh", "answer.sh"]
+[[simulation.outputs]]
+name = "y"
+[[quantities]]
+name = "x"
+law = { law = "uniform", low = 0.0, high = 1.0 }
+[[requirements]]
+quantity = "y"
+at_most = 2.0
+probability = 0.9
+confidence = 0.9
+failed_runs = "left-out"
+"#;
+    fs::write(scratch.path("it.toml"), text).unwrap();
+    let study = ["study", "--scenario", "it.toml", "--out", "it"];
+    scratch.done(&study, 0);
+    let before = summary(&scratch.path("it"));
+    assert_eq!((&before["runs_per_model"], before.get("done_again")), (&Value::from(256), None));
+    let said = scratch.done(&[&study[..], &["--retry-failed"]].concat(), 0);
+    assert!(said.contains("25 runs that had failed, done again: 25 failed again"), "{said}");
+    assert_eq!(summary(&scratch.path("it"))["done_again"], 25);
 }

@@ -180,7 +180,6 @@ pub struct ImportanceEstimate {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
-#[non_exhaustive]
 pub enum WeightWarning {
     /// No run is the event: nothing is known of its probability.
     NoHit,

@@ -263,7 +263,6 @@ pub struct SubsetEstimate {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
-#[non_exhaustive]
 pub enum SubsetWarning {
     /// So many replicas found no event: it cannot be, is rarer than the least probability, or chains do not move.
     NotReached {

@@ -53,9 +53,10 @@ pub(crate) fn check<C: Subject>(scenario: &C, columns: &[Column]) -> Result<(), 
 /// That a quantity is of columns of numbers that the run tables have.
 pub(crate) fn known(quantity: &Measured, columns: &[Column]) -> Result<(), String> {
     // Which run it is, is nothing that comes of it.
-    let is_result = |column: &&Column| {
-        column.is_measured() && !["run", "vehicle", "flight"].contains(&column.name())
-    };
+    let places = Fleet::columns();
+    let is_place =
+        |name: &str| name == Column::RUN || places.iter().any(|column| column.name() == name);
+    let is_result = |column: &&Column| column.is_measured() && !is_place(column.name());
     for name in quantity.columns() {
         if !columns.iter().filter(is_result).any(|column| column.name() == name) {
             let known: Vec<&str> = columns.iter().filter(is_result).map(Column::name).collect();
@@ -71,7 +72,7 @@ pub(crate) fn known(quantity: &Measured, columns: &[Column]) -> Result<(), Strin
 /// The requirements that are about a model.
 pub(crate) fn requirements_of<C: Subject>(scenario: &C, model: &str) -> Vec<Requirement> {
     let all = scenario.requirements().iter();
-    all.filter(|own| own.model().is_none_or(|name| name == model)).cloned().collect()
+    all.filter(|own| own.is_of(model)).cloned().collect()
 }
 
 /// What looks at the requirements of each model.
@@ -85,7 +86,7 @@ pub(crate) fn judging<C: Subject>(scenario: &C) -> Vec<Judging> {
 }
 
 /// Verdicts count runs that are independent of each other: the first of so many.
-fn group<C: Subject>(scenario: &C) -> u64 {
+pub(crate) fn group<C: Subject>(scenario: &C) -> u64 {
     let fleet = scenario.independent_runs().and_then(|_| scenario.fleet());
     fleet.map_or(1, Fleet::flights)
 }

@@ -87,7 +87,7 @@ impl<'a> Faults<'a> {
         });
         let faults: Vec<Fault> = faults.map(fault).collect();
         let own = scenario.requirements().iter();
-        let own = own.filter(|r| r.model().is_none_or(|name| name == model) && !faults.is_empty());
+        let own = own.filter(|own| own.is_of(model) && !faults.is_empty());
         let requirements: Vec<&Requirement> = own.collect();
         let counts = Mutex::new(vec![[0; 2]; (faults.len() + 1) * requirements.len()]);
         Self { faults, requirements, counts }
@@ -116,21 +116,18 @@ impl<'a> Faults<'a> {
 
     /// Looks at a block.
     pub(crate) fn look(&self, block: &Table) {
+        if self.requirements.is_empty() {
+            return;
+        }
+        let failing: Vec<_> = self.requirements.iter().map(|own| own.failing(block)).collect();
         let mut counted = Vec::new();
         for subset in self.subsets() {
             let mask = subset.of(block);
-            for requirement in &self.requirements {
-                let columns = requirement.quantity().columns().iter();
-                let columns: Vec<_> = columns.map(|name| block.measured(name)).collect();
-                let (mut counts, mut numbers) = ([0; 2], Vec::new());
-                for place in (0..block.len()).filter(|place| mask[*place]) {
-                    numbers.clear();
-                    numbers.extend(columns.iter().map(|column| column(place)));
-                    let fails = requirement.fails(&numbers);
-                    counts[0] += u64::from(fails.is_some());
-                    counts[1] += u64::from(fails == Some(true));
-                }
-                counted.push(counts);
+            for failing in &failing {
+                let own = failing.iter().zip(&mask).filter(|(_, is_one)| **is_one);
+                counted.push(own.fold([0; 2], |[runs, failures], (fails, _)| {
+                    [runs + u64::from(fails.is_some()), failures + u64::from(*fails == Some(true))]
+                }));
             }
         }
         let mut all = self.counts.lock().unwrap_or_else(PoisonError::into_inner);

@@ -9,10 +9,7 @@ use gyradius_statistics::{
 use serde::Serialize;
 use std::{
     fmt,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, AtomicU64, Ordering},
-    },
+    sync::{Arc, atomic::AtomicBool},
 };
 
 use crate::{
@@ -127,7 +124,6 @@ fn said(warning: &SubsetWarning) -> String {
         SubsetWarning::ReplicasDiffer { coefficient } => format!(
             "the repetitions differ by {coefficient:.1} times the estimate: take more runs of a level"
         ),
-        other => format!("{other:?}"),
     }
 }
 
@@ -161,8 +157,8 @@ pub(crate) fn find<C: Subject>(
     let plan = plan.map_err(|error| refused("per-level, replicas", error))?;
     let plan = plan.with_least(options.least).map_err(|error| refused("least", error))?;
     scenario.begin(&models)?;
-    let done = AtomicU64::new(0);
-    let simulate = |replica: &mut SubsetReplica| {
+    let mut done = 0;
+    let mut simulate = |replica: &mut SubsetReplica| {
         while !replica.is_done() {
             if is_stopped(options.stop.as_deref()) {
                 return Err(StudyError::from(CampaignError::Stopped));
@@ -181,7 +177,8 @@ pub(crate) fn find<C: Subject>(
                 return Err(ScenarioError::field("event", why).into());
             }
             replica.tell(&excesses)?;
-            progress(done.fetch_add(runs, Ordering::Relaxed) + runs);
+            done += runs;
+            progress(done);
         }
         Ok(())
     };

@@ -93,18 +93,11 @@ pub(crate) fn do_what_is_left<C: Subject>(
         return reduced(scenario, &there, (&folder, &text), options, &simulations, &threads);
     }
     let blocks = folder.blocks(begun, scenario.runs(), options.force, &threads)?;
-    let again = doing == Doing::All;
-    blocks.damaged().iter().for_each(|block| say(Notice::Damaged { block: block.clone(), again }));
-
     let plan = plan(scenario, options, doing);
-    let all = Plan { doing: Doing::All, ..plan };
-    let mut left = 0;
-    for (at, (model, _)) in simulations.iter().enumerate() {
-        let missing = all.missing(&blocks, at, model);
-        folder.check_places(model, &missing).inspect_err(|_| blocks.abandon())?;
-        left += count(&missing);
-    }
-    let again = options.retry_failed && doing == Doing::All && blocks.any_failed();
+    let left = to_be_done(&simulations, plan, (&folder, &blocks), say)?;
+    // What a rule ended was retried before the rule was asked.
+    let retries = options.retry_failed && ended.is_none();
+    let again = retries && doing == Doing::All && blocks.any_failed();
     if again || left > 0 && doing == Doing::All {
         scenario.begin(&models).inspect_err(|_| blocks.abandon())?;
     }
@@ -158,12 +151,10 @@ pub(crate) fn do_what_is_left<C: Subject>(
     let complete = summary.head().missing().is_empty();
     let mut beside = None;
     if doing == Doing::All {
-        let before = whole_summary::<C>(&place);
+        let before = || whole_summary::<C>(&place);
         let (folder, threads, identity) = (&folder, &threads, begun.0);
         let finding = Finding { scenario, models: &models, options, folder, identity, threads };
-        let own = of;
-        let found =
-            finding.find(before.as_ref().map(Summarized::head), &|runs| progress(own + runs));
+        let found = finding.find(before, &|runs| progress(of + runs));
         let (drivers, blocks) = found.inspect_err(|_| blocks.abandon())?;
         (summary.head_mut().drivers, beside) = (drivers, blocks);
     }
@@ -178,6 +169,25 @@ pub(crate) fn do_what_is_left<C: Subject>(
         false => empty_tables(&simulations)?.into_iter().map(Runs::from).collect(),
     };
     Ok(Study { folder, runs, summary })
+}
+
+/// Tells which blocks are damaged, and checks that nothing is in the places of runs that are missing; returns how many they are.
+pub(crate) fn to_be_done<S: Simulation>(
+    simulations: &[(&str, S)],
+    plan: Plan<'_>,
+    (folder, blocks): (&Folder<'_>, &Blocks),
+    say: &dyn Fn(Notice),
+) -> Result<u64, StudyError> {
+    let again = plan.doing == Doing::All;
+    blocks.damaged().iter().for_each(|block| say(Notice::Damaged { block: block.clone(), again }));
+    let all = Plan { doing: Doing::All, ..plan };
+    let mut left = 0;
+    for (at, (model, _)) in simulations.iter().enumerate() {
+        let missing = all.missing(blocks, at, model);
+        folder.check_places(model, &missing).inspect_err(|_| blocks.abandon())?;
+        left += count(&missing);
+    }
+    Ok(left)
 }
 
 /// Writes a study and puts it in place; returns where that is, and the summary as it was written.

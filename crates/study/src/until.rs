@@ -1,15 +1,13 @@
 //! A study whose runs go on until they have shown enough.
 
-use gyradius_campaign::{
-    Doing, End, Evidence, Folder, Plan, Progress, run_again, run_until, threads,
-};
+use gyradius_campaign::{Doing, End, Evidence, Folder, Progress, run_again, run_until, threads};
 
 use crate::{
-    Fleet, Notice, Options, StudyError,
+    Notice, Options, StudyError,
     contents::{contents, identity},
-    decisions::requirements_of,
+    decisions::{group, requirements_of},
     ended::Ended,
-    study::{check_columns, plan},
+    study::{check_columns, plan, to_be_done},
     subject::Subject,
 };
 
@@ -44,18 +42,11 @@ pub(crate) fn run_to_the_end<C: Subject>(
         return ended(End { runs: there.runs(), enough: true, first_look });
     }
     let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), options.force, &threads)?;
-    let again = true;
-    blocks.damaged().iter().for_each(|block| say(Notice::Damaged { block: block.clone(), again }));
     let plan = plan(scenario, options, Doing::All);
-    for (at, (model, _)) in simulations.iter().enumerate() {
-        let missing = plan.missing(&blocks, at, model);
-        folder.check_places(model, &missing).inspect_err(|_| blocks.abandon())?;
-    }
-    let group =
-        scenario.independent_runs().and_then(|_| scenario.fleet()).map_or(1, Fleet::flights);
+    to_be_done(&simulations, plan, (&folder, &blocks), say)?;
     let evidence = || {
         let own = scenario.model_names().map(|model| requirements_of(scenario, model)).collect();
-        Evidence::new(until.rule().clone(), own, group)
+        Evidence::new(until.rule().clone(), own, group(scenario))
     };
     let done = (|| {
         // Nobody knows how many runs there will be: nothing is foretold, and nothing refused for want of room.
@@ -66,7 +57,6 @@ pub(crate) fn run_to_the_end<C: Subject>(
             let done = threads.install(|| run_again(&simulations, &blocks, stop))?;
             say(Notice::Again(done));
         }
-        let plan = Plan { doing: Doing::All, ..plan };
         Ok(threads.install(|| run_until(&simulations, &blocks, plan, progress, until, evidence))?)
     })();
     ended(done.inspect_err(|_: &StudyError| blocks.abandon())?)

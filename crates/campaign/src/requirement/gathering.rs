@@ -99,25 +99,15 @@ impl Gathering {
         waits.then_some(Part { tally, numbers, excess })
     }
 
-    /// Adds runs, each with its place, to what is gathered: what they have in the columns of the quantity, by their places.
-    pub(super) fn gather(
-        &self,
-        part: &mut Part,
-        runs: impl Iterator<Item = (u64, usize)>,
-        columns: &[impl Fn(usize) -> Option<f64>],
-    ) {
+    /// Adds runs to what is gathered, each with what it has of the quantity.
+    pub(super) fn gather(&self, part: &mut Part, runs: impl Iterator<Item = (u64, Option<f64>)>) {
         let bound = self.requirement.bound();
-        let (mut numbers, mut of_run) = (Vec::new(), Vec::new());
-        for (run, place) in runs {
-            of_run.clear();
-            of_run.extend(columns.iter().map(|column| column(place)));
-            let number = self.requirement.quantity().of(&of_run);
+        let mut numbers = Vec::new();
+        for (run, number) in runs {
             if let Some(tally) = &mut part.tally {
                 tally.add(run, number, bound);
-                let fails = number.is_none_or(|x| !bound.is_kept(x));
-                if number.is_some() || self.requirement.failed_runs() == FailedRuns::Against {
-                    tally.prefixes.add(run / self.group, fails);
-                }
+                let fails = self.requirement.fails(number);
+                fails.into_iter().for_each(|fails| tally.prefixes.add(run / self.group, fails));
             }
             numbers.extend(number.map(|x| (run, x)));
         }

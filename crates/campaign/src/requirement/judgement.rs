@@ -117,7 +117,13 @@ impl Judgement {
                             move |place: usize| numbers.get(place).copied().flatten()
                         })
                         .collect();
-                    gathering.gather(part, (first..).zip(0..runs), &columns);
+                    let mut of_run = Vec::with_capacity(columns.len());
+                    let number = |place: usize| {
+                        of_run.clear();
+                        of_run.extend(columns.iter().map(|column| column(place)));
+                        gathering.requirement.quantity().of(&of_run)
+                    };
+                    gathering.gather(part, (first..).zip((0..runs).map(number)));
                 });
                 first += runs as u64;
             })?;

@@ -68,14 +68,10 @@ impl Judging {
     fn count_groups(&self, block: &Table) -> Vec<Groups> {
         let mut counted = new_groups(&self.gatherings, self.group);
         for (gathering, groups) in self.gatherings.iter().zip(&mut counted) {
-            let requirement = &gathering.requirement;
-            let columns = requirement.quantity().columns().iter();
-            let columns: Vec<_> = columns.map(|name| block.measured(name)).collect();
-            let keeps = |place: usize| {
-                let numbers: Vec<Option<f64>> = columns.iter().map(|of| of(place)).collect();
-                requirement.is_kept(&numbers)
-            };
-            groups.add(block.first(), (0..block.len()).map(keeps));
+            let (quantity, bound) =
+                (gathering.requirement.quantity(), gathering.requirement.bound());
+            let keeps = |number: Option<f64>| number.is_some_and(|x| bound.is_kept(x));
+            groups.add(block.first(), quantity.numbers(block).into_iter().map(keeps));
         }
         counted
     }
@@ -114,11 +110,8 @@ impl Judging {
     fn gather(&self, mut parts: Vec<Option<Part>>, block: &Table) -> Vec<Option<Part>> {
         self.gatherings.par_iter().zip(&mut parts).for_each(|(gathering, part)| {
             let Some(part) = part else { return };
-            let columns = gathering.requirement.quantity().columns().iter();
-            let columns: Vec<_> = columns.map(|name| block.measured(name)).collect();
-            let runs = (block.first()..).zip(0..block.len());
-            let judged = runs.filter(|(run, _)| run.is_multiple_of(self.group));
-            gathering.gather(part, judged, &columns);
+            let runs = (block.first()..).zip(gathering.requirement.quantity().numbers(block));
+            gathering.gather(part, runs.filter(|(run, _)| run.is_multiple_of(self.group)));
         });
         parts
     }

@@ -16,6 +16,8 @@ use gyradius_statistics::{Acceptance, Confidence, SequentialAcceptance, Statisti
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
+use crate::table::Table;
+
 pub use convergence::Estimate;
 pub use deciding::Looks;
 pub use distribution::{Distribution, DistributionPoint};
@@ -194,14 +196,26 @@ impl Requirement {
         self.quantity.of(numbers).is_some_and(|x| self.bound.is_kept(x))
     }
 
-    /// Whether a run with these numbers fails it; none if it is left out, for it has no number.
+    /// Whether a run with this number fails it; none if it is left out, for it has no number.
     #[must_use]
-    pub fn fails(&self, numbers: &[Option<f64>]) -> Option<bool> {
-        match (self.quantity.of(numbers), self.failed_runs) {
+    pub fn fails(&self, number: Option<f64>) -> Option<bool> {
+        match (number, self.failed_runs) {
             (Some(x), _) => Some(!self.bound.is_kept(x)),
             (None, FailedRuns::Against) => Some(true),
             (None, FailedRuns::LeftOut) => None,
         }
+    }
+
+    /// Whether each run of a block fails it; none of those that are left out.
+    #[must_use]
+    pub fn failing(&self, block: &Table) -> Vec<Option<bool>> {
+        self.quantity.numbers(block).into_iter().map(|number| self.fails(number)).collect()
+    }
+
+    /// Whether the runs of a model are judged.
+    #[must_use]
+    pub fn is_of(&self, model: &str) -> bool {
+        self.model().is_none_or(|own| own == model)
     }
 }
 

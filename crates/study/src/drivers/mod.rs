@@ -15,7 +15,7 @@ use crate::{
     driven::{Driven, Drivers},
     groups::Drawing,
     head::Head,
-    subject::Subject,
+    subject::{Subject, Summarized},
 };
 
 pub(crate) use section::{figure_names, section};
@@ -44,29 +44,29 @@ pub(crate) struct Finding<'a, 'f, C: Subject> {
 }
 
 impl<C: Subject> Finding<'_, '_, C> {
-    /// Finds them; `before` is the summary that is there already, and `progress` is told of runs.
+    /// Finds them; `before` reads the summary that is there already, and `progress` is told of runs.
     pub(crate) fn find(
         &self,
-        before: Option<&Head>,
+        before: impl FnOnce() -> Option<C::Summary>,
         progress: Progress<'_>,
     ) -> Result<(Vec<Drivers>, Option<Blocks>), StudyError> {
         let Some(base) = self.scenario.drivers() else { return Ok((Vec::new(), None)) };
         let requirements = self.scenario.requirements();
         let identity = sha256(serde_json::to_string(&(self.identity, requirements))?);
-        let simulations = self.scenario.simulations(self.models)?;
+        let names: Vec<&str> = self.scenario.model_names().collect();
         let again = self.options.retry_failed;
         let known = |head: &Head| {
             let same = |drivers: &Drivers| {
                 let is_stale = again && drivers.failed > 0;
                 drivers.identity == identity && drivers.base_runs == base && !is_stale
             };
-            head.drivers.len() == simulations.len() && head.drivers.iter().all(same)
+            head.drivers.len() == names.len() && head.drivers.iter().all(same)
         };
-        if let Some(head) = before.filter(|head| known(head)) {
-            return Ok((head.drivers.clone(), None));
+        if let Some(there) = before().filter(|there| known(there.head())) {
+            return Ok((there.head().drivers.clone(), None));
         }
         self.scenario.begin(self.models)?;
-        let groups = (0..simulations.len()).map(|place| self.scenario.groups(self.models, place));
+        let groups = (0..names.len()).map(|place| self.scenario.groups(self.models, place));
         let groups = groups.collect::<Result<Vec<_>, _>>()?;
         let most = groups.iter().map(|groups| groups.designs().runs(base)).max().unwrap_or(0);
         // What was begun otherwise is of no use to anybody.
@@ -74,10 +74,10 @@ impl<C: Subject> Finding<'_, '_, C> {
         let blocks =
             self.folder.blocks_beside(BESIDE, (self.identity, &mark), most, force, self.threads)?;
         let (mut all, mut done) = (Vec::new(), 0);
-        for ((place, (model, plain)), groups) in simulations.iter().enumerate().zip(&groups) {
+        for ((place, model), groups) in names.into_iter().enumerate().zip(&groups) {
             let designs = groups.designs();
             let simulation =
-                [(*model, self.scenario.drawing(self.models, place, Drawing::Exchanging)?)];
+                [(model, self.scenario.drawing(self.models, place, Drawing::Exchanging)?)];
             let plan = Plan {
                 runs: designs.runs(base),
                 block_runs: C::BLOCK_RUNS,
@@ -88,7 +88,7 @@ impl<C: Subject> Finding<'_, '_, C> {
             let runs =
                 self.threads.install(|| run_missing(&simulation, &blocks, plan, &more, None))?;
             done += plan.runs;
-            let columns = plain.columns();
+            let columns = simulation[0].1.columns();
             let asked = requirements_of(self.scenario, model);
             let fails = asked.iter().map(|r| Output::Fails(Box::new(r.clone())));
             let outcomes: Vec<&Column> =
@@ -107,7 +107,7 @@ impl<C: Subject> Finding<'_, '_, C> {
                 Some(Driven { output, unit, indices: indices? })
             });
             all.push(Drivers {
-                model: (*model).to_owned(),
+                model: model.to_owned(),
                 base_runs: base,
                 runs: plan.runs,
                 failed: blocks.failed(model),

@@ -41,12 +41,10 @@ macro_rules! changed {
                 runs: u64,
                 first_look: Option<u64>,
             ) -> Result<Self, ScenarioError> {
-                let size = self.size.of_all(runs)?;
-                let Self { file, until, .. } = self.clone();
-                let file_until = file.until.clone().map(|until| until.with_first_look(first_look));
-                let file = $file { until: file_until, ..file };
-                let until = until.map(|until| until.with_first_look(first_look));
-                Ok(Self { file, until, ..self.clone() }.ended(size))
+                let mut ended = self.clone().ended(self.size.of_all(runs)?);
+                ended.file.until = ended.file.until.map(|own| own.with_first_look(first_look));
+                ended.until = ended.until.map(|own| own.with_first_look(first_look));
+                Ok(ended)
             }
 
             /// The same scenario from another seed.

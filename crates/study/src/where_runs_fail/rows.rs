@@ -32,15 +32,7 @@ impl<'a> FirstRuns<'a> {
         requirements: &[Requirement],
     ) -> Result<(u64, Vec<Fails>), RunsError> {
         let fails = |block: &Table| {
-            let of = |requirement: &Requirement| {
-                let columns = requirement.quantity().columns().iter();
-                let columns: Vec<_> = columns.map(|name| block.measured(name)).collect();
-                let fails = |place: usize| {
-                    let numbers: Vec<Option<f64>> = columns.iter().map(|of| of(place)).collect();
-                    requirement.fails(&numbers)
-                };
-                (0..block.len()).map(fails).collect()
-            };
+            let of = |requirement: &Requirement| requirement.failing(block);
             let there = vec![Some(true); block.len()];
             [there].into_iter().chain(requirements.iter().map(of)).collect()
         };
