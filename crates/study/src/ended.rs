@@ -50,12 +50,13 @@ impl fmt::Display for Ended {
         if *enough {
             write!(
                 f,
-                "The rule “{rule}” ended the runs after {runs} a model, at {looks} look{s}; there might have been {most}."
+                "The rule “{rule}” ended the runs after {runs} of each model, at {looks} look{s}; there might have been {most}."
             )
         } else {
             write!(
                 f,
-                "The rule “{rule}” did not end the runs: {runs} a model are the most, at {looks} look{s}."
+                "The rule “{rule}” did not end the runs: there were {runs} of each model, which is the greatest number, at {looks} \
+                 look{s}."
             )
         }
     }
