@@ -135,6 +135,22 @@ impl Correlation {
         }
     }
 
+    /// The coefficient of two quantities: 1 of one with itself, 0 of those that are not correlated.
+    #[must_use]
+    pub fn coefficient(&self, a: usize, b: usize) -> f64 {
+        if a == b {
+            return 1.0;
+        }
+        let row = |index: usize| {
+            let place = self.members.binary_search(&index).ok()?;
+            self.rows.get(place)
+        };
+        match (row(a), row(b)) {
+            (Some(a), Some(b)) => a.iter().zip(b).map(|(x, y)| x * y).sum(),
+            (None, _) | (_, None) => 0.0,
+        }
+    }
+
     /// Pairs of quantities by which all that depend on each other hang together: a quantity without a pair is independent of
     /// all others.
     pub fn related(&self) -> impl Iterator<Item = (usize, usize)> {

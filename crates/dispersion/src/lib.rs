@@ -55,6 +55,7 @@ mod incomplete_beta;
 mod inertia_law;
 mod known_moments;
 mod log_cholesky;
+mod mass_properties;
 mod matched;
 mod matched_principal;
 mod model;
@@ -86,6 +87,10 @@ pub use entrywise::{EntrywiseError, EntrywiseGaussian};
 pub use inertia_law::{InertiaLaw, ModelDraw};
 pub use known_moments::KnownMoments;
 pub use log_cholesky::{LogCholeskyGaussian, LogCholeskyGaussianError};
+pub use mass_properties::{
+    JointScalar, MassPropertiesLaw, MassPropertiesLawError, MassPropertiesModel, TenMoments,
+    TenParameters, TensorLaw, TensorLawError,
+};
 pub use matched::{MatchError, Matched};
 pub use model::{DispersionModel, ModelKind, UnknownModel};
 pub use model_parameters::{ModelParameterError, ModelParameters};

@@ -17,7 +17,7 @@ const NEGLIGIBLE: f64 = 60.0;
 const NARROW: f64 = 0.5;
 
 /// Nodes and weights of Gauss and Legendre's rule of 16 points on [−1, 1], the positive half.
-const RULE: [[f64; 2]; 8] = [
+pub(crate) const RULE: [[f64; 2]; 8] = [
     [0.09501250983763744, 0.1894506104550685],
     [0.2816035507792589, 0.18260341504492358],
     [0.45801677765722737, 0.16915651939500254],

@@ -13,7 +13,7 @@ pub use law::RootLaw;
 pub use scalar::{ScalarRoots, ScalarRootsError};
 
 /// Draws farther out than this many deviations have probability 1e-349.
-const FAR: f64 = 40.0;
+pub(crate) const FAR: f64 = 40.0;
 
 /// Draws stay below this, so that fourth powers, which variances of K are made of, do not overflow.
 const MAX_ROOT: f64 = 1e75;

@@ -1,0 +1,419 @@
+//! The joint law of mass, mass centre and inertia, of which every draw is a body.
+
+use gyradius_inertia::{Inertia, MAX_LENGTH, MassProperties, RootSecondMoments};
+use nalgebra::{UnitQuaternion, Vector3};
+use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
+use rand_distr::{Distribution, StandardNormal};
+use std::borrow::Cow;
+
+use super::tensor::{Follows, Of, Principal};
+use super::{MassPropertiesModel, TenMoments, TenParameters, TensorLaw, TensorLawError};
+use crate::roots::FAR;
+use crate::{Correlation, CorrelationError, InertiaLaw, ScalarLaw, ScalarLawError};
+
+/// What mass times the square of a length may come to at most, so that squares of it do not overflow.
+const MAX_MOMENT: f64 = 1e150;
+/// Below this share of the mean the deviation of a normal mass makes a negative one less likely than 1e-15.
+const SAFE_DEVIATION: f64 = 0.125;
+/// Trial draws of a constructor.
+const TRIALS: usize = 64;
+
+/// The joint law of mass, mass centre and inertia.
+///
+/// # Definition
+/// The mass m and the coordinates of the mass centre c from scalar laws, in kg and m; the inertia about the mass centre
+/// from a [`TensorLaw`], of which gyration lengths make K_k = m ρ_k². Scalars may be correlated by a Gaussian copula
+/// ([`Correlation`]); the axes are independent of everything else. A normal law of the mass is the law given that the
+/// mass is positive.
+///
+/// # Realizability
+/// By construction. Ten numbers are those of a body if and only if m > 0 and the second moments about the mass centre,
+/// Σ_c, are positive semidefinite: a mass or a mass centre alone never makes a body impossible.
+///
+/// ```
+/// use gyradius_attitude::UniformAttitude;
+/// use gyradius_dispersion::{MassPropertiesLaw, ScalarLaw, TensorLaw};
+/// use gyradius_inertia::MassProperties;
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use rand_distr::Distribution;
+///
+/// let lengths = [0.2, 0.3, 0.5].map(|rho| ScalarLaw::normal(rho, 0.05 * rho));
+/// let [a, b, c] = lengths;
+/// let law = MassPropertiesLaw::new(
+///     ScalarLaw::normal(12.0, 0.6)?,
+///     [ScalarLaw::normal(0.0, 0.005)?, ScalarLaw::normal(0.0, 0.005)?, ScalarLaw::normal(0.1, 0.005)?],
+///     TensorLaw::gyration_lengths([a?, b?, c?], UniformAttitude),
+/// )?;
+/// let body: MassProperties = law.sample(&mut ChaCha8Rng::seed_from_u64(7));
+/// assert!(body.mass_kg() > 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Fields", into = "Fields")
+)]
+pub struct MassPropertiesLaw {
+    mass: ScalarLaw,
+    centre: [ScalarLaw; 3],
+    tensor: TensorLaw,
+    correlation: Correlation,
+    /// As given, for files.
+    pairs: Vec<(JointScalar, JointScalar, f64)>,
+}
+
+/// A scalar of a joint law that can be correlated with others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+pub enum JointScalar {
+    /// The mass.
+    Mass,
+    /// Coordinate 1 of the mass centre.
+    Centre1,
+    /// Coordinate 2 of the mass centre.
+    Centre2,
+    /// Coordinate 3 of the mass centre.
+    Centre3,
+    /// The first gyration length, or the first root.
+    Shape1,
+    /// The second.
+    Shape2,
+    /// The third.
+    Shape3,
+}
+
+impl JointScalar {
+    /// All of them, in the order in which they are drawn.
+    pub const ALL: [Self; 7] = [
+        Self::Mass,
+        Self::Centre1,
+        Self::Centre2,
+        Self::Centre3,
+        Self::Shape1,
+        Self::Shape2,
+        Self::Shape3,
+    ];
+}
+
+impl MassPropertiesLaw {
+    /// From the laws of the mass in kg, of the mass centre in m along the body axes, and of the inertia about it.
+    ///
+    /// # Errors
+    /// The mass can be negative (of a normal law its mean must be positive), or something can come out too large.
+    pub fn new(
+        mass: ScalarLaw,
+        centre: [ScalarLaw; 3],
+        tensor: TensorLaw,
+    ) -> Result<Self, MassPropertiesLawError> {
+        tensor.check()?;
+        let mass = positive(mass)?;
+        let law =
+            Self { mass, centre, tensor, correlation: Correlation::default(), pairs: Vec::new() };
+        law.check_reach()?;
+        law.check_draws()?;
+        Ok(law)
+    }
+
+    /// The same with scalars that are correlated, by the coefficients of their normal scores.
+    ///
+    /// # Errors
+    /// The coefficients do not belong together, or one is of the shape and the inertia is drawn by a model that has no
+    /// three scalar laws.
+    pub fn with_correlation(
+        self,
+        pairs: &[(JointScalar, JointScalar, f64)],
+    ) -> Result<Self, MassPropertiesLawError> {
+        let scalars = self.scalar_laws().count();
+        let at: Vec<(usize, usize, f64)> =
+            pairs.iter().map(|&(a, b, value)| (a as usize, b as usize, value)).collect();
+        if let Some((a, b, _)) = pairs.iter().find(|(a, b, _)| (*a).max_index(*b) >= scalars) {
+            let scalar = if *a as usize >= scalars { *a } else { *b };
+            return Err(MassPropertiesLawError::NoShape { scalar });
+        }
+        let correlation = Correlation::new(&at)?;
+        Ok(Self { correlation, pairs: pairs.to_vec(), ..self })
+    }
+
+    /// The law of the mass, kg.
+    #[must_use]
+    pub fn mass(&self) -> &ScalarLaw {
+        &self.mass
+    }
+
+    /// The laws of the mass centre, m.
+    #[must_use]
+    pub fn centre(&self) -> &[ScalarLaw; 3] {
+        &self.centre
+    }
+
+    /// The law of the inertia about the mass centre.
+    #[must_use]
+    pub fn tensor(&self) -> &TensorLaw {
+        &self.tensor
+    }
+
+    /// How the scalars are correlated.
+    #[must_use]
+    pub fn correlation(&self) -> &Correlation {
+        &self.correlation
+    }
+
+    /// Mass, mass centre, and lengths or roots where there are such.
+    pub(super) fn scalar_laws(&self) -> impl Iterator<Item = &ScalarLaw> {
+        let shape = self.tensor.scalar_laws().into_iter().flatten();
+        std::iter::once(&self.mass).chain(&self.centre).chain(shape)
+    }
+
+    /// Whether draws are rejected, so that the laws of the parts are not those of the whole.
+    pub(super) fn is_rejected(&self) -> bool {
+        false
+    }
+
+    pub(super) fn shares(&self) -> Shares {
+        Shares(self.tensor.follows)
+    }
+
+    fn check_reach(&self) -> Result<(), MassPropertiesLawError> {
+        let mass = self.mass.reach(FAR);
+        if !(mass <= MAX_MOMENT) {
+            return Err(MassPropertiesLawError::Reach { what: "mass", value: mass });
+        }
+        for law in &self.centre {
+            let value = law.reach(FAR);
+            if !(value <= MAX_LENGTH && mass * value * value <= MAX_MOMENT) {
+                return Err(MassPropertiesLawError::Reach { what: "mass centre", value });
+            }
+        }
+        let (what, factor) = match &self.tensor.of {
+            Of::GyrationLengths(_) => ("gyration lengths", mass),
+            Of::Roots(_) => ("roots", self.shares().factor(mass)),
+            Of::Model(_) => return Ok(()),
+        };
+        for law in self.tensor.scalar_laws().into_iter().flatten() {
+            let value = law.reach(FAR);
+            if !(value * value * factor <= MAX_MOMENT) {
+                return Err(MassPropertiesLawError::Reach { what, value });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_draws(&self) -> Result<(), MassPropertiesLawError> {
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(0);
+        let bodies = (0..TRIALS).filter(|_| self.propose(&mut rng).is_some()).count();
+        if 2 * bodies < TRIALS { Err(MassPropertiesLawError::NoBodies { bodies }) } else { Ok(()) }
+    }
+
+    /// A draw, unless the mass or a size is none.
+    #[inline]
+    fn propose<R: Rng + ?Sized>(&self, rng: &mut R) -> Option<MassProperties> {
+        let (mass, centre, shape) = self.scalars(rng);
+        if !(mass > 0.0) {
+            return None;
+        }
+        let principal = |size: [f64; 3], axes: &UnitQuaternion<f64>| {
+            let squared = RootSecondMoments::new(size).ok()?.squared();
+            Inertia::from_second_moments(squared, axes).ok()
+        };
+        let inertia = match &self.tensor.of {
+            Of::GyrationLengths(Principal { axes, .. }) => {
+                let root = mass.sqrt();
+                principal(shape.map(|length| length * root), &axes.sample(rng))?
+            }
+            Of::Roots(Principal { axes, .. }) => {
+                let root = self.shares().factor(mass).sqrt();
+                principal(shape.map(|k| k * root), &axes.sample(rng))?
+            }
+            Of::Model(model) => {
+                let mut rng = rng;
+                let drawn = model.draw(&mut rng).inertia;
+                let factor = self.shares().factor(mass);
+                let inertia = Inertia::try_from(drawn).ok()?;
+                if factor == 1.0 {
+                    inertia
+                } else {
+                    Inertia::new(inertia.matrix() * factor).ok()?
+                }
+            }
+        };
+        MassProperties::new(mass, centre, inertia).ok()
+    }
+
+    /// Mass, mass centre, and lengths or roots where there are such.
+    #[inline]
+    fn scalars<R: Rng + ?Sized>(&self, rng: &mut R) -> (f64, Vector3<f64>, [f64; 3]) {
+        let shape = self.tensor.scalar_laws();
+        if self.pairs.is_empty() {
+            let mass = self.mass.draw(rng);
+            let centre = self.centre.each_ref().map(|law| law.draw(rng));
+            let shape = shape.map_or([0.0; 3], |laws| laws.each_ref().map(|law| law.draw(rng)));
+            return (mass, centre.into(), shape);
+        }
+        let mut z = [0.0; JointScalar::ALL.len()];
+        let count = if shape.is_some() { z.len() } else { 4 };
+        z[..count].fill_with(|| StandardNormal.sample(rng));
+        self.correlation.mix(&mut z);
+        let mut values = self.scalar_laws().zip(z).map(|(law, z)| law.at_score(z));
+        let mut next = || values.next().unwrap_or(0.0);
+        (next(), Vector3::new(next(), next(), next()), [next(), next(), next()])
+    }
+}
+
+/// What the inertia is multiplied with at a mass.
+#[derive(Clone, Copy)]
+pub(super) struct Shares(Option<Follows>);
+
+impl Shares {
+    pub(super) fn factor(self, mass: f64) -> f64 {
+        self.0.map_or(1.0, |follows| follows.factor(mass))
+    }
+}
+
+impl JointScalar {
+    fn max_index(self, other: Self) -> usize {
+        (self as usize).max(other as usize)
+    }
+}
+
+/// A law of the mass that cannot be negative.
+fn positive(mass: ScalarLaw) -> Result<ScalarLaw, MassPropertiesLawError> {
+    match mass.as_normal() {
+        Some([mean, variance]) if mean > 0.0 => {
+            let deviation = variance.sqrt();
+            if deviation <= SAFE_DEVIATION * mean {
+                return Ok(mass);
+            }
+            Ok(ScalarLaw::truncated_normal(mean, deviation, 0.0, f64::INFINITY)?)
+        }
+        Some([mean, _]) => Err(MassPropertiesLawError::Mass { probability: None, mean }),
+        None => {
+            let probability = mass.cdf(0.0);
+            // A law that begins at zero is at zero with probability zero.
+            if probability > 0.0 {
+                let mean = mass.mean();
+                return Err(MassPropertiesLawError::Mass { probability: Some(probability), mean });
+            }
+            Ok(mass)
+        }
+    }
+}
+
+impl Distribution<MassProperties> for MassPropertiesLaw {
+    #[inline]
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> MassProperties {
+        loop {
+            if let Some(body) = self.propose(rng) {
+                return body;
+            }
+        }
+    }
+}
+
+impl MassPropertiesModel for MassPropertiesLaw {
+    fn name(&self) -> Cow<'_, str> {
+        "joint".into()
+    }
+
+    fn draw(&self, rng: &mut dyn Rng) -> TenParameters {
+        let mut rng = rng;
+        let body: MassProperties = self.sample(&mut rng);
+        body.into()
+    }
+
+    fn is_realizable_by_construction(&self) -> bool {
+        true
+    }
+
+    fn moments(&self) -> Option<TenMoments> {
+        self.moments()
+    }
+}
+
+/// The serialized form.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fields {
+    mass_kg: ScalarLaw,
+    mass_centre_m: [ScalarLaw; 3],
+    inertia: TensorLaw,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    correlations: Vec<(JointScalar, JointScalar, f64)>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Fields> for MassPropertiesLaw {
+    type Error = MassPropertiesLawError;
+
+    fn try_from(fields: Fields) -> Result<Self, Self::Error> {
+        let law = Self::new(fields.mass_kg, fields.mass_centre_m, fields.inertia)?;
+        law.with_correlation(&fields.correlations)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<MassPropertiesLaw> for Fields {
+    fn from(law: MassPropertiesLaw) -> Self {
+        Self {
+            mass_kg: law.mass,
+            mass_centre_m: law.centre,
+            inertia: law.tensor,
+            correlations: law.pairs,
+        }
+    }
+}
+
+/// Why laws do not make a joint one.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MassPropertiesLawError {
+    /// The mass can be negative.
+    #[error(
+        "mass with the mean {mean:?} kg{}: it must be positive",
+        probability.map_or_else(String::new, |p| format!(", not positive with probability {p:.3e}"))
+    )]
+    Mass {
+        /// How often, if the law is not normal.
+        probability: Option<f64>,
+        /// The mean, kg.
+        mean: f64,
+    },
+    /// The law of a scalar.
+    #[error(transparent)]
+    Scalar(#[from] ScalarLawError),
+    /// The law of the inertia.
+    #[error(transparent)]
+    Tensor(#[from] TensorLawError),
+    /// The coefficients of correlation.
+    #[error(transparent)]
+    Correlation(#[from] CorrelationError),
+    /// A coefficient is of the shape, and the inertia is drawn by a model.
+    #[error(
+        "correlation with {scalar:?}: the inertia is drawn by a model that has no three scalar laws"
+    )]
+    NoShape {
+        /// The scalar.
+        scalar: JointScalar,
+    },
+    /// Something can come out too large.
+    #[error(
+        "{what} of up to {value:e}: mass times the square of a length must not come out beyond {MAX_MOMENT:e} kg·m²"
+    )]
+    Reach {
+        /// What.
+        what: &'static str,
+        /// How large, in SI units.
+        value: f64,
+    },
+    /// Most trial draws are no bodies.
+    #[error("{bodies} of {TRIALS} trial draws are bodies: sizes so small that floats lose them")]
+    NoBodies {
+        /// How many are.
+        bodies: usize,
+    },
+}

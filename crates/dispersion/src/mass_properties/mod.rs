@@ -1,0 +1,16 @@
+//! Random mass, mass centre and inertia together: the ten parameters of a body that nobody has weighed yet.
+
+mod law;
+mod model;
+mod moments;
+mod scores;
+mod ten_parameters;
+mod tensor;
+#[cfg(test)]
+mod tests;
+
+pub use law::{JointScalar, MassPropertiesLaw, MassPropertiesLawError};
+pub use model::MassPropertiesModel;
+pub use moments::TenMoments;
+pub use ten_parameters::TenParameters;
+pub use tensor::{TensorLaw, TensorLawError};

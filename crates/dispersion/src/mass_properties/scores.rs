@@ -1,0 +1,185 @@
+//! Expectations over scalar laws that are drawn jointly, by quadrature over their scores.
+
+use nalgebra::DMatrix;
+use std::{cell::RefCell, collections::HashMap, rc::Rc};
+
+use crate::{Correlation, ScalarLaw};
+
+/// How many scalars a joint law has at most: mass, three of the centre, three of the shape.
+pub(super) const SCALARS: usize = 7;
+
+/// The function ∏ x_s^p_s of scalars, times a power of the factor that goes with the first.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Monomial {
+    pub(super) powers: [i32; SCALARS],
+    pub(super) factor: i32,
+}
+
+impl Monomial {
+    pub(super) fn times(mut self, scalar: usize, power: i32) -> Self {
+        self.powers[scalar] += power;
+        self
+    }
+
+    fn involves(&self, scalar: usize) -> bool {
+        self.powers[scalar] != 0 || (scalar == 0 && self.factor != 0)
+    }
+}
+
+/// Scalar laws with a Gaussian copula, of which expectations are taken.
+pub(super) struct Scores<'a, F> {
+    pub(super) laws: Vec<&'a ScalarLaw>,
+    pub(super) correlation: &'a Correlation,
+    /// The factor that goes with the first scalar.
+    pub(super) factor: F,
+    /// What has been found of each block of scalars.
+    pub(super) known: RefCell<HashMap<Vec<usize>, Rc<Nodes>>>,
+}
+
+/// Weights and values of the scalars of a block, one after the other.
+pub(super) struct Nodes {
+    weights: Vec<f64>,
+    values: Vec<f64>,
+}
+
+/// E f, E g, E fg and Cov(f, g).
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    first: f64,
+    second: f64,
+    product: f64,
+    covariance: f64,
+}
+
+impl<F: Fn(f64) -> f64> Scores<'_, F> {
+    /// E f and Cov(f, g).
+    ///
+    /// Scalars that are not correlated with each other are independent, and of products of independent functions
+    /// Cov(f f', g g') = Cov(f, g) E f'g' + E f E g Cov(f', g'): nothing cancels, so that narrow laws keep their digits.
+    pub(super) fn covariance(&self, f: &Monomial, g: &Monomial) -> (f64, f64) {
+        let involved: Vec<usize> =
+            (0..self.laws.len()).filter(|&s| f.involves(s) || g.involves(s)).collect();
+        let one = Pair { first: 1.0, second: 1.0, product: 1.0, covariance: 0.0 };
+        let whole =
+            self.blocks(&involved).iter().map(|block| self.block(block, f, g)).fold(one, |a, b| {
+                Pair {
+                    first: a.first * b.first,
+                    second: a.second * b.second,
+                    product: a.product * b.product,
+                    covariance: a.covariance * b.product + a.first * a.second * b.covariance,
+                }
+            });
+        (whole.first, whole.covariance)
+    }
+
+    /// The scalars in groups that are independent of each other.
+    fn blocks(&self, involved: &[usize]) -> Vec<Vec<usize>> {
+        let mut blocks: Vec<Vec<usize>> = Vec::new();
+        for &scalar in involved {
+            let tied = |block: &Vec<usize>| {
+                block.iter().any(|&other| self.correlation.coefficient(scalar, other) != 0.0)
+            };
+            let (joined, mut apart): (Vec<_>, Vec<_>) = blocks.into_iter().partition(tied);
+            let mut own: Vec<usize> = joined.into_iter().flatten().collect();
+            own.push(scalar);
+            own.sort_unstable();
+            apart.push(own);
+            blocks = apart;
+        }
+        blocks
+    }
+
+    fn block(&self, block: &[usize], f: &Monomial, g: &Monomial) -> Pair {
+        let known = self.known.borrow().get(block).cloned();
+        let nodes = known.unwrap_or_else(|| {
+            let nodes = Rc::new(self.nodes(block));
+            self.known.borrow_mut().insert(block.to_vec(), Rc::clone(&nodes));
+            nodes
+        });
+        let value = |monomial: &Monomial, x: &[f64]| {
+            block.iter().zip(x).fold(1.0, |product, (&scalar, &x)| {
+                let own = product * x.powi(monomial.powers[scalar]);
+                if scalar == 0 { own * (self.factor)(x).powi(monomial.factor) } else { own }
+            })
+        };
+        let each = || nodes.weights.iter().zip(nodes.values.chunks_exact(block.len()));
+        let (mut first, mut second, mut product, mut covariance) = (0.0, 0.0, 0.0, 0.0);
+        for (weight, x) in each() {
+            let (f, g) = (value(f, x), value(g, x));
+            first += weight * f;
+            second += weight * g;
+            product += weight * f * g;
+        }
+        for (weight, x) in each() {
+            covariance += weight * (value(f, x) - first) * (value(g, x) - second);
+        }
+        Pair { first, second, product, covariance }
+    }
+
+    /// Weights and values of the scalars of a block.
+    fn nodes(&self, block: &[usize]) -> Nodes {
+        let rule = match block.len() {
+            // Laws with corners want many nodes, and those with steps, too.
+            1 => panels(),
+            2 => hermite(48),
+            3 => hermite(24),
+            _ => hermite(14),
+        };
+        let pairs: Vec<(usize, usize, f64)> = (0..block.len())
+            .flat_map(|i| (0..i).map(move |j| (i, j)))
+            .map(|(i, j)| (i, j, self.correlation.coefficient(block[i], block[j])))
+            .filter(|(_, _, coefficient)| *coefficient != 0.0)
+            .collect();
+        // Of correlations a part is correlations, too.
+        let correlation = Correlation::new(&pairs).unwrap_or_default();
+        let count = rule.len().pow(block.len() as u32);
+        let mut nodes = Nodes {
+            weights: Vec::with_capacity(count),
+            values: Vec::with_capacity(count * block.len()),
+        };
+        let mut scores = vec![0.0; block.len()];
+        for node in 0..count {
+            let (mut weight, mut rest) = (1.0, node);
+            for score in &mut scores {
+                let (w, z) = rule[rest % rule.len()];
+                (weight, *score, rest) = (weight * w, z, rest / rule.len());
+            }
+            correlation.mix(&mut scores);
+            let values =
+                scores.iter().zip(block).map(|(z, &scalar)| self.laws[scalar].at_score(*z));
+            nodes.values.extend(values);
+            nodes.weights.push(weight);
+        }
+        nodes
+    }
+}
+
+/// The rule of Gauss and Hermite for the standard normal law, weights and nodes, from the eigenvectors of the matrix of
+/// the recursion (Golub & Welsch 1969, doi:10.1090/S0025-5718-69-99647-1).
+fn hermite(n: usize) -> Vec<(f64, f64)> {
+    let matrix =
+        DMatrix::from_fn(
+            n,
+            n,
+            |i, j| {
+                if i.abs_diff(j) == 1 { (i.max(j) as f64).sqrt() } else { 0.0 }
+            },
+        );
+    let eigen = matrix.symmetric_eigen();
+    let weights = eigen.eigenvectors.row(0).iter().map(|v| v * v).collect::<Vec<_>>();
+    weights.into_iter().zip(eigen.eigenvalues.iter().copied()).collect()
+}
+
+/// A rule with many nodes on [−12, 12], the same in each of its panels.
+fn panels() -> Vec<(f64, f64)> {
+    const PANELS: usize = 96;
+    let half = 12.0 / PANELS as f64;
+    let density = |z: f64| libm::exp(-0.5 * z * z) / (2.0 * std::f64::consts::PI).sqrt();
+    let nodes = (0..PANELS).flat_map(|i| {
+        let middle = -12.0 + (2 * i + 1) as f64 * half;
+        crate::truncated_normal::RULE.iter().flat_map(move |[x, w]| {
+            [middle - half * x, middle + half * x].map(|z| (half * w * density(z), z))
+        })
+    });
+    nodes.collect()
+}

@@ -1,0 +1,283 @@
+//! The joint law over its whole space: bodies, moments, correlations, files, refusals.
+
+use gyradius_attitude::{RadiallyConstrainedGaussian, UniformAttitude};
+use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, PseudoInertia};
+use nalgebra::{Matrix4, SVector, UnitQuaternion, Vector3, Vector4};
+use proptest::prelude::*;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use rand_distr::Distribution;
+
+use super::*;
+use crate::{AxesLaw, FixedAttitude, ScalarLaw, Wishart};
+
+/// Scalar laws of many kinds with about this mean and deviation, the mean positive.
+pub(super) fn scalar(kind: usize, mean: f64, sigma: f64) -> ScalarLaw {
+    let half = 3f64.sqrt() * sigma;
+    match kind % 5 {
+        0 => ScalarLaw::normal(mean, sigma),
+        1 => ScalarLaw::uniform(mean - half, mean + half),
+        2 => ScalarLaw::lognormal(mean, sigma),
+        3 => ScalarLaw::truncated_normal(mean, sigma, mean - 1.5 * sigma, mean + 2.0 * sigma),
+        _ => ScalarLaw::normal(mean, 0.0),
+    }
+    .unwrap()
+}
+
+pub(super) fn axes(kind: usize, turn: [f64; 3]) -> AxesLaw {
+    let mean = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
+    match kind % 3 {
+        0 => UniformAttitude.into(),
+        1 => FixedAttitude::new(mean).into(),
+        _ => {
+            let covariance = Matrix4::from_diagonal(&Vector4::new(0.02, 0.01, 0.04, 0.9));
+            RadiallyConstrainedGaussian::new(mean, covariance).unwrap().into()
+        }
+    }
+}
+
+pub(super) fn tensor(kind: usize, turn: [f64; 3], kinds: [usize; 3]) -> TensorLaw {
+    let of = |size: f64| {
+        let [a, b, c] = [0.3, 0.7, 0.5];
+        [scalar(kinds[0], a * size, 0.1 * size), scalar(kinds[1], b * size, 0.12 * size), {
+            scalar(kinds[2], c * size, 0.05 * size)
+        }]
+    };
+    match kind % 4 {
+        0 => TensorLaw::gyration_lengths(of(1.0), axes(kind / 4, turn)),
+        1 => TensorLaw::roots(of(3.0), axes(kind / 4, turn)),
+        2 => {
+            let roots = TensorLaw::roots(of(3.0), axes(kind / 4, turn));
+            roots.with_follows(0.6, 9.0).unwrap()
+        }
+        _ => {
+            let mean = InertiaMatrix::from_entries([5.0, 4.0, 3.0], [0.2, 0.1, -0.5]).unwrap();
+            let wishart = Wishart::new(Inertia::try_from(mean).unwrap(), 0.1).unwrap();
+            TensorLaw::model(wishart).unwrap().with_follows(1.0, 9.0).unwrap()
+        }
+    }
+}
+
+pub(super) fn any_law() -> impl Strategy<Value = MassPropertiesLaw> {
+    let kinds = prop::array::uniform7(0..5usize);
+    let turn = prop::array::uniform3(-2.0..2.0f64);
+    let vectors = prop::array::uniform7(prop::array::uniform2(-1.0..1.0f64));
+    (kinds, 0..12usize, turn, vectors, 0..3usize).prop_map(|(kinds, kind, turn, vectors, ties)| {
+        let centre = [0.4, 0.8, 0.3].map(|mean| (mean, 0.2));
+        let centre = std::array::from_fn(|i| scalar(kinds[i + 1], centre[i].0, centre[i].1));
+        let own = tensor(kind, turn, [kinds[4], kinds[5], kinds[6]]);
+        let law = MassPropertiesLaw::new(scalar(kinds[0], 9.0, 1.1), centre, own).unwrap();
+        // Coefficients of a few scalars, as products of unit vectors: no contradiction.
+        let count = if kind % 4 == 3 { 4 } else { 7 };
+        let picked: Vec<usize> = match ties {
+            0 => vec![],
+            1 => vec![0, count - 1],
+            _ => vec![0, 2, count - 1],
+        };
+        let unit = |i: usize| Vector3::new(vectors[i][0], vectors[i][1], 0.7).normalize();
+        let mut pairs = Vec::new();
+        for (n, &a) in picked.iter().enumerate() {
+            for &b in &picked[..n] {
+                pairs.push((JointScalar::ALL[a], JointScalar::ALL[b], unit(a).dot(&unit(b))));
+            }
+        }
+        law.with_correlation(&pairs).unwrap()
+    })
+}
+
+/// Largest |z| of means and covariances of draws against those expected.
+fn worst(moments: &TenMoments, rows: &[SVector<f64, 10>]) -> f64 {
+    let n = rows.len() as f64;
+    let mut worst = 0f64;
+    let mut count = |gap: f64, deviation: f64, size: f64| {
+        if gap.abs() > 1e-9 * size {
+            worst = worst.max(gap.abs() / (deviation / n.sqrt()));
+        }
+    };
+    for i in 0..10 {
+        let mean = moments.mean()[i];
+        let sample = rows.iter().map(|row| row[i]).sum::<f64>() / n;
+        count(sample - mean, moments.deviations()[i], 1.0 + mean.abs());
+        for j in 0..=i {
+            let product = |row: &SVector<f64, 10>| (row[i] - mean) * (row[j] - moments.mean()[j]);
+            let average = rows.iter().map(product).sum::<f64>() / n;
+            let spread = rows.iter().map(|r| (product(r) - average).powi(2)).sum::<f64>() / n;
+            let size = moments.deviations()[i] * moments.deviations()[j];
+            count(average - moments.covariance()[(i, j)], spread.sqrt(), 1e-3 + size);
+        }
+    }
+    worst
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// 130 numbers of each of 32 laws: |z| < 6 is exceeded once in 100,000 times.
+    #[test]
+    fn moments_are_those_of_the_draws(law in any_law(), seed in any::<u64>()) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let draws: Vec<TenParameters> =
+            (0..20_000).map(|_| MassPropertiesModel::draw(&law, &mut rng)).collect();
+        let natural: Vec<_> = draws.iter().map(|ten| SVector::from(ten.values())).collect();
+        let moments = law.moments().unwrap();
+        let z = worst(&moments, &natural);
+        prop_assert!(z < 6.0, "{z}");
+        let linear: Vec<_> = draws.iter().map(TenParameters::linear).collect();
+        let of_linear = law.linear_moments().unwrap();
+        let z = worst(&of_linear, &linear);
+        prop_assert!(z < 6.0, "{z}");
+        // The control: the parallel-axis term left out.
+        prop_assert!(worst(&moments, &linear) > 20.0);
+    }
+
+    #[test]
+    fn draws_are_bodies(law in any_law(), seed in any::<u64>()) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        for _ in 0..200 {
+            let body: MassProperties = law.sample(&mut rng);
+            prop_assert!(body.inertia().as_inertia_matrix().is_realizable());
+            prop_assert!(PseudoInertia::of(&body).is_ok());
+            let ten = TenParameters::from(body);
+            prop_assert!(ten.is_realizable());
+            prop_assert_eq!(TenParameters::from_values(ten.values()).unwrap(), ten);
+            let about = body.inertia_about([0.0; 3]).unwrap().entries();
+            for (x, y) in ten.linear().iter().skip(4).zip(about) {
+                prop_assert!((x - y).abs() < 1e-12 * about[0].max(1.0));
+            }
+        }
+    }
+
+    #[test]
+    fn columns_are_draws(law in any_law(), n in 0..300usize) {
+        let mut columns: [Vec<f64>; 10] = std::array::from_fn(|_| vec![0.0; n]);
+        let mut rngs = [3, 3].map(ChaCha8Rng::seed_from_u64);
+        law.draw_columns(&mut rngs[0], columns.each_mut().map(Vec::as_mut_slice)).unwrap();
+        for row in 0..n {
+            let expected = MassPropertiesModel::draw(&law, &mut rngs[1]).values();
+            prop_assert_eq!(columns.each_ref().map(|c| c[row]), expected);
+        }
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn files_keep_the_law(law in any_law()) {
+        let json = serde_json::to_string(&law).unwrap();
+        let back: MassPropertiesLaw = serde_json::from_str(&json).unwrap();
+        let mut rngs = [4, 4].map(ChaCha8Rng::seed_from_u64);
+        let bodies = [&law, &back].map(|law| {
+            let body: MassProperties = law.sample(&mut rngs[0]);
+            body
+        });
+        prop_assert_eq!(serde_json::to_string(&back).unwrap(), json);
+        let again: MassProperties = back.sample(&mut rngs[1]);
+        prop_assert_eq!(bodies[0], again);
+    }
+}
+
+/// An inertia from gyration lengths follows the mass, one from roots does not, and a share is between.
+#[test]
+fn inertia_follows_the_mass_as_said() {
+    let mass = ScalarLaw::normal(9.0, 0.9).unwrap();
+    let still = || ScalarLaw::normal(0.0, 0.0).unwrap();
+    let fixed = |x: f64| [ScalarLaw::normal(x, 0.0).unwrap(), still(), still()];
+    let axes = || FixedAttitude::new(UnitQuaternion::identity());
+    let relative = |tensor: TensorLaw| {
+        let law =
+            MassPropertiesLaw::new(mass.clone(), [still(), still(), still()], tensor).unwrap();
+        let moments = law.moments().unwrap();
+        let correlated = moments.covariance()[(0, 5)] > 0.0;
+        (moments.deviations()[5] / moments.mean()[5], correlated)
+    };
+    let near = |(found, correlated): (f64, bool), expected: f64| {
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        assert_eq!(correlated, expected > 0.0);
+    };
+    near(relative(TensorLaw::gyration_lengths(fixed(1.0), axes())), 0.1);
+    near(relative(TensorLaw::roots(fixed(3.0), axes())), 0.0);
+    near(relative(TensorLaw::roots(fixed(3.0), axes()).with_follows(1.0, 9.0).unwrap()), 0.1);
+    near(relative(TensorLaw::roots(fixed(3.0), axes()).with_follows(0.3, 9.0).unwrap()), 0.03);
+}
+
+/// A mass that scatters widely is never negative, and its moments are those of what is left.
+#[test]
+fn masses_are_positive() {
+    let still = || ScalarLaw::normal(0.1, 0.0).unwrap();
+    let lengths = || TensorLaw::gyration_lengths([still(), still(), still()], UniformAttitude);
+    let law = |mass| MassPropertiesLaw::new(mass, [still(), still(), still()], lengths());
+    let wide = law(ScalarLaw::normal(1.0, 1.0).unwrap()).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let masses: Vec<f64> = (0..40_000)
+        .map(|_| {
+            let body: MassProperties = wide.sample(&mut rng);
+            body.mass_kg()
+        })
+        .collect();
+    assert!(masses.iter().all(|m| *m > 0.0));
+    let mean = masses.iter().sum::<f64>() / masses.len() as f64;
+    // 1 + φ(1)/Φ(1).
+    let expected = 1.287_599_970_939_178;
+    assert!((wide.moments().unwrap().mean()[0] - expected).abs() < 1e-9);
+    assert!((mean - expected).abs() < 4.0 * 0.8 / 200.0, "{mean}");
+    for mass in
+        [ScalarLaw::uniform(-1.0, 3.0), ScalarLaw::normal(-1.0, 0.1), ScalarLaw::normal(0.0, 1.0)]
+    {
+        let error = law(mass.unwrap()).unwrap_err();
+        assert!(matches!(error, MassPropertiesLawError::Mass { .. }), "{error}");
+    }
+    assert!(law(ScalarLaw::uniform(0.0, 3.0).unwrap()).is_ok());
+}
+
+#[test]
+fn what_is_no_law_is_refused_by_name() {
+    let still = || ScalarLaw::normal(1.0, 0.0).unwrap();
+    let centre = || [still(), still(), still()];
+    let lengths = |x: f64| {
+        TensorLaw::gyration_lengths(
+            [ScalarLaw::normal(x, 0.0).unwrap(), still(), still()],
+            UniformAttitude,
+        )
+    };
+    for (mass, length, what) in [(1e100, 1e40, "gyration"), (1e-3, 1e80, "gyration")] {
+        let mass = ScalarLaw::normal(mass, 0.0).unwrap();
+        let error = MassPropertiesLaw::new(mass, centre(), lengths(length)).unwrap_err();
+        assert!(error.to_string().starts_with(what), "{error}");
+    }
+    let far = ScalarLaw::normal(1e90, 0.0).unwrap();
+    let error = MassPropertiesLaw::new(still(), [far, still(), still()], lengths(1.0)).unwrap_err();
+    assert!(error.to_string().starts_with("mass centre"), "{error}");
+    let entries = InertiaMatrix::from_entries([5.0, 4.0, 3.0], [0.0; 3]).unwrap();
+    let naive = crate::EntrywiseGaussian::new(entries, [0.5; 6]).unwrap();
+    let error = TensorLaw::model(naive).unwrap_err();
+    assert!(error.to_string().contains("entrywise"), "{error}");
+    assert_eq!(lengths(1.0).with_follows(1.0, 1.0), Err(TensorLawError::FollowsAnyway));
+    let tensor = tensor(3, [0.0; 3], [0; 3]);
+    for (share, mass) in [(-0.1, 1.0), (1.1, 1.0), (f64::NAN, 1.0), (0.5, 0.0), (0.5, f64::NAN)] {
+        assert!(tensor.clone().with_follows(share, mass).is_err());
+    }
+    let law = MassPropertiesLaw::new(still(), centre(), tensor).unwrap();
+    let pair = [(JointScalar::Mass, JointScalar::Shape2, 0.5)];
+    let error = law.clone().with_correlation(&pair).unwrap_err();
+    assert_eq!(error, MassPropertiesLawError::NoShape { scalar: JointScalar::Shape2 });
+    let pair = [(JointScalar::Mass, JointScalar::Centre2, 1.5)];
+    assert!(law.with_correlation(&pair).is_err());
+}
+
+/// A mass that counts twice, in the lengths and as a factor, is found by the moments: a negative control.
+#[test]
+fn a_mass_that_counts_twice_is_found() {
+    let law = MassPropertiesLaw::new(
+        scalar(0, 9.0, 0.9),
+        [scalar(0, 0.1, 0.01), scalar(0, 0.1, 0.01), scalar(0, 0.1, 0.01)],
+        tensor(8, [0.0; 3], [0; 3]),
+    )
+    .unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    let twice: Vec<SVector<f64, 10>> = (0..20_000)
+        .map(|_| {
+            let body: MassProperties = law.sample(&mut rng);
+            let again = body.inertia().matrix() * (body.mass_kg() / 9.0);
+            let inertia = InertiaMatrix::new(again).unwrap();
+            TenParameters { inertia, ..body.into() }.values().into()
+        })
+        .collect();
+    assert!(worst(&law.moments().unwrap(), &twice) > 10.0);
+}
