@@ -4,6 +4,7 @@ mod law;
 mod model;
 mod moments;
 mod scores;
+mod ten_moments;
 mod ten_parameters;
 mod tensor;
 #[cfg(test)]
@@ -11,6 +12,6 @@ mod tests;
 
 pub use law::{JointScalar, MassPropertiesLaw, MassPropertiesLawError};
 pub use model::MassPropertiesModel;
-pub use moments::TenMoments;
+pub use ten_moments::TenMoments;
 pub use ten_parameters::TenParameters;
 pub use tensor::{TensorLaw, TensorLawError};

@@ -1,50 +1,19 @@
-//! Mean and covariance of the ten parameters.
+//! Mean and covariance of the ten parameters of the joint law, by quadrature over its scalars.
 
 use nalgebra::{SMatrix, SVector};
 use std::cell::RefCell;
 
+use super::TenMoments;
 use super::law::MassPropertiesLaw;
 use super::scores::{Monomial, Scores};
 use super::tensor::{Of, Principal};
 use crate::entry_moments::ENTRIES;
 use crate::{AttitudeMoments, EntryMoments, InertiaLaw, SecondMomentStatistics};
 
-/// Mean and covariance of ten parameters.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TenMoments {
-    mean: SVector<f64, 10>,
-    covariance: SMatrix<f64, 10, 10>,
-}
-
-impl TenMoments {
-    pub(crate) fn unchecked(mean: SVector<f64, 10>, covariance: SMatrix<f64, 10, 10>) -> Self {
-        Self { mean, covariance }
-    }
-
-    /// The means, in kg, m (or kg·m) and kg·m².
-    #[must_use]
-    pub fn mean(&self) -> &SVector<f64, 10> {
-        &self.mean
-    }
-
-    /// The covariance.
-    #[must_use]
-    pub fn covariance(&self) -> &SMatrix<f64, 10, 10> {
-        &self.covariance
-    }
-
-    /// The standard deviations.
-    #[must_use]
-    pub fn deviations(&self) -> [f64; 10] {
-        // Rounding may leave a variance of zero a hair below it.
-        std::array::from_fn(|i| self.covariance[(i, i)].max(0.0).sqrt())
-    }
-}
-
 /// What the entries of the inertia are linear in: the second moments, or a factor of them all.
 enum Size {
     Second([Monomial; 3], Vec<[f64; 6]>),
-    Factor(Monomial, EntryMoments),
+    Factor(Monomial, [f64; 6]),
 }
 
 const MASS: usize = 0;
@@ -137,7 +106,7 @@ impl MassPropertiesLaw {
                     })
                 }
                 Size::Factor(factor, entries) => {
-                    SVector::from(entries.mean()) * pairs(factor, &others[i]).1
+                    SVector::from(*entries) * pairs(factor, &others[i]).1
                 }
             };
             let entries =
@@ -177,7 +146,7 @@ impl MassPropertiesLaw {
                 let covariance =
                     own.covariance() * square + entries * entries.transpose() * variance;
                 let moments = EntryMoments::unchecked((entries * mean).into(), covariance);
-                (Size::Factor(factor, own), moments)
+                (Size::Factor(factor, own.mean()), moments)
             }
         })
     }
