@@ -1,0 +1,35 @@
+//! Mean and covariance of ten numbers.
+
+use nalgebra::{SMatrix, SVector};
+
+/// Mean and covariance of ten parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TenMoments {
+    mean: SVector<f64, 10>,
+    covariance: SMatrix<f64, 10, 10>,
+}
+
+impl TenMoments {
+    pub(crate) fn unchecked(mean: SVector<f64, 10>, covariance: SMatrix<f64, 10, 10>) -> Self {
+        Self { mean, covariance }
+    }
+
+    /// The means, in kg, m (or kg·m) and kg·m².
+    #[must_use]
+    pub fn mean(&self) -> &SVector<f64, 10> {
+        &self.mean
+    }
+
+    /// The covariance.
+    #[must_use]
+    pub fn covariance(&self) -> &SMatrix<f64, 10, 10> {
+        &self.covariance
+    }
+
+    /// The standard deviations.
+    #[must_use]
+    pub fn deviations(&self) -> [f64; 10] {
+        // Rounding may leave a variance of zero a hair below it.
+        std::array::from_fn(|i| self.covariance[(i, i)].max(0.0).sqrt())
+    }
+}
