@@ -42,6 +42,7 @@ mod mesh;
 mod polyhedron;
 mod principal;
 mod pseudo_inertia;
+mod region;
 mod repair;
 mod report;
 mod second_moment_matrix;
@@ -56,6 +57,7 @@ pub use matrix::{InertiaMatrix, InertiaMatrixError};
 pub use mesh::{MeshError, TriangleMesh};
 pub use principal::PrincipalAxes;
 pub use pseudo_inertia::{PseudoInertia, PseudoInertiaError};
+pub use region::{Containment, Region, RegionError};
 pub use repair::{Repair, RepairMethod};
 pub use report::{Axes, Fault, RealizabilityReport};
 pub use second_moments::{

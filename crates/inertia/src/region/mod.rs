@@ -1,0 +1,487 @@
+//! Regions of space, and whether matter inside one can have given mass properties.
+
+mod non_negative;
+
+use nalgebra::{Isometry3, Matrix3, SVector, Translation3, UnitQuaternion, Vector3};
+
+use crate::mass_properties::check_vector;
+use crate::{MassProperties, MassPropertiesError, RELATIVE_TOLERANCE};
+
+/// Directions in which a hull is looked at, besides the principal axes of a body.
+const DIRECTIONS: usize = 128;
+/// Points of a lattice along each edge of a box.
+const LATTICE: usize = 5;
+/// How many middles between two corners of a hull masses are tried at.
+const PAIRS: usize = 400;
+/// Digits to which point masses must have the mass properties, relative to the size of the region.
+const DIGITS: f64 = 1e-10;
+/// How often an interval is halved.
+const BISECTIONS: usize = 40;
+/// How far from the mass centre to where a principal axis leaves the region masses are tried.
+const OWN_FRACTIONS: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
+/// How far from the mass centre to a corner of a hull masses are tried.
+const FRACTIONS: [f64; 4] = [1.0, 0.8, 0.6, 0.3];
+
+/// A region in body axes that holds all the matter of a body: an ellipsoid, a box, or the convex hull of points.
+///
+/// # Definition
+/// Mass properties are possible in a region if some distribution of matter, of any density that is not negative and points
+/// of mass, lies in the region and has them. Then and only then is J = ∫ (x, 1)(x, 1)ᵀ dm for such a distribution.
+///
+/// * **Ellipsoid** (x − e)ᵀ Q⁻¹ (x − e) ≤ 1: possible if and only if ∫ (1 − (x − e)ᵀ Q⁻¹ (x − e)) dm ≥ 0, that is
+///   tr(Q⁻¹ (Σ_c + m (c − e)(c − e)ᵀ)) ≤ m (Wensing, Kim & Slotine 2018, doi:10.1109/LRA.2017.2729659).
+/// * **Box and hull**: no such condition is known. Necessary: of every two parallel faces or planes that hold the region
+///   between them, n·x ≤ h and −n·x ≤ h', ∫ (h − n·x)(h' + n·x) dm ≥ 0; of every two faces of a box their product, too.
+///   Sufficient: point masses in the region that have the mass properties, found by least squares with weights that are not
+///   negative. Between the two the answer is [`Containment::Undecided`].
+///
+/// ```
+/// use gyradius_inertia::{Containment, Region, Shape};
+///
+/// let region = Region::solid_box([0.0; 3], [0.5, 0.5, 1.0])?;
+/// let inside = Shape::solid_box([1.0, 1.0, 2.0])?.of_mass(3.0)?;
+/// assert_eq!(region.containment(&inside), Containment::Possible);
+/// // A shell of the same mass, a metre from the middle at every side.
+/// let wide = Shape::sphere_shell(1.0)?.of_mass(3.0)?;
+/// assert_eq!(region.containment(&wide), Containment::Impossible);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region(Kind);
+
+#[derive(Clone, Debug, PartialEq)]
+enum Kind {
+    /// The pose takes points of a frame on the axes to body axes.
+    Ellipsoid {
+        pose: Isometry3<f64>,
+        semi_axes: Vector3<f64>,
+        weights: Matrix3<f64>,
+    },
+    Box {
+        pose: Isometry3<f64>,
+        half_sides: Vector3<f64>,
+    },
+    /// The points, and those of them that are farthest out in some direction.
+    Hull {
+        points: Vec<Vector3<f64>>,
+        outer: Vec<Vector3<f64>>,
+        size: f64,
+    },
+}
+
+/// Whether matter inside a region can have given mass properties.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Containment {
+    /// Some distribution of matter in the region has them.
+    Possible,
+    /// None has.
+    Impossible,
+    /// Neither was shown: the mass properties are near the limit of a box or a hull.
+    Undecided,
+}
+
+impl Region {
+    /// An ellipsoid with its axes along those of the body.
+    ///
+    /// # Errors
+    /// The middle is not finite, or a semi-axis not positive; either is too large.
+    pub fn ellipsoid(
+        middle_m: impl Into<Vector3<f64>>,
+        semi_axes_m: impl Into<Vector3<f64>>,
+    ) -> Result<Self, RegionError> {
+        let (pose, semi_axes) = (pose(middle_m.into())?, sizes("semi-axis", semi_axes_m.into())?);
+        Ok(Self::of_ellipsoid(pose, semi_axes))
+    }
+
+    fn of_ellipsoid(pose: Isometry3<f64>, semi_axes: Vector3<f64>) -> Self {
+        let turn = *pose.rotation.to_rotation_matrix().matrix();
+        let weights =
+            turn * Matrix3::from_diagonal(&semi_axes.map(|a| 1.0 / (a * a))) * turn.transpose();
+        Self(Kind::Ellipsoid { pose, semi_axes, weights })
+    }
+
+    /// A box with its edges along the axes of the body, from its middle and half its sides.
+    ///
+    /// # Errors
+    /// The middle is not finite, or a side not positive; either is too large.
+    pub fn solid_box(
+        middle_m: impl Into<Vector3<f64>>,
+        half_sides_m: impl Into<Vector3<f64>>,
+    ) -> Result<Self, RegionError> {
+        let (pose, half_sides) = (pose(middle_m.into())?, sizes("half side", half_sides_m.into())?);
+        Ok(Self(Kind::Box { pose, half_sides }))
+    }
+
+    /// The convex hull of points, such as the vertices of a mesh.
+    ///
+    /// # Errors
+    /// A point is not finite or too large, or there are none.
+    pub fn hull(points_m: &[[f64; 3]]) -> Result<Self, RegionError> {
+        let points: Vec<Vector3<f64>> = points_m.iter().map(|p| Vector3::from(*p)).collect();
+        for (point, x) in points.iter().enumerate() {
+            check_vector("point", x).map_err(|error| RegionError::Point { point, error })?;
+        }
+        Self::of_hull(points)
+    }
+
+    fn of_hull(points: Vec<Vector3<f64>>) -> Result<Self, RegionError> {
+        let mut outer: Vec<usize> = directions()
+            .filter_map(|n| {
+                let far = |i: &usize, j: &usize| n.dot(&points[*i]).total_cmp(&n.dot(&points[*j]));
+                (0..points.len()).max_by(far)
+            })
+            .collect();
+        outer.sort_unstable();
+        outer.dedup();
+        let Some(&first) = outer.first() else { return Err(RegionError::Empty) };
+        let size = points.iter().map(|p| (p - points[first]).norm()).fold(0.0, f64::max);
+        let outer = outer.into_iter().map(|i| points[i]).collect();
+        Ok(Self(Kind::Hull { points, outer, size }))
+    }
+
+    /// The same region turned about the origin and then moved, as [`MassProperties::transformed`] does with a body.
+    ///
+    /// # Errors
+    /// The region would be too far away, or the rotation is none.
+    pub fn transformed(&self, by: &Isometry3<f64>) -> Result<Self, RegionError> {
+        let q = by.rotation.into_inner();
+        if !((q.norm() - 1.0).abs() <= 1e-6) {
+            return Err(RegionError::Rotation { norm: q.norm() });
+        }
+        let by = Isometry3::from_parts(by.translation, UnitQuaternion::new_normalize(q));
+        let moved = |pose: &Isometry3<f64>| {
+            let pose = by * pose;
+            check_vector("middle", &pose.translation.vector)?;
+            Ok::<_, RegionError>(pose)
+        };
+        Ok(match &self.0 {
+            Kind::Ellipsoid { pose, semi_axes, .. } => Self::of_ellipsoid(moved(pose)?, *semi_axes),
+            Kind::Box { pose, half_sides } => {
+                Self(Kind::Box { pose: moved(pose)?, half_sides: *half_sides })
+            }
+            Kind::Hull { points, .. } => {
+                let points: Vec<_> =
+                    points.iter().map(|p| by.rotation * p + by.translation.vector).collect();
+                for (point, x) in points.iter().enumerate() {
+                    check_vector("point", x)
+                        .map_err(|error| RegionError::Point { point, error })?;
+                }
+                return Self::of_hull(points);
+            }
+        })
+    }
+
+    /// Whether matter inside the region can have these mass properties.
+    #[must_use]
+    pub fn containment(&self, body: &MassProperties) -> Containment {
+        match &self.0 {
+            Kind::Ellipsoid { .. } => {
+                if self.room(body) >= -RELATIVE_TOLERANCE {
+                    Containment::Possible
+                } else {
+                    Containment::Impossible
+                }
+            }
+            Kind::Box { pose, half_sides } => {
+                if self.room(body) < -RELATIVE_TOLERANCE {
+                    return Containment::Impossible;
+                }
+                let local = Local::of(body, pose);
+                let inside = |x: &Vector3<f64>| (0..3).all(|i| x[i].abs() <= half_sides[i]);
+                if local.is_plain(inside) {
+                    return Containment::Possible;
+                }
+                // To the nearest face along a line.
+                let exit = |n: &Vector3<f64>| {
+                    let face =
+                        |i: usize| (half_sides[i] - n[i].signum() * local.centre[i]) / n[i].abs();
+                    (0..3).filter(|i| n[*i] != 0.0).map(face).fold(f64::INFINITY, f64::min)
+                };
+                let points = lattice().map(|unit| unit.component_mul(half_sides));
+                let own = local.on_own_axes(inside, exit);
+                local.decide(points.chain(own), half_sides.norm())
+            }
+            Kind::Hull { outer, size, .. } => {
+                if self.room(body) < -RELATIVE_TOLERANCE {
+                    return Containment::Impossible;
+                }
+                let local = Local::of(body, &Isometry3::identity());
+                if !local.is_in(&local.centre, outer, *size) {
+                    return Containment::Undecided;
+                }
+                let inside = |x: &Vector3<f64>| local.is_in(x, outer, *size);
+                if local.is_plain(inside) {
+                    return Containment::Possible;
+                }
+                let exit = |n: &Vector3<f64>| {
+                    let (mut low, mut high) = (0.0, 2.0 * size);
+                    for _ in 0..BISECTIONS {
+                        let middle = 0.5 * (low + high);
+                        let is_in = inside(&(local.centre + n * middle));
+                        *(if is_in { &mut low } else { &mut high }) = middle;
+                    }
+                    low
+                };
+                let own = local.on_own_axes(inside, exit);
+                let rays = outer.iter().flat_map(|corner| {
+                    FRACTIONS.map(|fraction| local.centre + (corner - local.centre) * fraction)
+                });
+                // Middles of edges, of faces and of what joins others.
+                let n = outer.len();
+                let stride = 1 + n * n / (2 * PAIRS);
+                let middles = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).step_by(stride);
+                let middles = middles.map(|(i, j)| (outer[i] + outer[j]) * 0.5);
+                local.decide(rays.chain(middles).chain(own), *size)
+            }
+        }
+    }
+
+    /// The least of the conditions that every distribution of matter in the region meets, each relative to what it would
+    /// be with all the mass in the middle: negative if and only if no matter in an ellipsoid, and only if none in a box or
+    /// hull, has these mass properties.
+    #[must_use]
+    pub fn room(&self, body: &MassProperties) -> f64 {
+        match &self.0 {
+            Kind::Ellipsoid { pose, weights, .. } => {
+                let off = body.mass_centre_m() - pose.translation.vector;
+                let sigma = body.inertia().as_inertia_matrix().second_moment_matrix();
+                // tr(Q⁻¹ Σ_c)/m + (c − e)ᵀ Q⁻¹ (c − e).
+                1.0 - weights.component_mul(&sigma).sum() / body.mass_kg()
+                    - off.dot(&(weights * off))
+            }
+            Kind::Box { pose, half_sides } => {
+                let local = Local::of(body, pose);
+                // In units of half a side.
+                let c = local.centre.component_div(half_sides);
+                let s = local.spread.component_div(&(half_sides * half_sides.transpose()));
+                let mut least = f64::INFINITY;
+                for i in 0..3 {
+                    least = least.min(1.0 - c[i] * c[i] - s[(i, i)]);
+                    for j in 0..i {
+                        for (a, b) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+                            // ∫ (1 − a x_i)(1 − b x_j) dm/m.
+                            let own = (1.0 - a * c[i]) * (1.0 - b * c[j]) + a * b * s[(i, j)];
+                            least = least.min(own);
+                        }
+                    }
+                }
+                least
+            }
+            Kind::Hull { points, size, .. } => {
+                let local = Local::of(body, &Isometry3::identity());
+                let between = |n: Vector3<f64>| {
+                    let (low, high) = points
+                        .iter()
+                        .map(|p| n.dot(&(p - local.centre)))
+                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                            (low.min(x), high.max(x))
+                        });
+                    let quarter =
+                        (0.5 * (high - low)).powi(2).max((RELATIVE_TOLERANCE * size).powi(2));
+                    if low > 0.0 || high < 0.0 {
+                        // The mass centre is outside.
+                        return -low.max(-high) * low.abs().max(high.abs()) / quarter;
+                    }
+                    (-low * high - n.dot(&(local.spread * n))) / quarter
+                };
+                let own = local.axes.column_iter().map(Vector3::from);
+                own.chain(directions()).map(between).fold(f64::INFINITY, f64::min)
+            }
+        }
+    }
+}
+
+/// A body per unit of its mass, in the frame of a region.
+struct Local {
+    centre: Vector3<f64>,
+    /// Σ_c/m.
+    spread: Matrix3<f64>,
+    /// Columns are principal axes.
+    axes: Matrix3<f64>,
+    /// √(K_k/m).
+    radii: Vector3<f64>,
+}
+
+impl Local {
+    fn of(body: &MassProperties, pose: &Isometry3<f64>) -> Self {
+        let turn = pose.rotation.inverse();
+        let centre = turn * (body.mass_centre_m() - pose.translation.vector);
+        let principal = body.inertia().principal_axes();
+        // Rows of R(q) are principal axes in body axes.
+        let axes = turn.to_rotation_matrix().matrix()
+            * principal.attitude().to_rotation_matrix().matrix().transpose();
+        let mass = body.mass_kg().sqrt();
+        let radii = Vector3::from(body.inertia().second_moments().roots().values()) / mass;
+        let spread = axes * Matrix3::from_diagonal(&radii.component_mul(&radii)) * axes.transpose();
+        Self { centre, spread, axes, radii }
+    }
+
+    /// Whether six or eight equal masses do.
+    fn is_plain(&self, inside: impl Fn(&Vector3<f64>) -> bool) -> bool {
+        [self.octahedron(), self.cuboid()].iter().any(|points| points.iter().all(&inside))
+    }
+
+    /// Points in the region of a lattice on the principal axes, on which alone a rod or a plate has matter, from the mass
+    /// centre to where they leave it.
+    fn on_own_axes(
+        &self,
+        inside: impl Fn(&Vector3<f64>) -> bool,
+        exit: impl Fn(&Vector3<f64>) -> f64,
+    ) -> Vec<Vector3<f64>> {
+        let steps = [0, 1, 2].map(|k| {
+            let axis: Vector3<f64> = self.axes.column(k).into();
+            if self.radii[k] <= DIGITS * self.radii.amax() {
+                return vec![Vector3::zeros()];
+            }
+            let [there, back] = [axis, -axis].map(|n| n * (exit(&n) * (1.0 - DIGITS)));
+            let fractions = OWN_FRACTIONS.into_iter().flat_map(|f| [there * f, back * f]);
+            fractions.chain([Vector3::zeros()]).collect()
+        });
+        let [first, second, third] = &steps;
+        let all = first.iter().flat_map(|a| {
+            second.iter().flat_map(move |b| third.iter().map(move |c| self.centre + a + b + c))
+        });
+        all.filter(inside).collect()
+    }
+
+    /// Six equal masses on the principal axes that have the mass properties.
+    fn octahedron(&self) -> Vec<Vector3<f64>> {
+        let arm = |k: usize| self.axes.column(k) * (self.radii[k] * 3f64.sqrt());
+        (0..3).flat_map(|k| [self.centre + arm(k), self.centre - arm(k)]).collect()
+    }
+
+    /// Eight equal masses at the corners of a cuboid that have them.
+    fn cuboid(&self) -> Vec<Vector3<f64>> {
+        let corner = |signs: usize| {
+            (0..3).fold(self.centre, |x, k| {
+                let sign = if signs & (1 << k) == 0 { 1.0 } else { -1.0 };
+                x + self.axes.column(k) * (sign * self.radii[k])
+            })
+        };
+        (0..8).map(corner).collect()
+    }
+
+    /// Whether masses at some of these points have the mass properties, the size of the region being as given.
+    fn decide(&self, points: impl Iterator<Item = Vector3<f64>>, size: f64) -> Containment {
+        if !(size > 0.0) {
+            // All at one point.
+            let same = self.radii.amax() == 0.0;
+            return if same { Containment::Possible } else { Containment::Undecided };
+        }
+        let moments = |x: Vector3<f64>| {
+            let x = (x - self.centre) / size;
+            let square = x * x.transpose();
+            pack(&Vector3::new(x.x, x.y, x.z), &square)
+        };
+        let columns: Vec<SVector<f64, 10>> = points.map(moments).collect();
+        let wanted = pack(&Vector3::zeros(), &(self.spread / (size * size)));
+        if non_negative::distance(&columns, &wanted) <= DIGITS {
+            Containment::Possible
+        } else {
+            Containment::Undecided
+        }
+    }
+
+    /// Whether a point is a mean of corners.
+    fn is_in(&self, point: &Vector3<f64>, corners: &[Vector3<f64>], size: f64) -> bool {
+        if !(size > 0.0) {
+            return corners.first() == Some(point);
+        }
+        let place = |x: &Vector3<f64>| {
+            let x = (x - point) / size;
+            SVector::<f64, 4>::new(1.0, x.x, x.y, x.z)
+        };
+        let columns: Vec<_> = corners.iter().map(place).collect();
+        non_negative::distance(&columns, &SVector::<f64, 4>::new(1.0, 0.0, 0.0, 0.0)) <= DIGITS
+    }
+}
+
+/// 1, x, and the six of x xᵀ.
+fn pack(x: &Vector3<f64>, square: &Matrix3<f64>) -> SVector<f64, 10> {
+    let s = square;
+    SVector::from([
+        1.0,
+        x.x,
+        x.y,
+        x.z,
+        s[(0, 0)],
+        s[(1, 1)],
+        s[(2, 2)],
+        s[(0, 1)],
+        s[(0, 2)],
+        s[(1, 2)],
+    ])
+}
+
+fn pose(middle: Vector3<f64>) -> Result<Isometry3<f64>, RegionError> {
+    check_vector("middle", &middle)?;
+    Ok(Isometry3::from_parts(Translation3::from(middle), UnitQuaternion::identity()))
+}
+
+fn sizes(field: &'static str, sizes: Vector3<f64>) -> Result<Vector3<f64>, RegionError> {
+    // Squares of them and of their inverses are finite.
+    match sizes.iter().position(|size| !(1e-100..=1e100).contains(size)) {
+        Some(axis) => Err(RegionError::Size { field, axis: axis + 1, value: sizes[axis] }),
+        None => Ok(sizes),
+    }
+}
+
+/// Directions all over the half sphere, on a spiral, and the axes.
+fn directions() -> impl Iterator<Item = Vector3<f64>> {
+    let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    let spiral = (0..DIRECTIONS).map(move |i| {
+        let z = 1.0 - (2 * i + 1) as f64 / DIRECTIONS as f64;
+        let (radius, angle) = ((1.0 - z * z).sqrt(), golden * i as f64);
+        Vector3::new(radius * libm::cos(angle), radius * libm::sin(angle), z)
+    });
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    spiral.chain(axes.into_iter().flat_map(|axis| [axis, -axis]))
+}
+
+/// Points of a lattice on [−1, 1]³.
+fn lattice() -> impl Iterator<Item = Vector3<f64>> {
+    let at = |i: usize| 2.0 * i as f64 / (LATTICE - 1) as f64 - 1.0;
+    (0..LATTICE * LATTICE * LATTICE).map(move |i| {
+        let (x, y, z) = (i % LATTICE, i / LATTICE % LATTICE, i / LATTICE / LATTICE);
+        Vector3::new(at(x), at(y), at(z))
+    })
+}
+
+/// Why numbers are no region.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RegionError {
+    /// A size is not positive, or out of range.
+    #[error("{field} {axis} = {value:?} m: it must lie in [1e-100, 1e100]")]
+    Size {
+        /// Which.
+        field: &'static str,
+        /// Axis, from 1.
+        axis: usize,
+        /// The value, m.
+        value: f64,
+    },
+    /// The middle is none.
+    #[error(transparent)]
+    Middle(#[from] MassPropertiesError),
+    /// A point is none.
+    #[error("point {point}: {error}")]
+    Point {
+        /// Point, from 0.
+        point: usize,
+        /// What is wrong with it.
+        error: MassPropertiesError,
+    },
+    /// There are no points.
+    #[error("no points: a hull has at least one")]
+    Empty,
+    /// The quaternion is not of unit length.
+    #[error("rotation of length {norm:?}: it must be 1")]
+    Rotation {
+        /// Its length.
+        norm: f64,
+    },
+}
+
+#[cfg(test)]
+mod tests;
