@@ -10,6 +10,12 @@ use crate::{UniformAttitude, cells::Cells, chart::Chart, contour::Contour, jacob
 /// Largest spread of the eigenvalues of P, max − min, that is served to full accuracy.
 const MAX_SPREAD: f64 = 1e14;
 
+/// ln π², the measure of the attitudes on half of S³.
+pub(crate) const LN_PI_SQUARED: f64 = 2.289_459_771_698_800_3;
+
+/// ln of a share that nothing is seen of beside one.
+const NEGLIGIBLE: f64 = -40.0;
+
 /// Why a matrix and a vector are not the parameters of a [`FisherBingham`] law.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -184,6 +190,28 @@ impl FisherBingham {
         let y = self.axes.tr_mul(&q.coords);
         let square: f64 = (0..4).map(|j| self.lambda[j] * (y[j] - self.centre[j]).powi(2)).sum();
         -0.5 * square - self.contour.ln_integral()
+    }
+
+    /// The logarithm of the density of the *attitude*, at q and −q together, with respect to
+    /// surface measure on the half of S³ that represents every attitude once (total π²).
+    #[must_use]
+    pub fn ln_attitude_density(&self, q: &UnitQuaternion<f64>) -> f64 {
+        let y = self.axes.tr_mul(&q.coords);
+        let product: f64 = (0..4).map(|j| self.lambda[j] * y[j] * self.centre[j]).sum();
+        // Of q and −q the one with the larger density, and the share of the other in it.
+        let sign = 1.0_f64.copysign(product);
+        let square: f64 =
+            (0..4).map(|j| self.lambda[j] * (sign * y[j] - self.centre[j]).powi(2)).sum();
+        let gap = -2.0 * product.abs();
+        let other = if gap > NEGLIGIBLE { libm::log1p(libm::exp(gap)) } else { 0.0 };
+        other - 0.5 * square - self.contour.ln_integral()
+    }
+
+    /// The logarithm of the density of the attitude with respect to Haar measure on SO(3),
+    /// normalised to one: 0 everywhere for the uniform law.
+    #[must_use]
+    pub fn ln_haar_density(&self, q: &UnitQuaternion<f64>) -> f64 {
+        self.ln_attitude_density(q) + LN_PI_SQUARED
     }
 
     /// ln ∫ exp(−½ xᵀPx + bᵀx) dS over S³.

@@ -5,7 +5,7 @@ use rand::Rng;
 use rand_distr::Distribution;
 use std::sync::OnceLock;
 
-use crate::{RadiallyConstrainedGaussian, rcg::LN_PI_SQUARED};
+use crate::{RadiallyConstrainedGaussian, fisher_bingham::LN_PI_SQUARED};
 
 /// A radially constrained Gaussian kept to the half sphere around its mean, x·m ≥ 0.
 ///

@@ -24,6 +24,11 @@ impl IncompleteBeta {
         [self.a, self.b]
     }
 
+    /// ln B(α, β).
+    pub(crate) fn ln_beta(&self) -> f64 {
+        self.ln_beta
+    }
+
     /// With α and β swapped: I_{1 − x}(β, α) = 1 − I_x(α, β).
     pub(crate) fn swapped(&self) -> Self {
         Self { a: self.b, b: self.a, ..*self }

@@ -52,6 +52,28 @@ pub trait InertiaLaw: Debug + Send + Sync {
         false
     }
 
+    /// The logarithm of the density of the entries I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ in kg·m²; −∞ where no draw can be, so of
+    /// a matrix that no body has where every draw is a body. None where the law has no density, or none that is known:
+    /// that is so unless a law says otherwise. The density of c·I under a law with all inertias c times as large is that
+    /// of I over c⁶.
+    ///
+    /// ```
+    /// use gyradius_dispersion::{InertiaLaw, Wishart};
+    /// use gyradius_inertia::{Inertia, InertiaMatrix};
+    ///
+    /// let mean = Inertia::try_from(InertiaMatrix::from_entries([5.0, 4.0, 3.0], [0.2, 0.1, -0.5])?)?;
+    /// let law = Wishart::new(mean, 0.1)?;
+    /// let other = InertiaMatrix::from_entries([5.0, 4.0, 3.5], [0.2, 0.1, -0.5])?;
+    /// assert!(law.ln_density(&other) < law.ln_density(mean.as_inertia_matrix()));
+    /// let impossible = InertiaMatrix::from_entries([5.0, 1.0, 1.0], [0.0; 3])?;
+    /// assert_eq!(law.ln_density(&impossible), Some(f64::NEG_INFINITY));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn ln_density(&self, inertia: &InertiaMatrix) -> Option<f64> {
+        let _ = inertia;
+        None
+    }
+
     /// Fills six columns, I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ in kg·m², with independent draws: those of
     /// [`draw`](Self::draw) unless a law says otherwise.
     ///

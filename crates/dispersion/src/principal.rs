@@ -1,11 +1,12 @@
 //! Random principal moments about random principal axes.
 
-use gyradius_inertia::{Inertia, RootSecondMoments};
+use gyradius_inertia::{Inertia, InertiaMatrix, RootSecondMoments};
 use nalgebra::UnitQuaternion;
 use rand::Rng;
 use rand_distr::Distribution;
 use std::{borrow::Cow, fmt::Debug};
 
+use crate::density_of_entries::ln_density_of_entries;
 use crate::{AttitudeMoments, EntryMoments, InertiaLaw, KnownMoments, ModelDraw, RootMoments};
 
 /// What it is called.
@@ -130,6 +131,38 @@ where
 
     fn expected_moments(&self) -> Option<EntryMoments> {
         Some(EntryMoments::of(self))
+    }
+
+    fn ln_density(&self, inertia: &InertiaMatrix) -> Option<f64> {
+        self.ln_density(inertia)
+    }
+}
+
+impl<K: RootMoments, A: AttitudeMoments> PrincipalDispersion<K, A> {
+    /// The logarithm of the density of the entries I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ in kg·m². None where the roots or the
+    /// axes have no density; −∞ of a matrix that no body has.
+    ///
+    /// An inertia does not say which axis is which: the density is the sum over the 24 ways to name and point its
+    /// principal axes, over the product of the differences of its second moments. It is infinite where two of them are
+    /// equal and their laws not zero there, and loses as many digits as their difference has lost.
+    #[must_use]
+    pub fn ln_density(&self, inertia: &InertiaMatrix) -> Option<f64> {
+        // Whether there are densities does not depend on where.
+        self.axes.ln_density_of_attitude(&UnitQuaternion::identity())?;
+        let Ok(body) = Inertia::try_from(*inertia) else {
+            return self.roots.ln_densities_in_orders([1.0; 3]).map(|_| f64::NEG_INFINITY);
+        };
+        let mut known = true;
+        let found = ln_density_of_entries(
+            &body,
+            |k| {
+                let densities = self.roots.ln_densities_in_orders(k);
+                known = densities.is_some();
+                densities.unwrap_or([f64::NEG_INFINITY; 6])
+            },
+            |q| self.axes.ln_density_of_attitude(q).unwrap_or(f64::NEG_INFINITY),
+        );
+        known.then_some(found)
     }
 }
 

@@ -3,6 +3,7 @@
 use gyradius_inertia::RootSecondMoments;
 use nalgebra::Matrix3;
 
+use crate::density_of_entries::in_orders;
 use crate::semidefinite::{Covariance, CovarianceError};
 
 /// Largest covariance of second moments, so that sums of them do not overflow.
@@ -109,18 +110,46 @@ impl SecondMomentStatistics {
     }
 }
 
-/// A law of the roots k of which the mean and covariance of K = k² are known.
+/// A law of the roots k of which the mean and covariance of K = k² are known, and where it has one, the density of K.
 ///
 /// Implemented by every law of roots here but [`IndependentRoots`](crate::IndependentRoots) of laws
 /// that this crate knows nothing of: [`WithMoments`] attaches what is known to any law.
 pub trait RootMoments {
     /// Mean and covariance of K.
     fn second_moment_statistics(&self) -> SecondMomentStatistics;
+
+    /// The logarithm of the density of K₁, K₂, K₃ in kg·m², roots of either sign folded together; −∞ outside of the
+    /// support. None where the law has no density, or none that is known: that is so unless a law says otherwise.
+    fn ln_density_of_squares(&self, second_moments: [f64; 3]) -> Option<f64> {
+        let _ = second_moments;
+        None
+    }
+
+    /// The same of the second moments in each of the orders of
+    /// [`PrincipalAxes::ORDERS`](gyradius_inertia::PrincipalAxes::ORDERS), which the density of the entries of an
+    /// inertia needs together.
+    fn ln_densities_in_orders(&self, second_moments: [f64; 3]) -> Option<[f64; 6]> {
+        let mut known = true;
+        let found = in_orders(second_moments, |k| {
+            let density = self.ln_density_of_squares(k);
+            known &= density.is_some();
+            density.unwrap_or(f64::NEG_INFINITY)
+        });
+        known.then_some(found)
+    }
 }
 
 impl<T: RootMoments + ?Sized> RootMoments for &T {
     fn second_moment_statistics(&self) -> SecondMomentStatistics {
         (**self).second_moment_statistics()
+    }
+
+    fn ln_density_of_squares(&self, second_moments: [f64; 3]) -> Option<f64> {
+        (**self).ln_density_of_squares(second_moments)
+    }
+
+    fn ln_densities_in_orders(&self, second_moments: [f64; 3]) -> Option<[f64; 6]> {
+        (**self).ln_densities_in_orders(second_moments)
     }
 }
 

@@ -54,6 +54,10 @@ macro_rules! laws {
                 match self { $(Self::$law(law) => law.cdf(x),)* }
             }
 
+            pub(super) fn ln_density(&self, x: f64) -> Option<f64> {
+                match self { $(Self::$law(law) => law.ln_density(x),)* }
+            }
+
             pub(super) fn mean(&self) -> f64 {
                 match self { $(Self::$law(law) => law.mean(),)* }
             }
@@ -125,6 +129,30 @@ impl ScalarLaw {
     #[must_use]
     pub fn cdf(&self, x: f64) -> f64 {
         self.0.cdf(x)
+    }
+
+    /// The logarithm of the density at x, −∞ outside of the support. None if the law has no density: it has no
+    /// width, or it is of samples or of an event.
+    ///
+    /// The density of a beta law with a shape below one, and of a Weibull law with a shape below one, is infinite at a
+    /// bound.
+    ///
+    /// ```
+    /// use gyradius_dispersion::ScalarLaw;
+    ///
+    /// let mass = ScalarLaw::uniform(10.0, 12.0)?;
+    /// assert_eq!(mass.ln_density(11.0), Some(0.5_f64.ln()));
+    /// assert_eq!(mass.ln_density(13.0), Some(f64::NEG_INFINITY));
+    /// assert_eq!(ScalarLaw::normal(11.0, 0.0)?.ln_density(11.0), None);
+    /// # Ok::<(), gyradius_dispersion::ScalarLawError>(())
+    /// ```
+    #[must_use]
+    pub fn ln_density(&self, x: f64) -> Option<f64> {
+        if x.is_finite() {
+            self.0.ln_density(x)
+        } else {
+            self.0.ln_density(0.0).map(|_| f64::NEG_INFINITY)
+        }
     }
 
     /// The mean.

@@ -4,6 +4,8 @@ use nalgebra::{SMatrix, SVector};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use crate::normal::LN_ROOT_TAU;
+
 /// Rounding that a correlation may carry: covariances come from files with so many digits.
 const ROUNDING: f64 = 1e-9;
 
@@ -57,6 +59,10 @@ pub enum CovarianceError {
 pub(crate) struct Covariance<const N: usize> {
     matrix: SMatrix<f64, N, N>,
     root: SMatrix<f64, N, N>,
+    /// The rows of the root in which it is lower triangular.
+    order: [usize; N],
+    /// ln of the density of N(0, A) at zero; none where A is singular.
+    ln_peak: Option<f64>,
 }
 
 impl<const N: usize> Covariance<N> {
@@ -98,13 +104,31 @@ impl<const N: usize> Covariance<N> {
                 0.0
             }
         });
-        let unit = root(correlation)
+        let (unit, order) = root(correlation)
             .map_err(|coordinate| CovarianceError::Indefinite { coordinate: coordinate + 1 })?;
-        Ok(Self { matrix, root: SMatrix::from_fn(|i, j| deviations[i] * unit[(i, j)]) })
+        let root = SMatrix::from_fn(|i, j| deviations[i] * unit[(i, j)]);
+        let ln_peak = order.map(|order| {
+            let each = |(step, i): (usize, &usize)| libm::log(root[(*i, step)]) + LN_ROOT_TAU;
+            -order.iter().enumerate().map(each).sum::<f64>()
+        });
+        Ok(Self { matrix, root, order: order.unwrap_or([0; N]), ln_peak })
     }
 
     pub(crate) fn matrix(&self) -> &SMatrix<f64, N, N> {
         &self.matrix
+    }
+
+    /// The logarithm of the density of N(0, A); none where A is singular.
+    pub(crate) fn ln_density(&self, x: &SVector<f64, N>) -> Option<f64> {
+        let ln_peak = self.ln_peak?;
+        let (mut z, mut square) = ([0.0; N], 0.0);
+        for (step, &i) in self.order.iter().enumerate() {
+            let known: f64 = (0..step).map(|j| self.root[(i, j)] * z[j]).sum();
+            z[step] = (x[i] - known) / self.root[(i, step)];
+            square += z[step] * z[step];
+        }
+        // Of what overflows, far out, nothing is left.
+        Some(if square.is_finite() { ln_peak - 0.5 * square } else { f64::NEG_INFINITY })
     }
 
     /// A draw of N(0, A).
@@ -115,11 +139,15 @@ impl<const N: usize> Covariance<N> {
     }
 }
 
+type Root<const N: usize> = (SMatrix<f64, N, N>, Option<[usize; N]>);
+
 /// Cholesky's elimination with diagonal pivoting, which ends where nothing but rounding is left
 /// (Higham 2002, Accuracy and Stability of Numerical Algorithms, §10.3). The diagonal of `a` is one or
-/// zero. Or the coordinate at which a is found to be indefinite.
-fn root<const N: usize>(mut a: SMatrix<f64, N, N>) -> Result<SMatrix<f64, N, N>, usize> {
+/// zero. With it the rows in the order of the pivots, if there are N. Or the coordinate at which a is
+/// found to be indefinite.
+fn root<const N: usize>(mut a: SMatrix<f64, N, N>) -> Result<Root<N>, usize> {
     let mut f = SMatrix::<f64, N, N>::zeros();
+    let mut order = [0; N];
     let mut left: [bool; N] = [true; N];
     for step in 0..N {
         let pivot = (0..N)
@@ -134,6 +162,7 @@ fn root<const N: usize>(mut a: SMatrix<f64, N, N>) -> Result<SMatrix<f64, N, N>,
         }
         let scale = a[(pivot, pivot)].sqrt();
         left[pivot] = false;
+        order[step] = pivot;
         f[(pivot, step)] = scale;
         for i in (0..N).filter(|&i| left[i]) {
             f[(i, step)] = a[(i, pivot)] / scale;
@@ -147,7 +176,7 @@ fn root<const N: usize>(mut a: SMatrix<f64, N, N>) -> Result<SMatrix<f64, N, N>,
     let bad = |i: usize| (0..N).any(|j| left[j] && !(a[(i, j)].abs() <= 4.0 * ROUNDING));
     match (0..N).find(|&i| left[i] && bad(i)) {
         Some(i) => Err(i),
-        None => Ok(f),
+        None => Ok((f, (!left.contains(&true)).then_some(order))),
     }
 }
 

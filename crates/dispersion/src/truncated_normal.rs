@@ -138,6 +138,18 @@ impl TruncatedNormal {
         -v * (self.offset + 0.5 * v)
     }
 
+    /// ln of the density of k; none without a deviation.
+    pub(crate) fn ln_density_at(&self, k: f64) -> Option<f64> {
+        let [low, high] = self.bounds;
+        (self.deviation > 0.0).then(|| {
+            if !(low..=high).contains(&k) {
+                return f64::NEG_INFINITY;
+            }
+            let v = self.sign * (k - self.anchor) / self.deviation;
+            self.ln_density(v) - libm::log(self.whole) - libm::log(self.deviation)
+        })
+    }
+
     /// k at v.
     pub(crate) fn value(&self, v: f64) -> f64 {
         (self.anchor + self.sign * self.deviation * v).clamp(self.bounds[0], self.bounds[1])

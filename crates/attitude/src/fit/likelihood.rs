@@ -8,8 +8,8 @@ use super::{
 };
 use crate::{
     contour::{C64, Contour},
+    fisher_bingham::LN_PI_SQUARED,
     jacobi,
-    rcg::LN_PI_SQUARED,
 };
 
 /// Attitudes whose two signs differ by more than e^40 have one.

@@ -11,9 +11,6 @@ use crate::{
 /// Range of the eigenvalues of Σ: beyond it the law is uniform, or a point, to rounding.
 const EIGENVALUES: std::ops::RangeInclusive<f64> = 1e-14..=1e14;
 
-/// ln π², the measure of the attitudes on half of S³.
-pub(crate) const LN_PI_SQUARED: f64 = 2.289_459_771_698_800_3;
-
 /// Why a mean and a covariance are not the parameters of a [`RadiallyConstrainedGaussian`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -262,15 +259,14 @@ impl RadiallyConstrainedGaussian {
     /// surface measure on the half of S³ that represents every attitude once (total π²).
     #[must_use]
     pub fn ln_attitude_density(&self, q: &UnitQuaternion<f64>) -> f64 {
-        let (a, b) = (self.ln_density(q), self.ln_density(&opposite(q)));
-        a.max(b) + libm::log1p(libm::exp(-(a - b).abs()))
+        self.law.ln_attitude_density(q)
     }
 
     /// The logarithm of the density of the attitude with respect to Haar measure on SO(3),
     /// normalised to one: 0 everywhere for the uniform law.
     #[must_use]
     pub fn ln_haar_density(&self, q: &UnitQuaternion<f64>) -> f64 {
-        self.ln_attitude_density(q) + LN_PI_SQUARED
+        self.law.ln_haar_density(q)
     }
 
     /// The logarithm of the density of Φ with respect to dθ₁ dθ₂ dθ₃ (Peck 2003, Eq. 26): that on
@@ -422,10 +418,6 @@ fn check_eigenvalues(eigenvalues: [f64; 4], covariance: &Matrix4<f64>) -> Result
         return Err(RcgError::Eigenvalue { eigenvalue: largest });
     }
     Ok(())
-}
-
-fn opposite(q: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-    UnitQuaternion::new_unchecked(-q.into_inner())
 }
 
 /// Definite with room for rounding, whatever the scales of the four coordinates.

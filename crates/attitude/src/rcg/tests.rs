@@ -480,3 +480,7 @@ proptest! {
         }
     }
 }
+
+fn opposite(q: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_unchecked(-q.into_inner())
+}

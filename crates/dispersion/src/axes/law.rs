@@ -46,6 +46,10 @@ impl AttitudeMoments for AxesLaw {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
         each!(self, law => law.entry_moments(k))
     }
+
+    fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
+        each!(self, law => law.ln_density_of_attitude(attitude))
+    }
 }
 
 impl Distribution<UnitQuaternion<f64>> for AxesLaw {

@@ -7,22 +7,35 @@ use gyradius_attitude::{
 use nalgebra::{Complex, SMatrix, UnitQuaternion};
 
 use super::half_sphere::HalfSphere;
+use super::jacobian_twice::second_jacobian;
 use crate::entry_moments::{ENTRIES, Expectation, Polynomials};
 use crate::{EntryMoments, FixedAttitude, JacobianTwice, SecondMomentStatistics};
 
 /// A law of attitudes under which the mean and covariance of the entries of an inertia matrix can be
-/// computed, whatever the law of the second moments.
+/// computed, whatever the law of the second moments; and where it has one, the density of an attitude.
 ///
 /// For a law of one's own, [`EntryMoments::by_quadrature`] takes nodes and weights.
 pub trait AttitudeMoments {
     /// Mean and covariance of the entries of R(q)ᵀ I_P R(q), I_P = tr(K)·1 − diag(K), q from this law and
     /// K of the given mean and covariance, independent of q.
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments;
+
+    /// The logarithm of the density of the attitude, whichever of q and −q it is given as, with respect to Haar
+    /// measure normalised to one: 0 everywhere for the uniform law. Less ln 8π² it is the density with respect to a small
+    /// rotation vector. None where the law has no density, or none that is known: that is so unless a law says otherwise.
+    fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
+        let _ = attitude;
+        None
+    }
 }
 
 impl<T: AttitudeMoments + ?Sized> AttitudeMoments for &T {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
         (**self).entry_moments(k)
+    }
+
+    fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
+        (**self).ln_density_of_attitude(attitude)
     }
 }
 
@@ -49,12 +62,20 @@ impl AttitudeMoments for RadiallyConstrainedGaussian {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
         EntryMoments::by_polynomials(self, k)
     }
+
+    fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
+        Some(self.ln_haar_density(attitude))
+    }
 }
 
 /// By the contour integral of the law, to machine precision.
 impl AttitudeMoments for FisherBingham {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
         EntryMoments::by_polynomials(self, k)
+    }
+
+    fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
+        Some(self.ln_haar_density(attitude))
     }
 }
 
@@ -77,6 +98,10 @@ impl AttitudeMoments for UniformAttitude {
             of_trace / 9.0 * traces + of_deviator / 5.0 * (symmetric - traces / 3.0)
         });
         EntryMoments::unchecked([third, third, third, 0.0, 0.0, 0.0], covariance)
+    }
+
+    fn ln_density_of_attitude(&self, _: &UnitQuaternion<f64>) -> Option<f64> {
+        Some(0.0)
     }
 }
 
@@ -111,6 +136,10 @@ impl AttitudeMoments for MeanHalf {
         }
         EntryMoments::by_expectation(k, &Kept(self.whole(), self.whole().by_quadrature()))
     }
+
+    fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
+        Some(self.ln_haar_density(attitude))
+    }
 }
 
 /// The quadrature over the whole sphere, kept to the half.
@@ -132,11 +161,11 @@ impl Expectation for Kept<'_> {
 /// edges.
 impl AttitudeMoments for JacobianTwice {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
-        let weight = |x: &[f64; 4]| {
-            let planar = x[0] * x[0] + x[1] * x[1];
-            ((planar + x[2] * x[2]) * planar).sqrt()
-        };
-        EntryMoments::by_quadrature(k, HalfSphere::new(self.once(), weight).nodes())
+        EntryMoments::by_quadrature(k, HalfSphere::new(self.once(), second_jacobian).nodes())
+    }
+
+    fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
+        Some(self.ln_haar_density(attitude))
     }
 }
 

@@ -5,7 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use rand::Rng;
 use rand_distr::Distribution;
 
-use super::{FAR, MAX_ROOT};
+use super::{FAR, MAX_ROOT, ln_of_squares};
+use crate::ln_sum::ln_sum;
 use crate::semidefinite::{Covariance, CovarianceError};
 use crate::{RootMoments, SecondMomentStatistics};
 
@@ -94,6 +95,21 @@ impl CorrelatedRoots {
 impl RootMoments for CorrelatedRoots {
     fn second_moment_statistics(&self) -> SecondMomentStatistics {
         SecondMomentStatistics::of_gaussian_roots(self.mean, self.covariance.matrix())
+    }
+
+    /// None where the covariance is singular. Else the sum over roots of eight choices of their signs.
+    fn ln_density_of_squares(&self, second_moments: [f64; 3]) -> Option<f64> {
+        let roots = second_moments.map(f64::sqrt);
+        let mean = self.mean.values();
+        let mut terms = [f64::NEG_INFINITY; 8];
+        for (signs, term) in terms.iter_mut().enumerate() {
+            let gap = Vector3::from_fn(|i, _| {
+                if signs >> i & 1 == 0 { roots[i] - mean[i] } else { -roots[i] - mean[i] }
+            });
+            *term = self.covariance.ln_density(&gap)?;
+        }
+        let sum = ln_sum(&terms);
+        Some(if sum == f64::NEG_INFINITY { sum } else { sum + ln_of_squares(roots) })
     }
 }
 

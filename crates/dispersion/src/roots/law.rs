@@ -38,6 +38,14 @@ impl RootMoments for RootLaw {
     fn second_moment_statistics(&self) -> SecondMomentStatistics {
         each!(self, law => law.second_moment_statistics())
     }
+
+    fn ln_density_of_squares(&self, second_moments: [f64; 3]) -> Option<f64> {
+        each!(self, law => law.ln_density_of_squares(second_moments))
+    }
+
+    fn ln_densities_in_orders(&self, second_moments: [f64; 3]) -> Option<[f64; 6]> {
+        each!(self, law => law.ln_densities_in_orders(second_moments))
+    }
 }
 
 impl Distribution<RootSecondMoments> for RootLaw {

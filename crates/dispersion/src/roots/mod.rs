@@ -17,3 +17,12 @@ pub(crate) const FAR: f64 = 40.0;
 
 /// Draws stay below this, so that fourth powers, which variances of K are made of, do not overflow.
 const MAX_ROOT: f64 = 1e75;
+
+/// ln of what takes a density of roots of either sign to one of their squares, Π 1/(2√K), at the roots √K.
+fn ln_of_squares(roots: [f64; 3]) -> f64 {
+    const LN_8: f64 = 3.0 * std::f64::consts::LN_2;
+    let product = roots[0] * roots[1] * roots[2];
+    let ln_product =
+        if product.is_normal() { libm::log(product) } else { roots.map(libm::log).iter().sum() };
+    -LN_8 - ln_product
+}

@@ -1,10 +1,11 @@
 //! Independent roots, each with a scalar law.
 
-use gyradius_inertia::RootSecondMoments;
+use gyradius_inertia::{PrincipalAxes, RootSecondMoments};
 use rand::Rng;
 use rand_distr::Distribution;
 
-use super::{FAR, MAX_ROOT};
+use super::{FAR, MAX_ROOT, ln_of_squares};
+use crate::ln_sum::ln_sum;
 use crate::{RootMoments, ScalarLaw, ScalarLawError, SecondMomentStatistics};
 
 /// Independent roots k_k = √K_k, each with a law of its own of any kind.
@@ -160,6 +161,29 @@ impl RootMoments for ScalarRoots {
     fn second_moment_statistics(&self) -> SecondMomentStatistics {
         let moments = self.laws.each_ref().map(ScalarLaw::square_moments);
         SecondMomentStatistics::independent(moments.map(|m| m.0), moments.map(|m| m.1))
+    }
+
+    fn ln_density_of_squares(&self, second_moments: [f64; 3]) -> Option<f64> {
+        // The first order changes nothing.
+        self.ln_densities_in_orders(second_moments).map(|found| found[0])
+    }
+
+    /// From the nine densities of three laws at three roots.
+    fn ln_densities_in_orders(&self, second_moments: [f64; 3]) -> Option<[f64; 6]> {
+        let roots = second_moments.map(f64::sqrt);
+        let mut folded = [[0.0; 3]; 3];
+        for (law, of_law) in self.laws.iter().zip(&mut folded) {
+            for (k, found) in roots.into_iter().zip(of_law) {
+                *found = ln_sum(&[law.ln_density(k)?, law.ln_density(-k)?]);
+            }
+        }
+        let ln_of_squares = ln_of_squares(roots);
+        Some(PrincipalAxes::ORDERS.map(|(order, _)| {
+            let [a, b, c] = [0, 1, 2].map(|i| folded[i][order[i]]);
+            // Where one is zero, so is the product, whatever the others are.
+            let none = a.min(b).min(c) == f64::NEG_INFINITY;
+            if none { f64::NEG_INFINITY } else { a + b + c + ln_of_squares }
+        }))
     }
 }
 

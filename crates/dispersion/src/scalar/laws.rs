@@ -3,13 +3,13 @@
 
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{LN_2, SQRT_2};
 use std::sync::Arc;
 
 use super::parameters::{Given, Key, Of, Value};
 use super::{MAX, ScalarLaw, ScalarLawError};
 use crate::incomplete_beta::IncompleteBeta;
-use crate::normal::{above, below};
+use crate::normal::{LN_ROOT_TAU, above, below};
 use crate::truncated_draw::Truncated;
 use crate::truncated_normal::WindowError;
 
@@ -35,6 +35,9 @@ pub(super) trait Law: Sized {
 
     /// The probability of a value of at most x.
     fn cdf(&self, x: f64) -> f64;
+
+    /// The logarithm of the density at a finite x; none if the law has no density.
+    fn ln_density(&self, x: f64) -> Option<f64>;
 
     fn mean(&self) -> f64;
 
@@ -88,6 +91,16 @@ fn bounds(low: f64, high: f64) -> Result<[f64; 2], ScalarLawError> {
 /// The distribution function of what is at one value alone.
 fn step(at: f64, x: f64) -> f64 {
     f64::from(u8::from(x >= at))
+}
+
+/// ln φ(z), the density of the standard normal law.
+fn ln_normal(z: f64) -> f64 {
+    -0.5 * z * z - LN_ROOT_TAU
+}
+
+/// ln x^n, of x^0 = 1 at zero too.
+fn ln_power(x: f64, n: f64) -> f64 {
+    if n == 0.0 { 0.0 } else { n * libm::log(x) }
 }
 
 /// `sigma`, or `variance` where its square has other bits.
@@ -153,6 +166,11 @@ impl Law for Normal {
         } else {
             below((x - self.mean) / self.deviation)
         }
+    }
+
+    fn ln_density(&self, x: f64) -> Option<f64> {
+        (self.deviation > 0.0)
+            .then(|| ln_normal((x - self.mean) / self.deviation) - libm::log(self.deviation))
     }
 
     fn mean(&self) -> f64 {
@@ -227,6 +245,12 @@ impl Law for Uniform {
         } else {
             ((x - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
         }
+    }
+
+    fn ln_density(&self, x: f64) -> Option<f64> {
+        let inside = (self.low..=self.high).contains(&x);
+        (self.low < self.high)
+            .then(|| if inside { -libm::log(self.high - self.low) } else { f64::NEG_INFINITY })
     }
 
     fn mean(&self) -> f64 {
@@ -319,6 +343,10 @@ impl Law for TruncatedNormal {
 
     fn cdf(&self, x: f64) -> f64 {
         self.0.window.cdf(x)
+    }
+
+    fn ln_density(&self, x: f64) -> Option<f64> {
+        self.0.window.ln_density_at(x)
     }
 
     fn mean(&self) -> f64 {
@@ -439,6 +467,21 @@ impl Law for Lognormal {
         }
     }
 
+    fn ln_density(&self, x: f64) -> Option<f64> {
+        let s = self.log_deviation;
+        if s == 0.0 {
+            return None;
+        }
+        if !(x > 0.0) {
+            return Some(f64::NEG_INFINITY);
+        }
+        let (change, ln_x) = ((x - self.mean) / self.mean, libm::log(x));
+        // Near the mean nothing cancels, and far from it nothing overflows.
+        let near = change.abs() < 0.5;
+        let ln_ratio = if near { libm::log1p(change) } else { ln_x - libm::log(self.mean) };
+        Some(ln_normal(ln_ratio / s + 0.5 * s) - libm::log(s) - ln_x)
+    }
+
     fn mean(&self) -> f64 {
         self.mean
     }
@@ -543,6 +586,21 @@ impl Law for Triangular {
         } else {
             1.0 - (high - x) / (high - low) * ((high - x) / (high - mode))
         }
+    }
+
+    fn ln_density(&self, x: f64) -> Option<f64> {
+        let Self { low, mode, high } = *self;
+        (low < high).then(|| {
+            // Of its largest value.
+            let share = if x == mode {
+                1.0
+            } else if x < mode {
+                ((x - low) / (mode - low)).max(0.0)
+            } else {
+                ((high - x) / (high - mode)).max(0.0)
+            };
+            LN_2 + libm::log(share) - libm::log(high - low)
+        })
     }
 
     fn mean(&self) -> f64 {
@@ -652,6 +710,20 @@ impl Law for Beta {
         }
     }
 
+    fn ln_density(&self, x: f64) -> Option<f64> {
+        let width = self.high - self.low;
+        if width == 0.0 {
+            return None;
+        }
+        if !(self.low..=self.high).contains(&x) {
+            return Some(f64::NEG_INFINITY);
+        }
+        let [a, b] = self.below.shapes();
+        let ends =
+            ln_power((x - self.low) / width, a - 1.0) + ln_power((self.high - x) / width, b - 1.0);
+        Some(ends - self.below.ln_beta() - libm::log(width))
+    }
+
     fn mean(&self) -> f64 {
         let (m, _) = self.moments();
         self.low + (self.high - self.low) * m
@@ -751,6 +823,20 @@ impl Law for Weibull {
         } else {
             -libm::expm1(-libm::pow((x - self.low).max(0.0) / self.scale, self.shape))
         }
+    }
+
+    fn ln_density(&self, x: f64) -> Option<f64> {
+        if self.scale == 0.0 {
+            return None;
+        }
+        let ratio = (x - self.low) / self.scale;
+        let exponent = libm::pow(ratio, self.shape);
+        Some(if ratio < 0.0 || exponent == f64::INFINITY {
+            f64::NEG_INFINITY
+        } else {
+            let ln_shape = libm::log(self.shape) - libm::log(self.scale);
+            ln_shape + ln_power(ratio, self.shape - 1.0) - exponent
+        })
     }
 
     fn mean(&self) -> f64 {
@@ -855,6 +941,10 @@ impl Law for Samples {
         self.values.partition_point(|v| *v <= x) as f64 / self.values.len() as f64
     }
 
+    fn ln_density(&self, _: f64) -> Option<f64> {
+        None
+    }
+
     fn mean(&self) -> f64 {
         mean_and_variance(self.values.iter().copied()).0
     }
@@ -917,6 +1007,10 @@ impl Law for Bernoulli {
 
     fn cdf(&self, x: f64) -> f64 {
         if x >= 1.0 { 1.0 } else { (1.0 - self.probability) * step(0.0, x) }
+    }
+
+    fn ln_density(&self, _: f64) -> Option<f64> {
+        None
     }
 
     fn mean(&self) -> f64 {

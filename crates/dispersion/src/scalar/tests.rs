@@ -1,5 +1,6 @@
 //! Scalar laws against their definitions.
 
+use super::parameters::Value;
 use super::*;
 use crate::normal::below;
 use proptest::prelude::*;
@@ -290,5 +291,131 @@ fn laws_about_a_nominal_value_are_moved_and_scaled() {
             assert!((moved.at_score(z) - (100.0 + x)).abs() < 1e-12 * 100.0, "{law:?} {z}");
             assert!((scaled.at_score(z) - (50.0 + 0.5 * x)).abs() < 1e-12 * 50.0, "{law:?} {z}");
         }
+    }
+}
+
+/// Laws of every kind with any parameters, from 1e-30 to 1e30.
+fn any_law(rng: &mut ChaCha8Rng) -> ScalarLaw {
+    use rand::RngExt;
+    let mut within = |low: f64, high: f64| rng.random_range(low..high);
+    let size = 10f64.powf(within(-30.0, 30.0));
+    let spread = size * 10f64.powf(within(-4.0, 1.0));
+    let shapes = [within(-1.0, 3.0), within(-1.0, 3.0)].map(|x| 10f64.powf(x));
+    let (a, b, c) = (within(-5.0, 0.0), within(0.5, 3.0), within(0.0, 1.0));
+    match within(0.0, 7.0) as u8 {
+        0 => ScalarLaw::normal(size * a, spread),
+        1 => ScalarLaw::uniform(size * a, size * b),
+        2 => ScalarLaw::truncated_normal(size, spread, size + a * spread, size + (a + b) * spread),
+        3 => ScalarLaw::lognormal(size, spread),
+        4 => ScalarLaw::triangular(size * a, size * (a + c * (b - a)), size * b),
+        5 => ScalarLaw::beta(0.0, size, shapes[0].max(0.1), shapes[1].min(1e3)),
+        _ => ScalarLaw::weibull(0.0, size, shapes[0].clamp(0.5, 50.0)),
+    }
+    .unwrap()
+}
+
+/// The density between two scores holds the share of the normal law between them, out to eight deviations on both
+/// sides, where the law's values are told from one another; all shares together are one.
+#[test]
+fn densities_hold_the_shares_of_scores() {
+    let mut rng = ChaCha8Rng::seed_from_u64(71);
+    let mut laws: Vec<ScalarLaw> = laws().into_iter().filter(|law| !has_steps(law)).collect();
+    laws.extend((0..300).map(|_| any_law(&mut rng)));
+    let mut wide = 0;
+    for law in laws {
+        let mut whole = 0.0;
+        let density = |x: f64| law.ln_density(x).unwrap().exp();
+        for i in -32..32 {
+            let scores = [0.25 * f64::from(i), 0.25 * f64::from(i + 1)];
+            let [from, to] = scores.map(|z| law.at_score(z));
+            let expected = crate::truncated_normal::share(scores[0], scores[1]);
+            let size = from.abs().max(to.abs()).max(law.deviation());
+            // A mode between them bends the rule.
+            let bent = law.name() == "triangular" && from < mode(&law) && mode(&law) < to;
+            if to - from < 1e-7 * size || bent {
+                whole += expected;
+                continue;
+            }
+            const N: i32 = 400;
+            let step = (to - from) / f64::from(N);
+            let sum: f64 = (0..=N)
+                .map(|j| {
+                    let weight = if j % N == 0 { 1.0 } else { f64::from(2 + 2 * (j % 2)) };
+                    weight * density((from + step * f64::from(j)).min(to))
+                })
+                .sum();
+            let found = sum * step / 3.0;
+            assert!(
+                (found / expected - 1.0).abs() < 2e-6,
+                "{law:?} {scores:?}: {found} {expected}"
+            );
+            whole += found;
+            wide += 1;
+        }
+        assert!((whole - 1.0).abs() < 1e-6, "{law:?}: {whole}");
+    }
+    assert!(wide > 15_000, "{wide}");
+}
+
+fn mode(law: &ScalarLaw) -> f64 {
+    let mode = law.0.values().into_iter().find(|(key, _)| *key == "mode");
+    if let Some((_, Value::Number(mode))) = mode { mode } else { f64::NAN }
+}
+
+/// No NaN anywhere, nothing outside of the support, and in the far tails what the formula says where e to its power
+/// is nothing.
+#[test]
+fn densities_are_sound_everywhere() {
+    let mut rng = ChaCha8Rng::seed_from_u64(72);
+    let mut laws: Vec<ScalarLaw> = laws().into_iter().filter(|law| !has_steps(law)).collect();
+    laws.extend((0..2000).map(|_| any_law(&mut rng)));
+    let extremes = [0.0, 5e-324, 1e-300, 1e-30, 1.0, 1e30, 1e100, 1e300, f64::MAX, INF];
+    for law in &laws {
+        let quantiles = (-45..=45).map(|z| law.at_score(f64::from(z)));
+        let near = quantiles.flat_map(|x| [x.next_down(), x, x.next_up()]);
+        for x in near.chain(extremes).chain(extremes.map(|x| -x)) {
+            let density = law.ln_density(x).unwrap();
+            assert!(!density.is_nan() && law.ln_density(f64::NAN) == Some(-INF), "{law:?} {x:e}");
+            let (below, to) = (law.cdf(x.next_down()), law.cdf(x.next_up()));
+            if x.is_finite() && to > below && law.cdf(x) > 0.0 && law.cdf(x) < 1.0 {
+                assert!(density > -INF, "{law:?} {x:e}");
+            }
+        }
+    }
+    let [normal, tail] = [ScalarLaw::normal(0.0, 1e-60), ScalarLaw::normal(3.0, 2.0)];
+    assert!((normal.unwrap().ln_density(1e-59).unwrap() - 87.236_2).abs() < 1e-3);
+    let tail = tail.unwrap().ln_density(3.0 + 2e100).unwrap();
+    assert!((tail / -5e199 - 1.0).abs() < 1e-12);
+    let at = |law: Result<ScalarLaw, ScalarLawError>, x: f64| law.unwrap().ln_density(x).unwrap();
+    for (found, expected) in [
+        (at(ScalarLaw::beta(0.0, 1.0, 0.5, 2.0), 0.0), INF),
+        (at(ScalarLaw::beta(0.0, 1.0, 1.0, 2.0), 0.0), 2.0_f64.ln()),
+        (at(ScalarLaw::beta(0.0, 1.0, 1.0, 2.0), 1.0), -INF),
+        (at(ScalarLaw::beta(-2.0, 2.0, 1.0, 1.0), 2.0), -(4.0_f64.ln())),
+        (at(ScalarLaw::weibull(1.0, 2.0, 0.5), 1.0), INF),
+        (at(ScalarLaw::weibull(1.0, 2.0, 1.0), 1.0), -(2.0_f64.ln())),
+        (at(ScalarLaw::weibull(1.0, 2.0, 3.0), 0.5), -INF),
+        (at(ScalarLaw::triangular(0.0, 0.0, 4.0), 0.0), 0.5_f64.ln()),
+        (at(ScalarLaw::triangular(0.0, 0.0, 4.0), -1.0), -INF),
+        (at(ScalarLaw::uniform(0.0, 4.0), 4.0), -(4.0_f64.ln())),
+        (at(ScalarLaw::lognormal(1.0, 0.5), 0.0), -INF),
+        (at(ScalarLaw::truncated_normal(0.0, 1.0, -1.0, 1.0), 1.5), -INF),
+    ] {
+        assert!(found == expected || (found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+    // Without width, of samples and of events there is none.
+    for law in [
+        ScalarLaw::normal(1.0, 0.0),
+        ScalarLaw::uniform(1.0, 1.0),
+        ScalarLaw::truncated_normal(1.0, 0.0, 0.0, 2.0),
+        ScalarLaw::lognormal(1.0, 0.0),
+        ScalarLaw::triangular(1.0, 1.0, 1.0),
+        ScalarLaw::beta(1.0, 1.0, 2.0, 2.0),
+        ScalarLaw::weibull(1.0, 0.0, 2.0),
+        ScalarLaw::samples(&[1.0, 2.0]),
+        ScalarLaw::bernoulli(0.5),
+    ] {
+        let law = law.unwrap();
+        assert!([1.0, 5.0, INF].iter().all(|x| law.ln_density(*x).is_none()), "{law:?}");
     }
 }
