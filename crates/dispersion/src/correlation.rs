@@ -135,6 +135,12 @@ impl Correlation {
         }
     }
 
+    /// Whether a quantity is correlated with another.
+    #[must_use]
+    pub fn has(&self, quantity: usize) -> bool {
+        self.members.binary_search(&quantity).is_ok()
+    }
+
     /// The coefficient of two quantities: 1 of one with itself, 0 of those that are not correlated.
     #[must_use]
     pub fn coefficient(&self, a: usize, b: usize) -> f64 {
@@ -149,6 +155,45 @@ impl Correlation {
             (Some(a), Some(b)) => a.iter().zip(b).map(|(x, y)| x * y).sum(),
             (None, _) | (_, None) => 0.0,
         }
+    }
+
+    /// The same of some of the quantities only; the others are not correlated.
+    #[must_use]
+    pub fn among(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let kept: Vec<usize> = self.members.iter().copied().filter(|m| keep(*m)).collect();
+        let pairs =
+            kept.iter().enumerate().flat_map(|(i, &a)| kept[..i].iter().map(move |&b| (a, b)));
+        let pairs: Vec<_> = pairs
+            .map(|(a, b)| (a, b, self.coefficient(a, b)))
+            .filter(|(_, _, coefficient)| *coefficient != 0.0)
+            .collect();
+        // Of correlations a part is correlations, too.
+        Self::new(&pairs).unwrap_or_default()
+    }
+
+    /// The logarithm of the density of the copula at correlated scores: that of the joint density over the product of
+    /// those of each. None where some combination of the quantities does not vary.
+    ///
+    /// # Panics
+    /// Never: quantities beyond the end of the scores have the score zero.
+    #[must_use]
+    pub fn ln_copula(&self, scores: &[f64]) -> Option<f64> {
+        let score = |member: usize| scores.get(member).copied().unwrap_or(0.0);
+        // u = L⁻¹ z.
+        let mut independent: Vec<f64> = Vec::with_capacity(self.rows.len());
+        let mut sum = 0.0;
+        for (&member, row) in self.members.iter().zip(&self.rows) {
+            let (&pivot, before) = row.split_last()?;
+            if !(pivot > 0.0) {
+                return None;
+            }
+            let known: f64 = before.iter().zip(&independent).map(|(l, u)| l * u).sum();
+            let z = score(member);
+            let u = (z - known) / pivot;
+            independent.push(u);
+            sum += 0.5 * (z - u) * (z + u) - libm::log(pivot);
+        }
+        Some(sum)
     }
 
     /// Pairs of quantities by which all that depend on each other hang together: a quantity without a pair is independent of

@@ -125,6 +125,26 @@ impl ScalarLaw {
         self.0.at_score(z)
     }
 
+    /// The standard normal score of a value, by bisection where it has no formula: the least one at which
+    /// [`at_score`](Self::at_score) is not below the value, within ±38.
+    #[must_use]
+    pub fn score(&self, x: f64) -> f64 {
+        const END: f64 = 38.0;
+        if let Some([mean, variance]) = self.as_normal()
+            && variance > 0.0
+        {
+            return ((x - mean) / variance.sqrt()).clamp(-END, END);
+        }
+        let (mut low, mut high) = (-END, END);
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle == low || middle == high {
+                return high;
+            }
+            *(if self.at_score(middle) < x { &mut low } else { &mut high }) = middle;
+        }
+    }
+
     /// The probability of a value of at most x.
     #[must_use]
     pub fn cdf(&self, x: f64) -> f64 {

@@ -1,5 +1,8 @@
 //! Random mass, mass centre and inertia together: the ten parameters of a body that nobody has weighed yet.
 
+mod density;
+#[cfg(test)]
+mod density_tests;
 mod law;
 mod model;
 mod moments;

@@ -1,5 +1,7 @@
 //! Regions of space, and whether matter inside one can have given mass properties.
 
+#[cfg(feature = "serde")]
+mod file;
 mod non_negative;
 
 use nalgebra::{Isometry3, Matrix3, SVector, Translation3, UnitQuaternion, Vector3};
@@ -47,6 +49,11 @@ const FRACTIONS: [f64; 4] = [1.0, 0.8, 0.6, 0.3];
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "file::RegionForm", into = "file::RegionForm")
+)]
 pub struct Region(Kind);
 
 #[derive(Clone, Debug, PartialEq)]
@@ -169,6 +176,12 @@ impl Region {
                 return Self::of_hull(points);
             }
         })
+    }
+
+    /// Whether nothing stays [`Undecided`](Containment::Undecided): so it is of an ellipsoid.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        matches!(self.0, Kind::Ellipsoid { .. })
     }
 
     /// Whether matter inside the region can have these mass properties.

@@ -1,0 +1,160 @@
+//! The density of the joint law, held against other densities by the mean of their ratio, and against draws.
+
+use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Region};
+use nalgebra::Vector3;
+use proptest::prelude::*;
+use rand::RngExt;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use rand_distr::{Distribution, StandardNormal};
+
+use super::tests::{any_law, scalar};
+use super::*;
+use crate::{AnyBody, ScalarLaw, Wishart};
+
+const N: usize = 20_000;
+
+/// A wide law of everything with a density that is written here anew.
+struct Wide {
+    inertia: Wishart,
+}
+
+impl Wide {
+    fn draw(&self, rng: &mut ChaCha8Rng) -> (MassProperties, f64) {
+        // Student's t with two degrees of freedom: tails wider than any law here.
+        let mut t = |middle: f64, width: f64| {
+            let z: f64 = StandardNormal.sample(rng);
+            let chi: f64 = -2.0 * (1.0 - rng.random::<f64>()).ln();
+            let t = z / (chi / 2.0).sqrt();
+            let density = (2.0 + t * t).powf(-1.5) / width;
+            (middle + width * t, density.ln())
+        };
+        loop {
+            let parts = [t(9.0, 2.0), t(0.4, 0.3), t(0.8, 0.3), t(0.3, 0.3)];
+            if parts[0].0 > 0.0 {
+                let inertia: Inertia = self.inertia.sample(rng);
+                let own = crate::InertiaLaw::ln_density(&self.inertia, inertia.as_inertia_matrix());
+                let centre = Vector3::new(parts[1].0, parts[2].0, parts[3].0);
+                let ln: f64 = parts.iter().map(|p| p.1).sum::<f64>() + own.unwrap();
+                // Of t ≤ −4.5, so many masses are drawn again.
+                let kept = 1.0 - 0.5 * (1.0 - 4.5 / (2.0 + 4.5f64 * 4.5).sqrt());
+                return (MassProperties::new(parts[0].0, centre, inertia).unwrap(), ln - kept.ln());
+            }
+        }
+    }
+}
+
+/// The mean over draws of one law of the density of another over its own is 1, where the first can draw all that the
+/// second can.
+fn ratio(of: impl Fn(&MassProperties) -> f64, seed: u64) -> (f64, f64) {
+    let mean = InertiaMatrix::from_entries([5.0, 4.0, 4.5], [0.0; 3]).unwrap();
+    let wide = Wide { inertia: Wishart::new(Inertia::try_from(mean).unwrap(), 0.35).unwrap() };
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let ratios: Vec<f64> = (0..N)
+        .map(|_| {
+            let (body, ln) = wide.draw(&mut rng);
+            (of(&body) - ln).exp()
+        })
+        .collect();
+    let mean = ratios.iter().sum::<f64>() / N as f64;
+    let spread = ratios.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / N as f64;
+    (mean, (spread / N as f64).sqrt())
+}
+
+/// Laws with densities, wide enough for ratios.
+fn laws() -> Vec<MassPropertiesLaw> {
+    let lengths =
+        || [(0.4, 0.1), (0.5, 0.12), (0.45, 0.08)].map(|(m, s)| ScalarLaw::normal(m, s).unwrap());
+    let uniform = gyradius_attitude::UniformAttitude;
+    let centre = || [scalar(0, 0.4, 0.2), scalar(1, 0.8, 0.2), scalar(2, 0.3, 0.2)];
+    let new = |tensor| MassPropertiesLaw::new(scalar(2, 9.0, 1.5), centre(), tensor).unwrap();
+    let plain = new(TensorLaw::gyration_lengths(lengths(), uniform));
+    let roots = || [1.2, 1.5, 1.3].map(|m| ScalarLaw::normal(m, 0.3).unwrap());
+    let mean = InertiaMatrix::from_entries([5.0, 4.0, 4.5], [0.1, 0.2, -0.3]).unwrap();
+    let wishart = Wishart::new(Inertia::try_from(mean).unwrap(), 0.2).unwrap();
+    use JointScalar::{Centre1, Centre3, Mass, Shape1, Shape3};
+    vec![
+        plain.clone(),
+        plain.clone().with_correlation(&[(Mass, Centre1, 0.7)]).unwrap(),
+        plain
+            .with_correlation(&[(Mass, Shape1, 0.6), (Shape1, Shape3, -0.5), (Centre3, Mass, 0.3)])
+            .unwrap(),
+        new(TensorLaw::roots(roots(), uniform)),
+        new(TensorLaw::roots(roots(), uniform).with_follows(0.5, 9.0).unwrap()),
+        new(TensorLaw::model(wishart).unwrap().with_follows(1.0, 9.0).unwrap()),
+    ]
+}
+
+#[test]
+fn densities_have_the_integral_one() {
+    for (i, law) in laws().into_iter().enumerate() {
+        let (mean, error) = ratio(|body| law.ln_density(body).unwrap(), i as u64);
+        assert!(error < 0.12, "{i}: {error}");
+        assert!((mean - 1.0).abs() < 4.0 * error, "law {i}: {mean} ± {error}");
+        // The control: without the parts that go with the mass.
+        let wrong =
+            |body: &MassProperties| law.ln_density(body).unwrap() + 3.0 * body.mass_kg().ln();
+        let (mean, error) = ratio(wrong, i as u64);
+        assert!((mean - 1.0).abs() > 8.0 * error, "law {i}: {mean} ± {error}");
+    }
+}
+
+/// Kept to a region the density is larger where draws are, and none elsewhere.
+#[test]
+fn densities_in_a_region_have_the_integral_one() {
+    for region in [
+        Region::ellipsoid([0.4, 0.8, 0.3], [0.9, 0.8, 1.0]).unwrap(),
+        Region::solid_box([0.4, 0.8, 0.3], [0.8, 0.7, 0.9]).unwrap(),
+    ] {
+        let law = laws()[0].clone().inside(region.clone()).unwrap();
+        let (share, error) = law.acceptance();
+        assert!(share > 0.3 && share < 0.97 && error < 0.01, "{share}");
+        let (mean, own) = ratio(|body| law.ln_density(body).unwrap(), 9);
+        assert!((mean - 1.0).abs() < 4.0 * own.hypot(error / share), "{mean} ± {own}");
+        // The control: a region that is ignored.
+        let (mean, own) = ratio(|body| laws()[0].ln_density(body).unwrap() - share.ln(), 9);
+        assert!((mean - 1.0).abs() > 8.0 * own, "{mean} ± {own}");
+        let mut rng = ChaCha8Rng::seed_from_u64(10);
+        for _ in 0..300 {
+            let body: MassProperties = law.sample(&mut rng);
+            assert!(region.room(&body) >= -1e-13);
+            assert!(law.ln_density(&body).unwrap() > f64::NEG_INFINITY);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Every draw has a density where the law has one, and bodies of any kind never make a NaN.
+    #[test]
+    fn draws_have_a_density(law in any_law(), seed in any::<u64>()) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        for _ in 0..20 {
+            let body: MassProperties = law.sample(&mut rng);
+            if let Some(density) = law.ln_density(&body) {
+                prop_assert!(density > f64::NEG_INFINITY, "{density}");
+            }
+            let any: Inertia = AnyBody::new(1e-3, 1e3).unwrap().sample(&mut rng);
+            let any = MassProperties::new(rng.random_range(1e-3..1e3), body.mass_centre_m(), any).unwrap();
+            let density = law.ln_density(&any);
+            prop_assert!(density.is_none_or(|d| !d.is_nan()), "{density:?}");
+            prop_assert_eq!(density.is_some(), law.ln_density(&body).is_some());
+        }
+    }
+}
+
+/// Of parts that are independent the density is the product, with the Jacobian of the lengths.
+#[test]
+fn parts_multiply() {
+    let law = &laws()[0];
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let body: MassProperties = law.sample(&mut rng);
+    let (m, c) = (body.mass_kg(), body.mass_centre_m());
+    let own = crate::ScalarRoots::new(law.tensor().scalar_laws().unwrap().clone()).unwrap();
+    let shape = crate::PrincipalDispersion::new(own, gyradius_attitude::UniformAttitude);
+    let unit = InertiaMatrix::new(body.inertia().matrix() / m).unwrap();
+    let scalars = law.mass().ln_density(m).unwrap()
+        + (0..3).map(|i| law.centre()[i].ln_density(c[i]).unwrap()).sum::<f64>();
+    let expected = scalars + shape.ln_density(&unit).unwrap() - 6.0 * m.ln();
+    assert!((law.ln_density(&body).unwrap() - expected).abs() < 1e-9);
+}
