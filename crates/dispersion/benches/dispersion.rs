@@ -1,16 +1,16 @@
-//! Draws of the paper's payload by each law, one by one and in columns, and the moments of its entries
+//! Draws of the paper's payload by each law, one by one and in columns, the density of its entries, and their moments
 //! by quadrature. For comparison: Basilisk's `InertiaTensorDispersion` takes 63 to 91 µs a draw.
 #![allow(missing_docs, reason = "criterion's macros make public items")]
 #![allow(clippy::unwrap_used, reason = "a bench that cannot be set up has to stop")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use gyradius_attitude::RadiallyConstrainedGaussian;
+use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
 use gyradius_dispersion::{
-    DispersionModel, EntryMoments, EntrywiseGaussian, JacobianTwice, ModelKind,
-    PrincipalDispersion, ScalarRoots,
+    AnyBody, BasiliskDispersion, CorrelatedRoots, DispersionModel, EntryMoments, EntrywiseGaussian,
+    InertiaLaw, JacobianTwice, ModelKind, PrincipalDispersion, ScalarRoots,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix};
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::Distribution;
 use std::hint::black_box;
@@ -64,5 +64,50 @@ fn inertia(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, inertia);
+/// ln of the density of the six entries, at draws of the law.
+fn density(c: &mut Criterion) {
+    let (nominal, roots, axes) = payload();
+    let nominal = Inertia::try_from(nominal).unwrap();
+    let gaussian = Matrix3::from_diagonal(&Vector3::new(0.125, 0.1, 0.075));
+    let joint = CorrelatedRoots::new(nominal.second_moments().roots(), gaussian).unwrap();
+    let uniform = PrincipalDispersion::new(roots.clone(), UniformAttitude);
+    let wide = ScalarRoots::normal(nominal.second_moments().roots(), [50.0; 3]).unwrap();
+    let wide = PrincipalDispersion::new(wide, axes.clone());
+    let half = PrincipalDispersion::new(roots.clone(), MeanHalf::new(axes.clone()));
+    let principal = PrincipalDispersion::new(roots, axes.clone());
+    let correlated = PrincipalDispersion::new(joint, axes);
+    let moments = EntryMoments::of(&principal);
+    let mut laws: Vec<(String, Box<dyn InertiaLaw>)> = vec![
+        ("principal".into(), Box::new(principal)),
+        ("principal/all-labels".into(), Box::new(wide)),
+        ("principal/uniform-axes".into(), Box::new(uniform)),
+        ("principal/mean-half".into(), Box::new(half)),
+        ("principal/correlated-roots".into(), Box::new(correlated)),
+        ("any-body".into(), Box::new(AnyBody::new(1e3, 1e5).unwrap())),
+    ];
+    for kind in ModelKind::ALL {
+        let model = DispersionModel::matched(kind, &moments).unwrap().into_model();
+        laws.push((format!("model/{kind}"), Box::new(model)));
+    }
+    let diagonal = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [0.0; 3]).unwrap();
+    let free = BasiliskDispersion::NO_BOUNDS;
+    let basilisk = BasiliskDispersion::new(diagonal, 50.0, free, 0.05).unwrap();
+    laws.push(("basilisk/diagonal".into(), Box::new(basilisk)));
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut group = c.benchmark_group("ln-density");
+    group.throughput(Throughput::Elements(1));
+    for (name, law) in laws {
+        let draws: Vec<InertiaMatrix> = (0..BATCH).map(|_| law.draw(&mut rng).inertia).collect();
+        let mut next = 0;
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                next = (next + 1) % BATCH;
+                law.ln_density(black_box(&draws[next]))
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, inertia, density);
 criterion_main!(benches);

@@ -1,11 +1,12 @@
 //! The inertia of any body, for property tests and domain randomisation.
 
 use gyradius_attitude::UniformAttitude;
-use gyradius_inertia::{Inertia, MAX_SECOND_MOMENT, SecondMoments};
+use gyradius_inertia::{Inertia, InertiaMatrix, MAX_SECOND_MOMENT, SecondMoments};
 use rand::{Rng, RngExt};
 use rand_distr::Distribution;
 use std::borrow::Cow;
 
+use crate::density_of_entries::ln_density_of_entries;
 use crate::{EntryMoments, InertiaLaw, ModelDraw};
 
 /// Why two numbers are not the range of an [`AnyBody`].
@@ -130,6 +131,23 @@ impl InertiaLaw for AnyBody {
 
     fn expected_moments(&self) -> Option<EntryMoments> {
         None
+    }
+
+    /// None where the two limits are equal.
+    fn ln_density(&self, inertia: &InertiaMatrix) -> Option<f64> {
+        const LN_16: f64 = 4.0 * std::f64::consts::LN_2;
+        if self.low == self.high {
+            return None;
+        }
+        let trace = inertia.matrix().trace();
+        let inside = (self.low..=self.high).contains(&trace);
+        let Some(body) = Inertia::try_from(*inertia).ok().filter(|_| inside) else {
+            return Some(f64::NEG_INFINITY);
+        };
+        // The density 2 of the shares and 1/(t ln(high/low)) of the trace t are 16/(t³ ln(high/low)) of the K.
+        let ln_range = libm::log(libm::log(self.high) - libm::log(self.low));
+        let ln_squares = LN_16 - 3.0 * libm::log(trace) - ln_range;
+        Some(ln_density_of_entries(&body, |_| [ln_squares; 6], |_| 0.0))
     }
 }
 

@@ -10,6 +10,8 @@ use crate::entry_moments::ENTRIES;
 use crate::named_model::{NamedModel, NoMatch, inertia_law};
 use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters, normal};
 
+mod density;
+
 /// Largest deviation and finite bound, so that draws stay in range.
 const MAX_DEVIATION: f64 = MAX_ENTRY / 1e3;
 /// Largest standard deviation of the angles by which they are matched, rad: beyond, turns say nothing of products.

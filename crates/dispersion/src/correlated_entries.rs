@@ -1,7 +1,7 @@
 //! Six jointly Gaussian entries.
 
 use gyradius_inertia::{Inertia, InertiaMatrix};
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 use rand::Rng;
 use rand_distr::Distribution;
 
@@ -62,6 +62,16 @@ impl CorrelatedEntries {
     #[must_use]
     pub fn covariance(&self) -> &SMatrix<f64, 6, 6> {
         self.covariance.matrix()
+    }
+}
+
+impl CorrelatedEntries {
+    /// The logarithm of the density of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ in kg·m², of matrices that no body has too. None where
+    /// the covariance is singular.
+    #[must_use]
+    pub fn ln_density(&self, inertia: &InertiaMatrix) -> Option<f64> {
+        let gap = SVector::from(inertia.entries()) - SVector::from(self.mean);
+        self.covariance.ln_density(&gap)
     }
 }
 

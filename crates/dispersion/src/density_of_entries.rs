@@ -16,7 +16,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, LN_2};
 use crate::ln_sum::ln_sum;
 
 /// ln 8π².
-const LN_ATTITUDES: f64 = 4.368_901_313_378_636;
+pub(crate) const LN_ATTITUDES: f64 = 4.368_901_313_378_636;
 
 /// Scalar part first: what takes the axes to each of [`PrincipalAxes::ORDERS`].
 const TO_ORDERS: [[f64; 4]; 6] = [

@@ -8,7 +8,9 @@ use std::fmt::Display;
 
 #[cfg(feature = "serde")]
 use crate::entry_moments::rows;
+use crate::ln_sum::ln_product;
 use crate::named_model::{NamedModel, NoMatch, inertia_law};
+use crate::normal::LN_ROOT_TAU;
 use crate::realizable_only::Conditionable;
 use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
 
@@ -79,6 +81,23 @@ impl EntrywiseGaussian {
     #[must_use]
     pub fn deviations(&self) -> [f64; 6] {
         self.deviations
+    }
+}
+
+impl EntrywiseGaussian {
+    /// The logarithm of the density of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ in kg·m², of matrices that no body has too. None where
+    /// a deviation is zero.
+    #[must_use]
+    pub fn ln_density(&self, inertia: &InertiaMatrix) -> Option<f64> {
+        let (entries, mut square) = (inertia.entries(), 0.0);
+        if self.deviations.contains(&0.0) {
+            return None;
+        }
+        for ((entry, mean), deviation) in entries.iter().zip(self.mean).zip(self.deviations) {
+            let z = (entry - mean) / deviation;
+            square += z * z;
+        }
+        Some(-0.5 * square - 6.0 * LN_ROOT_TAU - ln_product(&self.deviations))
     }
 }
 

@@ -49,6 +49,8 @@ mod batch;
 mod columns;
 mod correlated_entries;
 mod correlation;
+#[cfg(test)]
+mod density_checks;
 mod density_of_entries;
 mod entry_moments;
 mod entrywise;

@@ -1,4 +1,4 @@
-//! Sums of numbers whose logarithms are known.
+//! Logarithms of sums and products.
 
 /// Terms below e to the power of this of the largest are no part of the sum of a few.
 const NEGLIGIBLE: f64 = -40.0;
@@ -21,6 +21,12 @@ pub(crate) fn ln_sum(x: &[f64]) -> f64 {
     if sum == 1.0 { largest } else { largest + libm::log(sum) }
 }
 
+/// ln Π x of numbers that are not negative, one logarithm for all where their product stays in range.
+pub(crate) fn ln_product(x: &[f64]) -> f64 {
+    let product: f64 = x.iter().product();
+    if product.is_normal() { libm::log(product) } else { x.iter().map(|x| libm::log(*x)).sum() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -34,5 +40,13 @@ mod tests {
         assert_eq!(ln_sum(&[f64::NEG_INFINITY; 2]), f64::NEG_INFINITY);
         assert_eq!(ln_sum(&[0.0, f64::INFINITY]), f64::INFINITY);
         assert_eq!(ln_sum(&[]), f64::NEG_INFINITY);
+    }
+
+    #[test]
+    fn products_are_those_of_the_numbers() {
+        assert_eq!(ln_product(&[2.0, 3.0]), 6.0_f64.ln());
+        let powers = [1e-200, 1e-200, 1e100, 1e300, 1e300];
+        assert!((ln_product(&powers) - 300.0 * 10.0_f64.ln()).abs() < 1e-10);
+        assert_eq!(ln_product(&[0.0, 1.0]), f64::NEG_INFINITY);
     }
 }

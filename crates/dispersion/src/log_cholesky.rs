@@ -179,6 +179,20 @@ impl LogCholeskyGaussian {
         self.covariance.matrix()
     }
 
+    /// The logarithm of the density of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ in kg·m²: that of the coordinates over the
+    /// determinant 16 e^{2d₁ + 3d₂ + 4d₃} of the derivative of the entries by them. −∞ for a rod, a plate, a point and a
+    /// matrix that no body has. None where the covariance is singular.
+    #[must_use]
+    pub fn ln_density(&self, inertia: &InertiaMatrix) -> Option<f64> {
+        const LN_16: f64 = 4.0 * std::f64::consts::LN_2;
+        let x = Inertia::try_from(*inertia).ok().and_then(|body| coordinates(&body).ok());
+        let Some(x) = x else {
+            return self.covariance.ln_density(&SVector::zeros()).map(|_| f64::NEG_INFINITY);
+        };
+        let ln_density = self.covariance.ln_density(&(SVector::from(x) - self.mean))?;
+        Some(ln_density - LN_16 - 2.0 * x[0] - 3.0 * x[1] - 4.0 * x[2])
+    }
+
     /// E of a monomial e^{aᵀd} Π s.
     fn expect(&self, monomial: &Monomial) -> f64 {
         let c = self.covariance.matrix();

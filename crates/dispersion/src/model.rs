@@ -249,6 +249,10 @@ impl InertiaLaw for DispersionModel {
         self.law().acceptance()
     }
 
+    fn ln_density(&self, inertia: &InertiaMatrix) -> Option<f64> {
+        self.law().ln_density(inertia)
+    }
+
     fn has_independent_axes(&self) -> bool {
         self.law().has_independent_axes()
     }

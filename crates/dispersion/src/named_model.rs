@@ -53,6 +53,11 @@ macro_rules! inertia_law {
             fn expected_moments(&self) -> Option<crate::EntryMoments> {
                 Some(crate::KnownMoments::entry_moments(self))
             }
+
+            fn ln_density(&self, inertia: &gyradius_inertia::InertiaMatrix) -> Option<f64> {
+                // Its own, which comes before that of the trait.
+                <$law>::ln_density(self, inertia)
+            }
         }
     };
 }

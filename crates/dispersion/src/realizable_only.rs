@@ -91,6 +91,13 @@ impl<L> RealizableOnly<L> {
         let p = self.acceptance();
         (p * (1.0 - p) / f64::from(TRIALS)).sqrt()
     }
+
+    /// The standard error of the logarithm of the density, which comes of the estimated acceptance alone and is the same
+    /// for every inertia: it leaves ratios of densities under this law as they are.
+    #[must_use]
+    pub fn ln_density_error(&self) -> f64 {
+        self.acceptance_error() / self.acceptance()
+    }
 }
 
 impl<L: Distribution<InertiaMatrix>> Distribution<Inertia> for RealizableOnly<L> {
@@ -125,6 +132,14 @@ impl<L: InertiaLaw + Distribution<InertiaMatrix>> InertiaLaw for RealizableOnly<
 
     fn acceptance(&self) -> Option<f64> {
         Some(self.acceptance())
+    }
+
+    /// That of the law inside over the acceptance, which is an estimate:
+    /// [`ln_density_error`](Self::ln_density_error) says how good.
+    fn ln_density(&self, inertia: &InertiaMatrix) -> Option<f64> {
+        let inside = self.law.ln_density(inertia)?;
+        let is_kept = Inertia::try_from(*inertia).is_ok();
+        Some(if is_kept { inside - libm::log(self.acceptance()) } else { f64::NEG_INFINITY })
     }
 }
 

@@ -9,6 +9,9 @@ use crate::entry_moments::ENTRIES;
 use crate::named_model::{NamedModel, NoMatch, inertia_law};
 use crate::second_moment_matrix::{body, inertia_covariance, inertia_map};
 use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
+use density::Density;
+
+mod density;
 
 /// Least dispersion that is told from none.
 const MIN_DELTA: f64 = 1e-7;
@@ -87,6 +90,8 @@ pub struct Wishart {
     /// M/√p, its rows √(K_k/p) r_k.
     root: Matrix3<f64>,
     squares: Option<[ChiSquared<f64>; 3]>,
+    /// None where nothing varies, or the mean is a rod, a plate or a point.
+    density: Option<Density>,
 }
 
 impl Wishart {
@@ -107,14 +112,15 @@ impl Wishart {
         let roots = mean.second_moments().roots().values();
         let turn = axes.attitude().to_rotation_matrix();
         let mut root = Matrix3::from_diagonal(&roots.into()) * turn.matrix();
-        let mut squares = None;
+        let (mut squares, mut density) = (None, None);
         if delta > 0.0 {
             let freedom = 4.0 / (delta * delta);
             root /= freedom.sqrt();
             let square = |k: f64| ChiSquared::new(freedom - k).map_err(|_| refused);
             squares = Some([square(0.0)?, square(1.0)?, square(2.0)?]);
+            density = Density::new(freedom, roots, turn.matrix());
         }
-        Ok(Self { mean, delta, root, squares })
+        Ok(Self { mean, delta, root, squares, density })
     }
 
     /// The mean body.
@@ -133,6 +139,19 @@ impl Wishart {
     #[must_use]
     pub fn degrees_of_freedom(&self) -> f64 {
         4.0 / (self.delta * self.delta)
+    }
+
+    /// The logarithm of the density of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ in kg·m²; −∞ of a matrix that no body has. None where
+    /// nothing varies, and where the mean is a rod, a plate or a point, which all draws then are. On the boundary, at
+    /// rods, plates and points, it is zero where p > 4, δ < 1, and infinite where p < 4.
+    #[must_use]
+    pub fn ln_density(&self, inertia: &InertiaMatrix) -> Option<f64> {
+        let density = self.density.as_ref()?;
+        if !inertia.is_realizable() {
+            return Some(f64::NEG_INFINITY);
+        }
+        let mean = self.mean.as_inertia_matrix().second_moment_matrix();
+        Some(density.ln_at(&(inertia.second_moment_matrix() - mean)))
     }
 
     /// Whether E‖G⁻¹‖² is finite, δ < √½, as Soize (2000) demands.

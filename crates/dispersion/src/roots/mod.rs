@@ -6,6 +6,8 @@ mod independent;
 mod law;
 mod scalar;
 
+use crate::ln_sum::ln_product;
+
 pub use correlated::{CorrelatedRoots, CorrelatedRootsError};
 pub use empirical::{EmpiricalRoots, EmpiricalRootsError};
 pub use independent::{IndependentRoots, IndependentRootsError};
@@ -21,8 +23,5 @@ const MAX_ROOT: f64 = 1e75;
 /// ln of what takes a density of roots of either sign to one of their squares, Π 1/(2√K), at the roots √K.
 fn ln_of_squares(roots: [f64; 3]) -> f64 {
     const LN_8: f64 = 3.0 * std::f64::consts::LN_2;
-    let product = roots[0] * roots[1] * roots[2];
-    let ln_product =
-        if product.is_normal() { libm::log(product) } else { roots.map(libm::log).iter().sum() };
-    -LN_8 - ln_product
+    -LN_8 - ln_product(&roots)
 }
