@@ -54,6 +54,7 @@ mod density_checks;
 mod density_of_entries;
 mod entry_moments;
 mod entrywise;
+mod gaussian_monomials;
 mod incomplete_beta;
 mod inertia_law;
 mod known_moments;
@@ -92,7 +93,9 @@ pub use inertia_law::{InertiaLaw, ModelDraw};
 pub use known_moments::KnownMoments;
 pub use log_cholesky::{LogCholeskyGaussian, LogCholeskyGaussianError};
 pub use mass_properties::{
-    JointScalar, MassPropertiesLaw, MassPropertiesLawError, MassPropertiesModel, TenMoments,
+    JointScalar, LogCholeskyTen, LogCholeskyTenError, MassPropertiesLaw, MassPropertiesLawError,
+    MassPropertiesModel, MaximumEntropy, MaximumEntropyError, NaiveBody, NaiveBodyError, NaiveRule,
+    PseudoInertiaWishart, PseudoInertiaWishartError, RegionAcceptanceError, TenMoments,
     TenParameters, TensorLaw, TensorLawError,
 };
 pub use matched::{MatchError, Matched};

@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, SMatrix, SVector};
 use rand::Rng;
 use rand_distr::Distribution;
 
+use crate::gaussian_monomials::{log_cholesky_entries, moments};
 use crate::named_model::{NamedModel, NoMatch, inertia_law};
 use crate::second_moment_matrix::{body, inertia_covariance, inertia_map};
 use crate::semidefinite::{Covariance, CovarianceError};
@@ -192,16 +193,6 @@ impl LogCholeskyGaussian {
         let ln_density = self.covariance.ln_density(&(SVector::from(x) - self.mean))?;
         Some(ln_density - LN_16 - 2.0 * x[0] - 3.0 * x[1] - 4.0 * x[2])
     }
-
-    /// E of a monomial e^{aᵀd} Π s.
-    fn expect(&self, monomial: &Monomial) -> f64 {
-        let c = self.covariance.matrix();
-        let a = &monomial.exponents;
-        let tilt: SVector<f64, 6> = c.fixed_columns::<3>(0) * SVector::<f64, 3>::from(*a);
-        let shifted = self.mean + tilt;
-        let exponent: f64 = (0..3).map(|i| a[i] * (self.mean[i] + 0.5 * tilt[i])).sum();
-        libm::exp(exponent) * gaussian_product(&monomial.factors[..monomial.length], &shifted, c)
-    }
 }
 
 /// Where the search for a law of given moments starts.
@@ -248,86 +239,11 @@ fn coordinates(body: &Inertia) -> Result<[f64; 6], LogCholeskyGaussianError> {
     Ok([d1, d2, d3, s12, s23, s13])
 }
 
-/// e^{aᵀd} times up to four of the six coordinates.
-#[derive(Clone, Copy)]
-struct Monomial {
-    exponents: [f64; 3],
-    factors: [usize; 4],
-    length: usize,
-}
-
-impl Monomial {
-    fn new(exponents: [f64; 3], s: &[usize]) -> Self {
-        let mut factors = [0; 4];
-        factors[..s.len()].copy_from_slice(s);
-        Self { exponents, factors, length: s.len() }
-    }
-
-    fn times(&self, other: &Self) -> Self {
-        let mut product = *self;
-        for (a, b) in product.exponents.iter_mut().zip(other.exponents) {
-            *a += b;
-        }
-        for &factor in &other.factors[..other.length] {
-            product.factors[product.length] = factor;
-            product.length += 1;
-        }
-        product
-    }
-}
-
-/// Σ₁₁, Σ₂₂, Σ₃₃, Σ₁₂, Σ₁₃, Σ₂₃ as sums of monomials.
-fn entries() -> [Vec<Monomial>; 6] {
-    const S12: usize = 3;
-    const S23: usize = 4;
-    const S13: usize = 5;
-    let of = Monomial::new;
-    let none = [0.0; 3];
-    [
-        vec![of([2.0, 0.0, 0.0], &[]), of(none, &[S12, S12]), of(none, &[S13, S13])],
-        vec![of([0.0, 2.0, 0.0], &[]), of(none, &[S23, S23])],
-        vec![of([0.0, 0.0, 2.0], &[])],
-        vec![of([0.0, 1.0, 0.0], &[S12]), of(none, &[S13, S23])],
-        vec![of([0.0, 0.0, 1.0], &[S13])],
-        vec![of([0.0, 0.0, 1.0], &[S23])],
-    ]
-}
-
-/// E Π x_i over the listed coordinates, x ~ N(mean, c) (Isserlis 1918, doi:10.1093/biomet/12.1-2.134).
-fn gaussian_product(factors: &[usize], mean: &SVector<f64, 6>, c: &SMatrix<f64, 6, 6>) -> f64 {
-    let Some((&first, rest)) = factors.split_first() else {
-        return 1.0;
-    };
-    let mut sum = mean[first] * gaussian_product(rest, mean, c);
-    for (i, &other) in rest.iter().enumerate() {
-        let left: Vec<usize> =
-            rest.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, f)| *f).collect();
-        sum += c[(first, other)] * gaussian_product(&left, mean, c);
-    }
-    sum
-}
-
 impl KnownMoments for LogCholeskyGaussian {
     fn entry_moments(&self) -> EntryMoments {
-        let entries = entries();
-        let mean: [f64; 6] =
-            std::array::from_fn(|e| entries[e].iter().map(|monomial| self.expect(monomial)).sum());
-        let mut covariance = SMatrix::<f64, 6, 6>::zeros();
-        for e in 0..6 {
-            for f in 0..=e {
-                // Term by term, so that what is constant cancels to the bit.
-                let mut sum = 0.0;
-                for a in &entries[e] {
-                    for b in &entries[f] {
-                        sum += self.expect(&a.times(b)) - self.expect(a) * self.expect(b);
-                    }
-                }
-                covariance[(e, f)] = sum;
-                covariance[(f, e)] = sum;
-            }
-        }
-        let mean = inertia_map() * SVector::<f64, 6>::from(mean);
-        EntryMoments::unchecked(mean.into(), inertia_covariance(&covariance))
+        let (mean, covariance) =
+            moments(&log_cholesky_entries::<6>(None, 0), &self.mean, self.covariance.matrix());
+        EntryMoments::unchecked((inertia_map() * mean).into(), inertia_covariance(&covariance))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The density of the joint law of mass, mass centre and inertia.
 
-use gyradius_inertia::{Containment, InertiaMatrix, MassProperties, PrincipalAxes};
+use gyradius_inertia::{InertiaMatrix, MassProperties, PrincipalAxes};
 use nalgebra::UnitQuaternion;
 use std::f64::consts::LN_2;
 
@@ -38,9 +38,7 @@ impl MassPropertiesLaw {
             }
         }
         let inertia = self.of_inertia(body, mass, scores)?;
-        if let Some(region) = self.region()
-            && region.containment(body) != Containment::Possible
-        {
+        if !self.holds(body) {
             return Some(f64::NEG_INFINITY);
         }
         if sum == f64::NEG_INFINITY {

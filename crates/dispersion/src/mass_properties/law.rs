@@ -1,13 +1,12 @@
 //! The joint law of mass, mass centre and inertia, of which every draw is a body.
 
-use gyradius_inertia::{
-    Containment, Inertia, MAX_LENGTH, MassProperties, Region, RootSecondMoments,
-};
+use gyradius_inertia::{Inertia, MAX_LENGTH, MassProperties, Region, RootSecondMoments};
 use nalgebra::{UnitQuaternion, Vector3};
 use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::{Distribution, StandardNormal};
 use std::borrow::Cow;
 
+use super::inside::{Inside, RegionAcceptanceError};
 use super::tensor::{Follows, Of, Principal};
 use super::{MassPropertiesModel, TenMoments, TenParameters, TensorLaw, TensorLawError};
 use crate::roots::FAR;
@@ -19,12 +18,6 @@ const MAX_MOMENT: f64 = 1e150;
 const SAFE_DEVIATION: f64 = 0.125;
 /// Trial draws of a constructor.
 const TRIALS: usize = 64;
-/// Trial draws that tell how many are possible in an ellipsoid, and in other regions.
-const EXACT_TRIALS: u32 = 20_000;
-const REGION_TRIALS: u32 = 4_000;
-/// A smaller share of them, and a draw costs more than a thousand.
-const LEAST_SHARE: f64 = 1e-3;
-
 /// The joint law of mass, mass centre and inertia.
 ///
 /// # Definition
@@ -71,15 +64,6 @@ pub struct MassPropertiesLaw {
     /// As given, for files.
     pairs: Vec<(JointScalar, JointScalar, f64)>,
     inside: Option<Inside>,
-}
-
-/// A region that holds the matter of every draw.
-#[derive(Clone, Debug, PartialEq)]
-struct Inside {
-    region: Region,
-    /// How many of so many trial draws were possible in it.
-    possible: u32,
-    trials: u32,
 }
 
 /// A scalar of a joint law that can be correlated with others.
@@ -161,7 +145,7 @@ impl MassPropertiesLaw {
             correlation.among(|scalar| laws.get(scalar).is_some_and(|law| law.deviation() > 0.0));
         let law = Self { correlation, copula, pairs: pairs.to_vec(), inside: None, ..self.clone() };
         match self.inside {
-            Some(inside) => law.inside(inside.region),
+            Some(inside) => law.inside(inside.into_region()),
             None => Ok(law),
         }
     }
@@ -174,33 +158,21 @@ impl MassPropertiesLaw {
     /// Fewer than one in a thousand trial draws are possible in the region.
     pub fn inside(self, region: Region) -> Result<Self, MassPropertiesLawError> {
         let open = Self { inside: None, ..self };
-        let trials = if region.is_exact() { EXACT_TRIALS } else { REGION_TRIALS };
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(0);
-        let mut possible = 0;
-        for _ in 0..trials {
-            let body: MassProperties = open.sample(&mut rng);
-            possible += u32::from(region.containment(&body) == Containment::Possible);
-        }
-        if f64::from(possible) < LEAST_SHARE * f64::from(trials) {
-            return Err(MassPropertiesLawError::Outside { possible, trials });
-        }
-        Ok(Self { inside: Some(Inside { region, possible, trials }), ..open })
+        let inside = Inside::new(region, || open.sample(&mut rng))?;
+        Ok(Self { inside: Some(inside), ..open })
     }
 
     /// The region that holds the matter of every draw.
     #[must_use]
     pub fn region(&self) -> Option<&Region> {
-        self.inside.as_ref().map(|inside| &inside.region)
+        self.inside.as_ref().map(Inside::region)
     }
 
     /// The estimated share of proposals that are possible in the region, and its standard error; 1 and 0 without one.
     #[must_use]
     pub fn acceptance(&self) -> (f64, f64) {
-        self.inside.as_ref().map_or((1.0, 0.0), |inside| {
-            let n = f64::from(inside.trials);
-            let p = f64::from(inside.possible) / n;
-            (p, (p * (1.0 - p) / n).sqrt())
-        })
+        self.inside.as_ref().map_or((1.0, 0.0), Inside::acceptance)
     }
 
     /// The law of the mass, kg.
@@ -236,6 +208,12 @@ impl MassPropertiesLaw {
     /// Whether draws are rejected, so that the laws of the parts are not those of the whole.
     pub(super) fn is_rejected(&self) -> bool {
         self.inside.is_some()
+    }
+
+    /// Whether the region, if there is one, holds a body.
+    #[inline]
+    pub(super) fn holds(&self, body: &MassProperties) -> bool {
+        self.inside.as_ref().is_none_or(|inside| inside.holds(body))
     }
 
     /// How the scalars that vary are correlated.
@@ -377,9 +355,7 @@ impl Distribution<MassProperties> for MassPropertiesLaw {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> MassProperties {
         loop {
             if let Some(body) = self.propose(rng)
-                && self
-                    .region()
-                    .is_none_or(|region| region.containment(&body) == Containment::Possible)
+                && self.holds(&body)
             {
                 return body;
             }
@@ -408,6 +384,10 @@ impl MassPropertiesModel for MassPropertiesLaw {
 
     fn moments(&self) -> Option<TenMoments> {
         self.moments()
+    }
+
+    fn linear_moments(&self) -> Option<TenMoments> {
+        self.linear_moments()
     }
 
     fn acceptance(&self) -> Option<f64> {
@@ -451,7 +431,7 @@ impl From<MassPropertiesLaw> for Fields {
             mass_centre_m: law.centre,
             inertia: law.tensor,
             correlations: law.pairs,
-            inside: law.inside.map(|inside| inside.region),
+            inside: law.inside.map(Inside::into_region),
         }
     }
 }
@@ -499,16 +479,8 @@ pub enum MassPropertiesLawError {
         value: f64,
     },
     /// Next to no trial draw is possible in the region.
-    #[error(
-        "region: {possible} of {trials} trial draws were possible in it; at least one in a thousand must be, or a draw \
-         costs more than a thousand"
-    )]
-    Outside {
-        /// How many were.
-        possible: u32,
-        /// Of how many.
-        trials: u32,
-    },
+    #[error(transparent)]
+    Region(#[from] RegionAcceptanceError),
     /// Most trial draws are no bodies.
     #[error("{bodies} of {TRIALS} trial draws are bodies: sizes so small that floats lose them")]
     NoBodies {

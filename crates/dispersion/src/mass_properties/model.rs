@@ -32,6 +32,18 @@ pub trait MassPropertiesModel: Debug + Send + Sync {
         None
     }
 
+    /// Mean and covariance of the ten in which the equations of motion are linear ([`TenParameters::linear`]), where they
+    /// are known.
+    fn linear_moments(&self) -> Option<TenMoments> {
+        None
+    }
+
+    /// The share of so many draws that belong to no body; 0 of none.
+    fn unrealizable_share(&self, rng: &mut dyn Rng, draws: usize) -> f64 {
+        let none = (0..draws).filter(|_| !self.draw(rng).is_realizable()).count();
+        none as f64 / draws.max(1) as f64
+    }
+
     /// The share of proposals that rejection keeps, where the law is one by rejection.
     fn acceptance(&self) -> Option<f64> {
         None

@@ -85,7 +85,7 @@ pub(super) fn any_law() -> impl Strategy<Value = MassPropertiesLaw> {
 }
 
 /// Largest |z| of means and covariances of draws against those expected.
-fn worst(moments: &TenMoments, rows: &[SVector<f64, 10>]) -> f64 {
+pub(super) fn worst(moments: &TenMoments, rows: &[SVector<f64, 10>]) -> f64 {
     let n = rows.len() as f64;
     let mut worst = 0f64;
     let mut count = |gap: f64, deviation: f64, size: f64| {

@@ -1,0 +1,194 @@
+//! The ways in which mass properties are randomized in practice, of which most draw bodies that cannot be: rivals of the
+//! joint law, so that they can be compared and counted.
+
+use gyradius_inertia::{InertiaMatrix, MassProperties};
+use nalgebra::{Matrix3, Vector3};
+use rand::Rng;
+use rand_distr::Distribution;
+use std::borrow::Cow;
+
+use super::{MassPropertiesModel, TenParameters};
+use crate::ScalarLaw;
+use crate::roots::FAR;
+
+/// What a number may come to, so that no entry overflows.
+const MAX_NUMBER: f64 = 1e30;
+
+/// How the inertia is changed. Each random number is drawn anew from the law of the rule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NaiveRule {
+    /// Each diagonal entry times a number of its own; products of inertia stay.
+    DiagonalFactors,
+    /// Each of the six entries times a number of its own.
+    EntryFactors,
+    /// Each principal moment times a number of its own; the principal axes stay.
+    PrincipalFactors,
+    /// A number of its own, in kg·m², added to each of the six entries.
+    EntryNoise,
+    /// All entries times one number: no body becomes impossible.
+    ScaleAll,
+}
+
+impl NaiveRule {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::DiagonalFactors,
+        Self::EntryFactors,
+        Self::PrincipalFactors,
+        Self::EntryNoise,
+        Self::ScaleAll,
+    ];
+
+    /// Its name, in kebab case.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::DiagonalFactors => "diagonal-factors",
+            Self::EntryFactors => "entry-factors",
+            Self::PrincipalFactors => "principal-factors",
+            Self::EntryNoise => "entry-noise",
+            Self::ScaleAll => "scale-all",
+        }
+    }
+}
+
+/// A body whose inertia is randomized without regard to what bodies there are.
+///
+/// # Realizability
+/// Not by construction, but for [`NaiveRule::ScaleAll`] with positive factors.
+/// [`unrealizable_share`](MassPropertiesModel::unrealizable_share) counts.
+///
+/// ```
+/// use gyradius_dispersion::{MassPropertiesModel, NaiveBody, NaiveRule, ScalarLaw};
+/// use gyradius_inertia::Shape;
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+///
+/// // A rule of many public training set-ups: three diagonal entries, each times its own number of U(0.5, 1.5).
+/// let rod = Shape::cylinder(0.03, 0.5)?.of_mass(2.0)?;
+/// let law = NaiveBody::new(rod, NaiveRule::DiagonalFactors, ScalarLaw::uniform(0.5, 1.5)?)?;
+/// let share = law.unrealizable_share(&mut ChaCha8Rng::seed_from_u64(1), 10_000);
+/// assert!(share > 0.9, "nearly no draw is a body");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct NaiveBody {
+    nominal: MassProperties,
+    rule: NaiveRule,
+    law: ScalarLaw,
+    mass_factor: Option<ScalarLaw>,
+    centre_offset_m: Option<ScalarLaw>,
+}
+
+impl NaiveBody {
+    /// A body, a rule and the law of the numbers that it draws. Mass and mass centre stay.
+    ///
+    /// # Errors
+    /// The numbers could make entries that are too large.
+    pub fn new(
+        nominal: MassProperties,
+        rule: NaiveRule,
+        law: ScalarLaw,
+    ) -> Result<Self, NaiveBodyError> {
+        let law = checked(law)?;
+        Ok(Self { nominal, rule, law, mass_factor: None, centre_offset_m: None })
+    }
+
+    /// The same with a mass that is multiplied by a number of its own, apart from the inertia.
+    ///
+    /// # Errors
+    /// The numbers could be too large.
+    pub fn with_mass_factor(self, law: ScalarLaw) -> Result<Self, NaiveBodyError> {
+        Ok(Self { mass_factor: Some(checked(law)?), ..self })
+    }
+
+    /// The same with a mass centre that is moved along each body axis by a number of its own, in m.
+    ///
+    /// # Errors
+    /// The numbers could be too large.
+    pub fn with_centre_offset_m(self, law: ScalarLaw) -> Result<Self, NaiveBodyError> {
+        Ok(Self { centre_offset_m: Some(checked(law)?), ..self })
+    }
+
+    /// What is randomized.
+    #[must_use]
+    pub fn nominal(&self) -> &MassProperties {
+        &self.nominal
+    }
+
+    /// How.
+    #[must_use]
+    pub fn rule(&self) -> NaiveRule {
+        self.rule
+    }
+
+    fn inertia(&self, rng: &mut dyn Rng) -> Option<InertiaMatrix> {
+        let mut rng = rng;
+        let mut number = || self.law.sample(&mut rng);
+        let entries = self.nominal.inertia().entries();
+        let drawn = match self.rule {
+            NaiveRule::DiagonalFactors => {
+                let [a, b, c, rest @ ..] = entries;
+                let [a, b, c] = [a * number(), b * number(), c * number()];
+                let [d, e, f] = rest;
+                [a, b, c, d, e, f]
+            }
+            NaiveRule::EntryFactors => entries.map(|entry| entry * number()),
+            NaiveRule::EntryNoise => entries.map(|entry| entry + number()),
+            NaiveRule::ScaleAll => {
+                let factor = number();
+                entries.map(|entry| entry * factor)
+            }
+            NaiveRule::PrincipalFactors => {
+                let axes = self.nominal.inertia().principal_axes();
+                let turn = axes.attitude().to_rotation_matrix();
+                let moments = Vector3::from(axes.moments().map(|moment| moment * number()));
+                let turned =
+                    turn.matrix().transpose() * Matrix3::from_diagonal(&moments) * turn.matrix();
+                return InertiaMatrix::new((turned + turned.transpose()) * 0.5).ok();
+            }
+        };
+        let [i11, i22, i33, i12, i13, i23] = drawn;
+        InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23]).ok()
+    }
+}
+
+fn checked(law: ScalarLaw) -> Result<ScalarLaw, NaiveBodyError> {
+    let value = law.reach(FAR);
+    if value <= MAX_NUMBER { Ok(law) } else { Err(NaiveBodyError::Reach { value }) }
+}
+
+impl MassPropertiesModel for NaiveBody {
+    fn name(&self) -> Cow<'_, str> {
+        self.rule.name().into()
+    }
+
+    fn draw(&self, rng: &mut dyn Rng) -> TenParameters {
+        let inertia = self.inertia(rng);
+        let mut rng = rng;
+        let factor = self.mass_factor.as_ref().map_or(1.0, |law| law.sample(&mut rng));
+        let mut ten = TenParameters::from(self.nominal);
+        ten.mass_kg *= factor;
+        if let Some(law) = &self.centre_offset_m {
+            ten.mass_centre_m += Vector3::from_fn(|_, _| law.sample(&mut rng));
+        }
+        // Always: the numbers are in range.
+        ten.inertia = inertia.unwrap_or(ten.inertia);
+        ten
+    }
+
+    fn is_realizable_by_construction(&self) -> bool {
+        false
+    }
+}
+
+/// Why a law is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NaiveBodyError {
+    /// Numbers could come out too large.
+    #[error("numbers of up to {value:e}: they must be at most {MAX_NUMBER:e}")]
+    Reach {
+        /// How large.
+        value: f64,
+    },
+}
