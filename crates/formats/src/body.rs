@@ -123,6 +123,8 @@ pub(crate) fn shortened(text: &str) -> String {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Reading {
     pub(crate) mass_kg: Option<f64>,
+    /// Where the mass stands.
+    pub(crate) mass_place: Option<Place>,
     /// kg·m², products as tensor entries.
     pub(crate) matrix: Matrix3<f64>,
     /// kg·m² of one unit of the file.
@@ -155,6 +157,7 @@ impl Reading {
         });
         Self {
             mass_kg: mass.map(|m| m.value),
+            mass_place: mass.and_then(|m| m.place),
             matrix,
             unit: 1.0,
             places: nine.map(|row| row.map(|number| number.place)),

@@ -26,16 +26,23 @@
 //! ```
 
 mod body;
+mod copy;
 mod csv;
 mod data;
+mod edit;
 mod error;
 mod file;
+mod frame;
 mod gap;
 mod judge;
 mod kind;
 mod new_file;
+mod orientation;
 mod plain;
+mod references;
 mod repair;
+mod robot;
+mod robot_error;
 mod robots;
 mod text;
 mod walk;
@@ -53,6 +60,8 @@ pub use kind::Format;
 pub use new_file::{NewFile, WriteError};
 pub use plain::{must_write, read_text, write_file, write_file_as};
 pub use repair::{Change, Remedy, RepairError, copy_path, is_copy, write_copy, write_copy_of};
+pub use robot::{LinkNumbers, RobotFile, RobotLink};
+pub use robot_error::{LinkProblem, RobotError};
 pub use walk::{Found, find};
 
 /// Tolerance that suits files: they carry about six digits, and a plate or a rod written with six

@@ -12,7 +12,8 @@ use std::{
 
 use crate::{
     Body, InertiaFile, WriteError,
-    body::{Place, Reading},
+    body::Reading,
+    edit::{Edit, edited},
     judge::with_flipped_products,
     plain::write_file_as,
 };
@@ -43,7 +44,7 @@ pub struct Change {
     remedy: Remedy,
     before: Matrix3<f64>,
     after: Matrix3<f64>,
-    edits: Vec<(Place, String)>,
+    edits: Vec<Edit>,
 }
 
 impl Change {
@@ -182,20 +183,11 @@ impl InertiaFile {
     /// # Errors
     /// As [`change`](Self::change), or the copy does not read back.
     pub fn repaired(&self, bodies: &[(usize, Remedy)]) -> Result<Vec<u8>, RepairError> {
-        let mut edits: Vec<(Place, String)> = Vec::new();
+        let mut edits: Vec<Edit> = Vec::new();
         for (index, remedy) in bodies {
             edits.extend(self.change(*index, *remedy)?.into_iter().flat_map(|change| change.edits));
         }
-        edits.sort_by_key(|(place, _)| place.start);
-        let mut copy = Vec::with_capacity(self.bytes.len() + 8 * edits.len());
-        let mut done = 0;
-        for (place, text) in edits {
-            let (start, end) = (self.base + place.start, self.base + place.end);
-            copy.extend_from_slice(self.bytes.get(done..start).ok_or(RepairError::ReadsBackWrong)?);
-            copy.extend_from_slice(text.as_bytes());
-            done = end;
-        }
-        copy.extend_from_slice(self.bytes.get(done..).ok_or(RepairError::ReadsBackWrong)?);
+        let copy = edited(&self.bytes, self.base, edits).ok_or(RepairError::ReadsBackWrong)?;
         self.reads_back(&copy, bodies)?;
         Ok(copy)
     }
@@ -240,7 +232,7 @@ fn change(body: &Body, reading: &Reading, remedy: Remedy) -> Result<Change, Repa
     if target == Matrix3::zeros() && *old != target {
         return Err(RepairError::NothingLeft { name, line });
     }
-    let mut edits: Vec<(Place, String)> = Vec::new();
+    let mut edits: Vec<Edit> = Vec::new();
     for i in 0..3 {
         for j in 0..3 {
             let value = target[(i, j)];

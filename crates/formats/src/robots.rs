@@ -58,7 +58,7 @@ fn form_of(inertial: Node<'_, '_>) -> Option<Format> {
 }
 
 /// The element around the inertia of a body, in every format.
-const INERTIAL: &str = "inertial";
+pub(crate) const INERTIAL: &str = "inertial";
 
 /// The bodies of a file, and what of it was not read.
 pub(crate) fn read(
@@ -67,6 +67,19 @@ pub(crate) fn read(
     extension: Option<&str>,
     products: Products,
 ) -> Result<(Vec<Body>, Gaps), Refusal> {
+    let mut bodies = Vec::new();
+    let gaps = each(tree, format, extension, products, |_, body| bodies.push(body))?;
+    Ok((bodies, gaps))
+}
+
+/// Hands on every body with its element, in the order of the file, and says what of it was not read.
+pub(crate) fn each<'t, 'a>(
+    tree: &'t Tree<'a>,
+    format: Format,
+    extension: Option<&str>,
+    products: Products,
+    mut take: impl FnMut(Node<'t, 'a>, Body),
+) -> Result<Gaps, Refusal> {
     let declared = tree.macro_prefixes();
     let is_macro = |node: Node<'_, '_>| {
         let prefix = node.prefix();
@@ -74,7 +87,7 @@ pub(crate) fn read(
     };
     let has_macros =
         extension == Some(MACROS) || !declared.is_empty() || tree.nodes().any(is_macro);
-    let mut bodies = Vec::new();
+    let mut bodies = 0;
     let mut gaps = Gaps::default();
     tree.entities().for_each(|line| gaps.add(GapKind::Entities, line));
     for node in tree.nodes() {
@@ -99,10 +112,11 @@ pub(crate) fn read(
                 }
                 Err(Trouble::Body(error)) => Err(error),
             };
-            if bodies.len() == MAX_BODIES {
+            if bodies == MAX_BODIES {
                 return Err(Refusal { line: Some(line), problem: FileProblem::TooManyBodies });
             }
-            bodies.push(Body::new(node.name_above(), line, reading));
+            bodies += 1;
+            take(node, Body::new(node.name_above(), line, reading));
         } else if includes(node, format) {
             let file = ["file", "href"].iter().find_map(|name| node.attribute(name));
             let file = file.or_else(|| Some(node.child("uri")?.text()));
@@ -111,7 +125,7 @@ pub(crate) fn read(
             gaps.add(GapKind::Misplaced, node.line());
         }
     }
-    Ok((bodies, gaps))
+    Ok(gaps)
 }
 
 /// Why an inertia is not that of a body with numbers.

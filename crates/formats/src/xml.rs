@@ -11,7 +11,7 @@ use std::borrow::Cow;
 
 use crate::{
     BodyError, FileProblem, MAX_ATTRIBUTES, MAX_DEPTH,
-    body::{Number, shortened},
+    body::{Number, Place, shortened},
     error::Refusal,
     text::Text,
 };
@@ -22,6 +22,8 @@ struct Attribute<'a> {
     value: Cow<'a, str>,
     /// Where the value stands; nowhere if it is written with entities.
     start: Option<usize>,
+    /// From its name to the quote after its value.
+    whole: Option<Place>,
 }
 
 /// An element, its attributes, and the text in it.
@@ -29,6 +31,8 @@ struct Attribute<'a> {
 pub(crate) struct Element<'a> {
     name: &'a str,
     start: usize,
+    /// Where its content begins, if it has an end tag.
+    inside: Option<usize>,
     parent: Option<usize>,
     /// Index after its last descendant.
     end: usize,
@@ -75,6 +79,7 @@ impl<'a> Tree<'a> {
             match event {
                 Event::Start(tag) => {
                     let index = tree.push(&tag, open.last().copied(), before)?;
+                    tree.elements[index].inside = usize::try_from(reader.buffer_position()).ok();
                     open.push(index);
                     if open.len() > MAX_DEPTH {
                         return Err(source.refuse(before, FileProblem::TooDeep));
@@ -137,12 +142,16 @@ impl<'a> Tree<'a> {
             let raw = self.own(&attribute.value);
             let value = quick_xml::escape::unescape(raw).unwrap_or(Cow::Borrowed(raw));
             let start = if value == raw { source.offset_of(raw) } else { None };
-            attributes.push(Attribute { name: self.own(attribute.key.as_ref()), value, start });
+            let name = self.own(attribute.key.as_ref());
+            let whole = source.offset_of(name).zip(source.offset_of(raw));
+            let whole = whole.map(|(start, value)| Place { start, end: value + raw.len() + 1 });
+            attributes.push(Attribute { name, value, start, whole });
         }
         let index = self.elements.len();
         self.elements.push(Element {
             name: self.own(tag.name().as_ref()),
             start: before,
+            inside: None,
             parent,
             end: index + 1,
             attributes,
@@ -310,6 +319,35 @@ impl<'t, 'a> Node<'t, 'a> {
         allowed: usize,
     ) -> Option<Result<Vec<Number>, BodyError>> {
         self.find(name).map(|a| Number::parse_list(name, &a.value, a.start, allowed))
+    }
+
+    /// An attribute with its name and quotes, if it is there.
+    pub(crate) fn whole(self, name: &str) -> Option<Place> {
+        self.find(name)?.whole
+    }
+
+    /// Where an attribute more can be written, after a blank.
+    pub(crate) fn after_name(self) -> usize {
+        self.element().start + 1 + self.element().name.len()
+    }
+
+    /// Where a child more can be written, if the element has an end tag.
+    pub(crate) fn inside(self) -> Option<usize> {
+        self.element().inside
+    }
+
+    /// The numbers that are the text of this element.
+    pub(crate) fn numbers_inside(
+        self,
+        field: &'static str,
+        allowed: usize,
+    ) -> Result<Vec<Number>, BodyError> {
+        let element = self.element();
+        if element.broken {
+            return Err(BodyError::NotANumber { field, value: shortened(element.text) });
+        }
+        let start = self.tree.source.offset_of(element.text);
+        Number::parse_list(field, element.text, start, allowed)
     }
 
     /// The number that is the text of this element.

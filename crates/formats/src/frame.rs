@@ -1,0 +1,208 @@
+//! The frame of an inertia in that of its link, and where its numbers stand or can be written.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::{
+    BodyError, Format, LinkProblem,
+    body::{NAMES, Number, Place},
+    orientation::{ATTRIBUTES, Angles, of_mjcf, of_quaternion, of_roll_pitch_yaw},
+    xml::{Node, Tree},
+};
+
+/// The frame of an inertia: its origin is the mass centre.
+#[derive(Clone, Debug)]
+pub(crate) struct Frame {
+    /// m, in the frame of the link.
+    pub(crate) centre: Vector3<f64>,
+    /// Takes components in this frame to those in the link's.
+    pub(crate) rotation: UnitQuaternion<f64>,
+    pub(crate) centre_spot: Spot,
+    pub(crate) mass_spot: Spot,
+    /// Where entries go that the file leaves to their defaults.
+    pub(crate) entry_spots: Vec<Spot>,
+    /// Of MJCF with `diaginertia`.
+    pub(crate) diagonal: Option<Diagonal>,
+}
+
+/// Where a principal inertia of MJCF says its axes, and where more than that can be written.
+#[derive(Clone, Debug)]
+pub(crate) struct Diagonal {
+    /// The attribute `diaginertia`.
+    pub(crate) moments: Place,
+    /// The attribute that says the orientation, if one does.
+    pub(crate) orientation: Option<Place>,
+    /// The four numbers of `quat`.
+    pub(crate) quaternion: Option<Vec<Place>>,
+}
+
+/// Where numbers stand, or go if the file leaves them to their defaults.
+#[derive(Clone, Debug)]
+pub(crate) enum Spot {
+    /// Numbers of the file.
+    Numbers(Vec<Place>),
+    /// Nothing of them is there: this goes before and after them.
+    Missing { at: usize, before: String, after: String },
+    /// There is no plain way: they are written with entities, say.
+    Nowhere,
+}
+
+impl Spot {
+    fn of(numbers: &[Number]) -> Self {
+        let places: Option<Vec<Place>> = numbers.iter().map(|number| number.place).collect();
+        places.map_or(Self::Nowhere, Self::Numbers)
+    }
+
+    fn missing(at: usize, before: String, after: &str) -> Self {
+        Self::Missing { at, before, after: after.to_owned() }
+    }
+
+    /// A child more of an element.
+    fn child(node: Node<'_, '_>, open: &str, name: &str, close: &str) -> Self {
+        let prefix = node.prefix();
+        let colon = if prefix.is_empty() { "" } else { ":" };
+        let after = close.replace(name, &format!("{prefix}{colon}{name}"));
+        let before = format!("<{prefix}{colon}{open}");
+        node.inside().map_or(Self::Nowhere, |at| Self::missing(at, before, &after))
+    }
+}
+
+/// How the angles of an MJCF file are meant.
+pub(crate) fn angles(tree: &Tree<'_>) -> Angles {
+    let said = |name| tree.all("compiler").filter_map(move |node| node.attribute(name)).last();
+    // A file that includes others may have its compiler there, and one that is included has it elsewhere.
+    let is_whole = tree.root().name() == "mujoco" && tree.all("include").next().is_none();
+    let unit = match said("angle") {
+        Some("radian") => Some(1.0),
+        Some("degree") => Some(1_f64.to_radians()),
+        Some(_) => None,
+        None => is_whole.then_some(1_f64.to_radians()),
+    };
+    Angles { unit, sequence: said("eulerseq").unwrap_or("xyz").to_owned() }
+}
+
+/// The frame of an inertia in a file of this format.
+pub(crate) fn of(
+    node: Node<'_, '_>,
+    format: Format,
+    angles: &Angles,
+) -> Result<Frame, LinkProblem> {
+    match format {
+        Format::Mjcf => mjcf(node, angles),
+        Format::Sdf => sdf(node),
+        Format::Urdf | Format::Csv | Format::Toml | Format::Json => urdf(node),
+    }
+}
+
+/// Three numbers that are there, by value.
+fn three(numbers: &[Number]) -> Vector3<f64> {
+    Vector3::from_fn(|i, _| numbers.get(i).map_or(0.0, |number| number.value))
+}
+
+fn urdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
+    let origin = node.child("origin");
+    let numbers = |name| origin.and_then(|origin| origin.numbers(name, 3)).transpose();
+    let (xyz, rpy) = (numbers("xyz")?, numbers("rpy")?);
+    let centre_spot = match (&xyz, origin) {
+        (Some(xyz), _) => Spot::of(xyz),
+        (None, Some(origin)) => Spot::missing(origin.after_name(), " xyz=\"".to_owned(), "\""),
+        (None, None) => Spot::child(node, "origin xyz=\"", "origin", "\"/>"),
+    };
+    Ok(Frame {
+        centre: xyz.map_or_else(Vector3::zeros, |xyz| three(&xyz)),
+        rotation: of_roll_pitch_yaw(three(&rpy.unwrap_or_default()).into()),
+        centre_spot,
+        mass_spot: Spot::Nowhere,
+        entry_spots: Vec::new(),
+        diagonal: None,
+    })
+}
+
+fn mjcf(node: Node<'_, '_>, angles: &Angles) -> Result<Frame, LinkProblem> {
+    let position = node.numbers("pos", 3).transpose()?;
+    let centre_spot = match &position {
+        Some(numbers) => Spot::of(numbers),
+        None => Spot::missing(node.after_name(), " pos=\"".to_owned(), "\""),
+    };
+    let rotation = of_mjcf(node, angles)?;
+    let orientation = ATTRIBUTES.into_iter().find(|name| node.attribute(name).is_some());
+    if let Some(second) = orientation.filter(|_| node.attribute("fullinertia").is_some()) {
+        return Err(BodyError::Both { first: "fullinertia", second }.into());
+    }
+    let quaternion = node.numbers("quat", 4).transpose()?.map(|numbers| Spot::of(&numbers));
+    let diagonal = node.whole("diaginertia").map(|moments| Diagonal {
+        moments,
+        orientation: orientation.and_then(|name| node.whole(name)),
+        quaternion: match quaternion {
+            Some(Spot::Numbers(places)) => Some(places),
+            Some(Spot::Missing { .. } | Spot::Nowhere) | None => None,
+        },
+    });
+    Ok(Frame {
+        centre: position.map_or_else(Vector3::zeros, |numbers| three(&numbers)),
+        rotation,
+        centre_spot,
+        mass_spot: Spot::Nowhere,
+        entry_spots: Vec::new(),
+        diagonal,
+    })
+}
+
+fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
+    let pose = node.child("pose");
+    if let Some(pose) = pose {
+        for name in ["relative_to", "frame"] {
+            if let Some(frame) = pose.attribute(name).filter(|frame| !frame.trim().is_empty()) {
+                return Err(LinkProblem::RelativeTo { frame: frame.to_owned() });
+            }
+        }
+    }
+    // SDFormat 1.0 to 1.2.
+    let origin = node.child("origin").and_then(|origin| origin.numbers("pose", 6)).transpose()?;
+    let is_quaternion =
+        pose.is_some_and(|pose| pose.attribute("rotation_format") == Some("quat_xyzw"));
+    let numbers = match pose {
+        // An empty one is that of the link.
+        Some(pose) if !pose.has_text() => None,
+        Some(pose) => Some(pose.numbers_inside("pose", if is_quaternion { 7 } else { 6 })?),
+        None => origin,
+    };
+    let values: Vec<f64> = numbers.iter().flatten().map(|number| number.value).collect();
+    let in_degrees = pose.and_then(|pose| pose.attribute("degrees")).is_some_and(is_true);
+    let rotation = match values[..] {
+        [_, _, _, roll, pitch, yaw] => {
+            let unit = if in_degrees { 1_f64.to_radians() } else { 1.0 };
+            of_roll_pitch_yaw([roll, pitch, yaw].map(|angle| angle * unit))
+        }
+        [_, _, _, x, y, z, w] => {
+            of_quaternion([w, x, y, z]).ok_or(LinkProblem::Orientation { field: "pose" })?
+        }
+        _ => UnitQuaternion::identity(),
+    };
+    let centre_spot = match (&numbers, pose) {
+        (Some(numbers), _) => Spot::of(&numbers[..3]),
+        (None, Some(pose)) => {
+            let rest = if is_quaternion { " 0 0 0 1" } else { " 0 0 0" };
+            pose.inside().map_or(Spot::Nowhere, |at| Spot::missing(at, String::new(), rest))
+        }
+        (None, None) => Spot::child(node, "pose>", "pose", " 0 0 0</pose>"),
+    };
+    let inertia = node.child("inertia");
+    let entry = |name: &str| {
+        inertia.map_or(Spot::Nowhere, |inertia| match inertia.attribute_names().next() {
+            Some(_) => Spot::missing(inertia.after_name(), format!(" {name}=\""), "\""),
+            None => Spot::child(inertia, &format!("{name}>"), name, &format!("</{name}>")),
+        })
+    };
+    Ok(Frame {
+        centre: numbers.map_or_else(Vector3::zeros, |numbers| three(&numbers)),
+        rotation,
+        centre_spot,
+        mass_spot: Spot::child(node, "mass>", "mass", "</mass>"),
+        entry_spots: NAMES.iter().map(|name| entry(name)).collect(),
+        diagonal: None,
+    })
+}
+
+fn is_true(word: &str) -> bool {
+    matches!(word.trim(), "true" | "1")
+}

@@ -1,0 +1,283 @@
+//! A robot: the mass, mass centre and inertia of its links in the links' own frames, and copies with other numbers.
+
+use gyradius_inertia::{InertiaMatrix, MassProperties, RELATIVE_TOLERANCE};
+use nalgebra::{Matrix3, Vector3};
+use std::{collections::HashMap, path::Path};
+
+use crate::{
+    BodyError, Format, Gap, InertiaFile, LinkProblem, Products, RobotError,
+    copy::edits,
+    edit::{Edit, edited},
+    frame::{self, Frame},
+    kind::known_extension,
+    references,
+    robots::{self, INERTIAL},
+    text::Text,
+    xml::{Node, Tree},
+};
+
+/// A URDF, MJCF or SDF file as links with mass properties, which can be written with others.
+///
+/// ```
+/// use gyradius_formats::RobotFile;
+/// use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties};
+/// use std::path::Path;
+///
+/// let urdf = r#"<robot name="cart"><link name="wheel"><inertial>
+///   <origin xyz="0 0 0.1"/> <!-- from CAD --> <mass value="1"/>
+///   <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.15"/>
+/// </inertial></link></robot>"#;
+/// let robot = RobotFile::parse(Path::new("cart.urdf"), urdf.into())?;
+/// let wheel = robot.links()[0].numbers().unwrap();
+/// assert_eq!((wheel.mass_kg(), wheel.mass_centre_m().z), (1.0, 0.1));
+///
+/// let inertia = Inertia::new(wheel.inertia().matrix() * 1.5)?;
+/// let heavier = MassProperties::new(1.5, wheel.mass_centre_m(), inertia)?;
+/// let copy = String::from_utf8(robot.copy(&[(0, heavier)])?)?;
+/// assert!(copy.contains("<mass value=\"1.5\"/>") && copy.contains("<!-- from CAD -->"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RobotFile {
+    file: InertiaFile,
+    links: Vec<RobotLink>,
+    without: Vec<String>,
+    references: Vec<String>,
+    /// MuJoCo takes no notice of what is written.
+    from_geometry: bool,
+}
+
+/// A link with an inertia, or why that cannot be told.
+#[derive(Clone, Debug)]
+pub struct RobotLink {
+    name: String,
+    line: usize,
+    read: Result<(LinkNumbers, Frame), LinkProblem>,
+}
+
+/// The ten numbers of a link as its file has them, which need not be those of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkNumbers {
+    mass: f64,
+    centre: Vector3<f64>,
+    inertia: InertiaMatrix,
+}
+
+impl LinkNumbers {
+    /// Mass, kg.
+    #[must_use]
+    pub fn mass_kg(&self) -> f64 {
+        self.mass
+    }
+
+    /// Mass centre in the frame of the link, m.
+    #[must_use]
+    pub fn mass_centre_m(&self) -> Vector3<f64> {
+        self.centre
+    }
+
+    /// Inertia about the mass centre in axes parallel to the link's, kg·m², products as tensor entries.
+    #[must_use]
+    pub fn inertia(&self) -> &InertiaMatrix {
+        &self.inertia
+    }
+}
+
+impl RobotLink {
+    /// Name of the link, `unnamed` if it has none. The second of a name in a file is called `name#2`, and so on.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Line of its inertia, from 1.
+    #[must_use]
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
+    /// Its numbers.
+    ///
+    /// # Errors
+    /// They cannot be told.
+    pub fn numbers(&self) -> Result<&LinkNumbers, &LinkProblem> {
+        self.read.as_ref().map(|(numbers, _)| numbers)
+    }
+}
+
+impl RobotFile {
+    /// Whether a file is for a robot by its name, or, if its name tells nothing, by how it begins.
+    #[must_use]
+    pub fn is_one(path: &Path, begins: &[u8]) -> bool {
+        match known_extension(path) {
+            Some("csv" | "toml" | "json") => false,
+            Some(_) => true,
+            None => begins
+                .strip_prefix(b"\xef\xbb\xbf")
+                .unwrap_or(begins)
+                .trim_ascii_start()
+                .starts_with(b"<"),
+        }
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// The file as a whole cannot be read, or is no robot's.
+    pub fn read(path: &Path) -> Result<Self, RobotError> {
+        Self::new(InertiaFile::read(path, Products::default())?)
+    }
+
+    /// Reads what a file of this name holds.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(path: &Path, bytes: Vec<u8>) -> Result<Self, RobotError> {
+        Self::new(InertiaFile::parse(path, bytes, Products::default())?)
+    }
+
+    fn new(file: InertiaFile) -> Result<Self, RobotError> {
+        let format = file.format();
+        if !matches!(format, Format::Urdf | Format::Mjcf | Format::Sdf) {
+            return Err(RobotError::Format { format });
+        }
+        // What was read once is read again without an error.
+        let text = Text::new(&file.bytes, false).map_err(|_| RobotError::Format { format })?;
+        let tree = Tree::parse(&text).map_err(|_| RobotError::Format { format })?;
+        let angles = frame::angles(&tree);
+        let mut names: HashMap<String, usize> = HashMap::new();
+        let mut links = Vec::new();
+        let extension = known_extension(file.path());
+        let _ = robots::each(&tree, format, extension, Products::default(), |node, body| {
+            let name = if body.name().is_empty() { "unnamed" } else { body.name() };
+            let count = names.entry(name.to_owned()).or_default();
+            *count += 1;
+            let name = if *count == 1 { name.to_owned() } else { format!("{name}#{count}") };
+            let read = match body.reading() {
+                _ if format == Format::Urdf && is_in_gazebo(node) => Err(LinkProblem::Gazebo),
+                None => Err(body.inertia().err().map_or(LinkProblem::Gazebo, Into::into)),
+                Some(reading) => frame::of(node, format, &angles).and_then(|frame| {
+                    let matrix = InertiaMatrix::new(reading.matrix)
+                        .and_then(|matrix| matrix.rotated(&frame.rotation));
+                    let inertia = matrix.map_err(|_| LinkProblem::OutOfRange)?;
+                    // As it is written, where nothing is turned.
+                    let numbers = LinkNumbers {
+                        mass: reading.mass_kg.ok_or(BodyError::Missing { field: "mass" })?,
+                        centre: frame.centre,
+                        inertia,
+                    };
+                    Ok((numbers, frame))
+                }),
+            };
+            links.push(RobotLink { name, line: body.line(), read });
+        });
+        let from_geometry = format == Format::Mjcf
+            && tree.all("compiler").any(|node| node.attribute("inertiafromgeom") == Some("true"));
+        let element = if format == Format::Mjcf { "body" } else { "link" };
+        let without = tree
+            .all(element)
+            .filter(|link| link.children().all(|child| child.name() != INERTIAL))
+            .filter_map(|link| link.attribute("name").map(str::to_owned))
+            .collect();
+        let references = references::relative(&tree);
+        Ok(Self { links, without, references, from_geometry, file })
+    }
+
+    /// The path that was read.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// The format that was found.
+    #[must_use]
+    pub fn format(&self) -> Format {
+        self.file.format()
+    }
+
+    /// The links with an inertia, in the order of the file.
+    #[must_use]
+    pub fn links(&self) -> &[RobotLink] {
+        &self.links
+    }
+
+    /// Names of the links for which the file states no inertia.
+    #[must_use]
+    pub fn links_without_inertia(&self) -> &[String] {
+        &self.without
+    }
+
+    /// What of the file was not read though the rest was.
+    #[must_use]
+    pub fn gaps(&self) -> &[Gap] {
+        self.file.gaps()
+    }
+
+    /// Paths of other files, meshes say, that hold from the folder of this file only, as they are written; in MJCF
+    /// below the folder that the compiler is told.
+    #[must_use]
+    pub fn relative_paths(&self) -> &[String] {
+        &self.references
+    }
+
+    /// Whether the file tells MuJoCo to take no notice of the inertias that it states (`inertiafromgeom="true"`).
+    #[must_use]
+    pub fn ignores_inertias(&self) -> bool {
+        self.from_geometry
+    }
+
+    /// The bytes of a copy in which the links of these indices have other mass properties, in the links' frames, and
+    /// everything else is as it was. Only numbers change, each written with as many digits as read back bit for bit,
+    /// and of those only the ones that differ. What the file leaves to its defaults is written out where it must be,
+    /// and MJCF's `diaginertia` becomes `fullinertia` where the axes are turned and nothing in the file says theirs.
+    ///
+    /// In a frame that is not turned, the copy reads back to the bit; in one that is, and with `diaginertia`, to
+    /// rounding of the largest entry.
+    ///
+    /// # Errors
+    /// A link's numbers cannot be told or do not stand in the file as plain numbers, or the copy does not read back.
+    pub fn copy(&self, changed: &[(usize, MassProperties)]) -> Result<Vec<u8>, RobotError> {
+        let mut all: Vec<Edit> = Vec::new();
+        let mut expected: HashMap<usize, &MassProperties> = HashMap::new();
+        for (index, properties) in changed {
+            let Some((link, body)) = self.links.get(*index).zip(self.file.bodies().get(*index))
+            else {
+                return Err(RobotError::Index { index: *index, links: self.links.len() });
+            };
+            let fail =
+                |problem| RobotError::Link { name: link.name.clone(), line: link.line, problem };
+            let (numbers, frame) = link.read.as_ref().map_err(|problem| fail(problem.clone()))?;
+            let reading = body.reading().ok_or_else(|| fail(LinkProblem::OutOfRange))?;
+            all.extend(edits(reading, frame, numbers.inertia.matrix(), properties).map_err(fail)?);
+            expected.insert(*index, properties);
+        }
+        let copy =
+            edited(&self.file.bytes, self.file.base, all).ok_or(RobotError::ReadsBackWrong)?;
+        let again = self.file.reread(copy.clone()).map_err(RobotError::File).and_then(Self::new);
+        let again = again.map_err(|_| RobotError::ReadsBackWrong)?;
+        let same = again.links.len() == self.links.len()
+            && self.links.iter().zip(&again.links).enumerate().all(|(index, (before, after))| {
+                before.name == after.name
+                    && match (expected.get(&index), before.numbers(), after.numbers()) {
+                        (None, Ok(before), Ok(after)) => before == after,
+                        (None, Err(before), Err(after)) => before == after,
+                        (Some(properties), Ok(_), Ok(after)) => is_that(after, properties),
+                        _ => false,
+                    }
+            });
+        if same { Ok(copy) } else { Err(RobotError::ReadsBackWrong) }
+    }
+}
+
+/// Whether numbers are those of a body, the inertia to rounding.
+fn is_that(numbers: &LinkNumbers, body: &MassProperties) -> bool {
+    let (read, meant): (&Matrix3<f64>, _) = (numbers.inertia.matrix(), body.inertia().matrix());
+    numbers.mass == body.mass_kg()
+        && numbers.centre == body.mass_centre_m()
+        && (read - meant).amax() <= RELATIVE_TOLERANCE * meant.amax()
+}
+
+/// Whether an inertia stands in a block of a URDF file for Gazebo alone.
+fn is_in_gazebo(node: Node<'_, '_>) -> bool {
+    node.ancestors().any(|above| above.name() == "gazebo")
+}

@@ -1,0 +1,78 @@
+//! Why a robot, or one of its links, cannot be read or written.
+
+use crate::{BodyError, FileError, Format};
+
+/// Why the numbers of one link cannot be told or written; those of its neighbours can.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LinkProblem {
+    /// A number is missing, or none.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    /// It stands beside the link's own, for Gazebo.
+    #[error("it stands in a block for Gazebo, beside the link's own")]
+    Gazebo,
+    /// Its frame is given in another one than the link's.
+    #[error("its pose is relative to \"{frame}\": it must be that in the link")]
+    RelativeTo {
+        /// The other frame.
+        frame: String,
+    },
+    /// Another file says whether angles are degrees.
+    #[error(
+        "its axes are given by angles, and whether these are degrees is said in another file: a `quat` \
+         needs no unit"
+    )]
+    Angles,
+    /// An orientation that is none.
+    #[error("{field} is no orientation")]
+    Orientation {
+        /// The field.
+        field: &'static str,
+    },
+    /// Numbers beyond computing with.
+    #[error("its inertia is too large to be computed with, or not symmetric")]
+    OutOfRange,
+    /// A number that must change is not there as such.
+    #[error("its {field} is not written in the file, or not as a plain number")]
+    NoPlace {
+        /// The field.
+        field: &'static str,
+    },
+}
+
+/// Why a robot cannot be read or copied.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RobotError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A table, a list.
+    #[error("{format} files hold no robot: it must be URDF, MJCF or SDF")]
+    Format {
+        /// Its format.
+        format: Format,
+    },
+    /// There is no such link.
+    #[error("link {index}: the file has {links} links with inertia, counted from 0")]
+    Index {
+        /// The index.
+        index: usize,
+        /// How many there are.
+        links: usize,
+    },
+    /// A link cannot be told or written.
+    #[error("line {line}: \"{name}\": {problem}")]
+    Link {
+        /// Its name.
+        name: String,
+        /// Its line.
+        line: usize,
+        /// What is wrong.
+        problem: LinkProblem,
+    },
+    /// The copy reads back as something else than was meant.
+    #[error("the copy does not read back: nothing was written")]
+    ReadsBackWrong,
+}
