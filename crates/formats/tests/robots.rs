@@ -1,0 +1,502 @@
+//! Random robots in every dress: links are read in their own frames, and a copy differs in numbers alone and reads back
+//! as what was meant.
+
+use gyradius_formats::{LinkProblem, RobotError, RobotFile};
+use gyradius_inertia::{Inertia, MassProperties, SecondMoments};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use proptest::{prelude::*, sample::select};
+use std::path::Path;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Style {
+    Urdf,
+    Full,
+    Diagonal,
+    Sdf,
+    SdfAttributes,
+}
+
+/// How a link says which way the axes of its inertia are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Turn {
+    None,
+    Zero,
+    Angles,
+    Quaternion,
+}
+
+#[derive(Clone, Debug)]
+struct Link {
+    mass: f64,
+    centre: Option<[f64; 3]>,
+    /// Second moments about the axes below, of which some are zero: plates, rods and points.
+    second: [f64; 3],
+    axes: [f64; 4],
+    turn: Turn,
+    angles: [f64; 3],
+    digits: usize,
+}
+
+#[derive(Clone, Debug)]
+struct Robot {
+    style: Style,
+    links: Vec<Link>,
+    crlf: bool,
+    comments: bool,
+    mark: bool,
+    tight: bool,
+}
+
+fn link() -> impl Strategy<Value = Link> {
+    let size = -8.0..5.0_f64;
+    (
+        (0.001..1e3_f64, prop::option::of(prop::array::uniform3(-2.0..2.0_f64))),
+        (prop::array::uniform3(select(vec![0.0, 0.3, 1.0, 1.0, 2.5])), size),
+        prop::array::uniform4(-1.0..1.0_f64),
+        select(vec![Turn::None, Turn::Zero, Turn::Angles, Turn::Quaternion]),
+        (prop::array::uniform3(-3.2..3.2_f64), 3..17_usize),
+    )
+        .prop_map(|((mass, centre), (second, size), axes, turn, (angles, digits))| Link {
+            mass,
+            centre,
+            second: second.map(|k| k * 10_f64.powf(size)),
+            axes,
+            turn,
+            angles,
+            digits,
+        })
+}
+
+fn robot() -> impl Strategy<Value = Robot> {
+    use Style::{Diagonal, Full, Sdf, SdfAttributes, Urdf};
+    (
+        select(vec![Urdf, Full, Diagonal, Sdf, SdfAttributes]),
+        prop::collection::vec(link(), 1..5),
+        any::<[bool; 4]>(),
+    )
+        .prop_map(|(style, links, [crlf, comments, mark, tight])| Robot {
+            style,
+            links,
+            crlf,
+            comments,
+            mark,
+            tight,
+        })
+}
+
+fn quaternion(wxyz: [f64; 4]) -> UnitQuaternion<f64> {
+    let [w, x, y, z] = wxyz;
+    UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z + 1e-3))
+}
+
+fn body(second: [f64; 3], axes: [f64; 4]) -> Inertia {
+    Inertia::from_second_moments(SecondMoments::new(second).unwrap(), &quaternion(axes)).unwrap()
+}
+
+/// A number as files write it: with few digits or all, with an exponent or a point.
+fn number(x: f64, digits: usize) -> String {
+    match digits % 3 {
+        0 => format!("{x:.digits$e}"),
+        1 => format!("{x:e}").replace('e', "E"),
+        _ => format!("{x}"),
+    }
+}
+
+impl Link {
+    fn written(&self, x: f64) -> String {
+        number(x, self.digits)
+    }
+
+    fn list(&self, numbers: &[f64]) -> String {
+        numbers.iter().map(|x| self.written(*x)).collect::<Vec<_>>().join("  ")
+    }
+
+    /// The turn of its inertia's axes in those of the link, by entries of the rotation matrix.
+    fn rotation(&self, style: Style) -> Matrix3<f64> {
+        let read = |x: f64| self.written(x).parse::<f64>().unwrap();
+        match (self.turn, style) {
+            (Turn::None | Turn::Zero, _) | (_, Style::Full) => Matrix3::identity(),
+            (Turn::Quaternion, Style::Diagonal) => {
+                let [w, x, y, z] = self.axes.map(read);
+                let n = w * w + x * x + y * y + z * z;
+                Matrix3::new(
+                    w * w + x * x - y * y - z * z,
+                    2.0 * (x * y - w * z),
+                    2.0 * (x * z + w * y),
+                    2.0 * (x * y + w * z),
+                    w * w - x * x + y * y - z * z,
+                    2.0 * (y * z - w * x),
+                    2.0 * (x * z - w * y),
+                    2.0 * (y * z + w * x),
+                    w * w - x * x - y * y + z * z,
+                ) / n
+            }
+            (Turn::Angles | Turn::Quaternion, _) => {
+                let [a, b, c] = self.angles.map(read);
+                let (x, y, z) = (
+                    Matrix3::new(1.0, 0.0, 0.0, 0.0, a.cos(), -a.sin(), 0.0, a.sin(), a.cos()),
+                    Matrix3::new(b.cos(), 0.0, b.sin(), 0.0, 1.0, 0.0, -b.sin(), 0.0, b.cos()),
+                    Matrix3::new(c.cos(), -c.sin(), 0.0, c.sin(), c.cos(), 0.0, 0.0, 0.0, 1.0),
+                );
+                // About fixed axes; MuJoCo's are those of the body.
+                if style == Style::Diagonal { x * y * z } else { z * y * x }
+            }
+        }
+    }
+
+    /// Entries as they are written, in the order 11, 22, 33, 12, 13, 23.
+    fn entries(&self, style: Style) -> [f64; 6] {
+        if style == Style::Diagonal {
+            let [a, b, c] = self.second;
+            [b + c, a + c, a + b, 0.0, 0.0, 0.0]
+        } else {
+            body(self.second, self.axes).entries()
+        }
+    }
+
+    fn xml(&self, style: Style) -> String {
+        let six = self.entries(style).map(|x| self.written(x));
+        let [xx, yy, zz, xy, xz, yz] = &six;
+        let mass = self.written(self.mass);
+        let angles = self.list(&self.angles);
+        let centre = self.centre.map(|centre| self.list(&centre));
+        let turned = match self.turn {
+            Turn::None => String::new(),
+            Turn::Zero => "0 0 0".to_owned(),
+            Turn::Angles | Turn::Quaternion => angles.clone(),
+        };
+        match style {
+            Style::Urdf => {
+                let xyz = centre.map_or_else(String::new, |c| format!(" xyz=' {c}'"));
+                let rpy = if turned.is_empty() { turned } else { format!(" rpy=\"{turned}\"") };
+                let origin = if xyz.is_empty() && rpy.is_empty() {
+                    String::new()
+                } else {
+                    format!("<origin{rpy}{xyz} />\n")
+                };
+                format!(
+                    "<inertial>\n{origin}<mass value='{mass}'/> <inertia ixx='{xx}' ixy=\"{xy}\" \
+                     ixz='{xz}'\niyy='{yy} ' iyz='{yz}' izz=' {zz}'/></inertial>"
+                )
+            }
+            Style::Full | Style::Diagonal => {
+                let pos = centre.map_or_else(String::new, |c| format!(" pos='{c}'"));
+                let quat = match (self.turn, style) {
+                    (Turn::None | Turn::Zero, Style::Diagonal) if self.digits % 2 == 0 => {
+                        " quat='1 0 0 0'".to_owned()
+                    }
+                    (Turn::Quaternion, Style::Diagonal) => {
+                        format!(" quat='{}'", self.list(&self.axes))
+                    }
+                    (Turn::Angles, Style::Diagonal) => format!(" euler='{angles}'"),
+                    _ => String::new(),
+                };
+                let moments = if style == Style::Full {
+                    format!("fullinertia=\"{xx} {yy}\n{zz} {xy} {xz} {yz}\"")
+                } else {
+                    format!("diaginertia=' {xx} {yy} {zz}'")
+                };
+                format!("<inertial{pos} mass='{mass}'{quat}\n {moments}/>")
+            }
+            Style::Sdf => {
+                let pose = match (&centre, turned.is_empty()) {
+                    (None, _) if self.turn == Turn::None => String::new(),
+                    (None, _) if self.turn == Turn::Zero => "<pose></pose>".to_owned(),
+                    (centre, _) => {
+                        let three = centre.clone().unwrap_or_else(|| "0 0 0".to_owned());
+                        let turned = if turned.is_empty() { "0 0 0" } else { &turned };
+                        format!("<pose>\n{three} {turned}</pose>")
+                    }
+                };
+                let entries: String = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"]
+                    .iter()
+                    .zip(&six)
+                    .enumerate()
+                    // Products that are zero are often left out.
+                    .filter(|(e, (_, text))| {
+                        *e < 3 || self.digits % 2 == 0 || text.parse() != Ok(0.0)
+                    })
+                    .map(|(_, (name, text))| format!("<{name}> {text}</{name}>\n"))
+                    .collect();
+                format!(
+                    "<inertial>{pose}<mass>{mass}</mass><inertia>{entries}</inertia></inertial>"
+                )
+            }
+            Style::SdfAttributes => {
+                let three = centre.unwrap_or_else(|| "0 0 0".to_owned());
+                let turned = if turned.is_empty() { "0 0 0" } else { &turned };
+                format!(
+                    "<inertial mass='{mass}'><origin pose='{three} {turned}'/><inertia ixx='{xx}' \
+                     iyy='{yy}' izz='{zz}' ixy='{xy}' ixz='{xz}' iyz='{yz}'/></inertial>"
+                )
+            }
+        }
+    }
+}
+
+impl Robot {
+    fn name(&self) -> &'static str {
+        match self.style {
+            Style::Urdf => "r.urdf",
+            Style::Full | Style::Diagonal => "r.xml",
+            Style::Sdf | Style::SdfAttributes => "r.sdf",
+        }
+    }
+
+    fn xml(&self) -> Vec<u8> {
+        let (root, link) = match self.style {
+            Style::Urdf => ("robot name='r'", "link"),
+            Style::Full | Style::Diagonal => ("mujoco", "body"),
+            Style::Sdf => ("sdf version='1.9'", "link"),
+            Style::SdfAttributes => ("sdf", "link"),
+        };
+        let mut text = format!("<?xml version='1.0'?>\n<{root}>\n");
+        if self.style == Style::Diagonal {
+            text += "<compiler angle='radian'/>\n";
+        }
+        for (i, one) in self.links.iter().enumerate() {
+            let xml = one.xml(self.style);
+            if self.comments {
+                text += &format!("<!-- 1.5 {xml} 2e-3 -->\n");
+            }
+            text += &format!("<{link} name='l{i}'>{xml}</{link}>\n<{link} name='f{i}'/>\n");
+        }
+        text += &format!("</{}>\n", root.split(' ').next().unwrap());
+        if self.tight {
+            text = text.replace(">\n", ">");
+        }
+        if self.crlf {
+            text = text.replace('\n', "\r\n");
+        }
+        let mark = if self.mark { "\u{feff}" } else { "" };
+        format!("{mark}{text}").into_bytes()
+    }
+
+    /// Whether a copy needs something that the file leaves to its defaults.
+    fn must_add(&self) -> bool {
+        self.links.iter().any(|link| {
+            let missing = self.style == Style::Sdf
+                && link.digits % 2 == 1
+                && link.entries(self.style)[3..]
+                    .iter()
+                    .any(|x| link.written(*x).parse() == Ok(0.0));
+            let names = self.style == Style::Diagonal;
+            link.centre.is_none() || missing || names
+        })
+    }
+}
+
+/// The text with a mark in the place of every number.
+fn skeleton(text: &str) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let is_start = first.is_ascii_digit() || "+-.".contains(first);
+        let is_word = out.chars().last().is_some_and(|c| c.is_ascii_alphanumeric());
+        let long = rest.len()
+            - rest.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE".contains(c)).len();
+        if is_start && !is_word && rest[..long].parse::<f64>().is_ok() {
+            out.push('#');
+            rest = &rest[long..];
+        } else {
+            out.push(first);
+            rest = &rest[first.len_utf8()..];
+        }
+    }
+    out
+}
+
+fn parse(robot: &Robot) -> RobotFile {
+    RobotFile::parse(Path::new(robot.name()), robot.xml()).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1500))]
+
+    #[test]
+    fn links_are_read_in_their_own_frames(robot in robot()) {
+        let file = parse(&robot);
+        prop_assert_eq!(file.links().len(), robot.links.len());
+        prop_assert_eq!(file.links_without_inertia().len(), robot.links.len());
+        for (link, found) in robot.links.iter().zip(file.links()) {
+            let read = |x: f64| link.written(x).parse::<f64>().unwrap();
+            let numbers = found.numbers().unwrap();
+            prop_assert_eq!(numbers.mass_kg(), read(link.mass));
+            let centre: Vector3<f64> = link.centre.unwrap_or_default().map(read).into();
+            prop_assert_eq!(numbers.mass_centre_m(), centre);
+            let [xx, yy, zz, xy, xz, yz] = link.entries(robot.style).map(read);
+            let r = link.rotation(robot.style);
+            let expected = r * Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * r.transpose();
+            let off = (numbers.inertia().matrix() - expected).amax();
+            prop_assert!(off <= 1e-13 * expected.amax(), "{off:e}: {link:?}");
+        }
+    }
+
+    /// Every link gets other properties, or some of the ten do.
+    #[test]
+    fn copies_differ_in_numbers_alone_and_read_back(
+        robot in robot(),
+        others in prop::collection::vec((link(), 0..16_u8), 4),
+    ) {
+        let file = parse(&robot);
+        let mut changed = Vec::new();
+        for (i, (other, keeps)) in others.iter().enumerate().take(robot.links.len()) {
+            let Ok(numbers) = file.links()[i].numbers() else { continue };
+            let nominal = Inertia::try_from(*numbers.inertia()).ok();
+            let mass = if keeps & 1 == 1 { numbers.mass_kg() } else { other.mass };
+            let centre = other.centre.map_or(numbers.mass_centre_m(), Vector3::from);
+            let inertia = match nominal {
+                Some(nominal) if keeps & 2 == 2 => nominal,
+                // The same axes.
+                Some(nominal) if keeps & 4 == 4 => Inertia::new(nominal.matrix() * 1.1).unwrap(),
+                _ => body(other.second, other.axes),
+            };
+            if keeps & 8 == 0 {
+                changed.push((i, MassProperties::new(mass, centre, inertia).unwrap()));
+            }
+        }
+        let copy = file.copy(&changed).unwrap();
+        let again = RobotFile::parse(Path::new(robot.name()), copy.clone()).unwrap();
+        for (i, link) in robot.links.iter().enumerate() {
+            let found = again.links()[i].numbers().unwrap();
+            let Some((_, meant)) = changed.iter().find(|(index, _)| *index == i) else {
+                prop_assert_eq!(Ok(found), file.links()[i].numbers());
+                continue;
+            };
+            prop_assert_eq!(found.mass_kg(), meant.mass_kg());
+            prop_assert_eq!(found.mass_centre_m(), meant.mass_centre_m());
+            let exact = link.rotation(robot.style) == Matrix3::identity()
+                && robot.style != Style::Diagonal;
+            let matrix = meant.inertia().matrix();
+            let allowed = if exact { 0.0 } else { 1e-14 * matrix.amax() };
+            let off = (found.inertia().matrix() - matrix).amax();
+            prop_assert!(off <= allowed, "{off:e} of {:e}: {link:?}", matrix.amax());
+        }
+        let (before, after) = (robot.xml(), copy);
+        let (before, after) =
+            (String::from_utf8(before).unwrap(), String::from_utf8(after).unwrap());
+        if changed.is_empty() {
+            prop_assert_eq!(&before, &after);
+        }
+        if !robot.must_add() {
+            prop_assert_eq!(skeleton(&before), skeleton(&after));
+        }
+        prop_assert_eq!(before.matches('\n').count(), after.matches('\n').count());
+    }
+}
+
+/// What is left to defaults is written out where it must be, and nothing else.
+#[test]
+fn what_a_file_leaves_out_is_written_only_where_it_must_be() {
+    let half = "<mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>";
+    let sdf = "<mass>2</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia>";
+    let old = "<inertia ixx='1' iyy='1' izz='1'/>";
+    for (name, before, after) in [
+        (
+            "a.urdf",
+            format!("<robot><link><inertial>{half}</inertial></link></robot>"),
+            "<inertial><origin xyz=\"0.5 0.0 0.0\"/><mass value='4.0'/>",
+        ),
+        (
+            "a.urdf",
+            format!("<robot><link><x:inertial><origin rpy='0 0 0'/>{half}</x:inertial></link></robot>"),
+            "<x:inertial><origin xyz=\"0.5 0.0 0.0\" rpy='0 0 0'/><mass",
+        ),
+        (
+            "a.urdf",
+            format!("<robot><link><x:inertial>{half}</x:inertial></link></robot>"),
+            "<x:inertial><x:origin xyz=\"0.5 0.0 0.0\"/><mass",
+        ),
+        (
+            "a.sdf",
+            format!("<sdf version='1.9'><link><inertial>{sdf}</inertial></link></sdf>"),
+            "<inertial><pose>0.5 0.0 0.0 0 0 0</pose><mass>4.0</mass><inertia>\
+             <ixy>0.25</ixy><ixx>1</ixx>",
+        ),
+        (
+            "a.sdf",
+            format!("<sdf version='1.9'><link><x:inertial>{sdf}</x:inertial></link></sdf>"),
+            "<x:inertial><x:pose>0.5 0.0 0.0 0 0 0</x:pose><mass>4.0</mass>",
+        ),
+        (
+            "a.sdf",
+            format!("<sdf version='1.0'><link><inertial mass='2'>{old}</inertial></link></sdf>"),
+            "<inertial mass='4.0'><pose>0.5 0.0 0.0 0 0 0</pose><inertia ixy=\"0.25\" ixx='1'",
+        ),
+        (
+            "a.xml",
+            "<mujoco><body><inertial mass='2' diaginertia='1 1 1'/></body></mujoco>".to_owned(),
+            "<inertial pos=\"0.5 0.0 0.0\" mass='4.0' fullinertia=\"1.0 1.0 1.0 0.25 0.0 0.0\"/>",
+        ),
+        (
+            "a.xml",
+            "<mujoco><body><inertial mass='2' pos='0 0 0' euler='0 0 0' diaginertia='1 1 1'/></body></mujoco>"
+                .to_owned(),
+            "<inertial mass='4.0' pos='0.5 0.0 0.0' quat=\"",
+        ),
+    ] {
+        let file = RobotFile::parse(Path::new(name), before.clone().into_bytes()).unwrap();
+        let matrix = Matrix3::new(1.0, 0.25, 0.0, 0.25, 1.0, 0.0, 0.0, 0.0, 1.0);
+        let inertia = Inertia::new(matrix).unwrap();
+        let other = MassProperties::new(4.0, Vector3::new(0.5, 0.0, 0.0), inertia).unwrap();
+        let copy = String::from_utf8(file.copy(&[(0, other)]).unwrap()).unwrap();
+        assert!(copy.contains(after), "{before}\n{copy}\n{after}");
+    }
+}
+
+/// What cannot be told is said of that link alone.
+#[test]
+fn links_that_cannot_be_told_say_why() {
+    let problem = |name: &str, text: &str| {
+        let file = RobotFile::parse(Path::new(name), text.as_bytes().to_vec()).unwrap();
+        let last = file.links().last().unwrap();
+        let error = file.copy(&[(file.links().len() - 1, point())]).unwrap_err();
+        assert!(matches!(error, RobotError::Link { .. }), "{error}");
+        last.numbers().unwrap_err().clone()
+    };
+    fn point() -> MassProperties {
+        MassProperties::point(1.0, Vector3::zeros()).unwrap()
+    }
+    let mjcf = |inside: &str, attributes: &str| {
+        format!(
+            "<mujoco>{inside}<body><inertial pos='0 0 0' mass='1' {attributes}/></body></mujoco>"
+        )
+    };
+    assert_eq!(
+        problem("a.xml", &mjcf("<include file='b.xml'/>", "euler='1 0 0' diaginertia='1 1 1'")),
+        LinkProblem::Angles
+    );
+    assert_eq!(
+        problem("a.xml", &mjcf("", "quat='0 0 0 0' diaginertia='1 1 1'")),
+        LinkProblem::Orientation { field: "quat" }
+    );
+    for attributes in [
+        "quat='1 0 0 0' fullinertia='1 1 1 0 0 0'",
+        "quat='1 0 0 0' zaxis='0 0 1' diaginertia='1 1 1'",
+    ] {
+        assert!(matches!(problem("a.xml", &mjcf("", attributes)), LinkProblem::Body(_)));
+    }
+    let sdf =
+        "<sdf><link><inertial><pose relative_to='a'>0 0 0 0 0 0</pose></inertial></link></sdf>";
+    assert_eq!(problem("a.sdf", sdf), LinkProblem::RelativeTo { frame: "a".to_owned() });
+    let gazebo =
+        "<robot><gazebo reference='a'><inertial><mass>1</mass></inertial></gazebo></robot>";
+    assert_eq!(problem("a.urdf", gazebo), LinkProblem::Gazebo);
+    let table = RobotFile::parse(Path::new("a.csv"), b"ixx,iyy,izz\n1,1,1\n".to_vec());
+    assert!(matches!(table, Err(RobotError::Format { .. })));
+}
+
+#[test]
+fn names_are_told_apart_and_paths_found() {
+    let text = "<sdf><link><inertial/></link><link name='a'><inertial/></link><link name='a'>\
+                <inertial/><visual><mesh><uri>meshes/a.stl</uri></mesh></visual>\
+                <mesh><uri>model://b.stl</uri></mesh></link><link><inertial/></link></sdf>";
+    let file = RobotFile::parse(Path::new("a.sdf"), text.as_bytes().to_vec()).unwrap();
+    let names: Vec<&str> = file.links().iter().map(|link| link.name()).collect();
+    assert_eq!(names, ["unnamed", "a", "a#2", "unnamed#2"]);
+    assert_eq!(file.relative_paths(), ["meshes/a.stl"]);
+    let text = "<mujoco><compiler meshdir='assets/'/><mesh file='a.stl'/><include file='b.xml'/>\
+                <texture file='/c.png'/></mujoco>";
+    let file = RobotFile::parse(Path::new("a.xml"), text.as_bytes().to_vec()).unwrap();
+    assert_eq!(file.relative_paths(), ["assets/a.stl", "b.xml"]);
+}
