@@ -35,6 +35,7 @@
 //! ```
 
 mod fit;
+mod stated_body;
 mod statements;
 mod turns;
 
@@ -42,6 +43,7 @@ pub use fit::{
     Aspect, Assessment, AxesFinding, AxesFit, FitNote, FitTest, Matching, PrincipalFit,
     PrincipalFitError, RootEstimate, RootFit,
 };
+pub use stated_body::StatedBody;
 pub use statements::{
     Amount, AxesStatement, CentreStatement, MassStatement, MissedBecause, MomentsStatement, Part,
     ProductsStatement, StatedMass, StatedModel, StatementError, StatementWarning, Statements,
