@@ -26,6 +26,8 @@ pub struct Table {
     len: usize,
     /// `model`, `run`, `status`, those of the simulation, and kinds of texts.
     columns: Arc<[Column]>,
+    /// How many columns stand before those of the simulation.
+    own: usize,
     /// One of each column of the simulation.
     pub(crate) values: Vec<Values>,
     pub(crate) failures: BTreeMap<usize, Failure>,
@@ -46,7 +48,7 @@ pub struct Row<'a> {
     place: usize,
 }
 
-/// Columns before those of the simulation.
+/// Columns before those of the simulation, in a run table.
 const OWN: usize = 3;
 
 /// What a column of a table is filled from.
@@ -80,7 +82,28 @@ impl Table {
             }
         }
         let model = model.to_owned();
-        Ok(Self { model, first, len: 0, columns, values, failures: BTreeMap::new() })
+        Ok(Self { model, first, len: 0, columns, own: OWN, values, failures: BTreeMap::new() })
+    }
+
+    /// A table of draws that cannot fail, under names of its own in the place of `model` and `run`, and without `status`.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of_draws(
+        name: &str,
+        heads: [Column; 2],
+        columns: Vec<Column>,
+    ) -> Result<Self, TableError> {
+        let whole = Self::new(name, 0, columns)?;
+        let columns: Arc<[Column]> =
+            heads.into_iter().chain(whole.of_simulation().iter().cloned()).collect();
+        Ok(Self { columns, own: OWN - 1, ..whole })
+    }
+
+    /// The same columns for the draws of another name from a number on, without any yet.
+    #[must_use]
+    pub fn from_draw(&self, name: &str, first: u64) -> Self {
+        Self { model: name.to_owned(), ..self.from_run(first) }
     }
 
     /// A table of the same model and columns for runs from another number on.
@@ -91,6 +114,7 @@ impl Table {
             first,
             len: 0,
             columns: Arc::clone(&self.columns),
+            own: self.own,
             values: self.of_simulation().iter().map(|c| Values::new(c.kind())).collect(),
             failures: BTreeMap::new(),
         }
@@ -114,9 +138,9 @@ impl Table {
                 break;
             };
             if !values.push(&cell)
-                || (matches!(cell, Cell::Null) && !self.columns[OWN + filled].is_optional())
+                || (matches!(cell, Cell::Null) && !self.columns[self.own + filled].is_optional())
             {
-                let column = self.columns[OWN + filled].name().to_owned();
+                let column = self.columns[self.own + filled].name().to_owned();
                 refused = Some(TableError::Cell { column, cell: format!("{cell:?}") });
                 break;
             }
@@ -183,7 +207,7 @@ impl Table {
 
     /// Those that the simulation fills.
     pub(crate) fn of_simulation(&self) -> &[Column] {
-        &self.columns[OWN..OWN + self.values.len()]
+        &self.columns[self.own..self.own + self.values.len()]
     }
 
     /// What each column is filled from.
@@ -191,7 +215,8 @@ impl Table {
         let values = (0..self.values.len()).map(Source::Value);
         let of_kinds = self.of_simulation().iter().enumerate();
         let kinds = of_kinds.filter(|(_, c)| c.has_kinds()).map(|(place, _)| Source::Kind(place));
-        let own = [Source::Model, Source::Run, Source::Status].into_iter();
+        let own = [Source::Model, Source::Run, Source::Status].into_iter().take(self.own);
+        // A table of draws ends with those.
         let sources = own.chain(values).chain([Source::StatusKind]).chain(kinds);
         self.columns.iter().zip(sources)
     }

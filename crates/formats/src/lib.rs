@@ -52,6 +52,7 @@ mod xml;
 pub use gyradius_inertia::{Fault, RELATIVE_TOLERANCE, RealizabilityReport};
 
 pub use body::{Body, Products};
+pub use edit::is_same_but_numbers;
 pub use error::{Bearing, BodyError, FileError, FileProblem};
 pub use file::InertiaFile;
 pub use gap::{Gap, GapKind};

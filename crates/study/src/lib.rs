@@ -51,6 +51,7 @@ mod releases;
 mod replay;
 mod report;
 mod results;
+mod robots;
 mod run;
 mod scenario;
 mod seen;
@@ -92,6 +93,9 @@ pub use quantity::Quantity;
 pub use rare::{Rare, RareOptions};
 pub use replay::{Replay, ReplayError, Which};
 pub use results::{Results, ResultsError};
+pub use robots::{
+    LeftBecause, LinkSummary, RobotDraw, RobotDrawError, RobotDrawOptions, RobotFolder,
+};
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
 pub use shards::{ModelStatus, Status};
 pub use simulator::{SimulatorReplay, SimulatorScenario, SimulatorSummary};

@@ -1,0 +1,101 @@
+//! The draws of a robot as robots: a file for each.
+
+use gyradius_campaign::{CampaignError, Progress, is_stopped, threads};
+use gyradius_formats::{WriteError, is_same_but_numbers, must_write, write_file};
+use rayon::prelude::*;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicU64, Ordering},
+};
+
+use super::{RobotDraw, RobotDrawError};
+
+/// What a folder of robots has come to hold.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RobotFolder {
+    /// The first file.
+    pub first: Option<PathBuf>,
+    /// The last file.
+    pub last: Option<PathBuf>,
+    /// Files that were written.
+    pub written: u64,
+    /// Files that were there already, the same to the byte.
+    pub unchanged: u64,
+    /// Paths of other files in the robot, meshes say, that lead to a file from its own folder and to none from this one.
+    pub lost_paths: Vec<String>,
+}
+
+impl RobotDraw<'_> {
+    /// The name of the file of a draw: `arm-0007.urdf` of `arm.urdf`.
+    #[must_use]
+    pub fn file_name(&self, draw: u64) -> String {
+        let path = self.robot.path();
+        let text =
+            |part: Option<&std::ffi::OsStr>| part.map(|part| part.to_string_lossy().into_owned());
+        let stem = text(path.file_stem()).unwrap_or_else(|| "robot".to_owned());
+        let extension = text(path.extension()).map_or_else(String::new, |e| format!(".{e}"));
+        format!("{stem}-{draw:04}{extension}")
+    }
+
+    /// Writes a file for each draw into a folder, which is made if it is not there. A file that is there already and is
+    /// the same is left alone; another one is replaced with `force` only, and only if it is this robot with other
+    /// numbers. This is asked of all files before the first is written. The same bytes on any number of threads.
+    ///
+    /// # Errors
+    /// A robot cannot be made, another file is there, the system refuses, or it was told to stop: files that were
+    /// written stay.
+    pub fn write_folder(
+        &self,
+        folder: &Path,
+        force: bool,
+        progress: Progress<'_>,
+    ) -> Result<RobotFolder, RobotDrawError> {
+        let fail = |error| RobotDrawError::Folder { path: folder.display().to_string(), error };
+        fs::create_dir_all(folder).map_err(fail)?;
+        let draws = self.options.first..self.options.first + self.options.draws;
+        let path = |draw| folder.join(self.file_name(draw));
+        let (done, written) = (AtomicU64::new(0), AtomicU64::new(0));
+        threads(self.options.threads)?.install(|| {
+            draws.clone().into_par_iter().try_for_each(|draw| {
+                let path = path(draw);
+                if fs::symlink_metadata(&path).is_err() {
+                    return Ok(());
+                }
+                let copy = self.robot(draw)?;
+                if must_write(&path, &copy, force)? {
+                    let there = fs::read(&path)
+                        .map_err(|error| WriteError::Io { path: path.clone(), error })?;
+                    if !is_same_but_numbers(&there, &copy) {
+                        let path = path.display().to_string();
+                        return Err(RobotDrawError::Foreign { path });
+                    }
+                }
+                Ok(())
+            })?;
+            draws.clone().into_par_iter().try_for_each(|draw| {
+                if is_stopped(self.options.stop.as_deref()) {
+                    return Err(CampaignError::Stopped.into());
+                }
+                let changed = write_file(&path(draw), &self.robot(draw)?, force)?;
+                written.fetch_add(u64::from(changed), Ordering::Relaxed);
+                progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+                Ok::<(), RobotDrawError>(())
+            })
+        })?;
+        let written = written.into_inner();
+        Ok(RobotFolder {
+            first: draws.clone().next().map(path),
+            last: draws.last().map(path),
+            written,
+            unchanged: self.options.draws - written,
+            lost_paths: self.lost_paths(folder),
+        })
+    }
+
+    fn lost_paths(&self, folder: &Path) -> Vec<String> {
+        let from = self.robot.path().parent().unwrap_or(Path::new(""));
+        let paths = self.robot.relative_paths().iter();
+        paths.filter(|p| from.join(p).exists() && !folder.join(p).exists()).cloned().collect()
+    }
+}

@@ -1,0 +1,291 @@
+//! Draws of the mass properties of a robot's links: as robots in files, and as a table.
+
+mod folder;
+mod pick;
+mod summary;
+mod table;
+
+use gyradius_campaign::{CampaignError, FormatError, Streams, TableError};
+use gyradius_estimation::{StatedBody, StatementError, Statements};
+use gyradius_formats::{
+    Format, LinkNumbers, LinkProblem, RobotError, RobotFile, TOLERANCE, WriteError, judge,
+};
+use gyradius_inertia::{Inertia, MassProperties, Repair, RepairMethod};
+use nalgebra::Matrix3;
+use rand_distr::Distribution;
+use std::sync::{Arc, atomic::AtomicBool};
+
+pub use folder::RobotFolder;
+pub use summary::LinkSummary;
+
+/// What keys the streams of all links.
+const MODEL: &str = "robot";
+/// How far inside of what a body can have the inertia of a drawn link lies, as a part of its trace: programs that compare
+/// without tolerance, or read fewer digits, take flat plates and thin rods too then.
+const INSET: f64 = 1e-9;
+
+/// Which draws of which links.
+#[derive(Clone, Debug, Default)]
+pub struct RobotDrawOptions {
+    /// What is stated of every link, about its own nominal numbers.
+    pub statements: Statements,
+    /// Names of links, in which `*` stands for any characters and `?` for one; all links if there are none.
+    pub links: Vec<String>,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// The first draw, from 0.
+    pub first: u64,
+    /// How many draws.
+    pub draws: u64,
+    /// How many threads; as many as the machine has if not given.
+    pub threads: Option<usize>,
+    /// Set from elsewhere to stop.
+    pub stop: Option<Arc<AtomicBool>>,
+}
+
+/// The draws of a robot, ready to be written.
+///
+/// What is drawn of a link depends on the seed, the name of the link, its nominal numbers, what is stated, and the number of the draw
+/// alone: links that are added, removed or put in another order change no other.
+#[derive(Clone, Debug)]
+pub struct RobotDraw<'a> {
+    robot: &'a RobotFile,
+    links: Vec<DrawnLink>,
+    left: Vec<(String, LeftBecause)>,
+    options: RobotDrawOptions,
+}
+
+/// A link that is drawn.
+#[derive(Clone, Debug)]
+struct DrawnLink {
+    name: String,
+    /// Its place among the links of the file.
+    index: usize,
+    law: StatedBody,
+    streams: Streams,
+}
+
+/// Why a link stays as it is.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LeftBecause {
+    /// The file states no inertia for it.
+    #[error("no inertia in the file")]
+    NoInertia,
+    /// It has no mass.
+    #[error("a mass of 0 kg")]
+    NoMass,
+    /// It was not picked.
+    #[error("not picked")]
+    NotPicked,
+    /// Its numbers cannot be told.
+    #[error(transparent)]
+    Problem(#[from] LinkProblem),
+}
+
+impl<'a> RobotDraw<'a> {
+    /// Makes the laws of all links that are picked. Nothing is drawn yet.
+    ///
+    /// # Errors
+    /// A name matches no link, or none can be drawn; the nominal numbers of one are those of no body; or the statements
+    /// are refused.
+    pub fn new(robot: &'a RobotFile, options: RobotDrawOptions) -> Result<Self, RobotDrawError> {
+        if robot.ignores_inertias() {
+            return Err(RobotDrawError::Ignored);
+        }
+        let last = options.first.checked_add(options.draws).filter(|last| *last <= MOST);
+        if last.is_none() {
+            return Err(RobotDrawError::Draws { first: options.first, draws: options.draws });
+        }
+        let names: Vec<&str> = robot.links().iter().map(|link| link.name()).collect();
+        let picked = pick::picked(&names, robot.links_without_inertia(), &options.links)?;
+        let (mut links, mut left, mut impossible) = (Vec::new(), Vec::new(), Vec::new());
+        for (index, link) in robot.links().iter().enumerate() {
+            let name = link.name().to_owned();
+            let numbers = match link.numbers() {
+                _ if !picked[index] => {
+                    left.push((name, LeftBecause::NotPicked));
+                    continue;
+                }
+                Err(problem) => {
+                    left.push((name, problem.clone().into()));
+                    continue;
+                }
+                Ok(numbers) if numbers.mass_kg() == 0.0 => {
+                    left.push((name, LeftBecause::NoMass));
+                    continue;
+                }
+                Ok(numbers) => numbers,
+            };
+            let Some(nominal) = nominal(numbers) else {
+                impossible.push(name);
+                continue;
+            };
+            let law = StatedBody::new(&options.statements, &nominal)
+                .map_err(|error| RobotDrawError::Statement { link: name.clone(), error })?;
+            let streams = Streams::new(options.seed, MODEL, &name);
+            links.push(DrawnLink { name, index, law, streams });
+        }
+        if !impossible.is_empty() {
+            return Err(RobotDrawError::Impossible { links: impossible.join(", ") });
+        }
+        let without = robot.links_without_inertia().iter();
+        left.extend(without.map(|name| (name.clone(), LeftBecause::NoInertia)));
+        if links.is_empty() {
+            let why = left.iter().find(|(_, why)| *why != LeftBecause::NotPicked);
+            let why = why.map_or_else(String::new, |(name, why)| format!(": \"{name}\": {why}"));
+            return Err(RobotDrawError::Nothing { format: robot.format(), why });
+        }
+        Ok(Self { robot, links, left, options })
+    }
+
+    /// Names of the links that are drawn, in the order of the file.
+    pub fn links(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.links.iter().map(|link| link.name.as_str())
+    }
+
+    /// The links that stay as they are, and why.
+    #[must_use]
+    pub fn left(&self) -> &[(String, LeftBecause)] {
+        &self.left
+    }
+
+    /// Mass properties of a link, by its place among [`links`](Self::links), in a draw.
+    #[must_use]
+    pub fn body(&self, link: usize, draw: u64) -> Option<MassProperties> {
+        self.links.get(link).map(|link| link.body(draw))
+    }
+
+    /// The robot of a draw, as the bytes of a file.
+    ///
+    /// # Errors
+    /// A number that must change is not in the file.
+    pub fn robot(&self, draw: u64) -> Result<Vec<u8>, RobotError> {
+        let bodies: Vec<(usize, MassProperties)> =
+            self.links.iter().map(|link| (link.index, link.body(draw))).collect();
+        self.robot.copy(&bodies)
+    }
+}
+
+impl DrawnLink {
+    fn body(&self, draw: u64) -> MassProperties {
+        let drawn = self.law.sample(&mut self.streams.run(draw));
+        // What nothing is stated of stays as it is.
+        if drawn.inertia() == self.law.nominal().inertia() {
+            return drawn;
+        }
+        off_boundary(drawn.inertia())
+            .and_then(|inertia| {
+                MassProperties::new(drawn.mass_kg(), drawn.mass_centre_m(), inertia).ok()
+            })
+            .unwrap_or(drawn)
+    }
+}
+
+/// The nominal body of a link, or the nearest where rounding to six digits has made it impossible.
+fn nominal(numbers: &LinkNumbers) -> Option<MassProperties> {
+    let inertia = Inertia::try_from(*numbers.inertia()).ok().or_else(|| {
+        let matrix = numbers.inertia();
+        let within = judge(matrix.matrix(), None, TOLERANCE).report().is_realizable();
+        let near = within.then(|| Repair::new(matrix, RepairMethod::Nearest).ok())?;
+        near.map(|near| *near.inertia())
+    });
+    MassProperties::new(numbers.mass_kg(), numbers.mass_centre_m(), inertia?).ok()
+}
+
+/// The inertia moved inside by as much as it lies nearer to the boundary than [`INSET`]; nothing if it need not move.
+fn off_boundary(inertia: &Inertia) -> Option<Inertia> {
+    let trace = inertia.matrix().trace();
+    let least = inertia.principal_axes().second_moments().into_iter().fold(f64::INFINITY, f64::min);
+    let short = INSET * trace - least;
+    if !(short > 0.0) {
+        return None;
+    }
+    // Each second moment grows by half of what the moments do.
+    Inertia::new(inertia.matrix() + Matrix3::from_diagonal_element(2.0 * short)).ok()
+}
+
+/// The last draw has a number that a column can hold.
+const MOST: u64 = i64::MAX as u64;
+
+/// Why a robot cannot be drawn or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RobotDrawError {
+    /// A name matches no link.
+    #[error("--links {pattern}: {why}")]
+    Pattern {
+        /// The name.
+        pattern: String,
+        /// What the file has.
+        why: String,
+    },
+    /// No link can be drawn.
+    #[error("no link of this {format} file has an inertia that can be drawn{why}")]
+    Nothing {
+        /// Its format.
+        format: Format,
+        /// Why the first of them cannot.
+        why: String,
+    },
+    /// MuJoCo takes no notice of the numbers.
+    #[error(
+        "the compiler of this file has inertiafromgeom=\"true\", so that MuJoCo takes no notice of the inertias in it: \
+         \"auto\", which is its default, uses them"
+    )]
+    Ignored,
+    /// Nominal numbers that no body has.
+    #[error(
+        "no body has the mass and inertia of {links}: `gyradius check` says why, and with --repair writes a copy that can \
+         be drawn"
+    )]
+    Impossible {
+        /// Names of the links.
+        links: String,
+    },
+    /// The statements are refused.
+    #[error("\"{link}\": {error}")]
+    Statement {
+        /// The link.
+        link: String,
+        /// Why.
+        error: StatementError,
+    },
+    /// The last draw would have a number that is too large.
+    #[error("{draws} draws from draw {first} on: the number of the last must be below {MOST}")]
+    Draws {
+        /// The first.
+        first: u64,
+        /// How many.
+        draws: u64,
+    },
+    /// A robot cannot be copied.
+    #[error(transparent)]
+    Robot(#[from] RobotError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// What is there is no copy of this robot.
+    #[error("{path} is not this robot with other numbers, and is not replaced")]
+    Foreign {
+        /// The file.
+        path: String,
+    },
+    /// A folder cannot be made or read.
+    #[error("{path}: {error}")]
+    Folder {
+        /// The folder.
+        path: String,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// The threads cannot be started, or it was told to stop.
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
+    /// The columns are refused.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The output refuses.
+    #[error(transparent)]
+    Output(#[from] FormatError),
+}
