@@ -17,6 +17,7 @@ use crate::program::{
         REPORT_EXAMPLES, SLURM_EXAMPLES, STATUS_EXAMPLES, VERDICT_EXAMPLES,
     },
     scheduler::AskedShard,
+    stated::{ROBOTS, StatedArgs},
 };
 
 /// Uncertain rigid-body inertia: Monte Carlo studies of spacecraft separation.
@@ -67,11 +68,14 @@ pub(crate) enum Command {
     /// nutation, spring forces) and animation.html (bodies and springs in three dimensions).
     #[command(after_help = REPLAY_EXAMPLES)]
     Replay(ReplayArgs),
-    /// Write what is drawn for the runs of a scenario, without running any
+    /// Write what is drawn for the runs of a scenario, without running any; or robots with other mass properties
     ///
     /// One row a run, for a simulator of your own: the inertias of payload and stage, and whatever else the
     /// scenario disperses, in the columns of the run table. A study of the scenario has the same values, to the
     /// bit. Any number of runs takes the same memory.
+    ///
+    /// Of a robot: copies in which only the mass, mass centre and inertia of links differ, each of which some body has,
+    /// or a table of these.
     #[command(after_help = DRAW_EXAMPLES)]
     Draw(DrawArgs),
     /// Check the inertias in robot and CAD files, and write repaired copies
@@ -413,15 +417,15 @@ pub(crate) struct ReplayArgs {
 
 #[derive(Args, Debug)]
 pub(crate) struct DrawArgs {
-    /// Scenario file (TOML) [default: the built-in study of Peck (2003)]
-    #[arg(value_name = "SCENARIO")]
+    /// Scenario file (TOML) [default: the built-in study of Peck (2003)], or a robot (URDF, MJCF, SDF)
+    #[arg(value_name = "SCENARIO|ROBOT")]
     pub(crate) scenario: Option<PathBuf>,
 
-    /// Runs of each model; 0 for the columns alone [default: as in the scenario]
+    /// Runs of each model; 0 for the columns alone [default: as in the scenario]. Of a robot: how many
     #[arg(short = 'n', long, value_name = "N", value_parser = whole)]
     pub(crate) runs: Option<u64>,
 
-    /// The first run
+    /// The first run, or the first robot
     #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole)]
     pub(crate) first: u64,
 
@@ -429,19 +433,26 @@ pub(crate) struct DrawArgs {
     #[arg(long = "model", value_name = "NAME")]
     pub(crate) models: Vec<String>,
 
-    /// Seed of all random numbers [default: as in the scenario]
+    /// Seed of all random numbers [default: as in the scenario; 0 of a robot]
     #[arg(long, value_name = "S", value_parser = whole)]
     pub(crate) seed: Option<u64>,
+
+    #[command(flatten)]
+    pub(crate) stated: StatedArgs,
+
+    /// Of a robot: which links, by names in which * stands for any characters and ? for one [default: all with an inertia]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', help_heading = ROBOTS)]
+    pub(crate) links: Vec<String>,
 
     /// Form of the output [default: by the extension of the file; csv on standard output]
     #[arg(long, value_name = "FORMAT", value_parser = table_format())]
     pub(crate) format: Option<TableFormat>,
 
-    /// File to write; - is standard output [default: standard output]
-    #[arg(short, long, value_name = "FILE")]
+    /// Table to write; - is standard output [default: standard output]. Of a robot also a folder, for a file of each draw
+    #[arg(short, long, value_name = "FILE|FOLDER")]
     pub(crate) output: Option<PathBuf>,
 
-    /// Replace the file if it is there
+    /// Replace the file if it is there; in a folder, robots of another draw
     #[arg(long, requires = "output")]
     pub(crate) force: bool,
 

@@ -1,23 +1,34 @@
-//! `gyradius draw`: what is drawn for the runs of a scenario, for other programs.
+//! `gyradius draw`: what is drawn for the runs of a scenario, for other programs; for robots see `draw_robot`.
 
 use gyradius_formats::NewFile;
-use gyradius_study::{
-    AnyScenario, CampaignError, Draw, DrawError, DrawOptions, FormatError, TableFormat,
-};
+use gyradius_study::{AnyScenario, CampaignError, Draw, DrawError, DrawOptions, FormatError};
 use std::{
     error::Error,
-    fs,
     io::{self, IsTerminal, Write},
     path::Path,
     process::ExitCode,
 };
 
 use crate::program::{
-    args::DrawArgs, output::complain, progress, signals::Signals, study::scenario,
+    args::DrawArgs,
+    draw_output::{format, refuse_input},
+    draw_robot::{draw_robot, is_robot},
+    output::complain,
+    progress,
+    signals::Signals,
+    study::scenario,
 };
 
 /// Runs the verb.
 pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
+    if let Some(robot) = arguments.scenario.as_deref().filter(|path| is_robot(path)) {
+        return draw_robot(arguments, robot);
+    }
+    if arguments.stated.is_any() || !arguments.links.is_empty() {
+        return Err("--mass, --centre, --moments, --axes and --links are for robots (URDF, MJCF, SDF): a scenario says \
+                    itself what is uncertain"
+            .into());
+    }
     let file = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
     let format = format(arguments, file)?;
     let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
@@ -49,40 +60,6 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
             Ok(signals.code())
         }
         other => other.map(|()| ExitCode::SUCCESS),
-    }
-}
-
-/// The form that was asked for, or that of the extension of the file.
-fn format(arguments: &DrawArgs, file: Option<&Path>) -> Result<TableFormat, String> {
-    let format = match (arguments.format, file) {
-        (Some(format), _) => format,
-        (None, None) => TableFormat::default(),
-        (None, Some(path)) => TableFormat::of_path(path).ok_or_else(|| {
-            let known = TableFormat::ALL.iter().flat_map(|format| format.extensions());
-            let known: Vec<String> = known.map(|extension| format!(".{extension}")).collect();
-            format!(
-                "{}: the extension tells no format, as {} do: --format says it",
-                path.display(),
-                known.join(", ")
-            )
-        })?,
-    };
-    if file.is_none() && !format.is_text() && io::stdout().is_terminal() {
-        return Err(format!(
-            "{} is not for the screen: -o names a file, or a pipe leads to another program",
-            format.name()
-        ));
-    }
-    Ok(format)
-}
-
-/// The scenario is not written over, whatever is forced.
-pub(crate) fn refuse_input(path: &Path, scenario: &Path) -> Result<(), String> {
-    match (fs::canonicalize(path), fs::canonicalize(scenario)) {
-        (Ok(output), Ok(input)) if output == input => {
-            Err(format!("{} is the scenario: it is not written over", path.display()))
-        }
-        _ => Ok(()),
     }
 }
 

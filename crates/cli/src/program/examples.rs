@@ -33,6 +33,10 @@ Examples:
       The next million
   gyradius draw my-vehicle.toml -n 1e9 --format jsonl | my-simulator
       One JSON object after the other, for a program of yours
+  gyradius draw robot.urdf -n 1000 --mass 10% --centre 5mm --moments 15% --axes 5deg --seed 7 -o robots
+      A thousand robots, robots/robot-0000.urdf to robot-0999.urdf, in which only these numbers differ
+  gyradius draw robot.xml -n 1e5 --mass 10% --links \"*arm*,base\" -o links.parquet
+      A row for each link and draw, of the links of these names
 
 The same scenario, seed and runs give the same bytes on any number of threads. A file appears whole or not at all.
 

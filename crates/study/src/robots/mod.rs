@@ -8,7 +8,8 @@ mod table;
 use gyradius_campaign::{CampaignError, FormatError, Streams, TableError};
 use gyradius_estimation::{StatedBody, StatementError, Statements};
 use gyradius_formats::{
-    Format, LinkNumbers, LinkProblem, RobotError, RobotFile, TOLERANCE, WriteError, judge,
+    Format, LinkNumbers, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE, WriteError,
+    judge,
 };
 use gyradius_inertia::{Inertia, MassProperties, Repair, RepairMethod};
 use nalgebra::Matrix3;
@@ -97,7 +98,7 @@ impl<'a> RobotDraw<'a> {
         if last.is_none() {
             return Err(RobotDrawError::Draws { first: options.first, draws: options.draws });
         }
-        let names: Vec<&str> = robot.links().iter().map(|link| link.name()).collect();
+        let names: Vec<&str> = robot.links().iter().map(RobotLink::name).collect();
         let picked = pick::picked(&names, robot.links_without_inertia(), &options.links)?;
         let (mut links, mut left, mut impossible) = (Vec::new(), Vec::new(), Vec::new());
         for (index, link) in robot.links().iter().enumerate() {

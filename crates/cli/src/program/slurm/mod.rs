@@ -15,7 +15,7 @@ use std::{
 
 use crate::program::{
     args::SlurmArgs,
-    draw::refuse_input,
+    draw_output::refuse_input,
     output::{print, say, to_standard_output},
     study::{scenario, sized},
 };

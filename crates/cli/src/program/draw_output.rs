@@ -1,0 +1,44 @@
+//! Where `gyradius draw` writes a table, and in which form.
+
+use gyradius_study::TableFormat;
+use std::{
+    fs,
+    io::{self, IsTerminal},
+    path::Path,
+};
+
+use crate::program::args::DrawArgs;
+
+/// The form that was asked for, or that of the extension of the file.
+pub(crate) fn format(arguments: &DrawArgs, file: Option<&Path>) -> Result<TableFormat, String> {
+    let format = match (arguments.format, file) {
+        (Some(format), _) => format,
+        (None, None) => TableFormat::default(),
+        (None, Some(path)) => TableFormat::of_path(path).ok_or_else(|| {
+            let known = TableFormat::ALL.iter().flat_map(|format| format.extensions());
+            let known: Vec<String> = known.map(|extension| format!(".{extension}")).collect();
+            format!(
+                "{}: the extension tells no format, as {} do: --format says it",
+                path.display(),
+                known.join(", ")
+            )
+        })?,
+    };
+    if file.is_none() && !format.is_text() && io::stdout().is_terminal() {
+        return Err(format!(
+            "{} is not for the screen: -o names a file, or a pipe leads to another program",
+            format.name()
+        ));
+    }
+    Ok(format)
+}
+
+/// What was read is not written over, whatever is forced.
+pub(crate) fn refuse_input(path: &Path, input: &Path) -> Result<(), String> {
+    match (fs::canonicalize(path), fs::canonicalize(input)) {
+        (Ok(output), Ok(read)) if output == read => {
+            Err(format!("{} is what was read: it is not written over", path.display()))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,239 @@
+//! `gyradius draw robot.urdf`: robots with other mass properties, or a table of these.
+
+use gyradius_formats::{GapKind, NewFile, RobotFile};
+use gyradius_study::{
+    CampaignError, LinkSummary, RobotDraw, RobotDrawError, RobotDrawOptions, RobotFolder,
+    TableFormat,
+};
+use std::{
+    error::Error,
+    fs::File,
+    io::{self, IsTerminal, Read, Write},
+    path::Path,
+    process::ExitCode,
+};
+
+use crate::program::{
+    args::DrawArgs,
+    draw_output::{format, refuse_input},
+    number::short,
+    output::{complain, print, say},
+    progress,
+    signals::Signals,
+};
+
+/// Links, warnings and paths that are listed at most.
+const LISTED: usize = 40;
+
+/// Whether what is to be drawn is a robot: by the name of the file, or by how it begins.
+pub(crate) fn is_robot(path: &Path) -> bool {
+    let mut begins = [0; 512];
+    // What cannot be read is told by who reads it.
+    let read = match path.extension() {
+        None if path.is_file() => File::open(path).and_then(|mut file| file.read(&mut begins)),
+        Some(_) | None => Ok(0),
+    };
+    RobotFile::is_one(path, &begins[..read.unwrap_or(0)])
+}
+
+/// Runs the verb for a robot.
+pub(crate) fn draw_robot(arguments: &DrawArgs, path: &Path) -> Result<ExitCode, Box<dyn Error>> {
+    if !arguments.models.is_empty() {
+        return Err("--model is for scenarios: a robot has links, which --links picks".into());
+    }
+    if !arguments.stated.is_any() {
+        return Err("nothing is stated of the links: --mass 10%, --centre 5mm, --moments 15% and --axes 5deg say \
+                    what is uncertain"
+            .into());
+    }
+    let Some(draws) = arguments.runs else {
+        return Err("-n says how many robots are drawn".into());
+    };
+    let robot = RobotFile::read(path)?;
+    let signals = Signals::watch()?;
+    let options = RobotDrawOptions {
+        statements: arguments.stated.statements()?,
+        links: arguments.links.clone(),
+        seed: arguments.seed.unwrap_or_default(),
+        first: arguments.first,
+        draws,
+        threads: arguments.threads,
+        stop: Some(signals.stop()),
+    };
+    let draw =
+        RobotDraw::new(&robot, options).map_err(|error| format!("{}: {error}", path.display()))?;
+    match write(arguments, path, &draw) {
+        Err(error) if is_stopped(error.as_ref()) => {
+            complain("stopped");
+            Ok(signals.code())
+        }
+        Err(error) => Err(error),
+        Ok(None) => Ok(ExitCode::SUCCESS),
+        Ok(Some(place)) => {
+            print(&report(arguments, &robot, &draw, &place))?;
+            Ok(ExitCode::SUCCESS)
+        }
+    }
+}
+
+/// Writes a table, or robots into a folder, and says where.
+fn write(
+    arguments: &DrawArgs,
+    input: &Path,
+    draw: &RobotDraw<'_>,
+) -> Result<Option<String>, Box<dyn Error>> {
+    let file = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
+    match file {
+        Some(path) if arguments.format.is_some() || TableFormat::of_path(path).is_some() => {
+            let format = format(arguments, file)?;
+            refuse_input(path, input)?;
+            let mut output = NewFile::create(path, arguments.force)?;
+            table(draw, format, &mut output).map_err(|error| named(error, path))?;
+            output.finish()?;
+            Ok(Some(format!("wrote {}", path.display())))
+        }
+        Some(folder) => {
+            let robots = arguments.runs.unwrap_or_default();
+            let written = progress::show(robots, "robots", |report| {
+                draw.write_folder(folder, arguments.force, report)
+            })?;
+            warn_of_lost_paths(folder, &written);
+            Ok(Some(placed(&written)))
+        }
+        None => {
+            let format = format(arguments, None)?;
+            let mut out = io::stdout();
+            let written = if out.is_terminal() {
+                // A bar would stand between the lines.
+                draw.write_table(format, &mut out, &|_| {})
+            } else {
+                table(draw, format, &mut out)
+            };
+            let flushed = written
+                .and_then(|()| Ok(out.flush().map_err(gyradius_study::FormatError::from)?));
+            match flushed {
+                // A reader that reads no further, as `head` does, has what it wanted.
+                Err(RobotDrawError::Output(gyradius_study::FormatError::Io(error)))
+                    if error.kind() == io::ErrorKind::BrokenPipe => {}
+                other => other?,
+            }
+            Ok(None)
+        }
+    }
+}
+
+fn table(
+    draw: &RobotDraw<'_>,
+    format: TableFormat,
+    output: impl Write + Send,
+) -> Result<(), RobotDrawError> {
+    progress::show(draw.steps(format), "rows", |report| draw.write_table(format, output, report))
+}
+
+fn named(error: RobotDrawError, path: &Path) -> Box<dyn Error> {
+    match error {
+        RobotDrawError::Output(error) => format!("cannot write {}: {error}", path.display()).into(),
+        other => other.into(),
+    }
+}
+
+fn placed(folder: &RobotFolder) -> String {
+    let (Some(first), Some(last)) = (&folder.first, &folder.last) else {
+        return "wrote no robots".to_owned();
+    };
+    let last = last.file_name().unwrap_or_default().to_string_lossy();
+    let (written, unchanged) = (folder.written, folder.unchanged);
+    let already = match unchanged {
+        0 => String::new(),
+        _ => format!("; {unchanged} were there already"),
+    };
+    let robots = if written == 1 { "robot" } else { "robots" };
+    format!("wrote {written} {robots}, {} to {last}{already}", first.display())
+}
+
+fn warn_of_lost_paths(folder: &Path, written: &RobotFolder) {
+    let lost = &written.lost_paths;
+    let Some(first) = lost.first() else { return };
+    let more = if lost.len() > 1 { format!(" and {} more", lost.len() - 1) } else { String::new() };
+    say(&format!(
+        "warning: the robots name {first}{more} by paths that lead nowhere from {}: write them into the folder of the \
+         original, or copy or link these files there",
+        folder.display()
+    ));
+}
+
+/// What has been drawn, for people.
+fn report(arguments: &DrawArgs, robot: &RobotFile, draw: &RobotDraw<'_>, place: &str) -> String {
+    let (links, draws) = (draw.links().len(), arguments.runs.unwrap_or_default());
+    let seed = arguments.seed.unwrap_or_default();
+    let sigmas = short(arguments.stated.sigmas);
+    let deviations = if arguments.stated.sigmas == 1.0 { "deviation" } else { "deviations" };
+    let mut out = format!(
+        "{place}\n{links} links, {draws} draws, seed {seed}; ± is {sigmas} standard {deviations}\n"
+    );
+    if draws > 1 {
+        out += &table_of(&draw.summaries());
+    }
+    for (name, why) in draw.left().iter().take(LISTED) {
+        out += &format!("left as it is: {name}: {why}\n");
+    }
+    if draw.left().len() > LISTED {
+        out += &format!("left as they are: {} more\n", draw.left().len() - LISTED);
+    }
+    for gap in robot.gaps().iter().filter(|gap| gap.kind() != GapKind::Misplaced) {
+        out += &format!("not drawn: {}:{}: {gap}\n", robot.path().display(), gap.line());
+    }
+    out
+}
+
+/// Standard deviations that came out, and what is to be said of links.
+fn table_of(links: &[LinkSummary]) -> String {
+    let width = links.iter().take(LISTED).map(|link| link.name.chars().count()).max();
+    let width = width.unwrap_or(0).max(4);
+    let percent = |x: f64| if x.is_finite() { format!("{x:.1} %") } else { "-".to_owned() };
+    let mut out = format!(
+        "\nstandard deviations of the draws\n{:width$}  {:>8}  {:>20}  {:>8}  {:>8}  {:>8}\n",
+        "link", "mass", "mass centre, mm", "I11", "I22", "I33"
+    );
+    for link in links.iter().take(LISTED) {
+        let [x, y, z] = link.centre_m.map(|metres| format!("{:.2}", 1e3 * metres));
+        let [i11, i22, i33] = link.moments_percent.map(percent);
+        let (mass, centre) = (percent(link.mass_percent), format!("{x} {y} {z}"));
+        out += &format!(
+            "{:width$}  {mass:>8}  {centre:>20}  {i11:>8}  {i22:>8}  {i33:>8}\n",
+            link.name
+        );
+    }
+    if links.len() > LISTED {
+        out += &format!("and {} more links\n", links.len() - LISTED);
+    }
+    out.push('\n');
+    let (impossible, tried) = links
+        .iter()
+        .filter_map(|link| link.naive_impossible)
+        .fold((0, 0), |sums, one| (sums.0 + one.0, sums.1 + one.1));
+    if impossible > 0 {
+        let share = 100.0 * impossible as f64 / tried as f64;
+        out += &format!(
+            "no body has {share:.1} % of the inertias that come out if each moment is multiplied by a factor of its own; all \
+             of these are possible\n"
+        );
+    }
+    let warned: Vec<(&str, &String)> = links
+        .iter()
+        .flat_map(|link| link.warnings.iter().map(|warning| (link.name.as_str(), warning)))
+        .collect();
+    for (name, warning) in warned.iter().take(LISTED) {
+        out += &format!("warning: {name}: {warning}\n");
+    }
+    if warned.len() > LISTED {
+        out += &format!("and {} more warnings\n", warned.len() - LISTED);
+    }
+    out
+}
+
+/// Whether a signal ended it.
+fn is_stopped(error: &(dyn Error + 'static)) -> bool {
+    let stopped = error.downcast_ref::<RobotDrawError>();
+    matches!(stopped, Some(RobotDrawError::Campaign(CampaignError::Stopped)))
+}
