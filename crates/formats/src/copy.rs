@@ -85,9 +85,14 @@ fn entries(
     frame: &Frame,
     inertia: &InertiaMatrix,
 ) -> Result<(), LinkProblem> {
+    // What turning the axes there and back has rounded is no change.
+    let is_turned = frame.rotation != UnitQuaternion::identity();
+    let rounding =
+        if is_turned { 0.25 * RELATIVE_TOLERANCE * inertia.matrix().amax() } else { 0.0 };
     for (e, (i, j)) in ENTRIES.into_iter().enumerate() {
         let value = inertia.matrix()[(i, j)];
-        if value == reading.matrix[(i, j)] || (frame.diagonal.is_some() && i != j) {
+        let same = (value - reading.matrix[(i, j)]).abs() <= rounding;
+        if same || (frame.diagonal.is_some() && i != j) {
             continue;
         }
         let spot = reading.places[i][j].map(|place| Spot::Numbers(vec![place]));

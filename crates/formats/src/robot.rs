@@ -9,6 +9,7 @@ use crate::{
     copy::edits,
     edit::{Edit, edited},
     frame::{self, Frame},
+    geometry::{self, GeometryProblem, Solid},
     kind::known_extension,
     references,
     robots::{self, INERTIAL},
@@ -53,6 +54,7 @@ pub struct RobotLink {
     name: String,
     line: usize,
     read: Result<(LinkNumbers, Frame), LinkProblem>,
+    geometry: Result<Vec<Solid>, GeometryProblem>,
 }
 
 /// The ten numbers of a link as its file has them, which need not be those of a body.
@@ -169,7 +171,8 @@ impl RobotFile {
                     Ok((numbers, frame))
                 }),
             };
-            links.push(RobotLink { name, line: body.line(), read });
+            let geometry = geometry::of(node, format, &angles);
+            links.push(RobotLink { name, line: body.line(), read, geometry });
         });
         let from_geometry = format == Format::Mjcf
             && tree.all("compiler").any(|node| node.attribute("inertiafromgeom") == Some("true"));
@@ -205,6 +208,17 @@ impl RobotFile {
     #[must_use]
     pub fn links_without_inertia(&self) -> &[String] {
         &self.without
+    }
+
+    /// Points in the frame of a link of which its geometry is the convex hull: that of its collisions, or of its visuals
+    /// if it has none. Meshes (STL, OBJ) are read; of a sphere or a cylinder the points lie on it.
+    ///
+    /// # Errors
+    /// There is none, or it cannot be read.
+    pub fn points_m(&self, link: usize) -> Result<Vec<[f64; 3]>, GeometryProblem> {
+        let link = self.links.get(link).ok_or(GeometryProblem::Nothing)?;
+        let solids = link.geometry.as_ref().map_err(Clone::clone)?;
+        geometry::points(solids, self.path())
     }
 
     /// What of the file was not read though the rest was.

@@ -94,7 +94,7 @@ pub use rare::{Rare, RareOptions};
 pub use replay::{Replay, ReplayError, Which};
 pub use results::{Results, ResultsError};
 pub use robots::{
-    LeftBecause, LinkSummary, RobotDraw, RobotDrawError, RobotDrawOptions, RobotFolder,
+    Inside, LeftBecause, LinkSummary, RobotDraw, RobotDrawError, RobotDrawOptions, RobotFolder,
 };
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
 pub use shards::{ModelStatus, Status};

@@ -6,7 +6,8 @@ use clap::{
     value_parser,
 };
 use gyradius_study::{
-    CompareOptions, Event, ModelKind, RareOptions, Requirement, Rows, StoppingRule, TableFormat,
+    CompareOptions, Event, Inside, ModelKind, RareOptions, Requirement, Rows, StoppingRule,
+    TableFormat,
 };
 use std::path::PathBuf;
 
@@ -444,6 +445,10 @@ pub(crate) struct DrawArgs {
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', help_heading = ROBOTS)]
     pub(crate) links: Vec<String>,
 
+    /// Of a robot: every draw must be possible for matter in this region of the link's own collision or visual geometry
+    #[arg(long, value_name = "REGION", value_parser = inside(), help_heading = ROBOTS)]
+    pub(crate) inside: Option<Inside>,
+
     /// Form of the output [default: by the extension of the file; csv on standard output]
     #[arg(long, value_name = "FORMAT", value_parser = table_format())]
     pub(crate) format: Option<TableFormat>,
@@ -676,6 +681,15 @@ fn table_format() -> impl TypedValueParser<Value = TableFormat> {
     let names = PossibleValuesParser::new(TableFormat::ALL.map(value));
     // Each of these is the name of one.
     names.map(|name| TableFormat::named(&name).unwrap_or_default())
+}
+
+/// The regions of a link, by their names.
+fn inside() -> impl TypedValueParser<Value = Inside> {
+    let value = |inside: Inside| PossibleValue::new(inside.name()).help(inside.meaning());
+    // Each of these is the name of one.
+    PossibleValuesParser::new(Inside::ALL.map(value)).map(|name| {
+        Inside::ALL.into_iter().find(|inside| inside.name() == name).unwrap_or(Inside::Box)
+    })
 }
 
 /// Which rows are kept, by their names.

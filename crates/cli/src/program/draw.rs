@@ -24,8 +24,8 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
     if let Some(robot) = arguments.scenario.as_deref().filter(|path| is_robot(path)) {
         return draw_robot(arguments, robot);
     }
-    if arguments.stated.is_any() || !arguments.links.is_empty() {
-        return Err("--mass, --centre, --moments, --axes and --links are for robots (URDF, MJCF, SDF): a scenario says \
+    if arguments.stated.is_any() || !arguments.links.is_empty() || arguments.inside.is_some() {
+        return Err("--mass, --centre, --moments, --axes, --links and --inside are for robots (URDF, MJCF, SDF): a scenario says \
                     itself what is uncertain"
             .into());
     }

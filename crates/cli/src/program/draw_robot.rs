@@ -1,5 +1,6 @@
 //! `gyradius draw robot.urdf`: robots with other mass properties, or a table of these.
 
+use gyradius_estimation::StatementWarning;
 use gyradius_formats::{GapKind, NewFile, RobotFile};
 use gyradius_study::{
     CampaignError, LinkSummary, RobotDraw, RobotDrawError, RobotDrawOptions, RobotFolder,
@@ -9,6 +10,7 @@ use std::{
     error::Error,
     fs::File,
     io::{self, IsTerminal, Read, Write},
+    mem::discriminant,
     path::Path,
     process::ExitCode,
 };
@@ -54,6 +56,7 @@ pub(crate) fn draw_robot(arguments: &DrawArgs, path: &Path) -> Result<ExitCode, 
     let options = RobotDrawOptions {
         statements: arguments.stated.statements()?,
         links: arguments.links.clone(),
+        inside: arguments.inside,
         seed: arguments.seed.unwrap_or_default(),
         first: arguments.first,
         draws,
@@ -219,15 +222,36 @@ fn table_of(links: &[LinkSummary]) -> String {
              of these are possible\n"
         );
     }
-    let warned: Vec<(&str, &String)> = links
-        .iter()
-        .flat_map(|link| link.warnings.iter().map(|warning| (link.name.as_str(), warning)))
-        .collect();
-    for (name, warning) in warned.iter().take(LISTED) {
-        out += &format!("warning: {name}: {warning}\n");
+    out + &warnings_of(links)
+}
+
+/// The warnings of all links, those of a kind together: the first one, and which other links have such a one.
+fn warnings_of(links: &[LinkSummary]) -> String {
+    let mut kinds: Vec<(&StatementWarning, Vec<&str>)> = Vec::new();
+    for link in links {
+        for warning in &link.warnings {
+            let same = |kind: &&mut (&StatementWarning, Vec<&str>)| {
+                discriminant(kind.0) == discriminant(warning)
+            };
+            match kinds.iter_mut().find(same) {
+                Some((_, names)) if names.last() == Some(&link.name.as_str()) => {}
+                Some((_, names)) => names.push(&link.name),
+                None => kinds.push((warning, vec![&link.name])),
+            }
+        }
     }
-    if warned.len() > LISTED {
-        out += &format!("and {} more warnings\n", warned.len() - LISTED);
+    let mut out = String::new();
+    for (warning, names) in kinds {
+        out += &format!("warning: {}: {warning}\n", names[0]);
+        if names.len() > 1 {
+            let some: Vec<&str> = names[1..].iter().take(10).copied().collect();
+            let more = if names.len() > 11 {
+                format!(" and {} more", names.len() - 11)
+            } else {
+                String::new()
+            };
+            out += &format!("         the like of {}{more}\n", some.join(", "));
+        }
     }
     out
 }

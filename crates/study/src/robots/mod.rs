@@ -1,6 +1,7 @@
 //! Draws of the mass properties of a robot's links: as robots in files, and as a table.
 
 mod folder;
+mod inside;
 mod pick;
 mod summary;
 mod table;
@@ -11,16 +12,23 @@ use gyradius_formats::{
     Format, LinkNumbers, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE, WriteError,
     judge,
 };
-use gyradius_inertia::{Inertia, MassProperties, Repair, RepairMethod};
+use gyradius_inertia::{Inertia, MassProperties, Region, Repair, RepairMethod};
 use nalgebra::Matrix3;
 use rand_distr::Distribution;
 use std::sync::{Arc, atomic::AtomicBool};
 
 pub use folder::RobotFolder;
+pub use inside::Inside;
 pub use summary::LinkSummary;
 
 /// What keys the streams of all links.
 const MODEL: &str = "robot";
+/// What keys the trials of a region.
+const TRIALS_MODEL: &str = "robot, trials";
+/// How many trials there are.
+const TRIALS: u64 = 400;
+/// How many of them must be possible in the region of a link, so that draws do not take too long.
+const LEAST_HELD: u64 = 4;
 /// How far inside of what a body can have the inertia of a drawn link lies, as a part of its trace: programs that compare
 /// without tolerance, or read fewer digits, take flat plates and thin rods too then.
 const INSET: f64 = 1e-9;
@@ -32,6 +40,8 @@ pub struct RobotDrawOptions {
     pub statements: Statements,
     /// Names of links, in which `*` stands for any characters and `?` for one; all links if there are none.
     pub links: Vec<String>,
+    /// Where the matter of each link must be possible; anywhere if not given.
+    pub inside: Option<Inside>,
     /// Seed of all random numbers.
     pub seed: u64,
     /// The first draw, from 0.
@@ -64,6 +74,7 @@ struct DrawnLink {
     index: usize,
     law: StatedBody,
     streams: Streams,
+    region: Option<Region>,
 }
 
 /// Why a link stays as it is.
@@ -100,7 +111,8 @@ impl<'a> RobotDraw<'a> {
         }
         let names: Vec<&str> = robot.links().iter().map(RobotLink::name).collect();
         let picked = pick::picked(&names, robot.links_without_inertia(), &options.links)?;
-        let (mut links, mut left, mut impossible) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut links, mut left) = (Vec::new(), Vec::new());
+        let (mut impossible, mut outside) = (Vec::new(), Vec::new());
         for (index, link) in robot.links().iter().enumerate() {
             let name = link.name().to_owned();
             let numbers = match link.numbers() {
@@ -125,7 +137,17 @@ impl<'a> RobotDraw<'a> {
             let law = StatedBody::new(&options.statements, &nominal)
                 .map_err(|error| RobotDrawError::Statement { link: name.clone(), error })?;
             let streams = Streams::new(options.seed, MODEL, &name);
-            links.push(DrawnLink { name, index, law, streams });
+            let mut drawn = DrawnLink { name, index, law, streams, region: None };
+            if let Some(inside) = options.inside {
+                match drawn.confine(robot, inside) {
+                    Ok(region) => drawn.region = Some(region),
+                    Err(why) => outside.push(format!("\"{}\": {why}", drawn.name)),
+                }
+            }
+            links.push(drawn);
+        }
+        if let Some(inside) = options.inside.filter(|_| !outside.is_empty()) {
+            return Err(RobotDrawError::Outside { inside, links: outside.join("; ") });
         }
         if !impossible.is_empty() {
             return Err(RobotDrawError::Impossible { links: impossible.join(", ") });
@@ -169,8 +191,36 @@ impl<'a> RobotDraw<'a> {
 }
 
 impl DrawnLink {
+    /// The region of its geometry, if the law has enough draws that are possible there.
+    fn confine(&self, robot: &RobotFile, inside: Inside) -> Result<Region, String> {
+        let points = robot.points_m(self.index).map_err(|problem| problem.to_string())?;
+        let region = inside.about(&points).ok_or("its geometry is flat, or too large")?;
+        let streams = Streams::new(0, TRIALS_MODEL, &self.name);
+        let trial =
+            |trial: &u64| inside::holds(&region, &self.law.sample(&mut streams.run(*trial)));
+        let held = (0..TRIALS).filter(trial).count();
+        if held as u64 >= LEAST_HELD {
+            return Ok(region);
+        }
+        let nominal = if inside::holds(&region, self.law.nominal()) { "are" } else { "are not" };
+        Err(format!(
+            "of {TRIALS} draws {held} are possible for matter there, and its nominal numbers {nominal}"
+        ))
+    }
+
     fn body(&self, draw: u64) -> MassProperties {
-        let drawn = self.law.sample(&mut self.streams.run(draw));
+        let mut rng = self.streams.run(draw);
+        loop {
+            let drawn = self.inset(self.law.sample(&mut rng));
+            // Ends: of the trials enough were held.
+            if self.region.as_ref().is_none_or(|region| inside::holds(region, &drawn)) {
+                return drawn;
+            }
+        }
+    }
+
+    /// What was drawn, a little inside of what a body can have.
+    fn inset(&self, drawn: MassProperties) -> MassProperties {
         // What nothing is stated of stays as it is.
         if drawn.inertia() == self.law.nominal().inertia() {
             return drawn;
@@ -242,6 +292,14 @@ pub enum RobotDrawError {
     )]
     Impossible {
         /// Names of the links.
+        links: String,
+    },
+    /// Too little of the law of a link is possible in its geometry.
+    #[error("--inside {inside}: {links}. --links picks others")]
+    Outside {
+        /// The region.
+        inside: Inside,
+        /// The links, and why.
         links: String,
     },
     /// The statements are refused.

@@ -1,6 +1,7 @@
 //! What the draws of the links have come to.
 
 use gyradius_campaign::Streams;
+use gyradius_estimation::StatementWarning;
 use gyradius_inertia::InertiaMatrix;
 use gyradius_statistics::Moments;
 use rand_distr::{Distribution, StandardNormal};
@@ -27,7 +28,7 @@ pub struct LinkSummary {
     /// standard deviations stated for the moments, and how many were tried.
     pub naive_impossible: Option<(u64, u64)>,
     /// Contradictions in what is stated, and what has been left open.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<StatementWarning>,
 }
 
 impl RobotDraw<'_> {
@@ -58,7 +59,7 @@ impl RobotDraw<'_> {
             centre_m: [x, y, z],
             moments_percent: [i11 / n11, i22 / n22, i33 / n33].map(|share| 100.0 * share),
             naive_impossible: self.naive(link, end),
-            warnings: link.law.warnings().iter().map(ToString::to_string).collect(),
+            warnings: link.law.warnings().to_vec(),
         }
     }
 
