@@ -36,6 +36,7 @@
 
 mod fit;
 mod stated_body;
+mod rollup;
 mod statements;
 mod turns;
 
@@ -44,6 +45,10 @@ pub use fit::{
     PrincipalFitError, RootEstimate, RootFit,
 };
 pub use stated_body::StatedBody;
+pub use rollup::{
+    Assembly, AssemblyError, AssemblyPart, AssemblyRow, PartError, PartFinding, PartStatement,
+    TEN_NAMES, TEN_UNITS, TenMoments,
+};
 pub use statements::{
     Amount, AxesStatement, CentreStatement, MassStatement, MissedBecause, MomentsStatement, Part,
     ProductsStatement, StatedMass, StatedModel, StatementError, StatementWarning, Statements,

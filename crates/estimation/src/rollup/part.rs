@@ -1,0 +1,278 @@
+//! A part: what is stated of its mass, mass centre and inertia, and the law that draws come from.
+
+use gyradius_inertia::{
+    Inertia, InertiaMatrix, MassProperties, MassPropertiesError, RealizabilityError, Repair,
+    RepairMethod,
+};
+use nalgebra::{SMatrix, UnitQuaternion, Vector3};
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::finding::{PartFinding, products};
+use super::second_moment_law::SecondMomentLaw;
+use super::symmetric::{Matrix6, Six, congruence, mapped};
+use super::ten_moments::{TEN_NAMES, TEN_UNITS, TenMoments, values};
+
+/// How far below zero a second moment may lie, in traces of the inertia: files carry about six digits.
+const ROUNDING: f64 = 1e-6;
+/// Largest mass (kg), coordinate (m) and entry of the inertia (kg·m²), so that no draw leaves the range of floats.
+const MOST: [f64; 3] = [1e30, 1e15, 1e60];
+/// Smallest mass, kg.
+const LEAST_MASS: f64 = 1e-30;
+/// Largest deviation of a mass, in masses.
+const MOST_MASS_DEVIATION: f64 = 10.0;
+/// Deviations that differ by no more than this share of what is stated, or of a tenth of the largest, are the same.
+const SAME: f64 = 0.01;
+
+/// What is stated of a part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PartStatement {
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Mass centre in the frame of the whole, m.
+    pub mass_centre_m: [f64; 3],
+    /// Inertia about the mass centre in the part's own axes, kg·m², products as tensor entries.
+    pub inertia: InertiaMatrix,
+    /// The rotation that takes the part's own axes to those of the whole.
+    pub attitude: UnitQuaternion<f64>,
+    /// Standard deviations of mass, mass centre (axes of the whole), I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ (the part's own axes), all
+    /// independent.
+    pub deviations: [f64; 10],
+    /// Whether the inertia is proportional to the mass, as that of a given shape is. The deviations of the inertia are
+    /// then those at the nominal mass.
+    pub inertia_follows_mass: bool,
+}
+
+/// A part of an assembly: a law of its mass properties.
+///
+/// Every draw is a body that could be built. The mass is lognormal, the mass centre Gaussian; the inertia is a Gaussian in
+/// log-Cholesky coordinates of its second moments, relative to the nominal ones. All three have the stated means exactly; mass
+/// and mass centre have the stated deviations exactly, and the inertia has them where a law of this kind does
+/// ([`findings`](Self::findings) says where not).
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssemblyPart {
+    statement: PartStatement,
+    moments: TenMoments,
+    inertia: SecondMomentLaw,
+    /// Mean and deviation of the logarithm of the mass in nominal masses.
+    logarithm: [f64; 2],
+    findings: Vec<PartFinding>,
+}
+
+impl AssemblyPart {
+    /// Checks what is stated and finds the law.
+    ///
+    /// # Errors
+    /// A number is not finite or out of range, a deviation negative, or the inertia no body's by more than rounding (10⁻⁶ of its
+    /// trace).
+    pub fn new(statement: PartStatement) -> Result<Self, PartError> {
+        check(&statement)?;
+        let mut findings = Vec::new();
+        let own = body_of(&statement.inertia, &mut findings)?;
+        let six: [f64; 6] = std::array::from_fn(|e| statement.deviations[4 + e]);
+        let covariance = Matrix6::from_diagonal(&Six::from(six).map(|sigma| sigma * sigma));
+        let inertia = SecondMomentLaw::new(&own, &covariance).ok_or(PartError::TooWide)?;
+        judge(&mut findings, &inertia, &six);
+        let centre = Vector3::from(statement.mass_centre_m);
+        let turned = own.rotated(&statement.attitude)?;
+        let nominal = MassProperties::new(statement.mass_kg, centre, turned)?;
+        let moments = first_order(&statement, nominal, &covariance);
+        let relative = statement.deviations[0] / statement.mass_kg;
+        let variance = libm::log1p(relative * relative);
+        let logarithm = [-0.5 * variance, variance.sqrt()];
+        Ok(Self { statement, moments, inertia, logarithm, findings })
+    }
+
+    /// What was stated.
+    #[must_use]
+    pub fn statement(&self) -> &PartStatement {
+        &self.statement
+    }
+
+    /// The nominal body in the frame of the whole, and the covariance of its ten numbers as stated.
+    #[must_use]
+    pub fn moments(&self) -> &TenMoments {
+        &self.moments
+    }
+
+    /// What of the stated deviations no body can have, or the law of the draws has not.
+    #[must_use]
+    pub fn findings(&self) -> &[PartFinding] {
+        &self.findings
+    }
+
+    /// Whether ten independent Gaussian numbers with the stated means and deviations, drawn once, are a body's: what is
+    /// commonly done instead.
+    pub fn naive_draw_is_possible<R: Rng + ?Sized>(&self, rng: &mut R) -> bool {
+        let mut normal = || -> f64 { StandardNormal.sample(rng) };
+        let mass = self.statement.mass_kg + self.statement.deviations[0] * normal();
+        let mean = self.inertia.mean().entries();
+        let [a, b, c, d, e, f] =
+            std::array::from_fn(|i| mean[i] + self.statement.deviations[4 + i] * normal());
+        let inertia = InertiaMatrix::from_entries([a, b, c], [d, e, f]);
+        mass > 0.0 && inertia.is_ok_and(|inertia| inertia.is_realizable())
+    }
+
+    /// A draw; none if it leaves the range of floats, which none within forty deviations does.
+    fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Option<MassProperties> {
+        let mut normal = || -> f64 { StandardNormal.sample(rng) };
+        let PartStatement { mass_kg, deviations, attitude, inertia_follows_mass, .. } =
+            &self.statement;
+        let [shift, spread] = self.logarithm;
+        let factor = libm::exp(shift + spread * normal());
+        let centre = Vector3::from_fn(|axis, _| {
+            self.statement.mass_centre_m[axis] + deviations[1 + axis] * normal()
+        });
+        let mut inertia = self.inertia.sample(rng);
+        if *attitude != UnitQuaternion::identity() {
+            inertia = inertia.rotated(attitude).ok()?;
+        }
+        let mass = mass_kg * factor;
+        if *inertia_follows_mass && factor != 1.0 {
+            return MassProperties::new(*mass_kg, centre, inertia).ok()?.with_mass(mass).ok();
+        }
+        MassProperties::new(mass, centre, inertia).ok()
+    }
+}
+
+impl Distribution<MassProperties> for AssemblyPart {
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> MassProperties {
+        loop {
+            if let Some(body) = self.draw(rng) {
+                return body;
+            }
+        }
+    }
+}
+
+/// Every number in range.
+fn check(statement: &PartStatement) -> Result<(), PartError> {
+    let PartStatement { mass_kg, mass_centre_m, inertia, deviations, .. } = statement;
+    let [x, y, z] = *mass_centre_m;
+    let [i11, i22, i33, i12, i13, i23] = inertia.entries();
+    let values = [*mass_kg, x, y, z, i11, i22, i33, i12, i13, i23];
+    let most = |i: usize| MOST[usize::from(i > 0) + usize::from(i > 3)];
+    if !(*mass_kg >= LEAST_MASS && *mass_kg <= MOST[0]) {
+        return Err(PartError::Mass { value: *mass_kg });
+    }
+    for i in 0..10 {
+        if !(values[i].abs() <= most(i)) {
+            let (field, unit) = (TEN_NAMES[i], TEN_UNITS[i]);
+            return Err(PartError::Value { field, value: values[i], most: most(i), unit });
+        }
+        let value = deviations[i];
+        let most = if i == 0 { MOST_MASS_DEVIATION * mass_kg } else { most(i) };
+        if !(value >= 0.0 && value <= most) {
+            let (field, unit) = (TEN_NAMES[i], TEN_UNITS[i]);
+            return Err(PartError::Deviation { field, value, most, unit });
+        }
+    }
+    Ok(())
+}
+
+/// The body of a matrix, which rounding may have made impossible.
+fn body_of(
+    matrix: &InertiaMatrix,
+    findings: &mut Vec<PartFinding>,
+) -> Result<Inertia, RealizabilityError> {
+    Inertia::try_from(*matrix).or_else(|error| {
+        let axes = matrix.principal_axes();
+        let (k, size) =
+            (axes.second_moments(), axes.moments().iter().map(|i| i.abs()).sum::<f64>());
+        if k.iter().any(|k| *k < -ROUNDING * size) {
+            return Err(error);
+        }
+        let repair = Repair::new(matrix, RepairMethod::Nearest)?;
+        findings.push(PartFinding::Rounded { relative_distance: repair.relative_distance() });
+        Ok(*repair.inertia())
+    })
+}
+
+/// What the law of the inertia has not of what is stated.
+fn judge(findings: &mut Vec<PartFinding>, law: &SecondMomentLaw, stated: &[f64; 6]) {
+    findings.extend(products(law.mean().as_inertia_matrix(), stated));
+    let found: [f64; 6] = std::array::from_fn(|e| law.covariance()[(e, e)].max(0.0).sqrt());
+    let largest = stated.iter().copied().fold(0.0, f64::max);
+    let moved: Vec<(&'static str, f64, f64)> = (0..6)
+        .filter(|e| (found[*e] - stated[*e]).abs() > SAME * stated[*e].max(0.1 * largest))
+        .map(|e| (InertiaMatrix::ENTRY_NAMES[e], stated[e], found[e]))
+        .collect();
+    if !moved.is_empty() {
+        if law.rank() < 3 {
+            findings.push(PartFinding::Flat { dimensions: law.rank() });
+        }
+        findings.push(PartFinding::Moved { entries: moved });
+    }
+}
+
+/// The covariance of the ten as stated, in the axes of the whole.
+fn first_order(
+    statement: &PartStatement,
+    nominal: MassProperties,
+    inertia: &Matrix6,
+) -> TenMoments {
+    let mut covariance = SMatrix::<f64, 10, 10>::zeros();
+    for i in 0..4 {
+        covariance[(i, i)] = statement.deviations[i].powi(2);
+    }
+    let rotation = statement.attitude.to_rotation_matrix();
+    let mut turned = mapped(&congruence(rotation.matrix()), inertia);
+    if statement.inertia_follows_mass {
+        let mut slope = Six::zeros();
+        slope.copy_from_slice(&values(&nominal)[4..]);
+        slope /= statement.mass_kg;
+        let variance = covariance[(0, 0)];
+        turned += slope * slope.transpose() * variance;
+        covariance.fixed_view_mut::<6, 1>(4, 0).copy_from(&(slope * variance));
+        covariance.fixed_view_mut::<1, 6>(0, 4).copy_from(&(slope.transpose() * variance));
+    }
+    covariance.fixed_view_mut::<6, 6>(4, 4).copy_from(&turned);
+    TenMoments::new(nominal, covariance)
+}
+
+/// Why a part is refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PartError {
+    /// The mass is not positive, or out of range.
+    #[error("mass = {value:?} kg: it must lie between {LEAST_MASS:e} and {:e} kg", MOST[0])]
+    Mass {
+        /// The value, kg.
+        value: f64,
+    },
+    /// A number is NaN, infinite or too large.
+    #[error("{field} = {value:?} {unit}: it must be finite and at most {most:e} {unit}")]
+    Value {
+        /// Which of the ten.
+        field: &'static str,
+        /// The value.
+        value: f64,
+        /// The largest magnitude that is taken.
+        most: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// A deviation is negative, NaN, infinite or too large.
+    #[error(
+        "standard deviation of {field} = {value:?} {unit}: it must lie between 0 and {most:e} {unit}"
+    )]
+    Deviation {
+        /// Of which of the ten.
+        field: &'static str,
+        /// The value.
+        value: f64,
+        /// The largest that is taken.
+        most: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// The inertia belongs to no body.
+    #[error(transparent)]
+    Inertia(#[from] RealizabilityError),
+    /// The numbers together leave the range of floats.
+    #[error(transparent)]
+    MassProperties(#[from] MassPropertiesError),
+    /// No law was found.
+    #[error("the deviations of the inertia are so wide that no law of it was found")]
+    TooWide,
+}

@@ -1,0 +1,273 @@
+//! The tree of parts and assemblies.
+
+use gyradius_inertia::{MassProperties, MassPropertiesError};
+use rand::Rng;
+use rand_distr::Distribution;
+use std::collections::BTreeMap;
+
+use super::part::AssemblyPart;
+use super::ten_moments::TenMoments;
+
+/// A row of a list of parts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssemblyRow {
+    /// Its name, unlike all others.
+    pub name: String,
+    /// The assembly that it belongs to; none for the whole.
+    pub parent: Option<String>,
+    /// What is stated of a part; none for an assembly, whose numbers come from its parts.
+    pub part: Option<AssemblyPart>,
+}
+
+/// A whole made of parts, some of which may be put together in assemblies before.
+///
+/// Nothing of it depends on the order of the rows: parts are summed in the order of their names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assembly {
+    /// The last is the whole, and every other stands before the one that it belongs to.
+    nodes: Vec<Node>,
+    /// Places of the parts, in the order of their names.
+    parts: Vec<usize>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Node {
+    row: AssemblyRow,
+    /// Places of what it is made of, in the order of names.
+    children: Vec<usize>,
+    depth: usize,
+    moments: TenMoments,
+}
+
+impl Assembly {
+    /// Puts rows together.
+    ///
+    /// # Errors
+    /// The rows are no tree: none, two of one name, a parent that is no row, several wholes, or rows that belong to
+    /// themselves. An assembly has numbers of its own, or nothing to have them from. A sum overflows.
+    pub fn new(rows: impl IntoIterator<Item = AssemblyRow>) -> Result<Self, AssemblyError> {
+        let mut by_name = BTreeMap::new();
+        for row in rows {
+            if row.name.is_empty() {
+                return Err(AssemblyError::NoName);
+            }
+            if let Some(first) = by_name.insert(row.name.clone(), row) {
+                return Err(AssemblyError::Twice { name: first.name });
+            }
+        }
+        let children = children(&by_name)?;
+        let root = root(&by_name)?;
+        let mut nodes: Vec<Node> = Vec::with_capacity(by_name.len());
+        let mut places: BTreeMap<String, usize> = BTreeMap::new();
+        // Down from the whole, and back up: each after what it is made of. Without recursion, for trees may be deep.
+        let mut down = vec![(root, 0)];
+        let mut order = Vec::new();
+        while let Some((name, depth)) = down.pop() {
+            down.extend(children.get(&name).into_iter().flatten().map(|c| (c.clone(), depth + 1)));
+            order.push((name, depth));
+        }
+        for (name, depth) in order.into_iter().rev() {
+            let inside = children.get(&name).map_or(&[][..], Vec::as_slice);
+            let inside: Vec<usize> = inside.iter().filter_map(|c| places.get(c).copied()).collect();
+            let Some(row) = by_name.remove(&name) else { continue };
+            let moments = match &row.part {
+                Some(part) => part.moments().clone(),
+                None if inside.is_empty() => return Err(AssemblyError::Nothing { name }),
+                None => TenMoments::combined(inside.iter().map(|i| &nodes[*i].moments))
+                    .map_err(|error| AssemblyError::Sum { name: name.clone(), error })?,
+            };
+            places.insert(name, nodes.len());
+            nodes.push(Node { row, children: inside, depth, moments });
+        }
+        // What the whole does not lead to leads back to itself.
+        if let Some(name) = by_name.into_keys().next() {
+            return Err(AssemblyError::Circle { name });
+        }
+        let parts = places.into_values().filter(|i| nodes[*i].row.part.is_some()).collect();
+        Ok(Self { nodes, parts })
+    }
+
+    /// Name of the whole.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        self.nodes.last().map_or("", |node| &node.row.name)
+    }
+
+    /// The parts with their names, in the order of the names.
+    pub fn parts(&self) -> impl ExactSizeIterator<Item = (&str, &AssemblyPart)> {
+        // Every place in the list is a part's.
+        let pairs: Vec<(&str, &AssemblyPart)> = self
+            .parts
+            .iter()
+            .filter_map(|i| {
+                Some((self.nodes[*i].row.name.as_str(), self.nodes[*i].row.part.as_ref()?))
+            })
+            .collect();
+        pairs.into_iter()
+    }
+
+    /// The whole to first order.
+    #[must_use]
+    pub fn first_order(&self) -> &TenMoments {
+        // There is a whole in every tree.
+        &self.nodes[self.nodes.len() - 1].moments
+    }
+
+    /// Everything in the tree from the whole down: depth, name, whether it is a part, and its ten to first order.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &str, bool, &TenMoments)> {
+        let mut down = vec![self.nodes.len() - 1];
+        std::iter::from_fn(move || {
+            let node = &self.nodes[down.pop()?];
+            down.extend(node.children.iter().rev());
+            Some((node.depth, node.row.name.as_str(), node.row.part.is_some(), &node.moments))
+        })
+    }
+
+    /// Parts that were drawn, in the order of [`parts`](Self::parts), as one: exactly, not to first order.
+    ///
+    /// # Errors
+    /// There is none, or a sum overflows.
+    pub fn whole(drawn: &[MassProperties]) -> Result<MassProperties, MassPropertiesError> {
+        MassProperties::combined(drawn)
+    }
+
+    /// A draw of the whole, with a generator for each part by its name: what a part draws depends on its own alone.
+    ///
+    /// # Errors
+    /// A sum overflows.
+    pub fn draw<R: Rng>(
+        &self,
+        mut generator: impl FnMut(&str) -> R,
+    ) -> Result<MassProperties, MassPropertiesError> {
+        let drawn: Vec<MassProperties> =
+            self.parts().map(|(name, part)| part.sample(&mut generator(name))).collect();
+        Self::whole(&drawn)
+    }
+}
+
+/// The names of what each assembly is made of.
+fn children(
+    rows: &BTreeMap<String, AssemblyRow>,
+) -> Result<BTreeMap<String, Vec<String>>, AssemblyError> {
+    let mut children: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for row in rows.values() {
+        let Some(parent) = &row.parent else { continue };
+        let (name, parent) = (row.name.clone(), parent.clone());
+        match rows.get(&parent) {
+            None => return Err(AssemblyError::Parent { name, parent }),
+            Some(AssemblyRow { part: Some(_), .. }) => {
+                return Err(AssemblyError::PartWithChildren { name: parent, child: name });
+            }
+            Some(_) => children.entry(parent).or_default().push(name),
+        }
+    }
+    Ok(children)
+}
+
+/// The name of the one row that belongs to no other.
+fn root(rows: &BTreeMap<String, AssemblyRow>) -> Result<String, AssemblyError> {
+    let roots: Vec<&String> =
+        rows.values().filter(|row| row.parent.is_none()).map(|row| &row.name).collect();
+    match (roots.as_slice(), rows.keys().next()) {
+        ([root], _) => Ok((*root).clone()),
+        ([], Some(name)) => Err(AssemblyError::Circle { name: name.clone() }),
+        ([], None) => Err(AssemblyError::Empty),
+        (roots, _) => {
+            Err(AssemblyError::Wholes { names: roots.iter().map(|s| (*s).clone()).collect() })
+        }
+    }
+}
+
+/// Why rows are no whole.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AssemblyError {
+    /// No rows.
+    #[error("there are no parts: there must be at least one")]
+    Empty,
+    /// A row without a name.
+    #[error("a row has no name: every part and every assembly must have one")]
+    NoName,
+    /// Two rows of one name.
+    #[error("name {name:?} stands twice: every name must stand once")]
+    Twice {
+        /// The name.
+        name: String,
+    },
+    /// A row that belongs to one that does not exist.
+    #[error("{name:?} belongs to {parent:?}, which is no row: there must be a row of this name")]
+    Parent {
+        /// The row.
+        name: String,
+        /// What it belongs to.
+        parent: String,
+    },
+    /// An assembly that has numbers of its own.
+    #[error(
+        "{name:?} has numbers of its own and {child:?} belongs to it: an assembly must have none, \
+         because its numbers come from its parts. What it has beside them must be a part with a \
+         name of its own"
+    )]
+    PartWithChildren {
+        /// The assembly.
+        name: String,
+        /// One of those that belong to it.
+        child: String,
+    },
+    /// A row with neither numbers nor parts.
+    #[error("{name:?} has neither numbers nor parts: it must have one of them")]
+    Nothing {
+        /// The row.
+        name: String,
+    },
+    /// Several rows that belong to nothing.
+    #[error(
+        "{} rows belong to nothing, {}: one must be the whole, and all others belong to it or to \
+         its assemblies",
+        .names.len(), some(names)
+    )]
+    Wholes {
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// A row that belongs to itself, by way of others or at once.
+    #[error("{name:?} belongs to itself, at once or by way of others: it must belong to the whole")]
+    Circle {
+        /// The row.
+        name: String,
+    },
+    /// A sum leaves the range of floats.
+    #[error("the sum of {name:?}: {error}")]
+    Sum {
+        /// The assembly.
+        name: String,
+        /// Why.
+        error: MassPropertiesError,
+    },
+}
+
+impl AssemblyError {
+    /// The name of the row that is wrong, if it is one.
+    #[must_use]
+    pub fn row(&self) -> Option<&str> {
+        match self {
+            Self::Twice { name }
+            | Self::Parent { name, .. }
+            | Self::PartWithChildren { name, .. }
+            | Self::Nothing { name }
+            | Self::Circle { name }
+            | Self::Sum { name, .. } => Some(name),
+            Self::Wholes { names } => names.get(1).map(String::as_str),
+            Self::Empty | Self::NoName => None,
+        }
+    }
+}
+
+/// The first few of some names.
+fn some(names: &[String]) -> String {
+    let mut text = names.iter().take(5).map(|n| format!("{n:?}")).collect::<Vec<_>>().join(", ");
+    if names.len() > 5 {
+        text.push_str(", …");
+    }
+    text
+}
