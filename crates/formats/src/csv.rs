@@ -16,22 +16,27 @@ const FIELDS: [&str; 7] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz", "mass"];
 
 /// Where a field stands, its quotes not counted.
 #[derive(Clone, Copy, Debug)]
-struct Field {
-    start: usize,
-    end: usize,
+pub(crate) struct Field {
+    pub(crate) start: usize,
+    pub(crate) end: usize,
 }
 
 #[derive(Debug)]
-struct Rows<'a> {
+pub(crate) struct Rows<'a> {
     text: &'a str,
     at: usize,
     separator: u8,
 }
 
-impl Rows<'_> {
+impl<'a> Rows<'a> {
+    /// The rows of a text from its beginning, where the first of them tells the separator.
+    pub(crate) fn new(text: &'a str) -> Self {
+        let first = text.lines().find(|line| !is_comment(line)).unwrap_or_default();
+        Self { text, at: 0, separator: separator(first) as u8 }
+    }
     /// The fields of the next row that is neither blank nor a comment, or the offset of a quote
     /// that is never closed.
-    fn next(&mut self) -> Option<Result<Vec<Field>, usize>> {
+    pub(crate) fn next(&mut self) -> Option<Result<Vec<Field>, usize>> {
         loop {
             let rest = &self.text[self.at..];
             let line = rest.split('\n').next()?;
@@ -110,7 +115,7 @@ const AREAS: [(&str, f64); 5] =
     [("m2", 1.0), ("cm2", 1e-4), ("mm2", 1e-6), ("in2", 6.4516e-4), ("ft2", 0.092_903_04)];
 
 /// What a unit of mass is in kg; kg where none is stated.
-fn mass_unit(unit: &str) -> Option<f64> {
+pub(crate) fn mass_unit(unit: &str) -> Option<f64> {
     if unit.is_empty() {
         return Some(1.0);
     }
@@ -118,7 +123,7 @@ fn mass_unit(unit: &str) -> Option<f64> {
 }
 
 /// What a unit of inertia is in kg·m²; kg·m² where none is stated.
-fn inertia_unit(unit: &str) -> Option<f64> {
+pub(crate) fn inertia_unit(unit: &str) -> Option<f64> {
     if unit.is_empty() {
         return Some(1.0);
     }
@@ -129,6 +134,15 @@ fn inertia_unit(unit: &str) -> Option<f64> {
     })
 }
 
+/// What a unit of length is in m; m where none is stated.
+pub(crate) fn length_unit(unit: &str) -> Option<f64> {
+    if unit.is_empty() {
+        return Some(1.0);
+    }
+    let area = AREAS.iter().find(|(area, _)| area.strip_suffix('2') == Some(unit));
+    area.map(|(_, m2)| m2.sqrt())
+}
+
 /// What may stand between the letters of a name or a unit. The question mark is a square in an
 /// encoding other than UTF-8.
 fn is_between(c: char) -> bool {
@@ -136,7 +150,7 @@ fn is_between(c: char) -> bool {
 }
 
 /// A text without them: `Ixx [kg·m²]` becomes `ixxkgm2`.
-fn squeezed(text: &str) -> String {
+pub(crate) fn squeezed(text: &str) -> String {
     let plain = text.to_lowercase().replace(['²', '?'], "2");
     plain.chars().filter(|c| !is_between(*c)).collect()
 }
@@ -299,7 +313,7 @@ fn is_comment(line: &str) -> bool {
 }
 
 /// What a comment above the header, which ends at `end`, says of the products: `# products = integrals`.
-fn stated_products(source: &str, end: usize) -> Option<Products> {
+pub(crate) fn stated_products(source: &str, end: usize) -> Option<Products> {
     let comments = source.get(..end)?.lines().filter_map(|line| line.strip_prefix('#'));
     let stated = comments.filter_map(|comment| comment.trim_start().strip_prefix("products"));
     stated

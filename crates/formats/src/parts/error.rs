@@ -1,0 +1,150 @@
+//! Why a list of parts could not be read.
+
+use std::fmt;
+
+use crate::{BodyError, FileProblem, body::shortened, error::Refusal};
+
+/// Why a list of parts could not be read.
+#[derive(Debug)]
+pub struct PartsError {
+    line: Option<usize>,
+    name: Option<String>,
+    problem: PartsProblem,
+}
+
+impl PartsError {
+    pub(super) fn new(line: usize, name: Option<&str>, problem: PartsProblem) -> Self {
+        Self { line: Some(line), name: name.map(str::to_owned), problem }
+    }
+
+    /// Line, from 1, if the problem has one.
+    #[must_use]
+    pub fn line(&self) -> Option<usize> {
+        self.line
+    }
+
+    /// What is wrong.
+    #[must_use]
+    pub fn problem(&self) -> &PartsProblem {
+        &self.problem
+    }
+}
+
+impl From<Refusal> for PartsError {
+    fn from(Refusal { line, problem }: Refusal) -> Self {
+        Self { line, name: None, problem: PartsProblem::File(problem) }
+    }
+}
+
+impl fmt::Display for PartsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(line) = self.line {
+            write!(f, "line {line}: ")?;
+        }
+        if let Some(name) = &self.name {
+            write!(f, "{}: ", shortened(name))?;
+        }
+        write!(f, "{}", self.problem)
+    }
+}
+
+impl std::error::Error for PartsError {}
+
+/// What is wrong with a list of parts.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PartsProblem {
+    /// It is no table.
+    #[error(transparent)]
+    File(FileProblem),
+    /// A column is missing.
+    #[error("there is no column {column}: the header must name it")]
+    NoColumn {
+        /// Its name.
+        column: &'static str,
+    },
+    /// Two columns for one thing.
+    #[error("columns {first:?} and {second:?} say the same: there must be one of them")]
+    Columns {
+        /// One heading.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// A column that looks like a standard deviation and is none that is known.
+    #[error(
+        "column {heading:?} is no standard deviation that is known: it must be sigma_ or _percent of \
+         mass, centre, centre_x, ixx, moments and so on, in a unit that is read"
+    )]
+    Deviation {
+        /// The heading.
+        heading: String,
+    },
+    /// A number is missing, none, or not finite, or the row has too many or too few.
+    #[error(transparent)]
+    Number(#[from] BodyError),
+    /// A word that is none of those that are known.
+    #[error("{field} = {value:?}: it must be {allowed}")]
+    Word {
+        /// The column.
+        field: &'static str,
+        /// What it holds, shortened.
+        value: String,
+        /// What it may hold.
+        allowed: &'static str,
+    },
+    /// A shape that cannot be made.
+    #[error("shape: {message}")]
+    Shape {
+        /// Why.
+        message: String,
+    },
+    /// Neither inertia nor shape.
+    #[error(
+        "there is no inertia: the row must have ixx, iyy and izz, a shape with its sizes, or the shape \
+         \"point\""
+    )]
+    NoInertia,
+    /// Both inertia and shape.
+    #[error("both an inertia and the shape {shape:?} are given: there must be one of them")]
+    InertiaAndShape {
+        /// The shape.
+        shape: String,
+    },
+    /// Nobody says which sign the products have.
+    #[error(
+        "{field} is not zero, and nothing says which sign products have: there must be a column \
+         products that holds tensor (I12 = -∫xy dm) or integrals (+∫xy dm), a line \"# products = …\" \
+         above the header, or a flag"
+    )]
+    Sign {
+        /// The product.
+        field: &'static str,
+    },
+    /// Both an absolute deviation and one in percent, or one for all and one for each.
+    #[error("{field} is given twice: there must be one number for it")]
+    Twice {
+        /// Of what.
+        field: &'static str,
+    },
+    /// A number that must not be negative, or a rotation that is none.
+    #[error("{field} = {value:?}: it must be {allowed}")]
+    Value {
+        /// The column.
+        field: &'static str,
+        /// The value.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// An edge gives a second parent.
+    #[error("{child:?} belongs to {first:?} and to {second:?}: it must belong to one of them")]
+    Parents {
+        /// The row.
+        child: String,
+        /// One that it belongs to.
+        first: String,
+        /// The other.
+        second: String,
+    },
+}

@@ -1,0 +1,182 @@
+//! What the columns of a list of parts hold.
+
+use crate::csv::{entry_of, inertia_unit, length_unit, mass_unit, squeezed};
+
+/// The ten numbers, as messages call them.
+pub(super) const VALUES: [&str; 10] =
+    ["mass", "centre_x", "centre_y", "centre_z", "ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Column {
+    Name,
+    Parent,
+    /// Products are entries of the tensor, or integrals.
+    Products,
+    Point,
+    Shape,
+    Follows,
+    /// A component of the quaternion, scalar last.
+    Attitude(usize),
+    /// One of the ten, and its unit in SI.
+    Value(usize, f64),
+    /// The standard deviation of some of the ten.
+    Deviation(Group, Scale),
+}
+
+/// Some of the ten: from, and how many.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Group(pub(super) usize, pub(super) usize);
+
+/// What a standard deviation is in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Scale {
+    /// In a unit that is so much in SI.
+    Unit(f64),
+    /// In percent of the value.
+    Percent,
+}
+
+/// What a heading means.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Heading {
+    Column(Column),
+    /// Perhaps a size of a shape, by its name.
+    Size(String),
+    /// It looks like a standard deviation, and is none.
+    NoDeviation,
+    Other,
+}
+
+impl Heading {
+    pub(super) fn of(text: &str) -> Self {
+        // Longer texts are none.
+        if text.len() > 200 {
+            return Self::Other;
+        }
+        let plain = squeezed(text);
+        if let Some(column) = column(&plain) {
+            return Self::Column(column);
+        }
+        let name = text.trim().to_lowercase();
+        if ["sigma", "percent", "%"].iter().any(|mark| plain.contains(mark)) {
+            Self::NoDeviation
+        } else if name.ends_with("_m") && name.chars().all(|c| c.is_ascii_alphabetic() || c == '_')
+        {
+            Self::Size(name)
+        } else {
+            Self::Other
+        }
+    }
+}
+
+fn column(plain: &str) -> Option<Column> {
+    let word = match plain {
+        "name" | "id" | "part" | "body" | "link" | "component" => Some(Column::Name),
+        "parent" => Some(Column::Parent),
+        "products" | "poiconv" => Some(Column::Products),
+        "ipoint" | "point" => Some(Column::Point),
+        "shape" => Some(Column::Shape),
+        "inertiafollowsmass" => Some(Column::Follows),
+        "attitudex" | "qx" => Some(Column::Attitude(0)),
+        "attitudey" | "qy" => Some(Column::Attitude(1)),
+        "attitudez" | "qz" => Some(Column::Attitude(2)),
+        "attitudew" | "qw" => Some(Column::Attitude(3)),
+        _ => None,
+    };
+    word.or_else(|| quantity(plain))
+}
+
+/// A number of the ten or its deviation: `mass_kg`, `sigma_ixx`, `mass_sigma_kg`, `moments_percent`.
+fn quantity(plain: &str) -> Option<Column> {
+    let (rest, before) = match plain.strip_prefix("sigma") {
+        Some(rest) => (rest, true),
+        None => (plain, false),
+    };
+    // The longest name first: centrex before centre.
+    let ends: Vec<usize> = rest.char_indices().map(|(at, c)| at + c.len_utf8()).collect();
+    ends.into_iter().rev().find_map(|end| {
+        let group = group(&rest[..end])?;
+        let (unit, after) = match rest[end..].strip_prefix("sigma") {
+            Some(unit) => (unit, true),
+            None => (&rest[end..], false),
+        };
+        if ["percent", "%"].contains(&unit) {
+            return Some(Column::Deviation(group, Scale::Percent));
+        }
+        let si = match group.0 {
+            0 => mass_unit(unit),
+            1..=3 => length_unit(unit),
+            _ => inertia_unit(unit),
+        }?;
+        match (before || after, group) {
+            (true, group) => Some(Column::Deviation(group, Scale::Unit(si))),
+            (false, Group(first, 1)) => Some(Column::Value(first, si)),
+            (false, Group(..)) => None,
+        }
+    })
+}
+
+fn group(name: &str) -> Option<Group> {
+    let of = |plain: &str| match plain {
+        "x" => Some(Group(1, 1)),
+        "y" => Some(Group(2, 1)),
+        "z" => Some(Group(3, 1)),
+        "" => Some(Group(1, 3)),
+        _ => None,
+    };
+    match name {
+        "mass" => Some(Group(0, 1)),
+        "moments" => Some(Group(4, 3)),
+        "products" => Some(Group(7, 3)),
+        "cx" | "cy" | "cz" => of(&name[1..]),
+        _ => {
+            let centre = ["masscentre", "centre", "masscenter", "center", "com", "cog", "cg"];
+            let of_centre = centre.iter().find_map(|word| of(name.strip_prefix(word)?));
+            of_centre.or_else(|| entry_of(name).map(|entry| Group(4 + entry, 1)))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headings_are_known_in_every_spelling() {
+        let value = |i, si| Heading::Column(Column::Value(i, si));
+        let sigma = |i, n, si| Heading::Column(Column::Deviation(Group(i, n), Scale::Unit(si)));
+        let percent = |i, n| Heading::Column(Column::Deviation(Group(i, n), Scale::Percent));
+        for (text, expected) in [
+            ("mass", value(0, 1.0)),
+            ("Mass [g]", value(0, 1e-3)),
+            ("Cx", value(1, 1.0)),
+            ("centre_y_mm", value(2, 1e-3)),
+            ("Mass center Z (in)", value(3, 0.0254)),
+            ("Ixx", value(4, 1.0)),
+            ("i23_kg_m2", value(9, 1.0)),
+            ("sigma_mass", sigma(0, 1, 1.0)),
+            ("sigma_Cz", sigma(3, 1, 1.0)),
+            ("centre_sigma_mm", sigma(1, 3, 1e-3)),
+            ("sigma_Ixy", sigma(7, 1, 1.0)),
+            ("moments_percent", percent(4, 3)),
+            ("mass (%)", percent(0, 1)),
+            ("sigma_products_kg_m2", sigma(7, 3, 1.0)),
+            ("radius_m", Heading::Size("radius_m".to_owned())),
+            ("sigma_mess", Heading::NoDeviation),
+            ("supplier", Heading::Other),
+            ("centre_m", Heading::Size("centre_m".to_owned())),
+            ("POIconv", Heading::Column(Column::Products)),
+            ("Ipoint", Heading::Column(Column::Point)),
+        ] {
+            let found = Heading::of(text);
+            let same = match (&found, &expected) {
+                (Heading::Column(Column::Value(i, a)), Heading::Column(Column::Value(j, b))) => {
+                    i == j && (a / b - 1.0).abs() < 1e-15
+                }
+                (a, b) => a == b,
+            };
+            assert!(same, "{text}: {found:?}");
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! Lists of parts: mass, mass centre, inertia and their standard deviations, one part a row, and what belongs to what.
+
+mod error;
+mod heading;
+mod row;
+
+pub use error::{PartsError, PartsProblem};
+pub use row::{PartNumbers, PartRow};
+
+use std::collections::BTreeMap;
+
+use crate::{
+    BodyError, FileProblem, MAX_BODIES, Products,
+    body::shortened,
+    csv::{Field, Rows, stated_products},
+    error::Refusal,
+    text::Text,
+};
+use heading::{Column, Heading};
+use row::Cells;
+
+/// The assembly of a list without assemblies.
+const WHOLE: &str = "whole";
+
+/// A list of parts and assemblies.
+///
+/// ```
+/// use gyradius_formats::PartsTable;
+///
+/// let table = "\
+/// name,parent,mass_kg,centre_x_m,centre_y_m,centre_z_m,shape,sides_m,radius_m,mass_percent
+/// craft,,,,,,,,,
+/// bus,craft,300,0,0,0,solid_box,1 1 2,,5
+/// tank,craft,100,0,0,1.3,sphere,,0.3,2
+/// ";
+/// let table = PartsTable::read(table.as_bytes(), None)?;
+/// let bus = table.rows()[1].numbers().unwrap();
+/// assert_eq!((bus.mass_kg(), bus.deviations()[0]), (300.0, 15.0));
+/// assert!((bus.inertia().entries()[2] - 50.0).abs() < 1e-12);
+/// # Ok::<(), gyradius_formats::PartsError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartsTable {
+    rows: Vec<PartRow>,
+    passed_over: Vec<String>,
+}
+
+impl PartsTable {
+    /// Reads a table with a header; without a column `parent`, everything in it belongs to one assembly. `products` says which
+    /// sign they have where the table does not.
+    ///
+    /// # Errors
+    /// It is no table, a column is missing, or a row does not say what a part must; the error names line and field.
+    pub fn read(bytes: &[u8], products: Option<Products>) -> Result<Self, PartsError> {
+        let mut table = Self::rows_of(bytes, products)?;
+        if !table.has_parents {
+            let taken = table.rows.iter().any(|row| row.name() == WHOLE);
+            let whole = if taken { format!("({WHOLE})") } else { WHOLE.to_owned() };
+            table.rows.iter_mut().for_each(|row| row.set_parent(&whole));
+            table.rows.push(PartRow::assembly(&whole, 1));
+        }
+        Ok(table.finish())
+    }
+
+    /// The same with a second table, of the columns `child` and `parent`, that says what belongs to what. What stands in it
+    /// alone is an assembly.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read), or something belongs to two.
+    pub fn with_edges(
+        bytes: &[u8],
+        edges: &[u8],
+        products: Option<Products>,
+    ) -> Result<Self, PartsError> {
+        let mut table = Self::rows_of(bytes, products)?;
+        let edges = edges_of(edges)?;
+        let mut places: BTreeMap<String, usize> =
+            table.rows.iter().enumerate().map(|(i, row)| (row.name().to_owned(), i)).collect();
+        for (line, child, parent) in edges {
+            for name in [&child, &parent] {
+                if !places.contains_key(name) {
+                    places.insert(name.clone(), table.rows.len());
+                    table.rows.push(PartRow::assembly(name, line));
+                }
+            }
+            let Some(row) = places.get(&child).and_then(|i| table.rows.get_mut(*i)) else {
+                continue;
+            };
+            if let Some(first) = row.parent().filter(|first| *first != parent) {
+                let first = first.to_owned();
+                let problem = PartsProblem::Parents { child, first, second: parent };
+                return Err(PartsError::new(line, None, problem));
+            }
+            row.set_parent(&parent);
+        }
+        Ok(table.finish())
+    }
+
+    /// The parts and assemblies, in the order of the file.
+    #[must_use]
+    pub fn rows(&self) -> &[PartRow] {
+        &self.rows
+    }
+
+    /// Headings of columns that mean nothing here.
+    #[must_use]
+    pub fn passed_over(&self) -> &[String] {
+        &self.passed_over
+    }
+
+    fn rows_of(bytes: &[u8], products: Option<Products>) -> Result<Raw, PartsError> {
+        let text = Text::new(bytes, true)?;
+        let mut rows = Rows::new(text.as_str());
+        let Some(first) = next(&text, &mut rows)? else {
+            return Err(Refusal::from(FileProblem::Empty).into());
+        };
+        let line = line_of(&text, &first);
+        let headings: Vec<String> = first.iter().map(|field| cell(&text, field)).collect();
+        let mut columns = Vec::with_capacity(headings.len());
+        let mut passed_over = Vec::new();
+        for heading in &headings {
+            let column = Heading::of(heading);
+            match &column {
+                Heading::NoDeviation => {
+                    let problem = PartsProblem::Deviation { heading: shortened(heading) };
+                    return Err(PartsError::new(line, None, problem));
+                }
+                Heading::Other => passed_over.push(shortened(heading)),
+                Heading::Column(_) | Heading::Size(_) => {
+                    if let Some(at) = columns.iter().position(|other| *other == column) {
+                        let (first, second) = (shortened(&headings[at]), shortened(heading));
+                        let problem = PartsProblem::Columns { first, second };
+                        return Err(PartsError::new(line, None, problem));
+                    }
+                }
+            }
+            columns.push(column);
+        }
+        let has = |wanted: Column| columns.contains(&Heading::Column(wanted));
+        let has_mass = columns.iter().any(|c| matches!(c, Heading::Column(Column::Value(0, _))));
+        for (there, column) in [(has(Column::Name), "name"), (has_mass, "mass")] {
+            if !there {
+                return Err(PartsError::new(line, None, PartsProblem::NoColumn { column }));
+            }
+        }
+        let has_parents = has(Column::Parent);
+        let start = first.first().map_or(0, |field| field.start);
+        let products = stated_products(text.as_str(), start).or(products);
+        let mut found = Vec::new();
+        while let Some(fields) = next(&text, &mut rows)? {
+            let line = line_of(&text, &fields);
+            if found.len() == MAX_BODIES {
+                return Err(
+                    Refusal { line: Some(line), problem: FileProblem::TooManyBodies }.into()
+                );
+            }
+            let cells: Vec<String> = fields.iter().map(|field| cell(&text, field)).collect();
+            found.push(Cells { columns: &columns, cells: &cells, products }.row(line)?);
+        }
+        Ok(Raw { rows: found, passed_over, has_parents })
+    }
+}
+
+/// A table as it stands.
+struct Raw {
+    rows: Vec<PartRow>,
+    passed_over: Vec<String>,
+    has_parents: bool,
+}
+
+impl Raw {
+    fn finish(self) -> PartsTable {
+        PartsTable { rows: self.rows, passed_over: self.passed_over }
+    }
+}
+
+/// Line, child and parent of each row.
+fn edges_of(bytes: &[u8]) -> Result<Vec<(usize, String, String)>, PartsError> {
+    let text = Text::new(bytes, true)?;
+    let mut rows = Rows::new(text.as_str());
+    let Some(first) = next(&text, &mut rows)? else {
+        return Err(Refusal::from(FileProblem::Empty).into());
+    };
+    let headings: Vec<String> =
+        first.iter().map(|field| cell(&text, field).to_lowercase()).collect();
+    let place = |column: &'static str| {
+        let missing =
+            || PartsError::new(line_of(&text, &first), None, PartsProblem::NoColumn { column });
+        headings.iter().position(|heading| heading == column).ok_or_else(missing)
+    };
+    let places = [("child", place("child")?), ("parent", place("parent")?)];
+    let mut edges = Vec::new();
+    while let Some(fields) = next(&text, &mut rows)? {
+        let line = line_of(&text, &fields);
+        let of = |(field, place): (&'static str, usize)| {
+            let found = fields.get(place).map(|field| cell(&text, field));
+            let missing = BodyError::Missing { field };
+            let missing = || PartsError::new(line, None, PartsProblem::Number(missing));
+            found.filter(|name| !name.is_empty()).ok_or_else(missing)
+        };
+        edges.push((line, of(places[0])?, of(places[1])?));
+    }
+    Ok(edges)
+}
+
+fn next(text: &Text, rows: &mut Rows<'_>) -> Result<Option<Vec<Field>>, PartsError> {
+    let unclosed = |at| PartsError::from(text.malformed(at, "a quotation mark is not closed"));
+    rows.next().transpose().map_err(unclosed)
+}
+
+fn line_of(text: &Text, fields: &[Field]) -> usize {
+    text.line(fields.first().map_or(0, |field| field.start))
+}
+
+/// What a field holds, without blanks around it; nothing where R writes that nothing is there.
+fn cell(text: &Text, field: &Field) -> String {
+    let raw = text.as_str().get(field.start..field.end).unwrap_or_default();
+    let plain = raw.trim().replace("\"\"", "\"");
+    if plain == "NA" { String::new() } else { plain }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,346 @@
+//! A row of a list of parts: what it says of a part, or that it is an assembly.
+
+use gyradius_inertia::{InertiaMatrix, Shape};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serde_json::{Map, Value};
+
+use super::error::{PartsError, PartsProblem};
+use super::heading::{Column, Group, Heading, Scale, VALUES};
+use crate::{
+    BodyError, Products,
+    body::{Number, shortened},
+};
+
+/// How far the four components of an attitude may be from a unit quaternion.
+const UNIT: f64 = 1e-3;
+
+/// A row of a list: a part with its numbers, or an assembly without.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartRow {
+    name: String,
+    parent: Option<String>,
+    line: usize,
+    numbers: Option<PartNumbers>,
+}
+
+impl PartRow {
+    pub(super) fn assembly(name: &str, line: usize) -> Self {
+        Self { name: name.to_owned(), parent: None, line, numbers: None }
+    }
+
+    pub(super) fn set_parent(&mut self, parent: &str) {
+        self.parent = Some(parent.to_owned());
+    }
+
+    /// Its name, which may be empty or that of another.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it belongs to, if anything.
+    #[must_use]
+    pub fn parent(&self) -> Option<&str> {
+        self.parent.as_deref()
+    }
+
+    /// Line, from 1.
+    #[must_use]
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
+    /// The numbers of a part; none of an assembly.
+    #[must_use]
+    pub fn numbers(&self) -> Option<&PartNumbers> {
+        self.numbers.as_ref()
+    }
+}
+
+/// What a row says of a part, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartNumbers {
+    mass_kg: f64,
+    mass_centre_m: [f64; 3],
+    inertia: InertiaMatrix,
+    attitude: UnitQuaternion<f64>,
+    deviations: [f64; 10],
+    inertia_follows_mass: bool,
+}
+
+impl PartNumbers {
+    /// Mass, kg; it may be no mass at all.
+    #[must_use]
+    pub fn mass_kg(&self) -> f64 {
+        self.mass_kg
+    }
+
+    /// Mass centre in the frame of the whole, m.
+    #[must_use]
+    pub fn mass_centre_m(&self) -> [f64; 3] {
+        self.mass_centre_m
+    }
+
+    /// Inertia about the mass centre in the part's own axes, kg·m², products as tensor entries; it may be no body's.
+    #[must_use]
+    pub fn inertia(&self) -> &InertiaMatrix {
+        &self.inertia
+    }
+
+    /// The rotation that takes the part's own axes to those of the whole.
+    #[must_use]
+    pub fn attitude(&self) -> UnitQuaternion<f64> {
+        self.attitude
+    }
+
+    /// Standard deviations of mass (kg), mass centre (m), I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ (kg·m²); zero where nothing is said.
+    #[must_use]
+    pub fn deviations(&self) -> [f64; 10] {
+        self.deviations
+    }
+
+    /// Whether the inertia is proportional to the mass: that of a shape is, unless the row says no.
+    #[must_use]
+    pub fn inertia_follows_mass(&self) -> bool {
+        self.inertia_follows_mass
+    }
+}
+
+/// The cells of a row under their headings.
+pub(super) struct Cells<'a> {
+    pub(super) columns: &'a [Heading],
+    pub(super) cells: &'a [String],
+    pub(super) products: Option<Products>,
+}
+
+impl Cells<'_> {
+    pub(super) fn row(&self, line: usize) -> Result<PartRow, PartsError> {
+        let (found, allowed) = (self.cells.len(), self.columns.len());
+        if found != allowed {
+            let problem = BodyError::Count { field: "the row", found, allowed }.into();
+            return Err(PartsError::new(line, None, problem));
+        }
+        let name = self.text(Column::Name).unwrap_or_default().to_owned();
+        let parent = self.text(Column::Parent).map(str::to_owned);
+        let numbers = self.numbers().map_err(|p| PartsError::new(line, Some(&name), p))?;
+        Ok(PartRow { name, parent, line, numbers })
+    }
+
+    /// Cells that are not empty, under the columns of a kind.
+    fn given<T>(&self, of: impl Fn(&Heading) -> Option<T>) -> impl Iterator<Item = (T, &str)> {
+        let pairs = self.columns.iter().zip(self.cells).filter(|(_, cell)| !cell.is_empty());
+        pairs.filter_map(move |(heading, cell)| Some((of(heading)?, cell.as_str())))
+    }
+
+    fn text(&self, wanted: Column) -> Option<&str> {
+        self.given(|h| (*h == Heading::Column(wanted)).then_some(())).next().map(|(_, cell)| cell)
+    }
+
+    /// The numbers of a part; none where no cell has any.
+    fn numbers(&self) -> Result<Option<PartNumbers>, PartsProblem> {
+        let says = |heading: &Heading| match heading {
+            Heading::Column(
+                Column::Value(..)
+                | Column::Deviation(..)
+                | Column::Shape
+                | Column::Attitude(_)
+                | Column::Follows,
+            )
+            | Heading::Size(_) => Some(()),
+            Heading::Column(Column::Name | Column::Parent | Column::Products | Column::Point)
+            | Heading::NoDeviation
+            | Heading::Other => None,
+        };
+        if self.given(says).next().is_none() {
+            return Ok(None);
+        }
+        let mut values = [None; 10];
+        let of = |heading: &Heading| match heading {
+            Heading::Column(Column::Value(i, si)) => Some((*i, *si)),
+            _ => None,
+        };
+        for ((i, si), cell) in self.given(of) {
+            if values[i].is_some() {
+                return Err(PartsProblem::Twice { field: VALUES[i] });
+            }
+            values[i] = Some(Number::parse(VALUES[i], cell, None)?.value * si);
+        }
+        for i in 0..4 {
+            if values[i].is_none() {
+                return Err(BodyError::Missing { field: VALUES[i] }.into());
+            }
+        }
+        let [mass_kg, x, y, z] = std::array::from_fn(|i| values[i].unwrap_or_default());
+        let shape = self.shape()?;
+        let six = self.inertia(shape, mass_kg, std::array::from_fn(|e| values[4 + e]))?;
+        let [i11, i22, i33, i12, i13, i23] = six;
+        let inertia = InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23])
+            .map_err(|error| PartsProblem::Shape { message: error.to_string() })?;
+        let nominal = [mass_kg, x, y, z, i11, i22, i33, i12, i13, i23];
+        let inertia_follows_mass = match self.text(Column::Follows) {
+            None => matches!(shape, Some(Some(_))),
+            Some(word) => boolean("inertia_follows_mass", word)?,
+        };
+        Ok(Some(PartNumbers {
+            mass_kg,
+            mass_centre_m: [x, y, z],
+            inertia,
+            attitude: self.attitude()?,
+            deviations: self.deviations(&nominal)?,
+            inertia_follows_mass,
+        }))
+    }
+
+    /// The shape, if there is one: none of a point.
+    fn shape(&self) -> Result<Option<Option<Shape>>, PartsProblem> {
+        let is_point = self.text(Column::Point).map(|word| boolean("point", word)).transpose()?;
+        let Some(name) = self.text(Column::Shape) else {
+            return Ok(is_point.unwrap_or_default().then_some(None));
+        };
+        if name == "point" {
+            return Ok(Some(None));
+        }
+        let mut table = Map::new();
+        table.insert("shape".to_owned(), Value::from(name));
+        let of = |heading: &Heading| match heading {
+            Heading::Size(size) => Some(size.clone()),
+            _ => None,
+        };
+        for (size, cell) in self.given(of) {
+            let mut numbers = Vec::new();
+            for word in cell.split([' ', '×', ';', '/']).filter(|word| !word.is_empty()) {
+                numbers.push(Value::from(Number::parse("size of the shape", word, None)?.value));
+            }
+            let one = numbers.len() == 1;
+            let value = if one { numbers.remove(0) } else { Value::from(numbers) };
+            table.insert(size, value);
+        }
+        let shape: Result<Shape, _> = serde_json::from_value(Value::Object(table));
+        shape.map(|shape| Some(Some(shape))).map_err(|error| {
+            let message = error.to_string();
+            PartsProblem::Shape { message }
+        })
+    }
+
+    /// Six entries of the tensor, in the part's axes.
+    fn inertia(
+        &self,
+        shape: Option<Option<Shape>>,
+        mass_kg: f64,
+        given: [Option<f64>; 6],
+    ) -> Result<[f64; 6], PartsProblem> {
+        let any = given.iter().flatten().any(|entry| *entry != 0.0);
+        match shape {
+            Some(shape) if any => {
+                let shape = if shape.is_some() { "shape" } else { "point" };
+                let shape = self.text(Column::Shape).unwrap_or(shape).to_owned();
+                return Err(PartsProblem::InertiaAndShape { shape });
+            }
+            Some(None) => return Ok([0.0; 6]),
+            Some(Some(shape)) => {
+                let body = shape.of_mass(mass_kg);
+                let body = body.map_err(|e| PartsProblem::Shape { message: e.to_string() })?;
+                return Ok(body.inertia().entries());
+            }
+            None => {}
+        }
+        if given[..3].iter().all(Option::is_none) {
+            return Err(PartsProblem::NoInertia);
+        }
+        for e in 0..3 {
+            if given[e].is_none() {
+                return Err(BodyError::Missing { field: VALUES[4 + e] }.into());
+            }
+        }
+        let sign = match self.text(Column::Products).map(str::to_lowercase).as_deref() {
+            None | Some("") => self.products,
+            Some("-") => Some(Products::TensorEntries),
+            Some("+") => Some(Products::Integrals),
+            Some(word) => Some(Products::parse(word).ok_or_else(|| PartsProblem::Word {
+                field: "products",
+                value: shortened(word),
+                allowed: "tensor, integrals, - or +",
+            })?),
+        };
+        let mut six = given.map(Option::unwrap_or_default);
+        let product = (3..6).find(|e| six[*e] != 0.0);
+        match (sign, product) {
+            (Some(sign), _) => six[3..].iter_mut().for_each(|entry| *entry *= sign.sign()),
+            (None, Some(e)) => return Err(PartsProblem::Sign { field: VALUES[4 + e] }),
+            (None, None) => {}
+        }
+        Ok(six)
+    }
+
+    /// Ten standard deviations in SI units.
+    fn deviations(&self, nominal: &[f64; 10]) -> Result<[f64; 10], PartsProblem> {
+        let mut found = [None; 10];
+        let of = |heading: &Heading| match heading {
+            Heading::Column(Column::Deviation(group, scale)) => Some((*group, *scale)),
+            _ => None,
+        };
+        for ((Group(first, count), scale), cell) in self.given(of) {
+            let field = VALUES[first];
+            let value = Number::parse(field, cell, None)?.value;
+            if !(value >= 0.0) {
+                let allowed = "zero or more, for it is a standard deviation";
+                return Err(PartsProblem::Value { field, value, allowed });
+            }
+            for i in first..first + count {
+                let sigma = match scale {
+                    Scale::Unit(si) => value * si,
+                    // Of a centre, a share of its distance from the origin means nothing.
+                    Scale::Percent if (1..4).contains(&i) => {
+                        let allowed = "a length, for a mass centre has no percent";
+                        return Err(PartsProblem::Value { field: VALUES[i], value, allowed });
+                    }
+                    Scale::Percent => 0.01 * value * nominal[i].abs(),
+                };
+                if found[i].replace(sigma).is_some() {
+                    return Err(PartsProblem::Twice { field: VALUES[i] });
+                }
+            }
+        }
+        Ok(found.map(Option::unwrap_or_default))
+    }
+
+    /// The rotation from the part's axes; none where there are no components.
+    fn attitude(&self) -> Result<UnitQuaternion<f64>, PartsProblem> {
+        const FIELDS: [&str; 4] = ["attitude_x", "attitude_y", "attitude_z", "attitude_w"];
+        let mut found = [None; 4];
+        let of = |heading: &Heading| match heading {
+            Heading::Column(Column::Attitude(i)) => Some(*i),
+            _ => None,
+        };
+        for (i, cell) in self.given(of) {
+            found[i] = Some(Number::parse(FIELDS[i], cell, None)?.value);
+        }
+        if found.iter().all(Option::is_none) {
+            return Ok(UnitQuaternion::identity());
+        }
+        for (i, field) in FIELDS.into_iter().enumerate() {
+            if found[i].is_none() {
+                return Err(BodyError::Missing { field }.into());
+            }
+        }
+        let [x, y, z, w] = found.map(Option::unwrap_or_default);
+        let quaternion = Quaternion::from_parts(w, Vector3::new(x, y, z));
+        let value = quaternion.norm();
+        if !((value - 1.0).abs() <= UNIT) {
+            let allowed = "one, for the norm of a rotation's quaternion";
+            return Err(PartsProblem::Value { field: "norm of the attitude", value, allowed });
+        }
+        Ok(UnitQuaternion::new_normalize(quaternion))
+    }
+}
+
+fn boolean(field: &'static str, word: &str) -> Result<bool, PartsProblem> {
+    match word.to_lowercase().as_str() {
+        "true" | "yes" | "1" | "t" => Ok(true),
+        "false" | "no" | "0" | "f" => Ok(false),
+        _ => {
+            let (value, allowed) = (shortened(word), "yes or no");
+            Err(PartsProblem::Word { field, value, allowed })
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! Lists of parts in every form, and what is refused.
+
+use super::*;
+use proptest::prelude::*;
+
+fn read(text: &str) -> Result<PartsTable, PartsError> {
+    PartsTable::read(text.as_bytes(), None)
+}
+
+const HEAD: &str = "name,parent,mass_kg,centre_x_m,centre_y_m,centre_z_m";
+
+/// The two tables that the R package massProps has of SAWE paper 3360 (Zimmerman & Nakai 2005), one row of each.
+#[test]
+fn tables_of_mass_props_are_read() {
+    let table = "id\tmass\tCx\tCy\tCz\tIxx\tIyy\tIzz\tIxy\tIxz\tIyz\tsigma_mass\tsigma_Cx\tsigma_Cy\tsigma_Cz\tsigma_Ixx\
+                 \tsigma_Iyy\tsigma_Izz\tsigma_Ixy\tsigma_Ixz\tsigma_Iyz\tIpoint\tPOIconv\n\
+                 Widget\t57.83\t121.20\t0.04\t-0.16\t7258.90\t8607.02\t10453.40\t834.44\t-1198.38\t-1066.58\t1.2416\
+                 \t0.2764\t0.2085\t0.0669\t386.9233\t171.4792\t414.5547\t1440.5402\t344.6237\t124.6860\tFALSE\t+\n\
+                 Combined\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tNA\tFALSE\t+\n";
+    let edges = "child\tparent\nWidget\tCombined\nCombined\tall\n";
+    let read = PartsTable::with_edges(table.as_bytes(), edges.as_bytes(), None).unwrap();
+    let [widget, combined, all] = read.rows() else { panic!("{read:?}") };
+    assert_eq!((widget.name(), widget.parent(), widget.line()), ("Widget", Some("Combined"), 2));
+    let numbers = widget.numbers().unwrap();
+    assert_eq!(
+        numbers.inertia().entries(),
+        [7258.90, 8607.02, 10453.40, -834.44, 1198.38, 1066.58]
+    );
+    assert_eq!(numbers.mass_centre_m(), [121.20, 0.04, -0.16]);
+    let sigma = numbers.deviations();
+    assert_eq!((sigma[0], sigma[3], sigma[7], sigma[9]), (1.2416, 0.0669, 1440.5402, 124.6860));
+    assert!(!numbers.inertia_follows_mass());
+    assert_eq!((combined.parent(), combined.numbers()), (Some("all"), None));
+    assert_eq!((all.name(), all.parent(), all.line()), ("all", None, 3));
+    let twice = "child,parent\nWidget,a\nWidget,b\n";
+    let error = PartsTable::with_edges(table.as_bytes(), twice.as_bytes(), None).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "line 3: \"Widget\" belongs to \"a\" and to \"b\": it must belong to one of them"
+    );
+}
+
+#[test]
+fn shapes_points_percents_and_attitudes() {
+    let text = format!(
+        "{HEAD},shape,radius_m,height_m,sides_m,mass_percent,moments_percent,sigma_centre_mm,qx,qy,qz,qw,note\n\
+         craft,,,,,,,,,,,,,,,,,x\n\
+         tank,craft,2,0,1,2,cylinder,1,6,,10,20,5,1,0,0,0,y\n\
+         strut,craft,12,0,0,0,rod,,,,,,,,,,,\n\
+         box,craft,12,0,0,0,solid_box,,,1 2 3,,,,,,,,\n\
+         bolt,craft,1,0,0,0,point,,,,50,,,,,,,\n"
+    );
+    let error = read(&text).unwrap_err().to_string();
+    assert_eq!(error, "line 4: strut: shape: missing field `length_m`");
+    let text = text
+        .replace("strut,craft,12,0,0,0,rod", "strut,craft,12,0,0,0,disc")
+        .replace("0,disc,,,", "0,disc,2,,");
+    let table = read(&text).unwrap();
+    assert_eq!(table.passed_over(), ["note"]);
+    let numbers = |i: usize| table.rows()[i].numbers().unwrap();
+    assert!(table.rows()[0].numbers().is_none());
+    let tank = numbers(1);
+    // ½ m r² about the axis; ¼ m r² + m h²/12 across.
+    assert_eq!(tank.inertia().entries(), [6.5, 6.5, 1.0, 0.0, 0.0, 0.0]);
+    assert_eq!(tank.deviations(), [0.2, 0.005, 0.005, 0.005, 1.3, 1.3, 0.2, 0.0, 0.0, 0.0]);
+    assert_eq!(tank.attitude().i, 1.0);
+    assert!(tank.inertia_follows_mass());
+    assert_eq!(numbers(3).inertia().entries()[..3], [13.0, 10.0, 5.0]);
+    let bolt = numbers(4);
+    assert_eq!(bolt.inertia().entries(), [0.0; 6]);
+    assert!(!bolt.inertia_follows_mass() && bolt.deviations()[0] == 0.5);
+}
+
+#[test]
+fn lists_without_parents_are_one_whole() {
+    let table = read("part;mass [lb];cg x (in);cg y (in);cg z (in);shape\na;1;1;0;0;point\nwhole;2;0;0;0;point\n").unwrap();
+    let names: Vec<_> = table.rows().iter().map(|r| (r.name(), r.parent())).collect();
+    assert_eq!(names, [("a", Some("(whole)")), ("whole", Some("(whole)")), ("(whole)", None)]);
+    let a = table.rows()[0].numbers().unwrap();
+    assert!(
+        (a.mass_kg() - 0.45359237).abs() < 1e-15 && (a.mass_centre_m()[0] - 0.0254).abs() < 1e-15
+    );
+}
+
+#[test]
+fn the_sign_of_products_is_never_guessed() {
+    let row =
+        |products: &str| format!("{HEAD},ixx,iyy,izz,ixy,ixz,iyz\na,,1,0,0,0,4,5,6,{products}\n");
+    let found = |text: &str, default| {
+        PartsTable::read(text.as_bytes(), default)
+            .map(|t| t.rows()[0].numbers().unwrap().inertia().entries()[3])
+    };
+    assert_eq!(found(&row("0,0,0"), None).unwrap(), 0.0);
+    assert!(
+        found(&row("0,.1,0"), None)
+            .unwrap_err()
+            .to_string()
+            .starts_with("line 2: a: ixz is not zero, and nothing says")
+    );
+    assert_eq!(found(&row(".1,0,0"), Some(Products::TensorEntries)).unwrap(), 0.1);
+    assert_eq!(found(&row(".1,0,0"), Some(Products::Integrals)).unwrap(), -0.1);
+    let stated = format!("# products = integrals\n{}", row(".1,0,0"));
+    assert_eq!(found(&stated, Some(Products::TensorEntries)).unwrap(), -0.1);
+    let column =
+        |word: &str| format!("{HEAD},ixx,iyy,izz,ixy,POIconv\na,,1,0,0,0,4,5,6,.1,{word}\n");
+    for (word, expected) in [("+", -0.1), ("-", 0.1), ("integrals", -0.1), ("Tensor", 0.1)] {
+        assert_eq!(found(&column(word), None).unwrap(), expected, "{word}");
+    }
+    assert!(
+        found(&column("positive"), None)
+            .unwrap_err()
+            .to_string()
+            .contains("products = \"positive\": it must be tensor")
+    );
+}
+
+#[test]
+fn what_a_row_lacks_is_named() {
+    for (text, expected) in [
+        ("", "it is empty"),
+        ("mass,x\n", "line 1: there is no column name"),
+        ("name,parent\n", "line 1: there is no column mass"),
+        ("name,mass,Mass [kg]\na,1,2\n", "line 1: columns \"mass\" and \"Mass [kg]\" say"),
+        ("name,mass,mass\na,1,2\n", "line 1: columns \"mass\" and \"mass\" say the same"),
+        ("name,mass,sigma_mess\na,1,2\n", "line 1: column \"sigma_mess\" is no standard deviation"),
+        ("name,mass,shape\na,1,point\n", "line 2: a: centre_x is missing"),
+        ("name,mass,cx,cy,cz\na,1,0,0,0\n", "line 2: a: there is no inertia"),
+        ("name,mass,cx,cy,cz\na,1,0,0\n", "line 2: the row has 4 values: there must be 5"),
+        ("name,mass,cx,cy,cz\n\na,one,0,0,0\n", "line 3: a: mass = \"one\" is not a number"),
+        ("name,mass,cx,cy,cz\na,inf,0,0,0\n", "line 2: a: mass = \"inf\": it must be finite"),
+        ("name,mass,cx,cy,cz,ixx,iyy\na,1,0,0,0,1,1\n", "line 2: a: izz is missing"),
+        (
+            "name,mass,cx,cy,cz,shape,ixx\na,1,0,0,0,point,1\n",
+            "line 2: a: both an inertia and the shape \"point\"",
+        ),
+        (
+            "name,mass,cx,cy,cz,shape\na,1,0,0,0,potato\n",
+            "line 2: a: shape: unknown variant `potato`",
+        ),
+        (
+            "name,mass,cx,cy,cz,shape,radius_m\na,1,0,0,0,sphere,-1\n",
+            "line 2: a: shape: radius_m = -1.0 m",
+        ),
+        (
+            "name,mass,cx,cy,cz,shape,sigma_mass\na,1,0,0,0,point,-1\n",
+            "line 2: a: mass = -1.0: it must be zero or more",
+        ),
+        (
+            "name,mass,cx,cy,cz,shape,sigma_mass,mass_percent\na,1,0,0,0,point,1,1\n",
+            "line 2: a: mass is given twice",
+        ),
+        (
+            "name,mass,cx,cy,cz,shape,centre_percent\na,1,0,0,0,point,1\n",
+            "line 2: a: centre_x = 1.0: it must be a length",
+        ),
+        ("name,mass,cx,cy,cz,shape,qx\na,1,0,0,0,point,1\n", "line 2: a: attitude_y is missing"),
+        (
+            "name,mass,cx,cy,cz,shape,qx,qy,qz,qw\na,1,0,0,0,point,1,1,0,0\n",
+            "line 2: a: norm of the attitude = 1.41",
+        ),
+        (
+            "name,mass,cx,cy,cz,point\na,1,0,0,0,maybe\n",
+            "line 2: a: point = \"maybe\": it must be yes or no",
+        ),
+        ("name,mass,cx\n\"a,1,0\n", "line 2: malformed: a quotation mark is not closed"),
+    ] {
+        let found = read(text).unwrap_err().to_string();
+        assert!(found.starts_with(expected), "{text:?}: {found}");
+    }
+}
+
+proptest! {
+    /// Garbage, and good tables with garbage in them.
+    #[test]
+    fn no_bytes_panic(
+        noise in prop::collection::vec(any::<u8>(), 0..200),
+        at in any::<prop::sample::Index>(),
+        cut in any::<prop::sample::Index>(),
+        words in prop::collection::vec("[-a-zA-Z0-9_.,;\t\n\" %²µ+]{0,12}", 0..6),
+    ) {
+        let _ = PartsTable::read(&noise, None);
+        let good = "name,parent,mass_kg,cx,cy,cz,ixx,iyy,izz,ixy,shape,sides_m,mass_percent,sigma_ixx,qx,qy,qz,qw,products\n\
+                    all,,,,,,,,,,,,,,,,,,\na,all,1,2,3,4,5,6,7,.1,,,5,.1,0,0,0,1,tensor\nb,all,1,0,0,0,,,,,solid_box,1 2 3,,,,,,,\n";
+        let mut bytes = good.as_bytes().to_vec();
+        let place = at.index(bytes.len());
+        bytes.splice(place..place, noise.iter().copied());
+        let _ = PartsTable::read(&bytes, Some(Products::Integrals));
+        let mut text = good.as_bytes().to_vec();
+        for word in &words {
+            let place = at.index(text.len());
+            text.splice(place..place, word.bytes());
+        }
+        text.truncate(cut.index(text.len()));
+        let _ = PartsTable::read(&text, None);
+        let _ = PartsTable::with_edges(good.as_bytes(), &text, None);
+        let _ = PartsTable::with_edges(&text, b"child,parent\na,all\n", None);
+    }
+}
