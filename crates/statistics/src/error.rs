@@ -191,6 +191,16 @@ pub enum StatisticsError {
         /// The largest that is allowed.
         most: f64,
     },
+    /// A search for the law of scores is too small or too large.
+    #[error(
+        "{scores} scores and {per_level} runs of a level; there must be 1 and 100 or more, and 100000000 scores of a level at most"
+    )]
+    SearchPlan {
+        /// The scores given.
+        scores: usize,
+        /// The runs of a level given.
+        per_level: usize,
+    },
     /// A plan of subset simulations is too small or too large.
     #[error(
         "{groups} groups of inputs, {per_level} runs of a level and {replicas} replicas; there must be 1, 100 and 2 or more, 1000 replicas at most, and 100000000 draws of a level in all"

@@ -1,0 +1,167 @@
+//! Normal laws of independent scores, fitted to weighted runs.
+
+use super::score_law::log_sum;
+
+/// Bounds of a standard deviation.
+const NARROW: f64 = 0.3;
+const WIDE: f64 = 3.0;
+/// A standard deviation stays 1 unless its square is so many standard errors off.
+const SURE: f64 = 3.0;
+/// Each of two parts has at least so many runs of equal weight, and this share.
+const FEW: f64 = 4.0;
+const SMALL: f64 = 0.05;
+/// Two parts must be worth so much more likelihood for each further parameter.
+const WORTH: f64 = 1.5;
+/// Steps of an iteration that splits runs.
+const STEPS: usize = 20;
+
+/// The scores of a run that leads on, and its weight.
+pub(super) struct Elite<'a> {
+    pub(super) scores: &'a [f64],
+    pub(super) weight: f64,
+}
+
+/// A normal law, a mean and a standard deviation for each score.
+type Normals = Vec<[f64; 2]>;
+
+/// Normal laws with their shares, one or two; none if no run has a weight. Two are kept as long as there are runs near both of those
+/// before. No standard deviation is below 1 if they are to lead further: a narrow part would be left behind by a wide one.
+pub(super) fn fit(
+    elites: &[Elite<'_>],
+    before: &[(f64, Normals)],
+    leads_on: bool,
+) -> Option<Vec<(f64, Normals)>> {
+    let weights: Vec<f64> = elites.iter().map(|elite| elite.weight).collect();
+    let (raw, cautious, count) = normals(elites, &weights)?;
+    let mut found = vec![(1.0, cautious)];
+    let two = if let [_, _] = before {
+        let near = elites.iter().map(|elite| shares(elite, before)[0]).collect();
+        maximised(elites, near)
+    } else {
+        let all: f64 = weights.iter().sum();
+        let likelihood = |parts: &[(f64, Normals)]| -> f64 {
+            let of = |elite: &Elite<'_>| elite.weight * log_sum(&logs(elite, parts));
+            elites.iter().map(of).sum::<f64>() / all
+        };
+        let worth = WORTH * (2 * raw.len() + 1) as f64;
+        let two = halves(elites, &raw).and_then(|halves| maximised(elites, halves));
+        let whole = likelihood(&[(1.0, raw)]);
+        two.filter(|two| count * (likelihood(two) - whole) > worth)
+    };
+    if let Some(two) = two {
+        found.clear();
+        // What is drawn from is as cautious as a single law.
+        for (part, (share, _)) in two.iter().enumerate() {
+            let mine = elites.iter().map(|elite| elite.weight * shares(elite, &two)[part]);
+            found.push((*share, normals(elites, &mine.collect::<Vec<_>>())?.1));
+        }
+    }
+    if leads_on {
+        let deviations = found.iter_mut().flat_map(|(_, normals)| normals);
+        deviations.for_each(|[_, deviation]| *deviation = deviation.max(1.0));
+    }
+    Some(found)
+}
+
+/// The likeliest normals of weighted runs, the same with caution, and how many runs of equal weight they are.
+fn normals(elites: &[Elite<'_>], weights: &[f64]) -> Option<(Normals, Normals, f64)> {
+    let all: f64 = weights.iter().sum();
+    let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
+    if !(all > 0.0 && squares > 0.0) {
+        return None;
+    }
+    let count = all * all / squares;
+    let mean_of = |of: &dyn Fn(&Elite<'_>) -> f64| {
+        elites.iter().zip(weights).map(|(elite, weight)| weight * of(elite)).sum::<f64>() / all
+    };
+    let scores = elites.first()?.scores.len();
+    let mut raw: Normals = Vec::with_capacity(scores);
+    for j in 0..scores {
+        let mean = mean_of(&|elite| elite.scores[j]);
+        let variance = mean_of(&|elite| (elite.scores[j] - mean) * (elite.scores[j] - mean));
+        raw.push([mean, variance.sqrt().clamp(NARROW, WIDE)]);
+    }
+    // What of the means is chance, and what would be of a variance.
+    let length: f64 = raw.iter().map(|[mean, _]| mean * mean).sum();
+    let chance: f64 = raw.iter().map(|[_, deviation]| deviation * deviation).sum::<f64>() / count;
+    let kept = if length > 0.0 { (1.0 - chance / length).max(0.0) } else { 0.0 };
+    let sure = SURE * (2.0 / count).sqrt();
+    let cautious = raw.iter().map(|[mean, deviation]| {
+        let off = deviation * deviation - 1.0;
+        [kept * mean, if off.abs() > sure { *deviation } else { 1.0 }]
+    });
+    let cautious = cautious.collect();
+    Some((raw, cautious, count))
+}
+
+/// For each run 1 or 0: on which side it is, across the direction in which runs scatter most about the middle of a law.
+fn halves(elites: &[Elite<'_>], whole: &Normals) -> Option<Vec<f64>> {
+    let scores = whole.len();
+    let centred = |elite: &Elite<'_>, j: usize| elite.scores[j] - whole[j][0];
+    let along = |elite: &Elite<'_>, direction: &[f64]| -> f64 {
+        direction.iter().enumerate().map(|(j, d)| d * centred(elite, j)).sum()
+    };
+    // Power iteration, from the run that is farthest off.
+    let far = |elite: &Elite<'_>| (0..scores).map(|j| centred(elite, j).powi(2)).sum::<f64>();
+    let start = elites.iter().max_by(|a, b| far(a).total_cmp(&far(b)))?;
+    let mut direction: Vec<f64> = (0..scores).map(|j| centred(start, j)).collect();
+    for _ in 0..STEPS {
+        let mut next = vec![0.0; scores];
+        for elite in elites {
+            let factor = elite.weight * along(elite, &direction);
+            for (j, entry) in next.iter_mut().enumerate() {
+                *entry += factor * centred(elite, j);
+            }
+        }
+        let length = next.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if !(length > 0.0) {
+            return None;
+        }
+        direction = next.into_iter().map(|x| x / length).collect();
+    }
+    let side = |elite: &Elite<'_>| f64::from(u8::from(along(elite, &direction) > 0.0));
+    Some(elites.iter().map(side).collect())
+}
+
+/// A mixture of two normals, by expectation and maximisation from the share that each run has in the first; none if one of them
+/// has too few.
+fn maximised(elites: &[Elite<'_>], mut first: Vec<f64>) -> Option<Vec<(f64, Normals)>> {
+    let all: f64 = elites.iter().map(|elite| elite.weight).sum();
+    let mut parts = Vec::new();
+    for _ in 0..STEPS {
+        parts.clear();
+        for other in [false, true] {
+            let share = |(elite, share): (&Elite<'_>, &f64)| {
+                elite.weight * if other { 1.0 - share } else { *share }
+            };
+            let weights: Vec<f64> = elites.iter().zip(&first).map(share).collect();
+            let (law, _, count) = normals(elites, &weights)?;
+            let share = weights.iter().sum::<f64>() / all;
+            if count < FEW || share < SMALL {
+                return None;
+            }
+            parts.push((share, law));
+        }
+        first = elites.iter().map(|elite| shares(elite, &parts)[0]).collect();
+    }
+    Some(parts)
+}
+
+/// The logarithm of what each part has at a run, but for a constant.
+fn logs(elite: &Elite<'_>, parts: &[(f64, Normals)]) -> Vec<f64> {
+    let of = |(share, normals): &(f64, Normals)| {
+        let density = |(z, [mean, deviation]): (&f64, &[f64; 2])| {
+            let standard = (z - mean) / deviation;
+            -0.5 * standard * standard - libm::log(*deviation)
+        };
+        libm::log(*share) + elite.scores.iter().zip(normals).map(density).sum::<f64>()
+    };
+    parts.iter().map(of).collect()
+}
+
+/// With which probability a run is of each part.
+fn shares(elite: &Elite<'_>, parts: &[(f64, Normals)]) -> Vec<f64> {
+    let logs = logs(elite, parts);
+    let all = log_sum(&logs);
+    logs.into_iter().map(|log| libm::exp(log - all)).collect()
+}

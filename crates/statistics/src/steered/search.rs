@@ -1,0 +1,214 @@
+//! A search for the law of scores under which an event is least rare: the cross-entropy method.
+
+use super::{
+    OWN,
+    fit::{self, Elite},
+    score_law::ScoreLaw,
+};
+use crate::{StatisticsError, error::share};
+
+/// One run in so many leads on.
+const PART: usize = 10;
+/// Most levels.
+const MOST_LEVELS: usize = 40;
+/// So many levels in a row that are no higher end a search.
+const MOST_STALLED: usize = 3;
+/// The probability below which a search gives up, unless told otherwise.
+const LEAST: f64 = 1e-9;
+/// Most scores, runs of a level, and scores of all runs of a level.
+const MOST: usize = 100_000_000;
+/// So many runs that are the event are enough to fit a law to.
+const ENOUGH: usize = 30;
+/// So few lead on if the level would fall otherwise.
+const FEWEST_ELITES: usize = 10;
+/// Fewest runs of a level.
+const FEWEST: usize = 100;
+
+/// A search for the law of scores under which an event is least rare, by the cross-entropy method (Rubinstein & Kroese 2004,
+/// doi:10.1007/978-1-4757-4321-0), in steps: it asks for runs, which may be done in any order, and is told their outcomes.
+///
+/// The first level has plain runs. The tenth of them that comes nearest to the event leads on: the next law is fitted to
+/// their scores, weighted as the own law has them, and a tenth of the own law is kept. Level by level the runs come nearer, until a tenth of
+/// them is the event. Two last levels then fit the law to all runs that are the event.
+///
+/// What is fitted is one normal law or a mixture of two, with independent scores: two, where the likelihood says that there
+/// are two ways, as to both limits of an absolute value. Standard deviations are kept between 0.3 and 3, and stay 1 unless they are surely
+/// another; means are shrunk by what they owe to chance (James & Stein 1961).
+#[derive(Clone, Debug)]
+pub struct ScoreSearch {
+    per_level: usize,
+    least: f64,
+    law: ScoreLaw,
+    stage: Stage,
+    level: f64,
+    levels: usize,
+    stalled: usize,
+    evaluations: u64,
+    failed: u64,
+}
+
+/// Where a search stands.
+#[derive(Clone, Debug, PartialEq)]
+enum Stage {
+    /// On the way.
+    Rising,
+    /// The event is not rare any more; the law is fitted to it.
+    Fitting,
+    Done {
+        reached: bool,
+    },
+}
+
+impl ScoreSearch {
+    /// With so many scores, and runs of a level.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::SearchPlan`] unless there are 1 score and 100 runs or more, and 10⁸ scores of a level at most.
+    pub fn new(scores: usize, per_level: usize) -> Result<Self, StatisticsError> {
+        if !(scores >= 1 && per_level >= FEWEST && scores.saturating_mul(per_level) <= MOST) {
+            return Err(StatisticsError::SearchPlan { scores, per_level });
+        }
+        Ok(Self {
+            per_level,
+            least: LEAST,
+            law: ScoreLaw::own(scores),
+            stage: Stage::Rising,
+            level: f64::NEG_INFINITY,
+            levels: 0,
+            stalled: 0,
+            evaluations: 0,
+            failed: 0,
+        })
+    }
+
+    /// Gives up below this probability; below 1e-9 else.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::Share`] unless it lies between 1e-9 and 1 − 1e-9.
+    pub fn with_least(self, least: f64) -> Result<Self, StatisticsError> {
+        Ok(Self { least: share(least)?, ..self })
+    }
+
+    /// How many runs are wanted next; none if it is done.
+    pub fn asks(&self) -> usize {
+        if self.is_done() { 0 } else { self.per_level }
+    }
+
+    /// The law that their scores are to be drawn from; in the end, the law that was found.
+    pub fn law(&self) -> &ScoreLaw {
+        &self.law
+    }
+
+    /// Takes the runs that were asked for: the scores of each, and how far it is beyond the limit. The event is an excess of 0 or
+    /// more; NaN is a run that failed.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::Columns`] if they are not as many as were asked for, or have not as many scores as the law,
+    /// [`StatisticsError::LogWeight`] if a score is not finite.
+    pub fn tell(&mut self, runs: &[(Vec<f64>, f64)]) -> Result<(), StatisticsError> {
+        crate::rank_correlation::same_length(self.asks(), runs.len())?;
+        let mut weights = Vec::with_capacity(runs.len());
+        for (scores, _) in runs {
+            crate::rank_correlation::same_length(self.law.scores(), scores.len())?;
+            let value = self.law.log_weight(scores);
+            if !value.is_finite() {
+                return Err(StatisticsError::LogWeight { value, most: -OWN.ln() });
+            }
+            weights.push(libm::exp(value));
+        }
+        if self.is_done() {
+            return Ok(());
+        }
+        self.levels += 1;
+        self.evaluations += runs.len() as u64;
+        self.failed += runs.iter().filter(|run| run.1.is_nan()).count() as u64;
+        let Some(level) = self.next_level(runs) else {
+            self.stalled += 1;
+            if self.stalled >= MOST_STALLED {
+                self.stage = Stage::Done { reached: false };
+            }
+            return Ok(());
+        };
+        let elites: Vec<Elite<'_>> = runs
+            .iter()
+            .zip(&weights)
+            .filter(|((_, excess), _)| *excess >= level)
+            .map(|((scores, _), weight)| Elite { scores, weight: *weight })
+            .collect();
+        let probability =
+            elites.iter().map(|elite| elite.weight).sum::<f64>() / self.per_level as f64;
+        let higher = level > self.level;
+        self.stalled = if higher { 0 } else { self.stalled + 1 };
+        self.stage = match self.stage {
+            Stage::Fitting => Stage::Done { reached: true },
+            Stage::Rising if level >= 0.0 => Stage::Fitting,
+            Stage::Rising
+                if self.stalled >= MOST_STALLED
+                    || self.levels >= MOST_LEVELS
+                    || probability < self.least =>
+            {
+                Stage::Done { reached: false }
+            }
+            Stage::Rising => Stage::Rising,
+            Stage::Done { reached } => Stage::Done { reached },
+        };
+        self.level = self.level.max(level);
+        if let Some(normals) = fit::fit(&elites, &self.law.normals(), self.stage == Stage::Rising) {
+            self.law = ScoreLaw::mixed(self.law.scores(), OWN, normals);
+        }
+        Ok(())
+    }
+
+    /// Whether nothing more is asked for.
+    pub fn is_done(&self) -> bool {
+        matches!(self.stage, Stage::Done { .. })
+    }
+
+    /// Whether it came to the event.
+    pub fn reached(&self) -> bool {
+        matches!(self.stage, Stage::Done { reached: true })
+    }
+
+    /// The largest excess that a tenth of the runs of some level had, 0 at most; minus infinity before the first.
+    pub fn level(&self) -> f64 {
+        self.level
+    }
+
+    /// Number of levels that were done.
+    pub fn levels(&self) -> usize {
+        self.levels
+    }
+
+    /// Number of runs that were done.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    /// How many of them failed.
+    pub fn failed(&self) -> u64 {
+        self.failed
+    }
+
+    /// The excess that a tenth of the runs have, or the least that not all have; 0 at most, and none if all runs are alike. No less
+    /// than before, and the event itself, as soon as enough runs have it.
+    fn next_level(&self, runs: &[(Vec<f64>, f64)]) -> Option<f64> {
+        let mut excesses: Vec<f64> = runs.iter().map(|run| run.1.max(f64::NEG_INFINITY)).collect();
+        excesses.sort_unstable_by(|a, b| b.total_cmp(a));
+        let enough = *excesses.get(ENOUGH - 1)?;
+        if enough >= 0.0 {
+            return Some(0.0);
+        }
+        let (level, least) = (excesses[excesses.len() / PART - 1], *excesses.last()?);
+        if level > self.level && level > least {
+            return Some(level);
+        }
+        // Where few runs can come nearer, because others draw what no score leads to, these few lead on.
+        if enough > least {
+            return Some(enough.max(self.level.min(excesses[FEWEST_ELITES - 1])));
+        }
+        excesses.into_iter().rev().find(|excess| *excess > least).map(|excess| excess.min(0.0))
+    }
+}
