@@ -35,8 +35,8 @@
 //! ```
 
 mod fit;
-mod stated_body;
 mod rollup;
+mod stated_body;
 mod statements;
 mod turns;
 
@@ -44,11 +44,11 @@ pub use fit::{
     Aspect, Assessment, AxesFinding, AxesFit, FitNote, FitTest, Matching, PrincipalFit,
     PrincipalFitError, RootEstimate, RootFit,
 };
-pub use stated_body::StatedBody;
 pub use rollup::{
     Assembly, AssemblyError, AssemblyPart, AssemblyRow, PartError, PartFinding, PartStatement,
     TEN_NAMES, TEN_UNITS, TenMoments,
 };
+pub use stated_body::StatedBody;
 pub use statements::{
     Amount, AxesStatement, CentreStatement, MassStatement, MissedBecause, MomentsStatement, Part,
     ProductsStatement, StatedMass, StatedModel, StatementError, StatementWarning, Statements,

@@ -59,7 +59,7 @@ pub use rank_correlation::RankCorrelation;
 pub use sequential::SequentialAcceptance;
 pub use share_test::{ShareTest, holm};
 pub use sobol::{SobolIndex, SobolIndices, SobolSums};
-pub use steered::{ScoreLaw, ScoreSearch, SearchWarning, SteeredEstimate, SteeredSampling};
+pub use steered::{ScoreLaw, ScoreSearch, SteeredEstimate, SteeredSampling, SteeredWarning};
 pub use subset::{RareEvent, SubsetEstimate, SubsetReplica, SubsetSimulation, SubsetWarning};
 pub use success_by_decile::{SuccessByDecile, Tenth};
 pub use survey::{Pass, Survey};

@@ -9,6 +9,7 @@ pub use search::ScoreSearch;
 
 use crate::{
     Confidence, ImportanceEstimate, ImportanceSampling, Interval, Proportion, StatisticsError,
+    WeightWarning,
 };
 
 /// The share of the own law in every law that scores are drawn from: no weight is above its inverse (Hesterberg 1995,
@@ -68,7 +69,7 @@ const ALIKE: f64 = 1.25;
 /// }
 /// let estimate = sample.finish(Confidence::default())?;
 /// assert!(estimate.interval().contains(tail::normal(9.0 / 3_f64.sqrt())), "{estimate:?}");
-/// assert!(estimate.weighted().warnings().is_empty() && estimate.warnings().is_empty());
+/// assert!(estimate.warnings().is_empty());
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -160,10 +161,11 @@ impl SteeredSampling {
         let weighted = self.hits.finish(confidence)?;
         let mut warnings = Vec::new();
         if self.not_reached > 0 {
-            warnings.push(SearchWarning::NotReached { searches: self.not_reached });
+            warnings.push(SteeredWarning::NotReached { searches: self.not_reached });
         }
         let apart = self.apart(confidence);
-        warnings.extend(apart.map(|[one, other]| SearchWarning::SearchesDiffer { one, other }));
+        warnings.extend(apart.map(|[one, other]| SteeredWarning::SearchesDiffer { one, other }));
+        warnings.extend(weighted.warnings().iter().copied().map(SteeredWarning::Weights));
         let (lower, upper) = if weighted.hits() > 0 {
             (weighted.interval().lower(), weighted.interval().upper())
         } else {
@@ -176,7 +178,8 @@ impl SteeredSampling {
             interval,
             evaluations: self.evaluations,
             failed: self.failed,
-            search_warnings: warnings,
+            probability: weighted.probability(),
+            warnings,
             weighted,
         })
     }
@@ -207,18 +210,19 @@ impl SteeredSampling {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SteeredEstimate {
+    probability: f64,
     interval: Interval,
     evaluations: u64,
     failed: u64,
-    search_warnings: Vec<SearchWarning>,
+    warnings: Vec<SteeredWarning>,
     weighted: ImportanceEstimate,
 }
 
-/// Why searches should not be trusted.
+/// Why importance sampling in scores should not be trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
-pub enum SearchWarning {
+pub enum SteeredWarning {
     /// So many searches did not come to the event: it cannot be, is rarer than the least probability, or needs what no score leads to.
     NotReached {
         /// How many.
@@ -232,12 +236,15 @@ pub enum SearchWarning {
         /// The larger.
         other: f64,
     },
+    /// What the weights show.
+    #[cfg_attr(feature = "serde", serde(untagged))]
+    Weights(WeightWarning),
 }
 
 impl SteeredEstimate {
     /// The estimate of the probability.
     pub fn probability(&self) -> f64 {
-        self.weighted.probability()
+        self.probability
     }
 
     /// The interval. Without a hit, from 0 to a bound that holds whatever the event is, for no weight is above 10; it is not small.
@@ -245,7 +252,7 @@ impl SteeredEstimate {
         self.interval
     }
 
-    /// The weighted runs of the sample, with their warnings.
+    /// The weighted runs of the sample.
     pub fn weighted(&self) -> &ImportanceEstimate {
         &self.weighted
     }
@@ -260,9 +267,9 @@ impl SteeredEstimate {
         self.failed
     }
 
-    /// Why not to trust the searches, as far as the runs can show it.
-    pub fn warnings(&self) -> &[SearchWarning] {
-        &self.search_warnings
+    /// Why not to trust the estimate, as far as the runs can show it.
+    pub fn warnings(&self) -> &[SteeredWarning] {
+        &self.warnings
     }
 }
 

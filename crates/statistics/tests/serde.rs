@@ -3,8 +3,9 @@
 use gyradius_statistics::{
     Acceptance, BinEdges, Confidence, ConfidenceSequence, Deviation, Estimate, GoodnessOfFit,
     Histogram, ImportanceEstimate, ImportanceSampling, Moments, PairSeparation, Proportion,
-    QuantileCells, RankCorrelation, SequentialAcceptance, SobolIndices, SobolSums, SortedSample,
-    SubsetEstimate, SubsetSimulation, SuccessByDecile, Tolerance, ToleranceSide, Verdict,
+    QuantileCells, RankCorrelation, ScoreSearch, SequentialAcceptance, SobolIndices, SobolSums,
+    SortedSample, SteeredEstimate, SteeredSampling, SubsetEstimate, SubsetSimulation,
+    SuccessByDecile, Tolerance, ToleranceSide, Verdict,
 };
 use serde_json::{Value, from_value, json, to_value};
 
@@ -116,6 +117,16 @@ fn drivers_and_rare_events_are_read_back() {
     weights.push(-3.0, true).unwrap();
     weights.push(0.5, false).unwrap();
     back::<ImportanceEstimate>(&weights.finish(confidence).unwrap());
+    let mut search = ScoreSearch::new(1, 100).unwrap();
+    while !search.is_done() {
+        search.tell(&vec![(vec![0.5], -1.0); 100]).unwrap();
+    }
+    let mut sample = SteeredSampling::new(&[search]).unwrap();
+    for excess in [f64::NAN, -1.0, 1.0] {
+        sample.push(0.5, &[0.5], excess).unwrap();
+        sample.push(0.5, &[2.5], -1.0).unwrap();
+        back::<SteeredEstimate>(&sample.finish(confidence).unwrap());
+    }
     let plan = SubsetSimulation::new(2, 100, 2).unwrap();
     for limit in [50.0, 95.0, 200.0] {
         let excess = |draws: &[u64]| (draws[0] % 97) as f64 - limit;

@@ -10,6 +10,7 @@ use crate::{
     body::Body,
     failure::Failure,
     scenario::{Dispersed, Dispersions, Each, Joint, Scenario, Target},
+    steering::Steering,
 };
 
 /// The random streams of a model's dispersions, one for each quantity.
@@ -24,19 +25,28 @@ impl Draws {
         Self { streams: dispersed.iter().map(stream).collect() }
     }
 
-    /// The values of a run, in the order of what is dispersed: a score from the stream of each, mixed
-    /// where they are correlated. `stream` is the number of the stream of what stands in a place, and is drawn for
-    /// vehicles or for flights.
-    pub(crate) fn values<T>(
+    /// The independent scores of a run, in the order of what is dispersed: one from the stream of each, steered if the run is. `stream` is
+    /// the number of the stream of what stands in a place, and is drawn for vehicles or for flights.
+    pub(crate) fn scores<T>(
         &self,
         joint: &Joint<T>,
         stream: impl Fn(usize, Each) -> u64,
+        (run, steering): (u64, Option<&Steering>),
     ) -> Vec<f64> {
         let score = |(place, (streams, d)): (usize, (&Streams, &Dispersed<T>))| {
             StandardNormal.sample(&mut streams.run(stream(place, d.each)))
         };
         let each = self.streams.iter().zip(&joint.all).enumerate();
-        let mut values: Vec<f64> = each.map(score).collect();
+        let mut scores: Vec<f64> = each.map(score).collect();
+        if let Some(steering) = steering {
+            steering.steer(run, &mut scores);
+        }
+        scores
+    }
+
+    /// The values that scores make: mixed where they are correlated.
+    pub(crate) fn values<T>(joint: &Joint<T>, scores: Vec<f64>) -> Vec<f64> {
+        let mut values = scores;
         joint.correlation.mix(&mut values);
         for (value, d) in values.iter_mut().zip(&joint.all) {
             *value = d.law.at_score(*value);
@@ -44,14 +54,10 @@ impl Draws {
         values
     }
 
-    /// The values of a run of a separation.
-    pub(crate) fn run(
-        &self,
-        scenario: &Scenario,
-        stream: impl Fn(usize, Each) -> u64,
-    ) -> Box<[f64]> {
+    /// The values that scores make of a run of a separation.
+    pub(crate) fn run(scenario: &Scenario, scores: Vec<f64>) -> Box<[f64]> {
         let dispersions = scenario.dispersions();
-        let mut values = self.values(&dispersions.joint, stream);
+        let mut values = Self::values(&dispersions.joint, scores);
         let all = dispersions.all();
         // A load that is not late starts as it should.
         for late in 0..values.len() {

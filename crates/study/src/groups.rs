@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::{
     fleet::Fleet,
     scenario::{Dispersed, Joint},
+    steering::Steering,
 };
 
 /// The groups of inputs of a model that are drawn independently of each other.
@@ -17,6 +18,8 @@ pub(crate) struct Groups {
     inertias: Vec<[usize; 2]>,
     /// Of each number that is dispersed.
     dispersed: Vec<usize>,
+    /// Places of the dispersed numbers whose scores can be steered: of those that are not always the same.
+    scored: Vec<usize>,
 }
 
 /// What the runs of a simulation draw.
@@ -29,6 +32,18 @@ pub(crate) enum Drawing {
     Exchanging,
     /// For each run and each group the draw of this number.
     Given(Arc<[Vec<u64>]>),
+    /// What plain runs draw, but for scores from another law.
+    Steered(Steering),
+}
+
+impl Drawing {
+    /// The law that scores are drawn from, if it is not their own.
+    pub(crate) fn steering(&self) -> Option<&Steering> {
+        match self {
+            Self::Steered(steering) => Some(steering),
+            Self::Plain | Self::Exchanging | Self::Given(_) => None,
+        }
+    }
 }
 
 impl Groups {
@@ -38,7 +53,10 @@ impl Groups {
         bodies: impl IntoIterator<Item = (&'a str, &'a dyn InertiaLaw)>,
         joint: &Joint<T>,
     ) -> Self {
-        let mut groups = Self { names: Vec::new(), inertias: Vec::new(), dispersed: Vec::new() };
+        let wide = joint.all.iter().enumerate().filter(|(_, d)| d.law.deviation() > 0.0);
+        let scored = wide.map(|(place, _)| place).collect();
+        let mut groups =
+            Self { names: Vec::new(), inertias: Vec::new(), dispersed: Vec::new(), scored };
         for (body, law) in bodies {
             let first = groups.names.len();
             if law.has_independent_axes() {
@@ -80,6 +98,21 @@ impl Groups {
         &self.names
     }
 
+    /// The places, among all numbers that are dispersed, of those whose scores can be steered.
+    pub(crate) fn scored(&self) -> &[usize] {
+        &self.scored
+    }
+
+    /// The names of the groups with scores that can be steered, and of the others.
+    pub(crate) fn by_scores(&self) -> [Vec<String>; 2] {
+        let scored =
+            |group: usize| self.scored.iter().any(|i| self.dispersed.get(*i) == Some(&group));
+        [true, false].map(|wanted| {
+            let names = self.names.iter().enumerate();
+            names.filter(|(i, _)| scored(*i) == wanted).map(|(_, name)| name.clone()).collect()
+        })
+    }
+
     /// The runs in which they are exchanged.
     pub(crate) fn designs(&self) -> Designs {
         Designs::new(self.names.len())
@@ -93,6 +126,9 @@ impl Groups {
             Drawing::Exchanging => {
                 let mix = self.designs().of(run);
                 mix.at(mix.base().saturating_mul(flights))
+            }
+            Drawing::Steered(steering) => {
+                Mix::plain(steering.first().saturating_add(run).saturating_mul(flights))
             }
             Drawing::Given(draws) => {
                 let of_run = usize::try_from(run).ok().and_then(|run| draws.get(run));

@@ -59,6 +59,7 @@ mod separations;
 mod shards;
 mod simulator;
 mod solid;
+mod steering;
 mod study;
 mod subject;
 mod summary;
@@ -90,7 +91,7 @@ pub use gyradius_report::{visible, visible_json};
 pub use head::{Head, Judged, Missing};
 pub use options::{Notice, Options};
 pub use quantity::Quantity;
-pub use rare::{Rare, RareOptions};
+pub use rare::{Rare, RareEstimate, RareMethod, RareOptions};
 pub use replay::{Replay, ReplayError, Which};
 pub use results::{Results, ResultsError};
 pub use robots::{

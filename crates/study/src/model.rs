@@ -14,6 +14,7 @@ use crate::{
     groups::{Drawing, Groups},
     run::{Case, Run},
     scenario::{Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
+    steering::{Steered, Steering},
 };
 
 /// A model ready to draw: a law and its random streams for either body.
@@ -102,15 +103,36 @@ impl Model {
 
     /// Draws the bodies of one run.
     pub(crate) fn draw(&self, scenario: &Scenario, run: u64) -> Case {
-        self.draw_mixed(scenario, Mix::plain(run))
+        self.draw_mixed(scenario, Mix::plain(run), None)
     }
 
-    /// Draws the bodies of a run, of which some groups of inputs may be those of a second draw.
-    fn draw_mixed(&self, scenario: &Scenario, mix: Mix<'_>) -> Case {
+    /// The scores of runs that are steered.
+    pub(crate) fn steered(
+        &self,
+        scenario: &Scenario,
+        drawing: &Drawing,
+        runs: u64,
+    ) -> Vec<Steered> {
+        let Some(steering) = drawing.steering() else { return Vec::new() };
+        let of = |run| {
+            let mix = self.groups.mix(drawing, run, scenario.fleet());
+            let scores = self.scores(scenario, mix, Some(steering));
+            Steered { choice: steering.choice(mix.base()), scores: steering.of(&scores) }
+        };
+        (0..runs).map(of).collect()
+    }
+
+    /// The independent scores of a run.
+    fn scores(&self, scenario: &Scenario, mix: Mix<'_>, steering: Option<&Steering>) -> Vec<f64> {
+        let stream =
+            |place, each| self.groups.stream_of(place, mix, scenario.stream(each, mix.base()));
+        self.draws.scores(&scenario.dispersions().joint, stream, (mix.base(), steering))
+    }
+
+    /// Draws the bodies of a run, of which some groups of inputs may be those of a second draw, or scores may be steered.
+    fn draw_mixed(&self, scenario: &Scenario, mix: Mix<'_>, steering: Option<&Steering>) -> Case {
         let (run, groups) = (mix.base(), &self.groups);
-        let drawn = self
-            .draws
-            .run(scenario, |place, each| groups.stream_of(place, mix, scenario.stream(each, run)));
+        let drawn = Draws::run(scenario, self.scores(scenario, mix, steering));
         let inertia = |body: Body, model: &BodyModel| {
             let each = scenario.dispersions().inertia[body as usize];
             let first = scenario.stream(each, run);
@@ -156,7 +178,7 @@ impl<'a> Separations<'a> {
 
     fn draw(&self, run: u64) -> Case {
         let mix = self.model.groups.mix(&self.drawing, run, self.scenario.fleet());
-        self.model.draw_mixed(self.scenario, mix)
+        self.model.draw_mixed(self.scenario, mix, self.drawing.steering())
     }
 
     /// What is drawn for a run, by column, with every digit.
@@ -354,6 +376,7 @@ mod tests {
                     model.draw_mixed(
                         &scenario,
                         groups.mix(&Drawing::Exchanging, first + design, None),
+                        None,
                     )
                 };
                 let (a, b) = (draw(0), draw(1));

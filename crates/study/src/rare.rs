@@ -1,44 +1,21 @@
-//! How often a rare event happens: subset simulation that draws one group of inputs anew at a time.
+//! How often a rare event happens: by subset simulation or by importance sampling.
 
-use gyradius_campaign::{
-    CampaignError, Event, Progress, Simulation, Table, is_stopped, run, threads,
-};
+mod importance;
+mod options;
+mod runs;
+mod subset;
+
+pub use options::{RareMethod, RareOptions};
+
+use gyradius_campaign::{Event, Progress};
 use gyradius_statistics::{
-    Confidence, StatisticsError, SubsetEstimate, SubsetReplica, SubsetSimulation, SubsetWarning,
+    Interval, SteeredEstimate, SteeredWarning, SubsetEstimate, SubsetWarning, WeightWarning,
 };
 use serde::Serialize;
-use std::{
-    fmt,
-    sync::{Arc, atomic::AtomicBool},
-};
+use std::fmt;
 
-use crate::{
-    ScenarioError, StudyError, decisions::known, groups::Drawing, scenario::place, subject::Subject,
-};
-
-/// How a rare event is looked for.
-#[derive(Clone, Debug)]
-pub struct RareOptions {
-    /// The model; the first of the scenario if not given.
-    pub model: Option<String>,
-    /// Runs of a level.
-    pub per_level: usize,
-    /// Independent repetitions, by which it is known how well the probability is known.
-    pub replicas: usize,
-    /// It is given up below this probability.
-    pub least: f64,
-    /// How many threads; as many as the machine has if not given.
-    pub threads: Option<usize>,
-    /// Set from elsewhere to stop.
-    pub stop: Option<Arc<AtomicBool>>,
-}
-
-impl Default for RareOptions {
-    fn default() -> Self {
-        let (per_level, replicas, least) = (1000, 10, 1e-9);
-        Self { model: None, per_level, replicas, least, threads: None, stop: None }
-    }
-}
+use crate::{StudyError, subject::Subject};
+use runs::EventRuns;
 
 /// How often a rare event happens.
 #[derive(Clone, Debug, Serialize)]
@@ -49,13 +26,106 @@ pub struct Rare {
     /// Groups of inputs that are drawn independently of each other.
     groups: Vec<String>,
     #[serde(flatten)]
-    estimate: SubsetEstimate,
+    estimate: RareEstimate,
+}
+
+/// The estimate of a method.
+#[derive(Clone, Debug, Serialize)]
+#[serde(tag = "method", rename_all = "snake_case")]
+pub enum RareEstimate {
+    /// Subset simulation.
+    Subset(SubsetEstimate),
+    /// Importance sampling.
+    Importance {
+        /// Groups of inputs whose scores were steered: drawn from another law and weighted.
+        steered: Vec<String>,
+        /// Groups that were drawn from their own laws.
+        own_laws: Vec<String>,
+        /// The estimate.
+        #[serde(flatten)]
+        estimate: SteeredEstimate,
+    },
+}
+
+impl RareEstimate {
+    /// The estimate of the probability.
+    #[must_use]
+    pub fn probability(&self) -> f64 {
+        match self {
+            Self::Subset(estimate) => estimate.probability(),
+            Self::Importance { estimate, .. } => estimate.probability(),
+        }
+    }
+
+    /// Its standard error over the estimate; none if no event was found.
+    #[must_use]
+    pub fn coefficient_of_variation(&self) -> Option<f64> {
+        match self {
+            Self::Subset(estimate) => estimate.coefficient_of_variation(),
+            Self::Importance { estimate, .. } => estimate.weighted().coefficient_of_variation(),
+        }
+    }
+
+    /// The interval; from 0 to a bound if no event was found.
+    #[must_use]
+    pub fn interval(&self) -> Interval {
+        match self {
+            Self::Subset(estimate) => estimate.interval(),
+            Self::Importance { estimate, .. } => estimate.interval(),
+        }
+    }
+
+    /// Number of runs that were done, those that failed too.
+    #[must_use]
+    pub fn evaluations(&self) -> u64 {
+        match self {
+            Self::Subset(estimate) => estimate.evaluations(),
+            Self::Importance { estimate, .. } => estimate.evaluations(),
+        }
+    }
+
+    /// How many of them failed.
+    #[must_use]
+    pub fn failed(&self) -> u64 {
+        match self {
+            Self::Subset(estimate) => estimate.failed(),
+            Self::Importance { estimate, .. } => estimate.failed(),
+        }
+    }
+
+    /// Why not to trust it, in words.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        match self {
+            Self::Subset(estimate) => estimate.warnings().iter().map(of_subset).collect(),
+            Self::Importance { estimate, .. } => {
+                estimate.warnings().iter().map(of_scores).collect()
+            }
+        }
+    }
+
+    /// How the runs were done, in words.
+    fn runs(&self) -> String {
+        let all = self.evaluations();
+        match self {
+            Self::Subset(estimate) => format!("{all} in {} repetitions", estimate.replicas().len()),
+            Self::Importance { estimate, .. } => {
+                let sample = estimate.weighted();
+                format!(
+                    "{all}, of which {} in the sample; {} of these are the event, worth {:.0} of equal weight",
+                    sample.runs(),
+                    sample.hits(),
+                    sample.effective_hits()
+                )
+            }
+        }
+    }
 }
 
 impl Rare {
     /// The estimate.
     #[must_use]
-    pub fn estimate(&self) -> &SubsetEstimate {
+    pub fn estimate(&self) -> &RareEstimate {
         &self.estimate
     }
 
@@ -89,12 +159,7 @@ impl fmt::Display for Rare {
                 interval.upper()
             )?;
         }
-        write!(
-            f,
-            "  runs         {} in {} repetitions",
-            estimate.evaluations(),
-            estimate.replicas().len()
-        )?;
+        write!(f, "  runs         {}", estimate.runs())?;
         if let Some(plain) = self.plain_runs() {
             write!(f, "; as many plain runs as would tell the same: {plain:.1e}")?;
         }
@@ -102,15 +167,22 @@ impl fmt::Display for Rare {
         if estimate.failed() > 0 {
             writeln!(f, "  failed       {} runs, which are not the event", estimate.failed())?;
         }
-        writeln!(f, "  groups       {}", groups.join(", "))?;
+        match estimate {
+            RareEstimate::Subset(_) => writeln!(f, "  groups       {}", groups.join(", "))?,
+            RareEstimate::Importance { steered, own_laws, .. } => {
+                writeln!(f, "  steered      {}", steered.join(", "))?;
+                let own = if own_laws.is_empty() { "none".to_owned() } else { own_laws.join(", ") };
+                writeln!(f, "  own laws     {own}")?;
+            }
+        }
         for warning in estimate.warnings() {
-            writeln!(f, "  warning      {}", said(warning))?;
+            writeln!(f, "  warning      {warning}")?;
         }
         Ok(())
     }
 }
 
-fn said(warning: &SubsetWarning) -> String {
+fn of_subset(warning: &SubsetWarning) -> String {
     match warning {
         SubsetWarning::NotReached { replicas } => format!(
             "{replicas} repetitions found no event: it cannot be, or is rarer than --least, or one group alone must be as \
@@ -127,6 +199,39 @@ fn said(warning: &SubsetWarning) -> String {
     }
 }
 
+fn of_scores(warning: &SteeredWarning) -> String {
+    match warning {
+        SteeredWarning::NotReached { searches } => format!(
+            "{searches} searches did not come to the event: it cannot be, or is rarer than --least, or what is drawn from its own law \
+             decides; take --method subset"
+        ),
+        SteeredWarning::SearchesDiffer { one, other } => format!(
+            "runs where one search led tell {one:.1e}, and runs where another led {other:.1e}: there are several ways to the \
+             event, and there may be more than were found; take more runs of a level, or --method subset"
+        ),
+        SteeredWarning::Weights(warning) => of_weights(warning),
+    }
+}
+
+fn of_weights(warning: &WeightWarning) -> String {
+    match warning {
+        WeightWarning::NoHit => {
+            "no run of the sample is the event: its probability is not known".to_owned()
+        }
+        WeightWarning::FewEffectiveHits { effective } => format!(
+            "the runs that are the event are worth only {effective:.1} of equal weight: neither estimate nor interval should be \
+             trusted; take a larger sample and more runs of a level, or --method subset"
+        ),
+        WeightWarning::OneHitDominates { share } => format!(
+            "one run makes up {:.0} % of the estimate: another such run may change it by as much",
+            100.0 * share
+        ),
+        WeightWarning::MeanWeightAboveOne { mean } => {
+            format!("the mean of all weights is {mean:.2}, and should be 1: the weights are wrong")
+        }
+    }
+}
+
 /// Finds how often an event happens.
 pub(crate) fn find<C: Subject>(
     scenario: &C,
@@ -134,63 +239,23 @@ pub(crate) fn find<C: Subject>(
     options: &RareOptions,
     progress: Progress<'_>,
 ) -> Result<Rare, StudyError> {
-    let threads = threads(options.threads)?;
-    let names: Vec<&str> = scenario.model_names().collect();
-    let at = match &options.model {
-        None => 0,
-        Some(name) => names.iter().position(|known| known == name).ok_or_else(|| {
-            let problem = format!("{name:?}: the scenario has {}", names.join(", "));
-            ScenarioError::field("model", problem)
-        })?,
-    };
-    let model =
-        *names.get(at).ok_or_else(|| ScenarioError::field(place(at), "there is no model"))?;
-    let models = scenario.prepare(options.stop.as_ref())?;
-    let simulations = scenario.simulations(&models)?;
-    let columns = simulations.get(at).map_or_else(Vec::new, |(_, simulation)| simulation.columns());
-    let columns = Table::new(model, 0, columns).map_err(CampaignError::from)?;
-    known(event.quantity(), columns.columns())
-        .map_err(|problem| ScenarioError::field("event", problem))?;
-    let groups = scenario.groups(&models, at)?;
-    let plan = SubsetSimulation::new(groups.names().len(), options.per_level, options.replicas);
-    let refused = |field: &str, error: StatisticsError| ScenarioError::field(field, error);
-    let plan = plan.map_err(|error| refused("per-level, replicas", error))?;
-    let plan = plan.with_least(options.least).map_err(|error| refused("least", error))?;
-    scenario.begin(&models)?;
-    let mut done = 0;
-    let mut simulate = |replica: &mut SubsetReplica| {
-        while !replica.is_done() {
-            if is_stopped(options.stop.as_deref()) {
-                return Err(StudyError::from(CampaignError::Stopped));
-            }
-            let draws: Arc<[Vec<u64>]> = replica.asks().into();
-            let runs = draws.len() as u64;
-            let simulation = scenario.drawing(&models, at, Drawing::Given(draws))?;
-            let table = run(&simulation, model, runs, &threads, &|_| {})?;
-            let excesses = event.excesses(&table);
-            if excesses.iter().all(|excess| excess.is_nan()) {
-                let failure = table.failures().next();
-                let why = failure.map_or_else(
-                    || format!("none of {runs} runs has a number of {}", event.quantity()),
-                    |(_, failure)| format!("all of {runs} runs failed, the first by “{failure}”"),
-                );
-                return Err(ScenarioError::field("event", why).into());
-            }
-            replica.tell(&excesses)?;
-            done += runs;
-            progress(done);
+    let runs = EventRuns::new(scenario, event, options, progress)?;
+    let (per_level, least) = (options.per_level, options.least);
+    let estimate = match options.method {
+        RareMethod::Subset { replicas } => {
+            RareEstimate::Subset(subset::find(&runs, (per_level, replicas, least))?)
         }
-        Ok(())
+        RareMethod::Importance { sample } => {
+            let estimate = importance::find(&runs, scenario.seed(), (per_level, sample, least))?;
+            let [steered, own_laws] = runs.groups().by_scores();
+            RareEstimate::Importance { steered, own_laws, estimate }
+        }
     };
-    let mut pilot = plan.pilot();
-    simulate(&mut pilot)?;
-    let mut replicas = plan.replicas(&pilot)?;
-    replicas.iter_mut().try_for_each(simulate)?;
     Ok(Rare {
         scenario: scenario.name().to_owned(),
-        model: model.to_owned(),
+        model: runs.model().to_owned(),
         event: event.clone(),
-        groups: groups.names().to_vec(),
-        estimate: plan.finish(&pilot, &replicas, Confidence::default())?,
+        groups: runs.groups().names().to_vec(),
+        estimate,
     })
 }

@@ -17,6 +17,7 @@ use crate::{
     quantity::Quantity,
     report,
     seen::{Looking, Seen},
+    steering::Steered,
     subject::Subject,
     summary::ModelSummary,
     unusual::DrawnInput,
@@ -127,6 +128,16 @@ impl Subject for Scenario {
         drawing: Drawing,
     ) -> Result<Separations<'a>, ScenarioError> {
         Ok(Separations::new(self, &models[place]).drawing(drawing))
+    }
+
+    fn steered(
+        &self,
+        models: &Vec<Model>,
+        place: usize,
+        drawing: &Drawing,
+        runs: u64,
+    ) -> Result<Vec<Steered>, ScenarioError> {
+        Ok(models[place].steered(self, drawing, runs))
     }
 
     fn is_outcome(&self, column: &Column) -> bool {

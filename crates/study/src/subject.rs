@@ -18,6 +18,7 @@ use crate::{
     about::About,
     groups::{Drawing, Groups},
     head::Head,
+    steering::Steered,
     unusual::DrawnInput,
 };
 
@@ -98,6 +99,14 @@ pub(crate) trait Subject: Sync + Sized {
         place: usize,
         drawing: Drawing,
     ) -> Result<Self::Simulation<'a>, ScenarioError>;
+    /// The scores of so many runs of the model in a place that draw this; none unless it steers.
+    fn steered(
+        &self,
+        models: &Self::Prepared,
+        place: usize,
+        drawing: &Drawing,
+        runs: u64,
+    ) -> Result<Vec<Steered>, ScenarioError>;
     /// Whether a column is a number that comes of a run, and is not drawn for it.
     fn is_outcome(&self, column: &Column) -> bool;
     /// The columns of numbers that are drawn for a run.

@@ -6,8 +6,8 @@ use clap::{
     value_parser,
 };
 use gyradius_study::{
-    CompareOptions, Event, Inside, ModelKind, RareOptions, Requirement, Rows, StoppingRule,
-    TableFormat,
+    CompareOptions, Event, Inside, ModelKind, RareMethod, RareOptions, Requirement, Rows,
+    StoppingRule, TableFormat,
 };
 use std::path::PathBuf;
 
@@ -123,6 +123,10 @@ pub(crate) enum Command {
     /// Subset simulation: a first level of plain runs, of which the tenth nearest to the event goes on; some of their inputs are drawn
     /// anew from their own laws, one group of inputs at a time, and so on to the event. It takes some thousand runs for each digit
     /// of the probability, where plain runs take ten times as many for each. Nothing is written.
+    ///
+    /// Importance sampling: masses, mass centres, springs and quantities are drawn from laws under which the event is less rare, and each
+    /// run counts with the ratio of the densities, which is exact. Two searches find these laws level by level, and a sample
+    /// gives the probability. Inertias keep their own laws. The answer says what was drawn from which law.
     #[command(after_help = RARE_EXAMPLES)]
     Rare(RareArgs),
     /// Print a script that lets a shell complete verbs, flags and values
@@ -277,13 +281,25 @@ pub(crate) struct RareArgs {
     #[arg(long, value_name = "S", value_parser = whole)]
     pub(crate) seed: Option<u64>,
 
+    /// Method
+    #[arg(long, value_enum, default_value_t = RareMethodArg::Subset)]
+    pub(crate) method: RareMethodArg,
+
     /// Runs of a level, 100 or more
     #[arg(long, value_name = "N", value_parser = whole, default_value_t = RareOptions::default().per_level as u64)]
     pub(crate) per_level: u64,
 
-    /// Independent repetitions, from which the interval is found, 2 or more
-    #[arg(long, value_name = "R", value_parser = whole, default_value_t = RareOptions::default().replicas as u64)]
-    pub(crate) replicas: u64,
+    #[arg(long, value_name = "R", value_parser = whole, help = format!(
+        "Independent repetitions of a subset simulation, from which the interval is found, 2 or more [default: {}]",
+        RareMethod::REPLICAS
+    ))]
+    pub(crate) replicas: Option<u64>,
+
+    #[arg(long, value_name = "N", value_parser = whole, help = format!(
+        "Runs of the sample of importance sampling, 100 or more [default: {}]",
+        RareMethod::SAMPLE
+    ))]
+    pub(crate) sample: Option<u64>,
 
     /// Give up below this probability
     #[arg(long, value_name = "P", default_value_t = RareOptions::default().least)]
@@ -296,6 +312,15 @@ pub(crate) struct RareArgs {
     /// Write JSON, for other programs
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// By which method a rare event is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum RareMethodArg {
+    /// Subset simulation, which serves any law
+    Subset,
+    /// Importance sampling, for masses, mass centres, springs and quantities
+    Importance,
 }
 
 #[derive(Args, Debug)]

@@ -95,6 +95,8 @@ Examples:
       How often the cone of the built-in study is 8 deg or more
   gyradius rare \"clearance_m <= 0\" --scenario my-vehicle.toml --per-level 5000
       How often the bodies touch, with more runs of a level
+  gyradius rare \"clearance_m <= 0\" --scenario my-vehicle.toml --method importance --sample 50000
+      The same by importance sampling: fewer runs where springs, masses and mass centres decide
   gyradius rare \"norm(payload_w1_rad_per_s, payload_w2_rad_per_s) >= 0.1\" --json
       The length of a vector of columns, for other programs
 

@@ -1,18 +1,15 @@
 //! `gyradius rare`: how often a rare event happens.
 
-use gyradius_study::{CampaignError, RareOptions, StudyError};
+use gyradius_study::{CampaignError, RareMethod, RareOptions, StudyError};
 use std::{error::Error, process::ExitCode};
 
 use crate::program::{
-    args::RareArgs,
+    args::{RareArgs, RareMethodArg},
     output::{complain, print, print_json},
     progress,
     signals::Signals,
     study::scenario,
 };
-
-/// Levels that there may be, for the progress: one for each digit of the least probability.
-const LEVELS: f64 = 9.0;
 
 /// Runs the verb.
 pub(crate) fn rare(arguments: &RareArgs) -> Result<ExitCode, Box<dyn Error>> {
@@ -20,15 +17,13 @@ pub(crate) fn rare(arguments: &RareArgs) -> Result<ExitCode, Box<dyn Error>> {
     let signals = Signals::watch()?;
     let options = RareOptions {
         model: arguments.model.clone(),
+        method: method(arguments)?,
         per_level: usize::try_from(arguments.per_level).unwrap_or(usize::MAX),
-        replicas: usize::try_from(arguments.replicas).unwrap_or(usize::MAX),
         least: arguments.least,
         threads: arguments.threads,
         stop: Some(signals.stop()),
     };
-    // At most; most events need fewer levels.
-    let most = LEVELS * (arguments.replicas as f64 + 1.0) * arguments.per_level as f64;
-    let found = progress::show(most as u64, "runs at most", |report| {
+    let found = progress::show(options.most_runs(), "runs at most", |report| {
         scenario.rare(&arguments.event, &options, report)
     });
     let found = match found {
@@ -44,4 +39,23 @@ pub(crate) fn rare(arguments: &RareArgs) -> Result<ExitCode, Box<dyn Error>> {
         print(&found.to_string())?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The method with its numbers.
+fn method(arguments: &RareArgs) -> Result<RareMethod, &'static str> {
+    match (arguments.method, arguments.replicas, arguments.sample) {
+        (RareMethodArg::Subset, replicas, None) => {
+            let replicas = replicas.map(|n| usize::try_from(n).unwrap_or(usize::MAX));
+            Ok(RareMethod::Subset { replicas: replicas.unwrap_or(RareMethod::REPLICAS) })
+        }
+        (RareMethodArg::Importance, None, sample) => {
+            Ok(RareMethod::Importance { sample: sample.unwrap_or(RareMethod::SAMPLE) })
+        }
+        (RareMethodArg::Subset, _, Some(_)) => {
+            Err("--sample goes with --method importance; subset simulation has --replicas")
+        }
+        (RareMethodArg::Importance, Some(_), _) => {
+            Err("--replicas goes with --method subset; importance sampling has --sample")
+        }
+    }
 }

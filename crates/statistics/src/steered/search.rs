@@ -9,8 +9,6 @@ use crate::{StatisticsError, error::share};
 
 /// One run in so many leads on.
 const PART: usize = 10;
-/// Most levels.
-const MOST_LEVELS: usize = 40;
 /// So many levels in a row that are no higher end a search.
 const MOST_STALLED: usize = 3;
 /// The probability below which a search gives up, unless told otherwise.
@@ -60,6 +58,9 @@ enum Stage {
 }
 
 impl ScoreSearch {
+    /// It gives up after so many levels.
+    pub const MOST_LEVELS: usize = 25;
+
     /// With so many scores, and runs of a level.
     ///
     /// # Errors
@@ -147,7 +148,7 @@ impl ScoreSearch {
             Stage::Rising if level >= 0.0 => Stage::Fitting,
             Stage::Rising
                 if self.stalled >= MOST_STALLED
-                    || self.levels >= MOST_LEVELS
+                    || self.levels >= Self::MOST_LEVELS
                     || probability < self.least =>
             {
                 Stage::Done { reached: false }

@@ -84,8 +84,7 @@ fn covers(what: &str, plan: Plan, truth: f64, seeds: u64, excess: Excess<'_>) ->
     for seed in 0..seeds {
         let found = estimate(plan, seed, excess);
         covered += u64::from(found.interval().contains(truth));
-        warned +=
-            u64::from(!(found.warnings().is_empty() && found.weighted().warnings().is_empty()));
+        warned += u64::from(!found.warnings().is_empty());
         mean += found.probability() / truth / seeds as f64;
         runs += found.evaluations();
         effective += found.weighted().effective_hits() / seeds as f64;
@@ -197,17 +196,13 @@ fn what_is_not_reached_is_told() {
     for (what, truth, excess) in cases {
         for seed in 0..5 {
             let found = estimate(PLAN, seed, excess);
-            let (interval, weighted) = (found.interval(), found.weighted());
-            println!(
-                "{what}: {} {interval} {:?} {:?}",
-                found.probability(),
-                found.warnings(),
-                weighted.warnings()
-            );
+            let interval = found.interval();
+            println!("{what}: {} {interval} {:?}", found.probability(), found.warnings(),);
             assert!(interval.contains(truth), "{what}: {interval}");
-            let expected = SearchWarning::NotReached { searches: 2 };
+            let expected = SteeredWarning::NotReached { searches: 2 };
             assert!(found.warnings().contains(&expected), "{what}: {found:?}");
-            assert!(weighted.warnings().contains(&crate::WeightWarning::NoHit), "{what}");
+            let no_hit = SteeredWarning::Weights(WeightWarning::NoHit);
+            assert!(found.warnings().contains(&no_hit), "{what}");
             assert_eq!((found.probability(), interval.lower()), (0.0, 0.0), "{what}");
             assert!(interval.upper() > 3.0 / PLAN.sample as f64, "{what}: {interval}");
         }
@@ -231,16 +226,18 @@ fn what_is_hardly_seen_is_warned_of() {
     let found = sample.finish(Confidence::default()).unwrap();
     let truth = tail::normal(limit) + tail::normal(limit + 0.1);
     assert!(found.interval().contains(truth), "{found:?}");
-    let warned = matches!(found.warnings(), [SearchWarning::SearchesDiffer { one, other }] if *one < 0.7 * other);
+    let warned = matches!(found.warnings(), [SteeredWarning::SearchesDiffer { one, other }] if *one < 0.7 * other);
     assert!(warned, "{found:?}");
     for seed in 0..20 {
         let found = estimate(PLAN, seed, &|z, rng| {
             if rng.random::<f64>() < 0.001 { sum(z) - 3.0 } else { (sum(z) - 9.0).min(-1.0) }
         });
-        let few = found.weighted().warnings().iter().any(|warning| {
+        let few = found.warnings().iter().any(|warning| {
             matches!(
                 warning,
-                crate::WeightWarning::FewEffectiveHits { .. } | crate::WeightWarning::NoHit
+                SteeredWarning::Weights(
+                    WeightWarning::FewEffectiveHits { .. } | WeightWarning::NoHit
+                )
             )
         });
         assert!(few, "{found:?}");
@@ -337,10 +334,10 @@ fn both_methods_agree_with_plain_runs() {
         let started: Vec<_> = (0..threads).map(|t| scope.spawn(move || count(t))).collect();
         started.into_iter().map(|thread| thread.join().unwrap()).sum()
     });
-    let plain = crate::Proportion::new(plain, runs).unwrap();
+    let plain = Proportion::new(plain, runs).unwrap();
     let truth = plain.interval(Confidence::new(0.99).unwrap());
     println!("plain: {} {}", plain.value(), plain.interval(Confidence::default()));
-    let overlaps = |what: &str, p: f64, found: crate::Interval, runs: u64| {
+    let overlaps = |what: &str, p: f64, found: Interval, runs: u64| {
         println!("{what}: {p:.3e} {found} of {runs} runs");
         assert!(found.lower() < truth.upper() && truth.lower() < found.upper(), "{what}");
     };

@@ -12,6 +12,7 @@ use crate::{
     drawn::{self, following},
     groups::{Drawing, Groups},
     scenario::{Each, Joint, Size},
+    steering::Steered,
 };
 
 /// What a model draws of the bodies and the quantities of a simulator: inputs that are sent, or rows of their own.
@@ -79,6 +80,24 @@ impl SimulatorDraws<'_> {
         Self { drawing, ..self }
     }
 
+    /// The scores of runs that are steered.
+    pub(crate) fn steered(&self, runs: u64) -> Vec<Steered> {
+        let Some(steering) = self.drawing.steering() else { return Vec::new() };
+        let of = |run| {
+            let mix = self.mix(run);
+            let scores = steering.of(&self.scores(mix));
+            Steered { choice: steering.choice(mix.base()), scores }
+        };
+        (0..runs).map(of).collect()
+    }
+
+    /// The independent scores of a run.
+    fn scores(&self, mix: Mix<'_>) -> Vec<f64> {
+        let stream =
+            |place, each| self.groups.stream_of(place, mix, self.size.stream(each, mix.base()));
+        self.draws.scores(self.dispersed, stream, (mix.base(), self.drawing.steering()))
+    }
+
     /// Which draws a run takes.
     fn mix(&self, run: u64) -> Mix<'_> {
         self.groups.mix(&self.drawing, run, self.size.fleet())
@@ -110,9 +129,7 @@ impl Inputs for SimulatorDraws<'_> {
             of_bodies.chain(self.quantities).map(|number| number.nominal).collect();
         let mix = self.mix(run);
         let stream = |each: Each| self.size.stream(each, mix.base());
-        let drawn = self
-            .draws
-            .values(self.dispersed, |place, each| self.groups.stream_of(place, mix, stream(each)));
+        let drawn = drawn::Draws::values(self.dispersed, self.scores(mix));
         for (d, value) in self.dispersed.all.iter().zip(drawn) {
             values[d.target] = value;
         }

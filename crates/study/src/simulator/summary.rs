@@ -24,6 +24,7 @@ use crate::{
     groups::{Drawing, Groups},
     head::Head,
     report,
+    steering::Steered,
     subject::{Subject, Summarized, head_of},
     unusual::DrawnInput,
 };
@@ -225,6 +226,16 @@ impl Subject for SimulatorScenario {
         drawing: Drawing,
     ) -> Result<Self::Simulation<'a>, ScenarioError> {
         self.simulation_of(simulator, place, SimulatorDraws::new(self, place)?.drawing(drawing))
+    }
+
+    fn steered(
+        &self,
+        _: &Simulator,
+        place: usize,
+        drawing: &Drawing,
+        runs: u64,
+    ) -> Result<Vec<Steered>, ScenarioError> {
+        Ok(SimulatorDraws::new(self, place)?.drawing(drawing.clone()).steered(runs))
     }
 
     fn is_outcome(&self, column: &Column) -> bool {

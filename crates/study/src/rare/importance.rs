@@ -1,0 +1,70 @@
+//! Importance sampling: normal scores of runs are drawn from a law under which the event is less rare.
+
+use gyradius_statistics::{
+    Confidence, ScoreSearch, StatisticsError, SteeredEstimate, SteeredSampling,
+};
+
+use super::{options::SEARCHES, runs::EventRuns};
+use crate::{
+    ScenarioError, StudyError,
+    groups::Drawing,
+    steering::{Steered, Steering},
+    subject::Subject,
+};
+
+/// Runs of the sample that are in memory at once.
+const AT_ONCE: u64 = 10_000;
+/// Fewest and most runs of a sample.
+const FEWEST: u64 = 100;
+const MOST: u64 = 1_000_000_000;
+
+/// With so many runs of a level and of the sample, down to this probability.
+pub(super) fn find<C: Subject>(
+    runs: &EventRuns<'_, C>,
+    seed: u64,
+    (per_level, sample, least): (usize, u64, f64),
+) -> Result<SteeredEstimate, StudyError> {
+    if runs.groups().scored().is_empty() {
+        let problem = format!(
+            "importance: nothing that the model {} draws is drawn by a normal score, which masses, mass centres, springs and quantities \
+             are; method \"subset\" serves any law",
+            runs.model()
+        );
+        return Err(ScenarioError::field("method", problem).into());
+    }
+    if !(FEWEST..=MOST).contains(&sample) {
+        let problem = format!("{sample} runs: there must be {FEWEST} to {MOST}");
+        return Err(ScenarioError::field("sample", problem).into());
+    }
+    let steering = Steering::new(seed, runs.model(), runs.groups().scored());
+    let refused = |field: &str, error: StatisticsError| ScenarioError::field(field, error);
+    let search = ScoreSearch::new(steering.scores(), per_level)
+        .map_err(|error| refused("per-level", error))?;
+    let search = search.with_least(least).map_err(|error| refused("least", error))?;
+    runs.begin()?;
+    // Every run has a number of its own, so that what is found and the sample are independent.
+    let mut first = 0;
+    let mut searches = vec![search; SEARCHES];
+    for search in &mut searches {
+        while !search.is_done() {
+            let count = search.asks() as u64;
+            let drawing = Drawing::Steered(steering.with(search.law(), first));
+            let told = runs.steered(drawing, count)?;
+            let told: Vec<(Vec<f64>, f64)> =
+                told.into_iter().map(|(Steered { scores, .. }, excess)| (scores, excess)).collect();
+            search.tell(&told)?;
+            first += count;
+        }
+    }
+    let mut sampling = SteeredSampling::new(&searches)?;
+    let last = first + sample;
+    while first < last {
+        let count = AT_ONCE.min(last - first);
+        let drawing = Drawing::Steered(steering.with(sampling.law(), first));
+        for (Steered { choice, scores }, excess) in runs.steered(drawing, count)? {
+            sampling.push(choice, &scores, excess)?;
+        }
+        first += count;
+    }
+    Ok(sampling.finish(Confidence::default())?)
+}

@@ -1,0 +1,110 @@
+//! Runs of a model that are done to look for an event.
+
+use gyradius_campaign::{
+    CampaignError, Event, Progress, Simulation, Table, is_stopped, run, threads,
+};
+use rayon::ThreadPool;
+use std::{
+    cell::Cell,
+    sync::{Arc, atomic::AtomicBool},
+};
+
+use super::options::RareOptions;
+use crate::{
+    ScenarioError, StudyError,
+    decisions::known,
+    groups::{Drawing, Groups},
+    scenario::place,
+    steering::Steered,
+    subject::Subject,
+};
+
+/// Runs of a model that are done to look for an event.
+pub(super) struct EventRuns<'a, C: Subject> {
+    scenario: &'a C,
+    prepared: C::Prepared,
+    at: usize,
+    model: &'a str,
+    event: &'a Event,
+    groups: Groups,
+    threads: ThreadPool,
+    stop: Option<Arc<AtomicBool>>,
+    progress: Progress<'a>,
+    done: Cell<u64>,
+}
+
+impl<'a, C: Subject> EventRuns<'a, C> {
+    /// Checks the model and the event. Nothing is run yet.
+    pub(super) fn new(
+        scenario: &'a C,
+        event: &'a Event,
+        options: &RareOptions,
+        progress: Progress<'a>,
+    ) -> Result<Self, StudyError> {
+        let names: Vec<&str> = scenario.model_names().collect();
+        let at = match &options.model {
+            None => 0,
+            Some(name) => names.iter().position(|known| known == name).ok_or_else(|| {
+                let problem = format!("{name:?}: the scenario has {}", names.join(", "));
+                ScenarioError::field("model", problem)
+            })?,
+        };
+        let model =
+            *names.get(at).ok_or_else(|| ScenarioError::field(place(at), "there is no model"))?;
+        let prepared = scenario.prepare(options.stop.as_ref())?;
+        let columns = scenario.drawing(&prepared, at, Drawing::Plain)?.columns();
+        let columns = Table::new(model, 0, columns).map_err(CampaignError::from)?;
+        known(event.quantity(), columns.columns())
+            .map_err(|problem| ScenarioError::field("event", problem))?;
+        let groups = scenario.groups(&prepared, at)?;
+        let (threads, stop) = (threads(options.threads)?, options.stop.clone());
+        let done = Cell::new(0);
+        Ok(Self { scenario, prepared, at, model, event, groups, threads, stop, progress, done })
+    }
+
+    /// Makes certain that runs can be done.
+    pub(super) fn begin(&self) -> Result<(), StudyError> {
+        Ok(self.scenario.begin(&self.prepared)?)
+    }
+
+    /// The name of the model.
+    pub(super) fn model(&self) -> &'a str {
+        self.model
+    }
+
+    /// The groups of inputs.
+    pub(super) fn groups(&self) -> &Groups {
+        &self.groups
+    }
+
+    /// By how much each of so many runs is beyond the limit; NaN of a run without a number.
+    pub(super) fn excesses(&self, drawing: Drawing, runs: u64) -> Result<Vec<f64>, StudyError> {
+        if is_stopped(self.stop.as_deref()) {
+            return Err(StudyError::from(CampaignError::Stopped));
+        }
+        let simulation = self.scenario.drawing(&self.prepared, self.at, drawing)?;
+        let table = run(&simulation, self.model, runs, &self.threads, &|_| {})?;
+        let excesses = self.event.excesses(&table);
+        if excesses.iter().all(|excess| excess.is_nan()) {
+            let failure = table.failures().next();
+            let why = failure.map_or_else(
+                || format!("none of {runs} runs has a number of {}", self.event.quantity()),
+                |(_, failure)| format!("all of {runs} runs failed, the first by “{failure}”"),
+            );
+            return Err(ScenarioError::field("event", why).into());
+        }
+        self.done.set(self.done.get() + runs);
+        (self.progress)(self.done.get());
+        Ok(excesses)
+    }
+
+    /// The same of runs that are steered, with what each drew.
+    pub(super) fn steered(
+        &self,
+        drawing: Drawing,
+        runs: u64,
+    ) -> Result<Vec<(Steered, f64)>, StudyError> {
+        let drawn = self.scenario.steered(&self.prepared, self.at, &drawing, runs)?;
+        Ok(drawn.into_iter().zip(self.excesses(drawing, runs)?).collect())
+    }
+}
