@@ -7,9 +7,10 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
 use gyradius_dispersion::{
     AnyBody, BasiliskDispersion, CorrelatedRoots, DispersionModel, EntryMoments, EntrywiseGaussian,
-    InertiaLaw, JacobianTwice, ModelKind, PrincipalDispersion, ScalarRoots,
+    InertiaLaw, JacobianTwice, MassPropertiesLaw, ModelKind, PrincipalDispersion, ScalarLaw,
+    ScalarRoots, TensorLaw,
 };
-use gyradius_inertia::{Inertia, InertiaMatrix};
+use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Region};
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::Distribution;
@@ -109,5 +110,44 @@ fn density(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, inertia, density);
+/// Mass, mass centre and inertia together, one by one, in columns and in an ellipsoid.
+fn mass_properties(c: &mut Criterion) {
+    let (matrix, _, axes) = payload();
+    let nominal = Inertia::try_from(matrix).unwrap();
+    let lengths = nominal.second_moments().radii_of_gyration(1e4).unwrap().values();
+    let normal = |mean: f64, sigma: f64| ScalarLaw::normal(mean, sigma).unwrap();
+    let lengths = lengths.map(|rho| normal(rho, 0.01 * rho));
+    let tensor = TensorLaw::gyration_lengths(lengths, axes);
+    let centre = [0.0, 0.0, 0.0].map(|mean| normal(mean, 0.01));
+    let law = MassPropertiesLaw::new(normal(1e4, 100.0), centre, tensor).unwrap();
+    let inside = law.clone().inside(Region::ellipsoid([0.0; 3], [0.9, 1.2, 1.4]).unwrap()).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut group = c.benchmark_group("mass-properties");
+    for (name, law) in [("joint", &law), ("joint-in-ellipsoid", &inside)] {
+        group.throughput(Throughput::Elements(1));
+        group.bench_function(name, |b| {
+            b.iter(|| -> MassProperties { black_box(law).sample(&mut rng) });
+        });
+        let bodies: Vec<MassProperties> = (0..64).map(|_| law.sample(&mut rng)).collect();
+        let mut next = bodies.iter().cycle();
+        group.bench_function(format!("{name}/ln-density"), |b| {
+            b.iter(|| black_box(law).ln_density(next.next().unwrap()));
+        });
+        group.throughput(Throughput::Elements(BATCH as u64));
+        let mut columns: [Vec<f64>; 10] = std::array::from_fn(|_| vec![0.0; BATCH]);
+        group.bench_function(format!("{name}/columns"), |b| {
+            b.iter(|| {
+                let columns = columns.each_mut().map(Vec::as_mut_slice);
+                black_box(law).sample_columns(&mut rng, columns)
+            });
+        });
+        let mut rows = vec![[0.0; 10]; BATCH];
+        group.bench_function(format!("{name}/rows"), |b| {
+            b.iter(|| black_box(law).sample_into(&mut rng, &mut rows));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, inertia, density, mass_properties);
 criterion_main!(benches);

@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// Draws made at a time: few enough for the first-level cache.
-const CHUNK: usize = 128;
+pub(crate) const CHUNK: usize = 128;
 
 /// A law of roots that can draw the squares of many at a time.
 pub trait BatchRoots: Distribution<RootSecondMoments> {
@@ -171,11 +171,20 @@ impl<K: BatchRoots, A: BatchAttitudes> PrincipalDispersion<K, A> {
             self.roots().squares_into(rng, [&mut a[..n], &mut b[..n], &mut c[..n]]);
             self.axes().attitudes_into(rng, &mut attitudes[..n]);
             let out = columns.each_mut().map(|column| &mut column[start..start + n]);
-            pulp::Arch::new().dispatch(Assemble { squares: &squares, attitudes: &attitudes, out });
+            assemble(&squares, &attitudes, out);
             start += n;
         }
         Ok(())
     }
+}
+
+/// The entries of inertias with these second moments and principal axes, of which each row is a body.
+pub(crate) fn assemble(
+    squares: &[[f64; CHUNK]; 3],
+    attitudes: &[UnitQuaternion<f64>; CHUNK],
+    out: [&mut [f64]; 6],
+) {
+    pulp::Arch::new().dispatch(Assemble { squares, attitudes, out });
 }
 
 /// I = tr(Σ)·1 − Σ, Σ = Σ_k K_k r_k r_kᵀ, for a chunk.

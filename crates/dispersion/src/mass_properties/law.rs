@@ -9,6 +9,7 @@ use std::borrow::Cow;
 use super::inside::{Inside, RegionAcceptanceError};
 use super::tensor::{Follows, Of, Principal};
 use super::{MassPropertiesModel, TenMoments, TenParameters, TensorLaw, TensorLawError};
+use crate::columns::ColumnsError;
 use crate::roots::FAR;
 use crate::{Correlation, CorrelationError, InertiaLaw, ScalarLaw, ScalarLawError};
 
@@ -216,6 +217,11 @@ impl MassPropertiesLaw {
         self.inside.as_ref().is_none_or(|inside| inside.holds(body))
     }
 
+    /// Whether scalars are correlated.
+    pub(super) fn is_correlated(&self) -> bool {
+        !self.pairs.is_empty()
+    }
+
     /// How the scalars that vary are correlated.
     pub(super) fn copula(&self) -> &Correlation {
         &self.copula
@@ -294,20 +300,21 @@ impl MassPropertiesLaw {
     /// Mass, mass centre, and lengths or roots where there are such.
     #[inline]
     fn scalars<R: Rng + ?Sized>(&self, rng: &mut R) -> (f64, Vector3<f64>, [f64; 3]) {
+        // As many scores whatever the laws are, so that another law of one changes no other.
+        let z: [f64; 4] = std::array::from_fn(|_| StandardNormal.sample(rng));
         let shape = self.tensor.scalar_laws();
-        if self.pairs.is_empty() {
-            let mass = self.mass.draw(rng);
-            let centre = self.centre.each_ref().map(|law| law.draw(rng));
-            let shape = shape.map_or([0.0; 3], |laws| laws.each_ref().map(|law| law.draw(rng)));
-            return (mass, centre.into(), shape);
+        let mut scores = [z[0], z[1], z[2], z[3], 0.0, 0.0, 0.0];
+        if shape.is_some() {
+            scores[4..].fill_with(|| StandardNormal.sample(rng));
         }
-        let mut z = [0.0; JointScalar::ALL.len()];
-        let count = if shape.is_some() { z.len() } else { 4 };
-        z[..count].fill_with(|| StandardNormal.sample(rng));
-        self.correlation.mix(&mut z);
-        let mut values = self.scalar_laws().zip(z).map(|(law, z)| law.at_score(z));
-        let mut next = || values.next().unwrap_or(0.0);
-        (next(), Vector3::new(next(), next(), next()), [next(), next(), next()])
+        if self.is_correlated() {
+            self.correlation.mix(&mut scores);
+        }
+        let mass = self.mass.at_score(scores[0]);
+        let centre = [0, 1, 2].map(|i| self.centre[i].at_score(scores[1 + i]));
+        let sizes =
+            shape.map_or([0.0; 3], |laws| [0, 1, 2].map(|i| laws[i].at_score(scores[4 + i])));
+        (mass, centre.into(), sizes)
     }
 }
 
@@ -388,6 +395,15 @@ impl MassPropertiesModel for MassPropertiesLaw {
 
     fn linear_moments(&self) -> Option<TenMoments> {
         self.linear_moments()
+    }
+
+    /// By [`sample_columns`](Self::sample_columns): other values than one by one.
+    fn draw_columns(
+        &self,
+        rng: &mut dyn Rng,
+        columns: [&mut [f64]; 10],
+    ) -> Result<(), ColumnsError> {
+        self.sample_columns(rng, columns)
     }
 
     fn acceptance(&self) -> Option<f64> {

@@ -1,5 +1,6 @@
 //! Random mass, mass centre and inertia together: the ten parameters of a body that nobody has weighed yet.
 
+mod batch;
 mod density;
 #[cfg(test)]
 mod density_tests;

@@ -1,7 +1,7 @@
 //! The joint law over its whole space: bodies, moments, correlations, files, refusals.
 
 use gyradius_attitude::{RadiallyConstrainedGaussian, UniformAttitude};
-use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, PseudoInertia};
+use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, PseudoInertia, Region};
 use nalgebra::{Matrix4, SVector, UnitQuaternion, Vector3, Vector4};
 use proptest::prelude::*;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -146,14 +146,33 @@ proptest! {
         }
     }
 
+    /// Batches have the same law, rows are columns, and long ones begin with short ones.
     #[test]
-    fn columns_are_draws(law in any_law(), n in 0..300usize) {
-        let mut columns: [Vec<f64>; 10] = std::array::from_fn(|_| vec![0.0; n]);
-        let mut rngs = [3, 3].map(ChaCha8Rng::seed_from_u64);
-        law.draw_columns(&mut rngs[0], columns.each_mut().map(Vec::as_mut_slice)).unwrap();
-        for row in 0..n {
-            let expected = MassPropertiesModel::draw(&law, &mut rngs[1]).values();
-            prop_assert_eq!(columns.each_ref().map(|c| c[row]), expected);
+    fn batches_have_the_moments_and_are_bodies(law in any_law(), seed in any::<u64>()) {
+        const N: usize = 20_000;
+        let fill = |n: usize| {
+            let mut columns: [Vec<f64>; 10] = std::array::from_fn(|_| vec![0.0; n]);
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            law.draw_columns(&mut rng, columns.each_mut().map(Vec::as_mut_slice)).unwrap();
+            columns
+        };
+        let columns = fill(N);
+        let row = |i: usize| columns.each_ref().map(|c| c[i]);
+        for i in 0..300 {
+            prop_assert!(TenParameters::from_values(row(i)).unwrap().is_realizable());
+        }
+        let rows: Vec<SVector<f64, 10>> = (0..N).map(|i| row(i).into()).collect();
+        let z = worst(&law.moments().unwrap(), &rows);
+        prop_assert!(z < 6.0, "{z}");
+        let mut pairs = vec![[0.0; 10]; N];
+        law.sample_into(&mut ChaCha8Rng::seed_from_u64(seed), &mut pairs);
+        prop_assert!((0..N).all(|i| pairs[i] == row(i)));
+        for n in [0, 1, 127, 128, 129, 300] {
+            let short = fill(n);
+            let whole = n / 128 * 128;
+            for (short, long) in short.iter().zip(&columns) {
+                prop_assert_eq!(&short[..whole], &long[..whole]);
+            }
         }
     }
 
@@ -170,6 +189,29 @@ proptest! {
         prop_assert_eq!(serde_json::to_string(&back).unwrap(), json);
         let again: MassProperties = back.sample(&mut rngs[1]);
         prop_assert_eq!(bodies[0], again);
+    }
+}
+
+/// In a region every row of a batch is possible there, as one by one, and unequal columns are refused.
+#[test]
+fn batches_stay_in_the_region() {
+    let region = Region::ellipsoid([0.4, 0.8, 0.3], [1.0, 1.1, 0.9]).unwrap();
+    let centre = || [scalar(0, 0.4, 0.2), scalar(1, 0.8, 0.2), scalar(2, 0.3, 0.2)];
+    for kind in 0..4 {
+        let law =
+            MassPropertiesLaw::new(scalar(0, 9.0, 1.1), centre(), tensor(kind, [0.0; 3], [0; 3]));
+        let law = law.unwrap().inside(region.clone()).unwrap();
+        let (share, _) = law.acceptance();
+        assert!(share < 0.999, "{kind}: {share}");
+        let mut rows = vec![[0.0; 10]; 2000];
+        law.sample_into(&mut ChaCha8Rng::seed_from_u64(1), &mut rows);
+        let body = |row: &[f64; 10]| TenParameters::from_values(*row).unwrap();
+        let held = |row| region.room(&MassProperties::try_from(body(row)).unwrap()) > -1e-13;
+        assert!(rows.iter().all(held), "{kind}");
+        let mut columns: [Vec<f64>; 10] = std::array::from_fn(|e| vec![0.0; 10 + e / 9]);
+        let rng = &mut ChaCha8Rng::seed_from_u64(1);
+        let error = law.sample_columns(rng, columns.each_mut().map(Vec::as_mut_slice)).unwrap_err();
+        assert_eq!(error.lengths, [10, 11]);
     }
 }
 
