@@ -612,6 +612,25 @@ mod tests {
         assert!((law.mean_vector()[0] + 0.803_668_713_345_047_4).abs() < 1e-14);
     }
 
+    /// However sure the sign is: the sum over both, without what underflows.
+    #[test]
+    fn densities_of_attitudes_add_both_signs() {
+        for scale in [1e-6, 0.3, 20.0, 1e5] {
+            let law = law([1.0, -0.5, 0.2, 0.7].map(|p| p * scale), [0.3, 0.2, -1.0, 0.5]);
+            let mut rng = ChaCha8Rng::seed_from_u64(77);
+            for _ in 0..200 {
+                let q = UniformAttitude.sample(&mut rng);
+                let opposite = UnitQuaternion::new_unchecked(-q.into_inner());
+                let (a, b) = (law.ln_density(&q), law.ln_density(&opposite));
+                let sum = a.max(b) + (-(a - b).abs()).exp().ln_1p();
+                let found = law.ln_attitude_density(&q);
+                assert!((found - sum).abs() < 1e-12 * (1.0 + sum.abs()), "{found} {sum}");
+                assert_eq!(found, law.ln_attitude_density(&opposite));
+                assert_eq!(law.ln_haar_density(&q), found + LN_PI_SQUARED);
+            }
+        }
+    }
+
     #[test]
     fn bad_parameters_are_refused() {
         let one = Matrix4::<f64>::identity();

@@ -9,7 +9,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::Distribution;
 use std::f64::consts::{LN_2, PI};
 
-use crate::density_of_entries::ln_density_of_labels;
+use crate::density_of_entries::{Bounded, ln_density_of_labels};
 use crate::*;
 
 type Laws = Vec<(&'static str, Box<dyn InertiaLaw>)>;
@@ -198,11 +198,13 @@ fn wrong_densities_are_found_out() {
             let mut densities = wide.ln_densities_in_orders(k).unwrap();
             densities[orders..].fill(f64::NEG_INFINITY);
             let mut way = 0;
-            ln_density_of_labels(&axes, densities, |q| {
+            let density = |q: &UnitQuaternion<f64>| {
                 way += 1;
                 let kept = (way - 1) % 4 < ways;
                 if kept { loose.ln_haar_density(q) } else { f64::NEG_INFINITY }
-            }) - LN_2
+            };
+            ln_density_of_labels(&axes, densities, Bounded { density, at_most: f64::INFINITY })
+                - LN_2
         }
     };
     let all_labels = compare(&**law("whole sphere"), &labels(6, 4), 100);
@@ -225,7 +227,8 @@ fn wrong_densities_are_found_out() {
         if !x.is_realizable() {
             return f64::NEG_INFINITY;
         }
-        ln_density_of_labels(&axes, densities, |_| 0.0) - LN_2
+        ln_density_of_labels(&axes, densities, Bounded { density: |_: &_| 0.0, at_most: 0.0 })
+            - LN_2
     });
 }
 

@@ -13,7 +13,7 @@ use gyradius_inertia::{Inertia, PrincipalAxes};
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::{FRAC_1_SQRT_2, LN_2};
 
-use crate::ln_sum::ln_sum;
+use crate::ln_sum::{NEGLIGIBLE, ln_sum};
 
 /// ln 8π².
 pub(crate) const LN_ATTITUDES: f64 = 4.368_901_313_378_636;
@@ -40,6 +40,22 @@ pub(crate) fn ln_density_of_entries(
     ln_densities_of_squares: impl FnOnce([f64; 3]) -> [f64; 6],
     ln_haar_density_of_axes: impl FnMut(&UnitQuaternion<f64>) -> f64,
 ) -> f64 {
+    let unbounded = Bounded { density: ln_haar_density_of_axes, at_most: f64::INFINITY };
+    ln_density_of_bounded(inertia, ln_densities_of_squares, unbounded)
+}
+
+/// ln of a density of attitudes, and what it never exceeds, so that labels that add nothing can be left out.
+pub(crate) struct Bounded<F> {
+    pub(crate) density: F,
+    pub(crate) at_most: f64,
+}
+
+/// The same where ln of the density of the attitude is bounded.
+pub(crate) fn ln_density_of_bounded(
+    inertia: &Inertia,
+    ln_densities_of_squares: impl FnOnce([f64; 3]) -> [f64; 6],
+    ln_haar_density_of_axes: Bounded<impl FnMut(&UnitQuaternion<f64>) -> f64>,
+) -> f64 {
     let axes = inertia.principal_axes();
     let squares = ln_densities_of_squares(axes.second_moments().map(|k| k.max(0.0)));
     ln_density_of_labels(&axes, squares, ln_haar_density_of_axes) - LN_2
@@ -55,14 +71,20 @@ pub(crate) fn in_orders(values: [f64; 3], mut of: impl FnMut([f64; 3]) -> f64) -
 pub(crate) fn ln_density_of_labels(
     axes: &PrincipalAxes,
     ln_in_orders: [f64; 6],
-    mut ln_haar_density_of_axes: impl FnMut(&UnitQuaternion<f64>) -> f64,
+    mut ln_haar_density_of_axes: Bounded<impl FnMut(&UnitQuaternion<f64>) -> f64>,
 ) -> f64 {
     let q = axes.attitude();
     let mut terms = [f64::NEG_INFINITY; 24];
-    for ((turn, ln_values), terms) in
-        TO_ORDERS.iter().zip(ln_in_orders).zip(terms.chunks_exact_mut(4))
-    {
-        if !(ln_values > f64::NEG_INFINITY) {
+    // Where the values are likeliest first, which often leaves nothing to the other orders.
+    let likeliest = (1..6).fold(0, |i, j| if ln_in_orders[j] > ln_in_orders[i] { j } else { i });
+    let mut largest = f64::NEG_INFINITY;
+    for place in 0..6 {
+        let order = if place == 0 { likeliest } else { place - usize::from(place <= likeliest) };
+        let (turn, ln_values) = (&TO_ORDERS[order], ln_in_orders[order]);
+        let terms = &mut terms[4 * order..4 * order + 4];
+        if !(ln_values > f64::NEG_INFINITY
+            && ln_values + ln_haar_density_of_axes.at_most > largest + NEGLIGIBLE)
+        {
             continue;
         }
         let [w, x, y, z] = *turn;
@@ -72,9 +94,10 @@ pub(crate) fn ln_density_of_labels(
         let turned = [[w, x, y, z], [-x, w, -z, y], [-y, z, w, -x], [-z, -y, x, w]];
         for (term, [w, x, y, z]) in terms.iter_mut().zip(turned) {
             let q = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
-            let ln_axes = ln_haar_density_of_axes(&q);
+            let ln_axes = (ln_haar_density_of_axes.density)(&q);
             if ln_axes > f64::NEG_INFINITY {
                 *term = ln_values + ln_axes;
+                largest = largest.max(*term);
             }
         }
     }
@@ -118,12 +141,13 @@ mod tests {
         for (order, k) in in_orders_of(k).into_iter().enumerate() {
             let mut only = [f64::NEG_INFINITY; 6];
             only[order] = 0.0;
-            let _ = ln_density_of_labels(&axes, only, |q| {
+            let density = |q: &UnitQuaternion<f64>| {
                 let again = Inertia::from_second_moments(SecondMoments::new(k).unwrap(), q);
                 assert!((again.unwrap().matrix() - body.matrix()).amax() < 1e-13, "{order}");
                 attitudes.push(*q);
                 0.0
-            });
+            };
+            let _ = ln_density_of_labels(&axes, only, Bounded { density, at_most: 0.0 });
         }
         assert_eq!(attitudes.len(), 24);
         for (i, a) in attitudes.iter().enumerate() {
@@ -170,9 +194,11 @@ mod tests {
             let mut one = true;
             let mut only = [f64::NEG_INFINITY; 6];
             only[0] = 0.0;
-            let ln_density = ln_density_of_labels(&axes, only, |_| {
+            let density = |_: &_| {
                 if std::mem::take(&mut one) { LN_ATTITUDES } else { f64::NEG_INFINITY }
-            }) - LN_2;
+            };
+            let bounded = Bounded { density, at_most: LN_ATTITUDES };
+            let ln_density = ln_density_of_labels(&axes, only, bounded) - LN_2;
             let expected = -derivative.determinant().abs().ln();
             assert!((ln_density - expected).abs() < 1e-6, "{ln_density} {expected}");
         }

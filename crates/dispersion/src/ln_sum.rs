@@ -1,7 +1,7 @@
 //! Logarithms of sums and products.
 
 /// Terms below e to the power of this of the largest are no part of the sum of a few.
-const NEGLIGIBLE: f64 = -40.0;
+pub(crate) const NEGLIGIBLE: f64 = -40.0;
 
 /// ln Σ eˣ without over- and underflow; −∞ of none.
 pub(crate) fn ln_sum(x: &[f64]) -> f64 {

@@ -6,7 +6,7 @@ use rand::Rng;
 use rand_distr::Distribution;
 use std::{borrow::Cow, fmt::Debug};
 
-use crate::density_of_entries::ln_density_of_entries;
+use crate::density_of_entries::{Bounded, ln_density_of_bounded};
 use crate::{AttitudeMoments, EntryMoments, InertiaLaw, KnownMoments, ModelDraw, RootMoments};
 
 /// What it is called.
@@ -153,14 +153,17 @@ impl<K: RootMoments, A: AttitudeMoments> PrincipalDispersion<K, A> {
             return self.roots.ln_densities_in_orders([1.0; 3]).map(|_| f64::NEG_INFINITY);
         };
         let mut known = true;
-        let found = ln_density_of_entries(
+        let found = ln_density_of_bounded(
             &body,
             |k| {
                 let densities = self.roots.ln_densities_in_orders(k);
                 known = densities.is_some();
                 densities.unwrap_or([f64::NEG_INFINITY; 6])
             },
-            |q| self.axes.ln_density_of_attitude(q).unwrap_or(f64::NEG_INFINITY),
+            Bounded {
+                density: |q: &_| self.axes.ln_density_of_attitude(q).unwrap_or(f64::NEG_INFINITY),
+                at_most: self.axes.ln_density_at_most(),
+            },
         );
         known.then_some(found)
     }

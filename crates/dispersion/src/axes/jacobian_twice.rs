@@ -1,14 +1,12 @@
 //! The law of the principal axes behind Table 2 of Peck (2003).
 
-use gyradius_attitude::{
-    FisherBingham, FisherBinghamError, RadiallyConstrainedGaussian, UniformAttitude,
-};
+use gyradius_attitude::{FisherBingham, FisherBinghamError, RadiallyConstrainedGaussian};
 use nalgebra::{Matrix4, UnitQuaternion, Vector4};
 use rand::{Rng, RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::Distribution;
-use std::f64::consts::LN_2;
 use std::sync::OnceLock;
 
+use super::LN_PI_SQUARED;
 use super::half_sphere::HalfSphere;
 
 /// Why a law cannot have its Jacobian counted twice.
@@ -139,9 +137,7 @@ impl JacobianTwice {
             UnitQuaternion::new_unchecked(-q.into_inner())
         };
         let second = second_jacobian(&q.coords.into());
-        // The uniform law on S³ is one on SO(3).
-        let ln_half = -UniformAttitude::LN_DENSITY - LN_2;
-        self.law.ln_density(&near) + libm::log(second) - self.ln_mean() + ln_half
+        self.law.ln_density(&near) + libm::log(second) - self.ln_mean() + LN_PI_SQUARED
     }
 
     fn ln_mean(&self) -> f64 {

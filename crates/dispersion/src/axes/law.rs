@@ -50,6 +50,10 @@ impl AttitudeMoments for AxesLaw {
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
         each!(self, law => law.ln_density_of_attitude(attitude))
     }
+
+    fn ln_density_at_most(&self) -> f64 {
+        each!(self, law => law.ln_density_at_most())
+    }
 }
 
 impl Distribution<UnitQuaternion<f64>> for AxesLaw {

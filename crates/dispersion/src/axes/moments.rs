@@ -5,7 +5,9 @@ use gyradius_attitude::{
     UniformAttitude,
 };
 use nalgebra::{Complex, SMatrix, UnitQuaternion};
+use std::f64::consts::LN_2;
 
+use super::LN_PI_SQUARED;
 use super::half_sphere::HalfSphere;
 use super::jacobian_twice::second_jacobian;
 use crate::entry_moments::{ENTRIES, Expectation, Polynomials};
@@ -27,6 +29,12 @@ pub trait AttitudeMoments {
         let _ = attitude;
         None
     }
+
+    /// What [`ln_density_of_attitude`](Self::ln_density_of_attitude) never exceeds, which spares the density of the
+    /// entries of an inertia most of its work. Infinite unless a law says otherwise.
+    fn ln_density_at_most(&self) -> f64 {
+        f64::INFINITY
+    }
 }
 
 impl<T: AttitudeMoments + ?Sized> AttitudeMoments for &T {
@@ -36,6 +44,10 @@ impl<T: AttitudeMoments + ?Sized> AttitudeMoments for &T {
 
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
         (**self).ln_density_of_attitude(attitude)
+    }
+
+    fn ln_density_at_most(&self) -> f64 {
+        (**self).ln_density_at_most()
     }
 }
 
@@ -65,6 +77,11 @@ impl AttitudeMoments for RadiallyConstrainedGaussian {
 
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
         Some(self.ln_haar_density(attitude))
+    }
+
+    fn ln_density_at_most(&self) -> f64 {
+        // That of the mean is the largest of any quaternion, and another may stand beside it.
+        LN_2 + LN_PI_SQUARED - self.ln_normaliser()
     }
 }
 
@@ -103,6 +120,10 @@ impl AttitudeMoments for UniformAttitude {
     fn ln_density_of_attitude(&self, _: &UnitQuaternion<f64>) -> Option<f64> {
         Some(0.0)
     }
+
+    fn ln_density_at_most(&self) -> f64 {
+        0.0
+    }
 }
 
 /// The covariance is a trigonometric polynomial of the angle, of degree four: nine equal steps are exact.
@@ -139,6 +160,10 @@ impl AttitudeMoments for MeanHalf {
 
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
         Some(self.ln_haar_density(attitude))
+    }
+
+    fn ln_density_at_most(&self) -> f64 {
+        LN_PI_SQUARED - self.whole().ln_normaliser() - libm::log(self.share())
     }
 }
 

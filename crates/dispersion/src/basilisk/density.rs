@@ -5,12 +5,16 @@ use nalgebra::UnitQuaternion;
 use std::f64::consts::{PI, TAU};
 
 use super::BasiliskDispersion;
-use crate::density_of_entries::{LN_ATTITUDES, in_orders, ln_density_of_labels};
+use crate::density_of_entries::{Bounded, LN_ATTITUDES, in_orders, ln_density_of_labels};
 use crate::ln_sum::ln_sum;
 use crate::normal::{self, LN_ROOT_TAU};
 
-/// Whole turns to either side that an angle of the largest deviation, 2π, can have made: nine deviations.
-const TURNS: i32 = 9;
+/// Most whole turns to either side that an angle of the largest deviation, 2π, can have made.
+const TURNS: usize = 9;
+
+/// At θ = ±π/2, where the Euler angles are not unique, the density of attitudes is infinite, beside it large: cos θ is
+/// known to rounding.
+const LEAST_COSINE: f64 = f64::EPSILON;
 
 impl BasiliskDispersion {
     /// The logarithm of the density of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ in kg·m², of matrices that no body has too.
@@ -41,7 +45,15 @@ impl BasiliskDispersion {
             };
             ln_peak - 0.5 * (square(0) + square(1) + square(2))
         });
-        Some(ln_density_of_labels(&axes, ln_moments, |q| self.ln_haar_density(q)))
+        Some(ln_density_of_labels(
+            &axes,
+            ln_moments,
+            // Two triples, all the turns, and the least cosine.
+            Bounded {
+                density: |q: &_| self.ln_haar_density(q),
+                at_most: self.ln_angles() + 4.0 - libm::log(LEAST_COSINE),
+            },
+        ))
     }
 
     /// Of the attitude of the principal axes, R(q) = Cᵀ, normalised to one.
@@ -49,27 +61,33 @@ impl BasiliskDispersion {
         let r = attitude.to_rotation_matrix();
         let c = |i: usize, j: usize| r[(j, i)];
         let psi = libm::atan2(c(0, 1), c(0, 0));
-        let cos = libm::hypot(c(0, 0), c(0, 1));
+        let cos = (c(0, 0) * c(0, 0) + c(0, 1) * c(0, 1)).sqrt().max(LEAST_COSINE);
         let theta = libm::atan2(-c(0, 2), cos);
         let phi = libm::atan2(c(1, 2), c(2, 2));
         // The other triple turns by π about the first axis and the third, and θ the other way round.
         let one = self.ln_angle(psi) + self.ln_angle(theta) + self.ln_angle(phi);
         let other = self.ln_angle(psi + PI) + self.ln_angle(PI - theta) + self.ln_angle(phi + PI);
         let both = ln_sum(&[one, other]);
-        if both == f64::NEG_INFINITY { both } else { both + LN_ATTITUDES - libm::log(cos) }
+        if both == f64::NEG_INFINITY { both } else { both + self.ln_angles() - libm::log(cos) }
     }
 
-    /// ln of the density of an angle, whole turns apart being one.
+    /// ln of what the three angles' shares are to be multiplied by.
+    fn ln_angles(&self) -> f64 {
+        LN_ATTITUDES - 3.0 * (libm::log(self.angle_deviation) + LN_ROOT_TAU)
+    }
+
+    /// ln of the density of an angle, whole turns apart being one, over its value at the peak for small deviations.
     fn ln_angle(&self, angle: f64) -> f64 {
         let sigma = self.angle_deviation;
         let least = angle - TAU * (angle / TAU).round();
-        let turns = [(); 2 * TURNS as usize + 1];
-        let mut turn = -TURNS;
-        let terms = turns.map(|()| {
-            let z = (least + TAU * f64::from(turn)) / sigma;
-            turn += 1;
-            -0.5 * z * z
-        });
-        ln_sum(&terms) - libm::log(sigma) - LN_ROOT_TAU
+        // ln of what is n turns away is (2π)² n(n − 1)/(2σ²) or more below that of the least.
+        let near = |n: &usize| (n * (n - 1)) as f64 <= 2.1 * sigma * sigma;
+        let count = (1..=TURNS).filter(near).count();
+        let mut terms = [f64::NEG_INFINITY; 2 * TURNS + 1];
+        for (turn, term) in terms[..2 * count + 1].iter_mut().enumerate() {
+            let z = (least + TAU * (turn as f64 - count as f64)) / sigma;
+            *term = -0.5 * z * z;
+        }
+        ln_sum(&terms[..2 * count + 1])
     }
 }

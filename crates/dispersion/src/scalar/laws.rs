@@ -118,6 +118,7 @@ pub(crate) struct Normal {
     mean: f64,
     deviation: f64,
     variance: f64,
+    ln_deviation: f64,
 }
 
 impl ScalarLaw {
@@ -132,7 +133,8 @@ impl ScalarLaw {
     /// The same with the variance, which would lose its last digit as a root.
     pub(crate) fn normal_of(mean: f64, sigma: f64, variance: f64) -> Result<Self, ScalarLawError> {
         let (mean, deviation) = (number("mean", mean)?, deviation(sigma)?);
-        Ok(Self::of(Normal { mean, deviation, variance }))
+        let ln_deviation = libm::log(deviation);
+        Ok(Self::of(Normal { mean, deviation, variance, ln_deviation }))
     }
 
     /// Mean and variance, if it is normal.
@@ -170,7 +172,7 @@ impl Law for Normal {
 
     fn ln_density(&self, x: f64) -> Option<f64> {
         (self.deviation > 0.0)
-            .then(|| ln_normal((x - self.mean) / self.deviation) - libm::log(self.deviation))
+            .then(|| ln_normal((x - self.mean) / self.deviation) - self.ln_deviation)
     }
 
     fn mean(&self) -> f64 {
