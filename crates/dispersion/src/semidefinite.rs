@@ -59,10 +59,18 @@ pub enum CovarianceError {
 pub(crate) struct Covariance<const N: usize> {
     matrix: SMatrix<f64, N, N>,
     root: SMatrix<f64, N, N>,
-    /// The rows of the root in which it is lower triangular.
-    order: [usize; N],
-    /// ln of the density of N(0, A) at zero; none where A is singular.
-    ln_peak: Option<f64>,
+    /// What the density needs; none where A is singular.
+    density: Option<Density<N>>,
+}
+
+/// What the density of N(0, A) is made of, beside the root.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Density<const N: usize> {
+    /// The root with its rows in the order in which it is lower triangular: row, entries before the diagonal, and one
+    /// over the diagonal.
+    rows: [(usize, [f64; N], f64); N],
+    /// ln of it at zero.
+    ln_peak: f64,
 }
 
 impl<const N: usize> Covariance<N> {
@@ -107,11 +115,7 @@ impl<const N: usize> Covariance<N> {
         let (unit, order) = root(correlation)
             .map_err(|coordinate| CovarianceError::Indefinite { coordinate: coordinate + 1 })?;
         let root = SMatrix::from_fn(|i, j| deviations[i] * unit[(i, j)]);
-        let ln_peak = order.map(|order| {
-            let each = |(step, i): (usize, &usize)| libm::log(root[(*i, step)]) + LN_ROOT_TAU;
-            -order.iter().enumerate().map(each).sum::<f64>()
-        });
-        Ok(Self { matrix, root, order: order.unwrap_or([0; N]), ln_peak })
+        Ok(Self { matrix, root, density: order.map(|order| Density::new(&root, order)) })
     }
 
     pub(crate) fn matrix(&self) -> &SMatrix<f64, N, N> {
@@ -120,11 +124,14 @@ impl<const N: usize> Covariance<N> {
 
     /// The logarithm of the density of N(0, A); none where A is singular.
     pub(crate) fn ln_density(&self, x: &SVector<f64, N>) -> Option<f64> {
-        let ln_peak = self.ln_peak?;
+        let Density { rows, ln_peak } = self.density.as_ref()?;
         let (mut z, mut square) = ([0.0; N], 0.0);
-        for (step, &i) in self.order.iter().enumerate() {
-            let known: f64 = (0..step).map(|j| self.root[(i, j)] * z[j]).sum();
-            z[step] = (x[i] - known) / self.root[(i, step)];
+        for (step, (row, before, inverse)) in rows.iter().enumerate() {
+            let mut rest = x[*row];
+            for j in 0..step {
+                rest -= before[j] * z[j];
+            }
+            z[step] = rest * inverse;
             square += z[step] * z[step];
         }
         // Of what overflows, far out, nothing is left.
@@ -139,6 +146,19 @@ impl<const N: usize> Covariance<N> {
     }
 }
 
+impl<const N: usize> Density<N> {
+    fn new(root: &SMatrix<f64, N, N>, order: [usize; N]) -> Self {
+        let (mut rows, mut ln_peak) = ([(0, [0.0; N], 0.0); N], 0.0);
+        for (step, row) in order.into_iter().enumerate() {
+            let diagonal = root[(row, step)];
+            rows[step] = (row, std::array::from_fn(|j| root[(row, j)]), 1.0 / diagonal);
+            ln_peak -= libm::log(diagonal) + LN_ROOT_TAU;
+        }
+        Self { rows, ln_peak }
+    }
+}
+
+/// A root, and the order of its rows.
 type Root<const N: usize> = (SMatrix<f64, N, N>, Option<[usize; N]>);
 
 /// Cholesky's elimination with diagonal pivoting, which ends where nothing but rounding is left
@@ -205,6 +225,29 @@ mod tests {
                     prop_assert!((back[(i, j)] - a[(i, j)]).abs() <= 1e-8 * size);
                 }
             }
+        }
+    }
+
+    proptest! {
+        /// Against the inverse and the determinant; a singular one has none.
+        #[test]
+        fn densities_are_gaussian(
+            f in prop::array::uniform9(-1.0..1.0f64),
+            x in prop::array::uniform3(-2.0..2.0f64),
+            scales in prop::array::uniform3(-70.0..70.0f64),
+        ) {
+            let f = Matrix3::from_row_slice(&f) + Matrix3::identity();
+            let unit = f * f.transpose();
+            prop_assume!(unit.determinant() > 1e-3);
+            let d = Matrix3::from_diagonal(&scales.map(|s| 10f64.powf(s)).into());
+            let x = nalgebra::Vector3::from(x);
+            let found = Covariance::new(d * unit * d, 1e300).unwrap().ln_density(&(d * x)).unwrap();
+            let square = x.dot(&(unit.try_inverse().unwrap() * x));
+            let ln_size = 10f64.ln() * scales.iter().sum::<f64>() + 0.5 * unit.determinant().ln();
+            let expected = -0.5 * square - ln_size - 1.5 * std::f64::consts::TAU.ln();
+            prop_assert!((found - expected).abs() < 1e-9 * (1.0 + square), "{} {}", found, expected);
+            let flat = x * x.transpose();
+            prop_assert_eq!(Covariance::new(flat, 1e300).unwrap().ln_density(&x), None);
         }
     }
 
