@@ -254,6 +254,39 @@ mod tests {
         }
     }
 
+    /// However close two second moments are: their difference loses what rounding of the entries takes, and no more.
+    #[test]
+    fn close_second_moments_are_told_apart() {
+        let root = |mean: f64| ScalarLaw::normal(mean, 0.3).unwrap();
+        let laws = ScalarRoots::new([root(1.0), root(1.2), root(1.6)]).unwrap();
+        let law = PrincipalDispersion::new(laws.clone(), UniformAttitude);
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        for exponent in 0..14 {
+            let gap = 10f64.powi(-exponent);
+            for k in
+                [[1.0, 1.0 + gap, 3.0], [1.0, 2.5, 2.5 + gap], [2.0 + 2.0 * gap, 2.0, 2.0 + gap]]
+            {
+                let q = UniformAttitude.sample(&mut rng);
+                let body =
+                    Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &q).unwrap();
+                let found = law.ln_density(&body.into()).unwrap();
+                let folded = |i: usize, k: f64| {
+                    let f = |x: f64| laws.laws()[i].ln_density(x).unwrap().exp();
+                    (f(k.sqrt()) + f(-k.sqrt())) / (2.0 * k.sqrt())
+                };
+                let values: f64 = PrincipalAxes::ORDERS
+                    .iter()
+                    .map(|(o, _)| (0..3).map(|i| folded(i, k[o[i]])).product::<f64>())
+                    .sum();
+                let gaps = (k[0] - k[1]) * (k[1] - k[2]) * (k[2] - k[0]);
+                let pi = std::f64::consts::PI;
+                let expected = (values * 4.0 / (16.0 * pi * pi * gaps.abs())).ln();
+                let gap = gap.min(0.1);
+                assert!((found - expected).abs() < 4e-15 / gap, "{k:?}: {found} {expected}");
+            }
+        }
+    }
+
     /// Equal second moments, and none: infinite where the law has something there, never NaN.
     #[test]
     fn edges_are_told() {

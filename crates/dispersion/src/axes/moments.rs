@@ -197,7 +197,7 @@ impl AttitudeMoments for JacobianTwice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{KnownMoments, PrincipalDispersion, ScalarRoots};
+    use crate::{AxesLaw, KnownMoments, PrincipalDispersion, ScalarRoots};
     use gyradius_inertia::{Inertia, RootSecondMoments};
     use nalgebra::{Matrix4, Quaternion, Unit, Vector3, Vector4};
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -250,6 +250,52 @@ mod tests {
         }
         // The two laws are not the same.
         assert!((half.covariance() - twice.covariance()).amax() > 0.1 * half.covariance().amax());
+    }
+
+    /// Every law with a density has the mean 1 of it over all attitudes, q and −q alike, and its bound is one.
+    #[test]
+    fn densities_of_attitudes_are_normalised_and_bounded() {
+        const N: u32 = 200_000;
+        let mut rng = ChaCha8Rng::seed_from_u64(61);
+        for (i, variances) in [[0.1, 0.2, 0.3, 1.0], [0.02, 0.5, 0.03, 0.6], [1.0, 2.0, 0.5, 3.0]]
+            .into_iter()
+            .enumerate()
+        {
+            let mean = UniformAttitude.sample(&mut rng);
+            let covariance = Matrix4::from_diagonal(&Vector4::from(variances));
+            let law = RadiallyConstrainedGaussian::new(mean, covariance).unwrap();
+            let bingham =
+                FisherBingham::new(law.precision(), Vector4::new(1.0, 0.0, -2.0, 0.5)).unwrap();
+            let twice = JacobianTwice::new(law.clone()).unwrap();
+            let laws: [AxesLaw; 4] = [
+                law.clone().into(),
+                MeanHalf::new(law.clone()).into(),
+                twice.into(),
+                UniformAttitude.into(),
+            ];
+            let all = laws.iter().map(|law| law as &dyn AttitudeMoments);
+            for (kind, axes) in all.chain([&bingham as &dyn AttitudeMoments]).enumerate() {
+                let mut sum = 0.0;
+                for q in gyradius_attitude::super_fibonacci(N).chain([mean]) {
+                    let density = axes.ln_density_of_attitude(&q).unwrap();
+                    assert!(density <= axes.ln_density_at_most() + 1e-12, "{i} {kind}");
+                    let opposite = UnitQuaternion::new_unchecked(-q.into_inner());
+                    let other = axes.ln_density_of_attitude(&opposite).unwrap();
+                    assert!(density == other || (density - other).abs() < 1e-12, "{i} {kind}");
+                    sum += density.exp();
+                }
+                let whole = sum / f64::from(N);
+                assert!((whole - 1.0).abs() < 2e-3, "{i} {kind}: {whole}");
+            }
+        }
+        let none: [&dyn AttitudeMoments; 2] = [
+            &FixedAttitude::new(UnitQuaternion::identity()),
+            &AboutAxis::new(UnitQuaternion::identity(), Vector3::z_axis()),
+        ];
+        assert!(
+            none.iter()
+                .all(|law| { law.ln_density_of_attitude(&UnitQuaternion::identity()).is_none() })
+        );
     }
 
     fn law(axis: Vector3<f64>, roots: [f64; 3]) -> PrincipalDispersion<ScalarRoots, AboutAxis> {
