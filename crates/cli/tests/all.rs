@@ -19,6 +19,7 @@ mod output;
 mod rare;
 mod report;
 mod requirements;
+mod rollup;
 mod scratch;
 #[cfg(unix)]
 mod shards;

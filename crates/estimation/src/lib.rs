@@ -45,8 +45,8 @@ pub use fit::{
     PrincipalFitError, RootEstimate, RootFit,
 };
 pub use rollup::{
-    Assembly, AssemblyError, AssemblyPart, AssemblyRow, PartError, PartFinding, PartStatement,
-    TEN_NAMES, TEN_UNITS, TenMoments,
+    Assembly, AssemblyError, AssemblyPart, AssemblyRow, FirstOrder, PartError, PartFinding,
+    PartStatement, TEN_UNITS,
 };
 pub use stated_body::StatedBody;
 pub use statements::{

@@ -52,6 +52,7 @@ mod replay;
 mod report;
 mod results;
 mod robots;
+mod rollup;
 mod run;
 mod scenario;
 mod seen;
@@ -97,6 +98,7 @@ pub use results::{Results, ResultsError};
 pub use robots::{
     Inside, LeftBecause, LinkSummary, RobotDraw, RobotDrawError, RobotDrawOptions, RobotFolder,
 };
+pub use rollup::{DrawnMoments, NaiveShares, Rollup, RollupDraws, RollupError, RollupOptions};
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
 pub use shards::{ModelStatus, Status};
 pub use simulator::{SimulatorReplay, SimulatorScenario, SimulatorSummary};

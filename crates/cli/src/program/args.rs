@@ -15,7 +15,7 @@ use crate::program::{
     examples::{
         CHECK_EXAMPLES, COMPARE_EXAMPLES, COMPLETIONS_EXAMPLES, DRAW_EXAMPLES, EXAMPLES,
         EXIT_CODES, FIT_EXAMPLES, MAN_EXAMPLES, MODEL_EXAMPLES, RARE_EXAMPLES, REPLAY_EXAMPLES,
-        REPORT_EXAMPLES, SLURM_EXAMPLES, STATUS_EXAMPLES, VERDICT_EXAMPLES,
+        REPORT_EXAMPLES, ROLLUP_EXAMPLES, SLURM_EXAMPLES, STATUS_EXAMPLES, VERDICT_EXAMPLES,
     },
     scheduler::AskedShard,
     stated::{ROBOTS, StatedArgs},
@@ -103,6 +103,13 @@ pub(crate) enum Command {
     /// of Peck (2003).
     #[command(after_help = MODEL_EXAMPLES)]
     Model(ModelArgs),
+    /// Roll the parts of a vehicle up to mass, mass centre and inertia of the whole, with their uncertainty
+    ///
+    /// Reads one part a row, with mass, mass centre, inertia or shape, and standard deviations, and what belongs to what. Prints
+    /// the ten numbers of the whole with standard deviations by first order, as in a mass-properties report, and beside them by
+    /// drawing, in which every draw is a body that could be built; warns of deviations that no body can have.
+    #[command(after_help = ROLLUP_EXAMPLES)]
+    Rollup(RollupArgs),
     /// Compare the models of inertia uncertainty on the same bodies
     ///
     /// Draws from every model about nominal bodies over a growing uncertainty, each model with the same
@@ -665,6 +672,62 @@ pub(crate) enum CompareForm {
     Json,
     /// One row for each body, level, model and measure
     Csv,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct RollupArgs {
+    /// List of the parts: a CSV file with a header
+    #[arg(value_name = "PARTS")]
+    pub(crate) parts: PathBuf,
+
+    /// Table of the columns child and parent that says what belongs to what [default: the column parent of the list]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) edges: Option<PathBuf>,
+
+    /// What products of inertia are where the list does not say it
+    #[arg(long, value_enum, value_name = "SIGN")]
+    pub(crate) products: Option<Sign>,
+
+    /// How many draws of the whole; 0 leaves first order alone
+    #[arg(short = 'n', long, value_name = "N", default_value = "100000", value_parser = whole)]
+    pub(crate) draws: u64,
+
+    /// Seed of all random numbers
+    #[arg(long, value_name = "S", default_value_t = 2003, value_parser = whole)]
+    pub(crate) seed: u64,
+
+    /// Form of the report
+    #[arg(long, value_enum, default_value_t = Form::Text)]
+    pub(crate) format: Form,
+
+    /// File for the draws, one row each: its extension tells the form
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Replace the file if it is there
+    #[arg(long, requires = "output")]
+    pub(crate) force: bool,
+
+    /// Number of threads [default: one for each core]
+    #[arg(long, value_name = "T")]
+    pub(crate) threads: Option<usize>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Sign {
+    /// Entries of the tensor, I12 = -∫xy dm
+    Tensor,
+    /// Positive integrals, ∫xy dm
+    Integrals,
+}
+
+impl From<Sign> for gyradius_formats::Products {
+    fn from(sign: Sign) -> Self {
+        match sign {
+            Sign::Tensor => Self::TensorEntries,
+            Sign::Integrals => Self::Integrals,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

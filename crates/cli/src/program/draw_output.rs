@@ -14,15 +14,9 @@ pub(crate) fn format(arguments: &DrawArgs, file: Option<&Path>) -> Result<TableF
     let format = match (arguments.format, file) {
         (Some(format), _) => format,
         (None, None) => TableFormat::default(),
-        (None, Some(path)) => TableFormat::of_path(path).ok_or_else(|| {
-            let known = TableFormat::ALL.iter().flat_map(|format| format.extensions());
-            let known: Vec<String> = known.map(|extension| format!(".{extension}")).collect();
-            format!(
-                "{}: the extension tells no format, as {} do: --format says it",
-                path.display(),
-                known.join(", ")
-            )
-        })?,
+        (None, Some(path)) => {
+            format_of(path).map_err(|error| format!("{error}: --format says it"))?
+        }
     };
     if file.is_none() && !format.is_text() && io::stdout().is_terminal() {
         return Err(format!(
@@ -31,6 +25,15 @@ pub(crate) fn format(arguments: &DrawArgs, file: Option<&Path>) -> Result<TableF
         ));
     }
     Ok(format)
+}
+
+/// The form that the extension of a file tells.
+pub(crate) fn format_of(path: &Path) -> Result<TableFormat, String> {
+    TableFormat::of_path(path).ok_or_else(|| {
+        let known = TableFormat::ALL.iter().flat_map(|format| format.extensions());
+        let known: Vec<String> = known.map(|extension| format!(".{extension}")).collect();
+        format!("{}: the extension tells no format, as {} do", path.display(), known.join(", "))
+    })
 }
 
 /// What was read is not written over, whatever is forced.

@@ -220,3 +220,16 @@ Examples:
       The page of a verb, for `man gyradius-study`
 
 Exit code: 0; 2 if there is no such verb, or if the page could not be written.";
+
+pub(crate) const ROLLUP_EXAMPLES: &str = "\
+Examples:
+  gyradius rollup parts.csv
+      Mass, mass centre and inertia of the whole, their standard deviations by first order and by drawing
+  gyradius rollup parts.csv -n 1e6 -o whole.parquet
+      A million draws of the whole as a table
+  gyradius rollup parts.csv -n 0
+      First order alone
+  gyradius rollup table.tsv --edges edges.tsv
+      A table and a tree as the R package massProps has them
+
+Exit code: 0; 2 if something could not be read, put together or written; 130 after an interrupt, 143 after SIGTERM.";

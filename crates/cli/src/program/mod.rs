@@ -16,6 +16,7 @@ mod quote;
 mod rare;
 mod replay;
 mod report;
+mod rollup;
 mod scheduler;
 mod shell;
 mod signals;
@@ -52,6 +53,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Slurm(arguments) => slurm::slurm(arguments).map(done),
         Command::Replay(arguments) => replay::replay(arguments).map(done),
         Command::Draw(arguments) => draw::draw(arguments),
+        Command::Rollup(arguments) => rollup::rollup(arguments),
         Command::Study(arguments) => study::study(arguments),
         Command::Rare(arguments) => rare::rare(arguments),
         Command::Verdict(arguments) => verdict::verdict(arguments),

@@ -1,5 +1,6 @@
 //! A part: what is stated of its mass, mass centre and inertia, and the law that draws come from.
 
+use gyradius_dispersion::{MassPropertiesModel, TenParameters};
 use gyradius_inertia::{
     Inertia, InertiaMatrix, MassProperties, MassPropertiesError, RealizabilityError, Repair,
     RepairMethod,
@@ -7,11 +8,12 @@ use gyradius_inertia::{
 use nalgebra::{SMatrix, UnitQuaternion, Vector3};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
+use std::borrow::Cow;
 
 use super::finding::{PartFinding, products};
+use super::first_order::{FirstOrder, TEN_UNITS};
 use super::second_moment_law::SecondMomentLaw;
 use super::symmetric::{Matrix6, Six, congruence, mapped};
-use super::ten_moments::{TEN_NAMES, TEN_UNITS, TenMoments, values};
 
 /// How far below zero a second moment may lie, in traces of the inertia: files carry about six digits.
 const ROUNDING: f64 = 1e-6;
@@ -52,7 +54,7 @@ pub struct PartStatement {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssemblyPart {
     statement: PartStatement,
-    moments: TenMoments,
+    first_order: FirstOrder,
     inertia: SecondMomentLaw,
     /// Mean and deviation of the logarithm of the mass in nominal masses.
     logarithm: [f64; 2],
@@ -76,11 +78,11 @@ impl AssemblyPart {
         let centre = Vector3::from(statement.mass_centre_m);
         let turned = own.rotated(&statement.attitude)?;
         let nominal = MassProperties::new(statement.mass_kg, centre, turned)?;
-        let moments = first_order(&statement, nominal, &covariance);
+        let first_order = as_stated(&statement, nominal, &covariance);
         let relative = statement.deviations[0] / statement.mass_kg;
         let variance = libm::log1p(relative * relative);
         let logarithm = [-0.5 * variance, variance.sqrt()];
-        Ok(Self { statement, moments, inertia, logarithm, findings })
+        Ok(Self { statement, first_order, inertia, logarithm, findings })
     }
 
     /// What was stated.
@@ -91,8 +93,8 @@ impl AssemblyPart {
 
     /// The nominal body in the frame of the whole, and the covariance of its ten numbers as stated.
     #[must_use]
-    pub fn moments(&self) -> &TenMoments {
-        &self.moments
+    pub fn first_order(&self) -> &FirstOrder {
+        &self.first_order
     }
 
     /// What of the stated deviations no body can have, or the law of the draws has not.
@@ -109,12 +111,13 @@ impl AssemblyPart {
         let mean = self.inertia.mean().entries();
         let [a, b, c, d, e, f] =
             std::array::from_fn(|i| mean[i] + self.statement.deviations[4 + i] * normal());
-        let inertia = InertiaMatrix::from_entries([a, b, c], [d, e, f]);
-        mass > 0.0 && inertia.is_ok_and(|inertia| inertia.is_realizable())
+        // Where the mass centre is does not matter.
+        let ten = TenParameters::from_values([mass, 0.0, 0.0, 0.0, a, b, c, d, e, f]);
+        ten.is_ok_and(|ten| ten.is_realizable())
     }
 
     /// A draw; none if it leaves the range of floats, which none within forty deviations does.
-    fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Option<MassProperties> {
+    fn try_draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Option<MassProperties> {
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
         let PartStatement { mass_kg, deviations, attitude, inertia_follows_mass, .. } =
             &self.statement;
@@ -138,10 +141,24 @@ impl AssemblyPart {
 impl Distribution<MassProperties> for AssemblyPart {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> MassProperties {
         loop {
-            if let Some(body) = self.draw(rng) {
+            if let Some(body) = self.try_draw(rng) {
                 return body;
             }
         }
+    }
+}
+
+impl MassPropertiesModel for AssemblyPart {
+    fn name(&self) -> Cow<'_, str> {
+        "part".into()
+    }
+
+    fn draw(&self, rng: &mut dyn Rng) -> TenParameters {
+        self.sample(rng).into()
+    }
+
+    fn is_realizable_by_construction(&self) -> bool {
+        true
     }
 }
 
@@ -157,13 +174,13 @@ fn check(statement: &PartStatement) -> Result<(), PartError> {
     }
     for i in 0..10 {
         if !(values[i].abs() <= most(i)) {
-            let (field, unit) = (TEN_NAMES[i], TEN_UNITS[i]);
+            let (field, unit) = (TenParameters::COLUMNS[i], TEN_UNITS[i]);
             return Err(PartError::Value { field, value: values[i], most: most(i), unit });
         }
         let value = deviations[i];
         let most = if i == 0 { MOST_MASS_DEVIATION * mass_kg } else { most(i) };
         if !(value >= 0.0 && value <= most) {
-            let (field, unit) = (TEN_NAMES[i], TEN_UNITS[i]);
+            let (field, unit) = (TenParameters::COLUMNS[i], TEN_UNITS[i]);
             return Err(PartError::Deviation { field, value, most, unit });
         }
     }
@@ -206,11 +223,7 @@ fn judge(findings: &mut Vec<PartFinding>, law: &SecondMomentLaw, stated: &[f64; 
 }
 
 /// The covariance of the ten as stated, in the axes of the whole.
-fn first_order(
-    statement: &PartStatement,
-    nominal: MassProperties,
-    inertia: &Matrix6,
-) -> TenMoments {
+fn as_stated(statement: &PartStatement, nominal: MassProperties, inertia: &Matrix6) -> FirstOrder {
     let mut covariance = SMatrix::<f64, 10, 10>::zeros();
     for i in 0..4 {
         covariance[(i, i)] = statement.deviations[i].powi(2);
@@ -219,7 +232,7 @@ fn first_order(
     let mut turned = mapped(&congruence(rotation.matrix()), inertia);
     if statement.inertia_follows_mass {
         let mut slope = Six::zeros();
-        slope.copy_from_slice(&values(&nominal)[4..]);
+        slope.copy_from_slice(&nominal.inertia().entries());
         slope /= statement.mass_kg;
         let variance = covariance[(0, 0)];
         turned += slope * slope.transpose() * variance;
@@ -227,7 +240,7 @@ fn first_order(
         covariance.fixed_view_mut::<1, 6>(0, 4).copy_from(&(slope.transpose() * variance));
     }
     covariance.fixed_view_mut::<6, 6>(4, 4).copy_from(&turned);
-    TenMoments::new(nominal, covariance)
+    FirstOrder::new(nominal, covariance)
 }
 
 /// Why a part is refused.

@@ -5,8 +5,8 @@ use rand::Rng;
 use rand_distr::Distribution;
 use std::collections::BTreeMap;
 
+use super::first_order::FirstOrder;
 use super::part::AssemblyPart;
-use super::ten_moments::TenMoments;
 
 /// A row of a list of parts.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ struct Node {
     /// Places of what it is made of, in the order of names.
     children: Vec<usize>,
     depth: usize,
-    moments: TenMoments,
+    first_order: FirstOrder,
 }
 
 impl Assembly {
@@ -70,14 +70,14 @@ impl Assembly {
             let inside = children.get(&name).map_or(&[][..], Vec::as_slice);
             let inside: Vec<usize> = inside.iter().filter_map(|c| places.get(c).copied()).collect();
             let Some(row) = by_name.remove(&name) else { continue };
-            let moments = match &row.part {
-                Some(part) => part.moments().clone(),
+            let first_order = match &row.part {
+                Some(part) => part.first_order().clone(),
                 None if inside.is_empty() => return Err(AssemblyError::Nothing { name }),
-                None => TenMoments::combined(inside.iter().map(|i| &nodes[*i].moments))
+                None => FirstOrder::combined(inside.iter().map(|i| &nodes[*i].first_order))
                     .map_err(|error| AssemblyError::Sum { name: name.clone(), error })?,
             };
             places.insert(name, nodes.len());
-            nodes.push(Node { row, children: inside, depth, moments });
+            nodes.push(Node { row, children: inside, depth, first_order });
         }
         // What the whole does not lead to leads back to itself.
         if let Some(name) = by_name.into_keys().next() {
@@ -108,18 +108,18 @@ impl Assembly {
 
     /// The whole to first order.
     #[must_use]
-    pub fn first_order(&self) -> &TenMoments {
+    pub fn first_order(&self) -> &FirstOrder {
         // There is a whole in every tree.
-        &self.nodes[self.nodes.len() - 1].moments
+        &self.nodes[self.nodes.len() - 1].first_order
     }
 
     /// Everything in the tree from the whole down: depth, name, whether it is a part, and its ten to first order.
-    pub fn rows(&self) -> impl Iterator<Item = (usize, &str, bool, &TenMoments)> {
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &str, bool, &FirstOrder)> {
         let mut down = vec![self.nodes.len() - 1];
         std::iter::from_fn(move || {
             let node = &self.nodes[down.pop()?];
             down.extend(node.children.iter().rev());
-            Some((node.depth, node.row.name.as_str(), node.row.part.is_some(), &node.moments))
+            Some((node.depth, node.row.name.as_str(), node.row.part.is_some(), &node.first_order))
         })
     }
 

@@ -1,27 +1,24 @@
 //! The ten mass properties of a body with their covariance, and those of many bodies together to first order.
 
+use gyradius_dispersion::TenParameters;
 use gyradius_inertia::{MassProperties, MassPropertiesError};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use super::symmetric::{Six, six};
 
-/// Names of the ten, in order: mass, mass centre, moments and products of inertia about the mass centre.
-pub const TEN_NAMES: [&str; 10] =
-    ["mass", "centre_x", "centre_y", "centre_z", "I11", "I22", "I33", "I12", "I13", "I23"];
-
-/// Their units.
+/// Units of the ten, in the order of [`TenParameters::COLUMNS`].
 pub const TEN_UNITS: [&str; 10] =
     ["kg", "m", "m", "m", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²"];
 
 /// Nominal mass properties and the covariance of the ten numbers: mass (kg), mass centre (m), I₁₁, I₂₂, I₃₃, I₁₂, I₁₃,
 /// I₂₃ (kg·m², tensor entries about the mass centre).
 #[derive(Clone, Debug, PartialEq)]
-pub struct TenMoments {
+pub struct FirstOrder {
     nominal: MassProperties,
     covariance: SMatrix<f64, 10, 10>,
 }
 
-impl TenMoments {
+impl FirstOrder {
     pub(super) fn new(nominal: MassProperties, covariance: SMatrix<f64, 10, 10>) -> Self {
         Self { nominal, covariance }
     }
@@ -61,10 +58,10 @@ impl TenMoments {
         &self.nominal
     }
 
-    /// The ten nominal numbers, as [`TEN_NAMES`].
+    /// The ten nominal numbers, as [`TenParameters::COLUMNS`].
     #[must_use]
     pub fn values(&self) -> [f64; 10] {
-        values(&self.nominal)
+        TenParameters::from(self.nominal).values()
     }
 
     /// Covariance of the ten, in products of their units.
@@ -92,12 +89,6 @@ impl TenMoments {
             }
         })
     }
-}
-
-/// The ten numbers of a body.
-pub(super) fn values(body: &MassProperties) -> [f64; 10] {
-    let (c, [i11, i22, i33, i12, i13, i23]) = (body.mass_centre_m(), body.inertia().entries());
-    [body.mass_kg(), c.x, c.y, c.z, i11, i22, i33, i12, i13, i23]
 }
 
 /// The ten numbers of a whole by those of one of its bodies.

@@ -1,0 +1,156 @@
+//! A rollup as text.
+
+use gyradius_dispersion::TenParameters;
+use std::fmt::{self, Write};
+
+use super::Shown;
+use crate::program::{
+    fit::wrapped,
+    number::{short, with_error},
+};
+
+/// The table, the correlations, and what to know of the parts.
+pub(super) fn text(shown: &Shown<'_>) -> String {
+    let mut out = String::new();
+    // Writing to a string does not fail.
+    let _ = write_text(&mut out, shown);
+    out
+}
+
+fn write_text(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
+    let assembly = shown.rollup.assembly();
+    let file = shown.arguments.parts.file_name().unwrap_or_default().to_string_lossy();
+    let count = assembly.parts().len();
+    let parts = if count == 1 { "1 part".to_owned() } else { format!("{count} parts") };
+    let head = format!("Rolled up by gyradius {}: {parts} of {file}", env!("CARGO_PKG_VERSION"));
+    writeln!(out, "{head}, together {}\n", assembly.name())?;
+    numbers(out, shown)?;
+    correlations(out, shown)?;
+    assemblies(out, shown)?;
+    notes(out, shown)
+}
+
+fn numbers(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
+    let first = shown.rollup.assembly().first_order();
+    let (values, deviations) = (first.values(), first.deviations());
+    write!(out, "{:<16}{:>14}{:>14}", "kg, m, kg·m²", "nominal", "first order σ")?;
+    if let Some(drawn) = shown.draws {
+        let head = format!("{} draws: mean", drawn.moments.draws);
+        write!(out, "{head:>28}{:>24}", "drawn σ")?;
+    }
+    writeln!(out)?;
+    for i in 0..10 {
+        let name = TenParameters::COLUMNS[i];
+        write!(out, "{name:<16}{:>14}{:>14}", digits(values[i], 7), digits(deviations[i], 5))?;
+        if let Some(drawn) = shown.draws {
+            let m = &drawn.moments;
+            let mean = with_error(m.mean[i], Some(m.mean_error[i]));
+            let deviation = with_error(m.deviation[i], Some(m.deviation_error[i]));
+            write!(out, "{mean:>28}{deviation:>24}")?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+fn correlations(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
+    let first = shown.rollup.assembly().first_order().correlations();
+    let of = |i: usize, j: usize| match shown.draws {
+        Some(drawn) => drawn.moments.correlation[i][j],
+        None => first[(i, j)],
+    };
+    let by = if shown.draws.is_some() { "drawing" } else { "first order" };
+    writeln!(out, "\ncorrelations by {by}")?;
+    for i in 1..10 {
+        write!(out, "  {:<16}", TenParameters::COLUMNS[i])?;
+        for j in 0..i {
+            write!(out, "{:>7.2}", of(i, j) + 0.0)?;
+        }
+        writeln!(out)?;
+    }
+    if shown.draws.is_some() {
+        let gap = |(i, j): (usize, usize)| (of(i, j) - first[(i, j)]).abs();
+        let pairs = (0..10).flat_map(|i| (0..i).map(move |j| (i, j)));
+        let most = pairs.map(gap).fold(0.0, f64::max);
+        writeln!(out, "those by first order differ by up to {most:.2}")?;
+    }
+    Ok(())
+}
+
+/// Every assembly, where there are some inside the whole.
+fn assemblies(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
+    let assembly = shown.rollup.assembly();
+    if !assembly.rows().any(|(depth, _, is_part, _)| depth > 0 && !is_part) {
+        return Ok(());
+    }
+    writeln!(out, "\nassemblies, to first order: mass, kg; mass centre, m")?;
+    for (depth, name, _, moments) in assembly.rows().filter(|(_, _, is_part, _)| !is_part) {
+        let (values, deviations) = (moments.values(), moments.deviations());
+        let pair = |i: usize| format!("{} ± {}", short(values[i]), short(deviations[i]));
+        let indent = "  ".repeat(depth.min(20));
+        let [mass, x, y, z] = [0, 1, 2, 3].map(pair);
+        writeln!(out, "  {indent}{name}: {mass}; {x}, {y}, {z}")?;
+    }
+    Ok(())
+}
+
+fn notes(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
+    writeln!(out)?;
+    let mut notes = Vec::new();
+    if let Some(drawn) = shown.draws {
+        notes.push(naive(drawn));
+        if drawn.moments.failed > 0 {
+            notes.push(format!("warning: {} sums left the range of numbers", drawn.moments.failed));
+        }
+    }
+    for (name, part) in shown.rollup.assembly().parts() {
+        notes.extend(part.findings().iter().map(|finding| format!("warning: {name}: {finding}")));
+    }
+    if !shown.table.passed_over().is_empty() {
+        let names = shown.table.passed_over().join(", ");
+        notes.push(format!("columns that mean nothing here: {names}"));
+    }
+    if let (Some(path), Some(drawn)) = (&shown.arguments.output, shown.draws) {
+        notes.push(format!("wrote {} draws to {}", drawn.moments.draws, path.display()));
+    }
+    notes.iter().flat_map(|note| wrapped(note)).try_for_each(|line| writeln!(out, "{line}"))
+}
+
+/// What ten Gaussian numbers would have been instead.
+fn naive(drawn: &gyradius_study::RollupDraws) -> String {
+    let naive = &drawn.naive;
+    let share =
+        |count: u64| format!("{} %", short(100.0 * count as f64 / naive.draws.max(1) as f64));
+    let worst: Vec<String> = naive
+        .parts
+        .iter()
+        .take(3)
+        .map(|(name, count)| format!("{name} {}", share(*count)))
+        .collect();
+    let worst = match (naive.parts.len(), worst.is_empty()) {
+        (_, true) => String::new(),
+        (4.., _) => format!(" ({}, …)", worst.join(", ")),
+        _ => format!(" ({})", worst.join(", ")),
+    };
+    format!(
+        "of these draws, {} are impossible bodies. Of Gaussian numbers in their place, {} of the draws have \
+         an impossible part{worst}, and {} of the wholes by first order are impossible",
+        drawn.moments.impossible,
+        share(naive.any_part),
+        share(naive.whole)
+    )
+}
+
+/// So many significant digits, without zeros at the end.
+fn digits(x: f64, count: i32) -> String {
+    if x == 0.0 || !(1e-6..1e9).contains(&x.abs()) {
+        return short(x);
+    }
+    let decimals = (count - 1 - x.abs().log10().floor() as i32).max(0) as usize;
+    let text = format!("{x:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}

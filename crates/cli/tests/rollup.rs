@@ -1,0 +1,128 @@
+//! `gyradius rollup` as a user meets it: the published example, what is refused, the page.
+
+use serde_json::Value;
+use std::fs;
+
+use crate::scratch::Scratch;
+
+const SAWE: &str = include_str!("tables/sawe-3360.csv");
+const PAGE: &str = include_str!("../../../docs/rollup.md");
+
+fn furnished() -> Scratch {
+    let shell = Scratch::new();
+    fs::write(shell.path("parts.csv"), SAWE).unwrap();
+    shell
+}
+
+impl Scratch {
+    #[track_caller]
+    fn rollup(&self, arguments: &[&str]) -> String {
+        let output = self.run(&[&["rollup"], arguments].concat());
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && message.is_empty(), "{arguments:?}: {message}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    #[track_caller]
+    fn no_rollup(&self, arguments: &[&str]) -> String {
+        let output = self.run(&[&["rollup"], arguments].concat());
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(output.stdout.is_empty() && message.starts_with("error: "), "{message}");
+        message
+    }
+}
+
+#[test]
+fn the_page_shows_what_is_printed() {
+    let shell = furnished();
+    let out = shell.rollup(&["parts.csv"]);
+    assert!(PAGE.contains(out.trim_end()), "docs/rollup.md should show\n{out}");
+    let list = SAWE.lines().filter(|line| !line.starts_with('#')).collect::<Vec<_>>().join("\n");
+    assert!(PAGE.contains(&list));
+}
+
+/// The row of the paper, in its own signs, to its digits; its Izz is 0.29 from the sum of its own parts.
+#[test]
+fn the_published_example_comes_out() {
+    let printed: [[f64; 10]; 2] = [
+        [
+            74.63, 109.8657, -0.1829, -0.0204, 7341.73, 42739.26, 44547.56, 1559.36, -1401.94,
+            -1060.95,
+        ],
+        [
+            2.1301, 0.9591, 0.2000, 0.0618, 387.4017, 2794.5468, 2820.5125, 1488.1857, 418.6320,
+            125.3175,
+        ],
+    ];
+    let shell = furnished();
+    let found: Value =
+        serde_json::from_str(&shell.rollup(&["parts.csv", "--format", "json", "-n", "2e4"]))
+            .unwrap();
+    let digits = [0.01, 1e-4, 1e-4, 1e-4, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01];
+    for i in 0..10 {
+        let sign = if i < 7 { 1.0 } else { -1.0 };
+        let value = sign * found["first_order"]["nominal"][i].as_f64().unwrap();
+        let deviation = found["first_order"]["deviation"][i].as_f64().unwrap();
+        assert!((value - printed[0][i]).abs() <= 0.5001 * digits[i], "{i}: {value}");
+        assert!((deviation - printed[1][i]).abs() <= 0.5001e-4, "{i}: {deviation}");
+    }
+    assert_eq!(found["drawn"]["impossible"], 0);
+    assert!(found["drawn"]["naive"]["impossible_part"].as_f64().unwrap() > 18_000.0);
+    let impossible: Vec<&Value> =
+        found["findings"].as_array().unwrap().iter().filter(|f| f["impossible"] == true).collect();
+    assert!(impossible.len() == 1 && impossible[0]["part"] == "2nd Part");
+}
+
+#[test]
+fn draws_are_written_once_and_are_the_same_on_any_number_of_threads() {
+    let shell = furnished();
+    let out = shell.rollup(&["parts.csv", "-n", "500", "-o", "a.csv", "--threads", "1"]);
+    assert!(out.contains("wrote 500 draws to a.csv"), "{out}");
+    shell.rollup(&["parts.csv", "-n", "500", "-o", "b.csv", "--threads", "3"]);
+    let read = |name: &str| fs::read(shell.path(name)).unwrap();
+    assert_eq!(read("a.csv"), read("b.csv"));
+    for name in ["a.parquet", "a.npy", "a.jsonl"] {
+        shell.rollup(&["parts.csv", "-n", "500", "-o", name]);
+        assert!(read(name).len() > 1000, "{name}");
+    }
+    assert!(shell.no_rollup(&["parts.csv", "-n", "5", "-o", "a.csv"]).contains("a.csv"));
+    assert!(
+        shell.no_rollup(&["parts.csv", "-o", "parts.csv", "--force"]).contains("not written over")
+    );
+    assert!(
+        shell.no_rollup(&["parts.csv", "-o", "a.xls"]).contains("the extension tells no format")
+    );
+    assert_eq!(fs::read_to_string(shell.path("parts.csv")).unwrap(), SAWE);
+    assert!(!shell.rollup(&["parts.csv", "-n", "0"]).contains("draws"));
+}
+
+#[test]
+fn edges_may_stand_apart_and_errors_name_file_and_line() {
+    let shell = furnished();
+    let list = SAWE.replace("name,parent,", "name,other,").replace("Combined,,,", "#");
+    fs::write(shell.path("list.csv"), &list).unwrap();
+    fs::write(shell.path("edges.csv"), "child,parent\nWidget,Combined\n2nd Part,Combined\n")
+        .unwrap();
+    let whole = |text: String| text.lines().skip(2).take(11).collect::<Vec<_>>().join("\n");
+    let apart = whole(shell.rollup(&["list.csv", "--edges", "edges.csv"]));
+    assert_eq!(apart, whole(shell.rollup(&["parts.csv"])));
+    fs::write(shell.path("edges.csv"), "child,parent\nWidget,Combined\n").unwrap();
+    let message = shell.no_rollup(&["list.csv", "--edges", "edges.csv"]);
+    assert!(
+        message.contains("list.csv: ") && message.contains("2 rows belong to nothing"),
+        "{message}"
+    );
+    fs::write(shell.path("parts.csv"), SAWE.replace("57.83", "heavy")).unwrap();
+    let message = shell.no_rollup(&["parts.csv"]);
+    assert!(
+        message.contains("parts.csv: line 5: Widget: mass = \"heavy\" is not a number"),
+        "{message}"
+    );
+    fs::write(shell.path("parts.csv"), SAWE.replace("integrals", "")).unwrap();
+    assert!(shell.no_rollup(&["parts.csv"]).contains("ixy is not zero, and nothing says"));
+    assert!(
+        shell.rollup(&["parts.csv", "-n", "0", "--products", "integrals"]).contains("1559.362")
+    );
+    assert!(shell.no_rollup(&["nowhere.csv"]).contains("nowhere.csv"));
+}

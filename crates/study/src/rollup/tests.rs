@@ -1,0 +1,123 @@
+//! Lists of parts, from their text to draws.
+
+use gyradius_campaign::TableFormat;
+use gyradius_formats::PartsTable;
+
+use super::*;
+
+const LIST: &str = "\
+name,parent,mass_kg,centre_x_m,centre_y_m,centre_z_m,shape,sides_m,radius_m,mass_percent,centre_sigma_mm,moments_percent
+craft,,,,,,,,,,,
+bus,craft,300,0,0,0,solid_box,1 1 2,,5,20,10
+tanks,craft,,,,,,,,,,
+left,tanks,100,-1,0,1.3,sphere,,0.3,2,5,5
+right,tanks,100,1,0,1.3,sphere,,0.3,2,5,5
+panel,craft,12,0,2,0,disc,,0.8,5,5,5
+";
+
+fn rollup(list: &str) -> Rollup {
+    Rollup::new(&PartsTable::read(list.as_bytes(), None).unwrap()).unwrap()
+}
+
+fn table(rollup: &Rollup, format: TableFormat, threads: usize) -> Vec<u8> {
+    let options = RollupOptions { draws: 300, threads: Some(threads), ..RollupOptions::default() };
+    let mut out = Vec::new();
+    rollup.draw_to(&options, format, &mut out, &|_| {}).unwrap();
+    out
+}
+
+#[test]
+fn drawing_agrees_with_first_order_where_deviations_are_small() {
+    let found = rollup(LIST);
+    let options = RollupOptions { draws: 40_000, ..RollupOptions::default() };
+    let drawn = found.draw(&options, &|_| {}).unwrap();
+    let (moments, first) = (&drawn.moments, found.assembly().first_order());
+    assert_eq!((moments.draws, moments.failed, moments.impossible), (40_000, 0, 0));
+    let correlations = first.correlations();
+    for i in 0..10 {
+        let off = (moments.deviation[i] - first.deviations()[i]) / moments.deviation_error[i];
+        assert!(
+            off.abs() < 6.0 || (moments.deviation[i] / first.deviations()[i] - 1.0).abs() < 0.02,
+            "{i}: {off}"
+        );
+        assert!(
+            (moments.deviation_error[i] * 283.0 / moments.deviation[i] - 1.0).abs() < 0.25,
+            "{i}"
+        );
+        for j in 0..10 {
+            assert!((moments.correlation[i][j] - correlations[(i, j)]).abs() < 0.03, "{i} {j}");
+        }
+    }
+    // A disc with independent moments is never one.
+    assert!(drawn.naive.parts[0].0 == "panel" && drawn.naive.any_part > drawn.naive.draws / 4);
+}
+
+/// A part's stream has its name alone: nothing that is added or moved changes it.
+#[test]
+fn other_parts_and_other_rows_change_no_draw() {
+    let (first, seed) = (rollup(LIST), 7);
+    let more = LIST.replace("panel,", "antenna,craft,3,0,0,2,point,,,9,9,\npanel,");
+    let more = rollup(&more);
+    let drawn = |rollup: &Rollup, run: u64| -> Vec<(String, gyradius_inertia::MassProperties)> {
+        let names: Vec<String> = rollup.assembly().parts().map(|(n, _)| n.to_owned()).collect();
+        names.into_iter().zip(Draws::new(rollup.assembly(), seed).of(run)).collect()
+    };
+    for run in [0, 1, 99] {
+        let (before, after) = (drawn(&first, run), drawn(&more, run));
+        assert_eq!((before.len(), after.len()), (4, 5));
+        assert!(before.iter().all(|part| after.contains(part)));
+        assert_ne!(before[1].1.mass_kg(), before[2].1.mass_kg(), "equal parts draw apart");
+    }
+    let mut lines: Vec<&str> = LIST.lines().collect();
+    lines[1..].reverse();
+    let csv = TableFormat::of_path("x.csv".as_ref()).unwrap();
+    assert_eq!(table(&rollup(&lines.join("\n")), csv, 1), table(&first, csv, 3));
+    assert_ne!(table(&more, csv, 1), table(&first, csv, 1));
+}
+
+#[test]
+fn tables_have_a_row_for_each_draw_in_every_form() {
+    let found = rollup(LIST);
+    for format in TableFormat::ALL {
+        assert!(table(&found, format, 1).len() > 1000, "{}", format.name());
+    }
+    let csv = String::from_utf8(table(&found, TableFormat::of_path("x.csv".as_ref()).unwrap(), 1))
+        .unwrap();
+    assert!(
+        csv.starts_with(
+            "model,run,status,mass_kg,mass_centre_1_m,mass_centre_2_m,mass_centre_3_m,i11,"
+        ),
+        "{csv:.100}"
+    );
+    assert_eq!(csv.lines().count(), 301);
+}
+
+#[test]
+fn errors_name_the_line() {
+    let error = |list: &str| {
+        let table = PartsTable::read(list.as_bytes(), None).unwrap();
+        Rollup::new(&table).unwrap_err().to_string()
+    };
+    assert!(
+        error(&LIST.replace("left,tanks", "left,tonks"))
+            .starts_with("line 5: \"left\" belongs to \"tonks\"")
+    );
+    assert!(
+        error(&LIST.replace("right,", "left,")).starts_with("line 6: name \"left\" stands twice")
+    );
+    assert!(error(&LIST.replace("12,0,2,0", "1e31,0,2,0")).starts_with("line 7: panel: "));
+    assert!(
+        error(&LIST.replace("tanks,craft", "tanks,tanks"))
+            .starts_with("line 4: \"tanks\" belongs to itself")
+    );
+    assert!(
+        error(&LIST.replace("tanks,craft", "tanks,"))
+            .starts_with("line 4: 2 rows belong to nothing, \"craft\", \"tanks\"")
+    );
+    assert!(
+        error(&LIST.replace("left,tanks", "left,bus"))
+            .starts_with("line 3: \"bus\" has numbers of its own")
+    );
+    let long = RollupOptions { draws: u64::MAX, ..RollupOptions::default() };
+    assert!(matches!(rollup(LIST).draw(&long, &|_| {}), Err(RollupError::Draws { .. })));
+}
