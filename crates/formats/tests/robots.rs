@@ -385,6 +385,40 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    /// Whatever is broken in a file: it is refused, or its links are, or copies read back. Nothing panics.
+    #[test]
+    fn broken_files_are_refused_or_copied(
+        robot in robot(),
+        other in link(),
+        breaks in prop::collection::vec((0.0..1.0_f64, select(vec!["", "<", ">", "'", "\"", "/", " ", "e", "-", "9", "&amp;", "<a/>", "\n"]), 0..9_usize), 1..4),
+    ) {
+        let mut text = String::from_utf8(robot.xml()).unwrap();
+        for (place, put, cut) in breaks {
+            let start = (place * text.len() as f64) as usize;
+            let end = (start + cut).min(text.len());
+            if text.is_char_boundary(start) && text.is_char_boundary(end) {
+                text.replace_range(start..end, put);
+            }
+        }
+        let Ok(file) = RobotFile::parse(Path::new(robot.name()), text.into_bytes()) else {
+            return Ok(());
+        };
+        let body = body(other.second, other.axes);
+        let meant = MassProperties::new(other.mass, Vector3::from(other.angles), body).unwrap();
+        for index in 0..=file.links().len() {
+            let copied = file.copy(&[(index, meant)]);
+            if let Ok(copy) = copied {
+                let again = RobotFile::parse(Path::new(robot.name()), copy).unwrap();
+                prop_assert_eq!(again.links()[index].numbers().unwrap().mass_kg(), meant.mass_kg());
+            }
+            let _ = file.points_m(index);
+        }
+    }
+}
+
 /// What is left to defaults is written out where it must be, and nothing else.
 #[test]
 fn what_a_file_leaves_out_is_written_only_where_it_must_be() {
@@ -484,6 +518,64 @@ fn links_that_cannot_be_told_say_why() {
     assert_eq!(problem("a.urdf", gazebo), LinkProblem::Gazebo);
     let table = RobotFile::parse(Path::new("a.csv"), b"ixx,iyy,izz\n1,1,1\n".to_vec());
     assert!(matches!(table, Err(RobotError::Format { .. })));
+}
+
+/// Points of every shape, in the frame of the link: those of an independent sum lie where they should.
+#[test]
+fn geometry_is_read_as_points() {
+    let urdf = |geometry: &str, kind: &str| {
+        format!(
+            "<robot><link name='a'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' \
+             izz='1'/></inertial><{kind}><origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/><geometry>{geometry}</geometry>\
+             </{kind}></link></robot>"
+        )
+    };
+    let extent = |name: &str, text: String| {
+        let file = RobotFile::parse(Path::new(name), text.into_bytes()).unwrap();
+        let points = file.points_m(0).unwrap();
+        let all = |pick: fn(f64, f64) -> f64, from: f64| {
+            points.iter().fold([from; 3], |a, b| std::array::from_fn(|i| pick(a[i], b[i])))
+        };
+        let (low, high) = (all(f64::min, f64::INFINITY), all(f64::max, f64::NEG_INFINITY));
+        std::array::from_fn(|i| ((low[i] * 1e6).round() / 1e6, (high[i] * 1e6).round() / 1e6))
+    };
+    let sdf = |geometry: &str| {
+        format!(
+            "<sdf version='1.9'><link name='a'><inertial/><collision><pose>1 2 3 0 0 1.5707963267948966</pose><geometry>\
+             {geometry}</geometry></collision></link></sdf>"
+        )
+    };
+    let expected: [[(f64, f64); 3]; 4] = [
+        [(0.8, 1.2), (1.9, 2.1), (2.7, 3.3)],
+        [(0.5, 1.5), (1.5, 2.5), (2.5, 3.5)],
+        [(0.5, 1.5), (1.5, 2.5), (2.0, 4.0)],
+        [(0.5, 1.5), (1.5, 2.5), (1.5, 4.5)],
+    ];
+    let in_urdf = [
+        "<box size='0.2 0.4 0.6'/>",
+        "<sphere radius='0.5'/>",
+        "<cylinder radius='0.5' length='2'/>",
+        "<capsule radius='0.5' length='2'/>",
+    ];
+    let in_sdf = [
+        "<box><size>0.2 0.4 0.6</size></box>",
+        "<ellipsoid><radii>0.5 0.5 0.5</radii></ellipsoid>",
+        "<cylinder><radius>0.5</radius><length>2</length></cylinder>",
+        "<capsule><radius>0.5</radius><length>2</length></capsule>",
+    ];
+    for i in 0..4 {
+        for kind in ["collision", "visual"] {
+            assert_eq!(extent("a.urdf", urdf(in_urdf[i], kind)), expected[i], "{}", in_urdf[i]);
+        }
+        assert_eq!(extent("a.sdf", sdf(in_sdf[i])), expected[i], "{}", in_sdf[i]);
+    }
+    for geometry in
+        ["<box size='0 1 1'/>", "<plane/>", "<sphere/>", "<mesh filename='gone.stl'/>", ""]
+    {
+        let text = urdf(geometry, "collision");
+        let file = RobotFile::parse(Path::new("a.urdf"), text.into_bytes()).unwrap();
+        assert!(file.points_m(0).is_err(), "{geometry}");
+    }
 }
 
 #[test]

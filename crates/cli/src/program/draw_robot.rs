@@ -95,6 +95,12 @@ fn write(
             output.finish()?;
             Ok(Some(format!("wrote {}", path.display())))
         }
+        // A folder is rarely called like a file: an extension that tells no table is a slip.
+        Some(path) if path.extension().is_some() && !path.is_dir() && !ends_in_slash(path) => {
+            let message =
+                "the extension tells no table: a folder of this name is written with / at its end";
+            Err(format!("{}: {message}", path.display()).into())
+        }
         Some(folder) => {
             let robots = arguments.runs.unwrap_or_default();
             let written = progress::show(robots, "robots", |report| {
@@ -123,6 +129,10 @@ fn write(
             Ok(None)
         }
     }
+}
+
+fn ends_in_slash(path: &Path) -> bool {
+    path.as_os_str().to_string_lossy().ends_with(std::path::is_separator)
 }
 
 fn table(
@@ -250,7 +260,7 @@ fn warnings_of(links: &[LinkSummary]) -> String {
             } else {
                 String::new()
             };
-            out += &format!("         the like of {}{more}\n", some.join(", "));
+            out += &format!("         also for {}{more}\n", some.join(", "));
         }
     }
     out

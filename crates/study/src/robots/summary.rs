@@ -9,11 +9,11 @@ use rand_distr::{Distribution, StandardNormal};
 use super::{DrawnLink, RobotDraw};
 
 /// Draws that are looked at, at most.
-const LOOKED_AT: u64 = 10_000;
+const LOOKED_AT: u64 = 2000;
 /// What keys the streams of the common practice.
 const NAIVE: &str = "robot, entry by entry";
 
-/// The standard deviations of the draws of a link, the first ten thousand of them.
+/// The standard deviations of the draws of a link, the first two thousand of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkSummary {
     /// Its name.
