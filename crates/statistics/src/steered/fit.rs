@@ -1,10 +1,12 @@
-//! Normal laws of independent scores, fitted to weighted runs.
+//! Laws of independent scores, fitted to weighted runs.
 
-use super::score_law::log_sum;
+use super::score_law::{Single, Tail, log_ratio, log_sum};
 
 /// Bounds of a standard deviation.
 const NARROW: f64 = 0.3;
 const WIDE: f64 = 3.0;
+/// No event is made more frequent than this.
+const OFTEN: f64 = 0.9;
 /// A standard deviation stays 1 unless its square is so many standard errors off.
 const SURE: f64 = 3.0;
 /// Each of two parts has at least so many runs of equal weight, and this share.
@@ -21,30 +23,32 @@ pub(super) struct Elite<'a> {
     pub(super) weight: f64,
 }
 
-/// A normal law, a mean and a standard deviation for each score.
-type Normals = Vec<[f64; 2]>;
+/// A law of each score.
+type Singles = Vec<Single>;
 
-/// Normal laws with their shares, one or two; none if no run has a weight. Two are kept as long as there are runs near both of those
-/// before. No standard deviation is below 1 if they are to lead further: a narrow part would be left behind by a wide one.
+/// Laws with their shares, one or two; none if no run has a weight. Two are kept as long as there are runs near both of those
+/// before. No standard deviation is below 1, and no event less frequent than at the start, if they are to lead further: a narrow part
+/// would be left behind by a wide one.
 pub(super) fn fit(
     elites: &[Elite<'_>],
-    before: &[(f64, Normals)],
+    start: &[Single],
+    before: &[(f64, Singles)],
     leads_on: bool,
-) -> Option<Vec<(f64, Normals)>> {
+) -> Option<Vec<(f64, Singles)>> {
     let weights: Vec<f64> = elites.iter().map(|elite| elite.weight).collect();
-    let (raw, cautious, count) = normals(elites, &weights)?;
+    let (raw, cautious, count) = singles(elites, start, &weights)?;
     let mut found = vec![(1.0, cautious)];
     let two = if let [_, _] = before {
         let near = elites.iter().map(|elite| shares(elite, before)[0]).collect();
-        maximised(elites, near)
+        maximised(elites, start, near)
     } else {
         let all: f64 = weights.iter().sum();
-        let likelihood = |parts: &[(f64, Normals)]| -> f64 {
+        let likelihood = |parts: &[(f64, Singles)]| -> f64 {
             let of = |elite: &Elite<'_>| elite.weight * log_sum(&logs(elite, parts));
             elites.iter().map(of).sum::<f64>() / all
         };
-        let worth = WORTH * (2 * raw.len() + 1) as f64;
-        let two = halves(elites, &raw).and_then(|halves| maximised(elites, halves));
+        let worth = WORTH * (2 * start.len() + 1) as f64;
+        let two = halves(elites, &raw).and_then(|halves| maximised(elites, start, halves));
         let whole = likelihood(&[(1.0, raw)]);
         two.filter(|two| count * (likelihood(two) - whole) > worth)
     };
@@ -53,18 +57,31 @@ pub(super) fn fit(
         // What is drawn from is as cautious as a single law.
         for (part, (share, _)) in two.iter().enumerate() {
             let mine = elites.iter().map(|elite| elite.weight * shares(elite, &two)[part]);
-            found.push((*share, normals(elites, &mine.collect::<Vec<_>>())?.1));
+            found.push((*share, singles(elites, start, &mine.collect::<Vec<_>>())?.1));
         }
     }
     if leads_on {
-        let deviations = found.iter_mut().flat_map(|(_, normals)| normals);
-        deviations.for_each(|[_, deviation]| *deviation = deviation.max(1.0));
+        for (_, singles) in &mut found {
+            for (single, start) in singles.iter_mut().zip(start) {
+                match (single, start) {
+                    (Single::Normal { deviation, .. }, _) => *deviation = deviation.max(1.0),
+                    (Single::Tail(tail), Single::Tail(start)) => {
+                        tail.chance = tail.chance.max(start.chance);
+                    }
+                    (Single::Tail(_), Single::Normal { .. }) => {}
+                }
+            }
+        }
     }
     Some(found)
 }
 
-/// The likeliest normals of weighted runs, the same with caution, and how many runs of equal weight they are.
-fn normals(elites: &[Elite<'_>], weights: &[f64]) -> Option<(Normals, Normals, f64)> {
+/// The likeliest laws of weighted runs, the same with caution, and how many runs of equal weight they are.
+fn singles(
+    elites: &[Elite<'_>],
+    start: &[Single],
+    weights: &[f64],
+) -> Option<(Singles, Singles, f64)> {
     let all: f64 = weights.iter().sum();
     let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
     if !(all > 0.0 && squares > 0.0) {
@@ -74,30 +91,50 @@ fn normals(elites: &[Elite<'_>], weights: &[f64]) -> Option<(Normals, Normals, f
     let mean_of = |of: &dyn Fn(&Elite<'_>) -> f64| {
         elites.iter().zip(weights).map(|(elite, weight)| weight * of(elite)).sum::<f64>() / all
     };
-    let scores = elites.first()?.scores.len();
-    let mut raw: Normals = Vec::with_capacity(scores);
-    for j in 0..scores {
-        let mean = mean_of(&|elite| elite.scores[j]);
-        let variance = mean_of(&|elite| (elite.scores[j] - mean) * (elite.scores[j] - mean));
-        raw.push([mean, variance.sqrt().clamp(NARROW, WIDE)]);
-    }
+    let likeliest = |(j, start): (usize, &Single)| match *start {
+        Single::Normal { .. } => {
+            let mean = mean_of(&|elite| elite.scores[j]);
+            let variance = mean_of(&|elite| (elite.scores[j] - mean) * (elite.scores[j] - mean));
+            Single::Normal { mean, deviation: variance.sqrt().clamp(NARROW, WIDE) }
+        }
+        Single::Tail(tail) => {
+            let share = mean_of(&|elite| f64::from(u8::from(tail.has(elite.scores[j]))));
+            Single::Tail(Tail { chance: share.clamp(tail.own, tail.own.max(OFTEN)), ..tail })
+        }
+    };
+    let raw: Singles = start.iter().enumerate().map(likeliest).collect();
     // What of the means is chance, and what would be of a variance.
-    let length: f64 = raw.iter().map(|[mean, _]| mean * mean).sum();
-    let chance: f64 = raw.iter().map(|[_, deviation]| deviation * deviation).sum::<f64>() / count;
+    let (mut length, mut chance) = (0.0, 0.0);
+    for single in &raw {
+        if let Single::Normal { mean, deviation } = single {
+            length += mean * mean;
+            chance += deviation * deviation / count;
+        }
+    }
     let kept = if length > 0.0 { (1.0 - chance / length).max(0.0) } else { 0.0 };
     let sure = SURE * (2.0 / count).sqrt();
-    let cautious = raw.iter().map(|[mean, deviation]| {
-        let off = deviation * deviation - 1.0;
-        [kept * mean, if off.abs() > sure { *deviation } else { 1.0 }]
+    let cautious = raw.iter().map(|single| match *single {
+        Single::Normal { mean, deviation } => {
+            let off = (deviation * deviation - 1.0).abs();
+            let deviation = if off > sure { deviation } else { 1.0 };
+            Single::Normal { mean: kept * mean, deviation }
+        }
+        Single::Tail(tail) => {
+            let chance = (count * tail.chance + tail.own) / (count + 1.0);
+            Single::Tail(Tail { chance, ..tail })
+        }
     });
     let cautious = cautious.collect();
     Some((raw, cautious, count))
 }
 
 /// For each run 1 or 0: on which side it is, across the direction in which runs scatter most about the middle of a law.
-fn halves(elites: &[Elite<'_>], whole: &Normals) -> Option<Vec<f64>> {
+fn halves(elites: &[Elite<'_>], whole: &Singles) -> Option<Vec<f64>> {
     let scores = whole.len();
-    let centred = |elite: &Elite<'_>, j: usize| elite.scores[j] - whole[j][0];
+    let centred = |elite: &Elite<'_>, j: usize| match whole[j] {
+        Single::Normal { mean, .. } => elite.scores[j] - mean,
+        Single::Tail(_) => 0.0,
+    };
     let along = |elite: &Elite<'_>, direction: &[f64]| -> f64 {
         direction.iter().enumerate().map(|(j, d)| d * centred(elite, j)).sum()
     };
@@ -123,9 +160,13 @@ fn halves(elites: &[Elite<'_>], whole: &Normals) -> Option<Vec<f64>> {
     Some(elites.iter().map(side).collect())
 }
 
-/// A mixture of two normals, by expectation and maximisation from the share that each run has in the first; none if one of them
+/// A mixture of two laws, by expectation and maximisation from the share that each run has in the first; none if one of them
 /// has too few.
-fn maximised(elites: &[Elite<'_>], mut first: Vec<f64>) -> Option<Vec<(f64, Normals)>> {
+fn maximised(
+    elites: &[Elite<'_>],
+    start: &[Single],
+    mut first: Vec<f64>,
+) -> Option<Vec<(f64, Singles)>> {
     let all: f64 = elites.iter().map(|elite| elite.weight).sum();
     let mut parts = Vec::new();
     for _ in 0..STEPS {
@@ -135,7 +176,7 @@ fn maximised(elites: &[Elite<'_>], mut first: Vec<f64>) -> Option<Vec<(f64, Norm
                 elite.weight * if other { 1.0 - share } else { *share }
             };
             let weights: Vec<f64> = elites.iter().zip(&first).map(share).collect();
-            let (law, _, count) = normals(elites, &weights)?;
+            let (law, _, count) = singles(elites, start, &weights)?;
             let share = weights.iter().sum::<f64>() / all;
             if count < FEW || share < SMALL {
                 return None;
@@ -148,19 +189,14 @@ fn maximised(elites: &[Elite<'_>], mut first: Vec<f64>) -> Option<Vec<(f64, Norm
 }
 
 /// The logarithm of what each part has at a run, but for a constant.
-fn logs(elite: &Elite<'_>, parts: &[(f64, Normals)]) -> Vec<f64> {
-    let of = |(share, normals): &(f64, Normals)| {
-        let density = |(z, [mean, deviation]): (&f64, &[f64; 2])| {
-            let standard = (z - mean) / deviation;
-            -0.5 * standard * standard - libm::log(*deviation)
-        };
-        libm::log(*share) + elite.scores.iter().zip(normals).map(density).sum::<f64>()
-    };
+fn logs(elite: &Elite<'_>, parts: &[(f64, Singles)]) -> Vec<f64> {
+    let of =
+        |(share, singles): &(f64, Singles)| libm::log(*share) + log_ratio(singles, elite.scores);
     parts.iter().map(of).collect()
 }
 
 /// With which probability a run is of each part.
-fn shares(elite: &Elite<'_>, parts: &[(f64, Normals)]) -> Vec<f64> {
+fn shares(elite: &Elite<'_>, parts: &[(f64, Singles)]) -> Vec<f64> {
     let logs = logs(elite, parts);
     let all = log_sum(&logs);
     logs.into_iter().map(|log| libm::exp(log - all)).collect()

@@ -1,7 +1,9 @@
 //! A law of independent scores, to be drawn from in the place of the standard normal law.
 
-/// A law of scores: a mixture of the standard normal law, their own, and of normal laws with other means and standard
-/// deviations, in each of which the scores are independent.
+use crate::{law, tail};
+
+/// A law of scores: a mixture of the standard normal law, their own, and of others, in each of which the scores are independent. A score
+/// has another mean and standard deviation there; one that decides an event has it more often.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScoreLaw {
     scores: usize,
@@ -9,29 +11,95 @@ pub struct ScoreLaw {
     parts: Vec<Part>,
 }
 
-/// A part of a mixture: its share, and the law of each score.
+/// A part of a mixture: its share, and the law of each score, which are none for the own law.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Part {
+struct Part {
     share: f64,
-    /// Mean and standard deviation of each score; empty for the own law.
-    normals: Vec<[f64; 2]>,
+    singles: Vec<Single>,
+}
+
+/// The law of one score.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Single {
+    /// A normal law.
+    Normal { mean: f64, deviation: f64 },
+    /// An upper tail has another probability, and within and without it the score keeps its law: of an event that a score decides.
+    Tail(Tail),
+}
+
+/// An upper tail of a score.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tail {
+    /// Where it begins.
+    pub(super) from: f64,
+    /// Its probability under the own law.
+    pub(super) own: f64,
+    /// Its probability.
+    pub(super) chance: f64,
+}
+
+impl Tail {
+    /// The tail of a probability, which it keeps.
+    pub(super) fn new(own: f64) -> Self {
+        Self { from: law::normal(own), own, chance: own }
+    }
+
+    /// Whether a score is in it.
+    pub(super) fn has(&self, z: f64) -> bool {
+        z >= self.from
+    }
+}
+
+impl Single {
+    /// The own law of a score.
+    pub(super) const OWN: Self = Self::Normal { mean: 0.0, deviation: 1.0 };
+
+    /// Makes a standard normal score one of this law.
+    fn draw(self, z: f64) -> f64 {
+        match self {
+            Self::Normal { mean, deviation } => mean + deviation * z,
+            Self::Tail(Tail { own, chance, .. }) if own == chance => z,
+            Self::Tail(Tail { from, own, chance }) => {
+                let above = tail::normal(z);
+                if above < chance {
+                    return law::normal(above / chance * own).max(from);
+                }
+                let below = tail::normal(-z) / (1.0 - chance) * (1.0 - own);
+                let drawn =
+                    if below < 0.5 { -law::normal(below) } else { law::normal(1.0 - below) };
+                drawn.min(from.next_down())
+            }
+        }
+    }
+
+    /// The logarithm of the density over that of the own law.
+    pub(super) fn log_ratio(self, z: f64) -> f64 {
+        match self {
+            Self::Normal { mean, deviation } => {
+                let standard = (z - mean) / deviation;
+                0.5 * (z * z - standard * standard) - libm::log(deviation)
+            }
+            Self::Tail(tail) if tail.has(z) => libm::log(tail.chance / tail.own),
+            // NaN stays NaN.
+            Self::Tail(tail) => libm::log((1.0 - tail.chance) / (1.0 - tail.own)) + 0.0 * z,
+        }
+    }
 }
 
 impl ScoreLaw {
     /// The own law of so many scores: what is drawn from it is what plain runs draw.
     pub fn own(scores: usize) -> Self {
-        Self { scores, parts: vec![Part { share: 1.0, normals: Vec::new() }] }
+        Self { scores, parts: vec![Part { share: 1.0, singles: Vec::new() }] }
     }
 
-    /// A share of the own law, and the rest of normal laws with shares among themselves, and a mean and a standard deviation for each
-    /// score.
-    pub(super) fn mixed(scores: usize, own: f64, normals: Vec<(f64, Vec<[f64; 2]>)>) -> Self {
-        let all: f64 = normals.iter().map(|(share, _)| share).sum();
+    /// A share of the own law, and the rest of other laws with shares among themselves.
+    pub(super) fn mixed(scores: usize, own: f64, others: Vec<(f64, Vec<Single>)>) -> Self {
+        let all: f64 = others.iter().map(|(share, _)| share).sum();
         let mut law = Self::own(scores);
         if all > 0.0 {
             law.parts[0].share = own;
-            let part = |(share, normals)| Part { share: (1.0 - own) * share / all, normals };
-            law.parts.extend(normals.into_iter().map(part));
+            let part = |(share, singles)| Part { share: (1.0 - own) * share / all, singles };
+            law.parts.extend(others.into_iter().map(part));
         }
         law
     }
@@ -39,21 +107,21 @@ impl ScoreLaw {
     /// A share of the own law, and what several laws have besides in equal shares; for each part the law that it is of.
     pub(super) fn together(laws: &[Self], own: f64) -> (Self, Vec<Option<usize>>) {
         let mut of_part = vec![None];
-        let mut normals = Vec::new();
+        let mut others = Vec::new();
         for (i, law) in laws.iter().enumerate() {
             let rest: f64 = law.parts[1..].iter().map(|part| part.share).sum();
             for part in &law.parts[1..] {
-                normals.push((part.share / rest, part.normals.clone()));
+                others.push((part.share / rest, part.singles.clone()));
                 of_part.push(Some(i));
             }
         }
         let scores = laws.first().map_or(0, |law| law.scores);
-        (Self::mixed(scores, own, normals), of_part)
+        (Self::mixed(scores, own, others), of_part)
     }
 
-    /// What it has besides the own law: shares, and a mean and a standard deviation for each score.
-    pub(super) fn normals(&self) -> Vec<(f64, Vec<[f64; 2]>)> {
-        self.parts[1..].iter().map(|part| (part.share, part.normals.clone())).collect()
+    /// What it has besides the own law: shares, and the law of each score.
+    pub(super) fn others(&self) -> Vec<(f64, Vec<Single>)> {
+        self.parts[1..].iter().map(|part| (part.share, part.singles.clone())).collect()
     }
 
     /// The law of those draws that are of some parts.
@@ -94,8 +162,8 @@ impl ScoreLaw {
     /// they are, to the bit.
     pub fn draw(&self, choice: f64, scores: &mut [f64]) {
         let part = &self.parts[self.part(choice)];
-        for (score, [mean, deviation]) in scores.iter_mut().zip(&part.normals) {
-            *score = mean + deviation * *score;
+        for (score, single) in scores.iter_mut().zip(&part.singles) {
+            *score = single.draw(*score);
         }
     }
 
@@ -105,21 +173,15 @@ impl ScoreLaw {
         if self.is_own() {
             return 0.0;
         }
-        let logs = self.parts.iter().map(|part| libm::log(part.share) + part.log_ratio(scores));
-        let logs: Vec<f64> = logs.collect();
-        -log_sum(&logs)
+        let logs = self.parts.iter();
+        let logs = logs.map(|part| libm::log(part.share) + log_ratio(&part.singles, scores));
+        -log_sum(&logs.collect::<Vec<_>>())
     }
 }
 
-impl Part {
-    /// The logarithm of the density over that of the own law.
-    fn log_ratio(&self, scores: &[f64]) -> f64 {
-        let of = |(z, [mean, deviation]): (&f64, &[f64; 2])| {
-            let standard = (z - mean) / deviation;
-            0.5 * (z * z - standard * standard) - libm::log(*deviation)
-        };
-        scores.iter().zip(&self.normals).map(of).sum()
-    }
+/// The logarithm of the density of scores over that under their own law.
+pub(super) fn log_ratio(singles: &[Single], scores: &[f64]) -> f64 {
+    singles.iter().zip(scores).map(|(single, z)| single.log_ratio(*z)).sum()
 }
 
 /// The logarithm of a sum of exponentials.

@@ -3,7 +3,7 @@
 use super::{
     OWN,
     fit::{self, Elite},
-    score_law::ScoreLaw,
+    score_law::{ScoreLaw, Single, Tail},
 };
 use crate::{StatisticsError, error::share};
 
@@ -15,6 +15,9 @@ const MOST_STALLED: usize = 3;
 const LEAST: f64 = 1e-9;
 /// Most scores, runs of a level, and scores of all runs of a level.
 const MOST: usize = 100_000_000;
+/// So many events does a run have at the start, if it may have some, and none of them more often than this.
+const STARTING: f64 = 0.5;
+const OFTEN_AT_FIRST: f64 = 0.1;
 /// So many runs that are the event are enough to fit a law to.
 const ENOUGH: usize = 30;
 /// So few lead on if the level would fall otherwise.
@@ -36,6 +39,8 @@ const FEWEST: usize = 100;
 pub struct ScoreSearch {
     per_level: usize,
     least: f64,
+    /// The law of each score from which the search starts.
+    start: Vec<Single>,
     law: ScoreLaw,
     stage: Stage,
     level: f64,
@@ -73,6 +78,7 @@ impl ScoreSearch {
         Ok(Self {
             per_level,
             least: LEAST,
+            start: vec![Single::OWN; scores],
             law: ScoreLaw::own(scores),
             stage: Stage::Rising,
             level: f64::NEG_INFINITY,
@@ -90,6 +96,31 @@ impl ScoreSearch {
     /// [`StatisticsError::Share`] unless it lies between 1e-9 and 1 − 1e-9.
     pub fn with_least(self, least: f64) -> Result<Self, StatisticsError> {
         Ok(Self { least: share(least)?, ..self })
+    }
+
+    /// Of scores in these places is known that they decide events: that of a probability happens where the score is in its upper tail of this
+    /// probability. Then the event itself is made more frequent, and from the first level on.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::Probability`] unless it lies strictly between 0 and 1, [`StatisticsError::Columns`] if there is no such place.
+    pub fn with_events(mut self, events: &[(usize, f64)]) -> Result<Self, StatisticsError> {
+        for &(place, value) in events {
+            if !(value > 0.0 && value < 1.0) {
+                return Err(StatisticsError::Probability { value });
+            }
+            let scores = self.start.len();
+            let columns = StatisticsError::Columns { first: scores, second: place + 1 };
+            let start = self.start.get_mut(place).ok_or(columns)?;
+            let tail = Tail::new(value);
+            let often = (STARTING / events.len() as f64).min(OFTEN_AT_FIRST);
+            *start = Single::Tail(Tail { chance: value.max(often), ..tail });
+        }
+        if !events.is_empty() {
+            let others = vec![(1.0, self.start.clone())];
+            self.law = ScoreLaw::mixed(self.start.len(), OWN, others);
+        }
+        Ok(self)
     }
 
     /// How many runs are wanted next; none if it is done.
@@ -157,8 +188,10 @@ impl ScoreSearch {
             Stage::Done { reached } => Stage::Done { reached },
         };
         self.level = self.level.max(level);
-        if let Some(normals) = fit::fit(&elites, &self.law.normals(), self.stage == Stage::Rising) {
-            self.law = ScoreLaw::mixed(self.law.scores(), OWN, normals);
+        if let Some(others) =
+            fit::fit(&elites, &self.start, &self.law.others(), self.stage == Stage::Rising)
+        {
+            self.law = ScoreLaw::mixed(self.law.scores(), OWN, others);
         }
         Ok(())
     }

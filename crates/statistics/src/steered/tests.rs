@@ -4,6 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use super::score_law::{Single, Tail};
 use super::*;
 use crate::{StatisticsError, tail};
 
@@ -17,9 +18,10 @@ struct Plan {
     per_level: usize,
     sample: usize,
     searches: usize,
+    events: &'static [(usize, f64)],
 }
 
-const PLAN: Plan = Plan { scores: 10, per_level: 1000, sample: 5000, searches: 2 };
+const PLAN: Plan = Plan { scores: 10, per_level: 1000, sample: 5000, searches: 2, events: &[] };
 
 fn scores(rng: &mut ChaCha8Rng, law: &ScoreLaw) -> (f64, Vec<f64>) {
     let mut scores: Vec<f64> =
@@ -33,6 +35,7 @@ fn searched(plan: Plan, rng: &mut ChaCha8Rng, excess: Excess<'_>) -> Vec<ScoreSe
     let mut searches = Vec::new();
     for _ in 0..plan.searches {
         let mut search = ScoreSearch::new(plan.scores, plan.per_level).unwrap();
+        search = search.with_events(plan.events).unwrap();
         while !search.is_done() {
             let runs: Vec<(Vec<f64>, f64)> = (0..search.asks())
                 .map(|_| {
@@ -258,7 +261,11 @@ fn weights_are_ratios_of_densities() {
         (-0.5 * ((z - mean) / deviation).powi(2)).exp() / deviation
     };
     let normals = [[[1.0, 0.5], [0.0, 1.0]], [[-3.0, 2.0], [0.5, 3.0]]];
-    let parts = vec![(3.0, normals[0].to_vec()), (1.0, normals[1].to_vec())];
+    let singles = normals.map(|normals| {
+        normals.map(|[mean, deviation]| Single::Normal { mean, deviation }).to_vec()
+    });
+    let [one, other] = singles;
+    let parts = vec![(3.0, one), (1.0, other)];
     let law = ScoreLaw::mixed(2, 0.1, parts);
     let rng = &mut ChaCha8Rng::seed_from_u64(1);
     let mut sums = ImportanceSampling::new();
@@ -278,6 +285,68 @@ fn weights_are_ratios_of_densities() {
     assert!((mean - 1.0).abs() < 0.02, "{mean}");
 }
 
+/// An event that a score decides is as frequent as asked for, and the score keeps its law within it and without.
+#[test]
+fn tails_are_as_frequent_as_asked_for() {
+    for (own, chance) in [(1e-9, 0.5), (1e-3, 0.05), (0.3, 0.9), (0.5, 0.5), (0.999, 0.9991)] {
+        let tail = Tail { chance, ..Tail::new(own) };
+        let law = ScoreLaw::mixed(1, 0.0, vec![(1.0, vec![Single::Tail(tail)])]);
+        let rng = &mut ChaCha8Rng::seed_from_u64(1);
+        let (mut inside, mut within, mut without) = (0.0, Vec::new(), Vec::new());
+        for _ in 0..20_000 {
+            let (_, z) = scores(rng, &law);
+            let above = tail::normal(z[0]);
+            assert_eq!(tail.has(z[0]), above <= own * (1.0 + 1e-9), "{own} {chance}: {}", z[0]);
+            let expected = if tail.has(z[0]) { own / chance } else { (1.0 - own) / (1.0 - chance) };
+            assert!((law.log_weight(&z).exp() / expected - 1.0).abs() < 1e-9);
+            inside += f64::from(u8::from(tail.has(z[0])));
+            if tail.has(z[0]) {
+                within.push(above / own);
+            } else {
+                without.push((above - own) / (1.0 - own));
+            }
+        }
+        let share = inside / 20_000.0;
+        let error = (chance * (1.0 - chance) / 20_000.0).sqrt();
+        assert!((share - chance).abs() < 4.0 * error, "{own} {chance}: {share}");
+        // Uniform: the mean of n such numbers.
+        for part in [within, without].into_iter().filter(|part| !part.is_empty()) {
+            let mean = part.iter().sum::<f64>() / part.len() as f64;
+            assert!((mean - 0.5).abs() < 4.0 / (12.0 * part.len() as f64).sqrt(), "{own}: {mean}");
+        }
+    }
+}
+
+/// Of eight parts that fail once in a thousand times any two bring the event about, and one brings it nearer.
+#[test]
+fn events_that_scores_decide_are_found() {
+    let p: f64 = 1e-3;
+    let failing = |z: &[f64]| z[..8].iter().filter(|z| tail::normal(**z) < p).count();
+    let n = 8.0;
+    let none = (1.0 - p).powi(8);
+    let one = n * p * (1.0 - p).powi(7);
+    let plan = Plan {
+        scores: 10,
+        events: &[
+            (0, 1e-3),
+            (1, 1e-3),
+            (2, 1e-3),
+            (3, 1e-3),
+            (4, 1e-3),
+            (5, 1e-3),
+            (6, 1e-3),
+            (7, 1e-3),
+        ],
+        ..PLAN
+    };
+    let two = 1.0 - none - one;
+    assert_covers("two of eight", plan, two, &|z, _| failing(z) as f64 - 1.5);
+    let truth = none * tail::normal(6.0) + one * tail::normal(4.0) + two * tail::normal(0.0);
+    assert_covers("and loads", plan, truth, &|z, _| {
+        (z[8] + z[9]) / 2_f64.sqrt() - [6.0, 4.0, 0.0][failing(z).min(2)]
+    });
+}
+
 #[test]
 fn what_cannot_be_is_refused() {
     for (scores, per_level) in [(0, 1000), (1, 99), (1_000_001, 100), (usize::MAX, usize::MAX)] {
@@ -288,6 +357,12 @@ fn what_cannot_be_is_refused() {
     for least in [0.0, 1.0, f64::NAN] {
         assert!(matches!(search.clone().with_least(least), Err(StatisticsError::Share { .. })));
     }
+    for value in [0.0, 1.0, f64::NAN] {
+        let refused = search.clone().with_events(&[(0, value)]);
+        assert!(matches!(refused, Err(StatisticsError::Probability { .. })), "{value}");
+    }
+    let refused = search.clone().with_events(&[(2, 0.5)]);
+    assert!(matches!(refused, Err(StatisticsError::Columns { .. })));
     assert_eq!(search.level(), f64::NEG_INFINITY);
     let required = StatisticsError::TooFew { n: 0, required: 100 };
     assert_eq!(SteeredSampling::new(&[search.clone()]).unwrap_err(), required);
