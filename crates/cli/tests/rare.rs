@@ -60,6 +60,43 @@ fn known_probabilities_are_found() {
     }
 }
 
+/// By importance sampling, with what was drawn from which law; the same from any number of threads.
+#[test]
+fn importance_sampling_says_what_it_steered() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), scenario()).unwrap();
+    let event = "payload_mass_centre_1_m >= 0.052";
+    let common =
+        ["rare", event, "--scenario", "it.toml", "--method", "importance", "--sample", "2000"];
+    let with = |more: &[&str]| scratch.done(&[&common[..], more].concat(), 0);
+    let text = with(&["--json", "--threads", "1"]);
+    assert_eq!(text, with(&["--json", "--threads", "2"]));
+    let found: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(found["method"], "importance");
+    assert_eq!(found["steered"][0], "payload mass centre");
+    assert_eq!(found["own_laws"][0], "payload roots");
+    let (lower, upper) = (&found["interval"]["lower"], &found["interval"]["upper"]);
+    // The tail of the normal law beyond 5.2.
+    let exact = 9.964e-8;
+    assert!(
+        lower.as_f64().unwrap() < 1.05 * exact && 0.95 * exact < upper.as_f64().unwrap(),
+        "{text}"
+    );
+    assert_eq!(found["warnings"], Value::Array(Vec::new()));
+    let said = with(&[]);
+    for line in [
+        "  steered      payload mass centre, stage mass centre, ",
+        "  own laws     payload roots, payload axes, ",
+    ] {
+        assert!(said.contains(line), "{said}");
+    }
+    assert!(!said.contains("warning"), "{said}");
+    let far =
+        ["rare", "payload_mass_centre_1_m >= 1", "--scenario", "it.toml", "--method", "importance"];
+    let said = scratch.done(&far, 0);
+    assert!(said.contains("no event was found; below") && said.contains("warning"), "{said}");
+}
+
 /// An event that is not rare is as frequent as in a study.
 #[test]
 fn frequent_events_are_those_of_a_study() {
@@ -89,6 +126,13 @@ fn what_cannot_be_is_refused() {
         ),
         (&["rare", "cone_deg >= 5", "--per-level", "99"], "99"),
         (&["rare", "cone_deg >= 5", "--replicas", "1"], "1"),
+        (&["rare", "cone_deg >= 5", "--sample", "1e4"], "--method importance"),
+        (
+            &["rare", "cone_deg >= 5", "--method", "importance", "--replicas", "5"],
+            "--method subset",
+        ),
+        (&["rare", "cone_deg >= 5", "--method", "importance"], "method \"subset\" serves any law"),
+        (&["rare", "cone_deg >= 5", "--method", "other"], "importance"),
         (&["rare", "cone_deg >= 5", "--least", "0"], "0"),
         (&["rare", "cone_deg >= 5", "--least", "nan"], "NaN"),
         (&["rare", "cone_deg >= 5", "--scenario", "none.toml"], "none.toml"),

@@ -20,6 +20,8 @@ pub(crate) struct Groups {
     dispersed: Vec<usize>,
     /// Places of the dispersed numbers whose scores can be steered: of those that are not always the same.
     scored: Vec<usize>,
+    /// Which of these decide an event without others, by their numbers, and its probability.
+    events: Vec<(usize, f64)>,
 }
 
 /// What the runs of a simulation draw.
@@ -54,9 +56,15 @@ impl Groups {
         joint: &Joint<T>,
     ) -> Self {
         let wide = joint.all.iter().enumerate().filter(|(_, d)| d.law.deviation() > 0.0);
-        let scored = wide.map(|(place, _)| place).collect();
-        let mut groups =
-            Self { names: Vec::new(), inertias: Vec::new(), dispersed: Vec::new(), scored };
+        let scored: Vec<usize> = wide.map(|(place, _)| place).collect();
+        let alone =
+            |place: usize| joint.correlation.related().all(|(a, b)| a != place && b != place);
+        let events = scored.iter().enumerate().filter(|(_, place)| alone(**place));
+        let events =
+            events.filter_map(|(i, place)| Some((i, joint.all[*place].law.as_bernoulli()?)));
+        let events = events.collect();
+        let (names, inertias, dispersed) = (Vec::new(), Vec::new(), Vec::new());
+        let mut groups = Self { names, inertias, dispersed, scored, events };
         for (body, law) in bodies {
             let first = groups.names.len();
             if law.has_independent_axes() {
@@ -101,6 +109,11 @@ impl Groups {
     /// The places, among all numbers that are dispersed, of those whose scores can be steered.
     pub(crate) fn scored(&self) -> &[usize] {
         &self.scored
+    }
+
+    /// Which of these decide an event without others, by their numbers, and its probability.
+    pub(crate) fn events(&self) -> &[(usize, f64)] {
+        &self.events
     }
 
     /// The names of the groups with scores that can be steered, and of the others.

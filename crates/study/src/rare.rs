@@ -203,7 +203,7 @@ fn of_scores(warning: &SteeredWarning) -> String {
     match warning {
         SteeredWarning::NotReached { searches } => format!(
             "{searches} searches did not come to the event: it cannot be, or is rarer than --least, or what is drawn from its own law \
-             decides; take --method subset"
+             decides; neither estimate nor interval should be trusted; take --method subset, or more runs of a level"
         ),
         SteeredWarning::SearchesDiffer { one, other } => format!(
             "runs where one search led tell {one:.1e}, and runs where another led {other:.1e}: there are several ways to the \
@@ -259,3 +259,6 @@ pub(crate) fn find<C: Subject>(
         estimate,
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -988,6 +988,12 @@ impl ScalarLaw {
         }
         Ok(Self::of(Bernoulli { probability }))
     }
+
+    /// The probability, if it is of an event.
+    #[must_use]
+    pub fn as_bernoulli(&self) -> Option<f64> {
+        if let Kind::Bernoulli(law) = &self.0 { Some(law.probability) } else { None }
+    }
 }
 
 impl Law for Bernoulli {

@@ -385,7 +385,7 @@ fn what_cannot_be_is_refused() {
 }
 
 /// Both methods against 100,000,000 plain runs of a function of ten scores with a switch that no score steers; the page of rare events
-/// has the figures. `cargo test -p gyradius-statistics --lib -- --ignored --nocapture against_plain`.
+/// has the figures. `cargo test -p gyradius-statistics --lib -- --ignored --nocapture plain_runs`.
 #[test]
 #[ignore = "some ten seconds"]
 fn both_methods_agree_with_plain_runs() {

@@ -39,6 +39,7 @@ pub(super) fn find<C: Subject>(
     let steering = Steering::new(seed, runs.model(), runs.groups().scored());
     let refused = |field: &str, error: StatisticsError| ScenarioError::field(field, error);
     let search = ScoreSearch::new(steering.scores(), per_level)
+        .and_then(|search| search.with_events(runs.groups().events()))
         .map_err(|error| refused("per-level", error))?;
     let search = search.with_least(least).map_err(|error| refused("least", error))?;
     runs.begin()?;
