@@ -7,14 +7,13 @@ mod search;
 pub use score_law::ScoreLaw;
 pub use search::ScoreSearch;
 
+use score_law::OWN;
+
 use crate::{
     Confidence, ImportanceEstimate, ImportanceSampling, Interval, Proportion, StatisticsError,
     WeightWarning,
 };
 
-/// The share of the own law in every law that scores are drawn from: no weight is above its inverse (Hesterberg 1995,
-/// doi:10.1080/00401706.1995.10484303).
-const OWN: f64 = 0.1;
 /// So many standard errors between what two searches make of the event are no chance.
 const APART: f64 = 4.0;
 /// Differences below this factor are of no concern.

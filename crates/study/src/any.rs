@@ -234,11 +234,13 @@ impl AnyScenario {
             carry_out(&**scenario, options, progress, say).map(|study| Outcome::of(&study)))
     }
 
-    /// Finds how often a rare event happens, by subset simulation (Au & Beck 2001) that draws one group of inputs anew at a time:
-    /// see [`SubsetSimulation`](gyradius_statistics::SubsetSimulation). Nothing is written.
+    /// Finds how often a rare event happens: by subset simulation (Au & Beck 2001) that draws one group of inputs anew at a time, see
+    /// [`SubsetSimulation`](gyradius_statistics::SubsetSimulation), or by importance sampling of what is drawn by normal scores, see
+    /// [`SteeredSampling`](gyradius_statistics::SteeredSampling). Nothing is written.
     ///
     /// # Errors
-    /// There is no such model or column, or the numbers of runs are out of range; a simulator cannot be started; it was stopped.
+    /// There is no such model or column, or the numbers of runs are out of range; a simulator cannot be started; it was stopped. For importance
+    /// sampling: nothing is drawn by a normal score.
     pub fn rare(
         &self,
         event: &Event,

@@ -2,6 +2,10 @@
 
 use crate::{law, tail};
 
+/// The share of the own law in every law that scores are drawn from: no weight is above its inverse (Hesterberg 1995,
+/// doi:10.1080/00401706.1995.10484303).
+pub(super) const OWN: f64 = 0.1;
+
 /// A law of scores: a mixture of the standard normal law, their own, and of others, in each of which the scores are independent. A score
 /// has another mean and standard deviation there; one that decides an event has it more often.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,8 @@
 //! A search for the law of scores under which an event is least rare: the cross-entropy method.
 
 use super::{
-    OWN,
     fit::{self, Elite},
-    score_law::{ScoreLaw, Single, Tail},
+    score_law::{OWN, ScoreLaw, Single, Tail},
 };
 use crate::{StatisticsError, error::share};
 
@@ -29,8 +28,9 @@ const FEWEST: usize = 100;
 /// doi:10.1007/978-1-4757-4321-0), in steps: it asks for runs, which may be done in any order, and is told their outcomes.
 ///
 /// The first level has plain runs. The tenth of them that comes nearest to the event leads on: the next law is fitted to
-/// their scores, weighted as the own law has them, and a tenth of the own law is kept. Level by level the runs come nearer, until a tenth of
-/// them is the event. Two last levels then fit the law to all runs that are the event.
+/// their scores, weighted as the own law has them, and a tenth of the own law is kept. Fewer lead on, 30, where a tenth comes no nearer: where most
+/// runs draw what no score leads to. Level by level the runs come nearer, until 30 or more are the event. Two last levels then fit
+/// the law to all runs that are the event.
 ///
 /// What is fitted is one normal law or a mixture of two, with independent scores: two, where the likelihood says that there
 /// are two ways, as to both limits of an absolute value. Standard deviations are kept between 0.3 and 3, and stay 1 unless they are surely
