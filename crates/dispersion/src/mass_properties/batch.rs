@@ -1,7 +1,7 @@
 //! Draws of the joint law in batches, into columns or rows.
 
-use gyradius_inertia::MassProperties;
-use nalgebra::UnitQuaternion;
+use gyradius_inertia::{Containment, MassProperties, Region};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -104,12 +104,11 @@ impl Chunk {
             to[..n].copy_from_slice(&from[..n]);
         }
         assemble(sizes, &self.attitudes, entries.each_mut().map(|entry| &mut entry[..n]));
-        let kept = law.region().is_some();
         for i in 0..n {
             // A mass that is not positive comes once in 1e15 draws.
-            let is_out =
-                !(self.ten[0][i] > 0.0) || (kept && !self.body(i).is_some_and(|b| law.holds(&b)));
-            if is_out {
+            let is_in =
+                self.ten[0][i] > 0.0 && law.region().is_none_or(|region| self.is_in(region, i));
+            if !is_in {
                 self.put(i, &law.sample(rng));
             }
         }
@@ -133,9 +132,20 @@ impl Chunk {
         }
     }
 
-    fn body(&self, i: usize) -> Option<MassProperties> {
-        let ten = TenParameters::from_values(self.ten.each_ref().map(|column| column[i])).ok()?;
-        MassProperties::try_from(ten).ok()
+    /// Whether a row is possible in a region.
+    fn is_in(&self, region: &Region, i: usize) -> bool {
+        let ten = self.ten.each_ref().map(|column| column[i]);
+        let [mass, x, y, z, i11, i22, i33, i12, i13, i23] = ten;
+        let half = 0.5 * (i11 + i22 + i33);
+        let sigma =
+            Matrix3::new(half - i11, -i12, -i13, -i12, half - i22, -i23, -i13, -i23, half - i33);
+        match region.room_in_ellipsoid(mass, &Vector3::new(x, y, z), &sigma) {
+            Some(room) => room >= 0.0,
+            None => {
+                let body = TenParameters::from_values(ten).and_then(MassProperties::try_from);
+                body.is_ok_and(|body| region.containment(&body) == Containment::Possible)
+            }
+        }
     }
 
     fn put(&mut self, i: usize, body: &MassProperties) {

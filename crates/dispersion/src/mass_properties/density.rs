@@ -89,55 +89,71 @@ impl MassPropertiesLaw {
         let density = ln_density_of_entries(
             body.inertia(),
             |squares| {
-                // |dK/dx| = 2 |x| times the factor, for each.
                 let sizes = squares.map(|k| (k / factor).sqrt());
+                // |dK/dx| = 2 |x| times the factor, for each.
                 let jacobian: f64 =
                     sizes.iter().map(|x| LN_2 + libm::log(*x) + libm::log(factor)).sum();
-                // The densities of each law at each size of either sign, and the scores.
+                // The densities of each law at each size of either sign.
                 let mut each = [[[0.0; 2]; 3]; 3];
-                let mut score = [[[0.0; 2]; 3]; 3];
-                for (i, law) in laws.iter().enumerate() {
-                    for (j, size) in sizes.into_iter().enumerate() {
+                for (law, each) in laws.iter().zip(&mut each) {
+                    for (size, each) in sizes.into_iter().zip(each) {
                         for (sign, x) in [size, -size].into_iter().enumerate() {
                             let Some(density) = law.ln_density(x) else {
                                 known = false;
                                 return [f64::NEG_INFINITY; 6];
                             };
-                            each[i][j][sign] = density;
-                            if tied && density > f64::NEG_INFINITY {
-                                score[i][j][sign] = self.score(SHAPE + i, law, x);
-                            }
+                            each[sign] = density;
                         }
                     }
                 }
-                PrincipalAxes::ORDERS.map(|(order, _)| {
-                    let mut terms = [f64::NEG_INFINITY; 8];
-                    for (signs, term) in terms.iter_mut().enumerate() {
-                        let at = |i: usize| (i, order[i], signs >> i & 1);
-                        let parts = [0, 1, 2].map(|i| {
-                            let (i, j, sign) = at(i);
-                            scores[SHAPE + i] = score[i][j][sign];
-                            each[i][j][sign]
-                        });
-                        if parts.contains(&f64::NEG_INFINITY) {
-                            continue;
-                        }
-                        let copula =
-                            if tied { self.copula().ln_copula(&scores) } else { Some(alone) };
-                        let Some(copula) = copula else {
-                            known = false;
-                            continue;
-                        };
-                        *term = parts.iter().sum::<f64>() + copula;
-                    }
-                    let sum = ln_sum(&terms);
-                    // Nothing is there, even where a size is zero and the square's density infinite.
-                    if sum == f64::NEG_INFINITY { sum } else { sum - jacobian }
-                })
+                let orders = if tied {
+                    let joint = self.tied(laws, sizes, &each, &mut scores);
+                    known = joint.is_some();
+                    joint.unwrap_or([f64::NEG_INFINITY; 6])
+                } else {
+                    let folded = each.map(|law| law.map(|both| ln_sum(&both)));
+                    PrincipalAxes::ORDERS.map(|(order, _)| {
+                        let [a, b, c] = [0, 1, 2].map(|i| folded[i][order[i]]);
+                        // Where one is zero, so is the product, whatever the others are.
+                        let none = a.min(b).min(c) == f64::NEG_INFINITY;
+                        if none { f64::NEG_INFINITY } else { a + b + c + alone }
+                    })
+                };
+                // Nothing is there, even where a size is zero and the square's density infinite.
+                orders.map(|ln| if ln == f64::NEG_INFINITY { ln } else { ln - jacobian })
             },
             |q| axes.ln_density_of_attitude(q).unwrap_or(f64::NEG_INFINITY),
         );
         known.then_some(density)
+    }
+
+    /// The joint density of three sizes and the copula in each of the orders, both signs of each size added.
+    fn tied(
+        &self,
+        laws: &[ScalarLaw; 3],
+        sizes: [f64; 3],
+        each: &[[[f64; 2]; 3]; 3],
+        scores: &mut [f64; JointScalar::ALL.len()],
+    ) -> Option<[f64; 6]> {
+        let mut orders = [f64::NEG_INFINITY; 6];
+        for ((order, _), sum) in PrincipalAxes::ORDERS.into_iter().zip(&mut orders) {
+            let mut terms = [f64::NEG_INFINITY; 8];
+            for (signs, term) in terms.iter_mut().enumerate() {
+                let sign = |i: usize| signs >> i & 1;
+                let parts = [0, 1, 2].map(|i| each[i][order[i]][sign(i)]);
+                if parts.contains(&f64::NEG_INFINITY) {
+                    continue;
+                }
+                for (i, law) in laws.iter().enumerate() {
+                    let size = sizes[order[i]];
+                    let x = if sign(i) == 0 { size } else { -size };
+                    scores[SHAPE + i] = self.score(SHAPE + i, law, x);
+                }
+                *term = parts.iter().sum::<f64>() + self.copula().ln_copula(scores)?;
+            }
+            *sum = ln_sum(&terms);
+        }
+        Some(orders)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The joint law of mass, mass centre and inertia, of which every draw is a body.
 
-use gyradius_inertia::{Inertia, MAX_LENGTH, MassProperties, Region, RootSecondMoments};
+use gyradius_inertia::{Inertia, MAX_LENGTH, MassProperties, Region, SecondMoments};
 use nalgebra::{UnitQuaternion, Vector3};
 use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::{Distribution, StandardNormal};
@@ -269,18 +269,14 @@ impl MassPropertiesLaw {
         if !(mass > 0.0) {
             return None;
         }
-        let principal = |size: [f64; 3], axes: &UnitQuaternion<f64>| {
-            let squared = RootSecondMoments::new(size).ok()?.squared();
-            Inertia::from_second_moments(squared, axes).ok()
+        let principal = |factor: f64, axes: &UnitQuaternion<f64>| {
+            let moments = SecondMoments::new(shape.map(|size| size * size * factor)).ok()?;
+            Inertia::from_second_moments(moments, axes).ok()
         };
         let inertia = match &self.tensor.of {
-            Of::GyrationLengths(Principal { axes, .. }) => {
-                let root = mass.sqrt();
-                principal(shape.map(|length| length * root), &axes.sample(rng))?
-            }
+            Of::GyrationLengths(Principal { axes, .. }) => principal(mass, &axes.sample(rng))?,
             Of::Roots(Principal { axes, .. }) => {
-                let root = self.shares().factor(mass).sqrt();
-                principal(shape.map(|k| k * root), &axes.sample(rng))?
+                principal(self.shares().factor(mass), &axes.sample(rng))?
             }
             Of::Model(model) => {
                 let mut rng = rng;

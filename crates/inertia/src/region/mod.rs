@@ -249,18 +249,33 @@ impl Region {
         }
     }
 
+    /// The room of a mass, a mass centre and a second moment matrix about it in an ellipsoid, in a few operations and
+    /// without a check of them; none of another region.
+    #[must_use]
+    #[inline]
+    pub fn room_in_ellipsoid(
+        &self,
+        mass_kg: f64,
+        mass_centre_m: &Vector3<f64>,
+        second_moments_kg_m2: &Matrix3<f64>,
+    ) -> Option<f64> {
+        let Kind::Ellipsoid { pose, weights, .. } = &self.0 else { return None };
+        let off = mass_centre_m - pose.translation.vector;
+        // tr(Q⁻¹ Σ_c)/m + (c − e)ᵀ Q⁻¹ (c − e).
+        let own = weights.component_mul(second_moments_kg_m2).sum() / mass_kg;
+        Some(1.0 - own - off.dot(&(weights * off)))
+    }
+
     /// The least of the conditions that every distribution of matter in the region meets, each relative to what it would
     /// be with all the mass in the middle: negative if and only if no matter in an ellipsoid, and only if none in a box or
     /// hull, has these mass properties.
     #[must_use]
     pub fn room(&self, body: &MassProperties) -> f64 {
         match &self.0 {
-            Kind::Ellipsoid { pose, weights, .. } => {
-                let off = body.mass_centre_m() - pose.translation.vector;
+            Kind::Ellipsoid { .. } => {
                 let sigma = body.inertia().as_inertia_matrix().second_moment_matrix();
-                // tr(Q⁻¹ Σ_c)/m + (c − e)ᵀ Q⁻¹ (c − e).
-                1.0 - weights.component_mul(&sigma).sum() / body.mass_kg()
-                    - off.dot(&(weights * off))
+                // Always: it is an ellipsoid.
+                self.room_in_ellipsoid(body.mass_kg(), &body.mass_centre_m(), &sigma).unwrap_or(1.0)
             }
             Kind::Box { pose, half_sides } => {
                 let local = Local::of(body, pose);
