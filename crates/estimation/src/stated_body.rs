@@ -1,27 +1,30 @@
 //! Mass, mass centre and inertia of a body together, from plain statements about nominal ones.
 
-use gyradius_dispersion::ScalarLaw;
-use gyradius_inertia::{Inertia, MassProperties};
-use nalgebra::Vector3;
+use gyradius_dispersion::{
+    MassPropertiesLaw, MassPropertiesLawError, ScalarLaw, TensorLaw, Wishart,
+};
+use gyradius_inertia::{MassProperties, Region};
 use rand::Rng;
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::Distribution;
 
 use crate::{StatedModel, StatementError, StatementWarning, Statements};
 
-/// The lightest body that is drawn, over the nominal mass.
+/// The lightest body that is drawn of a mass that scatters widely, over the nominal mass.
 const LIGHTEST: f64 = 1e-3;
+/// Up to this deviation over its mean a normal mass comes nowhere near zero.
+const NARROW: f64 = 0.125;
 
 /// The joint law of mass, mass centre and inertia that statements make about a nominal body.
 ///
 /// # Definition
-/// * The mass is normal about the nominal one, kept above a thousandth of it.
+/// A [`MassPropertiesLaw`]:
+/// * The mass is normal about the nominal one; where it scatters by more than an eighth, kept above a thousandth of it.
 /// * The mass centre is normal along each body axis, independent of all else. The inertia is that about the drawn mass
 ///   centre, so nothing is added to it for the centre.
 /// * The inertia at the nominal mass has the law of [`Statements::model`], and is multiplied by what the mass makes
 ///   of it, 1 + α(m/m₀ − 1) ([`StatedMass::factor`](crate::StatedMass::factor)).
 ///
-/// Four normal scores are drawn first, of the mass and of the mass centre, whether they are stated or not: a statement
-/// more does not change what the others draw.
+/// A statement more does not change what the others draw.
 ///
 /// # Realizability
 /// By construction: a mass above zero, any mass centre, and an inertia that some body has.
@@ -42,8 +45,7 @@ const LIGHTEST: f64 = 1e-3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct StatedBody {
     nominal: MassProperties,
-    mass: Option<ScalarLaw>,
-    centre: [f64; 3],
+    law: MassPropertiesLaw,
     /// Nothing where the inertia does no more than follow the mass.
     model: Option<StatedModel>,
 }
@@ -63,23 +65,81 @@ impl StatedBody {
         let spoken = statements.moments.is_some()
             || statements.products.is_some()
             || statements.axes.is_some();
-        let centre = statements.centre.map_or([0.0; 3], |centre| centre.deviations());
         let of_inertia = Statements { centre: None, ..*statements };
         let model = (spoken && !is_point)
             .then(|| of_inertia.model(inertia, Some(kilograms)))
             .transpose()?;
         let relative = statements.mass.map(|mass| mass.relative(Some(kilograms))).transpose()?;
-        let mass = relative.filter(|relative| *relative > 0.0).map(|relative| {
-            let law = ScalarLaw::truncated_normal(1.0, relative, LIGHTEST, f64::INFINITY);
-            law.map_err(|error| StatementError::Law { problem: error.to_string() })
-        });
-        Ok(Self { nominal: *nominal, mass: mass.transpose()?, centre, model })
+        let centre = statements.centre.map_or([0.0; 3], |centre| centre.deviations());
+        let law = Self::law_of(nominal, relative.unwrap_or(0.0), centre, model.as_ref())
+            .map_err(|error| StatementError::Law { problem: error.to_string() })?;
+        Ok(Self { nominal: *nominal, law, model })
+    }
+
+    /// The law of a model that statements have made, with the mass and the mass centre that were stated with it, about a
+    /// nominal body. What an uncertain mass centre adds to an inertia that was measured about another point is in the
+    /// model; the mass centre itself is drawn independently.
+    ///
+    /// # Errors
+    /// Numbers at the ends of the range of floats.
+    pub fn of(model: StatedModel, nominal: &MassProperties) -> Result<Self, StatementError> {
+        let relative = model.mass().map_or(0.0, |mass| mass.relative_deviation());
+        let centre = model.centre_deviations().unwrap_or_default();
+        let law = Self::law_of(nominal, relative, centre, Some(&model))
+            .map_err(|error| StatementError::Law { problem: error.to_string() })?;
+        Ok(Self { nominal: *nominal, law, model: Some(model) })
+    }
+
+    fn law_of(
+        nominal: &MassProperties,
+        relative: f64,
+        centre: [f64; 3],
+        model: Option<&StatedModel>,
+    ) -> Result<MassPropertiesLaw, MassPropertiesLawError> {
+        let kilograms = nominal.mass_kg();
+        let deviation = relative * kilograms;
+        let mass = if relative > NARROW {
+            ScalarLaw::truncated_normal(kilograms, deviation, LIGHTEST * kilograms, f64::INFINITY)
+        } else {
+            ScalarLaw::normal(kilograms, deviation)
+        };
+        let at = nominal.mass_centre_m();
+        let of_axis = |i: usize| ScalarLaw::normal(at[i], centre[i]);
+        let tensor = match model {
+            Some(model) => {
+                let share = model.mass().map_or(0.0, |mass| mass.inertia_follows());
+                TensorLaw::model(model.law_at_nominal_mass().clone())?
+                    .with_follows(share, kilograms)?
+            }
+            // A law without scatter gives the inertia to the bit.
+            None => match Wishart::new(*nominal.inertia(), 0.0) {
+                Ok(still) => TensorLaw::model(still)?.with_follows(1.0, kilograms)?,
+                Err(_) => return Err(MassPropertiesLawError::NoBodies { bodies: 0 }),
+            },
+        };
+        MassPropertiesLaw::new(mass?, [of_axis(0)?, of_axis(1)?, of_axis(2)?], tensor)
+    }
+
+    /// The same with draws of which the matter can lie in a region.
+    ///
+    /// # Errors
+    /// Next to no draw is possible in the region.
+    pub fn inside(self, region: Region) -> Result<Self, StatementError> {
+        let law = self.law.inside(region);
+        let law = law.map_err(|error| StatementError::Law { problem: error.to_string() })?;
+        Ok(Self { law, ..self })
     }
 
     /// The nominal body.
     #[must_use]
     pub fn nominal(&self) -> &MassProperties {
         &self.nominal
+    }
+
+    /// The joint law.
+    #[must_use]
+    pub fn law(&self) -> &MassPropertiesLaw {
+        &self.law
     }
 
     /// The law of the inertia, where more is stated of it than that it follows the mass.
@@ -97,26 +157,7 @@ impl StatedBody {
 
 impl Distribution<MassProperties> for StatedBody {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> MassProperties {
-        let mut score = || -> f64 { StandardNormal.sample(rng) };
-        let [of_mass, x, y, z] = [score(), score(), score(), score()];
-        let ratio = self.mass.as_ref().map_or(1.0, |law| law.at_score(of_mass));
-        let centre = self.nominal.mass_centre_m()
-            + Vector3::from(self.centre).component_mul(&Vector3::new(x, y, z));
-        let (inertia, factor): (Inertia, f64) = match &self.model {
-            Some(model) => (
-                model.law_at_nominal_mass().sample(rng),
-                model.mass().map_or(1.0, |mass| mass.factor(ratio)),
-            ),
-            None => (*self.nominal.inertia(), ratio),
-        };
-        let mass = self.nominal.mass_kg() * ratio;
-        let drawn = MassProperties::new(mass, centre, inertia);
-        let scaled = |drawn: MassProperties| {
-            let scaled = if factor == 1.0 { drawn } else { drawn.scaled_density(factor)? };
-            MassProperties::new(mass, centre, *scaled.inertia())
-        };
-        // Mass and trace are in a range in which no factor that is drawn loses digits: there is always a body.
-        drawn.and_then(scaled).unwrap_or(self.nominal)
+        self.law.sample(rng)
     }
 }
 
@@ -124,8 +165,8 @@ impl Distribution<MassProperties> for StatedBody {
 mod tests {
     use super::*;
     use crate::{Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement};
-    use gyradius_inertia::{InertiaMatrix, SecondMoments};
-    use nalgebra::{Quaternion, UnitQuaternion};
+    use gyradius_inertia::{Inertia, InertiaMatrix, SecondMoments};
+    use nalgebra::{Quaternion, UnitQuaternion, Vector3};
     use proptest::{prelude::*, sample::select};
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 

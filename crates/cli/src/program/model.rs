@@ -1,11 +1,12 @@
 //! `gyradius model`: a nominal inertia and plain statements, and what they come to.
 
+use gyradius_dispersion::TenParameters;
 use gyradius_estimation::{
-    AxesStatement, CentreStatement, MassStatement, MomentsStatement, ProductsStatement,
+    AxesStatement, CentreStatement, MassStatement, MomentsStatement, ProductsStatement, StatedBody,
     StatedModel, Statements,
 };
 use gyradius_formats::read_text;
-use gyradius_inertia::{Inertia, InertiaMatrix};
+use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Region};
 use gyradius_study::{Fragment, FragmentBody, FragmentError, parse_toml};
 use serde::{Deserialize, Serialize};
 use std::{error::Error, fmt::Write};
@@ -30,6 +31,7 @@ struct Stated {
     axes: Option<AxesStatement>,
     mass: Option<MassStatement>,
     centre: Option<CentreStatement>,
+    inside: Option<Region>,
 }
 
 #[derive(Deserialize)]
@@ -37,6 +39,16 @@ struct Stated {
 struct Nominal {
     inertia_kg_m2: [[f64; 3]; 3],
     mass_kg: Option<f64>,
+    #[serde(default)]
+    mass_centre_m: [f64; 3],
+}
+
+/// What the statements come to.
+#[derive(Debug)]
+struct Told {
+    model: StatedModel,
+    /// Mass, mass centre and inertia together, where there is a nominal mass.
+    body: Option<StatedBody>,
 }
 
 /// Grows when a field changes its meaning or goes; new fields may come without it.
@@ -56,6 +68,21 @@ struct Document {
     turn_deviation_rad: [Option<f64>; 3],
     warnings: Vec<String>,
     fragment: FragmentJson,
+    /// The joint law of mass, mass centre and inertia; null without a nominal mass.
+    law: Option<LawJson>,
+}
+
+/// Ten numbers in the order of the columns.
+#[derive(Serialize)]
+struct LawJson {
+    columns: [&'static str; 10],
+    /// Null where draws are kept to a region.
+    mean: Option<[f64; 10]>,
+    deviation: Option<[f64; 10]>,
+    covariance: Option<[[f64; 10]; 10]>,
+    /// The share of draws that the region keeps, and its standard error; 1 and 0 without one.
+    acceptance: [f64; 2],
+    mass_properties_law: serde_json::Value,
 }
 
 /// Runs the verb.
@@ -63,14 +90,14 @@ pub(crate) fn model(arguments: &ModelArgs) -> Result<(), Box<dyn Error>> {
     let file = arguments.file.display();
     let text = read_text(&arguments.file, MAX_BYTES)
         .map_err(|error| format!("cannot read {file}: {error}"))?;
-    let model = stated(&text).map_err(|error| format!("{file}: {error}"))?;
+    let told = stated(&text).map_err(|error| format!("{file}: {error}"))?;
     let body = FragmentBody::from(arguments.fragment.body);
-    let fragment = fragment(body, &model).map_err(|error| format!("{file}: {error}"))?;
-    let json = || json(&model, body, &fragment);
+    let fragment = fragment(body, &told.model).map_err(|error| format!("{file}: {error}"))?;
+    let json = || json(&told, body, &fragment);
     output::write(
         &arguments.fragment,
         &arguments.file,
-        &report(arguments, &model),
+        &report(arguments, &told),
         &json,
         &fragment,
     )?;
@@ -78,16 +105,29 @@ pub(crate) fn model(arguments: &ModelArgs) -> Result<(), Box<dyn Error>> {
 }
 
 /// What the text of a file states; an error names the key.
-fn stated(text: &str) -> Result<StatedModel, String> {
-    let Stated { nominal, moments, products, axes, mass, centre } = parse_toml(text)?;
-    let Nominal { inertia_kg_m2, mass_kg } = nominal;
+fn stated(text: &str) -> Result<Told, String> {
+    let Stated { nominal, moments, products, axes, mass, centre, inside } = parse_toml(text)?;
+    let Nominal { inertia_kg_m2, mass_kg, mass_centre_m } = nominal;
     let inertia = Inertia::try_from(inertia_kg_m2)
         .map_err(|error| format!("nominal.inertia_kg_m2: {error}"))?;
     let statements = Statements { moments, products, axes, mass, centre };
-    statements
+    let model = statements
         .check(&inertia, mass_kg)
         .and_then(|()| statements.model(&inertia, mass_kg))
-        .map_err(|error| error.to_string())
+        .map_err(|error| error.to_string())?;
+    let nominal = mass_kg.map(|mass| {
+        MassProperties::new(mass, mass_centre_m, inertia)
+            .map_err(|error| format!("nominal.mass_centre_m: {error}"))
+    });
+    let body = nominal
+        .transpose()?
+        .map(|nominal| StatedBody::of(model.clone(), &nominal).map_err(|error| error.to_string()));
+    let mut body = body.transpose()?;
+    if let Some(region) = inside {
+        let open = body.take().ok_or("inside: it needs nominal.mass_kg")?;
+        body = Some(open.inside(region).map_err(|error| format!("inside: {error}"))?);
+    }
+    Ok(Told { model, body })
 }
 
 /// The inertia at the nominal mass, the mass that it goes with, and the mass centre.
@@ -103,15 +143,15 @@ fn fragment(body: FragmentBody, model: &StatedModel) -> Result<Fragment, Fragmen
     }
 }
 
-fn report(arguments: &ModelArgs, model: &StatedModel) -> String {
+fn report(arguments: &ModelArgs, told: &Told) -> String {
     let mut out = String::new();
     let file = arguments.file.file_name().unwrap_or_default().to_string_lossy();
     // Writing to a string does not fail.
-    let _ = write_report(&mut out, &file, model);
+    let _ = write_report(&mut out, &file, told);
     out
 }
 
-fn write_report(out: &mut String, file: &str, model: &StatedModel) -> std::fmt::Result {
+fn write_report(out: &mut String, file: &str, Told { model, body }: &Told) -> std::fmt::Result {
     writeln!(out, "Made by gyradius {} of the statements in {file}\n", env!("CARGO_PKG_VERSION"))?;
     writeln!(out, "kg·m²          nominal    deviation: stated    implied    correlations")?;
     let nominal = model.nominal().entries();
@@ -160,6 +200,17 @@ fn write_report(out: &mut String, file: &str, model: &StatedModel) -> std::fmt::
             "mass centre: ± {x}, {y}, {z} mm along the body axes, independent of the inertia"
         )?;
     }
+    if let Some(law) = body.as_ref().map(StatedBody::law).filter(|law| law.region().is_some()) {
+        let (share, error) = law.acceptance();
+        let [share, error] = [share, error].map(|x| short(100.0 * x));
+        let line = format!(
+            "inside: of the draws without the region {share} ± {error} % are possible for matter there, and only such are \
+             drawn; the deviations above are those without it"
+        );
+        for line in wrapped(&line) {
+            writeln!(out, "{line}")?;
+        }
+    }
     for warning in model.warnings() {
         for line in wrapped(&format!("warning: {warning}")) {
             writeln!(out, "{line}")?;
@@ -169,7 +220,7 @@ fn write_report(out: &mut String, file: &str, model: &StatedModel) -> std::fmt::
 }
 
 fn json(
-    model: &StatedModel,
+    Told { model, body: stated }: &Told,
     body: FragmentBody,
     fragment: &Fragment,
 ) -> serde_json::Result<String> {
@@ -188,6 +239,23 @@ fn json(
         turn_deviation_rad: model.turns().map(|t| t.is_finite().then_some(t)),
         warnings: model.warnings().iter().map(ToString::to_string).collect(),
         fragment: FragmentJson::of(&body.to_string(), fragment),
+        law: stated.as_ref().map(law_json).transpose()?,
+    })
+}
+
+fn law_json(body: &StatedBody) -> serde_json::Result<LawJson> {
+    let law = body.law();
+    let moments = law.moments();
+    let moments = moments.as_ref();
+    Ok(LawJson {
+        columns: TenParameters::COLUMNS,
+        mean: moments.map(|moments| (*moments.mean()).into()),
+        deviation: moments.map(|moments| moments.deviations()),
+        covariance: moments.map(|moments| {
+            std::array::from_fn(|i| std::array::from_fn(|j| moments.covariance()[(i, j)]))
+        }),
+        acceptance: law.acceptance().into(),
+        mass_properties_law: serde_json::to_value(law)?,
     })
 }
 

@@ -6,7 +6,7 @@ use std::f64::consts::LN_2;
 
 use super::law::{JointScalar, MassPropertiesLaw};
 use super::tensor::{Of, Principal};
-use crate::density_of_entries::ln_density_of_entries;
+use crate::density_of_entries::{Bounded, ln_density_of_bounded};
 use crate::ln_sum::ln_sum;
 use crate::{AttitudeMoments, InertiaLaw, ScalarLaw};
 
@@ -86,7 +86,7 @@ impl MassPropertiesLaw {
         let tied = (0..3).any(|i| self.copula().has(SHAPE + i));
         let alone = if tied { 0.0 } else { self.copula().ln_copula(&scores)? };
         let mut known = true;
-        let density = ln_density_of_entries(
+        let density = ln_density_of_bounded(
             body.inertia(),
             |squares| {
                 let sizes = squares.map(|k| (k / factor).sqrt());
@@ -122,7 +122,12 @@ impl MassPropertiesLaw {
                 // Nothing is there, even where a size is zero and the square's density infinite.
                 orders.map(|ln| if ln == f64::NEG_INFINITY { ln } else { ln - jacobian })
             },
-            |q| axes.ln_density_of_attitude(q).unwrap_or(f64::NEG_INFINITY),
+            Bounded {
+                density: |q: &UnitQuaternion<f64>| {
+                    axes.ln_density_of_attitude(q).unwrap_or(f64::NEG_INFINITY)
+                },
+                at_most: axes.ln_density_at_most(),
+            },
         );
         known.then_some(density)
     }

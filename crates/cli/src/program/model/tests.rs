@@ -146,3 +146,48 @@ fn nothing_is_refused_with_what_may_be_stated() {
         assert!(message.contains("`moment`") && message.contains("`moments`"), "{message}");
     }
 }
+
+/// Every kind of file gives one joint law of ten numbers, with the deviations that are stated of mass and mass centre and
+/// those that the report gives of the inertia; and the law reads back from JSON.
+#[test]
+fn every_file_gives_the_joint_law() {
+    for file in files() {
+        let mut file = file;
+        let nominal = file["nominal"].as_table_mut().unwrap();
+        nominal.insert("mass_kg".to_owned(), 10000.0.into());
+        let at = Value::Array([0.1, -0.2, 1.5].map(Value::Float).to_vec());
+        nominal.insert("mass_centre_m".to_owned(), at);
+        let text = toml::to_string(&file).unwrap();
+        let told = stated(&text).unwrap();
+        let body = told.body.as_ref().unwrap();
+        let document: serde_json::Value = serde_json::to_value(law_json(body).unwrap()).unwrap();
+        let law = &document["mass_properties_law"];
+        let back: gyradius_dispersion::MassPropertiesLaw =
+            serde_json::from_value(law.clone()).unwrap();
+        assert_eq!(back.moments(), body.law().moments());
+        let moments = body.law().moments().unwrap();
+        let deviations = moments.deviations();
+        let relative = told.model.mass().map_or(0.0, |mass| mass.relative_deviation());
+        assert!((deviations[0] - 1e4 * relative).abs() < 1e-9 * 1e4);
+        let centre = told.model.centre_deviations().unwrap_or_default();
+        for i in 0..3 {
+            assert!((deviations[1 + i] - centre[i]).abs() < 1e-12);
+            assert!((moments.mean()[1 + i] - [0.1, -0.2, 1.5][i]).abs() < 1e-12);
+        }
+        let implied = told.model.implied().deviations();
+        for e in 0..6 {
+            assert!((deviations[4 + e] - implied[e]).abs() < 1e-6 * (1.0 + implied[e]), "{text}");
+        }
+        // In a region, and outside of every region.
+        let inside =
+            "\n[inside.box]\nmiddle_m = [0.1, -0.2, 1.5]\nhalf_sides_m = [1.0, 1.0, 1.2]\n";
+        let kept = stated(&(text.clone() + inside)).unwrap();
+        let (share, _) = kept.body.as_ref().unwrap().law().acceptance();
+        assert!(share > 0.9, "{share}");
+        let far = inside.replace("1.5]", "9.0]");
+        let error = stated(&(text.clone() + &far)).unwrap_err();
+        assert!(error.starts_with("inside: "), "{error}");
+        let error = stated(&(text.replace("mass_kg", "# mass_kg") + inside)).unwrap_err();
+        assert!(error.contains("mass_kg"), "{error}");
+    }
+}
