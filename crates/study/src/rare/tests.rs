@@ -6,14 +6,17 @@ use super::*;
 use crate::{Scenario, groups::Drawing, steering::Steering};
 
 /// The built-in bodies under one model, with what is given beside the roots and axes of the payload and of each spring.
-fn scenario(payload: &str, springs: &str) -> Scenario {
+fn text(payload: &str, springs: &str) -> String {
     let text = include_str!("../scenario/peck-2003.toml");
     let (head, rest) = text.split_once("# The law behind").unwrap();
     let (_, source) = rest.split_once("# What the paper prints").unwrap();
-    let text = format!("{head}#{source}")
+    format!("{head}#{source}")
         .replace("[payload.dispersion]\n", &format!("[payload.dispersion]\n{payload}\n"))
-        .replace("[[springs]]", &format!("[[springs]]\ndispersion = {{ {springs} }}"));
-    Scenario::from_toml(&text).unwrap()
+        .replace("[[springs]]", &format!("[[springs]]\ndispersion = {{ {springs} }}"))
+}
+
+fn scenario(payload: &str, springs: &str) -> Scenario {
+    Scenario::from_toml(&text(payload, springs)).unwrap()
 }
 
 /// A mass centre whose third coordinate is made of three scores.
@@ -135,10 +138,8 @@ fn what_is_weighed_is_what_was_drawn() {
 /// The same bits with any number of threads, and with vehicles: what is drawn for them, and what for their flights.
 #[test]
 fn threads_change_nothing_and_vehicles_are_steered() {
-    let text =
-        scenario("mass_kg = { sigma = 100.0, drawn = \"vehicle\" }\nmass_centre_m = 0.01", SPRINGS)
-            .to_toml();
-    let text = text.replace("runs = 2000\n", "vehicles = 50\nflights = 40\n");
+    let payload = "mass_kg = { sigma = 100.0, drawn = \"vehicle\" }\nmass_centre_m = 0.01";
+    let text = text(payload, SPRINGS).replace("runs = 2000\n", "vehicles = 50\nflights = 40\n");
     let scenario = Scenario::from_toml(&text).unwrap();
     assert!(scenario.fleet().is_some());
     let method = RareMethod::Importance { sample: 2000 };
