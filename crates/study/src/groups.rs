@@ -35,7 +35,7 @@ pub(crate) enum Drawing {
     /// For each run and each group the draw of this number.
     Given(Arc<[Vec<u64>]>),
     /// What plain runs draw, but for scores from another law.
-    Steered(Steering),
+    Steered(Arc<Steering>),
 }
 
 impl Drawing {

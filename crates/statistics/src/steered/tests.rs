@@ -365,7 +365,7 @@ fn what_cannot_be_is_refused() {
     assert!(matches!(refused, Err(StatisticsError::Columns { .. })));
     assert_eq!(search.level(), f64::NEG_INFINITY);
     let required = StatisticsError::TooFew { n: 0, required: 100 };
-    assert_eq!(SteeredSampling::new(&[search.clone()]).unwrap_err(), required);
+    assert_eq!(SteeredSampling::new(std::slice::from_ref(&search)).unwrap_err(), required);
     assert!(matches!(SteeredSampling::new(&[]), Err(StatisticsError::TooFew { .. })));
     let mut told = search.clone();
     let runs = |scores: Vec<f64>, n: usize| vec![(scores, 0.0); n];

@@ -49,7 +49,7 @@ pub(super) fn find<C: Subject>(
     for search in &mut searches {
         while !search.is_done() {
             let count = search.asks() as u64;
-            let drawing = Drawing::Steered(steering.with(search.law(), first));
+            let drawing = Drawing::Steered(steering.with(search.law(), first).into());
             let told = runs.steered(drawing, count)?;
             let told: Vec<(Vec<f64>, f64)> =
                 told.into_iter().map(|(Steered { scores, .. }, excess)| (scores, excess)).collect();
@@ -61,7 +61,7 @@ pub(super) fn find<C: Subject>(
     let last = first + sample;
     while first < last {
         let count = AT_ONCE.min(last - first);
-        let drawing = Drawing::Steered(steering.with(sampling.law(), first));
+        let drawing = Drawing::Steered(steering.with(sampling.law(), first).into());
         for (Steered { choice, scores }, excess) in runs.steered(drawing, count)? {
             sampling.push(choice, &scores, excess)?;
         }

@@ -110,7 +110,7 @@ fn what_is_weighed_is_what_was_drawn() {
     let event = "payload_mass_centre_3_m >= 0.05".parse().unwrap();
     let runs = EventRuns::new(&scenario, &event, &RareOptions::default(), &|_| {}).unwrap();
     let steering = Steering::new(scenario.seed(), runs.model(), runs.groups().scored());
-    let own = runs.excesses(Drawing::Steered(steering.clone()), 200).unwrap();
+    let own = runs.excesses(Drawing::Steered(steering.clone().into()), 200).unwrap();
     let plain = runs.excesses(Drawing::Plain, 200).unwrap();
     assert_eq!(
         own.iter().map(|x| x.to_bits()).collect::<Vec<_>>(),
@@ -120,7 +120,7 @@ fn what_is_weighed_is_what_was_drawn() {
     let mut search = gyradius_statistics::ScoreSearch::new(steering.scores(), 300).unwrap();
     let mut first = 0;
     while !search.is_done() {
-        let drawing = Drawing::Steered(steering.with(search.law(), first));
+        let drawing = Drawing::Steered(steering.with(search.law(), first).into());
         let told = runs.steered(drawing, 300).unwrap();
         for (steered, excess) in &told {
             // The first three scores are the mass centre's: the row of the factor of the coefficients 1, 0, 1/2; 0, 1, 1/2; 1/2, 1/2, 1.
