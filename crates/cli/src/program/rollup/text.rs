@@ -133,7 +133,7 @@ fn naive(drawn: &gyradius_study::RollupDraws) -> String {
         _ => format!(" ({})", worst.join(", ")),
     };
     format!(
-        "of these draws, {} are impossible bodies. Of Gaussian numbers in their place, {} of the draws have \
+        "Of these draws, {} are impossible bodies. Of Gaussian numbers in their place, {} of the draws have \
          an impossible part{worst}, and {} of the wholes by first order are impossible",
         drawn.moments.impossible,
         share(naive.any_part),
