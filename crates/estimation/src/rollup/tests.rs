@@ -276,7 +276,7 @@ fn numbers_out_of_range_are_refused() {
         change(&mut stated);
         AssemblyPart::new(stated).unwrap_err().to_string()
     };
-    assert!(with(&|s| s.mass_kg = 0.0).starts_with("mass_kg = 0.0"));
+    assert!(with(&|s| s.mass_kg = 0.0).starts_with("mass = 0.0 kg"));
     assert!(with(&|s| s.mass_kg = f64::NAN).contains("NaN"));
     assert!(with(&|s| s.mass_centre_m[1] = f64::INFINITY).starts_with("mass_centre_2_m = inf m"));
     assert!(with(&|s| s.deviations[7] = -1.0).contains("deviation of i12 = -1.0 kg·m²"));
