@@ -182,7 +182,7 @@ impl Link {
             Style::Full | Style::Diagonal => {
                 let pos = centre.map_or_else(String::new, |c| format!(" pos='{c}'"));
                 let quat = match (self.turn, style) {
-                    (Turn::None | Turn::Zero, Style::Diagonal) if self.digits % 2 == 0 => {
+                    (Turn::None | Turn::Zero, Style::Diagonal) if self.digits.is_multiple_of(2) => {
                         " quat='1 0 0 0'".to_owned()
                     }
                     (Turn::Quaternion, Style::Diagonal) => {
@@ -214,7 +214,7 @@ impl Link {
                     .enumerate()
                     // Products that are zero are often left out.
                     .filter(|(e, (_, text))| {
-                        *e < 3 || self.digits % 2 == 0 || text.parse() != Ok(0.0)
+                        *e < 3 || self.digits.is_multiple_of(2) || text.parse() != Ok(0.0)
                     })
                     .map(|(_, (name, text))| format!("<{name}> {text}</{name}>\n"))
                     .collect();
@@ -584,7 +584,7 @@ fn names_are_told_apart_and_paths_found() {
                 <inertial/><visual><mesh><uri>meshes/a.stl</uri></mesh></visual>\
                 <mesh><uri>model://b.stl</uri></mesh></link><link><inertial/></link></sdf>";
     let file = RobotFile::parse(Path::new("a.sdf"), text.as_bytes().to_vec()).unwrap();
-    let names: Vec<&str> = file.links().iter().map(|link| link.name()).collect();
+    let names: Vec<&str> = file.links().iter().map(gyradius_formats::RobotLink::name).collect();
     assert_eq!(names, ["unnamed", "a", "a#2", "unnamed#2"]);
     assert_eq!(file.relative_paths(), ["meshes/a.stl"]);
     let text = "<mujoco><compiler meshdir='assets/'/><mesh file='a.stl'/><include file='b.xml'/>\
