@@ -67,3 +67,7 @@ pub fn paper_separation() -> Separation {
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+#[cfg(doctest)]
+#[doc = include_str!("../docs/models/mass-properties.md")]
+struct MassPropertiesPage;

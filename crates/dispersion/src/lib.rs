@@ -9,8 +9,10 @@
 //!   every draw is an [`Inertia`].
 //! * [`BasiliskDispersion`]: what a well-known simulator does.
 //! * [`AnyBody`]: every shape, size and attitude, for property tests and domain randomisation.
+//! * [`MassPropertiesLaw`]: mass, mass centre and inertia together, and its rivals [`LogCholeskyTen`], [`MaximumEntropy`],
+//!   [`PseudoInertiaWishart`] and [`NaiveBody`]; all are [`MassPropertiesModel`]s.
 //!
-//! All are [`Distribution`](rand_distr::Distribution)s and [`InertiaLaw`]s, as a law of your own can be;
+//! The others are [`Distribution`](rand_distr::Distribution)s and [`InertiaLaw`]s, as a law of your own can be;
 //! [`DispersionModel`] is any of them, chosen at run time and matched to the moments of another. [`EntryMoments`] are the mean and covariance of the
 //! six entries by quadrature or in closed form, not by sampling.
 //! [`sample_columns`](PrincipalDispersion::sample_columns) draws in bulk.
