@@ -323,3 +323,27 @@ fn a_mass_that_counts_twice_is_found() {
         .collect();
     assert!(worst(&law.moments().unwrap(), &twice) > 10.0);
 }
+
+/// 1e8 draws, none of which is of no body or outside of its shape. It takes two minutes:
+/// `cargo test -p gyradius-dispersion --lib hundred_million -- --ignored`.
+#[test]
+#[ignore = "two minutes"]
+fn a_hundred_million_draws_are_bodies_in_their_shape() {
+    const ROWS: usize = 4096;
+    let region = Region::ellipsoid([0.4, 0.8, 0.3], [1.0, 1.1, 0.9]).unwrap();
+    let centre = [scalar(0, 0.4, 0.2), scalar(1, 0.8, 0.2), scalar(2, 0.3, 0.2)];
+    let law = MassPropertiesLaw::new(scalar(0, 9.0, 1.1), centre, tensor(8, [0.3; 3], [0; 3]));
+    let law = law.unwrap().inside(region.clone()).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    let mut rows = vec![[0.0; 10]; ROWS];
+    let mut done = 0_u64;
+    while done < 100_000_000 {
+        law.sample_into(&mut rng, &mut rows);
+        for row in &rows {
+            let ten = TenParameters::from_values(*row).unwrap();
+            let body = MassProperties::try_from(ten).unwrap_or_else(|e| panic!("{row:?}: {e}"));
+            assert!(region.room(&body) > -1e-12, "{row:?}");
+        }
+        done += ROWS as u64;
+    }
+}
