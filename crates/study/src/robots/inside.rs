@@ -2,11 +2,11 @@
 
 use gyradius_inertia::{Containment, MassProperties, Region};
 use nalgebra::{
-    DMatrix, DVector, Isometry3, Matrix3, SymmetricEigen, Translation3, UnitQuaternion, Vector3,
+    Isometry3, Matrix3, Matrix4, SymmetricEigen, Translation3, UnitQuaternion, Vector3, Vector4,
 };
 use std::fmt;
 
-/// Largest number of points that an ellipsoid is found about, after which it grows to hold them all.
+/// Largest number of points that a hull is made of, and that an ellipsoid is found about before it grows to hold them all.
 const POINTS: usize = 400;
 /// Steps towards the smallest ellipsoid.
 const STEPS: usize = 2000;
@@ -51,7 +51,11 @@ impl Inside {
     /// The region about points, nothing if they are flat or too large.
     pub(super) fn about(self, points: &[[f64; 3]]) -> Option<Region> {
         match self {
-            Self::Hull => Region::hull(points).ok(),
+            Self::Hull => {
+                let all: Vec<Vector3<f64>> = points.iter().map(|p| Vector3::from(*p)).collect();
+                let outer: Vec<[f64; 3]> = outermost(&all).into_iter().map(Into::into).collect();
+                Region::hull(&outer).ok()
+            }
             Self::Box => {
                 let end = |pick: fn(f64, f64) -> f64| {
                     let all = points.iter().map(|p| Vector3::from(*p));
@@ -82,27 +86,25 @@ fn smallest(points: &[[f64; 3]]) -> Option<Region> {
     let all: Vec<Vector3<f64>> = points.iter().map(|p| Vector3::from(*p)).collect();
     let outer = outermost(&all);
     let n = outer.len();
-    let lifted = DMatrix::from_fn(4, n, |i, j| if i < 3 { outer[j][i] } else { 1.0 });
-    let mut weights = DVector::from_element(n, 1.0 / n as f64);
+    let lifted: Vec<Vector4<f64>> = outer.iter().map(|x| x.push(1.0)).collect();
+    let mut weights = vec![1.0 / n as f64; n];
     for _ in 0..STEPS {
-        let spread = &lifted * DMatrix::from_diagonal(&weights) * lifted.transpose();
+        let spread: Matrix4<f64> =
+            lifted.iter().zip(&weights).map(|(x, w)| x * x.transpose() * *w).sum();
         let inverse = spread.try_inverse()?;
         let (place, most) = (0..n)
-            .map(|j| {
-                let x = lifted.column(j);
-                (j, (x.transpose() * &inverse * x)[(0, 0)])
-            })
+            .map(|j| (j, lifted[j].dot(&(inverse * lifted[j]))))
             .max_by(|a, b| a.1.total_cmp(&b.1))?;
         if !(most > 4.0 * (1.0 + NEAR)) {
             break;
         }
         let step = (most - 4.0) / (4.0 * (most - 1.0));
-        weights *= 1.0 - step;
+        weights.iter_mut().for_each(|weight| *weight *= 1.0 - step);
         weights[place] += step;
     }
-    let middle: Vector3<f64> = outer.iter().zip(weights.iter()).map(|(x, w)| x * *w).sum();
+    let middle: Vector3<f64> = outer.iter().zip(&weights).map(|(x, w)| x * *w).sum();
     let about = |x: &Vector3<f64>| (x - middle) * (x - middle).transpose();
-    let spread: Matrix3<f64> = outer.iter().zip(weights.iter()).map(|(x, w)| about(x) * *w).sum();
+    let spread: Matrix3<f64> = outer.iter().zip(&weights).map(|(x, w)| about(x) * *w).sum();
     let inverse = spread.try_inverse()?;
     let reach = all.iter().map(|x| (x - middle).dot(&(inverse * (x - middle)))).fold(0.0, f64::max);
     let eigen = SymmetricEigen::new(spread * reach);
