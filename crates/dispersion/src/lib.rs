@@ -98,7 +98,7 @@ pub use mass_properties::{
     JointScalar, LogCholeskyTen, LogCholeskyTenError, MassPropertiesLaw, MassPropertiesLawError,
     MassPropertiesModel, MaximumEntropy, MaximumEntropyError, NaiveBody, NaiveBodyError, NaiveRule,
     PseudoInertiaWishart, PseudoInertiaWishartError, RegionAcceptanceError, TenMoments,
-    TenParameters, TensorLaw, TensorLawError,
+    TenParameters, TensorLaw, TensorLawError, TensorParts,
 };
 pub use matched::{MatchError, Matched};
 pub use model::{DispersionModel, ModelKind, UnknownModel};

@@ -1,15 +1,19 @@
 //! Draws of what is uncertain besides the inertias, and the separation that they make.
 
-use gyradius_campaign::Streams;
+use gyradius_campaign::{Mix, Streams};
+use gyradius_dispersion::{InertiaLaw, ModelDraw};
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::{BodyParameter, Separation, Stack};
 use nalgebra::Vector3;
+use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
+use std::sync::Arc;
 
 use crate::{
     body::Body,
     failure::Failure,
-    scenario::{Dispersed, Dispersions, Each, Joint, Scenario, Target},
+    groups::Groups,
+    scenario::{Dispersions, Each, Joint, Number, Scenario, Target},
     steering::Steering,
 };
 
@@ -19,90 +23,133 @@ pub(crate) struct Draws {
     streams: Vec<Streams>,
 }
 
+/// The law of the inertia of a body under a model.
+#[derive(Debug)]
+pub(crate) struct BodyLaw {
+    pub(crate) law: Arc<dyn InertiaLaw>,
+    pub(crate) streams: Streams,
+    /// For what the inertia is drawn.
+    pub(crate) each: Each,
+    /// Whether it is the body's own, so that mass, mass centre and inertia are drawn from their joint law.
+    pub(crate) own: bool,
+}
+
+/// What draws a run takes: of each group, for vehicles or for flights, and steered if the run is.
+#[derive(Clone, Copy)]
+pub(crate) struct Taken<'a> {
+    pub(crate) mix: Mix<'a>,
+    /// The number of the stream of what is drawn for a vehicle, or for a flight.
+    pub(crate) stream: &'a dyn Fn(Each) -> u64,
+    pub(crate) steering: Option<&'a Steering>,
+}
+
 impl Draws {
-    pub(crate) fn new<T>(seed: u64, model: &str, dispersed: &[Dispersed<T>]) -> Self {
-        let stream = |d: &Dispersed<T>| Streams::new(seed, model, &d.column);
-        Self { streams: dispersed.iter().map(stream).collect() }
+    pub(crate) fn new<T>(seed: u64, model: &str, joint: &Joint<T>) -> Self {
+        let stream = |number: Number<'_>| Streams::new(seed, model, number.column);
+        Self { streams: joint.numbers().map(stream).collect() }
     }
 
-    /// The independent scores of a run, in the order of what is dispersed: one from the stream of each, steered if the run is. `stream` is
-    /// the number of the stream of what stands in a place, and is drawn for vehicles or for flights.
+    /// The independent scores of a run, in the order of what is dispersed: one from the stream of each, steered if the run is.
     pub(crate) fn scores<T>(
         &self,
         joint: &Joint<T>,
-        stream: impl Fn(usize, Each) -> u64,
-        (run, steering): (u64, Option<&Steering>),
+        groups: &Groups,
+        taken: Taken<'_>,
     ) -> Vec<f64> {
-        let score = |(place, (streams, d)): (usize, (&Streams, &Dispersed<T>))| {
-            StandardNormal.sample(&mut streams.run(stream(place, d.each)))
+        let Taken { mix, stream, steering } = taken;
+        let score = |(place, (streams, number)): (usize, (&Streams, Number<'_>))| {
+            let stream = groups.stream_of(place, mix, stream(number.each));
+            StandardNormal.sample(&mut streams.run(stream))
         };
-        let each = self.streams.iter().zip(&joint.all).enumerate();
+        let each = self.streams.iter().zip(joint.numbers()).enumerate();
         let mut scores: Vec<f64> = each.map(score).collect();
         if let Some(steering) = steering {
-            steering.steer(run, &mut scores);
+            steering.steer(mix.base(), &mut scores);
         }
         scores
     }
 
-    /// The values that scores make: mixed where they are correlated.
-    pub(crate) fn values<T>(joint: &Joint<T>, scores: Vec<f64>) -> Vec<f64> {
-        let mut values = scores;
-        joint.correlation.mix(&mut values);
-        for (value, d) in values.iter_mut().zip(&joint.all) {
-            *value = d.law.at_score(*value);
+    /// What a run draws: the values of all that has a column, and of each body the inertia at its mass. What is kept to a region is
+    /// drawn again, from where its streams stand, until it is there.
+    pub(crate) fn run<T>(
+        &self,
+        joint: &Joint<T>,
+        groups: &Groups,
+        bodies: &[BodyLaw],
+        taken: Taken<'_>,
+    ) -> (Vec<f64>, Vec<ModelDraw>) {
+        let Taken { mix, stream, .. } = taken;
+        let mut scores = self.scores(joint, groups, taken);
+        let inertia = |(i, body): (usize, &BodyLaw)| {
+            groups.inertia(i, mix, stream(body.each), (&*body.law, &body.streams))
+        };
+        let mut draws: Vec<ModelDraw> = bodies.iter().enumerate().map(inertia).collect();
+        for kept in groups.kept() {
+            let (own, body) = (&joint.bodies[kept.body], &bodies[kept.body]);
+            let mut again = None;
+            loop {
+                let values = values(joint, scores.clone());
+                if own.holds(&values, &own.inertia(&values, &draws[kept.body], body.own)) {
+                    break;
+                }
+                let (numbers, inertia) = again.get_or_insert_with(|| {
+                    let streams = self.streams.iter().zip(joint.numbers()).enumerate();
+                    let own = streams.filter(|(place, _)| kept.numbers.contains(place));
+                    let numbers = own.map(|(place, (streams, number))| {
+                        let first = groups.stream_of(place, mix, stream(number.each));
+                        (place, past_first_score(streams.run(first)))
+                    });
+                    let first = groups.inertia_stream(kept.body, mix, stream(body.each));
+                    let mut inertia = body.streams.run(first);
+                    body.law.draw(&mut inertia);
+                    (numbers.collect::<Vec<_>>(), inertia)
+                });
+                for (place, generator) in numbers {
+                    scores[*place] = StandardNormal.sample(generator);
+                }
+                draws[kept.body] = body.law.draw(inertia);
+            }
         }
-        values
+        let mut values = values(joint, scores);
+        for ((draw, own), body) in draws.iter_mut().zip(&joint.bodies).zip(bodies) {
+            draw.inertia = own.inertia(&values, draw, body.own);
+        }
+        values.truncate(joint.all.len());
+        (values, draws)
     }
+}
 
-    /// The values that scores make of a run of a separation.
-    pub(crate) fn run(scenario: &Scenario, scores: Vec<f64>) -> Box<[f64]> {
-        let dispersions = scenario.dispersions();
-        let mut values = Self::values(&dispersions.joint, scores);
-        let all = dispersions.all();
-        // A load that is not late starts as it should.
-        for late in 0..values.len() {
-            if let Target::Late(load, start) = all[late].target
-                && values[late] == 0.0
-            {
-                let start = Target::Load(load, start, 0);
-                for (value, d) in values.iter_mut().zip(all) {
-                    if d.target == start {
-                        *value = d.nominal;
-                    }
+fn past_first_score(mut generator: ChaCha8Rng) -> ChaCha8Rng {
+    let _: f64 = StandardNormal.sample(&mut generator);
+    generator
+}
+
+/// The values that scores make: mixed where they are correlated.
+fn values<T>(joint: &Joint<T>, scores: Vec<f64>) -> Vec<f64> {
+    let mut values = scores;
+    joint.correlation.mix(&mut values);
+    for (value, number) in values.iter_mut().zip(joint.numbers()) {
+        *value = number.law.at_score(*value);
+    }
+    values
+}
+
+/// The values of a separation, of which a load that is not late starts as it should.
+pub(crate) fn with_starts(scenario: &Scenario, mut values: Vec<f64>) -> Box<[f64]> {
+    let all = scenario.dispersions().all();
+    for late in 0..values.len() {
+        if let Target::Late(load, start) = all[late].target
+            && values[late] == 0.0
+        {
+            let start = Target::Load(load, start, 0);
+            for (value, d) in values.iter_mut().zip(all) {
+                if d.target == start {
+                    *value = d.nominal;
                 }
             }
         }
-        values.into()
     }
-}
-
-/// An inertia that goes with the drawn mass, where the scenario says so.
-pub(crate) fn scaled(
-    scenario: &Scenario,
-    body: Body,
-    drawn: &[f64],
-    inertia: InertiaMatrix,
-) -> InertiaMatrix {
-    let dispersions = scenario.dispersions();
-    let share = dispersions.inertia_follows_mass[body as usize];
-    if share == 0.0 {
-        return inertia;
-    }
-    let mass = Target::Body(body, BodyParameter::Mass, 0);
-    let mass = dispersions.all().iter().zip(drawn).find(|(d, _)| d.target == mass);
-    let ratio = mass.map_or(1.0, |(d, value)| value / d.nominal);
-    following(inertia, ratio, share)
-}
-
-/// An inertia that takes a share of the relative change of a mass, which is so many times its nominal value.
-pub(crate) fn following(inertia: InertiaMatrix, ratio: f64, share: f64) -> InertiaMatrix {
-    // A mass that is none fails the run anyway.
-    if !(ratio > 0.0) || share == 0.0 {
-        return inertia;
-    }
-    // Of the whole change the ratio itself, to the bit.
-    let factor = if share < 1.0 { 1.0 + share * (ratio - 1.0) } else { ratio };
-    InertiaMatrix::new(inertia.matrix() * factor).unwrap_or(inertia)
+    values.into()
 }
 
 /// From the nominal mass centres of payload and stage to the drawn ones, body axes, m.
@@ -297,10 +344,12 @@ mod tests {
         );
         let scenario = Scenario::from_toml(&text).unwrap();
         let inertia = *scenario.payload().nominal().as_inertia_matrix();
-        let heavier = scaled(&scenario, Body::Payload, &[11_000.0], inertia);
+        let [payload, stage] = &scenario.dispersions().joint.bodies[..] else { panic!() };
+        let draw = ModelDraw::from(inertia);
+        let heavier = payload.inertia(&[11_000.0], &draw, true);
         assert!((heavier.matrix() - inertia.matrix() * 1.1).norm() < 1e-11);
-        assert_eq!(scaled(&scenario, Body::Payload, &[-1.0], inertia), inertia);
-        assert_eq!(scaled(&scenario, Body::Stage, &[11_000.0], inertia), inertia);
+        assert_eq!(payload.inertia(&[-1.0], &draw, true), inertia);
+        assert_eq!(stage.inertia(&[11_000.0], &draw, true), inertia);
     }
 
     /// Position, velocity, attitude and rate of payload and stage.

@@ -287,8 +287,11 @@ impl fmt::Display for Fragment {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Scenario, scenario::Axes};
-    use gyradius_dispersion::EmpiricalRoots;
+    use crate::{
+        Scenario,
+        scenario::{Axes, UncertainBody},
+    };
+    use gyradius_dispersion::{AxesLaw, DispersionModel, EmpiricalRoots};
     use nalgebra::UnitQuaternion;
 
     type Law = PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian>;
@@ -324,6 +327,12 @@ mod tests {
         format!("{text}\n{}", fragment.replace("\n[payload.dispersion]", state))
     }
 
+    fn principal(body: &UncertainBody) -> PrincipalDispersion<RootLaw, AxesLaw> {
+        let law = body.law(Axes::WholeSphere).unwrap();
+        let DispersionModel::Principal(law) = law else { panic!("{law:?}") };
+        *law
+    }
+
     #[test]
     fn a_scenario_reads_the_same_law_back() {
         for turn in [UnitQuaternion::identity(), UnitQuaternion::from_euler_angles(0.1, 0.3, -0.5)]
@@ -333,7 +342,7 @@ mod tests {
             let scenario = Scenario::from_toml(&pasted(&fragment)).unwrap();
             let body = scenario.payload();
             assert_eq!(body.nominal(), &nominal);
-            let read = body.principal(Axes::WholeSphere).unwrap();
+            let read = principal(body);
             let RootLaw::Independent(roots) = read.roots() else { panic!("{read:?}") };
             assert_eq!(roots.as_normal().unwrap().map(|n| n[1]), [0.1, 0.2, 0.0]);
             let axes = body.gaussian_axes().unwrap();
@@ -351,7 +360,7 @@ mod tests {
         let fragment = Fragment::new(FragmentBody::Payload, &nominal, &law).unwrap();
         assert_eq!(fragment.root_variances(), None);
         let scenario = Scenario::from_toml(&pasted(&fragment)).unwrap();
-        let read = scenario.payload().principal(Axes::WholeSphere).unwrap();
+        let read = principal(scenario.payload());
         let RootLaw::CorrelatedGaussian(roots) = read.roots() else { panic!("{read:?}") };
         assert_eq!(*roots.covariance(), c);
 
@@ -384,7 +393,7 @@ mod tests {
             let law = PrincipalDispersion::new(roots.unwrap(), gaussian.axes().clone());
             let fragment = Fragment::new(FragmentBody::Payload, &nominal, &law).unwrap();
             let scenario = Scenario::from_toml(&pasted(&fragment)).unwrap();
-            let read = scenario.payload().principal(Axes::WholeSphere).unwrap();
+            let read = principal(scenario.payload());
             assert_eq!(*read.roots(), RootLaw::Independent(law.roots().clone()));
             let again = Scenario::from_toml(&scenario.to_toml()).unwrap();
             assert_eq!(again.to_toml(), scenario.to_toml());

@@ -2,11 +2,11 @@
 
 use gyradius_campaign::{Designs, Mix, Streams};
 use gyradius_dispersion::{InertiaLaw, ModelDraw};
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 use crate::{
     fleet::Fleet,
-    scenario::{Dispersed, Joint},
+    scenario::{Joint, Number},
     steering::Steering,
 };
 
@@ -16,12 +16,32 @@ pub(crate) struct Groups {
     names: Vec<String>,
     /// Of the principal moments and of the axes of each body; the same if they are not drawn independently.
     inertias: Vec<[usize; 2]>,
-    /// Of each number that is dispersed.
-    dispersed: Vec<usize>,
-    /// Places of the dispersed numbers whose scores can be steered: of those that are not always the same.
+    /// Of each number that is dispersed; none of the roots of a body whose own law is not drawn.
+    dispersed: Vec<Option<usize>>,
+    /// Places of the dispersed numbers whose scores can be steered: of those that are not always the same, and not drawn
+    /// again.
     scored: Vec<usize>,
     /// Which of these decide an event without others, by their numbers, and its probability.
     events: Vec<(usize, f64)>,
+    /// What is drawn together until it is in its region.
+    kept: Vec<Kept>,
+}
+
+/// What is drawn together until the matter of a body is in its region.
+#[derive(Clone, Debug)]
+pub(crate) struct Kept {
+    /// The place of the body.
+    pub(crate) body: usize,
+    /// The places of the numbers that are drawn with it.
+    pub(crate) numbers: Vec<usize>,
+}
+
+/// A body of a model: what it is called, the law of its inertia, and whether this is the body's own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GroupedBody<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) law: &'a dyn InertiaLaw,
+    pub(crate) own: bool,
 }
 
 /// What the runs of a simulation draw.
@@ -49,50 +69,69 @@ impl Drawing {
 }
 
 impl Groups {
-    /// Of bodies with names and laws, and of what else is dispersed: the components of a parameter, and all that is
-    /// correlated with them, are a group.
+    /// Of bodies, and of what else is dispersed: the components of a parameter, and all that is correlated with them, are a
+    /// group, and so is all that is drawn of a body with them until its matter is in its region.
     pub(crate) fn new<'a, T>(
-        bodies: impl IntoIterator<Item = (&'a str, &'a dyn InertiaLaw)>,
+        bodies: impl IntoIterator<Item = GroupedBody<'a>>,
         joint: &Joint<T>,
     ) -> Self {
-        let wide = joint.all.iter().enumerate().filter(|(_, d)| d.law.deviation() > 0.0);
-        let scored: Vec<usize> = wide.map(|(place, _)| place).collect();
-        let alone =
-            |place: usize| joint.correlation.related().all(|(a, b)| a != place && b != place);
-        let events = scored.iter().enumerate().filter(|(_, place)| alone(**place));
-        let events =
-            events.filter_map(|(i, place)| Some((i, joint.all[*place].law.as_bernoulli()?)));
-        let events = events.collect();
-        let (names, inertias, dispersed) = (Vec::new(), Vec::new(), Vec::new());
-        let mut groups = Self { names, inertias, dispersed, scored, events };
-        for (body, law) in bodies {
-            let first = groups.names.len();
-            if law.has_independent_axes() {
-                groups.names.extend(["roots", "axes"].map(|part| format!("{body} {part}")));
-            } else {
-                groups.names.push(format!("{body} inertia"));
-            }
-            groups.inertias.push([first, groups.names.len() - 1]);
-        }
-        // The first of those that hang together stands for all.
-        let mut leader: Vec<usize> = (0..joint.all.len()).collect();
-        let same = joint.all.iter().enumerate().filter_map(|(i, d)| {
-            Some((i, joint.all[..i].iter().position(|other| other.part_of == d.part_of)?))
+        let bodies: Vec<GroupedBody<'_>> = bodies.into_iter().collect();
+        let numbers: Vec<Number<'_>> = joint.numbers().collect();
+        let count = numbers.len();
+        let kept = |body: usize| bodies[body].own && joint.bodies[body].region.is_some();
+        let kept: Vec<usize> = (0..bodies.len()).filter(|body| kept(*body)).collect();
+        let same = numbers.iter().enumerate().filter_map(|(i, number)| {
+            let part_of = |other: &Number<'_>| other.part_of == number.part_of;
+            Some((i, numbers[..i].iter().position(part_of)?))
         });
-        for (a, b) in same.chain(joint.correlation.related()).collect::<Vec<_>>() {
-            let (a, b) = (leader[a], leader[b]);
-            leader.iter_mut().filter(|of| **of == a.max(b)).for_each(|of| *of = a.min(b));
+        // Bodies stand behind the numbers.
+        let of_kept = kept.iter().flat_map(|body| {
+            joint.bodies[*body].numbers().map(move |number| (number, count + body))
+        });
+        let sets = joint.sets(count + bodies.len(), same.chain(of_kept).collect::<Vec<_>>());
+        let is_drawn = |i: usize| joint.root_of(i).is_none_or(|body| bodies[body].own);
+        let members = |set: usize| (0..count).filter(|i| sets[*i] == set && is_drawn(*i)).collect();
+        let kept: Vec<Kept> = kept
+            .into_iter()
+            .map(|body| Kept { body, numbers: members(sets[count + body]) })
+            .collect();
+        let again = |i: &usize| kept.iter().any(|kept| kept.numbers.contains(i));
+        let wide = (0..count).filter(|i| numbers[*i].law.deviation() > 0.0 && is_drawn(*i));
+        let scored: Vec<usize> = wide.filter(|i| !again(i)).collect();
+        let alone = |i: usize| joint.correlation.related().all(|(a, b)| a != i && b != i);
+        let events = scored.iter().enumerate().filter(|(_, i)| alone(**i));
+        let events = events.filter_map(|(at, i)| Some((at, numbers[*i].law.as_bernoulli()?)));
+        let events = events.collect();
+
+        let mut names: Vec<String> = Vec::new();
+        let mut of_sets: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut inertias: Vec<[usize; 2]> = Vec::new();
+        for (place, body) in bodies.iter().enumerate() {
+            let (first, name) = (names.len(), body.name);
+            let own = kept.iter().find(|kept| kept.body == place);
+            if let Some(own) = own {
+                let parts = own.numbers.iter().map(|i| numbers[*i].part_of);
+                names.push(called([&*format!("{name} inertia")].into_iter().chain(parts)));
+                of_sets.insert(sets[count + place], first);
+            } else if body.own && joint.bodies[place].roots.is_some() {
+                names.push(format!("{name} axes"));
+            } else if body.law.has_independent_axes() {
+                names.extend(["roots", "axes"].map(|part| format!("{name} {part}")));
+            } else {
+                names.push(format!("{name} inertia"));
+            }
+            inertias.push([first, names.len() - 1]);
         }
-        let mut places: Vec<Option<usize>> = vec![None; leader.len()];
-        for (i, &of) in leader.iter().enumerate() {
-            let place = *places[of].get_or_insert_with(|| {
-                let members = (i..leader.len()).filter(|j| leader[*j] == of);
-                groups.names.push(name(members.map(|j| &joint.all[j])));
-                groups.names.len() - 1
-            });
-            groups.dispersed.push(place);
-        }
-        groups
+        let dispersed = (0..count).map(|i| {
+            let group = || {
+                let members: Vec<usize> = members(sets[i]);
+                names.push(called(members.into_iter().map(|j| numbers[j].part_of)));
+                names.len() - 1
+            };
+            is_drawn(i).then(|| *of_sets.entry(sets[i]).or_insert_with(group))
+        });
+        let dispersed = dispersed.collect();
+        Self { names, inertias, dispersed, scored, events, kept }
     }
 
     /// With one more.
@@ -116,10 +155,15 @@ impl Groups {
         &self.events
     }
 
+    /// What is drawn together until it is in its region.
+    pub(crate) fn kept(&self) -> &[Kept] {
+        &self.kept
+    }
+
     /// The names of the groups with scores that can be steered, and of the others.
     pub(crate) fn by_scores(&self) -> [Vec<String>; 2] {
         let scored =
-            |group: usize| self.scored.iter().any(|i| self.dispersed.get(*i) == Some(&group));
+            |group: usize| self.scored.iter().any(|i| self.dispersed.get(*i) == Some(&Some(group)));
         [true, false].map(|wanted| {
             let names = self.names.iter().enumerate();
             names.filter(|(i, _)| scored(*i) == wanted).map(|(_, name)| name.clone()).collect()
@@ -152,7 +196,12 @@ impl Groups {
 
     /// The stream of the number in a place of what is dispersed.
     pub(crate) fn stream_of(&self, place: usize, mix: Mix<'_>, first: u64) -> u64 {
-        self.dispersed.get(place).map_or(first, |group| mix.stream(*group, first))
+        self.dispersed.get(place).copied().flatten().map_or(first, |group| mix.stream(group, first))
+    }
+
+    /// The stream of the inertia of the body in a place, if it is drawn together with its axes.
+    pub(crate) fn inertia_stream(&self, body: usize, mix: Mix<'_>, first: u64) -> u64 {
+        self.inertias.get(body).map_or(first, |[group, _]| mix.stream(*group, first))
     }
 
     /// The draw of the inertia of the body in a place.
@@ -170,11 +219,11 @@ impl Groups {
     }
 }
 
-/// What a group is called: after the parameters in it.
-fn name<'a, T: 'a>(members: impl Iterator<Item = &'a Dispersed<T>>) -> String {
+/// What a group is called: after the parts in it.
+fn called<'a>(members: impl Iterator<Item = &'a str>) -> String {
     let mut parts: Vec<String> = Vec::new();
     for member in members {
-        let part = member.part_of.replace('_', " ");
+        let part = member.replace('_', " ");
         if !parts.contains(&part) {
             parts.push(part);
         }

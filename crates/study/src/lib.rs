@@ -47,6 +47,7 @@ mod options;
 mod pages;
 mod quantity;
 mod rare;
+mod regions;
 mod releases;
 mod replay;
 mod report;

@@ -10,8 +10,8 @@ use std::{ops::Range, sync::Arc};
 use crate::{
     body::Body,
     column::Column,
-    drawn::{self, Draws},
-    groups::{Drawing, Groups},
+    drawn::{self, BodyLaw, Draws, Taken},
+    groups::{Drawing, GroupedBody, Groups},
     run::{Case, Run},
     scenario::{Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
     steering::{Steered, Steering},
@@ -24,16 +24,12 @@ pub(crate) struct Model {
     law: ModelLaw,
     /// Of the six entries of payload and stage, if the law is entrywise.
     given: Option<[[f64; 6]; 2]>,
-    payload: BodyModel,
-    stage: BodyModel,
+    /// Payload and stage.
+    bodies: [BodyLaw; 2],
     draws: Draws,
     groups: Groups,
-}
-
-#[derive(Debug)]
-struct BodyModel {
-    law: Arc<dyn InertiaLaw>,
-    streams: Streams,
+    /// The estimated share of draws that the region of payload and stage keeps, and its standard error.
+    kept: [Option<(f64, f64)>; 2],
 }
 
 impl Model {
@@ -52,21 +48,33 @@ impl Model {
         };
         let (payload, payload_given) = law(Body::Payload, scenario.payload())?;
         let (stage, stage_given) = law(Body::Stage, scenario.stage())?;
+        let dispersions = scenario.dispersions();
+        let joint = &dispersions.joint;
         let body = |which: Body, law: Arc<dyn InertiaLaw>| {
             let purpose = format!("{} inertia", which.name());
             let streams = Streams::new(scenario.seed(), &spec.name, &purpose);
-            BodyModel { law, streams }
+            let (each, own) = (dispersions.inertia[which as usize], spec.law.own_axes().is_some());
+            BodyLaw { law, streams, each, own }
         };
-        let bodies = [(Body::Payload, &payload), (Body::Stage, &stage)];
-        let bodies = bodies.map(|(body, law)| (body.name(), &**law));
+        let kept = |which: Body, body: &UncertainBody| match spec.law.own_axes() {
+            Some(axes) => joint.acceptance(which as usize, which.name(), body, axes),
+            None => Ok(None),
+        };
+        let kept = [kept(Body::Payload, scenario.payload())?, kept(Body::Stage, scenario.stage())?];
+        let bodies = [body(Body::Payload, payload), body(Body::Stage, stage)];
+        let grouped = Body::BOTH.into_iter().zip(&bodies).map(|(which, body)| GroupedBody {
+            name: which.name(),
+            law: &*body.law,
+            own: body.own,
+        });
         Ok(Self {
-            groups: Groups::new(bodies, &scenario.dispersions().joint),
+            groups: Groups::new(grouped, joint),
             name: spec.name.clone(),
             law: spec.law.named(),
             given: payload_given.zip(stage_given).map(<[_; 2]>::from),
-            payload: body(Body::Payload, payload),
-            stage: body(Body::Stage, stage),
-            draws: Draws::new(scenario.seed(), &spec.name, scenario.dispersions().all()),
+            bodies,
+            draws: Draws::new(scenario.seed(), &spec.name, joint),
+            kept,
         })
     }
 
@@ -82,12 +90,18 @@ impl Model {
 
     /// Whether no draw can be unrealizable.
     pub(crate) fn is_realizable_by_construction(&self) -> bool {
-        [&self.payload, &self.stage].iter().all(|body| body.law.is_realizable_by_construction())
+        self.bodies.iter().all(|body| body.law.is_realizable_by_construction())
     }
 
     /// The estimated shares of draws for payload and stage that rejection keeps, where it rejects.
     pub(crate) fn acceptance(&self) -> Option<[f64; 2]> {
-        Some([self.payload.law.acceptance()?, self.stage.law.acceptance()?])
+        let [payload, stage] = &self.bodies;
+        Some([payload.law.acceptance()?, stage.law.acceptance()?])
+    }
+
+    /// The estimated share of draws that the region of each body keeps that is kept to one, and its standard error.
+    pub(crate) fn kept(&self) -> impl Iterator<Item = (Body, (f64, f64))> {
+        Body::BOTH.into_iter().zip(self.kept).filter_map(|(body, kept)| Some((body, kept?)))
     }
 
     /// The deviations of the six entries of payload and stage that the law was given, if it is
@@ -124,25 +138,19 @@ impl Model {
 
     /// The independent scores of a run.
     fn scores(&self, scenario: &Scenario, mix: Mix<'_>, steering: Option<&Steering>) -> Vec<f64> {
-        let stream =
-            |place, each| self.groups.stream_of(place, mix, scenario.stream(each, mix.base()));
-        self.draws.scores(&scenario.dispersions().joint, stream, (mix.base(), steering))
+        let stream = |each| scenario.stream(each, mix.base());
+        let taken = Taken { mix, stream: &stream, steering };
+        self.draws.scores(&scenario.dispersions().joint, &self.groups, taken)
     }
 
     /// Draws the bodies of a run, of which some groups of inputs may be those of a second draw, or scores may be steered.
     fn draw_mixed(&self, scenario: &Scenario, mix: Mix<'_>, steering: Option<&Steering>) -> Case {
-        let (run, groups) = (mix.base(), &self.groups);
-        let drawn = Draws::run(scenario, self.scores(scenario, mix, steering));
-        let inertia = |body: Body, model: &BodyModel| {
-            let each = scenario.dispersions().inertia[body as usize];
-            let first = scenario.stream(each, run);
-            groups.inertia(body as usize, mix, first, (&*model.law, &model.streams))
-        };
-        let mut payload = inertia(Body::Payload, &self.payload);
-        let mut stage = inertia(Body::Stage, &self.stage);
-        for (body, draw) in [(Body::Payload, &mut payload), (Body::Stage, &mut stage)] {
-            draw.inertia = drawn::scaled(scenario, body, &drawn, draw.inertia);
-        }
+        let (run, joint) = (mix.base(), &scenario.dispersions().joint);
+        let stream = |each| scenario.stream(each, run);
+        let taken = Taken { mix, stream: &stream, steering };
+        let (drawn, inertias) = self.draws.run(joint, &self.groups, &self.bodies, taken);
+        let drawn = drawn::with_starts(scenario, drawn);
+        let [payload, stage] = Body::BOTH.map(|body| inertias[body as usize]);
         let separation = drawn::separation(scenario, &drawn, payload.inertia, stage.inertia);
         Case {
             payload: payload.inertia,
@@ -230,7 +238,7 @@ impl Simulation for Separations<'_> {
 }
 
 /// A law, and the deviations that it was given if it is entrywise.
-type BodyLaw = (Arc<dyn InertiaLaw>, Option<[f64; 6]>);
+type GivenLaw = (Arc<dyn InertiaLaw>, Option<[f64; 6]>);
 
 /// The law of the body in a place, under a model that is one of several; `outside` is a program's own under a model, if it
 /// gave one.
@@ -240,7 +248,7 @@ pub(crate) fn law(
     body: &UncertainBody,
     models: &[ModelSpec],
     outside: &dyn Fn(&ModelSpec) -> Option<Arc<dyn InertiaLaw>>,
-) -> Result<BodyLaw, Box<dyn std::error::Error>> {
+) -> Result<GivenLaw, Box<dyn std::error::Error>> {
     let model = match &spec.law {
         Law::Outside(said) => {
             let names = said.as_ref().map(|said| [&said.payload, &said.stage]);
@@ -254,7 +262,7 @@ pub(crate) fn law(
             })?;
             return Ok((law, None));
         }
-        Law::Principal(axes) => body.principal(*axes)?.into(),
+        Law::Principal(axes) => body.law(*axes)?,
         Law::Given { kind, parameters } => {
             let given = parameters.get(place).copied().unwrap_or_default();
             DispersionModel::about(*kind, body.nominal(), &given).map_err(|error| error.problem)?
@@ -263,11 +271,15 @@ pub(crate) fn law(
             let other = models.iter().find(|m| m.name == *to);
             let other = other.filter(|m| matches!(m.law, Law::Principal(_) | Law::Outside(_)));
             let other = other.ok_or_else(|| format!("matched_to {to:?}: no such model"))?;
-            let (other, _) = law(other, place, body, models, outside)?;
-            let moments = other.expected_moments().ok_or_else(|| {
+            let (of_other, _) = law(other, place, body, models, outside)?;
+            let moments = match other.law.own_axes() {
+                Some(axes) => body.expected_moments(axes),
+                None => of_other.expected_moments(),
+            };
+            let moments = moments.ok_or_else(|| {
                 format!(
                     "matched_to {to:?}: the moments of its law {:?} are not known",
-                    other.name()
+                    of_other.name()
                 )
             })?;
             matched(*kind, body, &moments)?
@@ -331,7 +343,8 @@ mod tests {
             let refused = Model::all(&bare).unwrap_err().to_string();
             assert!(refused.contains("is a program's own"), "{refused}");
 
-            let (payload, stage) = (Arc::clone(&model.payload.law), Arc::clone(&model.stage.law));
+            let (payload, stage) =
+                (Arc::clone(&model.bodies[0].law), Arc::clone(&model.bodies[1].law));
             let given = bare.with_model(model.name(), payload, stage).unwrap();
             let models = Model::all(&given).unwrap();
             assert!(draws(&given, &models) == expected, "{}", model.name());
@@ -343,7 +356,7 @@ mod tests {
             assert_eq!(read.fingerprint(), given.fingerprint());
             assert_ne!(read.fingerprint(), built_in.fingerprint());
             let refused = Model::all(&read).unwrap_err().to_string();
-            let name = format!("its law {:?} is a program's own", model.payload.law.name());
+            let name = format!("its law {:?} is a program's own", model.bodies[0].law.name());
             assert!(refused.contains(&name) && refused.starts_with("models["), "{refused}");
         }
     }
@@ -368,7 +381,7 @@ mod tests {
                 names.iter().enumerate().all(|(i, name)| !names[..i].contains(name)),
                 "{names:?}"
             );
-            let splits = model.payload.law.has_independent_axes();
+            let splits = model.bodies[0].law.has_independent_axes();
             assert_eq!(splits, names.contains(&"payload axes".to_owned()), "{names:?}");
             for base in 0..20 {
                 let first = groups.designs().runs(base);
@@ -402,7 +415,7 @@ mod tests {
                         );
                     }
                     let moments = |case: &Case| case.payload.principal_axes().moments();
-                    let follows = scenario.dispersions().inertia_follows_mass[0] != 0.0;
+                    let follows = scenario.payload().follows().0 != 0.0;
                     if follows {
                         continue;
                     }

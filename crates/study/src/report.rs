@@ -18,6 +18,7 @@ use crate::{
     decisions, drivers, faults, figures_of_study,
     head::Head,
     quantity::Quantity,
+    regions,
     scenario::{Comparison, Each, Scenario},
     subject::Subject,
     summary::{ClearanceSummary, ModelSummary, Summary},
@@ -67,6 +68,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         .sections(deviations(scenario, summary))
         .sections(far_lobe(summary))
         .sections(dispersed(summary))
+        .sections(regions::section(summary.models.iter().map(|m| (&*m.name, &*m.regions))))
         .sections(summary.every_model.section())
         .section(Section::new("Figures").figures(drawn))
         .section(inputs(

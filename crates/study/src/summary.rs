@@ -18,6 +18,7 @@ use crate::{
     head::Head,
     model::Model,
     quantity::Quantity,
+    regions::RegionSummary,
     run::Case,
     scenario::{Dispersed, Each, ModelLaw, Scenario},
     seen::Seen,
@@ -58,6 +59,9 @@ pub(crate) struct ModelSummary {
     pub(crate) realizable_by_construction: bool,
     /// Estimated shares of draws for payload and stage that a law by rejection keeps.
     pub(crate) acceptance: Option<[f64; 2]>,
+    /// What of the draws the regions of the bodies keep.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) regions: Vec<RegionSummary>,
     pub(crate) failed: u64,
     /// Kinds of failure, with how often.
     pub(crate) failures: Vec<(String, u64)>,
@@ -327,6 +331,7 @@ impl ModelSummary {
             law: model.law(),
             realizable_by_construction: model.is_realizable_by_construction(),
             acceptance: model.acceptance(),
+            regions: RegionSummary::of(model),
             failed: failures.iter().map(|f| f.1).sum(),
             failures,
             unrealizable: Share::of_dependent(unrealizable, seen.runs(), independent, confidence)?,

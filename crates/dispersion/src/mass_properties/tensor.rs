@@ -35,6 +35,27 @@ pub struct TensorLaw {
     pub(super) follows: Option<Follows>,
 }
 
+/// What a [`TensorLaw`] is a law of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TensorParts<'a> {
+    /// Radii of gyration in m about principal axes.
+    GyrationLengths {
+        /// Of each length.
+        laws: &'a [ScalarLaw; 3],
+        /// Of the axes.
+        axes: &'a AxesLaw,
+    },
+    /// Roots of the second moments in √kg·m about principal axes.
+    Roots {
+        /// Of each root.
+        laws: &'a [ScalarLaw; 3],
+        /// Of the axes.
+        axes: &'a AxesLaw,
+    },
+    /// Any model.
+    Model(&'a DispersionModel),
+}
+
 /// What it is a law of.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
@@ -123,6 +144,25 @@ impl TensorLaw {
             return Err(TensorLawError::FollowsAnyway);
         }
         Ok(Self { follows: (share > 0.0).then_some(Follows { share, nominal_mass_kg }), ..self })
+    }
+
+    /// What it is a law of.
+    #[must_use]
+    pub fn parts(&self) -> TensorParts<'_> {
+        match &self.of {
+            Of::GyrationLengths(Principal { laws, axes }) => {
+                TensorParts::GyrationLengths { laws, axes }
+            }
+            Of::Roots(Principal { laws, axes }) => TensorParts::Roots { laws, axes },
+            Of::Model(model) => TensorParts::Model(model),
+        }
+    }
+
+    /// The share of the mass's relative change that the inertia takes, and the nominal mass in kg, where
+    /// [`with_follows`](Self::with_follows) said so.
+    #[must_use]
+    pub fn follows(&self) -> Option<(f64, f64)> {
+        self.follows.map(|follows| (follows.share, follows.nominal_mass_kg))
     }
 
     /// Whether the law of lengths and that of roots, which have three scalar laws, can be correlated with mass and mass

@@ -89,6 +89,12 @@ impl LawUnit {
         Self { size: 0.01 * nominal, most: 1000.0 }
     }
 
+    /// One that is so many of that of the quantity itself, with numbers up to 1e9.
+    #[must_use]
+    pub fn of(size: f64) -> Self {
+        Self { size, ..Self::OWN }
+    }
+
     /// In the unit of the quantity itself.
     #[must_use]
     pub fn size(self) -> f64 {

@@ -40,7 +40,7 @@ impl Section {
     pub(crate) fn new(scenario: &Scenario) -> Result<Self, StatisticsError> {
         let size = Size { draws: DRAWS, separations: SEPARATIONS, seed: scenario.seed() };
         let of = |name: &str, body: &UncertainBody, size| {
-            let law = body.principal(Axes::WholeSphere).map_err(|e| e.to_string());
+            let law = body.law(Axes::WholeSphere).map_err(|e| e.to_string());
             let target = law.and_then(|law| {
                 Target::of_law(Arc::new(law)).ok_or_else(|| "its moments are not known".to_owned())
             });

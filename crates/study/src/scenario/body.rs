@@ -2,26 +2,47 @@
 
 use gyradius_attitude::{MeanHalf, RadiallyConstrainedGaussian, UniformAttitude};
 use gyradius_dispersion::{
-    AxesLaw, CorrelatedRoots, EmpiricalRoots, FixedAttitude, JacobianTwice, JacobianTwiceError,
-    PrincipalDispersion, RootLaw, ScalarLaw, ScalarRoots, ScalarRootsError,
+    AxesLaw, CorrelatedRoots, DispersionModel, EmpiricalRoots, EntryMoments, FixedAttitude,
+    InertiaLaw, JacobianTwice, JacobianTwiceError, JointScalar, LawUnit, MassPropertiesLaw,
+    PrincipalDispersion, RootLaw, ScalarLaw, ScalarLawForm, ScalarRoots, ScalarRootsError,
+    TensorLaw, TensorLawError, TensorParts,
 };
-use gyradius_inertia::{Inertia, RootSecondMoments};
+use gyradius_inertia::{Inertia, Region, RootSecondMoments};
 use gyradius_separation::{Body, BodyState, MovingBody};
-use nalgebra::{Matrix3, Matrix4, Quaternion, UnitQuaternion};
+use nalgebra::{Matrix3, Matrix4, Quaternion, SMatrix, UnitQuaternion};
 
 use super::{
     Axes, ScenarioError,
-    file::{AxesLawFile, BodyFile, DispersionFile, RootsFile},
+    file::{
+        AxesLawFile, BOUNDS, BodyFile, COVARIANCE, DispersionFile, LAWS, LENGTHS, RootsFile,
+        SAMPLES, VARIANCE,
+    },
+    follows::Follows,
     law,
 };
 
-/// A body in its state at the start, and how uncertain its inertia is.
+/// A body in its state at the start, and how uncertain its mass properties are.
 #[derive(Clone, Debug)]
 pub(crate) struct UncertainBody {
     nominal: Inertia,
     moving: MovingBody,
-    roots: RootLaw,
-    axes: BodyAxes,
+    inertia: BodyInertia,
+    /// The share of the mass's relative change that the inertia takes, and the mass at which its law holds, kg.
+    follows: (f64, f64),
+    region: Option<Region>,
+    /// That of mass, mass centre and inertia, if it is given as a whole.
+    law: Option<MassPropertiesLaw>,
+    /// How the roots are correlated.
+    correlated: Vec<(JointScalar, JointScalar, f64)>,
+}
+
+/// How uncertain the inertia of a body is at its nominal mass.
+#[derive(Clone, Debug)]
+enum BodyInertia {
+    /// Roots, from lengths or not, about axes.
+    Principal { roots: RootLaw, lengths: bool, axes: BodyAxes },
+    /// Any model.
+    Model(DispersionModel),
 }
 
 /// How the principal axes of a body scatter.
@@ -30,6 +51,8 @@ enum BodyAxes {
     Gaussian(Box<RadiallyConstrainedGaussian>),
     Uniform,
     Fixed,
+    /// As a whole law says, in another way.
+    Given(AxesLaw),
 }
 
 impl UncertainBody {
@@ -70,11 +93,30 @@ impl UncertainBody {
             angular_velocity: file.angular_velocity_rad_per_s.into(),
         };
 
-        let place = at("dispersion");
-        let roots = roots(&place, &file.dispersion, nominal.second_moments().roots())?;
-        let mean = nominal.principal_axes().attitude();
-        let axes = axes(&place, &file.dispersion, mean)?;
-        Ok(Self { nominal, moving: body.moving(state), roots, axes })
+        let (place, d) = (at("dispersion"), &file.dispersion);
+        let law = file.law.as_ref().map(|given| given.said().clone());
+        let (inertia, follows) = if let Some(law) = &law {
+            if let Some(key) = d.beside_law() {
+                let problem = format!("there is {} already: one of the two says it", at("law"));
+                return Err(ScenarioError::field(format!("{place}.{key}"), problem));
+            }
+            of_law(&at("law"), law.tensor(), file.mass_kg)?
+        } else {
+            let mean = nominal.second_moments().roots();
+            let roots = match &d.gyration_lengths_m {
+                Some(forms) => lengths(&place, d, forms, mean, file.mass_kg)?,
+                None => roots(&place, d, mean)?,
+            };
+            let lengths = d.gyration_lengths_m.is_some();
+            let axes = axes(&place, d, nominal.principal_axes().attitude())?;
+            let share =
+                if lengths { 1.0 } else { d.inertia_follows_mass.map_or(0.0, Follows::share) };
+            (BodyInertia::Principal { roots, lengths, axes }, (share, file.mass_kg))
+        };
+        let inside = d.inside.as_ref().map(|given| given.said());
+        let region = inside.or_else(|| law.as_ref()?.region()).cloned();
+        let moving = body.moving(state);
+        Ok(Self { nominal, moving, inertia, follows, region, law, correlated: Vec::new() })
     }
 
     pub(crate) fn nominal(&self) -> &Inertia {
@@ -85,45 +127,170 @@ impl UncertainBody {
         &self.moving
     }
 
+    /// The share of the mass's relative change that the inertia takes, and the mass at which its law holds, kg.
+    pub(crate) fn follows(&self) -> (f64, f64) {
+        self.follows
+    }
+
+    /// Where the matter is, body axes, if it is said.
+    pub(crate) fn region(&self) -> Option<&Region> {
+        self.region.as_ref()
+    }
+
+    /// The law of mass, mass centre and inertia, if it is given as a whole.
+    pub(crate) fn given_law(&self) -> Option<&MassPropertiesLaw> {
+        self.law.as_ref()
+    }
+
+    /// What the roots can be called as numbers of their own, in which unit, and their laws, if each has its own.
+    pub(crate) fn root_numbers(&self) -> Option<([&'static str; 2], &[ScalarLaw; 3])> {
+        match &self.inertia {
+            BodyInertia::Principal { roots: RootLaw::Independent(roots), lengths, .. } => {
+                let name = if *lengths { ["gyration_length", "m"] } else { ["root", "sqrt_kg_m"] };
+                Some((name, roots.laws()))
+            }
+            BodyInertia::Principal {
+                roots: RootLaw::CorrelatedGaussian(_) | RootLaw::Empirical(_),
+                ..
+            }
+            | BodyInertia::Model(_) => None,
+        }
+    }
+
+    /// With roots that are correlated so; coefficients of other scalars are passed over.
+    pub(crate) fn correlate_roots(&mut self, pairs: &[(JointScalar, JointScalar, f64)]) {
+        let root = |scalar: JointScalar| scalar as usize >= JointScalar::Shape1 as usize;
+        let of_roots = pairs.iter().filter(|(a, b, _)| root(*a) && root(*b));
+        self.correlated = of_roots.copied().collect();
+    }
+
     /// The Gaussian that the axes are from, if they are from one.
     pub(crate) fn gaussian_axes(&self) -> Option<&RadiallyConstrainedGaussian> {
-        match &self.axes {
-            BodyAxes::Gaussian(law) => Some(law),
-            BodyAxes::Uniform | BodyAxes::Fixed => None,
+        match &self.inertia {
+            BodyInertia::Principal { axes: BodyAxes::Gaussian(law), .. } => Some(law),
+            BodyInertia::Principal { .. } | BodyInertia::Model(_) => None,
         }
     }
 
     /// The attitude that the axes scatter about.
     pub(crate) fn mean_axes(&self) -> UnitQuaternion<f64> {
-        match &self.axes {
-            BodyAxes::Gaussian(law) => law.mean(),
-            BodyAxes::Uniform | BodyAxes::Fixed => self.nominal.principal_axes().attitude(),
+        let nominal = || self.nominal.principal_axes().attitude();
+        self.gaussian_axes().map_or_else(nominal, RadiallyConstrainedGaussian::mean)
+    }
+
+    /// The law of the inertia at the nominal mass, the axes read as a model wants them, and the roots as if they were not
+    /// correlated.
+    pub(crate) fn law(&self, axes: Axes) -> Result<DispersionModel, JacobianTwiceError> {
+        match &self.inertia {
+            BodyInertia::Model(model) => Ok(model.clone()),
+            BodyInertia::Principal { roots, axes: own, .. } => {
+                let axes = self.axes(own, axes)?;
+                Ok(PrincipalDispersion::new(roots.clone(), axes).into())
+            }
         }
     }
 
-    /// The principal dispersion of the body, the axes read as a model wants them.
-    pub(crate) fn principal(
-        &self,
-        axes: Axes,
-    ) -> Result<PrincipalDispersion<RootLaw, AxesLaw>, JacobianTwiceError> {
-        let law: AxesLaw = match (&self.axes, axes) {
+    /// Mean and covariance of the entries at the nominal mass, those of correlated roots too.
+    pub(crate) fn expected_moments(&self, axes: Axes) -> Option<EntryMoments> {
+        if self.correlated.is_empty() {
+            return self.law(axes).ok()?.expected_moments();
+        }
+        let constant = |value| ScalarLaw::normal(value, 0.0).ok();
+        let centre = [constant(0.0)?, constant(0.0)?, constant(0.0)?];
+        let law =
+            MassPropertiesLaw::new(constant(self.follows.1)?, centre, self.tensor(axes).ok()?);
+        let moments = law.ok()?.with_correlation(&self.correlated).ok()?.moments()?;
+        let mean = std::array::from_fn(|i| moments.mean()[4 + i]);
+        let covariance: SMatrix<f64, 6, 6> = moments.covariance().fixed_view::<6, 6>(4, 4).into();
+        EntryMoments::new(mean, covariance).ok()
+    }
+
+    /// The law of the inertia as a part of a joint law, at the nominal mass.
+    pub(crate) fn tensor(&self, axes: Axes) -> Result<TensorLaw, Box<dyn std::error::Error>> {
+        match &self.inertia {
+            BodyInertia::Principal { roots: RootLaw::Independent(roots), axes: own, .. } => {
+                Ok(TensorLaw::roots(roots.laws().clone(), self.axes(own, axes)?))
+            }
+            BodyInertia::Principal { .. } | BodyInertia::Model(_) => {
+                let tensor: Result<_, TensorLawError> = TensorLaw::model(self.law(axes)?);
+                Ok(tensor?)
+            }
+        }
+    }
+
+    /// The axes as a model wants them.
+    fn axes(&self, own: &BodyAxes, axes: Axes) -> Result<AxesLaw, JacobianTwiceError> {
+        Ok(match (own, axes) {
             (BodyAxes::Uniform, _) => UniformAttitude.into(),
             (BodyAxes::Fixed, _) => FixedAttitude::new(self.mean_axes()).into(),
+            (BodyAxes::Given(law), _) => law.clone(),
             (BodyAxes::Gaussian(law), Axes::WholeSphere) => (**law).clone().into(),
             (BodyAxes::Gaussian(law), Axes::MeanHalf) => MeanHalf::new((**law).clone()).into(),
             (BodyAxes::Gaussian(law), Axes::JacobianTwice) => {
                 JacobianTwice::new((**law).clone())?.into()
             }
-        };
-        Ok(PrincipalDispersion::new(self.roots.clone(), law))
+        })
     }
 }
 
-const VARIANCE: &str = "root_second_moment_variance_kg_m2";
-const COVARIANCE: &str = "root_second_moment_covariance_kg_m2";
-const BOUNDS: &str = "root_second_moment_bounds_sqrt_kg_m";
-const SAMPLES: &str = "root_second_moment_samples_sqrt_kg_m";
-const LAWS: &str = "root_second_moment_laws_sqrt_kg_m";
+/// What a whole law says of the inertia at the mass at which it holds, and how the inertia goes with the mass.
+fn of_law(
+    field: &str,
+    tensor: &TensorLaw,
+    mass_kg: f64,
+) -> Result<(BodyInertia, (f64, f64)), ScenarioError> {
+    let follows = tensor.follows().unwrap_or((0.0, mass_kg));
+    let principal = |roots: RootLaw, lengths, axes: &AxesLaw| {
+        let axes = match axes {
+            AxesLaw::WholeSphere(law) => BodyAxes::Gaussian(Box::new(law.clone())),
+            other => BodyAxes::Given(other.clone()),
+        };
+        BodyInertia::Principal { roots, lengths, axes }
+    };
+    let roots = |laws: [ScalarLaw; 3]| {
+        let roots = ScalarRoots::new(laws);
+        roots.map_err(|e| ScenarioError::field(format!("{field}.inertia"), e))
+    };
+    Ok(match tensor.parts() {
+        TensorParts::GyrationLengths { laws, axes } => {
+            let unit = LawUnit::of(mass_kg.sqrt());
+            let [a, b, c] = laws.each_ref().map(|length| {
+                let refused = |e| law::refused(&format!("{field}.inertia"), &e);
+                ScalarLawForm::from(length.clone()).about(0.0, unit).map_err(refused)
+            });
+            (principal(roots([a?, b?, c?])?.into(), true, axes), (1.0, mass_kg))
+        }
+        TensorParts::Roots { laws, axes } => {
+            (principal(roots(laws.clone())?.into(), false, axes), follows)
+        }
+        TensorParts::Model(DispersionModel::Principal(law)) => {
+            (principal(law.roots().clone(), false, law.axes()), follows)
+        }
+        TensorParts::Model(model) => (BodyInertia::Model(model.clone()), follows),
+    })
+}
+
+/// Gyration lengths about the nominal ones, as the roots that a body of the nominal mass has by them.
+fn lengths(
+    place: &str,
+    file: &DispersionFile,
+    forms: &[ScalarLawForm; 3],
+    mean: RootSecondMoments,
+    mass_kg: f64,
+) -> Result<RootLaw, ScenarioError> {
+    if let Some(key) = file.beside_lengths() {
+        let problem = format!(
+            "there is {place}.{LENGTHS} already, of which the inertia follows, wholly with the mass: one of the two says it"
+        );
+        return Err(ScenarioError::field(format!("{place}.{key}"), problem));
+    }
+    let unit = LawUnit::of(mass_kg.sqrt());
+    let law = |i: usize| {
+        law::about(&forms[i], &format!("{place}.{LENGTHS}[{}]", i + 1), mean.values()[i], unit)
+    };
+    let roots = ScalarRoots::new([law(0)?, law(1)?, law(2)?]);
+    Ok(roots.map_err(|e| ScenarioError::field(format!("{place}.{LENGTHS}"), e))?.into())
+}
 
 /// A field that a law needs.
 fn needed<T>(place: &str, field: &str, law: &str, value: Option<T>) -> Result<T, ScenarioError> {
@@ -137,7 +304,8 @@ fn roots(
     file: &DispersionFile,
     mean: RootSecondMoments,
 ) -> Result<RootLaw, ScenarioError> {
-    let (law, takes): (&str, &[&str]) = match file.roots {
+    let kind = file.roots.unwrap_or_default();
+    let (law, takes): (&str, &[&str]) = match kind {
         RootsFile::Gaussian => ("roots = \"gaussian\"", &[VARIANCE]),
         RootsFile::CorrelatedGaussian => ("roots = \"correlated-gaussian\"", &[COVARIANCE]),
         RootsFile::Uniform => ("roots = \"uniform\"", &[VARIANCE]),
@@ -146,23 +314,15 @@ fn roots(
         RootsFile::Independent => ("roots = \"independent\"", &[LAWS]),
         RootsFile::Empirical => ("roots = \"empirical\"", &[SAMPLES]),
     };
-    for (field, given) in [
-        (VARIANCE, file.root_second_moment_variance_kg_m2.is_some()),
-        (COVARIANCE, file.root_second_moment_covariance_kg_m2.is_some()),
-        (BOUNDS, file.root_second_moment_bounds_sqrt_kg_m.is_some()),
-        (SAMPLES, file.root_second_moment_samples_sqrt_kg_m.is_some()),
-        (LAWS, file.root_second_moment_laws_sqrt_kg_m.is_some()),
-    ] {
-        if given && !takes.contains(&field) {
-            let problem = format!("{law} does not take it, but {}", takes.join(" and "));
-            return Err(ScenarioError::field(format!("{place}.{field}"), problem));
-        }
+    if let Some(field) = file.not_taken(takes) {
+        let problem = format!("{law} does not take it, but {}", takes.join(" and "));
+        return Err(ScenarioError::field(format!("{place}.{field}"), problem));
     }
     let variances = || needed(place, VARIANCE, law, file.root_second_moment_variance_kg_m2);
     let refused = |field: &str, e: &dyn std::fmt::Display| {
         ScenarioError::field(format!("{place}.{field}"), e)
     };
-    Ok(match file.roots {
+    Ok(match kind {
         RootsFile::Gaussian => {
             ScalarRoots::normal(mean, variances()?).map_err(|e| refused(VARIANCE, &e))?.into()
         }
@@ -209,7 +369,7 @@ fn axes(
     mean: UnitQuaternion<f64>,
 ) -> Result<BodyAxes, ScenarioError> {
     let field = format!("{place}.axes_covariance");
-    match (file.axes, file.axes_covariance) {
+    match (file.axes.unwrap_or_default(), file.axes_covariance) {
         (AxesLawFile::RadiallyConstrainedGaussian, covariance) => {
             let law = "axes = \"radially-constrained-gaussian\"";
             let covariance = needed(place, "axes_covariance", law, covariance)?;

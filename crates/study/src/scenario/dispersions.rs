@@ -1,55 +1,23 @@
 //! What else is uncertain than the inertias, in the order in which it is drawn.
 
-use gyradius_dispersion::{Correlation, CorrelationError, LawUnit, ScalarLaw};
+use gyradius_dispersion::{MassPropertiesLaw, ScalarLaw};
 use gyradius_separation::{
-    BodyParameter, LoadId, LoadParameter, MovingBody, Parameter, Separation, StackParameter,
+    BodyParameter, LoadId, MovingBody, Parameter, Separation, StackParameter,
 };
 
 use super::{
     ScenarioError,
+    body::UncertainBody,
     chance::ChanceFile,
-    each::{DRAWN, Each},
-    file::{BodyFile, CorrelationFile, ScenarioFile},
-    law::{self, GivenLaw, VectorLawFile},
+    each::Each,
+    file::{BodyFile, DispersionFile, FOLLOWS, ScenarioFile},
+    follows::Follows,
+    joint::{Dispersed, Joint, Target},
+    law::GivenLaw,
+    list::List,
     load::{self, GivenLoad, Uncertain},
-    scalar::ScalarLawFile,
-    vehicles,
 };
 use crate::{body::Body, fleet::Fleet};
-
-/// A number that every run draws.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Dispersed<T = Target> {
-    /// Its name in correlations and in the run table, and of its random stream.
-    pub(crate) column: String,
-    /// What it is part of: its parameter, without the component.
-    pub(crate) part_of: String,
-    pub(crate) nominal: f64,
-    pub(crate) law: ScalarLaw,
-    /// For what it is drawn.
-    pub(crate) each: Each,
-    pub(crate) target: T,
-}
-
-/// What a number is of: a component, from 0, of a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Target {
-    Body(Body, BodyParameter, usize),
-    Stack(StackParameter, usize),
-    /// Loads by their places, from 0.
-    Load(usize, LoadParameter, usize),
-    /// Whether a load starts late, and what then says when.
-    Late(usize, LoadParameter),
-    /// Whether it never acts.
-    Fails(usize),
-}
-
-/// All of them, and how they are correlated.
-#[derive(Clone, Debug)]
-pub(crate) struct Joint<T> {
-    pub(crate) all: Vec<Dispersed<T>>,
-    pub(crate) correlation: Correlation,
-}
 
 /// What is uncertain of a separation besides the inertias.
 #[derive(Clone, Debug, Default)]
@@ -57,8 +25,6 @@ pub(crate) struct Dispersions {
     pub(crate) joint: Joint<Target>,
     /// For what the inertias of payload and stage are drawn.
     pub(crate) inertia: [Each; 2],
-    /// The share of its mass's relative change that the drawn inertia of payload and stage takes.
-    pub(crate) inertia_follows_mass: [f64; 2],
 }
 
 impl Dispersions {
@@ -67,10 +33,11 @@ impl Dispersions {
         file: &ScenarioFile,
         fleet: Option<Fleet>,
         separation: &Separation,
+        [payload, stage]: [&UncertainBody; 2],
     ) -> Result<Self, ScenarioError> {
         let mut list = List::of(fleet);
-        list.body(Body::Payload, &file.payload, separation.payload())?;
-        list.body(Body::Stage, &file.stage, separation.stage())?;
+        list.body(Body::Payload, &file.payload, separation.payload(), payload)?;
+        list.body(Body::Stage, &file.stage, separation.stage(), stage)?;
         if let Some(stack) = file.stack.as_ref().and_then(|s| s.dispersion.as_ref()) {
             for &parameter in StackParameter::ALL {
                 let target = |i| Target::Stack(parameter, i);
@@ -81,8 +48,6 @@ impl Dispersions {
         for (place, (id, given)) in file.loads().enumerate() {
             list.load(place, id, given)?;
         }
-        let follows = |body: &BodyFile| body.dispersion.inertia_follows_mass.share();
-        let inertia_follows_mass = [follows(&file.payload), follows(&file.stage)];
         let inertia = |name: Body, body: &BodyFile| {
             let field = format!("{}.dispersion.inertia_drawn", name.name());
             list.possible(&field, body.dispersion.inertia_drawn)
@@ -92,7 +57,7 @@ impl Dispersions {
             &file.correlations,
             "the dispersion of payload, stage, stack and springs names",
         )?;
-        Ok(Self { joint, inertia, inertia_follows_mass })
+        Ok(Self { joint, inertia })
     }
 
     /// For what each of all that is uncertain is drawn.
@@ -110,239 +75,28 @@ impl Dispersions {
     }
 }
 
-impl<T> Joint<T> {
-    /// For what each of them is drawn.
-    pub(crate) fn drawn_for(&self) -> impl Iterator<Item = Each> {
-        self.all.iter().map(|d| d.each)
-    }
-}
-
-impl<T> Default for Joint<T> {
-    fn default() -> Self {
-        Self { all: Vec::new(), correlation: Correlation::default() }
-    }
-}
-
-/// Where in the file, in its own unit and in percent, and what it is called.
-struct Place {
-    field: String,
-    percent: String,
-    name: String,
-    unit: &'static str,
-}
-
-/// The key of the correlations.
-const CORRELATIONS: &str = "correlations";
-
-/// As it is put together.
-pub(crate) struct List<T = Target> {
-    fleet: Option<Fleet>,
-    all: Vec<Dispersed<T>>,
-    /// Pairs that covariances correlate, and where they are given.
-    pairs: Vec<(usize, usize, f64)>,
-    fields: Vec<String>,
-}
-
-impl<T> List<T> {
-    /// Nothing yet, of a scenario with vehicles or without.
-    pub(crate) fn of(fleet: Option<Fleet>) -> Self {
-        Self { fleet, all: Vec::new(), pairs: Vec::new(), fields: Vec::new() }
-    }
-
-    /// A number with a name that ends in its unit, if it has one, and what it is part of.
-    pub(crate) fn push(
-        &mut self,
-        [name, part_of]: [&str; 2],
-        unit: &str,
-        nominal: f64,
-        (law, each): (ScalarLaw, Each),
-        target: T,
-    ) {
-        let column = if unit.is_empty() { name.to_owned() } else { format!("{name}_{unit}") };
-        let part_of = part_of.to_owned();
-        self.all.push(Dispersed { column, part_of, nominal, law, each, target });
-    }
-
-    /// A parameter of what stands at a place of the file, and is called by a name.
-    pub(crate) fn parameter(
-        &mut self,
-        place: &str,
-        name: &str,
-        uncertain: &Uncertain<'_>,
-        target: impl Fn(usize) -> T,
-    ) -> Result<(), ScenarioError> {
-        let Uncertain { name: quantity, unit, nominal, law } = uncertain;
-        let place = Place {
-            field: format!("{place}.dispersion.{quantity}_{unit}"),
-            percent: format!("{place}.dispersion.{}", load::percent(quantity)),
-            name: format!("{name}_{quantity}"),
-            unit,
-        };
-        match law {
-            GivenLaw::Number(law, percent) => {
-                nominal.iter().enumerate().try_for_each(|(i, nominal)| {
-                    self.number(&place, *law, *percent, *nominal, target(i))
-                })
-            }
-            GivenLaw::Vector(law) => self.vector(&place, *law, nominal, target),
-        }
-    }
-
-    /// For what a law is drawn that stands at a field, if the scenario has that.
-    pub(crate) fn each(&self, field: &str, each: Each) -> Result<Each, ScenarioError> {
-        self.possible(&format!("{field}.{DRAWN}"), each)
-    }
-
-    /// For what something is drawn, as a key says, if the scenario has that.
-    pub(crate) fn possible(&self, key: &str, each: Each) -> Result<Each, ScenarioError> {
-        vehicles::possible(key, each, self.fleet)
-    }
-
-    /// A number given in its unit or in percent.
-    fn number(
-        &mut self,
-        place: &Place,
-        law: Option<&ScalarLawFile>,
-        percent: Option<&ScalarLawFile>,
-        nominal: f64,
-        target: T,
-    ) -> Result<(), ScenarioError> {
-        let (field, unit, law) = match (law, percent) {
-            (None, None) => return Ok(()),
-            (Some(_), Some(_)) => {
-                let problem = format!("there is {} already: one of the two says it", place.field);
-                return Err(ScenarioError::field(&place.percent, problem));
-            }
-            (Some(law), None) => (&place.field, LawUnit::OWN, law),
-            (None, Some(law)) => (&place.percent, LawUnit::percent_of(nominal), law),
-        };
-        let each = self.each(field, law.drawn)?;
-        let law = law::about(&law.form, field, nominal, unit)?;
-        positive(field, nominal, &law)?;
-        self.push([&place.name; 2], place.unit, nominal, (law, each), target);
-        Ok(())
-    }
-
-    fn vector(
-        &mut self,
-        place: &Place,
-        law: Option<&VectorLawFile>,
-        nominal: &[f64],
-        target: impl Fn(usize) -> T,
-    ) -> Result<(), ScenarioError> {
-        let Some(law) = law else { return Ok(()) };
-        let vector = law.about(&place.field, nominal, LawUnit::OWN)?;
-        let first = self.all.len();
-        for (i, (scalar, nominal)) in vector.laws.into_iter().zip(nominal).enumerate() {
-            let name = format!("{}_{}", place.name, i + 1);
-            let (each, field) = law.drawn(&place.field, i);
-            let each = self.each(&field, each)?;
-            self.push([&name, &place.name], place.unit, *nominal, (scalar, each), target(i));
-        }
-        for (a, b, coefficient) in vector.pairs {
-            self.pairs.push((first + a, first + b, coefficient));
-            self.fields.push(format!("{}.covariance", place.field));
-        }
-        Ok(())
-    }
-
-    /// That two quantities are drawn for the same, if they are correlated at all: what is drawn for a flight would
-    /// hold a part that all flights of a vehicle have.
-    fn together(
-        &self,
-        field: &str,
-        a: usize,
-        b: usize,
-        coefficient: f64,
-    ) -> Result<(), ScenarioError> {
-        let (a, b) = (&self.all[a], &self.all[b]);
-        if a.each == b.each || coefficient == 0.0 {
-            return Ok(());
-        }
-        let (of_vehicle, of_flight) = if a.each.is_flight() { (b, a) } else { (a, b) };
-        let problem = format!(
-            "{:?} is drawn for each vehicle and {:?} for each flight: what is correlated must have the same {DRAWN}",
-            of_vehicle.column, of_flight.column
-        );
-        Err(ScenarioError::field(field, problem))
-    }
-
-    /// All of it, correlated as the file says; `names` tells what names the quantities that there are.
-    pub(crate) fn correlate(
-        mut self,
-        given: &[CorrelationFile],
-        names: &str,
-    ) -> Result<Joint<T>, ScenarioError> {
-        for (i, given) in given.iter().enumerate() {
-            let field = format!("{CORRELATIONS}[{}]", i + 1);
-            let index = |name: &String| {
-                self.all.iter().position(|d| d.column == *name).ok_or_else(|| {
-                    let all: Vec<_> = self.all.iter().map(|d| d.column.as_str()).collect();
-                    let problem = if all.is_empty() {
-                        format!("{name:?} is not dispersed, and nothing is: there is nothing to correlate")
-                    } else {
-                        format!("{name:?} is not dispersed: {names} {}", all.join(", "))
-                    };
-                    ScenarioError::field(format!("{field}.between"), problem)
-                })
-            };
-            let members = given.between.iter().map(index).collect::<Result<Vec<_>, _>>()?;
-            if members.len() < 2 {
-                let problem = format!("{:?}: it must name at least two quantities", given.between);
-                return Err(ScenarioError::field(format!("{field}.between"), problem));
-            }
-            for (j, &b) in members.iter().enumerate() {
-                for &a in &members[..j] {
-                    self.together(&format!("{field}.between"), a, b, given.coefficient)?;
-                    self.pairs.push((a, b, given.coefficient));
-                    self.fields.push(field.clone());
-                }
-            }
-        }
-        let correlation = Correlation::new(&self.pairs).map_err(|error| {
-            let pair = match &error {
-                CorrelationError::Coefficient { pair, .. }
-                | CorrelationError::NoPair { pair }
-                | CorrelationError::Twice { pair }
-                | CorrelationError::Indefinite { pair, .. } => *pair,
-                _ => return ScenarioError::field(CORRELATIONS, error),
-            };
-            let field = match (&error, self.fields[pair].as_str()) {
-                (CorrelationError::NoPair { .. } | CorrelationError::Twice { .. }, field)
-                    if field.starts_with(CORRELATIONS) =>
-                {
-                    format!("{field}.between")
-                }
-                (_, field) if field.starts_with(CORRELATIONS) => format!("{field}.coefficient"),
-                (_, field) => field.to_owned(),
-            };
-            let (a, b, _) = self.pairs[pair];
-            let (a, b) = (&self.all[a].column, &self.all[b].column);
-            ScenarioError::field(field, format!("{a:?} and {b:?}: {error}"))
-        })?;
-        Ok(Joint { all: self.all, correlation })
-    }
-}
-
 impl List {
     fn body(
         &mut self,
         body: Body,
         file: &BodyFile,
         moving: &MovingBody,
+        own: &UncertainBody,
     ) -> Result<(), ScenarioError> {
         let (name, d) = (body.name(), &file.dispersion);
+        let each = self.possible(&format!("{name}.dispersion.inertia_drawn"), d.inertia_drawn)?;
+        let target = |parameter| move |i| Target::Body(body, parameter, i);
         for &parameter in BodyParameter::ALL {
-            let target = |i| Target::Body(body, parameter, i);
             let uncertain = uncertain(parameter, moving, d.given(parameter));
-            self.parameter(name, name, &uncertain, target)?;
+            match own.given_law().and_then(|law| given(law, parameter)) {
+                Some(laws) => self.laws(name, &uncertain, laws, each, target(parameter)),
+                None => self.parameter(name, name, &uncertain, target(parameter))?,
+            }
         }
-        if !d.inertia_follows_mass.not_at_all() && d.mass_kg.is_none() && d.mass_percent.is_none() {
-            let problem = "the mass is not dispersed: it needs mass_kg or mass_percent";
-            let field = format!("{name}.dispersion.inertia_follows_mass");
-            return Err(ScenarioError::field(field, problem));
-        }
-        Ok(())
+        check_follows(&format!("{name}.dispersion"), d)?;
+        let (mass, centre) = (target(BodyParameter::Mass), target(BodyParameter::MassCentre));
+        let centre = [0, 1, 2].map(|i| (centre(i), 0.0));
+        self.join([name; 2], own, each, (mass(0), file.mass_kg), centre)
     }
 
     fn load(
@@ -386,21 +140,35 @@ impl List {
     }
 }
 
+/// What a whole law says of a parameter of a body.
+fn given(law: &MassPropertiesLaw, parameter: BodyParameter) -> Option<&[ScalarLaw]> {
+    match parameter {
+        BodyParameter::Mass => Some(std::slice::from_ref(law.mass())),
+        BodyParameter::MassCentre => Some(law.centre()),
+        BodyParameter::Position
+        | BodyParameter::Velocity
+        | BodyParameter::Attitude
+        | BodyParameter::AngularVelocity => None,
+    }
+}
+
+/// That an inertia that follows the mass has a mass to follow, of a dispersion at a place.
+pub(crate) fn check_follows(place: &str, file: &DispersionFile) -> Result<(), ScenarioError> {
+    let dispersed = file.mass_kg.is_some() || file.mass_percent.is_some();
+    if dispersed || Follows::not_at_all(&file.inertia_follows_mass) {
+        return Ok(());
+    }
+    // Lengths say it of themselves, whether the mass is dispersed or not.
+    if file.gyration_lengths_m.is_some() {
+        return Ok(());
+    }
+    let problem = "the mass is not dispersed: it needs mass_kg or mass_percent";
+    Err(ScenarioError::field(format!("{place}.{FOLLOWS}"), problem))
+}
+
 /// A parameter of what is not a load.
 fn uncertain<'a, P: Parameter>(parameter: P, of: &P::Of, law: GivenLaw<'a>) -> Uncertain<'a> {
     let (name, unit, nominal) = (parameter.name(), parameter.unit(), parameter.nominal(of));
     Uncertain { name, unit, nominal, law }
 }
 
-/// That a law of what cannot be negative is not so more often than not.
-fn positive(field: &str, nominal: f64, law: &ScalarLaw) -> Result<(), ScenarioError> {
-    if law.cdf(-f64::MIN_POSITIVE) < 0.5 {
-        return Ok(());
-    }
-    let problem = format!(
-        "at least half of the draws would be negative: the nominal value is {nominal:?} ({}); laws \"lognormal\" \
-         (with a mean), \"uniform\" and \"truncated-normal\" need not be negative",
-        law.changes()
-    );
-    Err(ScenarioError::field(field, problem))
-}

@@ -1,7 +1,8 @@
 //! A scenario as it stands in a TOML file.
 
 use gyradius_campaign::{Requirement, Rows, Until};
-use gyradius_dispersion::ScalarLawForm;
+use gyradius_dispersion::{MassPropertiesLaw, ScalarLawForm};
+use gyradius_inertia::Region;
 use gyradius_separation::{BodyParameter, LoadId, Spring, StackParameter};
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +10,7 @@ use crate::about::About;
 
 use super::{
     ScenarioError,
+    as_given::AsGiven,
     each::Each,
     follows::Follows,
     law::{GivenLaw, VectorLawFile},
@@ -99,6 +101,15 @@ pub(crate) struct ScenarioFile {
     pub(crate) comparisons: Vec<ComparisonFile>,
 }
 
+pub(super) const VARIANCE: &str = "root_second_moment_variance_kg_m2";
+pub(super) const COVARIANCE: &str = "root_second_moment_covariance_kg_m2";
+pub(super) const BOUNDS: &str = "root_second_moment_bounds_sqrt_kg_m";
+pub(super) const SAMPLES: &str = "root_second_moment_samples_sqrt_kg_m";
+pub(super) const LAWS: &str = "root_second_moment_laws_sqrt_kg_m";
+pub(super) const LENGTHS: &str = "gyration_lengths_m";
+pub(super) const INSIDE: &str = "inside";
+pub(super) const FOLLOWS: &str = "inertia_follows_mass";
+
 /// Runs between looks, if nothing is said: some hundredths of a second.
 const LOOK_EVERY: u64 = 1000;
 
@@ -135,7 +146,11 @@ pub(crate) struct BodyFile {
     pub(crate) body_to_inertial: [f64; 4],
     #[serde(default)]
     pub(crate) angular_velocity_rad_per_s: [f64; 3],
+    #[serde(default)]
     pub(crate) dispersion: DispersionFile,
+    /// Of mass, mass centre and inertia, in the place of what the dispersion says of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) law: Option<AsGiven<MassPropertiesLaw>>,
 }
 
 /// A law of the roots and one of the axes; which fields go with which law is checked later, so that
@@ -146,8 +161,9 @@ pub(crate) struct DispersionFile {
     /// For what the inertia is drawn, whichever the model.
     #[serde(default, skip_serializing_if = "Each::is_flight")]
     pub(crate) inertia_drawn: Each,
-    #[serde(default)]
-    pub(crate) roots: RootsFile,
+    /// Filled in unless gyration lengths or a whole law say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) roots: Option<RootsFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) root_second_moment_variance_kg_m2: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -159,16 +175,23 @@ pub(crate) struct DispersionFile {
     /// Of the roots themselves, not of changes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) root_second_moment_laws_sqrt_kg_m: Option<[ScalarLawForm; 3]>,
-    #[serde(default)]
-    pub(crate) axes: AxesLawFile,
+    /// Of changes from the nominal lengths, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) gyration_lengths_m: Option<[ScalarLawForm; 3]>,
+    /// Filled in unless a whole law says it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) axes: Option<AxesLawFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) axes_covariance: Option<[[f64; 4]; 4]>,
+    /// Where the matter is, body axes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) inside: Option<AsGiven<Region>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) mass_kg: Option<ScalarLawFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) mass_percent: Option<ScalarLawFile>,
     #[serde(default, skip_serializing_if = "Follows::not_at_all")]
-    pub(crate) inertia_follows_mass: Follows,
+    pub(crate) inertia_follows_mass: Option<Follows>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) mass_centre_m: Option<VectorLawFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -326,7 +349,65 @@ fn default_attitude() -> [f64; 4] {
     [0.0, 0.0, 0.0, 1.0]
 }
 
+impl BodyFile {
+    /// Fills in what is not said.
+    pub(super) fn fill(&mut self) {
+        if self.law.is_none() {
+            self.dispersion.fill();
+        }
+    }
+}
+
 impl DispersionFile {
+    /// Fills in what is not said, where no whole law says it.
+    pub(crate) fn fill(&mut self) {
+        if self.gyration_lengths_m.is_none() {
+            self.roots.get_or_insert_default();
+        }
+        self.axes.get_or_insert_default();
+    }
+
+    /// The keys that say something of the roots, and whether they are given.
+    fn of_roots(&self) -> [(&'static str, bool); 6] {
+        [
+            ("roots", self.roots.is_some()),
+            (VARIANCE, self.root_second_moment_variance_kg_m2.is_some()),
+            (COVARIANCE, self.root_second_moment_covariance_kg_m2.is_some()),
+            (BOUNDS, self.root_second_moment_bounds_sqrt_kg_m.is_some()),
+            (SAMPLES, self.root_second_moment_samples_sqrt_kg_m.is_some()),
+            (LAWS, self.root_second_moment_laws_sqrt_kg_m.is_some()),
+        ]
+    }
+
+    /// A key of the roots other than that of their kind that is given and that a kind does not take.
+    pub(crate) fn not_taken(&self, takes: &[&str]) -> Option<&'static str> {
+        let [_, others @ ..] = self.of_roots();
+        let not = others.into_iter().find(|(key, given)| *given && !takes.contains(key));
+        not.map(|(key, _)| key)
+    }
+
+    /// A key that is given and says what gyration lengths say.
+    pub(crate) fn beside_lengths(&self) -> Option<&'static str> {
+        let wholly = |follows: Follows| follows.share() == 1.0;
+        let follows = (FOLLOWS, self.inertia_follows_mass.is_some_and(|own| !wholly(own)));
+        self.of_roots().into_iter().chain([follows]).find(|(_, given)| *given).map(|(key, _)| key)
+    }
+
+    /// A key that is given and says what a whole law of mass, mass centre and inertia says.
+    pub(crate) fn beside_law(&self) -> Option<&'static str> {
+        let others = [
+            (LENGTHS, self.gyration_lengths_m.is_some()),
+            ("axes", self.axes.is_some()),
+            ("axes_covariance", self.axes_covariance.is_some()),
+            (INSIDE, self.inside.is_some()),
+            ("mass_kg", self.mass_kg.is_some()),
+            ("mass_percent", self.mass_percent.is_some()),
+            (FOLLOWS, self.inertia_follows_mass.is_some()),
+            ("mass_centre_m", self.mass_centre_m.is_some()),
+        ];
+        self.of_roots().into_iter().chain(others).find(|(_, given)| *given).map(|(key, _)| key)
+    }
+
     pub(crate) fn given(&self, parameter: BodyParameter) -> GivenLaw<'_> {
         let vector = match parameter {
             BodyParameter::Mass => {

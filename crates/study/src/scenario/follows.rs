@@ -12,8 +12,9 @@ impl Follows {
         self.0
     }
 
-    pub(crate) fn not_at_all(&self) -> bool {
-        self.0 == 0.0
+    /// Whether it does not follow, as is so if nothing is said.
+    pub(crate) fn not_at_all(given: &Option<Self>) -> bool {
+        given.is_none_or(|follows| follows.0 == 0.0)
     }
 }
 

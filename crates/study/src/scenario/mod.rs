@@ -1,5 +1,6 @@
 //! Scenario files: what is uncertain, what flies, how often.
 
+mod as_given;
 mod body;
 mod chance;
 mod changed;
@@ -8,8 +9,11 @@ mod dispersions;
 mod each;
 mod file;
 mod follows;
+mod joint;
+mod joint_body;
 mod law;
 mod limits;
+mod list;
 mod load;
 mod model;
 mod model_file;
@@ -26,11 +30,14 @@ use gyradius_separation::{Separation, SeparationError, Settings, SettingsError};
 use nalgebra::{Unit, Vector3};
 use std::path::{Path, PathBuf};
 
+pub(crate) use as_given::AsGiven;
 pub(crate) use body::UncertainBody;
 pub(crate) use changed::changed;
 use clearance::Outlines;
 pub(crate) use clearance::distance_m;
-pub(crate) use dispersions::{Dispersed, Dispersions, Joint, List, Target};
+pub(crate) use dispersions::{Dispersions, check_follows};
+pub(crate) use joint::{Dispersed, Joint, Number, Target};
+pub(crate) use list::List;
 use file::ScenarioFile;
 pub(crate) use file::{
     AxesLawFile, BodyFile, CorrelationFile, DispersionFile, RootsFile, ShapeFile,
@@ -158,6 +165,7 @@ impl Scenario {
 
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
         file.models.iter_mut().for_each(|model| model.fill(&Body::BOTH));
+        [&mut file.payload, &mut file.stage].into_iter().for_each(BodyFile::fill);
         check_name("name", &file.name)?;
         let said = file.about().check();
         said.map_err(|(key, problem)| ScenarioError::field(key, problem))?;
@@ -178,8 +186,8 @@ impl Scenario {
                 }
             }
         }
-        let payload = UncertainBody::new("payload", &file.payload)?;
-        let stage = UncertainBody::new("stage", &file.stage)?;
+        let mut payload = UncertainBody::new("payload", &file.payload)?;
+        let mut stage = UncertainBody::new("stage", &file.stage)?;
         let loads = file.loads().map(|(id, given)| {
             let refused =
                 |(key, error)| ScenarioError::field(format!("{}.{key}", load::key(id)), error);
@@ -208,11 +216,20 @@ impl Scenario {
                     let field = if horizon { "horizon_s" } else { "relative_tolerance" };
                     ScenarioError::field(format!("integration.{field}"), e)
                 })?;
-        let dispersions = Dispersions::new(&file, size.fleet(), &separation)?;
+        let both = [&payload, &stage];
+        let dispersions = Dispersions::new(&file, size.fleet(), &separation, both)?;
+        for (i, body) in [&mut payload, &mut stage].into_iter().enumerate() {
+            dispersions.joint.correlate_roots(i, body);
+        }
         let outlines = file.clearance.as_ref().map(Outlines::new).transpose()?;
         let bodies = [(Body::Payload, &payload), (Body::Stage, &stage)];
         let models = check_models(&file.models, &bodies)?;
         let comparisons = model::check_comparisons(&file.comparisons, &models)?;
+        for (body, own) in bodies {
+            for axes in models.iter().filter_map(|model| model.law.own_axes()).take(1) {
+                dispersions.joint.acceptance(body as usize, body.name(), own, axes)?;
+            }
+        }
         Ok(Self {
             file,
             size,

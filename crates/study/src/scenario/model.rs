@@ -37,6 +37,14 @@ impl Law {
         }
     }
 
+    /// How it reads the axes of the bodies, if it draws their own laws.
+    pub(crate) fn own_axes(&self) -> Option<Axes> {
+        match self {
+            Self::Principal(axes) => Some(*axes),
+            Self::Given { .. } | Self::Matched { .. } | Self::Outside(_) => None,
+        }
+    }
+
     /// Whether it can be the physical model of a comparison; what a file does not say is judged when the law is
     /// there.
     fn may_be_physical(&self) -> bool {
@@ -144,7 +152,7 @@ fn check_model<O: Owner>(
         }
         if axes != Axes::WholeSphere && bodies.iter().any(|(_, b)| b.gaussian_axes().is_none()) {
             let problem = "only \"whole-sphere\" goes with bodies whose dispersion.axes are \"uniform\" \
-                           or \"fixed\": they have no far half";
+                           or \"fixed\", or are not those of one Gaussian by their law: they have no far half";
             return field_error("axes", problem.to_owned());
         }
         return Ok(ModelSpec { name: file.name.clone(), law: Law::Principal(axes) });

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     ScenarioError,
     body::Entry,
-    scenario::{Each, GivenLaw, List, Uncertain, UncertainBody},
+    scenario::{Each, GivenLaw, List, Uncertain, UncertainBody, check_follows},
 };
 
 /// A body whose mass, mass centre and inertia are drawn for each run of a simulator.
@@ -19,9 +19,6 @@ pub(super) struct SimulatedBody {
     pub(super) uncertain: UncertainBody,
     /// For what its inertia is drawn.
     pub(super) inertia_drawn: Each,
-    pub(super) mass_kg: f64,
-    /// The share of the mass's relative change that the inertia takes.
-    pub(super) follows: f64,
     /// Mass, and mass centre where it is given.
     pub(super) numbers: Vec<Number>,
 }
@@ -66,9 +63,10 @@ impl SimulatedBody {
             let problem = format!("{centre:?}: every entry must be finite");
             return Err(ScenarioError::field(format!("{field}.mass_centre_m"), problem));
         }
-        if d.mass_kg.is_none() && d.mass_percent.is_none() && !d.inertia_follows_mass.not_at_all() {
-            let problem = "the mass is not dispersed: it needs mass_kg or mass_percent";
-            return Err(ScenarioError::field(at("inertia_follows_mass"), problem));
+        check_follows(&format!("{field}.dispersion"), d)?;
+        if file.law.is_some() && file.mass_centre_m.is_none() {
+            let problem = "it says where the mass centre is, and the body needs mass_centre_m";
+            return Err(ScenarioError::field(format!("{field}.law"), problem));
         }
         let uncertain = UncertainBody::new(&field, &file.at_rest(draws_roots_and_axes))?;
         let mass = Uncertain {
@@ -77,7 +75,13 @@ impl SimulatedBody {
             nominal: vec![file.mass_kg],
             law: GivenLaw::Number(d.mass_kg.as_ref(), d.mass_percent.as_ref()),
         };
-        list.parameter(&field, name, &mass, |_| first)?;
+        let law = uncertain.given_law();
+        match law {
+            Some(law) => {
+                list.laws(name, &mass, std::slice::from_ref(law.mass()), inertia_drawn, |_| first);
+            }
+            None => list.parameter(&field, name, &mass, |_| first)?,
+        }
         let meaning = format!("Mass of the body {name}, as drawn.");
         let column = Column::number(format!("{name}_mass_kg"), "kg", meaning);
         let mut numbers = vec![Number { column, nominal: file.mass_kg }];
@@ -88,7 +92,11 @@ impl SimulatedBody {
                 nominal: nominal.to_vec(),
                 law: GivenLaw::Vector(d.mass_centre_m.as_ref()),
             };
-            list.parameter(&field, name, &centre, |i| first + 1 + i)?;
+            let target = |i| first + 1 + i;
+            match law {
+                Some(law) => list.laws(name, &centre, law.centre(), inertia_drawn, target),
+                None => list.parameter(&field, name, &centre, target)?,
+            }
             for (i, nominal) in nominal.into_iter().enumerate() {
                 let meaning = format!(
                     "Coordinate {} of the mass centre of the body {name}, as drawn.",
@@ -99,9 +107,14 @@ impl SimulatedBody {
                 numbers.push(Number { column, nominal });
             }
         }
-        let (mass_kg, follows) = (file.mass_kg, d.inertia_follows_mass.share());
+        let nominal = file.mass_centre_m.unwrap_or_default();
+        let centre = [0, 1, 2].map(|i| (first + 1 + i, nominal[i]));
+        // Without a mass centre, numbers of others stand there.
+        let none = usize::MAX;
+        let centre = if file.mass_centre_m.is_some() { centre } else { [(none, 0.0); 3] };
+        list.join([&field, name], &uncertain, inertia_drawn, (first, file.mass_kg), centre)?;
         let name = name.clone();
-        Ok(Self { name, uncertain, inertia_drawn, mass_kg, follows, numbers })
+        Ok(Self { name, uncertain, inertia_drawn, numbers })
     }
 
     /// Its numbers, the six entries of the inertia, and the attitude of the principal axes.

@@ -3,14 +3,13 @@
 use gyradius_campaign::{
     Cell, Column, Failure, Inputs, Mix, Simulation, Streams, Table, TableError,
 };
-use gyradius_dispersion::InertiaLaw;
-use std::{ops::Range, sync::Arc};
+use std::ops::Range;
 
 use super::{body::SimulatedBody, number::Number, scenario::SimulatorScenario};
 use crate::{
     ScenarioError,
-    drawn::{self, following},
-    groups::{Drawing, Groups},
+    drawn::{self, BodyLaw, Taken},
+    groups::{Drawing, GroupedBody, Groups},
     scenario::{Each, Joint, Size},
     steering::Steered,
 };
@@ -22,7 +21,8 @@ pub(crate) struct SimulatorDraws<'a> {
     /// The columns of vehicle and flight, if there are vehicles, and those of what is drawn.
     own: Vec<Column>,
     columns: Vec<Column>,
-    bodies: Vec<BodyDraws<'a>>,
+    bodies: &'a [SimulatedBody],
+    laws: Vec<BodyLaw>,
     quantities: &'a [Number],
     dispersed: &'a Joint<usize>,
     draws: drawn::Draws,
@@ -33,13 +33,6 @@ pub(crate) struct SimulatorDraws<'a> {
 /// What the random numbers of the simulator itself are called.
 const SIMULATOR: &str = "the simulator's own random numbers";
 
-#[derive(Debug)]
-struct BodyDraws<'a> {
-    body: &'a SimulatedBody,
-    law: Arc<dyn InertiaLaw>,
-    inertias: Streams,
-}
-
 impl<'a> SimulatorDraws<'a> {
     /// Of the model in a place of the scenario.
     pub(crate) fn new(
@@ -48,23 +41,29 @@ impl<'a> SimulatorDraws<'a> {
     ) -> Result<Self, ScenarioError> {
         let (seed, name) = (scenario.seed(), scenario.model_names().nth(place).unwrap_or_default());
         let body = |(i, body): (usize, &'a SimulatedBody)| {
-            let law = scenario.law(place, i)?;
-            let inertias = Streams::new(seed, name, &format!("{} inertia", body.name));
-            Ok(BodyDraws { body, law, inertias })
+            let (law, own) = scenario.law(place, i)?;
+            let streams = Streams::new(seed, name, &format!("{} inertia", body.name));
+            Ok(BodyLaw { law, streams, each: body.inertia_drawn, own })
         };
-        let bodies = scenario.bodies().iter().enumerate().map(body);
-        let bodies: Vec<BodyDraws<'_>> = bodies.collect::<Result<_, ScenarioError>>()?;
-        let laws = bodies.iter().map(|draws| (draws.body.name.as_str(), &*draws.law));
+        let bodies = scenario.bodies();
+        let laws = bodies.iter().enumerate().map(body);
+        let laws: Vec<BodyLaw> = laws.collect::<Result<_, ScenarioError>>()?;
+        let grouped = bodies.iter().zip(&laws).map(|(body, drawn)| GroupedBody {
+            name: &body.name,
+            law: &*drawn.law,
+            own: drawn.own,
+        });
         Ok(Self {
-            groups: Groups::new(laws, scenario.dispersed()).and(SIMULATOR),
+            groups: Groups::new(grouped, scenario.dispersed()).and(SIMULATOR),
             drawing: Drawing::Plain,
             size: scenario.size(),
             own: scenario.own(),
             columns: scenario.inputs().collect(),
             bodies,
+            laws,
             quantities: scenario.quantities(),
             dispersed: scenario.dispersed(),
-            draws: drawn::Draws::new(seed, name, &scenario.dispersed().all),
+            draws: drawn::Draws::new(seed, name, scenario.dispersed()),
         })
     }
 }
@@ -93,9 +92,9 @@ impl SimulatorDraws<'_> {
 
     /// The independent scores of a run.
     fn scores(&self, mix: Mix<'_>) -> Vec<f64> {
-        let stream =
-            |place, each| self.groups.stream_of(place, mix, self.size.stream(each, mix.base()));
-        self.draws.scores(self.dispersed, stream, (mix.base(), self.drawing.steering()))
+        let stream = |each| self.size.stream(each, mix.base());
+        let taken = Taken { mix, stream: &stream, steering: self.drawing.steering() };
+        self.draws.scores(self.dispersed, &self.groups, taken)
     }
 
     /// Which draws a run takes.
@@ -124,26 +123,23 @@ impl Inputs for SimulatorDraws<'_> {
     }
 
     fn draw(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<(), Failure> {
-        let of_bodies = self.bodies.iter().flat_map(|draws| &draws.body.numbers);
+        let of_bodies = self.bodies.iter().flat_map(|body| &body.numbers);
         let mut values: Vec<f64> =
             of_bodies.chain(self.quantities).map(|number| number.nominal).collect();
         let mix = self.mix(run);
         let stream = |each: Each| self.size.stream(each, mix.base());
-        let drawn = drawn::Draws::values(self.dispersed, self.scores(mix));
+        let taken = Taken { mix, stream: &stream, steering: self.drawing.steering() };
+        let (drawn, inertias) = self.draws.run(self.dispersed, &self.groups, &self.laws, taken);
         for (d, value) in self.dispersed.all.iter().zip(drawn) {
             values[d.target] = value;
         }
         let (mut first, mut failure) = (0, None);
-        for (place, draws) in self.bodies.iter().enumerate() {
-            let body = draws.body;
+        for (body, drawn) in self.bodies.iter().zip(inertias) {
             let own = &values[first..first + body.numbers.len()];
             first += own.len();
             let mass = own[0];
-            let law = (&*draws.law, &draws.inertias);
-            let drawn = self.groups.inertia(place, mix, stream(body.inertia_drawn), law);
-            let inertia = following(drawn.inertia, mass / body.mass_kg, body.follows);
             numbers.extend(own.iter().copied().map(Some));
-            numbers.extend(inertia.entries().map(Some));
+            numbers.extend(drawn.inertia.entries().map(Some));
             let axes = drawn.axes.map(|axes| axes.coords);
             numbers.extend((0..4).map(|i| axes.map(|axes| axes[i])));
             if !(mass > 0.0) && failure.is_none() {

@@ -1,7 +1,7 @@
 //! A scenario of a simulator as it stands in a TOML file.
 
 use gyradius_campaign::{Requirement, Rows, Until};
-use gyradius_dispersion::{ModelKind, ModelParameters};
+use gyradius_dispersion::{MassPropertiesLaw, ModelKind, ModelParameters};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -9,8 +9,8 @@ use crate::{
     ScenarioError,
     about::About,
     scenario::{
-        AxesLawFile, BodyFile, CorrelationFile, DispersionFile, ModelFile, ModelLaw, Owner,
-        RootsFile, ScalarLawFile, Size, UntilFile, some_whole, whole,
+        AsGiven, AxesLawFile, BodyFile, CorrelationFile, DispersionFile, ModelFile, ModelLaw,
+        Owner, RootsFile, ScalarLawFile, Size, UntilFile, some_whole, whole,
     },
 };
 
@@ -112,6 +112,9 @@ pub(super) struct SimulatedBodyFile {
     pub(super) inertia_kg_m2: [[f64; 3]; 3],
     #[serde(default, skip_serializing_if = "says_nothing")]
     pub(super) dispersion: DispersionFile,
+    /// Of mass, mass centre and inertia, in the place of what the dispersion says of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) law: Option<AsGiven<MassPropertiesLaw>>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -166,18 +169,25 @@ impl File {
 }
 
 impl SimulatedBodyFile {
+    /// Fills in what is not said.
+    pub(super) fn fill(&mut self) {
+        if self.law.is_none() {
+            self.dispersion.fill();
+        }
+    }
+
     /// As a body of a separation that rests where it is. Where no model draws roots and axes, they may be left out, and do not
     /// scatter.
     pub(super) fn at_rest(&self, draws_roots_and_axes: bool) -> BodyFile {
         let mut dispersion = self.dispersion.clone();
-        if !draws_roots_and_axes {
-            if dispersion.roots == RootsFile::Gaussian {
+        if !draws_roots_and_axes && self.law.is_none() {
+            if dispersion.roots == Some(RootsFile::Gaussian) {
                 dispersion.root_second_moment_variance_kg_m2.get_or_insert([0.0; 3]);
             }
-            if dispersion.axes == AxesLawFile::RadiallyConstrainedGaussian
+            if dispersion.axes == Some(AxesLawFile::RadiallyConstrainedGaussian)
                 && dispersion.axes_covariance.is_none()
             {
-                dispersion.axes = AxesLawFile::Fixed;
+                dispersion.axes = Some(AxesLawFile::Fixed);
             }
         }
         BodyFile {
@@ -188,12 +198,17 @@ impl SimulatedBodyFile {
             body_to_inertial: [0.0, 0.0, 0.0, 1.0],
             angular_velocity_rad_per_s: [0.0; 3],
             dispersion,
+            law: self.law.clone(),
         }
     }
 }
 
 fn says_nothing(dispersion: &DispersionFile) -> bool {
-    *dispersion == DispersionFile::default()
+    let mut nothing = DispersionFile::default();
+    *dispersion == nothing || {
+        nothing.fill();
+        *dispersion == nothing
+    }
 }
 
 fn default_seed() -> u64 {

@@ -8,7 +8,7 @@ use std::{path::Path, sync::Arc};
 
 use super::{
     body::SimulatedBody,
-    file::{BodyName, File},
+    file::{BodyName, File, SimulatedBodyFile},
     number::{Number, check_column},
 };
 use crate::{
@@ -81,6 +81,7 @@ impl SimulatorScenario {
             file.simulation.folder = Some(std::path::absolute(&given).unwrap_or(given));
             file.simulation.files_sha256 = Some(files_sha256(&program(&file)?));
         }
+        file.bodies.iter_mut().for_each(SimulatedBodyFile::fill);
         let mut list = List::of(size.fleet());
         let (mut bodies, mut count) = (Vec::<SimulatedBody>::new(), 0);
         let drawn = file.draws_roots_and_axes();
@@ -112,6 +113,9 @@ impl SimulatorScenario {
             Ok(Column::number(name.clone(), unit.clone(), meaning.clone()))
         });
         let outputs = outputs.collect::<Result<Vec<_>, ScenarioError>>()?;
+        for (i, body) in bodies.iter_mut().enumerate() {
+            dispersed.correlate_roots(i, &mut body.uncertain);
+        }
         let models = models(&mut file, &bodies)?;
         let scenario = Self { file, size, until, bodies, quantities, dispersed, outputs, models };
         scenario.check_columns()?;
@@ -224,12 +228,12 @@ impl SimulatorScenario {
         self.size
     }
 
-    /// The law of a body under a model, both by their places.
+    /// The law of a body under a model, both by their places, and whether it is the body's own.
     pub(super) fn law(
         &self,
         model: usize,
         body: usize,
-    ) -> Result<Arc<dyn InertiaLaw>, ScenarioError> {
+    ) -> Result<(Arc<dyn InertiaLaw>, bool), ScenarioError> {
         let (spec, body_of) = (&self.models[model], &self.bodies[body]);
         let law = model::law(spec, body, &body_of.uncertain, &self.models, &|_| None);
         let (law, _) = law.map_err(|error| {
@@ -241,7 +245,12 @@ impl SimulatorScenario {
             let problem = format!("the body {}: {error}", body_of.name);
             ScenarioError::field(place(model) + key, problem)
         })?;
-        Ok(law)
+        let axes = spec.law.own_axes();
+        if let Some(axes) = axes {
+            let place = format!("bodies[{}]", body + 1);
+            self.dispersed.acceptance(body, &place, &body_of.uncertain, axes)?;
+        }
+        Ok((law, axes.is_some()))
     }
 
     pub(super) fn bodies(&self) -> &[SimulatedBody] {
