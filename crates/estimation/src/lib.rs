@@ -35,6 +35,7 @@
 //! ```
 
 mod fit;
+mod mass_fit;
 mod rollup;
 mod stated_body;
 mod statements;
@@ -43,6 +44,10 @@ mod turns;
 pub use fit::{
     Aspect, Assessment, AxesFinding, AxesFit, FitNote, FitTest, Matching, PrincipalFit,
     PrincipalFitError, RootEstimate, RootFit,
+};
+pub use mass_fit::{
+    Interval, MassAspect, MassAssessment, MassChoice, MassPropertiesFit, MassPropertiesFitError,
+    MassTest, MassTies, ScalarEstimate, ScalarFit,
 };
 pub use rollup::{
     Assembly, AssemblyError, AssemblyPart, AssemblyRow, FirstOrder, PartError, PartFinding,

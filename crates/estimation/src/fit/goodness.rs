@@ -258,7 +258,7 @@ impl PrincipalFit {
         (folded + 1) * most(self.samples.len()) as u64
     }
 
-    fn turns(&self) -> Vec<Vec<f64>> {
+    pub(crate) fn turns(&self) -> Vec<Vec<f64>> {
         self.turns_of(&self.samples)
     }
 
@@ -362,7 +362,7 @@ fn root_p_value<R: Rng + ?Sized>(
 }
 
 /// A² of probabilities in ascending order.
-fn anderson_darling(below: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn anderson_darling(below: impl Iterator<Item = f64>) -> f64 {
     let below: Vec<f64> = below.collect();
     let n = below.len();
     let ln = |p: f64| libm::log(p.max(1e-300));
@@ -407,7 +407,7 @@ fn omnibus(coordinates: &[Vec<f64>]) -> Option<f64> {
 }
 
 /// p-value of no correlation: within `a` if `b` is empty, else between `a` and `b` (Bartlett).
-fn independence(a: &[Vec<f64>], b: &[Vec<f64>], n: usize) -> f64 {
+pub(crate) fn independence(a: &[Vec<f64>], b: &[Vec<f64>], n: usize) -> f64 {
     let all: Vec<&Vec<f64>> = a.iter().chain(b).collect();
     let (p, q) = (a.len(), b.len());
     let count = n as f64;

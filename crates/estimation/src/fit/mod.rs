@@ -19,6 +19,7 @@ use relabel::{Relabeling, Sample};
 
 pub use axes::{AxesFinding, AxesFit};
 pub use goodness::{Aspect, Assessment, FitTest};
+pub(crate) use goodness::{anderson_darling, independence};
 pub use notes::FitNote;
 pub use root::{RootEstimate, RootFit};
 
@@ -228,6 +229,11 @@ impl PrincipalFit {
     #[must_use]
     pub fn sample_deviations(&self) -> [f64; 6] {
         self.deviations
+    }
+
+    /// The root about principal axis `k` of each sample, as its axes were named.
+    pub(crate) fn sample_roots(&self, k: usize) -> Vec<f64> {
+        self.samples.iter().map(|sample| sample.roots[k]).collect()
     }
 
     fn centre(&self) -> Centre {

@@ -1,0 +1,117 @@
+//! How the inertia of samples goes with their mass.
+
+use gyradius_inertia::Inertia;
+
+use crate::fit::{PrincipalFit, RootEstimate};
+
+/// Deviations within which 95 % of a normal law lie.
+const NORMAL_95: f64 = 1.959_963_984_540_054;
+/// What scatters by less than this, relative, does not.
+const STILL: f64 = 1e-9;
+
+/// An estimate with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Interval {
+    estimate: f64,
+    low: f64,
+    high: f64,
+}
+
+impl Interval {
+    /// The estimate.
+    #[must_use]
+    pub fn estimate(&self) -> f64 {
+        self.estimate
+    }
+
+    /// The lower end.
+    #[must_use]
+    pub fn low(&self) -> f64 {
+        self.low
+    }
+
+    /// The upper end.
+    #[must_use]
+    pub fn high(&self) -> f64 {
+        self.high
+    }
+}
+
+/// Whether the inertia follows the mass.
+///
+/// The inertia of a body whose shape does not depend on its mass is proportional to it, and its gyration lengths are not correlated with
+/// it. An inertia that does not depend on the mass has lengths that go with m^(−½).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct MassTies {
+    power: Interval,
+    correlations: [Option<Interval>; 3],
+}
+
+impl MassTies {
+    /// Of masses, inertias of one kilogram, and these fitted; none if the mass does not vary.
+    pub(super) fn of(masses: &[f64], inertias: &[Inertia], lengths: &PrincipalFit) -> Option<Self> {
+        let masses = Centred::of(masses.iter().map(|m| libm::log(*m)))?;
+        let sizes = inertias.iter().map(|i| libm::log(i.matrix().trace()));
+        let n = inertias.len() as f64;
+        let power = match Centred::of(sizes) {
+            None => Interval { estimate: 1.0, low: 1.0, high: 1.0 },
+            Some(sizes) => {
+                let slope = masses.product(&sizes) / masses.square();
+                let rest = (sizes.square() - slope * slope * masses.square()).max(0.0);
+                let reach = NORMAL_95 * (rest / (n - 2.0) / masses.square()).sqrt();
+                let estimate = 1.0 + slope;
+                Interval { estimate, low: estimate - reach, high: estimate + reach }
+            }
+        };
+        let correlations = std::array::from_fn(|k| {
+            let root = lengths.roots()[k];
+            let values = lengths.sample_roots(k);
+            if root.law() == RootEstimate::Constant || values.iter().any(|x| !(*x > 0.0)) {
+                return None;
+            }
+            let values = Centred::of(values.into_iter().map(libm::log))?;
+            let sizes = (masses.square() * values.square()).sqrt();
+            let estimate = (masses.product(&values) / sizes).clamp(-1.0, 1.0);
+            // Fisher's z.
+            let (z, reach) = (libm::atanh(estimate), NORMAL_95 / (n - 3.0).sqrt());
+            Some(Interval { estimate, low: libm::tanh(z - reach), high: libm::tanh(z + reach) })
+        });
+        Some(Self { power, correlations })
+    }
+
+    /// The power of the mass with which the trace of the inertia goes, by regression of the logarithms: 1 where the
+    /// inertia follows the mass, 0 where it does not depend on it.
+    #[must_use]
+    pub fn power(&self) -> Interval {
+        self.power
+    }
+
+    /// The correlations of ln m with the logarithms of the gyration lengths; none of a length that does not vary or is zero.
+    #[must_use]
+    pub fn correlations(&self) -> &[Option<Interval>; 3] {
+        &self.correlations
+    }
+}
+
+/// Numbers less their mean, which vary.
+struct Centred(Vec<f64>);
+
+impl Centred {
+    fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
+        let values: Vec<f64> = values.collect();
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let centred = Self(values.into_iter().map(|x| x - mean).collect());
+        ((centred.square() / n).sqrt() > STILL).then_some(centred)
+    }
+
+    fn product(&self, other: &Self) -> f64 {
+        self.0.iter().zip(&other.0).map(|(x, y)| x * y).sum()
+    }
+
+    fn square(&self) -> f64 {
+        self.product(self)
+    }
+}
