@@ -80,7 +80,7 @@ fn off(whole: &FirstOrder) -> ([f64; 20], [f64; 20]) {
 
 #[test]
 fn sawe_3360_to_its_printed_digits() {
-    // Izz is printed as 44547.27 where its parts give 44547.56, with either x: alone of the twenty.
+    // Izz is printed as 44547.27 where its parts give 44547.57, with either x: alone of the twenty.
     let (digits, relative) = off(&sawe_whole(70.85));
     let wrong: Vec<usize> = (0..20).filter(|i| !(digits[*i] <= 0.5 + 1e-6)).collect();
     assert_eq!(wrong, [6], "{digits:?}");
