@@ -4,11 +4,11 @@ use gyradius_inertia::{Inertia, MAX_LENGTH, MassProperties, Region, SecondMoment
 use nalgebra::{UnitQuaternion, Vector3};
 use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::{Distribution, StandardNormal};
-use std::borrow::Cow;
 
 use super::inside::{Inside, RegionAcceptanceError};
+use super::model::draws_bodies;
 use super::tensor::{Follows, Of, Principal};
-use super::{MassPropertiesModel, TenMoments, TenParameters, TensorLaw, TensorLawError};
+use super::{MassPropertiesModel, TenMoments, TensorLaw, TensorLawError};
 use crate::columns::ColumnsError;
 use crate::roots::FAR;
 use crate::{Correlation, CorrelationError, InertiaLaw, ScalarLaw, ScalarLawError};
@@ -367,19 +367,7 @@ impl Distribution<MassProperties> for MassPropertiesLaw {
 }
 
 impl MassPropertiesModel for MassPropertiesLaw {
-    fn name(&self) -> Cow<'_, str> {
-        "joint".into()
-    }
-
-    fn draw(&self, rng: &mut dyn Rng) -> TenParameters {
-        let mut rng = rng;
-        let body: MassProperties = self.sample(&mut rng);
-        body.into()
-    }
-
-    fn is_realizable_by_construction(&self) -> bool {
-        true
-    }
+    draws_bodies!("joint");
 
     fn ln_density(&self, body: &MassProperties) -> Option<f64> {
         self.ln_density(body)

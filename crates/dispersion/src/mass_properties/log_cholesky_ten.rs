@@ -4,9 +4,10 @@ use gyradius_inertia::{LogCholesky, LogCholeskyError, MassProperties};
 use nalgebra::{SMatrix, SVector};
 use rand::Rng;
 use rand_distr::Distribution;
-use std::{borrow::Cow, f64::consts::LN_2};
+use std::f64::consts::LN_2;
 
-use super::{MassPropertiesModel, TenMoments, TenParameters};
+use super::model::draws_bodies;
+use super::{MassPropertiesModel, TenMoments};
 use crate::gaussian_monomials::{GaussianMonomial, log_cholesky_entries, moments};
 use crate::second_moment_matrix::inertia_map;
 use crate::semidefinite::{Covariance, CovarianceError};
@@ -124,19 +125,7 @@ impl Distribution<MassProperties> for LogCholeskyTen {
 }
 
 impl MassPropertiesModel for LogCholeskyTen {
-    fn name(&self) -> Cow<'_, str> {
-        "log-cholesky-ten".into()
-    }
-
-    fn draw(&self, rng: &mut dyn Rng) -> TenParameters {
-        let mut rng = rng;
-        let body: MassProperties = self.sample(&mut rng);
-        body.into()
-    }
-
-    fn is_realizable_by_construction(&self) -> bool {
-        true
-    }
+    draws_bodies!("log-cholesky-ten");
 
     fn ln_density(&self, body: &MassProperties) -> Option<f64> {
         self.ln_density(body)

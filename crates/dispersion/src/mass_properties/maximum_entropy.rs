@@ -4,10 +4,11 @@ use gyradius_inertia::{Inertia, MassProperties, Region};
 use nalgebra::{SMatrix, SVector, Vector3};
 use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::{Distribution, Gamma, StandardNormal};
-use std::{borrow::Cow, f64::consts::PI};
+use std::f64::consts::PI;
 
 use super::inside::{Inside, RegionAcceptanceError};
-use super::{MassPropertiesModel, TenMoments, TenParameters};
+use super::model::draws_bodies;
+use super::{MassPropertiesModel, TenMoments};
 use crate::{KnownMoments, Wishart, WishartError};
 
 /// The dispersion of a mass: its standard deviation over its mean.
@@ -156,19 +157,7 @@ impl Distribution<MassProperties> for MaximumEntropy {
 }
 
 impl MassPropertiesModel for MaximumEntropy {
-    fn name(&self) -> Cow<'_, str> {
-        "maximum-entropy".into()
-    }
-
-    fn draw(&self, rng: &mut dyn Rng) -> TenParameters {
-        let mut rng = rng;
-        let body: MassProperties = self.sample(&mut rng);
-        body.into()
-    }
-
-    fn is_realizable_by_construction(&self) -> bool {
-        true
-    }
+    draws_bodies!("maximum-entropy");
 
     fn ln_density(&self, body: &MassProperties) -> Option<f64> {
         self.ln_density(body)

@@ -68,3 +68,24 @@ pub trait MassPropertiesModel: Debug + Send + Sync {
         Ok(())
     }
 }
+
+/// What every law of bodies answers alike: its name, draws by [`Distribution`](rand_distr::Distribution), and that no draw is
+/// of no body.
+macro_rules! draws_bodies {
+    ($name:literal) => {
+        fn name(&self) -> std::borrow::Cow<'_, str> {
+            $name.into()
+        }
+
+        fn draw(&self, rng: &mut dyn rand::Rng) -> $crate::TenParameters {
+            let mut rng = rng;
+            let body: gyradius_inertia::MassProperties = self.sample(&mut rng);
+            body.into()
+        }
+
+        fn is_realizable_by_construction(&self) -> bool {
+            true
+        }
+    };
+}
+pub(super) use draws_bodies;

@@ -4,9 +4,10 @@ use gyradius_inertia::{MassProperties, PseudoInertia, PseudoInertiaError};
 use nalgebra::{Cholesky, Matrix4, SMatrix, SVector, U4};
 use rand::Rng;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
-use std::{borrow::Cow, f64::consts::LN_2};
+use std::f64::consts::LN_2;
 
-use super::{MassPropertiesModel, TenMoments, TenParameters};
+use super::model::draws_bodies;
+use super::{MassPropertiesModel, TenMoments};
 
 /// Fewer degrees of freedom have no density, and more are no scatter.
 const FREEDOM: [f64; 2] = [4.0, 1e14];
@@ -161,19 +162,7 @@ impl Distribution<MassProperties> for PseudoInertiaWishart {
 }
 
 impl MassPropertiesModel for PseudoInertiaWishart {
-    fn name(&self) -> Cow<'_, str> {
-        "pseudo-inertia-wishart".into()
-    }
-
-    fn draw(&self, rng: &mut dyn Rng) -> TenParameters {
-        let mut rng = rng;
-        let body: MassProperties = self.sample(&mut rng);
-        body.into()
-    }
-
-    fn is_realizable_by_construction(&self) -> bool {
-        true
-    }
+    draws_bodies!("pseudo-inertia-wishart");
 
     fn ln_density(&self, body: &MassProperties) -> Option<f64> {
         Some(self.ln_density(body))

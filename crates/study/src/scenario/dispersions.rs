@@ -171,4 +171,3 @@ fn uncertain<'a, P: Parameter>(parameter: P, of: &P::Of, law: GivenLaw<'a>) -> U
     let (name, unit, nominal) = (parameter.name(), parameter.unit(), parameter.nominal(of));
     Uncertain { name, unit, nominal, law }
 }
-

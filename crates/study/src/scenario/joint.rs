@@ -124,4 +124,3 @@ impl<T> Default for Joint<T> {
         Self { all, roots, correlation: Correlation::default(), bodies }
     }
 }
-

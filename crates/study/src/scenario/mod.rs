@@ -36,14 +36,14 @@ pub(crate) use changed::changed;
 use clearance::Outlines;
 pub(crate) use clearance::distance_m;
 pub(crate) use dispersions::{Dispersions, check_follows};
-pub(crate) use joint::{Dispersed, Joint, Number, Target};
-pub(crate) use list::List;
 use file::ScenarioFile;
 pub(crate) use file::{
     AxesLawFile, BodyFile, CorrelationFile, DispersionFile, RootsFile, ShapeFile,
 };
+pub(crate) use joint::{Dispersed, Joint, Number, Target};
 pub(crate) use law::{GivenLaw, refused};
 pub(crate) use limits::base_runs;
+pub(crate) use list::List;
 pub(crate) use load::Uncertain;
 pub(crate) use model::{Comparison, Law, ModelSpec, check_models, place};
 pub(crate) use model_file::{AxesFile as Axes, ModelFile, ModelLaw, Owner};
