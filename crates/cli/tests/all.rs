@@ -10,6 +10,7 @@ mod draw;
 mod draw_robots;
 mod drivers;
 mod fit;
+mod fit_joint;
 mod fleet;
 mod kept;
 #[cfg(unix)]

@@ -34,6 +34,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod estimated;
 mod fit;
 mod mass_fit;
 mod rollup;
@@ -41,6 +42,9 @@ mod stated_body;
 mod statements;
 mod turns;
 
+pub use estimated::{
+    EstimateDistance, EstimatedBody, EstimatedBodyError, TenEstimate, TenEstimateError, TenForm,
+};
 pub use fit::{
     Aspect, Assessment, AxesFinding, AxesFit, FitNote, FitTest, Matching, PrincipalFit,
     PrincipalFitError, RootEstimate, RootFit,

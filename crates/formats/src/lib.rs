@@ -47,6 +47,8 @@ mod repair;
 mod robot;
 mod robot_error;
 mod robots;
+mod ten_moments;
+mod ten_table;
 mod text;
 mod walk;
 mod xml;
@@ -69,6 +71,8 @@ pub use plain::{must_write, read_text, write_file, write_file_as};
 pub use repair::{Change, Remedy, RepairError, copy_path, is_copy, write_copy, write_copy_of};
 pub use robot::{LinkNumbers, RobotFile, RobotLink};
 pub use robot_error::{LinkProblem, RobotError};
+pub use ten_moments::{TenMomentsError, TenMomentsFile};
+pub use ten_table::{TenRow, TenTable};
 pub use walk::{Found, find};
 
 /// Tolerance that suits files: they carry about six digits, and a plate or a rod written with six

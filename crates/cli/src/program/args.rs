@@ -5,11 +5,12 @@ use clap::{
     builder::{NonEmptyStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser},
     value_parser,
 };
+use gyradius_estimation::TenForm;
 use gyradius_study::{
     CompareOptions, Event, Inside, ModelKind, RareMethod, RareOptions, Requirement, Rows,
     StoppingRule, TableFormat,
 };
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::program::{
     examples::{
@@ -91,7 +92,11 @@ pub(crate) enum Command {
     /// Reads one inertia a row (CAD variants, a product line, past flights), matches the principal
     /// axes, fits the model of Peck (2003): Gaussian roots of the second moments, radially
     /// constrained Gaussian axes. Prints parameters with standard errors, says whether the model
-    /// fits, and writes the part of a scenario file that holds it.
+    /// fits, and writes the part of a scenario file that holds it. Where a table has mass and mass centre
+    /// too, the joint law of the ten is fitted beside it.
+    ///
+    /// With --estimate: the realizable law with the mean and covariance of an identification or of a
+    /// Bayesian posterior, as nearly as there is one, and how far it had to move.
     #[command(after_help = FIT_EXAMPLES)]
     Fit(FitArgs),
     /// Make the inertia uncertainty of a scenario from plain statements
@@ -544,9 +549,17 @@ pub(crate) enum RepairArg {
 
 #[derive(Args, Debug)]
 pub(crate) struct FitArgs {
-    /// Table of samples, one inertia a row
-    #[arg(value_name = "FILE")]
-    pub(crate) file: PathBuf,
+    /// Table of samples, one inertia a row, or one body with mass and mass centre
+    #[arg(value_name = "FILE", required_unless_present = "estimate")]
+    pub(crate) file: Option<PathBuf>,
+
+    /// An estimate in place of samples: mean and covariance of ten parameters (JSON, TOML or CSV)
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "body", "skip_impossible", "flip_products"])]
+    pub(crate) estimate: Option<PathBuf>,
+
+    /// What mass, mass centre and inertia are in the file [default: natural for tables]
+    #[arg(long, value_enum)]
+    pub(crate) parameters: Option<ParametersArg>,
 
     #[command(flatten)]
     pub(crate) fragment: FragmentArgs,
@@ -559,6 +572,31 @@ pub(crate) struct FitArgs {
     /// say which
     #[arg(long)]
     pub(crate) flip_products: bool,
+}
+
+impl FitArgs {
+    /// The table of samples.
+    pub(crate) fn table(&self) -> &Path {
+        self.file.as_deref().unwrap_or(Path::new(""))
+    }
+}
+
+/// Which ten numbers a body or an estimate has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum ParametersArg {
+    /// Mass centre, and inertia about it
+    Natural,
+    /// First moments m c, and inertia about the origin, in which the equations of motion are linear
+    Linear,
+}
+
+impl From<ParametersArg> for TenForm {
+    fn from(parameters: ParametersArg) -> Self {
+        match parameters {
+            ParametersArg::Natural => Self::Natural,
+            ParametersArg::Linear => Self::Linear,
+        }
+    }
 }
 
 #[derive(Args, Debug)]

@@ -139,12 +139,19 @@ Examples:
       The report on the screen, report and fragment in a file
   gyradius fit samples.json --format json > fit.json
       Everything as one JSON object
+  gyradius fit bodies.csv
+      With columns mass_kg,cx_m,cy_m,cz_m too: the joint law of the ten below the report
+  gyradius fit posterior.csv --parameters linear
+      m, m c (first_moment_1_kg_m…) and the inertia about the origin, as an identification has them
+  gyradius fit --estimate phi.json -o law.json
+      The realizable laws with a mean and covariance of ten parameters, and how far they had to move:
+      {\"parameters\": \"linear\", \"mean\": [10], \"covariance\": [[10] x 10]}
 
 Files are read as by `gyradius check`: a CSV with a header ixx,iyy,izz,ixy,ixz,iyz (or i11…), or
 JSON or TOML; kg·m² unless the header says otherwise. At least 13 samples.
 
 Exit code: 0 if nothing speaks against the model, 1 if the samples do (the fragment is written
-all the same), 2 if something could not be read, fitted or written.";
+all the same) or an estimate had to be moved, 2 if something could not be read, fitted or written.";
 
 pub(crate) const COMPARE_EXAMPLES: &str = "\
 Examples:

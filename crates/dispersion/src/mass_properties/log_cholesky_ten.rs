@@ -8,6 +8,7 @@ use std::f64::consts::LN_2;
 
 use super::model::draws_bodies;
 use super::{MassPropertiesModel, TenMoments};
+use crate::entry_moments::ENTRIES;
 use crate::gaussian_monomials::{GaussianMonomial, log_cholesky_entries, moments};
 use crate::second_moment_matrix::inertia_map;
 use crate::semidefinite::{Covariance, CovarianceError};
@@ -133,16 +134,38 @@ impl MassPropertiesModel for LogCholeskyTen {
 
     /// In closed form: the ten are sums of products of exponentials and coordinates.
     fn moments(&self) -> Option<TenMoments> {
-        let [s11, s22, s33, s12, s13, s23] = log_cholesky_entries::<10>(Some(ALPHA), ALPHA + 1);
-        let mass = GaussianMonomial::new(&[(ALPHA, 2.0)], &[]);
         let centre = |i: usize| vec![GaussianMonomial::new(&[], &[CENTRE + i])];
-        let parts = [vec![mass], centre(0), centre(1), centre(2), s11, s22, s33, s12, s13, s23];
+        let own = log_cholesky_entries::<10>(Some(ALPHA), ALPHA + 1);
+        Some(self.moments_of([centre(0), centre(1), centre(2)], own))
+    }
+
+    /// In closed form, too: m c and Σ + m c cᵀ are such sums.
+    fn linear_moments(&self) -> Option<TenMoments> {
+        let of = |centre: &[usize]| GaussianMonomial::new(&[(ALPHA, 2.0)], centre);
+        let first = |i: usize| vec![of(&[CENTRE + i])];
+        let mut second = log_cholesky_entries::<10>(Some(ALPHA), ALPHA + 1);
+        for (entry, (i, j)) in second.iter_mut().zip(ENTRIES) {
+            entry.push(of(&[CENTRE + i, CENTRE + j]));
+        }
+        Some(self.moments_of([first(0), first(1), first(2)], second))
+    }
+}
+
+impl LogCholeskyTen {
+    /// Mean and covariance of the mass, of three sums, and of the inertia of these six second moments.
+    fn moments_of(
+        &self,
+        [x, y, z]: [Vec<GaussianMonomial<10>>; 3],
+        [s11, s22, s33, s12, s13, s23]: [Vec<GaussianMonomial<10>>; 6],
+    ) -> TenMoments {
+        let mass = vec![GaussianMonomial::new(&[(ALPHA, 2.0)], &[])];
+        let parts = [mass, x, y, z, s11, s22, s33, s12, s13, s23];
         let (mean, covariance) = moments(&parts, &self.mean, self.covariance.matrix());
         // From Σ to I.
         let mut map = SMatrix::<f64, 10, 10>::identity();
         map.fixed_view_mut::<6, 6>(4, 4).copy_from(&inertia_map());
         let covariance = map * covariance * map.transpose();
-        Some(TenMoments::unchecked(map * mean, (covariance + covariance.transpose()) * 0.5))
+        TenMoments::unchecked(map * mean, (covariance + covariance.transpose()) * 0.5)
     }
 }
 

@@ -12,7 +12,7 @@ mod nearest_law;
 mod part;
 mod scaled_correlations;
 mod second_moment_law;
-mod symmetric;
+pub(crate) mod symmetric;
 #[cfg(test)]
 mod tests;
 mod tree;

@@ -14,7 +14,7 @@ const MORE: f64 = 5.0;
 
 /// When the search ends.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Effort {
+pub(crate) struct Effort {
     /// Steps at most.
     steps: usize,
     /// A step that takes less than this share off the cost is the last one.
@@ -22,13 +22,15 @@ pub(super) struct Effort {
 }
 
 impl Effort {
-    pub(super) const FULL: Self = Self { steps: 200, worth: 3e-4 };
+    pub(crate) const FULL: Self = Self { steps: 200, worth: 3e-4 };
+    /// Until next to nothing is gained.
+    pub(crate) const FINE: Self = Self { steps: 300, worth: 1e-6 };
     /// To see which of many starts is worth it.
-    pub(super) const SHORT: Self = Self { steps: 15, worth: 3e-2 };
+    pub(crate) const SHORT: Self = Self { steps: 15, worth: 3e-2 };
 }
 
 /// Sum of squared residuals.
-pub(super) trait Problem {
+pub(crate) trait Problem {
     /// The unknowns and what is worked out of them.
     type Point: Clone;
 
@@ -43,15 +45,15 @@ pub(super) trait Problem {
 }
 
 /// Where an unknown may be.
-pub(super) struct Range {
-    pub(super) least: f64,
-    pub(super) most: f64,
-    pub(super) unit: f64,
+pub(crate) struct Range {
+    pub(crate) least: f64,
+    pub(crate) most: f64,
+    pub(crate) unit: f64,
 }
 
 /// The least sum of squares that is found downhill from a point (Levenberg 1944, Marquardt 1963, doi:10.1137/0111030).
 /// Unknowns at a bound stay there while the slope leads beyond it.
-pub(super) fn least_squares<P: Problem>(
+pub(crate) fn least_squares<P: Problem>(
     problem: &P,
     start: P::Point,
     effort: Effort,

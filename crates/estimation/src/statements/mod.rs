@@ -2,7 +2,7 @@
 
 mod diagnosis;
 mod entries;
-mod levenberg_marquardt;
+pub(crate) mod levenberg_marquardt;
 mod nodes;
 mod parts;
 mod scatter;

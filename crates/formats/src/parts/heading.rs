@@ -3,12 +3,12 @@
 use crate::csv::{entry_of, inertia_unit, length_unit, mass_unit, squeezed};
 
 /// The ten numbers, as messages call them.
-pub(super) const VALUES: [&str; 10] =
+pub(crate) const VALUES: [&str; 10] =
     ["mass", "centre_x", "centre_y", "centre_z", "ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Column {
+pub(crate) enum Column {
     Name,
     Parent,
     /// Products are entries of the tensor, or integrals.
@@ -26,11 +26,11 @@ pub(super) enum Column {
 
 /// Some of the ten: from, and how many.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Group(pub(super) usize, pub(super) usize);
+pub(crate) struct Group(pub(super) usize, pub(super) usize);
 
 /// What a standard deviation is in.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Scale {
+pub(crate) enum Scale {
     /// In a unit that is so much in SI.
     Unit(f64),
     /// In percent of the value.
@@ -39,7 +39,7 @@ pub(super) enum Scale {
 
 /// What a heading means.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Heading {
+pub(crate) enum Heading {
     Column(Column),
     /// Perhaps a size of a shape, by its name.
     Size(String),
@@ -49,7 +49,7 @@ pub(super) enum Heading {
 }
 
 impl Heading {
-    pub(super) fn of(text: &str) -> Self {
+    pub(crate) fn of(text: &str) -> Self {
         // Longer texts are none.
         if text.len() > 200 {
             return Self::Other;
@@ -119,9 +119,9 @@ fn quantity(plain: &str) -> Option<Column> {
 
 fn group(name: &str) -> Option<Group> {
     let of = |plain: &str| match plain {
-        "x" => Some(Group(1, 1)),
-        "y" => Some(Group(2, 1)),
-        "z" => Some(Group(3, 1)),
+        "x" | "1" => Some(Group(1, 1)),
+        "y" | "2" => Some(Group(2, 1)),
+        "z" | "3" => Some(Group(3, 1)),
         "" => Some(Group(1, 3)),
         _ => None,
     };
@@ -155,6 +155,7 @@ mod tests {
             ("Mass center Z (in)", value(3, 0.0254)),
             ("Ixx", value(4, 1.0)),
             ("i23_kg_m2", value(9, 1.0)),
+            ("mass_centre_2_m", value(2, 1.0)),
             ("sigma_mass", sigma(0, 1, 1.0)),
             ("sigma_Cz", sigma(3, 1, 1.0)),
             ("centre_sigma_mm", sigma(1, 3, 1e-3)),

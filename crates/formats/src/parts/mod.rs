@@ -1,7 +1,7 @@
 //! Lists of parts: mass, mass centre, inertia and their standard deviations, one part a row, and what belongs to what.
 
 mod error;
-mod heading;
+pub(crate) mod heading;
 mod row;
 
 pub use error::{PartsError, PartsProblem};

@@ -5,7 +5,11 @@ use gyradius_estimation::{Aspect, Assessment, AxesFinding, PrincipalFit, RootEst
 use gyradius_study::Fragment;
 use serde::Serialize;
 
-use super::{FitArgs, table::Table};
+use super::{
+    FitArgs,
+    joint::{Joint, JointJson},
+    table::Table,
+};
 
 /// Grows when a field changes its meaning or goes; new fields may come without it.
 const SCHEMA: u32 = 1;
@@ -29,6 +33,8 @@ struct Document {
     tests: Vec<TestJson>,
     notes: Vec<String>,
     fragment: FragmentJson,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    joint: Option<JointJson>,
 }
 
 #[derive(Serialize)]
@@ -116,6 +122,7 @@ pub(super) fn text(
     moments: &EntryMoments,
     assessment: &Assessment,
     fragment: &Fragment,
+    joint: Option<&Joint>,
 ) -> serde_json::Result<String> {
     let rows = |m: nalgebra::Matrix3<f64>| -> [[f64; 3]; 3] {
         std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))
@@ -125,7 +132,7 @@ pub(super) fn text(
     let document = Document {
         schema: SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
-        file: arguments.file.display().to_string(),
+        file: arguments.table().display().to_string(),
         samples: fit.count(),
         set_aside: table.aside,
         rounded: table.rounded,
@@ -198,6 +205,7 @@ pub(super) fn text(
             &gyradius_study::FragmentBody::from(arguments.fragment.body).to_string(),
             fragment,
         ),
+        joint: joint.map(Joint::json),
     };
     serde_json::to_string_pretty(&document)
 }

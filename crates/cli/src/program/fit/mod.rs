@@ -1,5 +1,7 @@
 //! `gyradius fit`: which samples, what is said of the fit, and the exit code.
 
+mod estimate;
+mod joint;
 mod json;
 mod report;
 mod table;
@@ -24,7 +26,7 @@ pub(crate) use report::wrapped;
 /// What the program returns when samples speak against the model.
 const DOUBTED: u8 = 1;
 /// Seed of the simulations behind the verdict: the same table has the same verdict.
-const SEED: u64 = 2003;
+pub(super) const SEED: u64 = 2003;
 
 /// Runs the verb.
 pub(crate) fn fit(arguments: &FitArgs) -> ExitCode {
@@ -42,8 +44,13 @@ pub(crate) fn fit(arguments: &FitArgs) -> ExitCode {
 fn run(arguments: &FitArgs) -> Result<bool, Box<dyn Error>> {
     let products =
         if arguments.flip_products { Products::Integrals } else { Products::TensorEntries };
-    let table = table::read(&arguments.file, products, arguments.skip_impossible)?;
-    let file = arguments.file.display();
+    if let Some(path) = &arguments.estimate {
+        return estimate::run(arguments, path);
+    }
+    let path = arguments.table();
+    let form = arguments.parameters.map(Into::into);
+    let table = table::read(path, products, form, arguments.skip_impossible)?;
+    let file = path.display();
     let fit = PrincipalFit::new(&table.samples).map_err(|error| format!("{file}: {error}"))?;
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let assessment = progress::show(fit.simulations(), "simulated tables", |report| {
@@ -52,8 +59,12 @@ fn run(arguments: &FitArgs) -> Result<bool, Box<dyn Error>> {
     let fragment = Fragment::new(arguments.fragment.body.into(), fit.nominal(), fit.law())
         .map_err(|error| format!("{file}: {error}"))?;
     let moments = EntryMoments::of(fit.law());
-    let report = report::text(arguments, &table, &fit, &moments, &assessment);
-    let json = || json::text(arguments, &table, &fit, &moments, &assessment, &fragment);
-    output::write(&arguments.fragment, &arguments.file, &report, &json, &fragment)?;
+    let joint = table.bodies.as_deref().map(joint::Joint::new).transpose();
+    let joint = joint.map_err(|error| format!("{file}: {error}"))?;
+    let mut report = report::text(arguments, &table, &fit, &moments, &assessment);
+    report.push_str(&joint.as_ref().map_or_else(String::new, joint::Joint::text));
+    let json =
+        || json::text(arguments, &table, &fit, &moments, &assessment, &fragment, joint.as_ref());
+    output::write(&arguments.fragment, path, &report, &json, &fragment)?;
     Ok(assessment.fits())
 }

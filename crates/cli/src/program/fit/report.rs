@@ -30,7 +30,7 @@ fn write_text(
     moments: &EntryMoments,
     assessment: &Assessment,
 ) -> std::fmt::Result {
-    let file = arguments.file.file_name().unwrap_or_default().to_string_lossy();
+    let file = arguments.table().file_name().unwrap_or_default().to_string_lossy();
     let mut first = format!(
         "Fitted by gyradius {} to {} samples of {file}",
         env!("CARGO_PKG_VERSION"),

@@ -1,8 +1,12 @@
 //! A table of samples as inertias.
 
-use gyradius_formats::{Body, BodyError, FileError, InertiaFile, Products, TOLERANCE, judge};
-use gyradius_inertia::{Inertia, InertiaMatrix, Repair, RepairMethod};
-use std::path::Path;
+use gyradius_dispersion::TenParameters;
+use gyradius_estimation::TenForm;
+use gyradius_formats::{
+    Body, BodyError, FileError, InertiaFile, Products, TOLERANCE, TenRow, TenTable, judge,
+};
+use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Repair, RepairMethod};
+use std::{collections::HashMap, fs, path::Path};
 
 /// Why a table is not fitted.
 #[derive(Debug, thiserror::Error)]
@@ -16,6 +20,10 @@ pub(super) enum TableError {
          `gyradius check` lists them)"
     )]
     Impossible { place: String, index: usize, reason: String, more: String },
+    #[error(
+        "{place}: there are no columns of mass and {centre}: a CSV with {names} in its header has them"
+    )]
+    NoTen { place: String, centre: &'static str, names: String },
 }
 
 /// The samples of a file.
@@ -26,38 +34,80 @@ pub(super) struct Table {
     pub(super) aside: usize,
     /// Samples moved onto the boundary, which they had left by the rounding of their digits.
     pub(super) rounded: usize,
+    /// The same samples with mass and mass centre, if the table has them.
+    pub(super) bodies: Option<Vec<MassProperties>>,
 }
 
-pub(super) fn read(path: &Path, products: Products, skip: bool) -> Result<Table, TableError> {
+/// Reads a table; with mass and mass centre where it has them, or where a form says that it has.
+pub(super) fn read(
+    path: &Path,
+    products: Products,
+    form: Option<TenForm>,
+    skip: bool,
+) -> Result<Table, TableError> {
     let file = InertiaFile::read(path, products)?;
     let place = path.display().to_string();
-    let mut table =
-        Table { samples: Vec::with_capacity(file.bodies().len()), aside: 0, rounded: 0 };
+    let ten = ten(path, &place, products, form)?;
+    let mut table = Table {
+        samples: Vec::with_capacity(file.bodies().len()),
+        aside: 0,
+        rounded: 0,
+        bodies: ten.is_some().then(Vec::new),
+    };
     let mut refused: Option<(usize, &Body, String)> = None;
     for (index, body) in file.bodies().iter().enumerate() {
         let at = || format!("{place}:{}", body.line());
-        let matrix = *body
-            .inertia()
-            .map_err(|error| TableError::Row { place: at(), error: error.clone() })?;
+        let mut matrix = *body.inertia().map_err(|error| row_error(at(), &error))?;
+        let mut of = None;
+        if let Some((ten, form)) = &ten {
+            let values = ten
+                .get(&body.line())
+                .ok_or_else(|| row_error(at(), &BodyError::Missing { field: "mass" }))?;
+            let values = values.as_ref().map_err(|error| row_error(at(), error))?;
+            match natural(*values, *form) {
+                Some(values) => {
+                    if *form == TenForm::Linear {
+                        matrix = *values.inertia.matrix();
+                    }
+                    of = Some(values);
+                }
+                None => {
+                    table.aside += 1;
+                    refused.get_or_insert((index + 1, body, format!("mass = {} kg", values[0])));
+                    continue;
+                }
+            }
+        }
         if let Some(fault) = judge(&matrix, None, TOLERANCE).report().faults().first() {
             table.aside += 1;
             refused.get_or_insert((index + 1, body, fault.to_string()));
             continue;
         }
-        match Inertia::new(matrix) {
-            Ok(inertia) => table.samples.push(inertia),
+        let (inertia, moved) = match Inertia::new(matrix) {
+            Ok(inertia) => (Some(inertia), 0),
             Err(_) => {
                 let nearest = InertiaMatrix::new(matrix)
                     .ok()
                     .and_then(|matrix| Repair::new(&matrix, RepairMethod::Nearest).ok());
-                if let Some(repair) = nearest {
-                    table.samples.push(*repair.inertia());
-                    table.rounded += 1;
-                } else {
-                    table.aside += 1;
-                    refused.get_or_insert((index + 1, body, "out of range".to_owned()));
-                }
+                (nearest.map(|repair| *repair.inertia()), 1)
             }
+        };
+        let whole = |inertia: Inertia| match &of {
+            Some(ten) => {
+                MassProperties::new(ten.mass_kg, ten.mass_centre_m, inertia).ok().map(Some)
+            }
+            None => Some(None),
+        };
+        let Some((inertia, whole)) = inertia.and_then(|inertia| Some((inertia, whole(inertia)?)))
+        else {
+            table.aside += 1;
+            refused.get_or_insert((index + 1, body, "out of range".to_owned()));
+            continue;
+        };
+        table.samples.push(inertia);
+        table.rounded += moved;
+        if let (Some(bodies), Some(whole)) = (&mut table.bodies, whole) {
+            bodies.push(whole);
         }
     }
     match refused {
@@ -66,7 +116,8 @@ pub(super) fn read(path: &Path, products: Products, skip: bool) -> Result<Table,
                 1 => String::new(),
                 n => format!("and {} more; ", n - 1),
             };
-            let reason = format!("no body has this inertia: {reason}");
+            let what = if ten.is_some() { "mass properties" } else { "inertia" };
+            let reason = format!("no body has this {what}: {reason}");
             Err(TableError::Impossible {
                 place: format!("{place}:{}", body.line()),
                 index,
@@ -76,4 +127,47 @@ pub(super) fn read(path: &Path, products: Products, skip: bool) -> Result<Table,
         }
         _ => Ok(table),
     }
+}
+
+fn row_error(place: String, error: &BodyError) -> TableError {
+    TableError::Row { place, error: error.clone() }
+}
+
+/// The ten numbers of each line, and what they are.
+type Lines = (HashMap<usize, Result<[f64; 10], BodyError>>, TenForm);
+
+fn ten(
+    path: &Path,
+    place: &str,
+    products: Products,
+    form: Option<TenForm>,
+) -> Result<Option<Lines>, TableError> {
+    let is_table = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
+    let bytes = if is_table { fs::read(path).unwrap_or_default() } else { Vec::new() };
+    let table = TenTable::read(&bytes, products).filter(|table| {
+        // Without a word first moments are none of the columns.
+        form.is_some() || !table.has_first_moments()
+    });
+    match (table, form) {
+        (None, None) => Ok(None),
+        (None, Some(form)) => {
+            let centre = match form {
+                TenForm::Linear => "first moments",
+                TenForm::Natural => "mass centre",
+            };
+            let names = form.columns()[..4].join(",");
+            Err(TableError::NoTen { place: place.to_owned(), centre, names })
+        }
+        (Some(table), form) => {
+            let of = |row: &TenRow| (row.line(), row.values().copied().map_err(Clone::clone));
+            let lines = table.rows().iter().map(of).collect();
+            Ok(Some((lines, form.unwrap_or(TenForm::Natural))))
+        }
+    }
+}
+
+/// Mass, mass centre and inertia about it; none of a mass that is not positive.
+fn natural(values: [f64; 10], form: TenForm) -> Option<TenParameters> {
+    let positive = values[0] > 0.0;
+    form.natural(&values.into()).filter(|_| positive)
 }

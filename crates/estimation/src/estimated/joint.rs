@@ -1,0 +1,265 @@
+//! The joint law of mass, mass centre, gyration lengths and axes with the moments of an estimate, as nearly as it can.
+
+use gyradius_dispersion::{
+    AxesLaw, FixedAttitude, JointScalar, MassPropertiesLaw, ScalarLaw, TenParameters, TensorLaw,
+};
+use gyradius_inertia::{InertiaMatrix, MassProperties};
+use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
+
+use super::distance::{Gaps, units};
+use super::log_cholesky::moments;
+use super::ten_estimate::{Matrix10, Ten, TenEstimate, TenForm};
+use crate::rollup::symmetric::with_eigenvalues;
+use crate::turns::{FIXED, law_of_turns_about};
+
+/// Scalars come first: mass, mass centre, gyration lengths; then three rotations.
+const SCALARS: usize = JointScalar::ALL.len();
+/// Above this share of the mean, a normal mass could be negative, and a normal length zero: they are lognormal.
+const SAFE_MASS: f64 = 0.125;
+const SAFE_LENGTH: f64 = 0.5;
+/// Singular values of the derivatives below this share of the largest belong to what cannot be seen: the rotation of a rod about itself.
+const SEEN: f64 = 1e-9;
+/// Steps at most, and of the gradient in each.
+const STEPS: usize = 12;
+const GRADIENTS: usize = 1500;
+/// Where nothing is left to gain.
+const NOTHING: f64 = 1e-10;
+/// A length whose square comes out below this share of what it was is zero.
+const FLAT: f64 = 1e-3;
+/// Steps that bring nothing, after which the search ends.
+const PATIENCE: usize = 2;
+/// What varies by less than this does not.
+const STILL: f64 = 1e-12;
+/// Rotations by more than this, and lengths with a larger share of deviation, are not of first order.
+const WIDE: f64 = 0.3;
+/// The largest coefficient of correlation.
+const MOST: f64 = 1.0 - 1e-9;
+
+/// The means of mass, mass centre and lengths, the mean axes, and the covariance of these and of small rotations.
+#[derive(Clone, Debug)]
+pub(super) struct Joint {
+    mean: Ten,
+    axes: UnitQuaternion<f64>,
+    spread: Matrix10,
+}
+
+/// The joint law as near to moments as its family allows, from a body on: the means, and by least squares the covariances. What the
+/// family has not are the 21 covariances of scalars with rotations of the axes.
+///
+/// The covariance of the ten is D S Dᵀ to first order, linear in the covariance S of scalars and rotations: a convex problem. What the
+/// law's own moments differ from that is added to what is sought, and so on.
+pub(super) fn matched(target: &TenEstimate, start: &MassProperties) -> Option<Joint> {
+    let form = target.form();
+    let (m, c) = (start.mass_kg(), start.mass_centre_m());
+    let axes = start.inertia().principal_axes().attitude();
+    let lengths = start.radii_of_gyration().ok()?.values();
+    let mean = Ten::from([m, c.x, c.y, c.z, lengths[0], lengths[1], lengths[2], 0.0, 0.0, 0.0]);
+    let units = units(target);
+    let mut sought = *target.covariance();
+    let mut joint = Joint { mean, axes, spread: nearest(form, &mean, &axes, &sought, &units)? };
+    let mut best: Option<(f64, Joint)> = None;
+    let mut vain = 0;
+    for _ in 0..STEPS {
+        let Some(gaps) = joint.law([1.0, 1.0]).and_then(|law| moments(&law, form)) else { break };
+        let gaps = Gaps::of(target, &gaps);
+        let off = gaps.off();
+        let before = best.as_ref().map_or(f64::INFINITY, |best| best.0);
+        if off < before {
+            best = Some((off, joint.clone()));
+        }
+        if !(off < 0.9 * before) {
+            vain += 1;
+        }
+        if vain > PATIENCE {
+            break;
+        }
+        if off < NOTHING {
+            break;
+        }
+        let derivative = derivative(form, &joint.mean, &joint.axes)?;
+        let first_order = derivative * joint.spread * derivative.transpose();
+        let law = target.covariance() - gaps.covariance;
+        sought = target.covariance() + first_order - law;
+        let Some((mean, axes)) = joint.moved(&(inverse(&derivative)? * gaps.mean)) else { break };
+        joint = Joint { mean, axes, spread: nearest(form, &mean, &axes, &sought, &units)? };
+    }
+    best.map(|best| best.1)
+}
+
+/// The covariance S that the family has with D S Dᵀ nearest to a covariance, in units of deviations: gradient steps with momentum
+/// (Nesterov) from the solution without the covariances that are not there.
+fn nearest(
+    form: TenForm,
+    mean: &Ten,
+    axes: &UnitQuaternion<f64>,
+    sought: &Matrix10,
+    units: &Ten,
+) -> Option<Matrix10> {
+    let derivative = derivative(form, mean, axes)?;
+    let inverse = inverse(&derivative)?;
+    let start = possible(&(inverse * sought * inverse.transpose()));
+    let size = start.diagonal().map(|v| v.max(0.0).sqrt());
+    let map = Matrix10::from_fn(|i, j| derivative[(i, j)] * size[j] / units[i]);
+    let right = Matrix10::from_fn(|i, j| sought[(i, j)] / units[i] / units[j]);
+    // Squares of half the relative differences of variances, and of the differences of correlations of each pair.
+    let weigh = |m: Matrix10| Matrix10::from_fn(|i, j| m[(i, j)] * if i == j { 0.25 } else { 0.5 });
+    let gap = |x: &Matrix10| map * x * map.transpose() - right;
+    let cost = |x: &Matrix10| gap(x).dot(&weigh(gap(x)));
+    let mut found = Matrix10::from_fn(|i, j| {
+        let own = size[i] * size[j];
+        if own > 0.0 { start[(i, j)] / own } else { 0.0 }
+    });
+    let largest = map.norm();
+    let curvature = 0.5 * largest.powi(4);
+    if cost(&found) > NOTHING * NOTHING && curvature > 0.0 && curvature.is_finite() {
+        let (mut before, mut least, mut age) = (found, (cost(&found), found), 0.0);
+        for _ in 0..GRADIENTS {
+            let ahead = found + (found - before) * (age / (age + 3.0));
+            let slope = map.tr_mul(&(weigh(gap(&ahead)) * map));
+            before = found;
+            let mut next = ahead - slope / curvature;
+            free(&mut next);
+            found = with_eigenvalues(&next, |x| x.max(0.0));
+            age += 1.0;
+            let now = cost(&found);
+            if now < least.0 {
+                least = (now, found);
+            } else {
+                // Momentum that leads uphill is lost.
+                age = 0.0;
+            }
+        }
+        found = least.1;
+    }
+    Some(Matrix10::from_fn(|i, j| found[(i, j)] * size[i] * size[j]))
+}
+
+impl Joint {
+    /// Means and axes after a step.
+    fn moved(&self, shift: &Ten) -> Option<(Ten, UnitQuaternion<f64>)> {
+        let mut mean = self.mean + shift;
+        // In squares, in which the ten are linear: a plate whose axes scatter has a mean that is none.
+        for k in 4..7 {
+            let square = self.mean[k] * (self.mean[k] + 2.0 * shift[k]);
+            mean[k] = if square > FLAT * self.mean[k] * self.mean[k] { square.sqrt() } else { 0.0 };
+        }
+        let by = Vector3::new(mean[7], mean[8], mean[9]);
+        if !(mean[0] > 0.0 && by.norm() < 1.0 && mean.iter().all(|x| x.is_finite())) {
+            return None;
+        }
+        mean.fixed_rows_mut::<3>(7).fill(0.0);
+        Some((mean, self.axes * UnitQuaternion::from_scaled_axis(by)))
+    }
+
+    /// Whether lengths or axes vary so widely that first order says little.
+    pub(super) fn is_wide(&self) -> bool {
+        let wide = |i: usize| self.spread[(i, i)] > (WIDE * self.mean[i]).powi(2);
+        (4..7).any(wide) || (7..10).any(|i| self.spread[(i, i)] > WIDE * WIDE)
+    }
+
+    /// The law, in units of a mass and a length that are so much in SI.
+    pub(super) fn law(&self, [mass, length]: [f64; 2]) -> Option<MassPropertiesLaw> {
+        let unit = |i: usize| if i == 0 { mass } else { length };
+        let deviation = |i: usize| self.spread[(i, i)].max(0.0).sqrt();
+        let scalar = |i: usize, safe: f64| {
+            let (mean, deviation) = (self.mean[i] * unit(i), deviation(i) * unit(i));
+            if deviation > safe * mean {
+                ScalarLaw::lognormal(mean, deviation)
+            } else {
+                ScalarLaw::normal(mean, deviation)
+            }
+            .ok()
+        };
+        let centre =
+            |i: usize| ScalarLaw::normal(self.mean[i] * length, deviation(i) * length).ok();
+        let lengths = [scalar(4, SAFE_LENGTH)?, scalar(5, SAFE_LENGTH)?, scalar(6, SAFE_LENGTH)?];
+        let tensor = TensorLaw::gyration_lengths(lengths, self.axes_law()?);
+        let centre = [centre(1)?, centre(2)?, centre(3)?];
+        let law = MassPropertiesLaw::new(scalar(0, SAFE_MASS)?, centre, tensor).ok()?;
+        let mut pairs = Vec::new();
+        for i in 0..SCALARS {
+            for j in 0..i {
+                let size = deviation(i) * deviation(j);
+                let coefficient = if size > 0.0 { self.spread[(i, j)] / size * MOST } else { 0.0 };
+                if coefficient.abs() > STILL {
+                    pairs.push((
+                        JointScalar::ALL[i],
+                        JointScalar::ALL[j],
+                        coefficient.clamp(-MOST, MOST),
+                    ));
+                }
+            }
+        }
+        law.with_correlation(&pairs).ok()
+    }
+
+    fn axes_law(&self) -> Option<AxesLaw> {
+        let covariance = self.spread.fixed_view::<3, 3>(7, 7).into_owned();
+        if !(covariance.trace() > FIXED * FIXED) {
+            return Some(FixedAttitude::new(self.axes).into());
+        }
+        let eigen = covariance.symmetric_eigen();
+        let variances = eigen.eigenvalues.map(|v| v.max(0.0)).into();
+        let law = law_of_turns_about(self.axes, &eigen.eigenvectors.transpose(), variances).ok()?;
+        Some(law.into())
+    }
+}
+
+/// Nothing between scalars and rotations.
+fn free(spread: &mut Matrix10) {
+    for i in 0..SCALARS {
+        for j in SCALARS..10 {
+            spread[(i, j)] = 0.0;
+            spread[(j, i)] = 0.0;
+        }
+    }
+}
+
+/// The nearest covariance that the family has, in correlations.
+fn possible(spread: &Matrix10) -> Matrix10 {
+    let mut spread = (spread + spread.transpose()) * 0.5;
+    free(&mut spread);
+    let deviations = spread.diagonal().map(|v| v.max(0.0).sqrt());
+    let scale = |i: usize| if deviations[i] > STILL { deviations[i] } else { 1.0 };
+    let still = |i: usize| deviations[i] <= STILL;
+    let correlation = Matrix10::from_fn(|i, j| {
+        if still(i) || still(j) { 0.0 } else { spread[(i, j)] / scale(i) / scale(j) }
+    });
+    let clipped = with_eigenvalues(&correlation, |x| x.max(0.0));
+    Matrix10::from_fn(|i, j| clipped[(i, j)] * scale(i) * scale(j))
+}
+
+/// The ten of mass, mass centre, lengths, and axes rotated by a small vector in body axes.
+fn ten(form: TenForm, y: &Ten, axes: &UnitQuaternion<f64>) -> Option<Ten> {
+    let by = UnitQuaternion::from_scaled_axis(Vector3::new(y[7], y[8], y[9]));
+    let rotation = *(axes * by).to_rotation_matrix().matrix();
+    let squares = Vector3::new(y[4] * y[4], y[5] * y[5], y[6] * y[6]) * y[0];
+    let second = rotation.tr_mul(&(Matrix3::from_diagonal(&squares) * rotation));
+    let inertia = Matrix3::identity() * second.trace() - second;
+    let inertia = InertiaMatrix::new((inertia + inertia.transpose()) * 0.5).ok()?;
+    let mass_centre_m = Vector3::new(y[1], y[2], y[3]);
+    Some(form.of(TenParameters { mass_kg: y[0], mass_centre_m, inertia }))
+}
+
+/// The derivatives of the ten by mass, mass centre, lengths and rotations.
+fn derivative(form: TenForm, mean: &Ten, axes: &UnitQuaternion<f64>) -> Option<Matrix10> {
+    const STEP: f64 = 1e-5;
+    let mut derivative = Matrix10::zeros();
+    for i in 0..10 {
+        let at = |by: f64| {
+            let mut there = *mean;
+            there[i] += by;
+            ten(form, &there, axes)
+        };
+        derivative.set_column(i, &((at(STEP)? - at(-STEP)?) / (2.0 * STEP)));
+    }
+    Some(derivative)
+}
+
+/// Its inverse, zero for what cannot be seen in the ten.
+fn inverse(derivative: &Matrix10) -> Option<Matrix10> {
+    let svd = DMatrix::from_fn(10, 10, |i, j| derivative[(i, j)]).svd(true, true);
+    let least = SEEN * svd.singular_values.max();
+    let inverse = svd.pseudo_inverse(least).ok()?;
+    Some(Matrix10::from_fn(|i, j| inverse[(i, j)]))
+}

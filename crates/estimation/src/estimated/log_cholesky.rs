@@ -1,0 +1,236 @@
+//! The Gaussian in ten log-Cholesky coordinates with the moments of an estimate, or as nearly these as a search finds.
+
+use gyradius_dispersion::{LogCholeskyTen, MassPropertiesModel, TenMoments};
+use gyradius_inertia::{LogCholesky, MassProperties};
+use nalgebra::DVector;
+
+use super::distance::Gaps;
+use super::ten_estimate::{Matrix10, Ten, TenEstimate, TenForm};
+use crate::rollup::symmetric::with_eigenvalues;
+use crate::statements::levenberg_marquardt::{Effort, Problem, Range, least_squares};
+
+/// The largest deviation of ½ ln m and of the logarithms on the diagonal: a mass whose deviation is seven times its mean. Wider laws have
+/// their moments from draws that nobody ever sees.
+const MOST: f64 = 1.0;
+/// The coordinates that are logarithms come first.
+const LOGARITHMS: usize = 4;
+/// Bounds of the coordinates, in units in which the ten are about one.
+const MOST_LOGARITHM: f64 = 50.0;
+const MOST_LENGTH: f64 = 1e6;
+/// Deviations of a law that can be begun with anywhere, of logarithms and in lengths of the body.
+const MODEST: f64 = 0.2;
+/// Steps at most, and halvings of a step.
+const STEPS: usize = 200;
+const HALVINGS: usize = 8;
+/// Where nothing is left to gain, and from where on a law counts as the one sought.
+const NOTHING: f64 = 1e-11;
+const NEAR: f64 = 1e-8;
+
+/// Mean and covariance of a law in the form of an estimate.
+pub(super) fn moments(law: &dyn MassPropertiesModel, form: TenForm) -> Option<TenMoments> {
+    match form {
+        TenForm::Linear => law.linear_moments(),
+        TenForm::Natural => law.moments(),
+    }
+}
+
+/// The law in the units of an estimate of numbers about one, from a body inside the realizable set on.
+pub(super) fn matched(estimate: &TenEstimate, start: &MassProperties) -> Option<LogCholeskyTen> {
+    let mean = Ten::from(LogCholesky::of(start).ok()?.values());
+    let linear =
+        derivative(estimate.form(), &mean).and_then(|by| by.try_inverse()).map(|inverse| {
+            let covariance = inverse * estimate.covariance() * inverse.transpose();
+            (covariance + covariance.transpose()) * 0.5
+        });
+    // As the derivatives say, and narrower where that is wide, as of a lognormal law the variance of the logarithm.
+    let narrower =
+        linear.map(|linear| with_eigenvalues(&linear, |x| 0.25 * libm::log1p(4.0 * x.max(0.0))));
+    let length = mean.rows(1, 3).map(libm::exp).max();
+    let modest = Ten::from_fn(|i, _| MODEST * if i < LOGARITHMS { 1.0 } else { length });
+    let modest = Matrix10::from_diagonal(&modest.component_mul(&modest));
+    let mut best: Option<Found> = None;
+    for covariance in [linear, narrower, Some(modest)].into_iter().flatten() {
+        let Some(found) = newton(estimate, mean, allowed(&covariance)) else { continue };
+        if best.as_ref().is_none_or(|best| found.off < best.off) {
+            best = Some(found);
+        }
+        if best.as_ref().is_some_and(|best| best.off < NEAR) {
+            return best.map(|found| found.law);
+        }
+    }
+    let best = best?;
+    let search = Search { estimate };
+    let (point, cost) = least_squares(&search, Point::of(&best)?, Effort::FINE);
+    if cost.sqrt() < best.off { point.law() } else { Some(best.law) }
+}
+
+/// A law and how far it is off.
+struct Found {
+    law: LogCholeskyTen,
+    mean: Ten,
+    covariance: Matrix10,
+    gaps: Gaps,
+    off: f64,
+}
+
+impl Found {
+    fn new(estimate: &TenEstimate, mean: Ten, covariance: Matrix10) -> Option<Self> {
+        let law = LogCholeskyTen::new(LogCholesky::new(mean.into()).ok()?, covariance).ok()?;
+        let gaps = Gaps::of(estimate, &moments(&law, estimate.form())?);
+        let off = gaps.off();
+        off.is_finite().then_some(Self { law, mean, covariance, gaps, off })
+    }
+}
+
+/// Newton's steps with the derivative of the linearised map, each halved until the law is nearer.
+fn newton(estimate: &TenEstimate, mean: Ten, covariance: Matrix10) -> Option<Found> {
+    let mut found = Found::new(estimate, mean, covariance)?;
+    for _ in 0..STEPS {
+        if found.off < NOTHING {
+            break;
+        }
+        let inverse = derivative(estimate.form(), &found.mean)?.try_inverse()?;
+        let shift = inverse * found.gaps.mean;
+        let wider = inverse * found.gaps.covariance * inverse.transpose();
+        let wider = (wider + wider.transpose()) * 0.5;
+        let mut step = 1.0;
+        let next = (0..HALVINGS).find_map(|_| {
+            let covariance = allowed(&(found.covariance + wider * step));
+            let next = Found::new(estimate, found.mean + shift * step, covariance);
+            step *= 0.5;
+            next.filter(|next| next.off < found.off * (1.0 - 1e-4))
+        });
+        let Some(next) = next else { break };
+        found = next;
+    }
+    Some(found)
+}
+
+/// The nearest matrix without negative eigenvalues, in correlations, and without logarithms that scatter too widely.
+fn allowed(covariance: &Matrix10) -> Matrix10 {
+    let deviations = covariance.diagonal().map(|v| v.max(0.0).sqrt());
+    let scale = |i: usize| if deviations[i] > 0.0 { deviations[i] } else { 1.0 };
+    let correlation = Matrix10::from_fn(|i, j| covariance[(i, j)] / scale(i) / scale(j));
+    let clipped = with_eigenvalues(&correlation, |x| x.max(0.0));
+    let kept = |i: usize| {
+        let own = deviations[i] * clipped[(i, i)].max(0.0).sqrt();
+        if i < LOGARITHMS && own > MOST { MOST / own } else { 1.0 }
+    };
+    Matrix10::from_fn(|i, j| {
+        let still = deviations[i] == 0.0 || deviations[j] == 0.0;
+        if still { 0.0 } else { clipped[(i, j)] * scale(i) * scale(j) * kept(i) * kept(j) }
+    })
+}
+
+/// The derivatives of the ten by the coordinates.
+fn derivative(form: TenForm, coordinates: &Ten) -> Option<Matrix10> {
+    const STEP: f64 = 1e-5;
+    let mut derivative = Matrix10::zeros();
+    for i in 0..10 {
+        let step = STEP * if i < LOGARITHMS { 1.0 } else { coordinates.amax().min(1.0).max(1e-3) };
+        let at = |by: f64| {
+            let mut there = *coordinates;
+            there[i] += by;
+            ten(form, &there)
+        };
+        derivative.set_column(i, &((at(step)? - at(-step)?) / (2.0 * step)));
+    }
+    Some(derivative)
+}
+
+fn ten(form: TenForm, coordinates: &Ten) -> Option<Ten> {
+    let body = LogCholesky::new((*coordinates).into()).ok()?.mass_properties().ok()?;
+    Some(form.of(body.into()))
+}
+
+/// Least squares over the ten means and the 55 entries of the factor of the covariance.
+struct Search<'a> {
+    estimate: &'a TenEstimate,
+}
+
+#[derive(Clone)]
+struct Point {
+    mean: Ten,
+    factor: Matrix10,
+}
+
+impl Point {
+    fn of(found: &Found) -> Option<Self> {
+        let deviations = found.covariance.diagonal().map(|v| v.max(0.0).sqrt().max(1e-9));
+        let correlation = Matrix10::from_fn(|i, j| {
+            let own = found.covariance[(i, j)] / deviations[i] / deviations[j];
+            if i == j { 1.0 + 1e-9 } else { own * (1.0 - 1e-9) }
+        });
+        let factor = correlation.cholesky()?.l();
+        let factor = Matrix10::from_fn(|i, j| factor[(i, j)] * deviations[i]);
+        Some(Self { mean: found.mean, factor })
+    }
+
+    fn law(&self) -> Option<LogCholeskyTen> {
+        let covariance = self.factor * self.factor.transpose();
+        LogCholeskyTen::new(LogCholesky::new(self.mean.into()).ok()?, covariance).ok()
+    }
+
+    fn deviation(&self, coordinate: usize) -> f64 {
+        self.factor.row(coordinate).norm()
+    }
+}
+
+/// Row and column of an entry of the factor among the unknowns, which follow the ten means.
+fn place(unknown: usize) -> (usize, usize) {
+    let mut rest = unknown - 10;
+    let mut row = 0;
+    while rest > row {
+        row += 1;
+        rest -= row;
+    }
+    (row, rest)
+}
+
+impl Problem for Search<'_> {
+    type Point = Point;
+
+    fn values(&self, point: &Point) -> DVector<f64> {
+        DVector::from_fn(65, |i, _| if i < 10 { point.mean[i] } else { point.factor[place(i)] })
+    }
+
+    fn at(&self, values: DVector<f64>, _: &Point) -> Point {
+        let mean = Ten::from_fn(|i, _| values[i]);
+        let mut factor = Matrix10::zeros();
+        for i in 10..65 {
+            factor[place(i)] = values[i];
+        }
+        for i in 0..LOGARITHMS {
+            let own = factor.row(i).norm();
+            if own > MOST {
+                factor.row_mut(i).scale_mut(MOST / own);
+            }
+        }
+        Point { mean, factor }
+    }
+
+    fn residuals(&self, point: &Point) -> DVector<f64> {
+        let moments = point.law().and_then(|law| moments(&law, self.estimate.form()));
+        match moments {
+            Some(moments) => {
+                let residuals = Gaps::of(self.estimate, &moments).residuals();
+                // What overflows is far off.
+                DVector::from_iterator(
+                    65,
+                    residuals.into_iter().map(|x| if x.is_finite() { x } else { 1e100 }),
+                )
+            }
+            None => DVector::from_element(65, 1e100),
+        }
+    }
+
+    fn range(&self, point: &Point, unknown: usize) -> Range {
+        let coordinate = if unknown < 10 { unknown } else { place(unknown).0 };
+        let most = match (unknown < 10, coordinate < LOGARITHMS) {
+            (true, true) => MOST_LOGARITHM,
+            (false, true) => MOST,
+            (_, false) => MOST_LENGTH,
+        };
+        Range { least: -most, most, unit: point.deviation(coordinate).max(1e-6) }
+    }
+}
