@@ -56,11 +56,6 @@ impl Model {
             let (each, own) = (dispersions.inertia[which as usize], spec.law.own_axes().is_some());
             BodyLaw { law, streams, each, own }
         };
-        let kept = |which: Body, body: &UncertainBody| match spec.law.own_axes() {
-            Some(axes) => joint.acceptance(which as usize, which.name(), body, axes),
-            None => Ok(None),
-        };
-        let kept = [kept(Body::Payload, scenario.payload())?, kept(Body::Stage, scenario.stage())?];
         let bodies = [body(Body::Payload, payload), body(Body::Stage, stage)];
         let grouped = Body::BOTH.into_iter().zip(&bodies).map(|(which, body)| GroupedBody {
             name: which.name(),
@@ -74,7 +69,7 @@ impl Model {
             given: payload_given.zip(stage_given).map(<[_; 2]>::from),
             bodies,
             draws: Draws::new(scenario.seed(), &spec.name, joint),
-            kept,
+            kept: scenario.regions(spec),
         })
     }
 
@@ -144,7 +139,12 @@ impl Model {
     }
 
     /// Draws the bodies of a run, of which some groups of inputs may be those of a second draw, or scores may be steered.
-    fn draw_mixed(&self, scenario: &Scenario, mix: Mix<'_>, steering: Option<&Steering>) -> Case {
+    pub(crate) fn draw_mixed(
+        &self,
+        scenario: &Scenario,
+        mix: Mix<'_>,
+        steering: Option<&Steering>,
+    ) -> Case {
         let (run, joint) = (mix.base(), &scenario.dispersions().joint);
         let stream = |each| scenario.stream(each, run);
         let taken = Taken { mix, stream: &stream, steering };

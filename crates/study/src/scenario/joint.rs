@@ -124,3 +124,6 @@ impl<T> Default for Joint<T> {
         Self { all, roots, correlation: Correlation::default(), bodies }
     }
 }
+
+#[cfg(test)]
+mod tests;

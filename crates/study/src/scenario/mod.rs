@@ -123,6 +123,9 @@ pub struct Scenario {
     outlines: Option<Outlines>,
     models: Vec<ModelSpec>,
     comparisons: Vec<Comparison>,
+    /// The estimated share of draws that the region of payload and stage keeps, and its standard error, as models read the
+    /// axes.
+    regions: Vec<(Axes, [Option<(f64, f64)>; 2])>,
     /// What no file holds.
     outside: OutsideLaws,
 }
@@ -225,9 +228,14 @@ impl Scenario {
         let bodies = [(Body::Payload, &payload), (Body::Stage, &stage)];
         let models = check_models(&file.models, &bodies)?;
         let comparisons = model::check_comparisons(&file.comparisons, &models)?;
-        for (body, own) in bodies {
-            for axes in models.iter().filter_map(|model| model.law.own_axes()).take(1) {
-                dispersions.joint.acceptance(body as usize, body.name(), own, axes)?;
+        let mut kept: Vec<(Axes, [_; 2])> = Vec::new();
+        for axes in models.iter().filter_map(|model| model.law.own_axes()) {
+            if kept.iter().all(|(other, _)| *other != axes) {
+                let of = |(body, own): (Body, &UncertainBody)| {
+                    dispersions.joint.acceptance(body as usize, body.name(), own, axes)
+                };
+                let [payload, stage] = bodies.map(of);
+                kept.push((axes, [payload?, stage?]));
             }
         }
         Ok(Self {
@@ -245,6 +253,7 @@ impl Scenario {
             outlines,
             models,
             comparisons,
+            regions: kept,
             outside: OutsideLaws::default(),
         })
     }
@@ -364,6 +373,13 @@ impl Scenario {
     pub(crate) fn is_matched(&self, model: &str, to: &str) -> bool {
         let matched = |law: &Law| matches!(law, Law::Matched { to: name, .. } if name == to);
         self.models.iter().any(|m| m.name == model && matched(&m.law))
+    }
+
+    /// The estimated share of draws that the region of payload and stage keeps under a model, and its standard error.
+    pub(crate) fn regions(&self, model: &ModelSpec) -> [Option<(f64, f64)>; 2] {
+        let axes = model.law.own_axes();
+        let of_model = self.regions.iter().find(|(read, _)| Some(*read) == axes);
+        of_model.map_or([None; 2], |(_, kept)| *kept)
     }
 
     pub(crate) fn comparisons(&self) -> &[Comparison] {
