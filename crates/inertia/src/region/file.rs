@@ -64,8 +64,8 @@ impl From<Region> for RegionForm {
                 half_sides_m: half_sides.into(),
                 attitude: turned(&pose),
             },
-            Kind::Hull { points, .. } => {
-                Self::Hull { points_m: points.into_iter().map(Into::into).collect() }
+            Kind::Hull(hull) => {
+                Self::Hull { points_m: hull.points().iter().map(|p| (*p).into()).collect() }
             }
         }
     }

@@ -2,15 +2,15 @@
 
 #[cfg(feature = "serde")]
 mod file;
+mod hull;
 mod non_negative;
 
+use hull::Hull;
 use nalgebra::{Isometry3, Matrix3, SVector, Translation3, UnitQuaternion, Vector3};
 
 use crate::mass_properties::check_vector;
 use crate::{MassProperties, MassPropertiesError, RELATIVE_TOLERANCE};
 
-/// Directions in which a hull is looked at, besides the principal axes of a body.
-const DIRECTIONS: usize = 128;
 /// Points of a lattice along each edge of a box.
 const LATTICE: usize = 5;
 /// How many middles between two corners of a hull masses are tried at.
@@ -69,11 +69,7 @@ enum Kind {
         half_sides: Vector3<f64>,
     },
     /// The points, and those of them that are farthest out in some direction.
-    Hull {
-        points: Vec<Vector3<f64>>,
-        outer: Vec<Vector3<f64>>,
-        size: f64,
-    },
+    Hull(Hull),
 }
 
 /// Whether matter inside a region can have given mass properties.
@@ -128,22 +124,7 @@ impl Region {
         for (point, x) in points.iter().enumerate() {
             check_vector("point", x).map_err(|error| RegionError::Point { point, error })?;
         }
-        Self::of_hull(points)
-    }
-
-    fn of_hull(points: Vec<Vector3<f64>>) -> Result<Self, RegionError> {
-        let mut outer: Vec<usize> = directions()
-            .filter_map(|n| {
-                let far = |i: &usize, j: &usize| n.dot(&points[*i]).total_cmp(&n.dot(&points[*j]));
-                (0..points.len()).max_by(far)
-            })
-            .collect();
-        outer.sort_unstable();
-        outer.dedup();
-        let Some(&first) = outer.first() else { return Err(RegionError::Empty) };
-        let size = points.iter().map(|p| (p - points[first]).norm()).fold(0.0, f64::max);
-        let outer = outer.into_iter().map(|i| points[i]).collect();
-        Ok(Self(Kind::Hull { points, outer, size }))
+        Hull::new(points).map(|hull| Self(Kind::Hull(hull)))
     }
 
     /// The same region turned about the origin and then moved, as [`MassProperties::transformed`] does with a body.
@@ -166,14 +147,15 @@ impl Region {
             Kind::Box { pose, half_sides } => {
                 Self(Kind::Box { pose: moved(pose)?, half_sides: *half_sides })
             }
-            Kind::Hull { points, .. } => {
+            Kind::Hull(hull) => {
+                let points = hull.points();
                 let points: Vec<_> =
                     points.iter().map(|p| by.rotation * p + by.translation.vector).collect();
                 for (point, x) in points.iter().enumerate() {
                     check_vector("point", x)
                         .map_err(|error| RegionError::Point { point, error })?;
                 }
-                return Self::of_hull(points);
+                return Hull::new(points).map(|hull| Self(Kind::Hull(hull)));
             }
         })
     }
@@ -214,7 +196,8 @@ impl Region {
                 let own = local.on_own_axes(inside, exit);
                 local.decide(points.chain(own), half_sides.norm())
             }
-            Kind::Hull { outer, size, .. } => {
+            Kind::Hull(hull) => {
+                let (outer, size) = (hull.outer(), &hull.size());
                 if self.room(body) < -RELATIVE_TOLERANCE {
                     return Containment::Impossible;
                 }
@@ -295,27 +278,17 @@ impl Region {
                 }
                 least
             }
-            Kind::Hull { points, size, .. } => {
+            Kind::Hull(hull) => {
                 let local = Local::of(body, &Isometry3::identity());
-                let between = |n: Vector3<f64>| {
-                    let (low, high) = points
-                        .iter()
-                        .map(|p| n.dot(&(p - local.centre)))
-                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                            (low.min(x), high.max(x))
-                        });
-                    let quarter =
-                        (0.5 * (high - low)).powi(2).max((RELATIVE_TOLERANCE * size).powi(2));
-                    if low > 0.0 || high < 0.0 {
-                        // The mass centre is outside.
-                        return -low.max(-high) * low.abs().max(high.abs()) / quarter;
-                    }
-                    (-low * high - n.dot(&(local.spread * n))) / quarter
-                };
-                let own = local.axes.column_iter().map(Vector3::from);
-                own.chain(directions()).map(between).fold(f64::INFINITY, f64::min)
+                hull.room(&local.centre, &local.spread)
             }
         }
+    }
+
+    /// The points that a hull is looked at by, if it is one: of many those that lie farthest out in some direction.
+    #[must_use]
+    pub fn outer_points_m(&self) -> Option<&[Vector3<f64>]> {
+        if let Kind::Hull(hull) = &self.0 { Some(hull.outer()) } else { None }
     }
 }
 
@@ -452,18 +425,6 @@ fn sizes(field: &'static str, sizes: Vector3<f64>) -> Result<Vector3<f64>, Regio
         Some(axis) => Err(RegionError::Size { field, axis: axis + 1, value: sizes[axis] }),
         None => Ok(sizes),
     }
-}
-
-/// Directions all over the half sphere, on a spiral, and the axes.
-fn directions() -> impl Iterator<Item = Vector3<f64>> {
-    let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
-    let spiral = (0..DIRECTIONS).map(move |i| {
-        let z = 1.0 - (2 * i + 1) as f64 / DIRECTIONS as f64;
-        let (radius, angle) = ((1.0 - z * z).sqrt(), golden * i as f64);
-        Vector3::new(radius * libm::cos(angle), radius * libm::sin(angle), z)
-    });
-    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-    spiral.chain(axes.into_iter().flat_map(|axis| [axis, -axis]))
 }
 
 /// Points of a lattice on [−1, 1]³.

@@ -3,6 +3,7 @@
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
+use super::hull::directions;
 use super::*;
 use crate::mass_properties::tests::{any_attitude, any_body};
 use crate::{Inertia, SecondMoments, Shape};

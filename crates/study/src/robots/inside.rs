@@ -6,8 +6,6 @@ use nalgebra::{
 };
 use std::fmt;
 
-/// Largest number of points that a hull is made of, and that an ellipsoid is found about before it grows to hold them all.
-const POINTS: usize = 400;
 /// Steps towards the smallest ellipsoid.
 const STEPS: usize = 2000;
 /// How near to the smallest it is, in volume.
@@ -51,11 +49,7 @@ impl Inside {
     /// The region about points, nothing if they are flat or too large.
     pub(super) fn about(self, points: &[[f64; 3]]) -> Option<Region> {
         match self {
-            Self::Hull => {
-                let all: Vec<Vector3<f64>> = points.iter().map(|p| Vector3::from(*p)).collect();
-                let outer: Vec<[f64; 3]> = outermost(&all).into_iter().map(Into::into).collect();
-                Region::hull(&outer).ok()
-            }
+            Self::Hull => Region::hull(points).ok(),
             Self::Box => {
                 let end = |pick: fn(f64, f64) -> f64| {
                     let all = points.iter().map(|p| Vector3::from(*p));
@@ -84,7 +78,8 @@ pub(super) fn holds(region: &Region, body: &MassProperties) -> bool {
 /// them all.
 fn smallest(points: &[[f64; 3]]) -> Option<Region> {
     let all: Vec<Vector3<f64>> = points.iter().map(|p| Vector3::from(*p)).collect();
-    let outer = outermost(&all);
+    let hull = Region::hull(points).ok()?;
+    let outer = hull.outer_points_m()?;
     let n = outer.len();
     let lifted: Vec<Vector4<f64>> = outer.iter().map(|x| x.push(1.0)).collect();
     let mut weights = vec![1.0 / n as f64; n];
@@ -118,27 +113,6 @@ fn smallest(points: &[[f64; 3]]) -> Option<Region> {
     let semi_axes = eigen.eigenvalues.map(|x| x.max(0.0).sqrt() * (1.0 + 1e-9));
     let region = Region::ellipsoid(Vector3::zeros(), semi_axes).ok()?;
     region.transformed(&Isometry3::from_parts(Translation3::from(middle), turn)).ok()
-}
-
-/// The points, or if they are many those that lie farthest out in some direction.
-fn outermost(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
-    if points.len() <= POINTS {
-        return points.to_vec();
-    }
-    let golden = std::f64::consts::PI * (3.0 - 5_f64.sqrt());
-    let mut places: Vec<usize> = (0..POINTS)
-        .filter_map(|i| {
-            let z = 1.0 - (2.0 * i as f64 + 1.0) / POINTS as f64;
-            let (sin, cos) = libm::sincos(golden * i as f64);
-            let across = (1.0 - z * z).sqrt();
-            let n = Vector3::new(across * cos, across * sin, z);
-            let far = |a: &usize, b: &usize| n.dot(&points[*a]).total_cmp(&n.dot(&points[*b]));
-            (0..points.len()).max_by(far)
-        })
-        .collect();
-    places.sort_unstable();
-    places.dedup();
-    places.into_iter().map(|place| points[place]).collect()
 }
 
 #[cfg(test)]

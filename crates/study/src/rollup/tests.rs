@@ -40,10 +40,9 @@ fn drawing_agrees_with_first_order_where_deviations_are_small() {
             off.abs() < 6.0 || (moments.deviation[i] / first.deviations()[i] - 1.0).abs() < 0.02,
             "{i}: {off}"
         );
-        assert!(
-            (moments.deviation_error[i] * 283.0 / moments.deviation[i] - 1.0).abs() < 0.25,
-            "{i}"
-        );
+        // √(2n) times the relative error is 1 of a Gaussian, and more of what has longer tails.
+        let tails = moments.deviation_error[i] * 283.0 / moments.deviation[i];
+        assert!((0.8..1.6).contains(&tails), "{i}: {tails}");
         for j in 0..10 {
             assert!((moments.correlation[i][j] - correlations[(i, j)]).abs() < 0.03, "{i} {j}");
         }
@@ -106,10 +105,8 @@ fn errors_name_the_line() {
         error(&LIST.replace("right,", "left,")).starts_with("line 6: name \"left\" stands twice")
     );
     assert!(error(&LIST.replace("12,0,2,0", "1e31,0,2,0")).starts_with("line 7: panel: "));
-    assert!(
-        error(&LIST.replace("tanks,craft", "tanks,tanks"))
-            .starts_with("line 4: \"tanks\" belongs to itself")
-    );
+    let message = error(&LIST.replace("tanks,craft", "tanks,tanks"));
+    assert!(message.starts_with("line 4: \"tanks\" belongs to itself"), "{message}");
     assert!(
         error(&LIST.replace("tanks,craft", "tanks,"))
             .starts_with("line 4: 2 rows belong to nothing, \"craft\", \"tanks\"")
