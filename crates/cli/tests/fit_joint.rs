@@ -25,8 +25,8 @@ fn bodies() -> Vec<MassProperties> {
     let normal = |mean: f64, deviation: f64| ScalarLaw::normal(mean, deviation).unwrap();
     let lengths = [normal(0.2, 0.004), normal(0.3, 0.004), normal(0.5, 0.005)];
     let axes = gyradius::attitude::RadiallyConstrainedGaussian::from_rotation_covariance(
-        gyradius::inertia::nalgebra::UnitQuaternion::from_euler_angles(0.1, -0.2, 0.3),
-        gyradius::inertia::nalgebra::Matrix3::identity() * 4e-4,
+        nalgebra::UnitQuaternion::from_euler_angles(0.1, -0.2, 0.3),
+        nalgebra::Matrix3::identity() * 4e-4,
         0.01,
     );
     let law = MassPropertiesLaw::new(
@@ -115,7 +115,7 @@ fn rows_of_no_body_are_refused_or_counted() {
     let folder = tempfile::tempdir().unwrap();
     let text = natural(&bodies()[..30]);
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
-    let (_, rest) = lines[4].split_once(',').unwrap();
+    let rest = lines[4].split_once(',').unwrap().1.to_owned();
     lines[4] = format!("-1,{rest}");
     fs::write(folder.path().join("ten.csv"), lines.join("\n")).unwrap();
     let (code, _, message) = run(&folder, &["fit", "ten.csv"]);

@@ -4,12 +4,13 @@ use gyradius_dispersion::{
     AxesLaw, FixedAttitude, JointScalar, MassPropertiesLaw, ScalarLaw, TenParameters, TensorLaw,
 };
 use gyradius_inertia::{InertiaMatrix, MassProperties};
-use nalgebra::{DMatrix, Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
 
 use super::distance::{Gaps, units};
 use super::log_cholesky::moments;
 use super::ten_estimate::{Matrix10, Ten, TenEstimate, TenForm};
 use crate::rollup::symmetric::with_eigenvalues;
+use crate::statements::levenberg_marquardt::{Effort, Problem, Range, least_squares};
 use crate::turns::{FIXED, law_of_turns_about};
 
 /// Scalars come first: mass, mass centre, gyration lengths; then three rotations.
@@ -19,9 +20,13 @@ const SAFE_MASS: f64 = 0.125;
 const SAFE_LENGTH: f64 = 0.5;
 /// Singular values of the derivatives below this share of the largest belong to what cannot be seen: the rotation of a rod about itself.
 const SEEN: f64 = 1e-9;
-/// Steps at most, and of the gradient in each.
+/// Steps at most.
 const STEPS: usize = 12;
-const GRADIENTS: usize = 1500;
+/// What is nearer than this is not searched for, and what a factor needs on its diagonal.
+const NEAR: f64 = 1e-9;
+const RIDGE: f64 = 1e-9;
+/// Bounds of the factor.
+const MOST_FACTOR: f64 = 100.0;
 /// Where nothing is left to gain.
 const NOTHING: f64 = 1e-10;
 /// A length whose square comes out below this share of what it was is zero.
@@ -86,8 +91,8 @@ pub(super) fn matched(target: &TenEstimate, start: &MassProperties) -> Option<Jo
     best.map(|best| best.1)
 }
 
-/// The covariance S that the family has with D S Dᵀ nearest to a covariance, in units of deviations: gradient steps with momentum
-/// (Nesterov) from the solution without the covariances that are not there.
+/// The covariance S that the family has with D S Dᵀ nearest to a covariance, in units of deviations: least squares from
+/// the solution without the covariances that are not there.
 fn nearest(
     form: TenForm,
     mean: &Ten,
@@ -101,37 +106,69 @@ fn nearest(
     let size = start.diagonal().map(|v| v.max(0.0).sqrt());
     let map = Matrix10::from_fn(|i, j| derivative[(i, j)] * size[j] / units[i]);
     let right = Matrix10::from_fn(|i, j| sought[(i, j)] / units[i] / units[j]);
-    // Squares of half the relative differences of variances, and of the differences of correlations of each pair.
-    let weigh = |m: Matrix10| Matrix10::from_fn(|i, j| m[(i, j)] * if i == j { 0.25 } else { 0.5 });
-    let gap = |x: &Matrix10| map * x * map.transpose() - right;
-    let cost = |x: &Matrix10| gap(x).dot(&weigh(gap(x)));
-    let mut found = Matrix10::from_fn(|i, j| {
+    let start = Matrix10::from_fn(|i, j| {
         let own = size[i] * size[j];
-        if own > 0.0 { start[(i, j)] / own } else { 0.0 }
+        if own > 0.0 { start[(i, j)] / own } else { f64::from(u8::from(i == j)) }
     });
-    let largest = map.norm();
-    let curvature = 0.5 * largest.powi(4);
-    if cost(&found) > NOTHING * NOTHING && curvature > 0.0 && curvature.is_finite() {
-        let (mut before, mut least, mut age) = (found, (cost(&found), found), 0.0);
-        for _ in 0..GRADIENTS {
-            let ahead = found + (found - before) * (age / (age + 3.0));
-            let slope = map.tr_mul(&(weigh(gap(&ahead)) * map));
-            before = found;
-            let mut next = ahead - slope / curvature;
-            free(&mut next);
-            found = with_eigenvalues(&next, |x| x.max(0.0));
-            age += 1.0;
-            let now = cost(&found);
-            if now < least.0 {
-                least = (now, found);
-            } else {
-                // Momentum that leads uphill is lost.
-                age = 0.0;
-            }
-        }
-        found = least.1;
-    }
+    let task = Linear { map, right };
+    let found = if task.gaps(&start).norm() > NEAR {
+        let ridge = start * (1.0 - RIDGE) + Matrix10::identity() * RIDGE;
+        let factor = ridge.cholesky()?.l();
+        let (factor, _) = least_squares(&task, factor, Effort::FINE);
+        let found = factor * factor.transpose();
+        if task.gaps(&found).norm() < task.gaps(&start).norm() { found } else { start }
+    } else {
+        start
+    };
     Some(Matrix10::from_fn(|i, j| found[(i, j)] * size[i] * size[j]))
+}
+
+/// Least squares over the factor of a covariance in which scalars and rotations are apart.
+struct Linear {
+    map: Matrix10,
+    right: Matrix10,
+}
+
+impl Linear {
+    /// Half the relative differences of variances, and the differences of correlations of each pair.
+    fn gaps(&self, covariance: &Matrix10) -> DVector<f64> {
+        let gap = self.map * covariance * self.map.transpose() - self.right;
+        let pairs = (0..10).flat_map(|i| (0..=i).map(move |j| (i, j)));
+        DVector::from_iterator(55, pairs.map(|(i, j)| gap[(i, j)] * if i == j { 0.5 } else { 1.0 }))
+    }
+}
+
+/// Row and column of the entries of the factor that are not zero.
+fn places() -> impl Iterator<Item = (usize, usize)> {
+    let below =
+        |from: usize, to: usize| (from..to).flat_map(move |i| (from..=i).map(move |j| (i, j)));
+    below(0, SCALARS).chain(below(SCALARS, 10))
+}
+
+impl Problem for Linear {
+    type Point = Matrix10;
+
+    fn values(&self, point: &Matrix10) -> DVector<f64> {
+        let values: Vec<f64> = places().map(|place| point[place]).collect();
+        DVector::from_vec(values)
+    }
+
+    fn at(&self, values: DVector<f64>, _: &Matrix10) -> Matrix10 {
+        let mut factor = Matrix10::zeros();
+        for (place, value) in places().zip(values.iter()) {
+            factor[place] = *value;
+        }
+        factor
+    }
+
+    fn residuals(&self, point: &Matrix10) -> DVector<f64> {
+        self.gaps(&(point * point.transpose()))
+    }
+
+    fn range(&self, _: &Matrix10, _: usize) -> Range {
+        // In deviations of the solution without the covariances that are not there.
+        Range { least: -MOST_FACTOR, most: MOST_FACTOR, unit: 1.0 }
+    }
 }
 
 impl Joint {

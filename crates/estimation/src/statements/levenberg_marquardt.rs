@@ -24,7 +24,7 @@ pub(crate) struct Effort {
 impl Effort {
     pub(crate) const FULL: Self = Self { steps: 200, worth: 3e-4 };
     /// Until next to nothing is gained.
-    pub(crate) const FINE: Self = Self { steps: 300, worth: 1e-6 };
+    pub(crate) const FINE: Self = Self { steps: 200, worth: 1e-5 };
     /// To see which of many starts is worth it.
     pub(crate) const SHORT: Self = Self { steps: 15, worth: 3e-2 };
 }
