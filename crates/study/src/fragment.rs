@@ -5,7 +5,7 @@ use gyradius_dispersion::{
     CorrelatedRoots, CorrelatedRootsError, PrincipalDispersion, RootLaw, ScalarLaw, ScalarLawForm,
     ScalarRoots, ScalarRootsError,
 };
-use gyradius_inertia::{Inertia, RealizabilityError};
+use gyradius_inertia::{Inertia, RealizabilityError, Region};
 use nalgebra::{Matrix3, Matrix4};
 use std::fmt;
 
@@ -97,6 +97,7 @@ pub struct Fragment {
     covariance: [[f64; 4]; 4],
     mass: Option<Mass>,
     mass_centre: Option<[f64; 3]>,
+    inside: Option<Region>,
 }
 
 /// A normal mass, and how far the inertia goes with it.
@@ -138,7 +139,8 @@ impl Fragment {
         };
         let covariance = law.axes().covariance();
         let covariance = std::array::from_fn(|i| std::array::from_fn(|j| covariance[(i, j)]));
-        let fragment = Self { body, inertia, roots, covariance, mass: None, mass_centre: None };
+        let (mass, mass_centre, inside) = (None, None, None);
+        let fragment = Self { body, inertia, roots, covariance, mass, mass_centre, inside };
 
         // As a scenario reads it.
         let read = Inertia::try_from(inertia)?;
@@ -184,6 +186,12 @@ impl Fragment {
             Some(&value) => Err(FragmentError::Beside { field: "mass_centre_m", value }),
             None => Ok(Self { mass_centre: Some(metres), ..self }),
         }
+    }
+
+    /// With a region, in body axes from the nominal mass centre, that holds all matter of the body.
+    #[must_use]
+    pub fn with_inside(self, region: Region) -> Self {
+        Self { inside: Some(region), ..self }
     }
 
     /// Standard deviation of the mass in percent, and the share of its relative change that the inertia takes.
@@ -277,8 +285,15 @@ impl fmt::Display for Fragment {
                 writeln!(f, "inertia_follows_mass = {follows:?}")?;
             }
         }
-        match self.mass_centre {
-            Some(metres) => writeln!(f, "mass_centre_m = {metres:?}"),
+        if let Some(metres) = self.mass_centre {
+            writeln!(f, "mass_centre_m = {metres:?}")?;
+        }
+        match &self.inside {
+            Some(region) => {
+                // A region is a table: always written.
+                let region = toml::Value::try_from(region).map_err(|_| fmt::Error)?;
+                writeln!(f, "inside = {region}")
+            }
             None => Ok(()),
         }
     }
@@ -331,6 +346,26 @@ mod tests {
         let law = body.law(Axes::WholeSphere).unwrap();
         let DispersionModel::Principal(law) = law else { panic!("{law:?}") };
         *law
+    }
+
+    /// A region is read back, whatever it is.
+    #[test]
+    fn a_scenario_reads_the_region_back() {
+        let (nominal, law) = law([5000.0, 4000.0, 3000.0], UnitQuaternion::identity());
+        let by = nalgebra::Isometry3::new([0.1, 0.0, 0.2].into(), [0.3, 0.0, 0.1].into());
+        let corners: Vec<[f64; 3]> =
+            (0..8).map(|i| [0, 1, 2].map(|k| if i >> k & 1 == 0 { -1.5 } else { 1.5 })).collect();
+        for region in [
+            Region::ellipsoid([0.0; 3], [2.0, 2.0, 2.5]).unwrap().transformed(&by).unwrap(),
+            Region::solid_box([0.0, 0.1, 0.0], [1.5; 3]).unwrap(),
+            Region::hull(&corners).unwrap(),
+        ] {
+            let fragment = Fragment::new(FragmentBody::Payload, &nominal, &law).unwrap();
+            let fragment = fragment.with_mass(1.0, 1.0).unwrap().with_inside(region);
+            let scenario = Scenario::from_toml(&pasted(&fragment));
+            let text = scenario.unwrap_or_else(|e| panic!("{e}\n{fragment}")).to_toml();
+            assert!(text.contains("[payload.dispersion.inside"), "{text}");
+        }
     }
 
     #[test]

@@ -7,7 +7,8 @@ use gyradius_estimation::{
 };
 use gyradius_formats::read_text;
 use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Region};
-use gyradius_study::{Fragment, FragmentBody, FragmentError, parse_toml};
+use gyradius_study::{Fragment, FragmentBody, parse_toml};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 use std::{error::Error, fmt::Write};
 
@@ -92,7 +93,7 @@ pub(crate) fn model(arguments: &ModelArgs) -> Result<(), Box<dyn Error>> {
         .map_err(|error| format!("cannot read {file}: {error}"))?;
     let told = stated(&text).map_err(|error| format!("{file}: {error}"))?;
     let body = FragmentBody::from(arguments.fragment.body);
-    let fragment = fragment(body, &told.model).map_err(|error| format!("{file}: {error}"))?;
+    let fragment = fragment(body, &told).map_err(|error| format!("{file}: {error}"))?;
     let json = || json(&told, body, &fragment);
     output::write(
         &arguments.fragment,
@@ -130,17 +131,27 @@ fn stated(text: &str) -> Result<Told, String> {
     Ok(Told { model, body })
 }
 
-/// The inertia at the nominal mass, the mass that it goes with, and the mass centre.
-fn fragment(body: FragmentBody, model: &StatedModel) -> Result<Fragment, FragmentError> {
+/// The inertia at the nominal mass, the mass that it goes with, the mass centre, and the region, from the nominal mass
+/// centre.
+fn fragment(
+    body: FragmentBody,
+    Told { model, body: stated }: &Told,
+) -> Result<Fragment, Box<dyn Error>> {
     let mut fragment = Fragment::new(body, model.nominal(), model.law_at_nominal_mass())?;
     if let Some(mass) = model.mass() {
         let percent = 100.0 * mass.relative_deviation();
         fragment = fragment.with_mass(percent, mass.inertia_follows())?;
     }
-    match model.centre_deviations() {
-        Some(metres) => fragment.with_mass_centre(metres),
-        None => Ok(fragment),
+    if let Some(metres) = model.centre_deviations() {
+        fragment = fragment.with_mass_centre(metres)?;
     }
+    let region = stated.as_ref().and_then(|body| Some((body.nominal(), body.law().region()?)));
+    if let Some((nominal, region)) = region {
+        let back = Translation3::from(-nominal.mass_centre_m());
+        let by = Isometry3::from_parts(back, UnitQuaternion::identity());
+        fragment = fragment.with_inside(region.transformed(&by)?);
+    }
+    Ok(fragment)
 }
 
 fn report(arguments: &ModelArgs, told: &Told) -> String {
