@@ -66,6 +66,11 @@ fn moments_are_those_of_the_draws() {
     let log = LogCholeskyTen::about(&body(), spread()).unwrap();
     let z = worst(&log.moments().unwrap(), &natural(&rows(&log, 40_000)));
     assert!(z < 5.0, "{z}");
+    let linear: Vec<_> = rows(&log, 40_000).iter().map(TenParameters::linear).collect();
+    let z = worst(&log.linear_moments().unwrap(), &linear);
+    assert!(z < 5.0, "{z}");
+    // The control: those about the mass centre.
+    assert!(worst(&log.moments().unwrap(), &linear) > 20.0);
     let wishart = PseudoInertiaWishart::new(&body(), 20.5).unwrap();
     let linear: Vec<_> = rows(&wishart, 40_000).iter().map(TenParameters::linear).collect();
     let moments = wishart.linear_moments();

@@ -6,7 +6,7 @@ use super::nearest::metric;
 use super::ten_estimate::{Matrix10, Ten, TenEstimate};
 
 /// Below this the moments are those of the estimate.
-const EXACT: f64 = 1e-6;
+const EXACT: f64 = 1e-5;
 
 /// How far the mean and covariance of a law are from those of the estimate that it was made of, in the ten numbers of the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +78,7 @@ impl EstimateDistance {
         self.correlation
     }
 
-    /// Whether mean and covariance are those of the estimate, to 1e-6 of the deviations.
+    /// Whether mean and covariance are those of the estimate, to 1e-5 of the deviations.
     #[must_use]
     pub fn is_exact(&self) -> bool {
         self.off < EXACT
