@@ -31,6 +31,8 @@ const MOST_FACTOR: f64 = 100.0;
 const NOTHING: f64 = 1e-10;
 /// A length whose square comes out below this share of what it was is zero.
 const FLAT: f64 = 1e-3;
+/// A length below this share of the longest is the rounding of a plate or a rod.
+const ROUNDING: f64 = 1e-6;
 /// Steps that bring nothing, after which the search ends.
 const PATIENCE: usize = 2;
 /// What varies by less than this does not.
@@ -58,6 +60,8 @@ pub(super) fn matched(target: &TenEstimate, start: &MassProperties) -> Option<Jo
     let (m, c) = (start.mass_kg(), start.mass_centre_m());
     let axes = start.inertia().principal_axes().attitude();
     let lengths = start.radii_of_gyration().ok()?.values();
+    let longest = lengths.into_iter().fold(0.0, f64::max);
+    let lengths = lengths.map(|length| if length > ROUNDING * longest { length } else { 0.0 });
     let mean = Ten::from([m, c.x, c.y, c.z, lengths[0], lengths[1], lengths[2], 0.0, 0.0, 0.0]);
     let units = units(target);
     let mut sought = *target.covariance();
@@ -200,7 +204,9 @@ impl Joint {
         let deviation = |i: usize| self.spread[(i, i)].max(0.0).sqrt();
         let scalar = |i: usize, safe: f64| {
             let (mean, deviation) = (self.mean[i] * unit(i), deviation(i) * unit(i));
-            if deviation > safe * mean {
+            if mean == 0.0 {
+                ScalarLaw::normal(0.0, 0.0)
+            } else if deviation > safe * mean {
                 ScalarLaw::lognormal(mean, deviation)
             } else {
                 ScalarLaw::normal(mean, deviation)
@@ -218,7 +224,8 @@ impl Joint {
             for j in 0..i {
                 let size = deviation(i) * deviation(j);
                 let coefficient = if size > 0.0 { self.spread[(i, j)] / size * MOST } else { 0.0 };
-                if coefficient.abs() > STILL {
+                let varies = self.mean[i] != 0.0 || i < 4;
+                if varies && coefficient.abs() > STILL {
                     pairs.push((
                         JointScalar::ALL[i],
                         JointScalar::ALL[j],
