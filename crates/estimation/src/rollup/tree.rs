@@ -79,8 +79,12 @@ impl Assembly {
             places.insert(name, nodes.len());
             nodes.push(Node { row, children: inside, depth, first_order });
         }
-        // What the whole does not lead to leads back to itself.
-        if let Some(name) = by_name.into_keys().next() {
+        // What the whole does not lead to belongs to a circle: as many steps up as there are rows end in it.
+        if let Some(mut name) = by_name.keys().next().cloned() {
+            for _ in 0..by_name.len() {
+                let up = by_name.get(&name).and_then(|row| row.parent.clone());
+                name = up.unwrap_or(name);
+            }
             return Err(AssemblyError::Circle { name });
         }
         let parts = places.into_values().filter(|i| nodes[*i].row.part.is_some()).collect();
