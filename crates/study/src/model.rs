@@ -13,7 +13,7 @@ use crate::{
     drawn::{self, BodyLaw, Draws, Taken},
     groups::{Drawing, GroupedBody, Groups},
     run::{Case, Run},
-    scenario::{Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
+    scenario::{KeptShares, Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
     steering::{Steered, Steering},
 };
 
@@ -29,7 +29,7 @@ pub(crate) struct Model {
     draws: Draws,
     groups: Groups,
     /// The estimated share of draws that the region of payload and stage keeps, and its standard error.
-    kept: [Option<(f64, f64)>; 2],
+    kept: KeptShares,
 }
 
 impl Model {

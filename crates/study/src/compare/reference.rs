@@ -112,6 +112,11 @@ impl Target {
         Some(Self { moments: law.expected_moments()?, law: Some(law) })
     }
 
+    /// Moments that come from no law of an inertia alone.
+    pub(crate) fn of_moments(moments: EntryMoments) -> Self {
+        Self { moments, law: None }
+    }
+
     pub(crate) fn moments(&self) -> &EntryMoments {
         &self.moments
     }

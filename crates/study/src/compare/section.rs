@@ -42,7 +42,12 @@ impl Section {
         let of = |name: &str, body: &UncertainBody, size| {
             let law = body.law(Axes::WholeSphere).map_err(|e| e.to_string());
             let target = law.and_then(|law| {
-                Target::of_law(Arc::new(law)).ok_or_else(|| "its moments are not known".to_owned())
+                let target = if body.has_correlated_roots() {
+                    body.expected_moments(Axes::WholeSphere).map(Target::of_moments)
+                } else {
+                    Target::of_law(Arc::new(law))
+                };
+                target.ok_or_else(|| "its moments are not known".to_owned())
             });
             let label = format!("study {name}");
             let levels = level(None, &label, target, &ModelKind::ALL, scenario, size, &|| {})?;

@@ -5,7 +5,7 @@ use gyradius_dispersion::{
     AxesLaw, CorrelatedRoots, DispersionModel, EmpiricalRoots, EntryMoments, FixedAttitude,
     InertiaLaw, JacobianTwice, JacobianTwiceError, JointScalar, LawUnit, MassPropertiesLaw,
     PrincipalDispersion, RootLaw, ScalarLaw, ScalarLawForm, ScalarRoots, ScalarRootsError,
-    TensorLaw, TensorLawError, TensorParts,
+    TensorLaw, TensorParts,
 };
 use gyradius_inertia::{Inertia, Region, RootSecondMoments};
 use gyradius_separation::{Body, BodyState, MovingBody};
@@ -13,6 +13,7 @@ use nalgebra::{Matrix3, Matrix4, Quaternion, SMatrix, UnitQuaternion};
 
 use super::{
     Axes, ScenarioError,
+    as_given::AsGiven,
     file::{
         AxesLawFile, BOUNDS, BodyFile, COVARIANCE, DispersionFile, LAWS, LENGTHS, RootsFile,
         SAMPLES, VARIANCE,
@@ -40,7 +41,7 @@ pub(crate) struct UncertainBody {
 #[derive(Clone, Debug)]
 enum BodyInertia {
     /// Roots, from lengths or not, about axes.
-    Principal { roots: RootLaw, lengths: bool, axes: BodyAxes },
+    Principal { roots: Box<RootLaw>, lengths: bool, axes: BodyAxes },
     /// Any model.
     Model(DispersionModel),
 }
@@ -52,7 +53,7 @@ enum BodyAxes {
     Uniform,
     Fixed,
     /// As a whole law says, in another way.
-    Given(AxesLaw),
+    Given(Box<AxesLaw>),
 }
 
 impl UncertainBody {
@@ -111,9 +112,10 @@ impl UncertainBody {
             let axes = axes(&place, d, nominal.principal_axes().attitude())?;
             let share =
                 if lengths { 1.0 } else { d.inertia_follows_mass.map_or(0.0, Follows::share) };
+            let roots = Box::new(roots);
             (BodyInertia::Principal { roots, lengths, axes }, (share, file.mass_kg))
         };
-        let inside = d.inside.as_ref().map(|given| given.said());
+        let inside = d.inside.as_ref().map(AsGiven::said);
         let region = inside.or_else(|| law.as_ref()?.region()).cloned();
         let moving = body.moving(state);
         Ok(Self { nominal, moving, inertia, follows, region, law, correlated: Vec::new() })
@@ -145,15 +147,11 @@ impl UncertainBody {
     /// What the roots can be called as numbers of their own, in which unit, and their laws, if each has its own.
     pub(crate) fn root_numbers(&self) -> Option<([&'static str; 2], &[ScalarLaw; 3])> {
         match &self.inertia {
-            BodyInertia::Principal { roots: RootLaw::Independent(roots), lengths, .. } => {
+            BodyInertia::Principal { roots, lengths, .. } => {
                 let name = if *lengths { ["gyration_length", "m"] } else { ["root", "sqrt_kg_m"] };
-                Some((name, roots.laws()))
+                Some((name, independent(roots)?))
             }
-            BodyInertia::Principal {
-                roots: RootLaw::CorrelatedGaussian(_) | RootLaw::Empirical(_),
-                ..
-            }
-            | BodyInertia::Model(_) => None,
+            BodyInertia::Model(_) => None,
         }
     }
 
@@ -162,6 +160,11 @@ impl UncertainBody {
         let root = |scalar: JointScalar| scalar as usize >= JointScalar::Shape1 as usize;
         let of_roots = pairs.iter().filter(|(a, b, _)| root(*a) && root(*b));
         self.correlated = of_roots.copied().collect();
+    }
+
+    /// Whether roots are correlated.
+    pub(crate) fn has_correlated_roots(&self) -> bool {
+        !self.correlated.is_empty()
     }
 
     /// The Gaussian that the axes are from, if they are from one.
@@ -185,7 +188,7 @@ impl UncertainBody {
             BodyInertia::Model(model) => Ok(model.clone()),
             BodyInertia::Principal { roots, axes: own, .. } => {
                 let axes = self.axes(own, axes)?;
-                Ok(PrincipalDispersion::new(roots.clone(), axes).into())
+                Ok(PrincipalDispersion::new((**roots).clone(), axes).into())
             }
         }
     }
@@ -207,15 +210,12 @@ impl UncertainBody {
 
     /// The law of the inertia as a part of a joint law, at the nominal mass.
     pub(crate) fn tensor(&self, axes: Axes) -> Result<TensorLaw, Box<dyn std::error::Error>> {
-        match &self.inertia {
-            BodyInertia::Principal { roots: RootLaw::Independent(roots), axes: own, .. } => {
-                Ok(TensorLaw::roots(roots.laws().clone(), self.axes(own, axes)?))
-            }
-            BodyInertia::Principal { .. } | BodyInertia::Model(_) => {
-                let tensor: Result<_, TensorLawError> = TensorLaw::model(self.law(axes)?);
-                Ok(tensor?)
-            }
+        if let BodyInertia::Principal { roots, axes: own, .. } = &self.inertia
+            && let Some(laws) = independent(roots)
+        {
+            return Ok(TensorLaw::roots(laws.clone(), self.axes(own, axes)?));
         }
+        Ok(TensorLaw::model(self.law(axes)?)?)
     }
 
     /// The axes as a model wants them.
@@ -223,13 +223,21 @@ impl UncertainBody {
         Ok(match (own, axes) {
             (BodyAxes::Uniform, _) => UniformAttitude.into(),
             (BodyAxes::Fixed, _) => FixedAttitude::new(self.mean_axes()).into(),
-            (BodyAxes::Given(law), _) => law.clone(),
+            (BodyAxes::Given(law), _) => (**law).clone(),
             (BodyAxes::Gaussian(law), Axes::WholeSphere) => (**law).clone().into(),
             (BodyAxes::Gaussian(law), Axes::MeanHalf) => MeanHalf::new((**law).clone()).into(),
             (BodyAxes::Gaussian(law), Axes::JacobianTwice) => {
                 JacobianTwice::new((**law).clone())?.into()
             }
         })
+    }
+}
+
+/// The laws of roots that each have their own.
+fn independent(roots: &RootLaw) -> Option<&[ScalarLaw; 3]> {
+    match roots {
+        RootLaw::Independent(roots) => Some(roots.laws()),
+        RootLaw::CorrelatedGaussian(_) | RootLaw::Empirical(_) => None,
     }
 }
 
@@ -243,9 +251,9 @@ fn of_law(
     let principal = |roots: RootLaw, lengths, axes: &AxesLaw| {
         let axes = match axes {
             AxesLaw::WholeSphere(law) => BodyAxes::Gaussian(Box::new(law.clone())),
-            other => BodyAxes::Given(other.clone()),
+            other => BodyAxes::Given(Box::new(other.clone())),
         };
-        BodyInertia::Principal { roots, lengths, axes }
+        BodyInertia::Principal { roots: Box::new(roots), lengths, axes }
     };
     let roots = |laws: [ScalarLaw; 3]| {
         let roots = ScalarRoots::new(laws);

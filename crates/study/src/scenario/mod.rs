@@ -125,10 +125,13 @@ pub struct Scenario {
     comparisons: Vec<Comparison>,
     /// The estimated share of draws that the region of payload and stage keeps, and its standard error, as models read the
     /// axes.
-    regions: Vec<(Axes, [Option<(f64, f64)>; 2])>,
+    regions: Vec<(Axes, KeptShares)>,
     /// What no file holds.
     outside: OutsideLaws,
 }
+
+/// The estimated share of draws that a region keeps and its standard error, of payload and stage where they have one.
+pub(crate) type KeptShares = [Option<(f64, f64)>; 2];
 
 changed!(Scenario, ScenarioFile);
 
@@ -376,7 +379,7 @@ impl Scenario {
     }
 
     /// The estimated share of draws that the region of payload and stage keeps under a model, and its standard error.
-    pub(crate) fn regions(&self, model: &ModelSpec) -> [Option<(f64, f64)>; 2] {
+    pub(crate) fn regions(&self, model: &ModelSpec) -> KeptShares {
         let axes = model.law.own_axes();
         let of_model = self.regions.iter().find(|(read, _)| Some(*read) == axes);
         of_model.map_or([None; 2], |(_, kept)| *kept)
