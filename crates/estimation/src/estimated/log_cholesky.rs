@@ -38,7 +38,7 @@ pub(super) fn moments(law: &dyn MassPropertiesModel, form: TenForm) -> Option<Te
 pub(super) fn matched(estimate: &TenEstimate, start: &MassProperties) -> Option<LogCholeskyTen> {
     let mean = Ten::from(LogCholesky::of(start).ok()?.values());
     let linear =
-        derivative(estimate.form(), &mean).and_then(|by| by.try_inverse()).map(|inverse| {
+        derivative(estimate.form(), &mean).and_then(nalgebra::Matrix::try_inverse).map(|inverse| {
             let covariance = inverse * estimate.covariance() * inverse.transpose();
             (covariance + covariance.transpose()) * 0.5
         });
@@ -127,7 +127,7 @@ fn derivative(form: TenForm, coordinates: &Ten) -> Option<Matrix10> {
     const STEP: f64 = 1e-5;
     let mut derivative = Matrix10::zeros();
     for i in 0..10 {
-        let step = STEP * if i < LOGARITHMS { 1.0 } else { coordinates.amax().min(1.0).max(1e-3) };
+        let step = STEP * if i < LOGARITHMS { 1.0 } else { coordinates.amax().clamp(1e-3, 1.0) };
         let at = |by: f64| {
             let mut there = *coordinates;
             there[i] += by;
