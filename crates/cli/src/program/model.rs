@@ -1,6 +1,6 @@
 //! `gyradius model`: a nominal inertia and plain statements, and what they come to.
 
-use gyradius_dispersion::TenParameters;
+use gyradius_dispersion::{TenMoments, TenParameters};
 use gyradius_estimation::{
     AxesStatement, CentreStatement, MassStatement, MomentsStatement, ProductsStatement, StatedBody,
     StatedModel, Statements,
@@ -261,7 +261,7 @@ fn law_json(body: &StatedBody) -> serde_json::Result<LawJson> {
     Ok(LawJson {
         columns: TenParameters::COLUMNS,
         mean: moments.map(|moments| (*moments.mean()).into()),
-        deviation: moments.map(|moments| moments.deviations()),
+        deviation: moments.map(TenMoments::deviations),
         covariance: moments.map(|moments| {
             std::array::from_fn(|i| std::array::from_fn(|j| moments.covariance()[(i, j)]))
         }),

@@ -2,8 +2,8 @@
 
 use gyradius_dispersion::{JointScalar, MassPropertiesLaw};
 use gyradius_estimation::{
-    Interval, MassAssessment, MassChoice, MassPropertiesFit, MassPropertiesFitError, RootEstimate,
-    ScalarFit,
+    Interval, MassAssessment, MassChoice, MassPropertiesFit, MassPropertiesFitError, MassTies,
+    RootEstimate, ScalarFit,
 };
 use gyradius_inertia::MassProperties;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -78,7 +78,7 @@ impl Joint {
                     errors: root.errors(),
                 })
                 .collect(),
-            inertia_power_of_mass: fit.ties().map(|ties| ties.power()),
+            inertia_power_of_mass: fit.ties().map(MassTies::power),
             mass_and_length_correlations: fit.ties().map(|ties| *ties.correlations()),
             fits: self.assessment.fits(),
             p_value: self.assessment.p_value(),
