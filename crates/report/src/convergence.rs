@@ -11,18 +11,19 @@ use crate::svg::px;
 use crate::text::significant;
 
 /// The share of runs that fail a requirement among the first so many, under models. Nothing is computed here but places: the numbers
-/// are those of the judgements.
+/// are those of the judgements. Where a rule looked at the runs while they were done stand marks along the bottom.
 #[must_use]
 pub fn convergence_figure(
     name: &str,
     caption: &str,
     requirement: &Requirement,
     models: &[(&str, &Judgement)],
+    looks: &[u64],
 ) -> Drawing {
-    Drawing::new(name, caption, svg(requirement, models))
+    Drawing::new(name, caption, svg(requirement, models, looks))
 }
 
-fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
+fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) -> String {
     let title = format!("Convergence: {}", requirement.name());
     let allowed = 1.0 - requirement.probability();
     let estimates = || models.iter().flat_map(|(_, judgement)| judgement.convergence());
@@ -76,6 +77,15 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
         field.plot.path(&line_pen(i), &d);
         let colour = style::model(i);
         field.plot.path(&format!("fill=\"{colour}\" stroke=\"{colour}\""), &marks);
+    }
+    if !looks.is_empty() {
+        let ticks = looks.iter().map(|runs| place((*runs as f64).log10()));
+        // Where the looks before the first estimate would stand is no place.
+        let ticks = ticks.filter(|at| (0.0..=ACROSS).contains(at));
+        let d: String = ticks.map(|at| format!("M{} {}v-9", px(at), px(HIGH))).collect();
+        let pen = format!("stroke=\"{}\" stroke-width=\"2\"", style::MUTED);
+        field.plot.path(&pen, &d);
+        field.entry("looks of the rule", |swatch| swatch.path(&pen, "M13 6v-12"));
     }
     field.entry(format!("allowed: {}", share_in_percent(allowed)), |swatch| {
         swatch.path(&required_pen(), "M0 0h26");

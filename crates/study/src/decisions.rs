@@ -11,7 +11,7 @@ use gyradius_report::{
 use gyradius_statistics::Verdict;
 
 use crate::{
-    Fleet, ScenarioError, StudyError,
+    Ended, Fleet, ScenarioError, StudyError,
     head::{Head, Judged},
     subject::{Subject, Summarized},
     unusual::{UnusualInput, unusual},
@@ -258,9 +258,11 @@ fn convergence(head: &Head) -> Section {
     let reading = "The share of the runs that fail each requirement among the first so many runs, in the order of their numbers. \
                    Each interval is what these runs would tell if nobody had looked before (Clopper and Pearson, with the confidence \
                    of the requirement): whoever looks often, and stops when it pleases, takes a greater risk.";
+    let looks: Vec<u64> = head.ended.as_ref().map(Ended::looks).unwrap_or_default();
     let drawings = figures(head, |number, requirement, models| {
         let caption = format!("Runs that fail “{}” among the first so many", requirement.name());
-        convergence_figure(&of_requirement(CONVERGENCE, number), &caption, requirement, models)
+        let name = of_requirement(CONVERGENCE, number);
+        convergence_figure(&name, &caption, requirement, models, &looks)
     });
     Section::folded("Convergence").paragraph(reading).figures(drawings)
 }

@@ -29,6 +29,12 @@ impl Ended {
         &self.until
     }
 
+    /// After how many runs of each model they were looked at.
+    #[must_use]
+    pub fn looks(&self) -> Vec<u64> {
+        self.until.looks().take_while(|look| *look <= self.runs).collect()
+    }
+
     /// Whether that was enough, and not the greatest number of runs.
     #[must_use]
     pub fn is_enough(&self) -> bool {

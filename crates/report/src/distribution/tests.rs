@@ -58,7 +58,7 @@ proptest! {
         let judged: Vec<Judgement> = models.iter().filter_map(|numbers| judged(numbers, &requirement)).collect();
         let names: Vec<String> = (0..judged.len()).map(|i| format!("model {i}")).collect();
         let models: Vec<(&str, &Judgement)> = names.iter().map(String::as_str).zip(&judged).collect();
-        for drawing in [distribution_figure("f", "c", &requirement, &models), convergence_figure("f", "c", &requirement, &models)] {
+        for drawing in [distribution_figure("f", "c", &requirement, &models), convergence_figure("f", "c", &requirement, &models, &[100, 1000])] {
             let seen = read(&drawing.svg);
             prop_assert!(seen.contains("a <name>"));
             prop_assert!(names.iter().all(|name| seen.contains(name)));
