@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(values(mass("±200 g"))[0], 0.2);
         assert_eq!(values(centre("5mm")), [0.005; 3]);
         assert_eq!(values(centre("1cm, 5mm,2e-1m")), [0.01, 0.005, 0.2]);
-        assert_eq!(values(axes("0.1rad"))[0].to_radians(), 0.1);
+        assert!((values(axes("0.1rad"))[0].to_radians() - 0.1).abs() < 1e-16);
         assert_eq!(values(moments("1e-3kgm2,1kgm2,2kgm2")), [1e-3, 1.0, 2.0]);
         for (read, text) in [
             (mass as fn(&str) -> Result<Stated, String>, "10"),
