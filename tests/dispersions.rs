@@ -386,7 +386,7 @@ fn bad_dispersions_are_named() {
         ),
         (
             ["", "", "[[correlations]]\nbetween = [\"a\", \"b\"]\ncoefficient = 0.1"],
-            "correlations[1].between: \"a\" is not dispersed, and nothing is".to_owned(),
+            "correlations[1].between: \"a\" is not dispersed: the dispersion of payload, stage, stack and springs names payload_root_1".to_owned(),
         ),
         (
             ["mass_kg = 1.0", "", "[[correlations]]\nbetween = [\"payload_mass_kg\"]\ncoefficient = 0.1"],

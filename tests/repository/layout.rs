@@ -6,7 +6,7 @@ use super::files::{crates, files, read, root};
 const LONG: usize = 500;
 
 /// Longer files, and why.
-const REASONS: [(&str, &str); 12] = [
+const REASONS: [(&str, &str); 13] = [
     ("crates/attitude/src/chart.rs", "one sampler: its bounds and the loops that use them"),
     ("crates/attitude/src/fisher_bingham.rs", "one law, with tests"),
     ("crates/attitude/src/fit/mod.rs", "the fit as its users see it: families, results, errors"),
@@ -18,6 +18,7 @@ const REASONS: [(&str, &str); 12] = [
         "every scalar law, with its pinned draws: the one list",
     ),
     ("crates/formats/src/csv.rs", "one format, with tests"),
+    ("crates/formats/tests/robots.rs", "tests of one subject, which share random robots"),
     ("crates/inertia/src/mass_properties.rs", "one type, with tests"),
     ("crates/inertia/src/mesh.rs", "240 lines of code, more of tests"),
     ("crates/inertia/src/report.rs", "one report, every fault of a matrix, with tests"),

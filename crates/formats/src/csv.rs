@@ -151,7 +151,8 @@ fn is_between(c: char) -> bool {
 
 /// A text without them: `Ixx [kg·m²]` becomes `ixxkgm2`.
 pub(crate) fn squeezed(text: &str) -> String {
-    let plain = text.to_lowercase().replace(['²', '?'], "2");
+    // A capital M is a million: Mg is a tonne, and no milligram.
+    let plain = text.replace("Mg", "t").to_lowercase().replace(['²', '?'], "2");
     plain.chars().filter(|c| !is_between(*c)).collect()
 }
 

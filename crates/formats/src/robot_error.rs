@@ -41,6 +41,27 @@ pub enum LinkProblem {
     },
 }
 
+impl LinkProblem {
+    /// Whether a number is there and is none, which nobody means: what is missing, or said in another way, is no slip.
+    #[must_use]
+    pub fn is_a_slip(&self) -> bool {
+        match self {
+            Self::Body(
+                BodyError::NotFinite { .. }
+                | BodyError::NotANumber { .. }
+                | BodyError::Expression { .. },
+            )
+            | Self::Orientation { .. }
+            | Self::OutOfRange => true,
+            Self::Body(_)
+            | Self::Gazebo
+            | Self::RelativeTo { .. }
+            | Self::Angles
+            | Self::NoPlace { .. } => false,
+        }
+    }
+}
+
 /// Why a robot cannot be read or copied.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

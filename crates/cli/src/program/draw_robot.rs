@@ -71,7 +71,11 @@ pub(crate) fn draw_robot(arguments: &DrawArgs, path: &Path) -> Result<ExitCode, 
             Ok(signals.code())
         }
         Err(error) => Err(error),
-        Ok(None) => Ok(ExitCode::SUCCESS),
+        // The table is on standard output: what there is to say stands beside it.
+        Ok(None) => {
+            say((left_as_they_are(&robot, &draw) + &warnings_of(&draw.summaries())).trim_end());
+            Ok(ExitCode::SUCCESS)
+        }
         Ok(Some(place)) => {
             print(&report(arguments, &robot, &draw, &place))?;
             Ok(ExitCode::SUCCESS)
@@ -182,11 +186,19 @@ fn report(arguments: &DrawArgs, robot: &RobotFile, draw: &RobotDraw<'_>, place: 
     let sigmas = short(arguments.stated.sigmas);
     let deviations = if arguments.stated.sigmas == 1.0 { "deviation" } else { "deviations" };
     let mut out = format!(
-        "{place}\n{links} links, {draws} draws, seed {seed}; ± is {sigmas} standard {deviations}\n"
+        "{place}\n{links} link{}, {draws} draw{}, seed {seed}; ± is {sigmas} standard {deviations}\n",
+        if links == 1 { "" } else { "s" },
+        if draws == 1 { "" } else { "s" }
     );
     if draws > 1 {
         out += &table_of(&draw.summaries());
     }
+    out + &left_as_they_are(robot, draw)
+}
+
+/// Links that are not drawn, and why.
+fn left_as_they_are(robot: &RobotFile, draw: &RobotDraw<'_>) -> String {
+    let mut out = String::new();
     for (name, why) in draw.left().iter().take(LISTED) {
         out += &format!("left as it is: {name}: {why}\n");
     }

@@ -108,7 +108,7 @@ impl MassPropertiesLaw {
     /// From the laws of the mass in kg, of the mass centre in m along the body axes, and of the inertia about it.
     ///
     /// # Errors
-    /// The mass can be negative (of a normal law its mean must be positive), or something can come out too large.
+    /// The mass can be negative (of a normal law the mean must be positive, and the deviation not larger), or something can come out too large.
     pub fn new(
         mass: ScalarLaw,
         centre: [ScalarLaw; 3],
@@ -333,12 +333,16 @@ impl JointScalar {
 /// A law of the mass that cannot be negative.
 fn positive(mass: ScalarLaw) -> Result<ScalarLaw, MassPropertiesLawError> {
     match mass.as_normal() {
-        Some([mean, variance]) if mean > 0.0 => {
+        Some([mean, variance]) if mean > 0.0 && variance <= mean * mean => {
             let deviation = variance.sqrt();
             if deviation <= SAFE_DEVIATION * mean {
                 return Ok(mass);
             }
             Ok(ScalarLaw::truncated_normal(mean, deviation, 0.0, f64::INFINITY)?)
+        }
+        Some([mean, _]) if mean > 0.0 => {
+            let probability = Some(mass.cdf(0.0));
+            Err(MassPropertiesLawError::Mass { probability, mean })
         }
         Some([mean, _]) => Err(MassPropertiesLawError::Mass { probability: None, mean }),
         None => {

@@ -6,6 +6,23 @@ use crate::csv::{entry_of, inertia_unit, length_unit, mass_unit, squeezed};
 pub(crate) const VALUES: [&str; 10] =
     ["mass", "centre_x", "centre_y", "centre_z", "ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
+/// What is written of standard deviations, wherever it stands, and in words of their own beside the name of a number.
+const MARKS: [&str; 5] = ["sigma", "percent", "%", "σ", "±"];
+const WORDS: [&str; 12] = [
+    "std",
+    "stdev",
+    "stddev",
+    "dev",
+    "deviation",
+    "unc",
+    "uncertainty",
+    "tol",
+    "tolerance",
+    "pct",
+    "err",
+    "error",
+];
+
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Column {
@@ -59,7 +76,7 @@ impl Heading {
             return Self::Column(column);
         }
         let name = text.trim().to_lowercase();
-        if ["sigma", "percent", "%"].iter().any(|mark| plain.contains(mark)) {
+        if MARKS.iter().any(|mark| plain.contains(mark)) || is_spread(&name) {
             Self::NoDeviation
         } else if name.ends_with("_m") && name.chars().all(|c| c.is_ascii_alphabetic() || c == '_')
         {
@@ -68,6 +85,12 @@ impl Heading {
             Self::Other
         }
     }
+}
+
+/// Whether a heading speaks of how uncertain one of the ten numbers is, as `mass_std`.
+fn is_spread(name: &str) -> bool {
+    let words = || name.split(|c: char| !c.is_alphanumeric());
+    words().any(|word| WORDS.contains(&word)) && words().any(|word| group(word).is_some())
 }
 
 fn column(plain: &str) -> Option<Column> {
@@ -165,6 +188,12 @@ mod tests {
             ("sigma_products_kg_m2", sigma(7, 3, 1.0)),
             ("radius_m", Heading::Size("radius_m".to_owned())),
             ("sigma_mess", Heading::NoDeviation),
+            ("mass_std", Heading::NoDeviation),
+            ("Mass (1σ)", Heading::NoDeviation),
+            ("Ixx uncertainty [kg m2]", Heading::NoDeviation),
+            ("tolerance class", Heading::Other),
+            ("function", Heading::Other),
+            ("Mass [Mg]", value(0, 1000.0)),
             ("supplier", Heading::Other),
             ("centre_m", Heading::Size("centre_m".to_owned())),
             ("POIconv", Heading::Column(Column::Products)),

@@ -113,11 +113,17 @@ impl<'a> RobotDraw<'a> {
         let picked = pick::picked(&names, robot.links_without_inertia(), &options.links)?;
         let (mut links, mut left) = (Vec::new(), Vec::new());
         let (mut impossible, mut outside) = (Vec::new(), Vec::new());
+        let (mut unreadable, named) = (Vec::new(), !options.links.is_empty());
         for (index, link) in robot.links().iter().enumerate() {
             let name = link.name().to_owned();
             let numbers = match link.numbers() {
                 _ if !picked[index] => {
                     left.push((name, LeftBecause::NotPicked));
+                    continue;
+                }
+                // What was asked for by name, or is a slip, is not passed over.
+                Err(problem) if named || problem.is_a_slip() => {
+                    unreadable.push(format!("\"{name}\": {problem}"));
                     continue;
                 }
                 Err(problem) => {
@@ -148,6 +154,9 @@ impl<'a> RobotDraw<'a> {
         }
         if let Some(inside) = options.inside.filter(|_| !outside.is_empty()) {
             return Err(RobotDrawError::Outside { inside, links: outside.join("; ") });
+        }
+        if !unreadable.is_empty() {
+            return Err(RobotDrawError::Unreadable { links: unreadable.join("; ") });
         }
         if !impossible.is_empty() {
             return Err(RobotDrawError::Impossible { links: impossible.join(", ") });
@@ -285,6 +294,12 @@ pub enum RobotDrawError {
          \"auto\", which is its default, uses them"
     )]
     Ignored,
+    /// Numbers of links that are none.
+    #[error("{links}: --links picks others")]
+    Unreadable {
+        /// The links, and what is wrong.
+        links: String,
+    },
     /// Nominal numbers that no body has.
     #[error(
         "no body has the mass and inertia of {links}: `gyradius check` says why, and with --repair writes a copy that can \
