@@ -294,7 +294,18 @@ fn lengths(
     }
     let unit = LawUnit::of(mass_kg.sqrt());
     let law = |i: usize| {
-        law::about(&forms[i], &format!("{place}.{LENGTHS}[{}]", i + 1), mean.values()[i], unit)
+        let field = format!("{place}.{LENGTHS}[{}]", i + 1);
+        let law = law::about(&forms[i], &field, mean.values()[i], unit)?;
+        // Of a plate half of the lengths about zero are negative, and are folded: more than that nobody means.
+        let negative = law.cdf(0.0);
+        if negative > 0.5 + 1e-9 {
+            let problem = format!(
+                "the length is negative in {:.1} % of the draws: it must not be in more than half of them",
+                100.0 * negative
+            );
+            return Err(ScenarioError::field(field, problem));
+        }
+        Ok(law)
     };
     let roots = ScalarRoots::new([law(0)?, law(1)?, law(2)?]);
     Ok(roots.map_err(|e| ScenarioError::field(format!("{place}.{LENGTHS}"), e))?.into())
