@@ -297,7 +297,7 @@ fn lengths(
         let field = format!("{place}.{LENGTHS}[{}]", i + 1);
         let law = law::about(&forms[i], &field, mean.values()[i], unit)?;
         // Of a plate half of the lengths about zero are negative, and are folded: more than that nobody means.
-        let negative = law.cdf(0.0);
+        let negative = law.cdf(-f64::MIN_POSITIVE);
         if negative > 0.5 + 1e-9 {
             let problem = format!(
                 "the length is negative in {:.1} % of the draws: it must not be in more than half of them",
