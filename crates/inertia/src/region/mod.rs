@@ -178,10 +178,10 @@ impl Region {
                 }
             }
             Kind::Box { pose, half_sides } => {
-                if self.room(body) < -RELATIVE_TOLERANCE {
+                let local = Local::of(body, pose);
+                if local.room_in_box(half_sides) < -RELATIVE_TOLERANCE {
                     return Containment::Impossible;
                 }
-                let local = Local::of(body, pose);
                 let inside = |x: &Vector3<f64>| (0..3).all(|i| x[i].abs() <= half_sides[i]);
                 if local.is_plain(inside) {
                     return Containment::Possible;
@@ -197,15 +197,15 @@ impl Region {
                 local.decide(points.chain(own), half_sides.norm())
             }
             Kind::Hull(hull) => {
-                let (outer, size) = (hull.outer(), &hull.size());
-                if self.room(body) < -RELATIVE_TOLERANCE {
+                let (outer, size) = (hull.outer(), hull.size());
+                let local = Local::of(body, &Isometry3::identity());
+                if hull.room(&local.centre, &local.spread) < -RELATIVE_TOLERANCE {
                     return Containment::Impossible;
                 }
-                let local = Local::of(body, &Isometry3::identity());
-                if !local.is_in(&local.centre, outer, *size) {
+                let inside = |x: &Vector3<f64>| local.is_in(x, outer, size);
+                if !inside(&local.centre) {
                     return Containment::Undecided;
                 }
-                let inside = |x: &Vector3<f64>| local.is_in(x, outer, *size);
                 if local.is_plain(inside) {
                     return Containment::Possible;
                 }
@@ -227,7 +227,7 @@ impl Region {
                 let stride = 1 + n * n / (2 * PAIRS);
                 let middles = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).step_by(stride);
                 let middles = middles.map(|(i, j)| (outer[i] + outer[j]) * 0.5);
-                local.decide(rays.chain(middles).chain(own), *size)
+                local.decide(rays.chain(middles).chain(own), size)
             }
         }
     }
@@ -260,24 +260,7 @@ impl Region {
                 // Always: it is an ellipsoid.
                 self.room_in_ellipsoid(body.mass_kg(), &body.mass_centre_m(), &sigma).unwrap_or(1.0)
             }
-            Kind::Box { pose, half_sides } => {
-                let local = Local::of(body, pose);
-                // In units of half a side.
-                let c = local.centre.component_div(half_sides);
-                let s = local.spread.component_div(&(half_sides * half_sides.transpose()));
-                let mut least = f64::INFINITY;
-                for i in 0..3 {
-                    least = least.min(1.0 - c[i] * c[i] - s[(i, i)]);
-                    for j in 0..i {
-                        for (a, b) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-                            // ∫ (1 − a x_i)(1 − b x_j) dm/m.
-                            let own = (1.0 - a * c[i]) * (1.0 - b * c[j]) + a * b * s[(i, j)];
-                            least = least.min(own);
-                        }
-                    }
-                }
-                least
-            }
+            Kind::Box { pose, half_sides } => Local::of(body, pose).room_in_box(half_sides),
             Kind::Hull(hull) => {
                 let local = Local::of(body, &Isometry3::identity());
                 hull.room(&local.centre, &local.spread)
@@ -315,6 +298,23 @@ impl Local {
         let radii = Vector3::from(body.inertia().second_moments().roots().values()) / mass;
         let spread = axes * Matrix3::from_diagonal(&radii.component_mul(&radii)) * axes.transpose();
         Self { centre, spread, axes, radii }
+    }
+
+    /// The least of the conditions of a box about the origin: ∫ (1 − a x_i)(1 − b x_j) dm/m ≥ 0 for every two faces, in units
+    /// of half a side.
+    fn room_in_box(&self, half_sides: &Vector3<f64>) -> f64 {
+        let c = self.centre.component_div(half_sides);
+        let s = self.spread.component_div(&(half_sides * half_sides.transpose()));
+        let mut least = f64::INFINITY;
+        for i in 0..3 {
+            least = least.min(1.0 - c[i] * c[i] - s[(i, i)]);
+            for j in 0..i {
+                for (a, b) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+                    least = least.min((1.0 - a * c[i]) * (1.0 - b * c[j]) + a * b * s[(i, j)]);
+                }
+            }
+        }
+        least
     }
 
     /// Whether six or eight equal masses do.
