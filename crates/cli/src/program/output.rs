@@ -37,27 +37,32 @@ pub(crate) fn write(
     let pasted = format!("{}\n{fragment}", commented(report));
     let mut said = String::new();
     if let Some(path) = &arguments.output {
-        let inputs: Vec<_> = fs::canonicalize(input).into_iter().collect();
-        let written =
-            write_copy(path, pasted.as_bytes(), &inputs, arguments.force).map_err(|error| {
-                match error {
-                    gyradius_formats::RepairError::Original(path) => {
-                        format!(
-                            "{} is the file that was read: it is not written over",
-                            path.display()
-                        )
-                    }
-                    other => other.to_string(),
-                }
-            })?;
-        let verb = if written { "wrote" } else { "unchanged:" };
-        said = format!("\n{verb} {}\n", path.display());
+        said = write_beside(path, &pasted, input, arguments.force)?;
     }
     match (arguments.format, &arguments.output) {
         (Form::Json, _) => print_json(&json().map_err(|error| error.to_string())?),
         (Form::Text, Some(_)) => print(&format!("{report}{said}")),
         (Form::Text, None) => print(&pasted),
     }
+}
+
+/// Writes a text to a file that is not the one that was read, and says what became of it.
+pub(crate) fn write_beside(
+    path: &Path,
+    text: &str,
+    input: &Path,
+    force: bool,
+) -> Result<String, String> {
+    let inputs: Vec<_> = fs::canonicalize(input).into_iter().collect();
+    let written =
+        write_copy(path, text.as_bytes(), &inputs, force).map_err(|error| match error {
+            gyradius_formats::RepairError::Original(path) => {
+                format!("{} is the file that was read: it is not written over", path.display())
+            }
+            other => other.to_string(),
+        })?;
+    let verb = if written { "wrote" } else { "unchanged:" };
+    Ok(format!("\n{verb} {}\n", path.display()))
 }
 
 /// Text on standard output, whatever it holds. A reader that reads no further, as `head` does, has what

@@ -2,10 +2,10 @@
 
 use gyradius_dispersion::MassPropertiesLaw;
 use gyradius_estimation::{EstimateDistance, EstimatedBody, TenEstimate, TenForm};
-use gyradius_formats::{TenMomentsFile, write_copy};
+use gyradius_formats::TenMomentsFile;
 use nalgebra::{SMatrix, SVector};
 use serde::Serialize;
-use std::{error::Error, fmt::Write, fs, path::Path};
+use std::{error::Error, fmt::Write, path::Path};
 
 use super::{FitArgs, report::wrapped};
 use crate::program::{
@@ -65,10 +65,7 @@ pub(super) fn run(arguments: &FitArgs, path: &Path) -> Result<bool, Box<dyn Erro
     let mut text = String::new();
     write_text(&mut text, path, &estimate, &body)?;
     if let Some(target) = &arguments.fragment.output {
-        let inputs: Vec<_> = fs::canonicalize(path).into_iter().collect();
-        let written = write_copy(target, json.as_bytes(), &inputs, arguments.fragment.force)?;
-        let verb = if written { "wrote" } else { "unchanged:" };
-        let _ = write!(text, "\n{verb} {}\n", target.display());
+        text += &output::write_beside(target, &json, path, arguments.fragment.force)?;
     }
     match arguments.fragment.format {
         Form::Json => output::print_json(&json)?,
