@@ -19,6 +19,7 @@ const MAX_MOMENT: f64 = 1e150;
 const SAFE_DEVIATION: f64 = 0.125;
 /// Trial draws of a constructor.
 const TRIALS: usize = 64;
+
 /// The joint law of mass, mass centre and inertia.
 ///
 /// # Definition

@@ -30,4 +30,4 @@ pub use naive::{NaiveBody, NaiveBodyError, NaiveRule};
 pub use pseudo_inertia_wishart::{PseudoInertiaWishart, PseudoInertiaWishartError};
 pub use ten_moments::TenMoments;
 pub use ten_parameters::TenParameters;
-pub use tensor::{TensorLaw, TensorLawError, TensorParts};
+pub use tensor::{TensorLaw, TensorLawError, TensorParts, following_factor};

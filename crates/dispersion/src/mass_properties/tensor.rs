@@ -99,10 +99,16 @@ pub(super) struct Follows {
 impl Follows {
     /// What an inertia is multiplied with at a mass.
     pub(super) fn factor(&self, mass: f64) -> f64 {
-        let ratio = mass / self.nominal_mass_kg;
-        // Of the whole change the ratio itself, to the bit.
-        if self.share < 1.0 { 1.0 + self.share * (ratio - 1.0) } else { ratio }
+        following_factor(mass / self.nominal_mass_kg, self.share)
     }
+}
+
+/// What an inertia is multiplied with that takes a share, from 0 to 1, of the relative change of a mass, which is so many
+/// times its nominal value.
+#[must_use]
+pub fn following_factor(mass_ratio: f64, share: f64) -> f64 {
+    // Of the whole change the ratio itself, to the bit.
+    if share < 1.0 { 1.0 + share * (mass_ratio - 1.0) } else { mass_ratio }
 }
 
 impl TensorLaw {

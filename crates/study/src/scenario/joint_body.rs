@@ -1,6 +1,8 @@
 //! How mass, mass centre and inertia of a body go together.
 
-use gyradius_dispersion::{Correlation, JointScalar, MassPropertiesLaw, ModelDraw, ScalarLaw};
+use gyradius_dispersion::{
+    Correlation, JointScalar, MassPropertiesLaw, ModelDraw, ScalarLaw, following_factor,
+};
 use gyradius_inertia::{
     Containment, Inertia, InertiaMatrix, MassProperties, Region, RootSecondMoments,
 };
@@ -160,7 +162,5 @@ fn following(inertia: InertiaMatrix, ratio: f64, share: f64) -> InertiaMatrix {
     if !(ratio > 0.0) || share == 0.0 {
         return inertia;
     }
-    // Of the whole change the ratio itself, to the bit.
-    let factor = if share < 1.0 { 1.0 + share * (ratio - 1.0) } else { ratio };
-    InertiaMatrix::new(inertia.matrix() * factor).unwrap_or(inertia)
+    InertiaMatrix::new(inertia.matrix() * following_factor(ratio, share)).unwrap_or(inertia)
 }
