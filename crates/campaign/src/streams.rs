@@ -26,6 +26,19 @@ impl Streams {
         Self(ChaCha8Rng::from_seed(hash.finalize().into()))
     }
 
+    /// The streams of draws outside of campaigns under a name, as that of the link of a robot: draw i comes from the stream
+    /// of run i.
+    #[must_use]
+    pub fn of_draws(seed: u64, name: &str) -> Self {
+        Self::new(seed, "robot", name)
+    }
+
+    /// The streams of a key.
+    #[must_use]
+    pub fn from_key(key: [u8; 32]) -> Self {
+        Self(ChaCha8Rng::from_seed(key))
+    }
+
     /// The generator of a run.
     #[must_use]
     pub fn run(&self, run: u64) -> ChaCha8Rng {

@@ -186,7 +186,9 @@ impl InertiaMatrix {
         self.is_realizable_within(RELATIVE_TOLERANCE)
     }
 
-    pub(crate) fn is_realizable_within(&self, tolerance: f64) -> bool {
+    /// The same with another tolerance, as a share of tr I. NaN or a negative tolerance allow nothing.
+    #[must_use]
+    pub fn is_realizable_within(&self, tolerance: f64) -> bool {
         // Products of subnormal entries would be lost.
         let m = if self.0.amax() < 1e-290 { self.0 * 2_f64.powi(600) } else { self.0 };
         let sigma = Self(m).second_moment_matrix();

@@ -1,5 +1,6 @@
 //! A model of inertia made of plain statements: "moments ± 10 %", "axes within 2°", "mass ± 1 %".
 
+mod amount;
 mod diagnosis;
 mod entries;
 pub(crate) mod levenberg_marquardt;
@@ -18,6 +19,7 @@ use diagnosis::{Context, Outcome};
 use scatter::Body;
 use task::{Asked, Task};
 
+pub use amount::StatedAmount;
 pub use parts::{
     Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, Part,
     ProductsStatement, StatementError,

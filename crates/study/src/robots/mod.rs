@@ -21,8 +21,6 @@ pub use folder::RobotFolder;
 pub use inside::Inside;
 pub use summary::LinkSummary;
 
-/// What keys the streams of all links.
-const MODEL: &str = "robot";
 /// What keys the trials of a region.
 const TRIALS_MODEL: &str = "robot, trials";
 /// How many trials there are.
@@ -142,7 +140,7 @@ impl<'a> RobotDraw<'a> {
             };
             let law = StatedBody::new(&options.statements, &nominal)
                 .map_err(|error| RobotDrawError::Statement { link: name.clone(), error })?;
-            let streams = Streams::new(options.seed, MODEL, &name);
+            let streams = Streams::of_draws(options.seed, &name);
             let mut drawn = DrawnLink { name, index, law, streams, region: None };
             if let Some(inside) = options.inside {
                 match drawn.confine(robot, inside) {

@@ -1,0 +1,185 @@
+//! Amounts with units in text, as `10%`, `5mm` or `1deg,1deg,3deg`, and what they state of a body.
+
+use crate::{
+    Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, ProductsStatement,
+    StatementError,
+};
+
+/// One number with its unit, or three with commas between them: what ± stands for in a statement.
+///
+/// ```
+/// use gyradius_estimation::{StatedAmount, StatedBody, Statements};
+/// use gyradius_inertia::Shape;
+///
+/// let statements = Statements {
+///     mass: Some(StatedAmount::mass("10%")?.mass_statement(3.0)?),
+///     centre: Some(StatedAmount::centre("5mm, 5mm, 2cm")?.centre_statement(3.0)?),
+///     ..Statements::default()
+/// };
+/// let body = StatedBody::new(&statements, &Shape::sphere(0.1)?.of_mass(2.0)?)?;
+/// assert!((body.law().mass().deviation() - 0.2 / 3.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StatedAmount {
+    values: [f64; 3],
+    is_percent: bool,
+}
+
+impl StatedAmount {
+    /// Of a mass: `%`, `kg` or `g`.
+    ///
+    /// # Errors
+    /// What must be written.
+    pub fn mass(text: &str) -> Result<Self, String> {
+        amounts(text, &[PERCENT, ("kg", Some(1.0)), ("g", Some(1e-3))], 1)
+    }
+
+    /// Of a mass centre along the body axes: `mm`, `cm` or `m`.
+    ///
+    /// # Errors
+    /// What must be written.
+    pub fn centre(text: &str) -> Result<Self, String> {
+        amounts(text, &[("mm", Some(1e-3)), ("cm", Some(1e-2)), ("m", Some(1.0))], 3)
+    }
+
+    /// Of the moments of inertia about the body axes: `%` or `kgm2`.
+    ///
+    /// # Errors
+    /// What must be written.
+    pub fn moments(text: &str) -> Result<Self, String> {
+        amounts(text, &[PERCENT, ("kgm2", Some(1.0))], 3)
+    }
+
+    /// Of the products of inertia I₁₂, I₁₃, I₂₃: `kgm2`.
+    ///
+    /// # Errors
+    /// What must be written.
+    pub fn products(text: &str) -> Result<Self, String> {
+        amounts(text, &[("kgm2", Some(1.0))], 3)
+    }
+
+    /// Of the rotation about the principal axes: `deg` or `rad`.
+    ///
+    /// # Errors
+    /// What must be written.
+    pub fn axes(text: &str) -> Result<Self, String> {
+        amounts(text, &[("deg", Some(1.0)), ("rad", Some(1_f64.to_degrees()))], 3)
+    }
+
+    /// States it of the mass, as so many standard deviations; only what [`mass`](Self::mass) has read makes sense.
+    ///
+    /// # Errors
+    /// The number is not allowed.
+    pub fn mass_statement(self, sigmas: f64) -> Result<MassStatement, StatementError> {
+        match self.is_percent {
+            true => MassStatement::percent(self.values[0], sigmas),
+            false => MassStatement::kg(self.values[0], sigmas),
+        }
+    }
+
+    /// States it of the mass centre: see [`centre`](Self::centre).
+    ///
+    /// # Errors
+    /// A number is not allowed.
+    pub fn centre_statement(self, sigmas: f64) -> Result<CentreStatement, StatementError> {
+        CentreStatement::new(self.values, sigmas, [0.0; 3])
+    }
+
+    /// States it of the moments: see [`moments`](Self::moments).
+    ///
+    /// # Errors
+    /// A number is not allowed.
+    pub fn moments_statement(self, sigmas: f64) -> Result<MomentsStatement, StatementError> {
+        let amount = match self.is_percent {
+            true => Amount::Percent(self.values),
+            false => Amount::Absolute(self.values),
+        };
+        MomentsStatement::new(amount, sigmas)
+    }
+
+    /// States it of the products: see [`products`](Self::products).
+    ///
+    /// # Errors
+    /// A number is not allowed.
+    pub fn products_statement(self, sigmas: f64) -> Result<ProductsStatement, StatementError> {
+        ProductsStatement::new(self.values, sigmas)
+    }
+
+    /// States it of the axes, about each: see [`axes`](Self::axes).
+    ///
+    /// # Errors
+    /// A number is not allowed.
+    pub fn axes_statement(self, sigmas: f64) -> Result<AxesStatement, StatementError> {
+        AxesStatement::each(self.values, sigmas)
+    }
+}
+
+/// A unit as it is written, and how much of the program's unit it is; nothing of percent.
+type Unit = (&'static str, Option<f64>);
+
+const PERCENT: Unit = ("%", None);
+
+/// One amount, or as many as there may be, with commas between them.
+fn amounts(text: &str, units: &[Unit], most: usize) -> Result<StatedAmount, String> {
+    let names: Vec<&str> = units.iter().map(|unit| unit.0).collect();
+    let parts: Vec<&str> = text.split(',').collect();
+    if parts.len() != 1 && parts.len() != most {
+        let more =
+            if most > 1 { format!(", or {most} with commas between them") } else { String::new() };
+        return Err(format!("it must be one number with its unit{more}"));
+    }
+    let mut read = Vec::with_capacity(most);
+    for part in parts {
+        let part = part.trim().trim_start_matches('±').trim_start();
+        let unit = units.iter().find(|unit| part.ends_with(unit.0));
+        let allowed = || format!("it must be a number and its unit, {}", names.join(" or "));
+        let (unit, factor) = unit.ok_or_else(allowed)?;
+        let number = part.strip_suffix(unit).unwrap_or(part).trim_end();
+        let number: f64 = number.parse().map_err(|_| allowed())?;
+        read.push((number * factor.unwrap_or(1.0), factor.is_none()));
+    }
+    let is_percent = read[0].1;
+    if read.iter().any(|one| one.1 != is_percent) {
+        return Err("percent and another unit do not go together".to_owned());
+    }
+    // The constructors of the statements check the numbers.
+    let values = std::array::from_fn(|i| read.get(i).unwrap_or(&read[0]).0);
+    Ok(StatedAmount { values, is_percent })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn amounts_have_units() {
+        let values = |read: Result<StatedAmount, String>| read.unwrap().values;
+        assert_eq!(values(StatedAmount::mass("10%")), [10.0; 3]);
+        assert!(
+            StatedAmount::mass("10 %").unwrap().is_percent
+                && !StatedAmount::mass("2kg").unwrap().is_percent
+        );
+        assert_eq!(values(StatedAmount::mass("±200 g"))[0], 0.2);
+        assert_eq!(values(StatedAmount::centre("5mm")), [0.005; 3]);
+        assert_eq!(values(StatedAmount::centre("1cm, 5mm,2e-1m")), [0.01, 0.005, 0.2]);
+        assert!((values(StatedAmount::axes("0.1rad"))[0].to_radians() - 0.1).abs() < 1e-16);
+        assert_eq!(values(StatedAmount::moments("1e-3kgm2,1kgm2,2kgm2")), [1e-3, 1.0, 2.0]);
+        assert_eq!(values(StatedAmount::products("5 kgm2")), [5.0; 3]);
+        for (read, text) in [
+            (StatedAmount::mass as fn(&str) -> Result<StatedAmount, String>, "10"),
+            (StatedAmount::mass, "10%,10%,10%"),
+            (StatedAmount::mass, "%"),
+            (StatedAmount::centre, "5"),
+            (StatedAmount::centre, "5%"),
+            (StatedAmount::centre, "5mm,5mm"),
+            (StatedAmount::moments, "5%,1kgm2,1kgm2"),
+            (StatedAmount::axes, "five deg"),
+            (StatedAmount::axes, ""),
+            (StatedAmount::products, "5%"),
+            (StatedAmount::products, "5kg"),
+        ] {
+            assert!(read(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,104 @@
+"""Uncertain rigid-body mass properties: every drawn body can be built.
+
+Inertia is about the mass centre, in the axes of the body, in kg·m²; products are tensor entries, I₁₂ = -∫ x₁ x₂ dm. Quaternions
+have the scalar last unless ``order="wxyz"`` says otherwise. Arrays have any leading shape, and are computed in 64 bits.
+
+Without any law
+    `is_realizable`, `margin`, `report`, `nearest`, `principal_axes` of inertia matrices; `MassProperties`, which are added, moved
+    and turned; `load` for the links of a robot.
+Laws
+    `law` of plain statements; `MassPropertiesLaw`, `InertiaLaw`, `AttitudeLaw` and `ScalarLaw` with ``rvs``, ``logpdf``, ``mean``,
+    ``cov`` and ``fit``; `from_estimate` of an identification.
+Random numbers
+    ``rng=`` an integer, a `numpy.random.Generator`, or a `key`, whose draws do not depend on what else is drawn.
+
+>>> import numpy as np, gyradius
+>>> link = gyradius.MassProperties(2.0, [0.1, 0.0, 0.0], np.diag([0.002, 0.01, 0.011]))
+>>> draws = gyradius.law(link, mass="5%", centre="1cm", moments="10%", axes="2deg").rvs(4096, rng=7)
+>>> bool(draws.is_realizable.all())
+True
+"""
+
+from gyradius._bodies import (
+    COLUMNS,
+    MassProperties,
+    MujocoBodies,
+    Region,
+    box,
+    ellipsoid,
+    hull,
+    load,
+    log_cholesky,
+    pseudo_inertia,
+)
+from gyradius._core import __version__
+from gyradius._inertia import (
+    PrincipalAxes,
+    Report,
+    is_realizable,
+    margin,
+    nearest,
+    principal_axes,
+    report,
+)
+from gyradius._laws import (
+    AttitudeLaw,
+    Estimate,
+    Fit,
+    InertiaLaw,
+    MassPropertiesLaw,
+    ScalarLaw,
+    StatedLaw,
+    about_axis,
+    bingham,
+    fisher_bingham,
+    fixed_attitude,
+    from_estimate,
+    law,
+    normal,
+    radially_constrained_gaussian,
+    small_rotations,
+    uniform,
+    uniform_attitude,
+)
+from gyradius._rng import key
+
+__all__ = [
+    "COLUMNS",
+    "AttitudeLaw",
+    "Estimate",
+    "Fit",
+    "InertiaLaw",
+    "MassProperties",
+    "MassPropertiesLaw",
+    "MujocoBodies",
+    "PrincipalAxes",
+    "Region",
+    "Report",
+    "ScalarLaw",
+    "StatedLaw",
+    "__version__",
+    "about_axis",
+    "bingham",
+    "box",
+    "ellipsoid",
+    "fisher_bingham",
+    "fixed_attitude",
+    "from_estimate",
+    "hull",
+    "is_realizable",
+    "key",
+    "law",
+    "load",
+    "log_cholesky",
+    "margin",
+    "nearest",
+    "normal",
+    "principal_axes",
+    "pseudo_inertia",
+    "radially_constrained_gaussian",
+    "report",
+    "small_rotations",
+    "uniform",
+    "uniform_attitude",
+]

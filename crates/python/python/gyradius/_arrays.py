@@ -1,0 +1,97 @@
+"""Shapes, types and attitudes of arrays: everything goes to the compiled part as flat rows of 64-bit floats."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+ORDERS = ("xyzw", "wxyz")
+
+
+def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """The value as an array of 64-bit floats, without a copy where it is one."""
+    array = np.asarray(value)
+    if array.dtype == object or not (np.issubdtype(array.dtype, np.number) or array.dtype == bool):
+        raise ValueError(f"{name}: it must be numbers, not {array.dtype}")
+    if np.issubdtype(array.dtype, np.complexfloating):
+        raise ValueError(f"{name}: it must be real numbers, not {array.dtype}")
+    return array.astype(np.float64, copy=False)
+
+
+def rows(name: str, value: ArrayLike, tail: tuple[int, ...]) -> tuple[NDArray[np.float64], tuple[int, ...]]:
+    """An array of shape (..., *tail) as rows, and what the dots stand for."""
+    array = numbers(name, value)
+    if array.shape[array.ndim - len(tail) :] != tail or array.ndim < len(tail):
+        wanted = ", ".join(["...", *map(str, tail)])
+        raise ValueError(f"{name}: its shape is {array.shape}, and it must be ({wanted})")
+    lead = array.shape[: array.ndim - len(tail)]
+    return np.ascontiguousarray(array).reshape(-1, int(np.prod(tail))), lead
+
+
+def together(*arrays: tuple[str, ArrayLike, tuple[int, ...]]) -> tuple[list[NDArray[np.float64]], tuple[int, ...]]:
+    """Arrays of shapes (..., *tail) as rows, with what the dots stand for broadcast."""
+    found = [rows(*one) for one in arrays]
+    try:
+        lead = np.broadcast_shapes(*(shape for _, shape in found))
+    except ValueError:
+        said = ", ".join(f"{one[0]} {shape}" for one, (_, shape) in zip(arrays, found))
+        raise ValueError(f"shapes that cannot be broadcast: {said}") from None
+    wide = []
+    for flat, shape in found:
+        if shape != lead:
+            flat = np.broadcast_to(flat.reshape(*shape, flat.shape[1]), (*lead, flat.shape[1]))
+            flat = np.ascontiguousarray(flat).reshape(-1, flat.shape[-1])
+        wide.append(flat)
+    return wide, lead
+
+
+def out(flat: NDArray[Any], shape: tuple[int, ...], dtype: DTypeLike | None = None) -> Any:
+    """What the compiled part has made, in its shape and type; a number alone where the shape is empty."""
+    array = flat.reshape(shape)
+    if dtype is not None:
+        array = array.astype(floating(dtype), copy=False)
+    return array[()] if shape == () else array
+
+
+def floating(dtype: DTypeLike) -> np.dtype[Any]:
+    """The type of results, which must be one of floats."""
+    found = np.dtype(dtype)
+    if not np.issubdtype(found, np.floating):
+        raise ValueError(f"dtype = {found}: it must be one of floats")
+    return found
+
+
+def check_order(order: str) -> bool:
+    """Whether the scalar comes first in quaternions of this order."""
+    if order not in ORDERS:
+        raise ValueError(f'order = {order!r}: it must be "xyzw" (scalar last) or "wxyz" (scalar first)')
+    return order == "wxyz"
+
+
+def attitudes(name: str, value: ArrayLike, order: str) -> tuple[NDArray[np.float64], tuple[int, ...]]:
+    """Quaternions of any norm as rows of norm one, scalar last."""
+    first = check_order(order)
+    # A rotation of SciPy knows its quaternion.
+    as_quat = getattr(value, "as_quat", None)
+    if callable(as_quat):
+        value, first = as_quat(), False
+    flat, lead = rows(name, value, (4,))
+    if first:
+        flat = flat[:, [1, 2, 3, 0]]
+    largest = np.abs(flat).max(axis=1, initial=0.0, keepdims=True)
+    if not np.all(np.isfinite(largest) & (largest > 0)):
+        place = int(np.argmin((np.isfinite(largest) & (largest > 0))[:, 0]))
+        raise ValueError(f"{name}: row {place} = {flat[place]}: it must be finite, and not zero")
+    norm = np.linalg.norm(flat / largest, axis=1, keepdims=True) * largest
+    # What has norm one already keeps its bits.
+    flat = np.where(np.abs(norm - 1.0) <= 4e-16, flat, flat / norm)
+    return np.ascontiguousarray(flat), lead
+
+
+def ordered(flat: NDArray[np.float64], order: str) -> NDArray[np.float64]:
+    """Rows of quaternions, scalar last, in another order."""
+    return np.ascontiguousarray(flat[:, [3, 0, 1, 2]]) if check_order(order) else flat

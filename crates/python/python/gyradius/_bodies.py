@@ -1,0 +1,431 @@
+"""Mass, mass centre and inertia together, of one body or of many."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from gyradius import _core
+from gyradius._arrays import attitudes, check_order, floating, numbers, ordered, out, rows, together
+
+if TYPE_CHECKING:
+    import os
+
+    from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+COLUMNS = (
+    "mass_kg",
+    "mass_centre_1_m",
+    "mass_centre_2_m",
+    "mass_centre_3_m",
+    "i11",
+    "i22",
+    "i33",
+    "i12",
+    "i13",
+    "i23",
+)
+"""What the ten numbers of a body are called, in their order; the last six are in kg·m²."""
+
+ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+
+class MujocoBodies(NamedTuple):
+    """Bodies as MuJoCo holds them, in a model's arrays of the same names."""
+
+    body_mass: Any
+    """(...) in kg."""
+    body_ipos: Any
+    """(..., 3): the mass centre in the frame of the body, in m."""
+    body_inertia: Any
+    """(..., 3): principal moments in kg·m²."""
+    body_iquat: Any
+    """(..., 4): the attitude of the principal axes in the frame of the body, scalar first."""
+
+
+class MassProperties:
+    """Mass, mass centre and inertia of one body, or of an array of bodies.
+
+    Ten numbers a body, in the last axis of `array`: mass in kg, mass centre in m in the axes of the body, and the
+    entries 11, 22, 33, 12, 13, 23 of the inertia about the mass centre in kg·m², products as tensor entries. They need not be
+    those of a body: `is_realizable` says which are, and what computes with bodies refuses the others.
+
+    Parameters
+    ----------
+    mass : array_like, shape (...)
+        kg.
+    centre : array_like, shape (..., 3)
+        m, in the axes of the body.
+    inertia : array_like, shape (..., 3, 3)
+        kg·m² about the mass centre, symmetric.
+
+    Examples
+    --------
+    >>> import numpy as np, gyradius
+    >>> rod = gyradius.MassProperties(2.0, [0.5, 0.0, 0.0], np.diag([0.0, 1 / 6, 1 / 6]))
+    >>> float(rod.inertia_about([0.0, 0.0, 0.0])[1, 1].round(6))
+    0.666667
+    >>> two = rod + rod.translated([1.0, 0.0, 0.0])
+    >>> float(two.mass), two.centre.tolist()
+    (4.0, [1.0, 0.0, 0.0])
+    """
+
+    __slots__ = ("_array",)
+
+    _array: NDArray[np.float64]
+
+    def __init__(self, mass: ArrayLike, centre: ArrayLike, inertia: ArrayLike) -> None:
+        (m, c, i), lead = together(("mass", mass, ()), ("centre", centre, (3,)), ("inertia", inertia, (3, 3)))
+        matrix = i.reshape(-1, 3, 3)
+        size = np.abs(matrix).max(axis=(1, 2), initial=0.0)
+        skew = np.abs(matrix - matrix.transpose(0, 2, 1)).max(axis=(1, 2), initial=0.0)
+        # Not `>`, so that NaN, which is no number of a body, is left to what asks whether it is one.
+        if np.any(skew > 1e-6 * size):
+            raise ValueError("inertia: it must be symmetric")
+        matrix = 0.5 * (matrix + matrix.transpose(0, 2, 1))
+        entries = np.stack([matrix[:, a, b] for a, b in ENTRIES], axis=1)
+        self._set(np.concatenate([m, c, entries], axis=1).reshape(*lead, 10))
+
+    def _set(self, array: NDArray[np.float64]) -> None:
+        array.flags.writeable = False
+        object.__setattr__(self, "_array", array)
+
+    @classmethod
+    def of(cls, array: ArrayLike) -> MassProperties:
+        """The bodies of an array of shape (..., 10), in the order of `gyradius.COLUMNS`."""
+        flat, lead = rows("array", array, (10,))
+        return cls._of(flat.copy().reshape(*lead, 10))
+
+    @classmethod
+    def _of(cls, array: NDArray[np.float64]) -> MassProperties:
+        made = object.__new__(cls)
+        made._set(array)
+        return made
+
+    @classmethod
+    def about_point(
+        cls, mass: ArrayLike, centre: ArrayLike, inertia: ArrayLike, point: ArrayLike = (0.0, 0.0, 0.0)
+    ) -> MassProperties:
+        """The bodies of which the inertia is known about another point than the mass centre, such as the origin."""
+        at = numbers("centre", centre) - numbers("point", point)
+        square = (at * at).sum(axis=-1)[..., None, None] * np.eye(3)
+        moved = numbers("mass", mass)[..., None, None] * (square - at[..., :, None] * at[..., None, :])
+        return cls(mass, centre, numbers("inertia", inertia) - moved)
+
+    @classmethod
+    def from_pseudo_inertia(cls, pseudo_inertia: ArrayLike) -> MassProperties:
+        """The bodies of pseudo-inertias ∫ (x, 1)(x, 1)ᵀ dm of shape (..., 4, 4)."""
+        flat, lead = rows("pseudo_inertia", pseudo_inertia, (4, 4))
+        return cls._of(_core.body_from_pseudo_inertia(flat).reshape(*lead, 10))
+
+    @classmethod
+    def from_log_cholesky(cls, coordinates: ArrayLike) -> MassProperties:
+        """The bodies of log-Cholesky coordinates of shape (..., 10): see `log_cholesky`."""
+        flat, lead = rows("coordinates", coordinates, (10,))
+        return cls._of(_core.body_from_log_cholesky(flat).reshape(*lead, 10))
+
+    @property
+    def array(self) -> NDArray[np.float64]:
+        """The ten numbers, shape (..., 10), in the order of `gyradius.COLUMNS`; read only."""
+        return self._array
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        array = self._array if dtype is None else self._array.astype(dtype, copy=False)
+        return array.copy() if copy else array
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of the array of bodies: empty for one."""
+        return self._array.shape[:-1]
+
+    @property
+    def mass(self) -> Any:
+        """(...) in kg."""
+        return self._array[..., 0]
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """(..., 3): the mass centre in m."""
+        return self._array[..., 1:4]
+
+    @property
+    def inertia(self) -> NDArray[np.float64]:
+        """(..., 3, 3): about the mass centre in kg·m²."""
+        return self._array[..., [4, 7, 8, 7, 5, 9, 8, 9, 6]].reshape(*self.shape, 3, 3)
+
+    @property
+    def is_realizable(self) -> Any:
+        """Which of them are bodies: a mass above zero, finite numbers, and an inertia that some body has."""
+        from gyradius._inertia import is_realizable
+
+        fine = (self.mass > 0) & np.isfinite(self._array).all(axis=-1)
+        found = fine & is_realizable(self.inertia)
+        return bool(found) if self.shape == () else found
+
+    @property
+    def pseudo_inertia(self) -> NDArray[np.float64]:
+        """(..., 4, 4): ∫ (x, 1)(x, 1)ᵀ dm, in kg·m², kg·m and kg."""
+        return _core.body_pseudo_inertia(self._flat()).reshape(*self.shape, 4, 4)
+
+    @property
+    def log_cholesky(self) -> NDArray[np.float64]:
+        """(..., 10): α, d₁, d₂, d₃, s₁₂, s₂₃, s₁₃, t₁, t₂, t₃ of Rucker & Wensing (2022), doi:10.1109/LRA.2022.3144517.
+
+        Plates, rods and points lie at infinity and are refused.
+        """
+        return _core.body_log_cholesky(self._flat()).reshape(*self.shape, 10)
+
+    @property
+    def linear(self) -> NDArray[np.float64]:
+        """(..., 10): m, m c, and the inertia about the origin, in which the equations of motion are linear."""
+        about = self.inertia_about(np.zeros(3))
+        entries = np.stack([about[..., a, b] for a, b in ENTRIES], axis=-1)
+        return np.concatenate([self._array[..., :1], self._array[..., :1] * self.centre, entries], axis=-1)
+
+    def inertia_about(self, point: ArrayLike) -> NDArray[np.float64]:
+        """(..., 3, 3): the inertia about a point in m, (..., 3), in kg·m²."""
+        (bodies, points), lead = together(("bodies", self._array, (10,)), ("point", point, (3,)))
+        return _core.body_inertia_about(bodies, points).reshape(*lead, 3, 3)
+
+    def translated(self, by: ArrayLike) -> MassProperties:
+        """The bodies moved by (..., 3) in m; the axes stay."""
+        return self.transformed((0.0, 0.0, 0.0, 1.0), by)
+
+    def rotated(self, rotation: ArrayLike, *, order: str = "xyzw") -> MassProperties:
+        """The bodies turned about the origin by quaternions (..., 4), or a `scipy.spatial.transform.Rotation`."""
+        return self.transformed(rotation, (0.0, 0.0, 0.0), order=order)
+
+    def transformed(self, rotation: ArrayLike, translation: ArrayLike, *, order: str = "xyzw") -> MassProperties:
+        """The bodies turned about the origin and then moved: what they are in a frame in which theirs has this pose."""
+        turns, shape = attitudes("rotation", rotation, order)
+        poses = together(("rotation", turns.reshape(*shape, 4), (4,)), ("translation", translation, (3,)))
+        (turn, move), lead = poses
+        pose = np.concatenate([turn, move], axis=1).reshape(*lead, 7)
+        (bodies, pose), lead = together(("bodies", self._array, (10,)), ("pose", pose, (7,)))
+        return self._of(_core.body_transform(bodies, pose).reshape(*lead, 10))
+
+    def __add__(self, other: object) -> MassProperties:
+        """Two bodies, described in one frame, as one."""
+        return self._with(other, _core.body_add)
+
+    def __sub__(self, other: object) -> MassProperties:
+        """What is left of a body without a part."""
+        return self._with(other, _core.body_subtract)
+
+    def _with(self, other: object, what: Any) -> MassProperties:
+        if not isinstance(other, MassProperties):
+            return NotImplemented
+        (one, two), lead = together(("bodies", self._array, (10,)), ("bodies", other._array, (10,)))
+        return self._of(what(one, two).reshape(*lead, 10))
+
+    def sum(self) -> MassProperties:
+        """All of them, described in one frame, as one body."""
+        if not self._flat().size:
+            raise ValueError("no bodies to add: there must be at least one")
+        flat = self._of(self._flat())
+        while flat.shape[0] > 1:
+            half = flat.shape[0] // 2
+            pairs = (flat[:half] + flat[half : 2 * half])._array
+            flat = self._of(np.concatenate([pairs, flat._array[2 * half :]]))
+        return flat[0]
+
+    def with_mass(self, mass: ArrayLike) -> MassProperties:
+        """The same bodies of another density: the inertia follows the mass."""
+        mass = numbers("mass", mass)
+        factor = (mass / self.mass)[..., None]
+        lead = np.broadcast_shapes(mass.shape, self.shape)
+        parts = [np.broadcast_to(mass[..., None], (*lead, 1)), np.broadcast_to(self.centre, (*lead, 3))]
+        return self._of(np.concatenate([*parts, self._array[..., 4:] * factor], axis=-1))
+
+    def to_mujoco(self, dtype: DTypeLike | None = None) -> MujocoBodies:
+        """As MuJoCo holds them: mass, place, principal moments, and quaternion with the scalar first."""
+        found = _core.body_to_principal(self._flat())
+        kind = np.dtype(np.float64) if dtype is None else floating(dtype)
+        return MujocoBodies(
+            body_mass=out(found[:, 0].copy(), self.shape, kind),
+            body_ipos=self.centre.astype(kind),
+            body_inertia=out(found[:, 1:4].copy(), (*self.shape, 3), kind),
+            body_iquat=out(ordered(found[:, 4:], "wxyz"), (*self.shape, 4), kind),
+        )
+
+    def _flat(self) -> NDArray[np.float64]:
+        return np.ascontiguousarray(self._array.reshape(-1, 10))
+
+    def __getitem__(self, place: Any) -> MassProperties:
+        if self.shape == ():
+            raise TypeError("one body has no parts to pick from")
+        picked = self._array[place]
+        if picked.ndim == 0 or picked.shape[-1] != 10:
+            raise IndexError("pick bodies, and their numbers from `array`")
+        return self._of(picked.copy())
+
+    def __len__(self) -> int:
+        if self.shape == ():
+            raise TypeError("one body has no length")
+        return self.shape[0]
+
+    def __iter__(self) -> Iterator[MassProperties]:
+        return (self[place] for place in range(len(self)))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, MassProperties):
+            return NotImplemented
+        return np.array_equal(self._array, other._array)
+
+    def __hash__(self) -> int:
+        return hash((self.shape, self._array.tobytes()))
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{name}: mass properties do not change")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{name}: mass properties do not change")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return MassProperties.of, (self._array,)
+
+    def __repr__(self) -> str:
+        if self.shape != ():
+            return f"<MassProperties of {' x '.join(map(str, self.shape))} bodies>"
+        centre, inertia = self.centre.tolist(), self.inertia.tolist()
+        return f"MassProperties(mass={float(self.mass)!r}, centre={centre!r}, inertia={inertia!r})"
+
+
+class Region:
+    """Where the matter of a body is: made by `box`, `ellipsoid` and `hull`."""
+
+    __slots__ = ("_form",)
+
+    _form: str
+
+    def __init__(self, form: dict[str, Any]) -> None:
+        object.__setattr__(self, "_form", _core.checked_region(json.dumps(form)))
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{name}: a region does not change")
+
+    @property
+    def form(self) -> dict[str, Any]:
+        """As it stands in files."""
+        return json.loads(self._form)
+
+    def holds(self, bodies: MassProperties) -> Any:
+        """Whether matter inside can have the mass properties: 1 if it can, 0 if not, and NaN where neither was shown."""
+        flat = np.ascontiguousarray(np.asarray(bodies).reshape(-1, 10))
+        return out(_core.region_holds(self._form, flat), bodies.shape)
+
+    def __eq__(self, other: object) -> bool:
+        return self._form == other._form if isinstance(other, Region) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._form)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Region, (self.form,)
+
+    def __repr__(self) -> str:
+        return f"Region({self.form!r})"
+
+
+def box(middle: ArrayLike = (0.0, 0.0, 0.0), *, sides: ArrayLike, attitude: ArrayLike | None = None) -> Region:
+    """A box that holds all the matter of a body.
+
+    Parameters
+    ----------
+    middle : array_like, shape (3,)
+        m, in the axes of the body.
+    sides : array_like, shape (3,)
+        Whole lengths in m.
+    attitude : array_like, shape (4,), optional
+        The quaternion, scalar last, that turns the box from the axes of the body.
+    """
+    half = (0.5 * _three("sides", sides)).tolist()
+    return Region({"box": {"middle_m": _three("middle", middle).tolist(), "half_sides_m": half, **_turn(attitude)}})
+
+
+def ellipsoid(
+    middle: ArrayLike = (0.0, 0.0, 0.0), *, semi_axes: ArrayLike, attitude: ArrayLike | None = None
+) -> Region:
+    """An ellipsoid that holds all the matter of a body, from its middle and semi-axes in m: see `box`."""
+    form = {"middle_m": _three("middle", middle).tolist(), "semi_axes_m": _three("semi_axes", semi_axes).tolist()}
+    return Region({"ellipsoid": {**form, **_turn(attitude)}})
+
+
+def hull(points: ArrayLike) -> Region:
+    """The convex hull of points in m, shape (n, 3), such as the vertices of a mesh."""
+    array = numbers("points", points)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"points: its shape is {array.shape}, and it must be (n, 3)")
+    return Region({"hull": {"points_m": array.tolist()}})
+
+
+def _three(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    array = numbers(name, value)
+    if array.shape not in ((), (3,)):
+        raise ValueError(f"{name}: its shape is {array.shape}, and it must be (3,)")
+    array = np.broadcast_to(array, (3,))
+    if not np.all(np.isfinite(array)):
+        raise ValueError(f"{name} = {array.tolist()}: it must be finite")
+    return array
+
+
+def _turn(attitude: ArrayLike | None) -> dict[str, Any]:
+    return {} if attitude is None else {"attitude": attitudes("attitude", attitude, "xyzw")[0][0].tolist()}
+
+
+def load(path: str | os.PathLike[str], *, strict: bool = False) -> dict[str, MassProperties]:
+    """The bodies of a robot by the names of its links.
+
+    Parameters
+    ----------
+    path : str or path
+        A URDF, MJCF or SDF file.
+    strict : bool
+        Whether links without mass properties that can be told, such as those that are said by shapes and a density, are an
+        error. Otherwise they are left out.
+
+    Returns
+    -------
+    dict of str to MassProperties
+        In the order of the file, in the frame of each link. As they are in the file: `is_realizable` says whether they belong
+        to a body.
+    """
+    found = _core.load_robot(Path(path))
+    if strict:
+        bad = [f"{name}: {why}" for name, ten, why in found if ten is None]
+        if bad:
+            raise ValueError(f"{path}: {'; '.join(bad)}")
+    return {name: MassProperties.of(ten) for name, ten, _ in found if ten is not None}
+
+
+def pseudo_inertia(bodies: MassProperties | ArrayLike) -> NDArray[np.float64]:
+    """The pseudo-inertias ∫ (x, 1)(x, 1)ᵀ dm of bodies, or of an array (..., 10): shape (..., 4, 4)."""
+    return _bodies(bodies).pseudo_inertia
+
+
+def log_cholesky(bodies: MassProperties | ArrayLike) -> NDArray[np.float64]:
+    """The log-Cholesky coordinates of bodies, or of an array (..., 10): shape (..., 10). See `MassProperties.log_cholesky`."""
+    return _bodies(bodies).log_cholesky
+
+
+def _bodies(bodies: MassProperties | ArrayLike) -> MassProperties:
+    return bodies if isinstance(bodies, MassProperties) else MassProperties.of(bodies)
+
+
+__all__ = [
+    "COLUMNS",
+    "MassProperties",
+    "MujocoBodies",
+    "Region",
+    "box",
+    "check_order",
+    "ellipsoid",
+    "hull",
+    "load",
+    "log_cholesky",
+    "pseudo_inertia",
+]

@@ -1,0 +1,132 @@
+//! Laws of attitudes.
+
+use gyradius_attitude::{AboutAxis, FisherBingham, RadiallyConstrainedGaussian};
+use gyradius_dispersion::{AttitudeMoments, AxesLaw};
+use nalgebra::{Matrix3, Matrix4, Unit, UnitQuaternion, Vector3, Vector4};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::{Bound, PyResult, Python, pyclass, pymethods};
+use rand_distr::Distribution;
+use std::convert::Infallible;
+
+use crate::{
+    error::refused,
+    json,
+    rows::{attitude, made, made_one, row_of_attitude, rows},
+    stream::{Places, Stream},
+};
+
+/// A law of attitudes. Quaternions have the scalar last, and norm one.
+#[pyclass(frozen, module = "gyradius._core")]
+pub(crate) struct AttitudeCore(Law);
+
+enum Law {
+    Axes(AxesLaw),
+    FisherBingham(Box<FisherBingham>),
+    AboutAxis(AboutAxis),
+}
+
+#[pymethods]
+impl AttitudeCore {
+    /// A law in its form in files.
+    #[staticmethod]
+    fn of_form(form: &str) -> PyResult<Self> {
+        Ok(Self(Law::Axes(json::read(form)?)))
+    }
+
+    /// A radially constrained Gaussian with a covariance of the four coordinates.
+    #[staticmethod]
+    fn gaussian(mean: [f64; 4], covariance: [[f64; 4]; 4]) -> PyResult<Self> {
+        let covariance = Matrix4::from_fn(|i, j| covariance[i][j]);
+        let law = RadiallyConstrainedGaussian::new(attitude(mean), covariance).map_err(refused)?;
+        Ok(Self(Law::Axes(law.into())))
+    }
+
+    /// One with a covariance of small rotations, rad².
+    #[staticmethod]
+    fn of_small_rotations(mean: [f64; 4], covariance: [[f64; 3]; 3]) -> PyResult<Self> {
+        let covariance = Matrix3::from_fn(|i, j| covariance[i][j]);
+        let law = RadiallyConstrainedGaussian::of_small_rotations(attitude(mean), covariance);
+        Ok(Self(Law::Axes(law.map_err(refused)?.into())))
+    }
+
+    /// Fisher-Bingham's law ∝ exp(−½ xᵀPx + bᵀx).
+    #[staticmethod]
+    fn fisher_bingham(precision: [[f64; 4]; 4], linear: [f64; 4]) -> PyResult<Self> {
+        let precision = Matrix4::from_fn(|i, j| precision[i][j]);
+        let law = FisherBingham::new(precision, Vector4::from(linear)).map_err(refused)?;
+        Ok(Self(Law::FisherBingham(Box::new(law))))
+    }
+
+    /// All turns about an axis in body components.
+    #[staticmethod]
+    fn about_axis(from: [f64; 4], axis: [f64; 3]) -> PyResult<Self> {
+        let axis = Unit::try_new(Vector3::from(axis), 1e-150)
+            .filter(|axis| axis.iter().all(|x| x.is_finite()))
+            .ok_or_else(|| {
+                refused(format_args!("axis = {axis:?}: it must be finite, and not zero"))
+            })?;
+        Ok(Self(Law::AboutAxis(AboutAxis::new(attitude(from), axis))))
+    }
+
+    /// The form in files, which laws of principal axes have.
+    fn form(&self) -> PyResult<Option<String>> {
+        match &self.0 {
+            Law::Axes(law) => json::write(law).map(Some),
+            Law::FisherBingham(_) | Law::AboutAxis(_) => Ok(None),
+        }
+    }
+
+    /// Draws, as (n, 4), each from a stream of its own.
+    fn draw<'py>(
+        &self,
+        py: Python<'py>,
+        stream: &Stream,
+        count: usize,
+        places: Option<PyReadonlyArray1<'py, u64>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let places = Places::new(count, places.as_ref())?;
+        let streams = stream.streams();
+        made(py, count, |i| {
+            let rng = &mut streams.run(places.at(i));
+            let drawn: UnitQuaternion<f64> = match &self.0 {
+                Law::Axes(law) => law.sample(rng),
+                Law::FisherBingham(law) => law.sample(rng),
+                Law::AboutAxis(law) => law.sample(rng),
+            };
+            Ok::<_, Infallible>(row_of_attitude(&drawn))
+        })
+    }
+
+    /// ln of the density of attitudes with respect to Haar measure, 0 for the uniform law; none where there is none.
+    fn ln_density<'py>(
+        &self,
+        py: Python<'py>,
+        attitudes: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+        let all = rows::<4>(&attitudes)?;
+        let ln_density = |q: &UnitQuaternion<f64>| match &self.0 {
+            Law::Axes(law) => law.ln_density_of_attitude(q),
+            Law::FisherBingham(law) => Some(law.ln_haar_density(q)),
+            Law::AboutAxis(_) => None,
+        };
+        if ln_density(&UnitQuaternion::identity()).is_none() {
+            return Ok(None);
+        }
+        let densities = made_one(py, all.len(), |i| {
+            Ok::<_, Infallible>(ln_density(&attitude(all[i])).unwrap_or(f64::NAN))
+        });
+        densities.map(Some)
+    }
+
+    /// The mean attitude and the covariance of small rotations about it in rad², where they are known.
+    fn moments(&self) -> Option<([f64; 4], [[f64; 3]; 3])> {
+        let (mean, covariance) = match &self.0 {
+            Law::Axes(AxesLaw::WholeSphere(law)) => {
+                (law.mean_attitude(), law.rotation_covariance())
+            }
+            Law::FisherBingham(law) => (law.mean_attitude(), law.rotation_covariance()),
+            Law::Axes(_) | Law::AboutAxis(_) => return None,
+        };
+        Some((row_of_attitude(&mean), covariance.transpose().into()))
+    }
+}

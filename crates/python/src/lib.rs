@@ -1,0 +1,62 @@
+//! The compiled part of the Python package `gyradius`: arrays of NumPy in and out over the libraries.
+//!
+//! Arrays come in flat, of rows of 9, 10 or 4 numbers, of 64-bit floats, and go out likewise; shapes, types and keywords are
+//! the business of the Python part. Everything that takes long is done with the interpreter let go and by all cores.
+
+mod attitudes;
+mod bodies;
+mod error;
+mod estimate;
+mod inertias;
+mod json;
+mod laws;
+mod program;
+mod robots;
+mod rows;
+mod scalars;
+mod stated;
+mod stream;
+mod tensors;
+
+/// What `gyradius._core` has. It is not for users: the Python part is.
+#[pyo3::pymodule(gil_used = false)]
+mod _core {
+    use pyo3::{
+        Bound, PyResult,
+        types::{PyModule, PyModuleMethods},
+    };
+
+    #[pymodule_export]
+    use super::attitudes::AttitudeCore;
+    #[pymodule_export]
+    use super::bodies::{
+        body_add, body_from_log_cholesky, body_from_pseudo_inertia, body_inertia_about,
+        body_log_cholesky, body_pseudo_inertia, body_subtract, body_to_principal, body_transform,
+    };
+    #[pymodule_export]
+    use super::estimate::{fit_attitudes, fit_bodies, fit_inertias, from_estimate};
+    #[pymodule_export]
+    use super::inertias::InertiaCore;
+    #[pymodule_export]
+    use super::laws::BodyCore;
+    #[pymodule_export]
+    use super::program::run_program;
+    #[pymodule_export]
+    use super::robots::load_robot;
+    #[pymodule_export]
+    use super::scalars::{ScalarCore, checked_region, region_holds};
+    #[pymodule_export]
+    use super::stated::stated_law;
+    #[pymodule_export]
+    use super::stream::Stream;
+    #[pymodule_export]
+    use super::tensors::{
+        inertia_is_realizable, inertia_margin, inertia_nearest, inertia_principal_axes,
+        inertia_report,
+    };
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

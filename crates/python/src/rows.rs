@@ -1,0 +1,114 @@
+//! Rows of numbers: in from NumPy without a copy, out made by all cores with the interpreter let go.
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::{Bound, PyErr, PyResult, Python};
+use rayon::prelude::*;
+use std::fmt::Display;
+
+use crate::error::{refused, refused_row};
+
+/// Rows that one core does at a time: fewer than this many are not worth a second core.
+const GRAIN: usize = 1024;
+/// Rows between two looks for an interrupt.
+const SLICE: usize = 1 << 18;
+
+/// Rows of `N` numbers, as they are in the memory of NumPy.
+pub(crate) fn rows<'a, const N: usize>(
+    array: &'a PyReadonlyArray2<'_, f64>,
+) -> PyResult<&'a [[f64; N]]> {
+    if array.shape()[1] != N {
+        return Err(refused(format_args!(
+            "rows of {} numbers: there must be {N}",
+            array.shape()[1]
+        )));
+    }
+    let flat =
+        array.as_slice().map_err(|_| refused("the array must be contiguous, in the order of C"))?;
+    Ok(flat.as_chunks::<N>().0)
+}
+
+/// Makes rows of `N` numbers, each from its place alone, and looks for an interrupt between whiles.
+///
+/// # Errors
+/// The first row, in the order of their places, that cannot be made; or an interrupt.
+pub(crate) fn made<'py, const N: usize, E: Display + Send>(
+    py: Python<'py>,
+    count: usize,
+    make: impl Fn(usize) -> Result<[f64; N], E> + Sync,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let made = try_make(py, count, [0.0; N], make)?;
+    PyArray1::from_vec(py, made.into_flattened()).reshape([count, N])
+}
+
+/// The same of rows of one number.
+pub(crate) fn made_one<'py, T: numpy::Element + Copy + Default, E: Display + Send>(
+    py: Python<'py>,
+    count: usize,
+    make: impl Fn(usize) -> Result<T, E> + Sync,
+) -> PyResult<Bound<'py, PyArray1<T>>> {
+    Ok(PyArray1::from_vec(py, try_make(py, count, T::default(), make)?))
+}
+
+fn try_make<T: Copy + Send + Sync, E: Display + Send>(
+    py: Python<'_>,
+    count: usize,
+    zero: T,
+    make: impl Fn(usize) -> Result<T, E> + Sync,
+) -> PyResult<Vec<T>> {
+    let mut out = Vec::new();
+    out.try_reserve_exact(count).map_err(|_| no_memory(count))?;
+    let mut start = 0;
+    while start < count {
+        let end = count.min(start + SLICE);
+        let failed = py.detach(|| {
+            out.resize(end, zero);
+            let fill = |(place, out): (usize, &mut [T])| {
+                for (i, out) in out.iter_mut().enumerate() {
+                    let row = place * GRAIN + i + start;
+                    *out = make(row).map_err(|error| (row, error))?;
+                }
+                Ok::<(), (usize, E)>(())
+            };
+            let new = &mut out[start..];
+            if new.len() <= GRAIN {
+                return fill((0, new)).err();
+            }
+            new.par_chunks_mut(GRAIN)
+                .enumerate()
+                .map(fill)
+                .filter_map(Result::err)
+                .min_by_key(|failed| failed.0)
+        });
+        if let Some((row, error)) = failed {
+            return Err(refused_row(row, count, error));
+        }
+        py.check_signals()?;
+        start = end;
+    }
+    Ok(out)
+}
+
+fn no_memory(count: usize) -> PyErr {
+    pyo3::exceptions::PyMemoryError::new_err(format!("no memory for {count} rows"))
+}
+
+/// The matrix of a row of nine numbers, row by row.
+pub(crate) fn matrix(row: &[f64; 9]) -> Matrix3<f64> {
+    Matrix3::from_row_slice(row)
+}
+
+/// The row of a matrix.
+pub(crate) fn row_of(matrix: &Matrix3<f64>) -> [f64; 9] {
+    std::array::from_fn(|i| matrix[(i / 3, i % 3)])
+}
+
+/// The attitude of a row of four numbers, scalar last. The Python part has made its norm one.
+pub(crate) fn attitude([x, y, z, w]: [f64; 4]) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
+}
+
+/// The row of an attitude, scalar last.
+pub(crate) fn row_of_attitude(attitude: &UnitQuaternion<f64>) -> [f64; 4] {
+    attitude.coords.into()
+}

@@ -1,0 +1,102 @@
+//! Laws of one number, and regions.
+
+use gyradius_dispersion::ScalarLaw;
+use gyradius_inertia::{Containment, Region};
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::{Bound, PyResult, Python, pyclass, pyfunction, pymethods};
+use rand_distr::Distribution;
+use std::convert::Infallible;
+
+use crate::{
+    bodies::body,
+    error::refused,
+    json,
+    rows::{made_one, rows},
+    stream::{Places, Stream},
+};
+
+/// A law of one number.
+#[pyclass(frozen, module = "gyradius._core")]
+pub(crate) struct ScalarCore(ScalarLaw);
+
+#[pymethods]
+impl ScalarCore {
+    /// A law in its form in files.
+    #[staticmethod]
+    fn of_form(form: &str) -> PyResult<Self> {
+        Ok(Self(json::read(form)?))
+    }
+
+    fn form(&self) -> PyResult<String> {
+        json::write(&self.0)
+    }
+
+    fn mean(&self) -> f64 {
+        self.0.mean()
+    }
+
+    fn deviation(&self) -> f64 {
+        self.0.deviation()
+    }
+
+    fn draw<'py>(
+        &self,
+        py: Python<'py>,
+        stream: &Stream,
+        count: usize,
+        places: Option<PyReadonlyArray1<'py, u64>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let places = Places::new(count, places.as_ref())?;
+        let streams = stream.streams();
+        made_one(py, count, |i| Ok::<_, Infallible>(self.0.sample(&mut streams.run(places.at(i)))))
+    }
+
+    /// ln of the density; none where the law has none.
+    fn ln_density<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+        let all = values.as_slice().map_err(refused)?;
+        if self.0.ln_density(self.0.mean()).is_none() {
+            return Ok(None);
+        }
+        let of = |i: usize| Ok::<_, Infallible>(self.0.ln_density(all[i]).unwrap_or(f64::NAN));
+        made_one(py, all.len(), of).map(Some)
+    }
+
+    fn cdf<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let all = values.as_slice().map_err(refused)?;
+        made_one(py, all.len(), |i| Ok::<_, Infallible>(self.0.cdf(all[i])))
+    }
+}
+
+/// A region in its form in files, checked and written again.
+#[pyfunction]
+pub(crate) fn checked_region(form: &str) -> PyResult<String> {
+    json::write(&json::read::<Region>(form)?)
+}
+
+/// Whether matter in a region can have the numbers of (n, 10) bodies: 1, 0, and NaN where neither was shown.
+#[pyfunction]
+pub(crate) fn region_holds<'py>(
+    py: Python<'py>,
+    form: &str,
+    bodies: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let region: Region = json::read(form)?;
+    let all = rows::<10>(&bodies)?;
+    made_one(py, all.len(), |i| {
+        // What is no body is possible nowhere.
+        let Ok(body) = body(&all[i]) else { return Ok(0.0) };
+        Ok::<_, Infallible>(match region.containment(&body) {
+            Containment::Possible => 1.0,
+            Containment::Impossible => 0.0,
+            Containment::Undecided => f64::NAN,
+        })
+    })
+}

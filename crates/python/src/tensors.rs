@@ -1,0 +1,111 @@
+//! Inertia matrices, many at a time: which belong to a body, how far they are from it, the nearest that does.
+
+use gyradius_inertia::{InertiaMatrix, RealizabilityReport, Repair, RepairMethod};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use pyo3::{Bound, PyResult, Python, pyfunction};
+use std::convert::Infallible;
+
+use crate::{
+    error::{refused, refused_row},
+    rows::{made, made_one, matrix, row_of, row_of_attitude, rows},
+};
+
+/// Which of (n, 9) matrices belong to a body; not those with entries that are not finite or not symmetric.
+#[pyfunction]
+pub(crate) fn inertia_is_realizable<'py>(
+    py: Python<'py>,
+    matrices: PyReadonlyArray2<'py, f64>,
+    tolerance: Option<f64>,
+) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    let all = rows::<9>(&matrices)?;
+    made_one(py, all.len(), |i| {
+        let matrix = matrix(&all[i]);
+        Ok::<_, Infallible>(match tolerance {
+            None => InertiaMatrix::new(matrix).is_ok_and(|matrix| matrix.is_realizable()),
+            Some(tolerance) => RealizabilityReport::within(&matrix, tolerance).is_realizable(),
+        })
+    })
+}
+
+/// The margins of (n, 9) matrices; NaN of what is no matrix of inertia.
+#[pyfunction]
+pub(crate) fn inertia_margin<'py>(
+    py: Python<'py>,
+    matrices: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let all = rows::<9>(&matrices)?;
+    made_one(py, all.len(), |i| {
+        let report = RealizabilityReport::of(&matrix(&all[i]));
+        Ok::<_, Infallible>(report.margin().unwrap_or(f64::NAN))
+    })
+}
+
+/// The nearest inertias that belong to a body, and how far each is.
+#[pyfunction]
+pub(crate) fn inertia_nearest<'py>(
+    py: Python<'py>,
+    matrices: PyReadonlyArray2<'py, f64>,
+    method: &str,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let all = rows::<9>(&matrices)?;
+    let method = match method {
+        "nearest" => RepairMethod::Nearest,
+        "clip-second-moments" => RepairMethod::ClipSecondMoments,
+        "shift-moments" => RepairMethod::ShiftMoments,
+        other => {
+            let allowed = "nearest, clip-second-moments or shift-moments";
+            return Err(refused(format_args!("method = {other:?}: it must be {allowed}")));
+        }
+    };
+    made(py, all.len(), |i| {
+        let matrix = InertiaMatrix::new(matrix(&all[i])).map_err(|error| error.to_string())?;
+        let repair = Repair::new(&matrix, method).map_err(|error| error.to_string())?;
+        Ok::<_, String>(row_of(repair.inertia().matrix()))
+    })
+}
+
+/// Principal moments, and the attitude that takes body components to principal components, scalar last.
+#[pyfunction]
+pub(crate) fn inertia_principal_axes<'py>(
+    py: Python<'py>,
+    matrices: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let all = rows::<9>(&matrices)?;
+    made(py, all.len(), |i| {
+        let axes = InertiaMatrix::new(matrix(&all[i]))?.principal_axes();
+        let [a, b, c] = axes.moments();
+        let [x, y, z, w] = row_of_attitude(&axes.attitude());
+        Ok::<_, gyradius_inertia::InertiaMatrixError>([a, b, c, x, y, z, w])
+    })
+}
+
+/// Of one matrix: realizable, margin, excess in percent, principal moments, second moments, what is wrong.
+type Report = (bool, Option<f64>, Option<f64>, Option<[f64; 3]>, Option<[f64; 3]>, Vec<String>);
+
+/// What is wrong with each matrix.
+#[pyfunction]
+pub(crate) fn inertia_report(
+    py: Python<'_>,
+    matrices: PyReadonlyArray2<'_, f64>,
+    tolerance: Option<f64>,
+) -> PyResult<Vec<Report>> {
+    let all = rows::<9>(&matrices)?;
+    if tolerance.is_some_and(|tolerance| !(tolerance >= 0.0 && tolerance.is_finite())) {
+        return Err(refused_row(
+            0,
+            1,
+            format_args!("tolerance = {tolerance:?}: it must be zero or positive, and finite"),
+        ));
+    }
+    let report = |row: &[f64; 9]| {
+        let report = match tolerance {
+            None => RealizabilityReport::of(&matrix(row)),
+            Some(tolerance) => RealizabilityReport::within(&matrix(row), tolerance),
+        };
+        let faults = report.faults().iter().map(ToString::to_string).collect();
+        let (margin, excess) = (report.margin(), report.excess_percent());
+        let (principal, second) = (report.principal_moments(), report.second_moments());
+        (report.is_realizable(), margin, excess, principal, second, faults)
+    };
+    Ok(py.detach(|| all.iter().map(report).collect()))
+}
