@@ -7,6 +7,7 @@ mod dispersions;
 mod documents;
 mod failures;
 mod paper;
+mod python_vectors;
 mod replay;
 mod repository;
 mod reproducibility;

@@ -59,13 +59,13 @@ impl AttitudeCore {
 
     /// All turns about an axis in body components.
     #[staticmethod]
-    fn about_axis(from: [f64; 4], axis: [f64; 3]) -> PyResult<Self> {
+    fn about_axis(start: [f64; 4], axis: [f64; 3]) -> PyResult<Self> {
         let axis = Unit::try_new(Vector3::from(axis), 1e-150)
             .filter(|axis| axis.iter().all(|x| x.is_finite()))
             .ok_or_else(|| {
                 refused(format_args!("axis = {axis:?}: it must be finite, and not zero"))
             })?;
-        Ok(Self(Law::AboutAxis(AboutAxis::new(attitude(from), axis))))
+        Ok(Self(Law::AboutAxis(AboutAxis::new(attitude(start), axis))))
     }
 
     /// The form in files, which laws of principal axes have.

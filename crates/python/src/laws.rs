@@ -55,6 +55,7 @@ impl BodyCore {
         Ok(Self(Law::Joint(json::read(form)?)))
     }
 
+    /// From the mean of the coordinates.
     #[staticmethod]
     fn log_cholesky(mean: [f64; 10], covariance: PyReadonlyArray2<'_, f64>) -> PyResult<Self> {
         let covariance = rows::<10>(&covariance)?;
@@ -62,7 +63,7 @@ impl BodyCore {
             return Err(refused("covariance: it must be of shape (10, 10)"));
         }
         let covariance = SMatrix::from_fn(|i, j| covariance[i][j]);
-        let mean = LogCholesky::of(&body(&mean).map_err(refused)?).map_err(refused)?;
+        let mean = LogCholesky::new(mean).map_err(refused)?;
         LogCholeskyTen::new(mean, covariance).map(Self::other).map_err(refused)
     }
 

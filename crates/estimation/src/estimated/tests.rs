@@ -6,6 +6,7 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
 
+use super::nearest::metric;
 use super::*;
 
 fn random_body(rng: &mut ChaCha8Rng) -> MassProperties {
@@ -196,6 +197,53 @@ fn estimates_outside_are_moved_to_the_nearest_body() {
 }
 
 /// Any covariance of any rank, in any units: a law with distances, or an error; nothing else.
+/// The linear ten of a narrow law: some of their combinations are known a thousand times as well as each alone.
+#[test]
+fn the_nearest_body_is_found_where_the_covariance_is_nearly_singular() {
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    for _ in 0..20 {
+        let law = joint_law(&mut rng, 0.02, [0.12, 0.03, 0.02]);
+        let moments = MassPropertiesModel::linear_moments(&law).unwrap();
+        let deviations = moments.deviations();
+        let entry = rng.random_range(4..7);
+        for off in [-100.0, -20.0, -3.0, 3.0, 20.0, 100.0] {
+            let mut moved = Ten::zeros();
+            moved[entry] = off * deviations[entry];
+            let known = estimate_of(&moments, &moved);
+            let (unitless, _) = known.unitless();
+            if unitless.form().body(unitless.mean()).is_some() {
+                continue;
+            }
+            let found = nearest::nearest(&unitless).expect("a convex problem");
+            let metric = metric(&unitless).unwrap();
+            // No body is nearer: neither the one that was moved, nor draws of the law, nor what lies on the way to them.
+            let mut others = vec![moments.mean().component_div(&unit_scales(&known))];
+            others.extend((0..50).map(|_| {
+                let drawn: MassProperties = law.sample(&mut rng);
+                TenForm::Linear.of(drawn.into()).component_div(&unit_scales(&known))
+            }));
+            let gap = found.ten - unitless.mean();
+            for other in others {
+                let inner = (other - found.ten).dot(&(metric * gap));
+                assert!(
+                    inner > -1e-4 * found.squared_distance,
+                    "{off} {inner} {}",
+                    found.squared_distance
+                );
+            }
+        }
+    }
+}
+
+fn estimate_of(moments: &gyradius_dispersion::TenMoments, moved: &Ten) -> TenEstimate {
+    TenEstimate::new(TenForm::Linear, moments.mean() + moved, *moments.covariance()).unwrap()
+}
+
+fn unit_scales(estimate: &TenEstimate) -> Ten {
+    let (_, [mass, length]) = estimate.unitless();
+    TenForm::Linear.scales(mass, length)
+}
+
 #[test]
 fn every_estimate_has_a_law_or_an_error() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);

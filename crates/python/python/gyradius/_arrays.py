@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -95,3 +97,26 @@ def attitudes(name: str, value: ArrayLike, order: str) -> tuple[NDArray[np.float
 def ordered(flat: NDArray[np.float64], order: str) -> NDArray[np.float64]:
     """Rows of quaternions, scalar last, in another order."""
     return np.ascontiguousarray(flat[:, [3, 0, 1, 2]]) if check_order(order) else flat
+
+
+def form(name: str, value: Any) -> str:
+    """What is said in words and numbers, as the compiled part takes it."""
+    return json.dumps(_plain(name, value))
+
+
+def _plain(name: str, value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(f"{name}.{key}" if name else str(key), one) for key, one in value.items()}
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(f"{name}[{place}]", one) for place, one in enumerate(value)]
+    if isinstance(value, (bool, str)) or value is None:
+        return value
+    if isinstance(value, (int, np.integer)):
+        return int(value)
+    if isinstance(value, (float, np.floating)):
+        if not np.isfinite(value):
+            raise ValueError(f"{name} = {float(value)}: it must be a finite number")
+        return float(value)
+    raise ValueError(f"{name} = {value!r}: it must be numbers, texts, lists or dicts")

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import attitudes, check_order, floating, numbers, ordered, out, rows, together
+from gyradius._arrays import attitudes, floating, numbers, ordered, out, rows, together
+from gyradius._arrays import form as _form
 
 if TYPE_CHECKING:
     import os
@@ -144,8 +145,8 @@ class MassProperties:
 
     @property
     def mass(self) -> Any:
-        """(...) in kg."""
-        return self._array[..., 0]
+        """(...) in kg; a number alone of one body."""
+        return self._array[..., 0][()]
 
     @property
     def centre(self) -> NDArray[np.float64]:
@@ -303,7 +304,7 @@ class Region:
     _form: str
 
     def __init__(self, form: dict[str, Any]) -> None:
-        object.__setattr__(self, "_form", _core.checked_region(json.dumps(form)))
+        object.__setattr__(self, "_form", _core.checked_region(_form("", form)))
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{name}: a region does not change")
@@ -422,7 +423,6 @@ __all__ = [
     "MujocoBodies",
     "Region",
     "box",
-    "check_order",
     "ellipsoid",
     "hull",
     "load",

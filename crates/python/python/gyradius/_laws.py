@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import attitudes, floating, numbers, ordered, out, rows
+from gyradius._arrays import attitudes, form, numbers, ordered, out, rows
 from gyradius._bodies import MassProperties, Region
 from gyradius._rng import streams
 
@@ -48,7 +48,7 @@ class Law:
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return self._made == other._made  # type: ignore[attr-defined]
+        return self._made == other._made
 
     def __hash__(self) -> int:
         return hash((type(self), repr(self._made)))
@@ -56,10 +56,10 @@ class Law:
     @property
     def form(self) -> dict[str, Any]:
         """The law as it stands in files, JSON and scenarios."""
-        form = self._core.form()
-        if form is None:
+        found = self._core.form()
+        if found is None:
             raise ValueError(f"{self!r} has no form in files")
-        return json.loads(form)
+        return json.loads(found)
 
 
 def _again(kind: type[Law], how: str, arguments: tuple[Any, ...]) -> Law:
@@ -126,7 +126,7 @@ class ScalarLaw(Law):
     >>> law = gyradius.ScalarLaw("triangular", low=1.0, mode=2.0, high=6.0)
     >>> law.mean
     3.0
-    >>> 1.0 <= law.rvs(rng=7) <= 6.0
+    >>> bool(1.0 <= law.rvs(rng=7) <= 6.0)
     True
     """
 
@@ -134,12 +134,9 @@ class ScalarLaw(Law):
     _kind = "Scalar"
 
     def __init__(self, law: str, **keys: Any) -> None:
-        keys = {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in keys.items()}
-        if "samples" in keys:
-            keys["samples"] = [float(value) for value in keys["samples"]]
-        form = json.dumps({"law": law, **keys})
-        object.__setattr__(self, "_core", _core.ScalarCore.of_form(form))
-        object.__setattr__(self, "_made", ("of_form", (form,)))
+        said = form("", {"law": law, **keys})
+        object.__setattr__(self, "_core", _core.ScalarCore.of_form(said))
+        object.__setattr__(self, "_made", ("of_form", (said,)))
 
     @property
     def mean(self) -> float:
@@ -169,9 +166,9 @@ class ScalarLaw(Law):
         return out(self._core.cdf(np.ascontiguousarray(array).reshape(-1)), array.shape)
 
     def __repr__(self) -> str:
-        form = self.form
-        keys = "".join(f", {key}={value!r}" for key, value in form.items() if key != "law")
-        return f"ScalarLaw({form['law']!r}{keys})"
+        said = self.form
+        keys = "".join(f", {key}={value!r}" for key, value in said.items() if key != "law")
+        return f"ScalarLaw({said['law']!r}{keys})"
 
 
 def normal(mean: float, sigma: float) -> ScalarLaw:
@@ -339,13 +336,13 @@ class InertiaLaw(Law):
         if len(roots) != 3:
             raise ValueError(f"roots: {len(roots)} laws, and there must be 3")
         laws = [_scalar(f"roots[{i}]", law) for i, law in enumerate(roots)]
-        form = {"model": "principal", "roots": {"law": "independent", "roots": laws}, "axes": axes.form}
-        return _make(InertiaLaw, "of_form", json.dumps(form))
+        said = {"model": "principal", "roots": {"law": "independent", "laws_sqrt_kg_m": laws}, "axes": axes.form}
+        return InertiaLaw.of(said)
 
     @staticmethod
-    def of(form: Mapping[str, Any]) -> InertiaLaw:
+    def of(said: Mapping[str, Any]) -> InertiaLaw:
         """A law as it stands in files."""
-        return _make(InertiaLaw, "of_form", json.dumps(form))
+        return _make(InertiaLaw, "of_form", form("", said))
 
     @staticmethod
     def about(kind: str, inertia: ArrayLike, **parameters: Any) -> InertiaLaw:
@@ -360,11 +357,10 @@ class InertiaLaw(Law):
         >>> bool(gyradius.is_realizable(law.rvs(100, rng=7)).all())
         True
         """
-        plain = {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in parameters.items()}
         flat, lead = rows("inertia", inertia, (3, 3))
         if lead != ():
             raise ValueError("inertia: it must be one matrix, of shape (3, 3)")
-        return _make(InertiaLaw, "about", kind, tuple(flat[0].tolist()), json.dumps(plain))
+        return _make(InertiaLaw, "about", kind, tuple(flat[0].tolist()), form("", parameters))
 
     @staticmethod
     def matched(kind: str, mean: ArrayLike, cov: ArrayLike) -> InertiaLaw:
@@ -479,7 +475,7 @@ class MassPropertiesLaw(Law):
             The share of the relative change of the mass, from its nominal value, that the inertia takes. With roots or a law of
             the inertia alone.
         correlations : sequence of (str, str, float)
-            Between ``"mass"``, ``"centre-1"`` to ``"centre-3"`` and ``"shape-1"`` to ``"shape-3"`` (lengths or roots).
+            Between ``"mass"``, ``"centre1"`` to ``"centre3"`` and ``"shape1"`` to ``"shape3"`` (lengths or roots).
         inside : Region
             Where the matter must be possible: draws that are not are drawn again.
 
@@ -491,7 +487,7 @@ class MassPropertiesLaw(Law):
         ...     [gyradius.normal(0.15, 0.003), 0.0, 0.0],
         ...     gyration_lengths=[gyradius.normal(0.12, 0.006), 0.03, 0.02],
         ...     axes=gyradius.uniform_attitude(),
-        ...     correlations=[("mass", "shape-1", 0.6)],
+        ...     correlations=[("mass", "shape1", 0.6)],
         ... )
         >>> links = law.rvs(1000, rng=7)
         >>> bool(links.is_realizable.all())
@@ -520,26 +516,30 @@ class MassPropertiesLaw(Law):
             tensor["follows"] = {"share": float(follows), "nominal_mass_kg": float(nominal_mass)}
         if len(centre) != 3:
             raise ValueError(f"centre: {len(centre)} laws, and there must be 3")
-        form: dict[str, Any] = {
+        said: dict[str, Any] = {
             "mass_kg": _scalar("mass", mass),
             "mass_centre_m": [_scalar(f"centre[{i}]", law) for i, law in enumerate(centre)],
-            "tensor": tensor,
+            "inertia": tensor,
         }
         if correlations:
-            form["correlations"] = [[one, other, float(value)] for one, other, value in correlations]
+            said["correlations"] = [[one, other, float(value)] for one, other, value in correlations]
         if inside is not None:
-            form["inside"] = inside.form
-        return MassPropertiesLaw.of(form)
+            said["inside"] = inside.form
+        return MassPropertiesLaw.of(said)
 
     @staticmethod
-    def of(form: Mapping[str, Any]) -> MassPropertiesLaw:
+    def of(said: Mapping[str, Any]) -> MassPropertiesLaw:
         """A joint law as it stands in files."""
-        return _make(MassPropertiesLaw, "joint", json.dumps(form))
+        return _make(MassPropertiesLaw, "joint", form("", said))
 
     @staticmethod
-    def log_cholesky(mean: MassProperties, cov: ArrayLike) -> MassPropertiesLaw:
-        """A Gaussian in the ten log-Cholesky coordinates about those of a body, with their covariance (10, 10)."""
-        return _make(MassPropertiesLaw, "log_cholesky", _ten(mean), _Matrix.of("cov", cov, (10, 10)))
+    def log_cholesky(mean: MassProperties | ArrayLike, cov: ArrayLike) -> MassPropertiesLaw:
+        """A Gaussian in the ten log-Cholesky coordinates, from their covariance (10, 10) and a body, or their mean (10,).
+
+        See `MassProperties.log_cholesky` for the coordinates.
+        """
+        coordinates = mean.log_cholesky if isinstance(mean, MassProperties) else mean
+        return _make(MassPropertiesLaw, "log_cholesky", _vector("mean", coordinates, 10), _Matrix.of("cov", cov, (10, 10)))
 
     @staticmethod
     def maximum_entropy(
@@ -585,7 +585,7 @@ class MassPropertiesLaw(Law):
 
         A `ValueError` if the law has no density that is known.
         """
-        flat, lead = rows("bodies", bodies, (10,))  # type: ignore[arg-type]
+        flat, lead = rows("bodies", bodies, (10,))
         return out(_known(self, self._core.ln_density(flat)), lead)
 
     @property
@@ -628,7 +628,7 @@ class MassPropertiesLaw(Law):
     @staticmethod
     def fit(bodies: MassProperties | ArrayLike) -> Fit[MassPropertiesLaw]:
         """The joint law of samples (n, 10), of 13 bodies or more."""
-        law, found, fits, p_value, notes = _core.fit_bodies(rows("bodies", bodies, (10,))[0])  # type: ignore[arg-type]
+        law, found, fits, p_value, notes = _core.fit_bodies(rows("bodies", bodies, (10,))[0])
         made = _make(MassPropertiesLaw, "joint", law)
         return Fit(law=made, found=json.loads(found), fits=fits, p_value=p_value, notes=tuple(notes))
 
@@ -679,7 +679,7 @@ class Estimate(NamedTuple):
     """How far its moments are from those of the estimate."""
 
 
-def from_estimate(phi: ArrayLike, cov: ArrayLike, *, form: str = "linear") -> Estimate:
+def from_estimate(phi: ArrayLike, cov: ArrayLike, *, form: Literal["linear", "natural"] = "linear") -> Estimate:
     """The laws of bodies with the mean and covariance of an estimate, as nearly as any have them.
 
     Parameters
@@ -702,8 +702,7 @@ def from_estimate(phi: ArrayLike, cov: ArrayLike, *, form: str = "linear") -> Es
         laws.append((None, None))
     else:
         mean, flat, distance = log_cholesky
-        body = MassProperties.from_log_cholesky(mean)
-        made = MassPropertiesLaw.log_cholesky(body, np.reshape(flat, (10, 10)))
+        made = MassPropertiesLaw.log_cholesky(mean, np.reshape(flat, (10, 10)))
         laws.append((made, json.loads(distance)))
     known = [(law, distance) for law, distance in laws if law is not None and distance is not None]
     if not known:
@@ -772,13 +771,19 @@ def law(
         if isinstance(value, (list, tuple)) and all(isinstance(one, str) for one in value):
             value = ",".join(value)
         if isinstance(value, (str, Mapping)):
-            return json.dumps(value)
+            return form(name, value)
         raise ValueError(f'{name} = {value!r}: it must be a text with a unit, such as "5%", or a dict as in a file')
 
-    parts = {"mass": mass, "centre": centre, "moments": moments, "products": products, "axes": axes}
-    texts = [said(name, value) for name, value in parts.items()]
-    region = None if inside is None else json.dumps(inside.form)
-    core, warnings = _core.stated_law(_ten(body), *texts, float(sigmas), region)
+    core, warnings = _core.stated_law(
+        _ten(body),
+        said("mass", mass),
+        said("centre", centre),
+        said("moments", moments),
+        said("products", products),
+        said("axes", axes),
+        float(sigmas),
+        None if inside is None else json.dumps(inside.form),
+    )
     made = StatedLaw._of(core, "joint", core.form())
     object.__setattr__(made, "_warnings", tuple(warnings))
     return made
@@ -846,7 +851,6 @@ __all__ = [
     "bingham",
     "fisher_bingham",
     "fixed_attitude",
-    "floating",
     "from_estimate",
     "law",
     "normal",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any, TypeAlias, Union
 
 import numpy as np
 
@@ -10,8 +10,6 @@ from gyradius import _core
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-
-    RNG = Union[None, int, "np.integer[Any]", np.random.SeedSequence, np.random.Generator, "key"]
 
 MOST = 2**64 - 1
 
@@ -77,6 +75,10 @@ class key:  # noqa: N801 - it is written as a function is
     def __repr__(self) -> str:
         index = "" if self.index is None else f", index={np.array2string(self.index, threshold=6)}"
         return f"key({self.seed}, {self.term!r}{index})"
+
+
+RNG: TypeAlias = Union[None, int, np.integer[Any], np.random.SeedSequence, np.random.Generator, key]
+"""What random numbers may come from."""
 
 
 def _whole(name: str, value: object) -> int:

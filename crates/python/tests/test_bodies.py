@@ -1,0 +1,182 @@
+"""Mass properties against clouds of points, which are summed here."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import URDF, bodies, rotations
+from hypothesis import given
+from hypothesis import strategies as st
+
+import gyradius
+from gyradius import MassProperties
+
+
+def of_points(mass: np.ndarray, place: np.ndarray) -> MassProperties:
+    total = mass.sum()
+    centre = mass @ place / total
+    arm = place - centre
+    inertia = (mass * (arm**2).sum(axis=1)).sum() * np.eye(3) - (mass[:, None] * arm).T @ arm
+    return MassProperties(total, centre, inertia)
+
+
+@given(st.integers(0, 2**32))
+def test_what_is_done_to_points(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    mass, place = rng.uniform(0.1, 2.0, size=12), rng.normal(size=(12, 3))
+    body = of_points(mass, place)
+    turn, move = rotations(rng, 1)[0], rng.normal(size=3)
+    # The quaternion of a rotation, by its trace where that is large.
+    w = 0.5 * np.sqrt(max(1.0 + np.trace(turn), 0.0))
+    if w > 0.1:
+        x, y, z = (turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1])
+        q = np.array([x / (4 * w), y / (4 * w), z / (4 * w), w])
+        moved = body.transformed(q, move)
+        assert np.allclose(moved.array, of_points(mass, place @ turn.T + move).array, atol=1e-11)
+        first = body.transformed(q[[3, 0, 1, 2]] * 7.0, move, order="wxyz")
+        assert np.allclose(first.array, moved.array, atol=1e-13)
+    assert np.allclose(body.translated(move).array, of_points(mass, place + move).array, atol=1e-11)
+    one, two = of_points(mass[:5], place[:5]), of_points(mass[5:], place[5:])
+    assert np.allclose((one + two).array, body.array, atol=1e-11)
+    assert np.allclose((body - two).array, one.array, atol=1e-10)
+    about = body.inertia_about(move)
+    arm = place - move
+    assert np.allclose(about, (mass * (arm**2).sum(axis=1)).sum() * np.eye(3) - (mass[:, None] * arm).T @ arm)
+    assert np.allclose(MassProperties.about_point(body.mass, body.centre, about, move).array, body.array, atol=1e-10)
+    pseudo = np.concatenate([place, np.ones((12, 1))], axis=1)
+    assert np.allclose(body.pseudo_inertia, (mass[:, None] * pseudo).T @ pseudo)
+    linear = body.linear
+    assert np.allclose(linear[1:4], mass @ place)
+    assert np.allclose(linear[[4, 5, 6]], np.diag(body.inertia_about(np.zeros(3))))
+    points = MassProperties(mass, place, np.zeros((12, 3, 3)))
+    assert np.allclose(points.sum().array, body.array, atol=1e-11)
+
+
+@given(st.integers(0, 2**32))
+def test_coordinates_read_back(seed: int) -> None:
+    some = bodies(np.random.default_rng(seed), 30)
+    for again in (
+        MassProperties.from_pseudo_inertia(some.pseudo_inertia),
+        MassProperties.from_log_cholesky(some.log_cholesky),
+        MassProperties.of(np.asarray(some)),
+        pickle.loads(pickle.dumps(some)),
+        copy.deepcopy(some),
+    ):
+        scale = np.abs(some.array).max(axis=-1, keepdims=True)
+        assert (np.abs(again.array - some.array) <= 1e-10 * scale).all()
+    assert (gyradius.pseudo_inertia(some.array) == some.pseudo_inertia).all()
+    assert (gyradius.log_cholesky(some) == some.log_cholesky).all()
+
+
+@given(st.integers(0, 2**32))
+def test_mujoco_frames(seed: int) -> None:
+    some = bodies(np.random.default_rng(seed), 30)
+    made = some.to_mujoco()
+    w, x, y, z = made.body_iquat.T
+    turn = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    ).transpose(2, 0, 1)
+    again = np.einsum("nij,nj,nkj->nik", turn, made.body_inertia, turn)
+    assert np.allclose(again, some.inertia, atol=1e-13)
+    assert (made.body_mass == some.mass).all() and (made.body_ipos == some.centre).all()
+    assert some.to_mujoco(dtype=np.float32).body_iquat.dtype == np.float32
+    assert some[0].to_mujoco().body_iquat.shape == (4,)
+
+
+def test_shapes_and_parts() -> None:
+    many = MassProperties.of(bodies(np.random.default_rng(1), 12).array.reshape(3, 4, 10))
+    assert many.shape == (3, 4) and len(many) == 3 and many.centre.shape == (3, 4, 3)
+    assert many[1].shape == (4,) and many[1, 2].shape == () and many[:, 0].shape == (3,)
+    assert [one.shape for one in many] == [(4,)] * 3
+    assert (many[1, 2] + many).shape == (3, 4)
+    assert many.translated(np.zeros((4, 3))) == many
+    assert many.with_mass(2.0 * many.mass).inertia[0, 0] == pytest.approx(2.0 * many.inertia[0, 0])
+    with pytest.raises(ValueError, match="broadcast"):
+        many.translated(np.zeros((5, 3)))
+    with pytest.raises(AttributeError):
+        many.mass = 3.0  # type: ignore[misc]
+    with pytest.raises(ValueError):
+        many.array[0, 0, 0] = 1.0
+    assert eval(repr(many[0, 0]), {"MassProperties": MassProperties}) == many[0, 0]
+    assert "3 x 4" in repr(many) and hash(many) == hash(MassProperties.of(many.array))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        ((1.0, [0, 0], np.eye(3)), "centre"),
+        ((1.0, [0, 0, 0], np.eye(2)), "inertia"),
+        ((1.0, [0, 0, 0], [[1, 2, 0], [0, 1, 0], [0, 0, 1]]), "symmetric"),
+        (("heavy", [0, 0, 0], np.eye(3)), "mass"),
+        ((np.ones(3), np.zeros((4, 3)), np.eye(3)), "broadcast"),
+    ],
+)
+def test_refused(arguments: tuple[object, ...], word: str) -> None:
+    with pytest.raises(ValueError, match=word):
+        MassProperties(*arguments)  # type: ignore[arg-type]
+
+
+def test_what_is_no_body_is_told_by_its_row() -> None:
+    some = bodies(np.random.default_rng(1), 5).array.copy()
+    some[3, 6] = 1e4 * some[3, 4]
+    mixed = MassProperties.of(some)
+    assert mixed.is_realizable.tolist() == [True, True, True, False, True]
+    with pytest.raises(ValueError, match="row 3 of 5: no body has this inertia"):
+        _ = mixed.pseudo_inertia
+    for bad in (0.0, -1.0, np.nan, np.inf):
+        some[3] = some[2]
+        some[3, 0] = bad
+        assert not MassProperties.of(some).is_realizable[3]
+
+
+def test_plates_and_rods() -> None:
+    plate = MassProperties(1.0, np.zeros(3), np.diag([1.0, 1.0, 2.0]))
+    rod = MassProperties(1.0, np.zeros(3), np.diag([0.0, 1.0, 1.0]))
+    for body in (plate, rod):
+        assert body.is_realizable
+        turned = body.rotated([0.1, 0.2, 0.3, 0.9])
+        assert turned.is_realizable and (turned + body).is_realizable
+        assert np.isfinite(turned.to_mujoco().body_iquat).all()
+        with pytest.raises(ValueError):
+            _ = body.log_cholesky
+
+
+def test_robots(tmp_path: Path) -> None:
+    file = tmp_path / "arm.urdf"
+    file.write_text(URDF)
+    links = gyradius.load(file)
+    assert list(links) == ["forearm", "hand"]
+    assert links["forearm"].inertia[0].tolist() == [0.004, 0.0003, -0.0002]
+    assert links["forearm"].centre.tolist() == [0.15, 0.01, -0.02]
+    assert gyradius.load(str(file)) == links
+    with pytest.raises(ValueError, match="frame: no inertia"):
+        gyradius.load(file, strict=True)
+    with pytest.raises(ValueError, match=r"nowhere\.urdf"):
+        gyradius.load(tmp_path / "nowhere.urdf")
+    (tmp_path / "bad.urdf").write_text("<robot")
+    with pytest.raises(ValueError):
+        gyradius.load(tmp_path / "bad.urdf")
+
+
+def test_regions() -> None:
+    ball = MassProperties(2.0, np.zeros(3), 0.4 * 2.0 * 0.01 * np.eye(3))
+    assert gyradius.ellipsoid(semi_axes=[0.11, 0.11, 0.11]).holds(ball) == 1.0
+    assert gyradius.ellipsoid([0.5, 0, 0], semi_axes=[0.11] * 3).holds(ball) == 0.0
+    wide = gyradius.box(sides=[0.3, 0.3, 0.3])
+    assert wide.holds(ball) == 1.0
+    corners = np.array(np.meshgrid(*[[-0.15, 0.15]] * 3)).reshape(3, -1).T
+    assert gyradius.hull(corners).holds(ball) == 1.0
+    assert pickle.loads(pickle.dumps(wide)) == wide and hash(wide) == hash(gyradius.box(sides=0.3))
+    for bad in ({"sides": [1, 2]}, {"sides": [1, 1, -1]}, {"sides": [1, 1, np.nan]}):
+        with pytest.raises(ValueError):
+            gyradius.box(**bad)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="points"):
+        gyradius.hull(np.zeros(3))

@@ -1,0 +1,187 @@
+"""What a package owes to those who use it: pickles, texts, types, memory, threads, interrupts, the program."""
+
+from __future__ import annotations
+
+import copy
+import os
+import pickle
+import resource
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import bodies
+from test_laws import laws_of_bodies
+
+import gyradius
+from gyradius import normal
+
+
+def objects() -> dict[str, object]:
+    link = bodies(np.random.default_rng(3), 1)[0]
+    inertia = gyradius.InertiaLaw.about("wishart", np.diag([5.0, 4.0, 3.0]), delta=0.05)
+    mean = inertia.mean[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    return {
+        **laws_of_bodies(),
+        "naive": gyradius.MassPropertiesLaw.naive(link, "entry-noise", normal(0.0, 0.1), centre=normal(0.0, 0.01)),
+        "stated": gyradius.law(link, mass="5%", moments="1%"),
+        "number": normal(1.0, 2.0),
+        "uniform": gyradius.uniform_attitude(),
+        "small": gyradius.small_rotations([0, 0, 0, 1], np.eye(3)),
+        "bingham": gyradius.bingham(np.diag([1.0, 2.0, 3.0, 0.0])),
+        "turns": gyradius.about_axis([0, 0, 0, 1], [0, 0, 1]),
+        "inertia": inertia,
+        "matched": gyradius.InertiaLaw.matched("entrywise", mean, inertia.cov),
+        "bodies": link,
+        "box": gyradius.box(sides=1.0),
+        "key": gyradius.key(7, "a", [1]),
+    }
+
+
+@pytest.mark.parametrize("name", list(objects()))
+def test_objects_are_frozen_copied_and_told_apart(name: str) -> None:
+    one = objects()[name]
+    for again in (pickle.loads(pickle.dumps(one)), copy.copy(one), copy.deepcopy(one), objects()[name]):
+        assert again == one and hash(again) == hash(one) and repr(again) == repr(one)
+        if hasattr(one, "rvs"):
+            assert np.array_equal(np.asarray(again.rvs(5, rng=1)), np.asarray(one.rvs(5, rng=1)))  # type: ignore[attr-defined]
+    assert one != object() and not (one == 3)
+    assert type(one).__name__ in repr(one) or repr(one).startswith("key")
+    with pytest.raises(AttributeError):
+        one.colour = 3  # type: ignore[attr-defined]
+    stated = objects()["stated"]
+    assert pickle.loads(pickle.dumps(stated)).warnings == stated.warnings  # type: ignore[attr-defined]
+
+
+def test_everything_that_is_public_is_told_of() -> None:
+    for name in gyradius.__all__:
+        one = getattr(gyradius, name)
+        if name.startswith("__") or isinstance(one, tuple) and not isinstance(one, type):
+            continue
+        assert one.__doc__ and len(one.__doc__) > 20, name
+        assert not name.startswith("_")
+        if isinstance(one, type):
+            for member, value in vars(one).items():
+                if not member.startswith("_") and (callable(value) or isinstance(value, (property, staticmethod))):
+                    assert value.__doc__, f"{name}.{member}"
+
+
+def test_stubs() -> None:
+    pytest.importorskip("mypy")
+    allow = Path(__file__).parent / "stubtest-allowlist.txt"
+    run = [sys.executable, "-m", "mypy.stubtest", "gyradius", "--allowlist", str(allow)]
+    done = subprocess.run(run, capture_output=True, text=True, cwd=Path(__file__).parent)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_types() -> None:
+    pytest.importorskip("mypy")
+    done = subprocess.run([sys.executable, "-m", "mypy"], capture_output=True, text=True, cwd=Path(__file__).parent.parent)
+    assert done.returncode == 0, done.stdout
+
+
+def test_memory_does_not_grow() -> None:
+    law = gyradius.uniform_attitude()
+    matrix = np.eye(3)
+
+    def calls(count: int) -> None:
+        for i in range(count):
+            law.rvs(3, rng=i)
+            gyradius.is_realizable(matrix)
+
+    calls(5_000)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    calls(100_000)
+    # Kilobytes: a leak of one array a call would be ten thousand.
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 3_000
+
+
+def test_threads_of_python() -> None:
+    law = laws_of_bodies()["lengths"]
+    whole = law.rvs(4000, rng=7).array
+    found: dict[int, np.ndarray] = {}
+
+    def work(part: int) -> None:
+        places = np.arange(1000 * part, 1000 * (part + 1))
+        found[part] = law.rvs(rng=gyradius.key(7, "", places)).array
+
+    threads = [threading.Thread(target=work, args=(part,)) for part in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert (np.concatenate([found[part] for part in range(4)]) == whole).all()
+
+
+def test_others_run_while_it_draws() -> None:
+    law = laws_of_bodies()["lengths"]
+    ticks = 0
+    done = threading.Event()
+
+    def count() -> None:
+        nonlocal ticks
+        while not done.is_set():
+            ticks += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    law.rvs(1_000_000, rng=1)
+    done.set()
+    thread.join()
+    # With the interpreter held there would be one or two.
+    assert ticks > 10
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_control_c_ends_a_long_call() -> None:
+    program = (
+        "import gyradius\n"
+        "print('ready', flush=True)\n"
+        "try:\n"
+        "    gyradius.small_rotations([0, 0, 0, 1], [[.01, 0, 0], [0, .01, 0], [0, 0, .01]]).rvs(200_000_000, rng=1)\n"
+        "except KeyboardInterrupt:\n"
+        "    print('interrupted', flush=True)\n"
+    )
+    child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    assert child.stdout is not None
+    assert child.stdout.readline() == "ready\n"
+    time.sleep(0.5)
+    child.send_signal(signal.SIGINT)
+    out, _ = child.communicate(timeout=60)
+    assert out == "interrupted\n" and child.returncode == 0
+
+
+def test_the_program(tmp_path: Path) -> None:
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "gyradius", *arguments], capture_output=True, text=True, cwd=tmp_path
+        )
+
+    assert run("--version").stdout.strip() == f"gyradius {gyradius.__version__}"
+    (tmp_path / "bad.urdf").write_text(
+        '<robot name="r"><link name="a"><inertial><mass value="1"/>'
+        '<inertia ixx="1" iyy="1" izz="3" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+    )
+    assert run("check", "bad.urdf").returncode == 1
+    assert run("check", "nowhere.urdf").returncode == 2
+    assert run("nothing").returncode == 2
+    assert "Usage" in run("--help").stdout
+    script = Path(sys.executable).with_name("gyradius")
+    if script.exists():
+        assert subprocess.run([script, "--version"], capture_output=True, check=True).stdout
+
+
+def test_import_is_quick_and_brings_nothing() -> None:
+    program = (
+        "import sys, numpy; before = set(sys.modules); import gyradius;"
+        "new = {name.split('.')[0] for name in set(sys.modules) - before};"
+        "print(sorted(name for name in new if name in ('scipy', 'pandas', 'polars', 'matplotlib', 'tqdm', 'mujoco')))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, env=dict(os.environ))
+    assert done.stdout == "[]\n"

@@ -1,0 +1,131 @@
+"""Inertia matrices against NumPy's eigenvalues, over shapes and types."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from conftest import inertias, rotations
+from hypothesis import given
+from hypothesis import strategies as st
+
+import gyradius
+
+
+def second_moments_by_numpy(matrices: np.ndarray) -> np.ndarray:
+    sigma = 0.5 * np.trace(matrices, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - matrices
+    return np.linalg.eigvalsh(sigma)
+
+
+@given(st.integers(0, 2**32))
+def test_realizable_as_eigenvalues_say(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    good = inertias(rng, 200)
+    factors = rng.uniform(0.5, 1.5, size=(200, 1, 3))
+    naive = good * factors
+    naive = np.triu(naive) + np.triu(naive, 1).transpose(0, 2, 1)
+    assert gyradius.is_realizable(good).all()
+    least = second_moments_by_numpy(naive)[:, 0]
+    size = np.abs(naive).max(axis=(1, 2))
+    clear = np.abs(least) > 1e-12 * size
+    assert (gyradius.is_realizable(naive) == (least > 0))[clear].all()
+    principal = np.linalg.eigvalsh(naive)
+    margin = least / np.abs(principal).sum(axis=1)
+    assert np.allclose(gyradius.margin(naive), margin, rtol=1e-9, atol=1e-13)
+    found = gyradius.report(naive)
+    assert (found.is_realizable == gyradius.is_realizable(naive)).all()
+    assert all(bool(faults) != good for faults, good in zip(found.faults, found.is_realizable))
+    assert np.allclose(np.sort(found.principal_moments), principal, rtol=1e-9, atol=1e-12 * size.max())
+
+
+@given(st.integers(0, 2**32))
+def test_nearest_is_realizable_and_nearer_than_others(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    bad = inertias(rng, 50) * rng.uniform(0.3, 2.0, size=(50, 1, 3))
+    bad = np.triu(bad) + np.triu(bad, 1).transpose(0, 2, 1)
+    made = gyradius.nearest(bad)
+    assert gyradius.is_realizable(made).all()
+    distance = np.linalg.norm(made - bad, axis=(1, 2))
+    size = np.linalg.norm(bad, axis=(1, 2))
+    for method in ("clip-second-moments", "shift-moments"):
+        other = gyradius.nearest(bad, method)
+        assert gyradius.is_realizable(other).all()
+        assert (np.linalg.norm(other - bad, axis=(1, 2)) >= distance - 1e-12 * size).all()
+    # No convex mixture with a body is nearer: the condition of a projection on a convex set.
+    for one in inertias(rng, 20):
+        inner = np.einsum("nij,nij->n", bad - made, one - made)
+        assert (inner <= 1e-10 * size * (size + np.linalg.norm(one))).all()
+    fine = gyradius.is_realizable(bad)
+    assert (made[fine] == bad[fine]).all()
+
+
+def test_shapes_and_types() -> None:
+    rng = np.random.default_rng(1)
+    many = inertias(rng, 24).reshape(2, 3, 4, 3, 3)
+    assert gyradius.is_realizable(many).shape == (2, 3, 4)
+    assert gyradius.margin(many, dtype=np.float32).dtype == np.float32
+    assert gyradius.nearest(many).shape == many.shape
+    found = gyradius.principal_axes(many)
+    assert (found.moments.shape, found.attitude.shape, found.axes.shape) == ((2, 3, 4, 3), (2, 3, 4, 4), many.shape)
+    assert isinstance(gyradius.is_realizable(np.eye(3)), bool)
+    assert gyradius.is_realizable([[1, 0, 0], [0, 2, 0], [0, 0, 3]])
+    assert gyradius.is_realizable(np.empty((0, 3, 3))).shape == (0,)
+    assert gyradius.report(np.empty((0, 3, 3))).faults.shape == (0,)
+    for dtype in (np.float16, np.float32, np.int64, np.uint8, bool):
+        assert gyradius.is_realizable(np.eye(3).astype(dtype))
+    for order in "CFA":
+        turned = np.array(many[0, 0], order=order)[::-1, :, ::-1]
+        assert (gyradius.margin(turned) == gyradius.margin(turned.copy())).all()
+
+
+@pytest.mark.parametrize("bad", [np.eye(4), np.eye(3)[0], "text", [[object()]], np.eye(3) * 1j, None])
+def test_refused(bad: object) -> None:
+    for function in (gyradius.is_realizable, gyradius.margin, gyradius.report, gyradius.nearest):
+        with pytest.raises(ValueError, match="inertia"):
+            function(bad)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e300, 5e-324, -1.0])
+def test_odd_numbers_are_answered(value: float) -> None:
+    matrix = np.diag([1.0, 1.0, value])
+    realizable = gyradius.is_realizable(matrix)
+    assert realizable == gyradius.report(matrix).is_realizable
+    # 1 + 1 is less than 1e300; a subnormal beside 1 and 1 is a rod.
+    assert realizable == (value == 5e-324)
+    if not np.isfinite(value):
+        assert np.isnan(gyradius.margin(matrix))
+        with pytest.raises(ValueError, match="must be finite|finite"):
+            gyradius.nearest(matrix)
+
+
+def test_tolerance() -> None:
+    flat = np.diag([1.0, 1.0, 2.000001])
+    assert not gyradius.is_realizable(flat)
+    assert gyradius.is_realizable(flat, 1e-6)
+    skew = np.eye(3)
+    skew[0, 1] = 1e-7
+    assert not gyradius.is_realizable(skew)
+    assert gyradius.is_realizable(skew, tolerance=1e-6)
+    for bad in (-1.0, np.nan, np.inf):
+        with pytest.raises(ValueError, match="tolerance"):
+            gyradius.is_realizable(flat, bad)
+
+
+@given(st.integers(0, 2**32))
+def test_principal_axes_put_together_again(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    matrices = inertias(rng, 100)
+    found = gyradius.principal_axes(matrices)
+    again = np.einsum("nij,nj,nkj->nik", found.axes, found.moments, found.axes)
+    size = np.abs(matrices).max(axis=(1, 2))[:, None, None]
+    assert (np.abs(again - matrices) <= 1e-13 * size + 1e-300).all()
+    assert np.allclose(np.linalg.det(found.axes), 1.0)
+    first = gyradius.principal_axes(matrices, order="wxyz").attitude
+    assert (first[:, [1, 2, 3, 0]] == found.attitude).all()
+
+
+def test_rotation_keeps_the_margin() -> None:
+    rng = np.random.default_rng(2)
+    one = inertias(rng, 1)[0]
+    turns = rotations(rng, 500)
+    turned = turns @ one @ turns.transpose(0, 2, 1)
+    assert np.allclose(gyradius.margin(turned), gyradius.margin(one), atol=1e-12)
