@@ -1,0 +1,35 @@
+"""Isaac Lab: a draw of some bodies for each environment, through the tensors of PhysX.
+
+The tensors are on the CPU and of 32 bits: masses (environments, bodies), poses of the mass centres (environments, bodies, 7) with
+the quaternion scalar last, and inertias (environments, bodies, 9) about the mass centre in the axes of the link.
+"""
+
+from __future__ import annotations
+
+import gyradius
+
+
+def apply(asset, env_ids, draws: dict[str, gyradius.MassProperties]) -> None:
+    """Write a draw of the bodies, by their names, into each of some environments: row i of the draws into `env_ids[i]`.
+
+    `asset` is an articulation and `env_ids` a tensor of indices on the CPU, as an event gets them.
+
+    Raises
+    ------
+    RuntimeError
+        If the simulator does not hold what was written. Some versions drop the products of inertia of rigid objects.
+    """
+    view = asset.root_physx_view
+    masses, poses, inertias = view.get_masses(), view.get_coms(), view.get_inertias()
+    for name, bodies in draws.items():
+        body = asset.body_names.index(name)
+        rows = slice(0, len(env_ids))
+        masses[env_ids, body] = masses.new_tensor(bodies.mass[rows])
+        poses[env_ids, body, :3] = poses.new_tensor(bodies.centre[rows])
+        poses[env_ids, body, 3:] = poses.new_tensor([0.0, 0.0, 0.0, 1.0])
+        inertias[env_ids, body] = inertias.new_tensor(bodies.inertia[rows].reshape(-1, 9))
+    view.set_masses(masses, env_ids)
+    view.set_coms(poses, env_ids)
+    view.set_inertias(inertias, env_ids)
+    if (abs(view.get_inertias() - inertias) > 1e-5 * abs(inertias).max()).any():
+        raise RuntimeError("the simulator does not hold the inertias that were written")

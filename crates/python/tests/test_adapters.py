@@ -1,0 +1,397 @@
+"""The adapters of examples/adapters put into each library what was drawn, as the library itself tells.
+
+What was drawn and what the library holds are compared by means that share no code with the adapters: mass matrices, spatial
+inertias and momenta that the library computes, beside the same from the ten numbers.
+"""
+
+from __future__ import annotations
+
+import sys
+import types
+from pathlib import Path
+
+import gyradius
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "examples" / "adapters"))
+
+pytestmark = pytest.mark.filterwarnings("ignore")
+
+DRAWS = 5
+STATED = {"mass": "10%", "centre": "20mm", "moments": "15%", "axes": "20deg"}
+
+
+def turned(moments: list[float], seed: int) -> np.ndarray:
+    """An inertia with principal axes turned at random."""
+    axes = np.linalg.qr(np.random.default_rng(seed).standard_normal((3, 3)))[0]
+    inertia = axes @ np.diag(moments) @ axes.T
+    return (inertia + inertia.T) / 2
+
+
+ARM = gyradius.MassProperties(2.0, [0.1, -0.2, 0.3], turned([0.02, 0.05, 0.06], 1))
+TOOL = gyradius.MassProperties(0.5, [0.0, 0.05, 0.1], turned([0.001, 0.002, 0.0025], 2))
+PLATE = gyradius.MassProperties(1.5, [0.2, 0.0, 0.05], turned([0.01, 0.03, 0.04], 3))
+ROD = gyradius.MassProperties(0.3, [0.0, 0.0, 0.4], turned([0.0, 0.02, 0.02], 4))
+BODIES = {"arm": ARM, "tool": TOOL, "plate": PLATE, "rod": ROD}
+
+
+def draws(bodies: dict[str, gyradius.MassProperties]) -> dict[str, gyradius.MassProperties]:
+    """Draws of each body."""
+    return {name: gyradius.law(body, **STATED).rvs(DRAWS, rng=i) for i, (name, body) in enumerate(bodies.items())}
+
+
+def cross(vector: np.ndarray) -> np.ndarray:
+    """The matrix of the cross product by a vector."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def spatial(mass: float, centre: np.ndarray, inertia: np.ndarray) -> np.ndarray:
+    """The spatial inertia (6, 6) about the origin, linear part first: twice the kinetic energy is (v, ω) · M (v, ω)."""
+    c = cross(centre)
+    return np.block([[mass * np.eye(3), -mass * c], [mass * c, inertia - mass * c @ c]])
+
+
+def close(found: np.ndarray, expected: np.ndarray, tolerance: float = 1e-9) -> None:
+    """Two arrays are the same to a share of the largest number."""
+    assert np.shape(found) == np.shape(expected)
+    assert np.abs(np.asarray(found) - expected).max() <= tolerance * np.abs(expected).max()
+
+
+def urdf_link(name: str, body: gyradius.MassProperties) -> str:
+    """A link of a URDF file."""
+    i = body.inertia
+    named = zip(("ixx", "iyy", "izz", "ixy", "ixz", "iyz"), i[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]])
+    entries = " ".join(f'{key}="{value!r}"' for key, value in ((k, float(v)) for k, v in named))
+    at = " ".join(map(repr, body.centre.tolist()))
+    return (
+        f'<link name="{name}"><inertial><origin xyz="{at}"/><mass value="{float(body.mass)!r}"/>'
+        f"<inertia {entries}/></inertial></link>"
+    )
+
+
+URDF = f"""<robot name="robot"><link name="base"/>{urdf_link("arm", ARM)}{urdf_link("tool", TOOL)}{urdf_link("plate", PLATE)}
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+<limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+<joint name="weld" type="fixed"><parent link="arm"/><child link="tool"/><origin xyz="0.1 0 0.5" rpy="0.3 0.4 0.5"/></joint>
+<joint name="wrist" type="revolute"><parent link="tool"/><child link="plate"/><origin xyz="0 0.1 0.2" rpy="0.1 0 0.7"/>
+<axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint></robot>"""
+
+MJCF = """<mujoco><option gravity="0 0 0"/><worldbody>
+<body name="arm" pos="1 2 3"><freejoint/><inertial pos="0 0 0" mass="1" diaginertia="1 2 2.5"/>
+  <geom name="same" type="box" size=".1 .2 .3" contype="0" conaffinity="0"/></body>
+<body name="plate" pos="4 5 6"><freejoint/><inertial pos="0.3 0.2 0.1" quat="1 2 3 4" mass="1" diaginertia="2 1 2.5"/>
+  <geom name="there" type="box" size=".1 .2 .3" pos="0.3 0.2 0.1" quat="1 2 3 4" contype="0" conaffinity="0"/>
+  <site name="mark" pos="0.3 0.2 0.1" quat="1 2 3 4"/></body>
+<body name="rod" pos="7 8 9"><freejoint/><inertial pos="0 0 0.1" mass="1" diaginertia="1 2 2.5"/></body>
+<body name="turning"><joint type="hinge" axis="0 0 1"/><inertial pos="0 0 0" mass="1" diaginertia="1 2 2.5"/>
+  <body name="tool" pos="0 0 1"><joint type="hinge" axis="0 1 0"/><inertial pos="0 0 0" mass="1" diaginertia="1 2 2.5"/></body></body>
+</worldbody></mujoco>"""
+
+
+def mujoco_model(with_mujoco: types.ModuleType):
+    """The model of `MJCF` with every mass centre free to move."""
+    mujoco = with_mujoco.mujoco
+    if not hasattr(mujoco.MjsBody, "simple"):
+        # Without that attribute, MuJoCo 3 takes free bodies with mass centres that are nominally off the origin.
+        return mujoco.MjModel.from_xml_string(MJCF.replace('"0 0 0" mass', '"0 0 0.001" mass'))
+    return with_mujoco.compile_movable(mujoco.MjSpec.from_string(MJCF))
+
+
+def mass_matrix(mujoco, model, data) -> np.ndarray:
+    """The mass matrix, by MuJoCo's own multiplication, (nv, nv)."""
+    mujoco.mj_forward(model, data)
+    matrix = np.empty((model.nv, model.nv))
+    for i, unit in enumerate(np.eye(model.nv)):
+        mujoco.mj_mulM(model, data, matrix[i], unit)
+    return matrix
+
+
+def test_mujoco_has_the_drawn_bodies():
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    import with_mujoco
+
+    mujoco = with_mujoco.mujoco
+    model = mujoco_model(with_mujoco)
+    data = mujoco.MjData(model)
+    drawn = draws(BODIES)
+    for index in range(DRAWS):
+        with_mujoco.apply(model, data, drawn, index)
+        matrix = mass_matrix(mujoco, model, data)
+        for name in ("arm", "plate", "rod"):
+            first = model.body(name).dofadr[0]
+            body = drawn[name][index]
+            # Velocities of free joints: of the origin in world axes, and rotation in axes of the body; here the same.
+            close(matrix[first : first + 6, first : first + 6], spatial(body.mass, body.centre, body.inertia))
+        tool = drawn["tool"][index]
+        about_pivot = spatial(tool.mass, tool.centre, tool.inertia)[3:, 3:]
+        last = model.body("tool").dofadr[0]
+        close(matrix[last, last], about_pivot[1, 1])
+        # The hinge of the body below turns what is above too, about the axis 3 of both.
+        close(matrix[last - 1, last - 1], 2.5 + about_pivot[2, 2])
+        # What is no mass stays where it was.
+        close(data.geom("same").xpos, np.array([1.0, 2.0, 3.0]))
+        for thing in (data.geom("there"), data.site("mark")):
+            close(thing.xpos, np.array([4.3, 5.2, 6.1]))
+            quaternion = np.empty(4)
+            mujoco.mju_mat2Quat(quaternion, thing.xmat)
+            close(quaternion, np.array([1.0, 2.0, 3.0, 4.0]) / np.sqrt(30.0))
+        total = sum(float(drawn[name][index].mass) for name in drawn) + 1.0
+        close(model.body_subtreemass[0], np.array(total))
+
+
+def test_mujoco_says_what_it_was_told():
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    import with_mujoco
+
+    model = mujoco_model(with_mujoco)
+    data = with_mujoco.mujoco.MjData(model)
+    drawn = draws(BODIES)
+    with_mujoco.apply(model, data, drawn, 2)
+    for name, bodies in drawn.items():
+        read = with_mujoco.nominal(model, name)
+        close(np.append(read.centre, read.mass), np.append(bodies.centre[2], bodies.mass[2]))
+        close(read.inertia, bodies.inertia[2])
+
+
+def test_mujoco_refuses_a_body_that_is_compiled_as_simple():
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    import with_mujoco
+
+    model = mujoco.MjModel.from_xml_string(MJCF)
+    with pytest.raises(ValueError, match="body arm: it is compiled as simple"):
+        with_mujoco.apply(model, mujoco.MjData(model), draws({"arm": ARM}), 0)
+
+
+def test_mjx_has_the_drawn_bodies_in_each_environment():
+    pytest.importorskip("mujoco.mjx", reason="MJX is not installed")
+    import jax
+    import with_mjx
+    import with_mujoco
+    from mujoco import mjx
+
+    host = mujoco_model(with_mujoco)
+    nominal = host.body_mass.copy()
+    drawn = draws(BODIES)
+    function = with_mjx.for_playground(host, drawn)
+    model, axes = function(mjx.put_model(host), jax.random.split(jax.random.key(0), DRAWS))
+    data = mjx.make_data(host)
+    full = jax.jit(
+        jax.vmap(lambda m: mjx.full_m(m, mjx.crb(m, mjx.com_pos(m, mjx.kinematics(m, data)))), in_axes=(axes,))
+    )(model)
+    for index in range(DRAWS):
+        for name in ("arm", "plate", "rod"):
+            first = host.body(name).dofadr[0]
+            body = drawn[name][index]
+            found = np.asarray(full[index, first : first + 6, first : first + 6])
+            close(found, spatial(body.mass, body.centre, body.inertia), 1e-5)
+        scratch = mujoco_model(with_mujoco)
+        with_mujoco.apply(scratch, with_mujoco.mujoco.MjData(scratch), drawn, index)
+        close(np.asarray(model.dof_invweight0[index]), scratch.dof_invweight0, 1e-5)
+        close(np.asarray(model.body_subtreemass[index]), scratch.body_subtreemass, 1e-5)
+    close(host.body_mass, nominal, 0.0)
+
+
+def test_robosuite_has_the_drawn_bodies():
+    suite = pytest.importorskip("robosuite", reason="robosuite is not installed")
+    import with_robosuite
+
+    options = {"has_renderer": False, "has_offscreen_renderer": False, "use_camera_obs": False}
+    try:
+        env = suite.make("Lift", robots="Panda", **options)
+    except AssertionError as error:
+        pytest.skip(f"this robosuite does not work with the MuJoCo that is installed: {error!r}")
+    env.reset()
+    names = [f"robot0_link{i}" for i in range(1, 8)]
+    bodies = {name: with_robosuite.nominal(env, name) for name in names}
+    drawn = draws(bodies)
+    with_robosuite.apply(env, drawn, 3)
+    import mujoco
+
+    model, data = env.sim.model._model, env.sim.data._data
+    matrix = mass_matrix(mujoco, model, data)
+    hinges = [model.body(name).dofadr[0] for name in names]
+    # The mass matrix of the arm as the sum over bodies of Jᵀ M J, in axes of the world.
+    expected = np.zeros((7, 7))
+    for i in range(1, model.nbody):
+        name = model.body(i).name
+        body = drawn[name][3] if name in drawn else with_robosuite.nominal(env, name)
+        axes = data.xmat[i].reshape(3, 3)
+        move, turn = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+        mujoco.mj_jac(model, data, move, turn, data.xpos[i] + axes @ body.centre, i)
+        move, turn = move[:, hinges], turn[:, hinges]
+        expected += body.mass * move.T @ move + turn.T @ axes @ body.inertia @ axes.T @ turn
+    expected += np.diag(model.dof_armature[hinges])
+    close(matrix[np.ix_(hinges, hinges)], expected)
+    env.close()
+
+
+class Tensor(np.ndarray):
+    """As much of a tensor of PyTorch as the adapter for Isaac Lab uses."""
+
+    def new_tensor(self, value) -> Tensor:
+        """A tensor of the same type."""
+        return np.asarray(value, dtype=self.dtype).view(Tensor)
+
+
+class View:
+    """As much of PhysX's view of articulations as the adapter uses: getters give copies, setters take the rows of
+    some environments."""
+
+    def __init__(self, environments: int, bodies: int, drops_products: bool = False):
+        shapes = {
+            "masses": (environments, bodies),
+            "coms": (environments, bodies, 7),
+            "inertias": (environments, bodies, 9),
+        }
+        self.held = {name: np.full(shape, 0.125, np.float32).view(Tensor) for name, shape in shapes.items()}
+        self.drops_products = drops_products
+        for name in shapes:
+            setattr(self, f"get_{name}", lambda name=name: self.held[name].copy())
+            setattr(self, f"set_{name}", lambda values, ids, name=name: self.put(name, values, ids))
+
+    def put(self, name: str, values: Tensor, env_ids: Tensor) -> None:
+        """Take the rows of some environments."""
+        self.held[name][env_ids] = values[env_ids]
+        if name == "inertias" and self.drops_products:
+            self.held[name][..., [1, 2, 3, 5, 6, 7]] = 0.0
+
+
+def asset(view: View) -> types.SimpleNamespace:
+    """An articulation of Isaac Lab."""
+    return types.SimpleNamespace(root_physx_view=view, body_names=["base", "arm", "other", "plate"])
+
+
+def test_isaac_lab_is_given_the_drawn_bodies_in_its_tensors():
+    # No simulator is here: a small stand-in has the shapes, types and frames that its documentation states.
+    import with_isaac_lab
+
+    view = View(8, 4)
+    drawn = draws({"plate": PLATE, "arm": ARM})
+    env_ids = np.array([6, 1, 3]).view(Tensor)
+    with_isaac_lab.apply(asset(view), env_ids, drawn)
+    for row, env in enumerate((6, 1, 3)):
+        for body, name in ((1, "arm"), (3, "plate")):
+            close(view.held["masses"][env, body], drawn[name].mass[row], 1e-6)
+            close(view.held["coms"][env, body], np.append(drawn[name].centre[row], [0, 0, 0, 1]), 1e-6)
+            close(view.held["inertias"][env, body].reshape(3, 3), drawn[name].inertia[row], 1e-6)
+    untouched = np.ones((8, 4), bool)
+    untouched[np.ix_([6, 1, 3], [1, 3])] = False
+    for values in view.held.values():
+        assert np.all(values[untouched] == 0.125)
+
+
+def test_isaac_lab_that_drops_products_is_found_out():
+    import with_isaac_lab
+
+    with pytest.raises(RuntimeError, match="does not hold"):
+        with_isaac_lab.apply(asset(View(8, 4, True)), np.arange(3).view(Tensor), draws({"arm": ARM}))
+
+
+def test_genesis_is_given_the_drawn_links_in_the_axes_of_their_inertia():
+    # Genesis needs PyTorch and forty packages: a small stand-in has its three setters and what its reference says of them.
+    import with_genesis
+
+    quaternion = np.array([0.5, 0.1, -0.7, 0.5]) / np.linalg.norm([0.5, 0.1, -0.7, 0.5])
+    written = {}
+    link = types.SimpleNamespace(
+        desc=types.SimpleNamespace(inertial_quat=quaternion),
+        set_mass=lambda value: written.update(mass=value),
+        set_COM=lambda value: written.update(centre=value),
+        set_inertia=lambda value: written.update(inertia=value),
+    )
+    drawn = draws({"arm": ARM})
+    with_genesis.apply(types.SimpleNamespace(get_link=lambda name: link), drawn, 3)
+    close(written["mass"], drawn["arm"].mass[:3])
+    close(written["centre"], drawn["arm"].centre[:3])
+
+    def turn(vector: np.ndarray) -> np.ndarray:
+        """A vector turned by the quaternion, by v + 2 u × (u × v + w v)."""
+        w, u = quaternion[0], quaternion[1:]
+        return vector + 2 * np.cross(u, np.cross(u, vector) + w * vector)
+
+    # Twice the energy of a rotation about any axis is the same in both frames.
+    for axis in np.random.default_rng(5).standard_normal((10, 3)):
+        found = np.einsum("i,nij,j->n", axis, written["inertia"], axis)
+        close(found, np.einsum("i,nij,j->n", turn(axis), drawn["arm"].inertia[:3], turn(axis)))
+
+
+def test_pinocchio_has_the_drawn_links():
+    pin = pytest.importorskip("pinocchio", reason="Pinocchio is not installed")
+    import with_pinocchio
+
+    model = pin.buildModelFromXML(URDF)
+    nominal = {name: BODIES[name] for name in ("arm", "tool", "plate")}
+    drawn = draws(nominal)
+    before = [inertia.copy() for inertia in model.inertias]
+    for index in range(DRAWS):
+        changed = with_pinocchio.apply(model, nominal, drawn, index)
+        # Beside it, a model that Pinocchio itself makes of a file with the drawn numbers.
+        text = URDF
+        for name, body in nominal.items():
+            text = text.replace(urdf_link(name, body), urdf_link(name, drawn[name][index]))
+        expected = pin.buildModelFromXML(text)
+        for q in np.random.default_rng(index).uniform(-3, 3, (3, model.nq)):
+            data, other = changed.createData(), expected.createData()
+            close(pin.crba(changed, data, q), pin.crba(expected, other, q))
+            v = np.ones(model.nv)
+            close(pin.rnea(changed, data, q, v, v), pin.rnea(expected, other, q, v, v))
+    assert all(a.isApprox(b, 0.0) for a, b in zip(before, model.inertias))
+
+
+def test_drake_has_the_drawn_bodies():
+    pytest.importorskip("pydrake", reason="Drake is not installed")
+    import with_drake
+    from pydrake.multibody.parsing import Parser
+    from pydrake.multibody.plant import MultibodyPlant
+
+    plant = MultibodyPlant(0.0)
+    Parser(plant).AddModelsFromString(URDF, "urdf")
+    plant.Finalize()
+    context, other = plant.CreateDefaultContext(), plant.CreateDefaultContext()
+    drawn = draws({name: BODIES[name] for name in ("arm", "tool", "plate")})
+    for index in range(DRAWS):
+        with_drake.apply(plant, context, drawn, index)
+        for name, bodies in drawn.items():
+            body = bodies[index]
+            found = plant.GetBodyByName(name).CalcSpatialInertiaInBodyFrame(context).CopyToFullMatrix6()
+            expected = spatial(body.mass, body.centre, body.inertia)
+            # Drake has the rotation first.
+            close(found, np.block([[expected[3:, 3:], expected[3:, :3]], [expected[:3, 3:], expected[:3, :3]]]))
+        plate = drawn["plate"][index]
+        about_pivot = spatial(plate.mass, plate.centre, plate.inertia)[3:, 3:]
+        close(plant.CalcMassMatrix(context)[-1, -1], about_pivot[0, 0])
+    found = plant.GetBodyByName("arm").CalcSpatialInertiaInBodyFrame(other).get_mass()
+    close(found, ARM.mass)
+
+
+def test_basilisk_has_the_drawn_hub():
+    pytest.importorskip("Basilisk", reason="Basilisk is not installed")
+    import with_basilisk
+    from Basilisk.simulation import spacecraft
+    from Basilisk.utilities import SimulationBaseClass, macros
+
+    drawn = draws({"hub": ARM})["hub"]
+    spin = np.array([0.3, -0.2, 0.5])
+    speed = np.array([0.1, 0.2, -0.3])
+    for index in range(DRAWS):
+        simulation = SimulationBaseClass.SimBaseClass()
+        simulation.CreateNewProcess("process").addTask(simulation.CreateNewTask("task", macros.sec2nano(0.1)))
+        satellite = spacecraft.Spacecraft()
+        with_basilisk.apply(satellite, drawn, index)
+        satellite.hub.omega_BN_BInit = spin.reshape(3, 1).tolist()
+        satellite.hub.v_CN_NInit = speed.reshape(3, 1).tolist()
+        simulation.AddModelToTask("task", satellite)
+        simulation.InitializeSimulation()
+        simulation.ConfigureStopTime(macros.sec2nano(0.1))
+        simulation.ExecuteSimulation()
+        body = drawn[index]
+        # The sums that Basilisk keeps of momentum and energy, and its mass properties about the origin of the hub.
+        about = np.array(satellite.totRotAngMomPntC_N).ravel()
+        close(np.linalg.norm(about), np.linalg.norm(body.inertia @ spin), 1e-6)
+        close(np.array(satellite.totRotEnergy), 0.5 * spin @ body.inertia @ spin, 1e-6)
+        whole = satellite.scMassOutMsg.read()
+        close(whole.massSC, body.mass)
+        close(np.array(whole.c_B).ravel(), body.centre)
+        close(np.array(whole.ISC_PntB_B), spatial(body.mass, body.centre, body.inertia)[3:, 3:])
