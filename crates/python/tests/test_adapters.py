@@ -1,7 +1,7 @@
 """The adapters of examples/adapters put into each library what was drawn, as the library itself tells.
 
-What was drawn and what the library holds are compared by means that share no code with the adapters: mass matrices, spatial
-inertias and momenta that the library computes, beside the same from the ten numbers.
+What was drawn and what the library holds are compared by means that share no code with the adapters: mass matrices,
+spatial inertias and momenta that the library computes, beside the same from the ten numbers.
 """
 
 from __future__ import annotations
@@ -71,10 +71,12 @@ def urdf_link(name: str, body: gyradius.MassProperties) -> str:
     )
 
 
-URDF = f"""<robot name="robot"><link name="base"/>{urdf_link("arm", ARM)}{urdf_link("tool", TOOL)}{urdf_link("plate", PLATE)}
+URDF = f"""<robot name="robot"><link name="base"/>
+{urdf_link("arm", ARM)}{urdf_link("tool", TOOL)}{urdf_link("plate", PLATE)}
 <joint name="shoulder" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
 <limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
-<joint name="weld" type="fixed"><parent link="arm"/><child link="tool"/><origin xyz="0.1 0 0.5" rpy="0.3 0.4 0.5"/></joint>
+<joint name="weld" type="fixed"><parent link="arm"/><child link="tool"/>
+<origin xyz="0.1 0 0.5" rpy="0.3 0.4 0.5"/></joint>
 <joint name="wrist" type="revolute"><parent link="tool"/><child link="plate"/><origin xyz="0 0.1 0.2" rpy="0.1 0 0.7"/>
 <axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint></robot>"""
 
@@ -86,7 +88,8 @@ MJCF = """<mujoco><option gravity="0 0 0"/><worldbody>
   <site name="mark" pos="0.3 0.2 0.1" quat="1 2 3 4"/></body>
 <body name="rod" pos="7 8 9"><freejoint/><inertial pos="0 0 0.1" mass="1" diaginertia="1 2 2.5"/></body>
 <body name="turning"><joint type="hinge" axis="0 0 1"/><inertial pos="0 0 0" mass="1" diaginertia="1 2 2.5"/>
-  <body name="tool" pos="0 0 1"><joint type="hinge" axis="0 1 0"/><inertial pos="0 0 0" mass="1" diaginertia="1 2 2.5"/></body></body>
+  <body name="tool" pos="0 0 1"><joint type="hinge" axis="0 1 0"/>
+    <inertial pos="0 0 0" mass="1" diaginertia="1 2 2.5"/></body></body>
 </worldbody></mujoco>"""
 
 
@@ -290,7 +293,7 @@ def test_isaac_lab_that_drops_products_is_found_out():
 
 
 def test_genesis_is_given_the_drawn_links_in_the_axes_of_their_inertia():
-    # Genesis needs PyTorch and forty packages: a small stand-in has its three setters and what its reference says of them.
+    # Genesis needs PyTorch and forty packages: a small stand-in has its three setters, as its reference has them.
     import with_genesis
 
     quaternion = np.array([0.5, 0.1, -0.7, 0.5]) / np.linalg.norm([0.5, 0.1, -0.7, 0.5])

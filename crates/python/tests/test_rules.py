@@ -58,7 +58,7 @@ def test_a_factor_for_each_diagonal_entry():
     # Of a ball: that one of three uniform numbers exceeds the sum of the others, 3 (1/2)³ / 6.
     assert near(share(rules.entrywise_diagonal(0.5, 1.5), np.eye(3)), 1 / 16)
     assert share(rules.entrywise_diagonal(0.8, 1.2), np.eye(3)) == 0.0
-    # Of a plate in one of its planes of symmetry: half of the time to any order of the range, I₃₃ being the larger by chance.
+    # Of a plate: by chance I₃₃ becomes the larger, half of the time however small the range is.
     assert near(share(rules.entrywise_diagonal(0.999, 1.001), np.diag([1.0, 1.0, 2.0])), 0.5)
     assert share(rules.entrywise_diagonal(0.9, 1.1), np.diag([0.0, 1.0, 1.0])) == 1.0
 
@@ -192,3 +192,37 @@ def test_the_factor_of_a_pseudo_inertia_is_that_of_numpy():
     own = gyradius.MassProperties(mass, centre, np.einsum("nij,nj,nkj->nik", axes, moments + 1e-3, axes))
     assert np.allclose(gyradius.pseudo_inertia(own), whole, atol=1e-12)
     assert 0.2 < plates.not_finite(rng(8), 1000) < 0.8
+
+
+def test_the_python_of_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    blocks = [block.split("```")[0] for block in PAGE.read_text(encoding="utf-8").split("```python\n")[1:]]
+    assert len(blocks) == 2
+    monkeypatch.chdir(tmp_path)
+    links = f"{link('arm', 1.0, [1.0, 1.5, 2.0], 0.1)}{link('plate', 1.0, [1.0, 1.5, 2.5])}"
+    Path("robot.urdf").write_text(f'<robot name="r">{links}</robot>', encoding="utf-8")
+    found: dict = {"numpy": np}
+    exec(blocks[0], found)
+    assert list(found["draws"]) == ["arm", "plate"]
+    for draws in found["draws"].values():
+        assert (draws.mass.shape, draws.centre.shape, draws.inertia.shape) == ((4096,), (4096, 3), (4096, 3, 3))
+        assert draws.is_realizable.all()
+    found["body"] = gyradius.load("robot.urdf")["plate"]
+    found["inertias"] = np.repeat(found["body"].inertia.reshape(1, 9), 4096, axis=0)
+    before, after = blocks[1].strip().splitlines()
+    exec(before, found)
+    assert not gyradius.is_realizable(found["inertias"].reshape(-1, 3, 3)).all()
+    exec(after, found)
+    assert gyradius.is_realizable(found["inertias"].reshape(-1, 3, 3)).all()
+
+
+@pytest.mark.parametrize("moments", [[1.0, 1.5, 2.5], [1.0, 1.0, 2.0], [0.0, 1.0, 1.0]])
+def test_plates_and_rods_stay_bodies_in_single_precision_with_a_millionth_more(moments: list[float]):
+    axes = np.linalg.qr(rng(9).standard_normal((3, 3)))[0]
+    body = gyradius.MassProperties(1.0, [0.1, 0.2, 0.3], axes @ np.diag(moments) @ axes.T)
+    for stated in [*table.STATED.values(), {"mass": "10%"}, {"axes": "20deg"}]:
+        drawn = gyradius.law(body, **stated).rvs(N, rng=1).inertia
+        single = drawn.astype(np.float32).astype(float)
+        assert gyradius.is_realizable(single, tolerance=1e-7).all()
+        traces = np.trace(single, axis1=1, axis2=2)[:, None, None]
+        thicker = (single + 1e-6 * traces * np.eye(3)).astype(np.float32).astype(float)
+        assert gyradius.is_realizable(thicker, tolerance=0.0).all()

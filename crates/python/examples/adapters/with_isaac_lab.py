@@ -1,7 +1,8 @@
 """Isaac Lab: a draw of some bodies for each environment, through the tensors of PhysX.
 
-The tensors are on the CPU and of 32 bits: masses (environments, bodies), poses of the mass centres (environments, bodies, 7) with
-the quaternion scalar last, and inertias (environments, bodies, 9) about the mass centre in the axes of the link.
+The tensors are on the CPU and of 32 bits: masses (environments, bodies), poses of the mass centres (environments,
+bodies, 7) with the quaternion scalar last, and inertias (environments, bodies, 9) about the mass centre in the axes of
+the link.
 """
 
 from __future__ import annotations

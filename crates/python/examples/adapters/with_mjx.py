@@ -31,7 +31,7 @@ FIELDS = (
 def randomize(
     host: mujoco.MjModel, model: mjx.Model, draws: dict[str, gyradius.MassProperties], n: int
 ) -> tuple[mjx.Model, mjx.Model]:
-    """The model with n draws of the bodies along the first axis, and the axes for `jax.vmap`, which are 0 for these fields."""
+    """The model with n draws of the bodies along the first axis, and the axes for `jax.vmap`: 0 for what is drawn."""
     scratch, fields = copy.copy(host), {name: [] for name in FIELDS if hasattr(model, name)}
     data = mujoco.MjData(scratch)
     for index in range(n):

@@ -19,8 +19,8 @@ def apply(
 ) -> pinocchio.Model:
     """A copy of a nominal model with draw `index` of the links, by their names.
 
-    Pinocchio adds up the links that a joint moves, also those at the end of fixed joints, so the nominal link is taken away
-    and the drawn one added.
+    Pinocchio adds up the links that a joint moves, also those at the end of fixed joints, so the nominal link is taken
+    away and the drawn one added.
     """
     changed = model.copy()
     for name, bodies in draws.items():

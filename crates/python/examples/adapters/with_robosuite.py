@@ -12,6 +12,6 @@ def nominal(env, name: str) -> gyradius.MassProperties:
 
 
 def apply(env, draws: dict[str, gyradius.MassProperties], index: int) -> None:
-    """Put draw `index` of the bodies, by their names, into an environment. A hard reset makes a new model: do it after it."""
+    """Put draw `index` of the bodies, by their names, into an environment; again after each hard reset."""
     with_mujoco.apply(env.sim.model._model, env.sim.data._data, draws, index)
     env.sim.forward()

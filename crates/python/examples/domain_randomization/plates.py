@@ -1,8 +1,8 @@
 """How often a Cholesky factor of the pseudo-inertia in single precision exists for flat plates.
 
-Recipes that randomize an inertia by J' = (U L)(U L)ᵀ need the factor L of the pseudo-inertia J = L Lᵀ about the origin of the
-link, which they make of mass, mass centre, principal moments and principal axes. J of a flat plate is singular, and rounding
-decides whether the last roots exist.
+Recipes that randomize an inertia by J' = (U L)(U L)ᵀ need the factor L of the pseudo-inertia J = L Lᵀ about the origin
+of the link, which they make of mass, mass centre, principal moments and principal axes. J of a flat plate is singular,
+and rounding decides whether the last roots exist.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ def factor(matrices: np.ndarray) -> np.ndarray:
 
 
 def pseudo_inertia(mass: np.ndarray, centre: np.ndarray, moments: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """Pseudo-inertias about the origin of the link, shape (n, 4, 4), in the precision of what is given: masses (n,), mass
-    centres (n, 3), principal moments (n, 3) and principal axes in the columns of (n, 3, 3)."""
+    """Pseudo-inertias about the origin of the link, shape (n, 4, 4), in the precision of what is given: masses (n,),
+    mass centres (n, 3), principal moments (n, 3) and principal axes in the columns of (n, 3, 3)."""
     result = np.empty((len(mass), 4, 4), mass.dtype)
     about_centre = np.einsum("nij,nj,nkj->nik", axes, moments, axes)
     eye = EYE.astype(mass.dtype)

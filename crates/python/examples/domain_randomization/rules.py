@@ -1,7 +1,8 @@
 """Rules by which public code randomizes an inertia, each written anew from what the code does.
 
-A rule takes the inertia of a body about its mass centre in the axes of the link, shape (3, 3) in kg·m² with products as
-tensor entries, a generator and a count n, and returns n inertias, shape (n, 3, 3). `RULES` holds them with their source.
+A rule takes the inertia of a body about its mass centre in the axes of the link, shape (3, 3) in kg·m² with products
+as tensor entries, a generator and a count n, and returns n inertias, shape (n, 3, 3). `RULES` holds them with their
+source.
 """
 
 from __future__ import annotations
@@ -95,7 +96,7 @@ def replaced_all(low: float, high: float) -> Draw:
 
 
 def principal_moments(ratio: float) -> Draw:
-    """Give each principal moment a uniform factor of its own between 1 − ratio and 1 + ratio; keep the principal axes."""
+    """Give each principal moment a uniform factor between 1 − ratio and 1 + ratio of its own; keep their axes."""
 
     def draw(inertia: np.ndarray, rng: np.random.Generator, n: int) -> np.ndarray:
         moments, axes = np.linalg.eigh(inertia)

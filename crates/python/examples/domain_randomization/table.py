@@ -1,4 +1,4 @@
-"""What rules for randomizing an inertia do to the bodies of public robots: writes the tables of docs/domain-randomization.md.
+"""What rules for randomizing an inertia do to the bodies of public robots, as docs/domain-randomization.md tells.
 
 python table.py                  # download 370 MB of wheels, draw, print the tables
 python table.py --write PAGE     # and write them into a page, between the markers
@@ -34,7 +34,7 @@ STATED = {
 
 
 def impossible(inertias: np.ndarray) -> float:
-    """The share of inertias, shape (n, 3, 3), that no body has; of one that is not symmetric, the symmetric part counts."""
+    """The share of inertias (n, 3, 3) that no body has; of one that is not symmetric, the symmetric part counts."""
     symmetric = (inertias + np.swapaxes(inertias, -1, -2)) / 2
     return float(np.mean(~gyradius.is_realizable(symmetric, tolerance=TOLERANCE)))
 
@@ -80,17 +80,19 @@ def bodies_text(found: Harvest) -> str:
     wheels = Counter(body.wheel for body in found.bodies)
     text = ", ".join(f"{name} {count}" for name, count in wheels.items())
     return (
-        f"{len(found.bodies)} bodies: {text}. {found.files} files state {found.stated:,} bodies. A body counts once, where it is "
-        f"found first, if mass and principal moments agree to five digits. Left out are {found.balls} with three equal moments, "
-        f"{found.impossible} that cannot exist as they are stated, and {found.massless:,} stated without mass or inertia."
+        f"{len(found.bodies)} bodies: {text}. {found.files} files state {found.stated:,} bodies. A body counts once, where "
+        "it is found first, if mass and principal moments agree to five digits. Left out are "
+        f"{found.balls} with three equal moments, {found.impossible} that cannot exist as they are stated, and "
+        f"{found.massless:,} stated without mass or inertia."
     )
 
 
 def written(page: str, name: str, text: str) -> str:
     """A page with the text between its markers `<!-- name -->` and `<!-- end of name -->`."""
     start, end = f"<!-- {name} -->\n", f"\n<!-- end of {name} -->"
-    before, rest = page.split(start)
-    return before + start + text + end + rest.split(end)[1]
+    if page.count(start) != 1 or page.count(end) != 1:
+        raise ValueError(f"the page has no {start.strip()} with its end, or several")
+    return page.split(start)[0] + start + text + end + page.split(end)[1]
 
 
 def main() -> None:
@@ -101,8 +103,11 @@ def main() -> None:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         found = harvest(download(options.wheels or Path(scratch)), Path(scratch) / "robots")
-    plates = f"{100 * not_finite(np.random.default_rng([SEED, 0]), 10_000):.0f} %"
-    texts = {"bodies": bodies_text(found), "rules": rules_table([body.body for body in found.bodies]), "plates": plates}
+    texts = {
+        "bodies": bodies_text(found),
+        "rules": rules_table([body.body for body in found.bodies]),
+        "plates": f"{100 * not_finite(np.random.default_rng([SEED, 0]), 10_000):.0f} %",
+    }
     for text in texts.values():
         print(text, end="\n\n")
     if options.write:
