@@ -168,7 +168,7 @@ def test_mujoco_refuses_a_body_that_is_compiled_as_simple():
 
 
 def test_mjx_has_the_drawn_bodies_in_each_environment():
-    pytest.importorskip("mujoco.mjx", reason="MJX is not installed")
+    pytest.importorskip("mujoco.mjx", reason="MJX is not installed", exc_type=ImportError)
     import jax
     import with_mjx
     import with_mujoco
@@ -398,3 +398,24 @@ def test_basilisk_has_the_drawn_hub():
         close(whole.massSC, body.mass)
         close(np.array(whole.c_B).ravel(), body.centre)
         close(np.array(whole.ISC_PntB_B), spatial(body.mass, body.centre, body.inertia)[3:, 3:])
+
+
+def test_mujoco_refuses_an_impossible_inertia_in_a_file_alone():
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    body = '<mujoco><worldbody><body><freejoint/><inertial pos="0 0 1" mass="1" diaginertia="{}"/></body></worldbody></mujoco>'
+    with pytest.raises(ValueError, match="inertia must satisfy"):
+        mujoco.MjModel.from_xml_string(body.format("1 1 3"))
+    model = mujoco.MjModel.from_xml_string(body.format("1 1 1.5"))
+    data = mujoco.MjData(model)
+    model.body_inertia[1] = [1.0, 1.0, 3.0]
+    mujoco.mj_setConst(model, data)
+    mujoco.mj_step(model, data)
+    assert np.isfinite(data.qacc).all()
+
+
+def test_drake_refuses_an_impossible_inertia():
+    pytest.importorskip("pydrake", reason="Drake is not installed")
+    import with_drake
+
+    with pytest.raises(RuntimeError, match="IsPhysicallyValid"):
+        with_drake.spatial_inertia(gyradius.MassProperties(1.0, [0.0, 0.0, 1.0], np.diag([1.0, 1.0, 3.0])))

@@ -201,7 +201,7 @@ def test_the_python_of_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
     links = f"{link('arm', 1.0, [1.0, 1.5, 2.0], 0.1)}{link('plate', 1.0, [1.0, 1.5, 2.5])}"
     Path("robot.urdf").write_text(f'<robot name="r">{links}</robot>', encoding="utf-8")
     found: dict = {"numpy": np}
-    exec(blocks[0], found)
+    exec(blocks[0], found)  # noqa: S102
     assert list(found["draws"]) == ["arm", "plate"]
     for draws in found["draws"].values():
         assert (draws.mass.shape, draws.centre.shape, draws.inertia.shape) == ((4096,), (4096, 3), (4096, 3, 3))
@@ -209,9 +209,9 @@ def test_the_python_of_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
     found["body"] = gyradius.load("robot.urdf")["plate"]
     found["inertias"] = np.repeat(found["body"].inertia.reshape(1, 9), 4096, axis=0)
     before, after = blocks[1].strip().splitlines()
-    exec(before, found)
+    exec(before, found)  # noqa: S102
     assert not gyradius.is_realizable(found["inertias"].reshape(-1, 3, 3)).all()
-    exec(after, found)
+    exec(after, found)  # noqa: S102
     assert gyradius.is_realizable(found["inertias"].reshape(-1, 3, 3)).all()
 
 
@@ -226,3 +226,16 @@ def test_plates_and_rods_stay_bodies_in_single_precision_with_a_millionth_more(m
         traces = np.trace(single, axis1=1, axis2=2)[:, None, None]
         thicker = (single + 1e-6 * traces * np.eye(3)).astype(np.float32).astype(float)
         assert gyradius.is_realizable(thicker, tolerance=0.0).all()
+
+
+def test_a_mass_alone_or_a_mass_centre_alone_is_never_impossible():
+    generator = rng(10)
+    inertias = bodies(500, generator)
+    masses, centres = generator.uniform(0.01, 100.0, 500), generator.normal(0.0, 10.0, (500, 3))
+    whole = gyradius.pseudo_inertia(gyradius.MassProperties(masses, centres, inertias))
+    # The pseudo-inertia about the origin of the link, which all bodies have positive semidefinite.
+    assert np.linalg.eigvalsh(whole).min() > -1e-12 * np.abs(whole).max()
+    # Of a ball of 1 kg whose inertia about the origin is kept while its mass centre moves by 1 m.
+    about_origin = np.eye(3)
+    moved = gyradius.MassProperties.about_point(1.0, [1.0, 0.0, 0.0], about_origin)
+    assert not moved.is_realizable

@@ -1,6 +1,7 @@
 """Genesis: a draw of some links for each environment.
 
-The scene must be built with `RigidOptions(batch_links_info=True)`, and the entity be loaded with `align=False`.
+The scene must be built with `RigidOptions(batch_links_info=True)`, and the entity be loaded with `align=False` and, from
+URDF, with `merge_fixed_links=False`, so that links at fixed joints keep an inertia of their own.
 """
 
 from __future__ import annotations
