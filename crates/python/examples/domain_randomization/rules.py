@@ -121,65 +121,88 @@ def unchanged(inertia: np.ndarray, rng: np.random.Generator, n: int) -> np.ndarr
 
 
 @dataclass(frozen=True)
+class Source:
+    """Where a rule was read."""
+
+    name: str
+    """Of the repository on GitHub, or of the package."""
+    version: str
+    """A commit of the repository, or a version of the package."""
+    path: str
+    """The file."""
+    function: str
+    """What in the file is the rule."""
+
+    def __str__(self) -> str:
+        """As a link of Markdown."""
+        if "/" in self.name:
+            url = f"https://github.com/{self.name}/blob/{self.version}/{self.path}"
+        else:
+            url = f"https://pypi.org/project/{self.name}/{self.version}/"
+        return f"[{self.name.split('/')[-1]} {self.version}]({url}) `{self.function}`"
+
+
+@dataclass(frozen=True)
 class Rule:
     """A rule with where it was read."""
 
     what: str
     """What the rule does, with its range, as the table says it."""
-    where: str
-    """Repository or package, with the commit or the version that was read."""
-    file: str
-    """The file and the function in it."""
+    source: Source
     draw: Draw
     body: np.ndarray | None = None
     """The inertia that the code uses it on, if its numbers are for one body."""
 
 
-ROBOT_LAB = "fan-ziqi/robot_lab at 09f7fb4"
-ROBOT_LAB_FILE = (
-    "source/robot_lab/robot_lab/tasks/manager_based/locomotion/velocity/mdp/events.py, randomize_rigid_body_inertia"
+ROBOT_LAB = Source(
+    "fan-ziqi/robot_lab",
+    "09f7fb4",
+    "source/robot_lab/robot_lab/tasks/manager_based/locomotion/velocity/mdp/events.py",
+    "randomize_rigid_body_inertia",
 )
-ISAAC_LAB = "isaac-sim/IsaacLab at 025ffcd"
-ISAAC_LAB_INERTIA = "source/isaaclab/isaaclab/envs/mdp/events.py, randomize_rigid_body_inertia"
-ISAAC_LAB_MASS = "source/isaaclab/isaaclab/envs/mdp/events.py, randomize_rigid_body_mass"
-ISAAC_LAB_CENTRE = "source/isaaclab/isaaclab/envs/mdp/events.py, randomize_rigid_body_com"
-ROBOSUITE = "robosuite 1.5.2"
-ROBOSUITE_FILE = "robosuite/utils/mjmod.py, DynamicsModder"
-HOLOSOMA = "amazon-far/holosoma at 76a52b5"
-HOLOSOMA_FILE = "src/holosoma/holosoma/config_values/wbt/g1/randomization.py, for objects"
-CRAZYFLOW = "utiasDSL/crazyflow at 9bf4f2c"
+EVENTS = ("isaac-sim/IsaacLab", "025ffcd", "source/isaaclab/isaaclab/envs/mdp/events.py")
+ISAAC_LAB = Source(*EVENTS, "randomize_rigid_body_inertia")
+ISAAC_LAB_MASS = Source(*EVENTS, "randomize_rigid_body_mass")
+ISAAC_LAB_CENTRE = Source(*EVENTS, "randomize_rigid_body_com")
+ROBOSUITE = Source("robosuite", "1.5.2", "robosuite/utils/mjmod.py", "DynamicsModder")
+HOLOSOMA = Source(
+    "amazon-far/holosoma",
+    "76a52b5",
+    "src/holosoma/holosoma/config_values/wbt/g1/randomization.py",
+    "randomize_object_rigid_body_inertia_startup",
+)
+CRAZYFLOW_TEST = Source("utiasDSL/crazyflow", "9bf4f2c", "tests/unit/test_randomize.py", "test_randomize_inertia")
+CRAZYFLOW = Source("utiasDSL/crazyflow", "9bf4f2c", "examples/randomize.py", "main")
+PLAYGROUND = Source(
+    "playground", "0.2.0", "mujoco_playground/_src/locomotion/g1/randomize.py", "locomotion/g1/randomize.py"
+)
 CRAZYFLIE = np.diag([16.8e-6, 16.8e-6, 29.8e-6])
 """Of drone-models 0.1.0, from which crazyflow takes it, in kg·m²."""
-PLAYGROUND = "playground 0.2.0"
-PLAYGROUND_FILE = "mujoco_playground/_src/locomotion/g1/randomize.py"
 
 RULES = (
-    Rule("I₁₁, I₂₂, I₃₃ × U(0.5, 1.5) each", ROBOT_LAB, ROBOT_LAB_FILE, entrywise_diagonal(0.5, 1.5)),
-    Rule("I₁₁, I₂₂, I₃₃ × U(0.8, 1.2) each", ROBOT_LAB, ROBOT_LAB_FILE, entrywise_diagonal(0.8, 1.2)),
-    Rule("I₁₁, I₂₂, I₃₃ × U(0.9, 1.1) each", ROBOT_LAB, ROBOT_LAB_FILE, entrywise_diagonal(0.9, 1.1)),
-    Rule("each of the nine entries × U(0.9, 1.2)", "a copy of robot_lab", ROBOT_LAB_FILE, entrywise_all(0.9, 1.2)),
-    Rule("I₁₁ × U(0.5, 1.5)", HOLOSOMA, HOLOSOMA_FILE, first_entry(0.5, 1.5)),
-    Rule("each principal moment × U(0.98, 1.02)", ROBOSUITE, ROBOSUITE_FILE, principal_moments(0.02)),
-    Rule("each principal moment × U(0.9, 1.1)", ROBOSUITE, ROBOSUITE_FILE, principal_moments(0.1)),
-    Rule("each principal moment × U(0.7, 1.3)", ROBOSUITE, ROBOSUITE_FILE, principal_moments(0.3)),
-    Rule("diagonal × U(0.5, 1.5), products kept", ISAAC_LAB, ISAAC_LAB_INERTIA, common_diagonal(0.5, 1.5)),
-    Rule("diagonal × U(0.8, 1.2), products kept", ISAAC_LAB, ISAAC_LAB_INERTIA, common_diagonal(0.8, 1.2)),
-    Rule("all nine entries + U(0, 10 % of the mean moment)", ISAAC_LAB, ISAAC_LAB_INERTIA, added_all(0.1)),
-    Rule("all nine entries + U(0, 50 % of the mean moment)", ISAAC_LAB, ISAAC_LAB_INERTIA, added_all(0.5)),
-    Rule("all nine entries = U(0.01, 0.1) kg·m²", ISAAC_LAB, ISAAC_LAB_INERTIA, replaced_all(0.01, 0.1)),
+    Rule("I₁₁, I₂₂, I₃₃ × U(0.5, 1.5) each", ROBOT_LAB, entrywise_diagonal(0.5, 1.5)),
+    Rule("I₁₁, I₂₂, I₃₃ × U(0.8, 1.2) each", ROBOT_LAB, entrywise_diagonal(0.8, 1.2)),
+    Rule("I₁₁, I₂₂, I₃₃ × U(0.9, 1.1) each", ROBOT_LAB, entrywise_diagonal(0.9, 1.1)),
+    Rule("each of the nine entries × U(0.9, 1.2), in a copy of it", ROBOT_LAB, entrywise_all(0.9, 1.2)),
+    Rule("I₁₁ × U(0.5, 1.5)", HOLOSOMA, first_entry(0.5, 1.5)),
+    Rule("each principal moment × U(0.98, 1.02)", ROBOSUITE, principal_moments(0.02)),
+    Rule("each principal moment × U(0.9, 1.1)", ROBOSUITE, principal_moments(0.1)),
+    Rule("each principal moment × U(0.7, 1.3)", ROBOSUITE, principal_moments(0.3)),
+    Rule("diagonal × U(0.5, 1.5), products kept", ISAAC_LAB, common_diagonal(0.5, 1.5)),
+    Rule("diagonal × U(0.8, 1.2), products kept", ISAAC_LAB, common_diagonal(0.8, 1.2)),
+    Rule("all nine entries + U(0, 10 % of the mean moment)", ISAAC_LAB, added_all(0.1)),
+    Rule("all nine entries + U(0, 50 % of the mean moment)", ISAAC_LAB, added_all(0.5)),
+    Rule("all nine entries = U(0.01, 0.1) kg·m²", ISAAC_LAB, replaced_all(0.01, 0.1)),
     Rule(
         "nine entries + N(0, 10⁻⁵ kg·m²), Crazyflie",
-        CRAZYFLOW,
-        "tests/unit/test_randomize.py",
+        CRAZYFLOW_TEST,
         gaussian_all(1e-5),
         CRAZYFLIE,
     ),
-    Rule(
-        "nine entries + N(0, 10⁻⁶ kg·m²), Crazyflie", CRAZYFLOW, "examples/randomize.py", gaussian_all(1e-6), CRAZYFLIE
-    ),
-    Rule("diagonal + U(0, 50 % of the mean moment)", ISAAC_LAB, ISAAC_LAB_INERTIA, added_diagonal(0.5)),
-    Rule("all nine entries × U(0.5, 1.5), one factor", ISAAC_LAB, ISAAC_LAB_INERTIA, common_all(0.5, 1.5)),
-    Rule("mass, and the inertia by the same factor", ISAAC_LAB, ISAAC_LAB_MASS, common_all(0.5, 1.5)),
-    Rule("mass alone", PLAYGROUND, PLAYGROUND_FILE, unchanged),
-    Rule("mass centre alone", ISAAC_LAB, ISAAC_LAB_CENTRE, unchanged),
+    Rule("nine entries + N(0, 10⁻⁶ kg·m²), Crazyflie", CRAZYFLOW, gaussian_all(1e-6), CRAZYFLIE),
+    Rule("diagonal + U(0, 50 % of the mean moment)", ISAAC_LAB, added_diagonal(0.5)),
+    Rule("all nine entries × U(0.5, 1.5), one factor", ISAAC_LAB, common_all(0.5, 1.5)),
+    Rule("mass, and the inertia by the same factor", ISAAC_LAB_MASS, common_all(0.5, 1.5)),
+    Rule("mass alone", PLAYGROUND, unchanged),
+    Rule("mass centre alone", ISAAC_LAB_CENTRE, unchanged),
 )

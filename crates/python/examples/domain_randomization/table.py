@@ -67,7 +67,7 @@ def rules_table(bodies: list[gyradius.MassProperties]) -> str:
         chosen = [body.inertia for body in bodies] if rule.body is None else [rule.body]
         generators = (np.random.default_rng([SEED, purpose, number]) for number in range(len(chosen)))
         shares = [impossible(rule.draw(inertia, rng, DRAWS)) for inertia, rng in zip(chosen, generators)]
-        lines.append(row(rule.what, rule.where, shares))
+        lines.append(row(rule.what, str(rule.source), shares))
     for words, stated in STATED.items():
         laws = (gyradius.law(body, **stated) for body in bodies)
         shares = [impossible(law.rvs(DRAWS, rng=gyradius.key(SEED, str(i))).inertia) for i, law in enumerate(laws)]
