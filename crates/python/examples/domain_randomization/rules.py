@@ -139,7 +139,7 @@ class Source:
             url = f"https://github.com/{self.name}/blob/{self.version}/{self.path}"
         else:
             url = f"https://pypi.org/project/{self.name}/{self.version}/"
-        return f"[{self.name.split('/')[-1]} {self.version}]({url}) `{self.function}`"
+        return f"[{self.name.split('/')[-1]} {self.version}]({url})"
 
 
 @dataclass(frozen=True)
@@ -173,9 +173,7 @@ HOLOSOMA = Source(
 )
 CRAZYFLOW_TEST = Source("utiasDSL/crazyflow", "9bf4f2c", "tests/unit/test_randomize.py", "test_randomize_inertia")
 CRAZYFLOW = Source("utiasDSL/crazyflow", "9bf4f2c", "examples/randomize.py", "main")
-PLAYGROUND = Source(
-    "playground", "0.2.0", "mujoco_playground/_src/locomotion/g1/randomize.py", "locomotion/g1/randomize.py"
-)
+PLAYGROUND = Source("playground", "0.2.0", "mujoco_playground/_src/locomotion/g1/randomize.py", "domain_randomize")
 CRAZYFLIE = np.diag([16.8e-6, 16.8e-6, 29.8e-6])
 """Of drone-models 0.1.0, from which crazyflow takes it, in kg·m²."""
 
