@@ -1,11 +1,10 @@
 //! Draws of what is uncertain besides the inertias, and the separation that they make.
 
-use gyradius_campaign::{Mix, Streams};
+use gyradius_campaign::{Mix, StreamRng, Streams};
 use gyradius_dispersion::{InertiaLaw, ModelDraw};
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::{BodyParameter, Separation, Stack};
 use nalgebra::Vector3;
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::sync::Arc;
 
@@ -57,12 +56,12 @@ impl Draws {
         taken: Taken<'_>,
     ) -> Vec<f64> {
         let Taken { mix, stream, steering } = taken;
-        let score = |(place, (streams, number)): (usize, (&Streams, Number<'_>))| {
-            let stream = groups.stream_of(place, mix, stream(number.each));
-            StandardNormal.sample(&mut streams.run(stream))
-        };
-        let each = self.streams.iter().zip(joint.numbers()).enumerate();
-        let mut scores: Vec<f64> = each.map(score).collect();
+        let numbers = self.streams.iter().zip(joint.numbers()).enumerate();
+        let each = numbers.map(|(place, (streams, number))| {
+            (streams, groups.stream_of(place, mix, stream(number.each)))
+        });
+        let mut scores = Vec::with_capacity(self.streams.len());
+        Streams::each(each, 1, |rng| scores.push(StandardNormal.sample(rng)));
         if let Some(steering) = steering {
             steering.steer(mix.base(), &mut scores);
         }
@@ -119,7 +118,7 @@ impl Draws {
     }
 }
 
-fn past_first_score(mut generator: ChaCha8Rng) -> ChaCha8Rng {
+fn past_first_score(mut generator: StreamRng) -> StreamRng {
     let _: f64 = StandardNormal.sample(&mut generator);
     generator
 }

@@ -9,8 +9,11 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::vector;
 
-/// Attitudes made at a time in a batch: few enough for the first-level cache.
+/// Attitudes made at a time in a batch.
 const CHUNK: usize = 64;
+/// Chunks whose random bits are filled at a time: many enough for generators that fill long slices faster, few enough for the
+/// first-level cache.
+const FILLED: usize = 4;
 
 pub use alternatives::{BoxUniform, MarsagliaUniform, ShoemakeUniform};
 pub use spiral::super_fibonacci;
@@ -58,11 +61,14 @@ impl UniformAttitude {
     /// assert!(attitudes.iter().all(|q| (q.norm() - 1.0).abs() < 1e-15));
     /// ```
     pub fn sample_into<R: Rng + ?Sized>(&self, rng: &mut R, out: &mut [UnitQuaternion<f64>]) {
-        let mut bits = [[0; CHUNK / 2]; 5];
+        let mut bits = [[[0; CHUNK / 2]; 5]; FILLED];
         let mut x = [[0.0; CHUNK]; 4];
-        for chunk in out.chunks_mut(CHUNK) {
-            rng.fill(bits.as_flattened_mut());
-            pulp::Arch::new().dispatch(Shoemake { bits: &bits, x: &mut x, out: chunk });
+        for out in out.chunks_mut(FILLED * CHUNK) {
+            let bits = &mut bits[..out.len().div_ceil(CHUNK)];
+            rng.fill(bits.as_flattened_mut().as_flattened_mut());
+            for (out, bits) in out.chunks_mut(CHUNK).zip(bits) {
+                pulp::Arch::new().dispatch(Shoemake { bits, x: &mut x, out });
+            }
         }
     }
 }

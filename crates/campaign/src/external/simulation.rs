@@ -1,6 +1,6 @@
 //! Runs of a simulator: what is drawn for a run is sent, what comes back are columns beside it.
 
-use rand_chacha::rand_core::Rng;
+use rand::Rng;
 use serde::{Serialize, Serializer};
 use std::ops::Range;
 

@@ -27,7 +27,8 @@ impl<'a> Draws<'a> {
     /// The parts of a draw, in the order of their names.
     fn parts(&self, run: u64, into: &mut Vec<MassProperties>) {
         into.clear();
-        into.extend(self.parts.iter().map(|(part, streams)| part.sample(&mut streams.run(run))));
+        let each = self.parts.iter().map(|(_, streams)| (streams, run));
+        Streams::each(each, 10, |rng| into.push(self.parts[into.len()].0.sample(rng)));
     }
 
     #[cfg(test)]

@@ -1,0 +1,174 @@
+//! The blocks of ChaCha8, made one at a time, or sixteen by the machine's vector units.
+
+use pulp::{Scalar, Simd, WithSimd};
+
+/// Words of a block.
+pub(crate) const WORDS: usize = 16;
+/// How many blocks are made side by side.
+pub(crate) const BATCH: usize = 16;
+
+/// A block of a stream of ChaCha8 (Bernstein 2008, “ChaCha, a variant of Salsa20”). Blocks are counted in 64 bits, and so
+/// are the streams of a key.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Block {
+    key: [u32; 8],
+    stream: u64,
+    number: u64,
+}
+
+impl Block {
+    /// The first block of stream 0 of a key.
+    pub(crate) fn new(key: &[u8; 32]) -> Self {
+        let (words, _) = key.as_chunks();
+        let key = std::array::from_fn(|i| u32::from_le_bytes(words[i]));
+        Self { key, ..Self::default() }
+    }
+
+    /// The first block of another stream of the key.
+    pub(crate) fn of_stream(self, stream: u64) -> Self {
+        Self { stream, number: 0, ..self }
+    }
+
+    /// The block that begins the batch in which it is, if the stream is cut into batches.
+    pub(crate) fn batch(self) -> Self {
+        Self { number: self.number / BATCH as u64 * BATCH as u64, ..self }
+    }
+
+    /// The block that comes as many later in the stream.
+    pub(crate) fn later(self, blocks: usize) -> Self {
+        Self { number: self.number.wrapping_add(blocks as u64), ..self }
+    }
+
+    /// How many come before it in the stream.
+    pub(crate) fn number(&self) -> u64 {
+        self.number
+    }
+
+    pub(crate) fn words(&self) -> [u32; WORDS] {
+        mixed(Scalar::new(), self.state())
+    }
+
+    #[inline(always)]
+    fn state(&self) -> [u32; WORDS] {
+        // “expand 32-byte k”.
+        let [a, b, c, d] = [0x6170_7865, 0x3320_646e, 0x7962_2d32, 0x6b20_6574];
+        let [e, f, g, h, i, j, k, l] = self.key;
+        let [m, n] = [self.number as u32, (self.number >> 32) as u32];
+        let [o, p] = [self.stream as u32, (self.stream >> 32) as u32];
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p]
+    }
+}
+
+/// The words of some blocks, made side by side.
+#[derive(Clone, Debug)]
+pub(crate) struct Batch([[u32; BATCH]; WORDS]);
+
+impl Batch {
+    /// Blocks of any streams.
+    #[inline]
+    pub(crate) fn of_each(blocks: impl Iterator<Item = Block>) -> Self {
+        let mut states = [[0; BATCH]; WORDS];
+        let mut places = 0;
+        for block in blocks.take(BATCH) {
+            for (row, word) in states.iter_mut().zip(block.state()) {
+                row[places] = word;
+            }
+            places += 1;
+        }
+        Self::mixed(states, places)
+    }
+
+    /// A block and those that follow it in its stream, up to a number of them.
+    pub(crate) fn from(first: Block, places: usize) -> Self {
+        let mut states = first.state().map(|word| [word; BATCH]);
+        for place in 0..places.min(BATCH) {
+            let number = first.later(place).number;
+            (states[12][place], states[13][place]) = (number as u32, (number >> 32) as u32);
+        }
+        Self::mixed(states, places.min(BATCH))
+    }
+
+    /// The words at a place.
+    #[inline]
+    pub(crate) fn words(&self, place: usize) -> [u32; WORDS] {
+        std::array::from_fn(|i| self.0[i][place])
+    }
+
+    fn mixed(mut states: [[u32; BATCH]; WORDS], places: usize) -> Self {
+        pulp::Arch::new().dispatch(Mixing { states: &mut states, places });
+        Self(states)
+    }
+}
+
+/// States, of which those at the first places are turned into their words by the machine's vector units.
+struct Mixing<'a> {
+    states: &'a mut [[u32; BATCH]; WORDS],
+    places: usize,
+}
+
+impl WithSimd for Mixing<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for at in 0..self.places.div_ceil(S::U32_LANES) {
+            let state = std::array::from_fn(|i| S::as_simd_u32s(&self.states[i]).0[at]);
+            for (row, words) in self.states.iter_mut().zip(mixed(simd, state)) {
+                S::as_mut_simd_u32s(row).0[at] = words;
+            }
+        }
+    }
+}
+
+/// The words of as many blocks as a vector has places.
+#[inline(always)]
+fn mixed<S: Simd>(simd: S, state: [S::u32s; WORDS]) -> [S::u32s; WORDS] {
+    let mut x = state;
+    for _ in 0..4 {
+        for i in 0..4 {
+            quarter_round(simd, &mut x, [i, 4 + i, 8 + i, 12 + i]);
+        }
+        for i in 0..4 {
+            let diagonal = [i, 4 + (i + 1) % 4, 8 + (i + 2) % 4, 12 + (i + 3) % 4];
+            quarter_round(simd, &mut x, diagonal);
+        }
+    }
+    std::array::from_fn(|i| simd.add_u32s(x[i], state[i]))
+}
+
+#[inline(always)]
+fn quarter_round<S: Simd>(simd: S, x: &mut [S::u32s; WORDS], [a, b, c, d]: [usize; 4]) {
+    for (to, with, from, left) in [(a, b, d, 16), (c, d, b, 12), (a, b, d, 8), (c, d, b, 7)] {
+        x[to] = simd.add_u32s(x[to], x[with]);
+        let bits = simd.xor_u32s(x[from], x[to]);
+        let upper = simd.wrapping_dyn_shl_u32s(bits, simd.splat_u32s(left));
+        let lower = simd.wrapping_dyn_shr_u32s(bits, simd.splat_u32s(32 - left));
+        x[from] = simd.or_u32s(upper, lower);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every vector unit that this machine has, and none.
+    #[test]
+    fn vectors_of_any_length_make_the_same_words() {
+        let blocks = |i: usize| Block::new(&[i as u8; 32]).of_stream(1 << (4 * i)).later(i);
+        let states: [[u32; BATCH]; WORDS] =
+            std::array::from_fn(|i| std::array::from_fn(|place| blocks(place).state()[i]));
+        let expected: [_; BATCH] = std::array::from_fn(|place| blocks(place).words());
+        let made = |mix: &dyn Fn(Mixing<'_>)| {
+            let mut states = states;
+            mix(Mixing { states: &mut states, places: BATCH });
+            std::array::from_fn(|place| Batch(states).words(place))
+        };
+        assert_eq!(made(&|mixing| Scalar::new().vectorize(mixing)), expected);
+        assert_eq!(made(&|mixing| pulp::Scalar256b.vectorize(mixing)), expected);
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = pulp::x86::V3::try_new() {
+            assert_eq!(made(&|mixing| Simd::vectorize(simd, mixing)), expected);
+        }
+        assert_eq!(made(&|mixing| pulp::Arch::new().dispatch(mixing)), expected);
+    }
+}
