@@ -11,7 +11,7 @@ use std::convert::Infallible;
 use crate::{
     error::refused,
     json,
-    rows::{attitude, made, made_one, row_of_attitude, rows},
+    rows::{attitude, drawn, made_one, row_of_attitude, rows},
     stream::{Places, Stream},
 };
 
@@ -85,15 +85,13 @@ impl AttitudeCore {
         places: Option<PyReadonlyArray1<'py, u64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let places = Places::new(count, places.as_ref())?;
-        let streams = stream.streams();
-        made(py, count, |i| {
-            let rng = &mut streams.run(places.at(i));
+        drawn(py, count, (stream.streams(), &places), 6, |rng| {
             let drawn: UnitQuaternion<f64> = match &self.0 {
                 Law::Axes(law) => law.sample(rng),
                 Law::FisherBingham(law) => law.sample(rng),
                 Law::AboutAxis(law) => law.sample(rng),
             };
-            Ok::<_, Infallible>(row_of_attitude(&drawn))
+            row_of_attitude(&drawn)
         })
     }
 

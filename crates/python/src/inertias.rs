@@ -17,7 +17,7 @@ use std::{convert::Infallible, fmt};
 use crate::{
     error::refused,
     json,
-    rows::{made, made_one, matrix, row_of, rows},
+    rows::{drawn, made_one, matrix, row_of, rows},
     stream::{Places, Stream},
 };
 
@@ -128,10 +128,9 @@ impl InertiaCore {
         places: Option<PyReadonlyArray1<'py, u64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let places = Places::new(count, places.as_ref())?;
-        let streams = stream.streams();
-        made(py, count, |i| {
-            let draw: ModelDraw = self.0.sample(&mut streams.run(places.at(i)));
-            Ok::<_, Infallible>(row_of(draw.inertia.matrix()))
+        drawn(py, count, (stream.streams(), &places), 10, |rng| {
+            let draw: ModelDraw = self.0.sample(rng);
+            row_of(draw.inertia.matrix())
         })
     }
 

@@ -8,13 +8,13 @@ use gyradius_inertia::{LogCholesky, Region};
 use nalgebra::SMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::{Bound, PyResult, Python, pyclass, pymethods};
-use std::{convert::Infallible, sync::Arc};
+use std::sync::Arc;
 
 use crate::{
     bodies::{body, ten},
     error::refused,
     json,
-    rows::{made, made_one, rows},
+    rows::{drawn, made_one, rows},
     stream::{Places, Stream},
 };
 
@@ -137,16 +137,14 @@ impl BodyCore {
         places: Option<PyReadonlyArray1<'py, u64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let places = Places::new(count, places.as_ref())?;
-        let streams = stream.streams();
+        let from = (stream.streams(), &places);
         match &self.0 {
             // Not through a generator behind a pointer.
-            Law::Joint(law) => made(py, count, |i| {
+            Law::Joint(law) => drawn(py, count, from, 12, |rng| {
                 use rand_distr::Distribution;
-                Ok::<_, Infallible>(ten(law.sample(&mut streams.run(places.at(i)))))
+                ten(law.sample(rng))
             }),
-            Law::Other(law) => made(py, count, |i| {
-                Ok::<_, Infallible>(law.draw(&mut streams.run(places.at(i))).values())
-            }),
+            Law::Other(law) => drawn(py, count, from, 12, |rng| law.draw(rng).values()),
         }
     }
 

@@ -1,12 +1,16 @@
 //! Rows of numbers: in from NumPy without a copy, out made by all cores with the interpreter let go.
 
+use gyradius_campaign::{StreamRng, Streams};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::{Bound, PyErr, PyResult, Python};
 use rayon::prelude::*;
-use std::fmt::Display;
+use std::{convert::Infallible, fmt::Display};
 
-use crate::error::{refused, refused_row};
+use crate::{
+    error::{refused, refused_row},
+    stream::Places,
+};
 
 /// Rows that one core does at a time: fewer than this many are not worth a second core.
 const GRAIN: usize = 1024;
@@ -50,11 +54,70 @@ pub(crate) fn made_one<'py, T: numpy::Element + Copy + Default, E: Display + Sen
     Ok(PyArray1::from_vec(py, try_make(py, count, T::default(), make)?))
 }
 
+/// Draws rows of `N` numbers, each from a stream of its own. Most draws take about as many `u64` as `words` says, which
+/// changes none of them.
+pub(crate) fn drawn<'py, const N: usize>(
+    py: Python<'py>,
+    count: usize,
+    from: (&Streams, &Places<'_>),
+    words: usize,
+    draw: impl Fn(&mut StreamRng) -> [f64; N] + Sync,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let drawn = try_draw(py, count, [0.0; N], from, words, draw)?;
+    PyArray1::from_vec(py, drawn.into_flattened()).reshape([count, N])
+}
+
+/// The same of rows of one number.
+pub(crate) fn drawn_one<'py>(
+    py: Python<'py>,
+    count: usize,
+    from: (&Streams, &Places<'_>),
+    words: usize,
+    draw: impl Fn(&mut StreamRng) -> f64 + Sync,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    Ok(PyArray1::from_vec(py, try_draw(py, count, 0.0, from, words, draw)?))
+}
+
+fn try_draw<T: Copy + Send + Sync>(
+    py: Python<'_>,
+    count: usize,
+    zero: T,
+    (streams, places): (&Streams, &Places<'_>),
+    words: usize,
+    draw: impl Fn(&mut StreamRng) -> T + Sync,
+) -> PyResult<Vec<T>> {
+    fill(py, count, zero, |first, out| {
+        let each = (first..first + out.len()).map(|row| (streams, places.at(row)));
+        let mut out = out.iter_mut();
+        Streams::each(each, words, |rng| {
+            if let Some(out) = out.next() {
+                *out = draw(rng);
+            }
+        });
+        Ok::<_, (usize, Infallible)>(())
+    })
+}
+
 fn try_make<T: Copy + Send + Sync, E: Display + Send>(
     py: Python<'_>,
     count: usize,
     zero: T,
     make: impl Fn(usize) -> Result<T, E> + Sync,
+) -> PyResult<Vec<T>> {
+    fill(py, count, zero, |first, out| {
+        for (row, out) in (first..).zip(out) {
+            *out = make(row).map_err(|error| (row, error))?;
+        }
+        Ok(())
+    })
+}
+
+/// Fills rows, some at a time from the first of them on, with an error at the row that cannot be made.
+fn fill<T: Copy + Send + Sync, E: Display + Send>(
+    py: Python<'_>,
+    count: usize,
+    zero: T,
+    some: impl Fn(usize, &mut [T]) -> Result<(), (usize, E)> + Sync,
 ) -> PyResult<Vec<T>> {
     let mut out = Vec::new();
     out.try_reserve_exact(count).map_err(|_| no_memory(count))?;
@@ -63,13 +126,7 @@ fn try_make<T: Copy + Send + Sync, E: Display + Send>(
         let end = count.min(start + SLICE);
         let failed = py.detach(|| {
             out.resize(end, zero);
-            let fill = |(place, out): (usize, &mut [T])| {
-                for (i, out) in out.iter_mut().enumerate() {
-                    let row = place * GRAIN + i + start;
-                    *out = make(row).map_err(|error| (row, error))?;
-                }
-                Ok::<(), (usize, E)>(())
-            };
+            let fill = |(place, out): (usize, &mut [T])| some(place * GRAIN + start, out);
             let new = &mut out[start..];
             if new.len() <= GRAIN {
                 return fill((0, new)).err();

@@ -11,7 +11,7 @@ use crate::{
     bodies::body,
     error::refused,
     json,
-    rows::{made_one, rows},
+    rows::{drawn_one, made_one, rows},
     stream::{Places, Stream},
 };
 
@@ -47,8 +47,7 @@ impl ScalarCore {
         places: Option<PyReadonlyArray1<'py, u64>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let places = Places::new(count, places.as_ref())?;
-        let streams = stream.streams();
-        made_one(py, count, |i| Ok::<_, Infallible>(self.0.sample(&mut streams.run(places.at(i)))))
+        drawn_one(py, count, (stream.streams(), &places), 1, |rng| self.0.sample(rng))
     }
 
     /// ln of the density; none where the law has none.
