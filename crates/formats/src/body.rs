@@ -29,12 +29,16 @@ impl Products {
     }
 
     /// How files spell it.
-    pub(crate) fn parse(word: &str) -> Option<Self> {
-        match word {
-            "tensor" => Some(Self::TensorEntries),
-            "integrals" => Some(Self::Integrals),
-            _ => None,
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::TensorEntries => "tensor",
+            Self::Integrals => "integrals",
         }
+    }
+
+    /// What a word of a file means.
+    pub(crate) fn parse(word: &str) -> Option<Self> {
+        [Self::TensorEntries, Self::Integrals].into_iter().find(|one| one.name() == word)
     }
 }
 

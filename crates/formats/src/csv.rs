@@ -6,6 +6,7 @@ use crate::{
     Body, BodyError, FileProblem, MAX_BODIES, Products,
     body::{NAMES, Number, Reading},
     error::Refusal,
+    products_comment::stated_products,
     text::Text,
 };
 
@@ -313,15 +314,6 @@ fn is_comment(line: &str) -> bool {
     line.starts_with('#') || line.trim().is_empty()
 }
 
-/// What a comment above the header, which ends at `end`, says of the products: `# products = integrals`.
-pub(crate) fn stated_products(source: &str, end: usize) -> Option<Products> {
-    let comments = source.get(..end)?.lines().filter_map(|line| line.strip_prefix('#'));
-    let stated = comments.filter_map(|comment| comment.trim_start().strip_prefix("products"));
-    stated
-        .filter_map(|rest| rest.split(['=', ' ', ',', '"', '\'']).find_map(Products::parse))
-        .next_back()
-}
-
 /// What there is most of in a header; a comma where nothing is.
 fn separator(header: &str) -> char {
     let count = |separator: char| header.matches(separator).count();
@@ -378,7 +370,7 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal>
     let source = text.as_str();
     let unclosed = |at| text.malformed(at, "a quotation mark is not closed");
     let (start, header, mut rows) = find_header(text)?;
-    let products = stated_products(source, start).unwrap_or(default);
+    let products = stated_products(text, start)?.unwrap_or(default);
 
     let mut bodies = Vec::new();
     while let Some(row) = rows.next() {

@@ -42,6 +42,7 @@ mod new_file;
 mod orientation;
 mod parts;
 mod plain;
+mod products_comment;
 mod references;
 mod repair;
 mod robot;

@@ -3,8 +3,9 @@
 use crate::{
     BodyError, MAX_BODIES, Products,
     body::Number,
-    csv::{Field, Rows, squeezed, stated_products},
+    csv::{Field, Rows, squeezed},
     parts::heading::{Column, Heading, VALUES},
+    products_comment::stated_products,
     text::Text,
 };
 
@@ -51,7 +52,7 @@ impl TenTable {
         }
         let has_first_moments = columns.iter().flatten().any(|(.., first_moment)| *first_moment);
         let start = first.first().map_or(0, |field| field.start);
-        let sign = stated_products(text.as_str(), start).unwrap_or(products).sign();
+        let sign = stated_products(&text, start).ok()?.unwrap_or(products).sign();
         let mut found = Vec::new();
         while let Some(fields) = rows.next() {
             let fields = fields.ok()?;

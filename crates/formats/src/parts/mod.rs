@@ -12,8 +12,9 @@ use std::collections::BTreeMap;
 use crate::{
     BodyError, FileProblem, MAX_BODIES, Products,
     body::shortened,
-    csv::{Field, Rows, stated_products},
+    csv::{Field, Rows},
     error::Refusal,
+    products_comment::stated_products,
     text::Text,
 };
 use heading::{Column, Heading};
@@ -145,7 +146,7 @@ impl PartsTable {
         }
         let has_parents = has(Column::Parent);
         let start = first.first().map_or(0, |field| field.start);
-        let products = stated_products(text.as_str(), start).or(products);
+        let products = stated_products(&text, start)?.or(products);
         let mut found = Vec::new();
         while let Some(fields) = next(&text, &mut rows)? {
             let line = line_of(&text, &fields);
