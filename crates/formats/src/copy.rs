@@ -5,9 +5,9 @@ use nalgebra::{Matrix3, UnitQuaternion};
 
 use crate::{
     LinkProblem,
-    body::{ENTRIES, Place, Reading},
+    body::{ENTRIES, NAMES, Place, Reading},
     edit::Edit,
-    frame::{Diagonal, Frame, Spot},
+    frame::{Diagonal, Frame, InertiaSpot, Spot},
 };
 
 /// What must change for a link to have these mass properties in its own frame; `before` is its inertia there.
@@ -27,7 +27,7 @@ pub(crate) fn edits(
         write(&mut edits, &frame.centre_spot, &centre, "mass centre")?;
     }
     if before == after.inertia().matrix() {
-        return Ok(edits);
+        return Ok(opened(edits, &frame.closed));
     }
     let inertia = after
         .inertia()
@@ -38,9 +38,40 @@ pub(crate) fn edits(
         Some(diagonal) if !is_diagonal(&inertia) => {
             turned(&mut edits, reading, diagonal, frame, &inertia)?
         }
-        Some(_) | None => entries(&mut edits, reading, frame, &inertia)?,
+        Some(_) | None => match &frame.inertia_spot {
+            Some(spot) => whole(&mut edits, spot, &inertia),
+            None => entries(&mut edits, reading, frame, &inertia)?,
+        },
     }
-    Ok(edits)
+    Ok(opened(edits, &frame.closed))
+}
+
+/// An inertia of which nothing is in the file.
+fn whole(edits: &mut Vec<Edit>, spot: &InertiaSpot, inertia: &InertiaMatrix) {
+    let InertiaSpot { at, prefix, in_attributes } = spot;
+    let values = NAMES.iter().zip(inertia.entries());
+    let element = if *in_attributes {
+        let entries: String = values.map(|(name, x)| format!(" {name}=\"{}\"", text(x))).collect();
+        format!("<{prefix}inertia{entries}/>")
+    } else {
+        let entries: String = values
+            .map(|(name, x)| format!("<{prefix}{name}>{}</{prefix}{name}>", text(x)))
+            .collect();
+        format!("<{prefix}inertia>{entries}</{prefix}inertia>")
+    };
+    edits.push((Place { start: *at, end: *at }, element));
+}
+
+/// The edits with an end tag for every element that has got something in it and ended by `/>`.
+fn opened(mut edits: Vec<Edit>, closed: &[(usize, String)]) -> Vec<Edit> {
+    for (at, end) in closed {
+        if edits.iter().any(|(place, _)| place.start == *at) {
+            // Of the same place, what comes first in the list comes first in the copy.
+            edits.insert(0, (Place { start: *at, end: *at }, ">".to_owned()));
+            edits.push((Place { start: *at, end: at + 2 }, end.clone()));
+        }
+    }
+    edits
 }
 
 /// Whether all products are those of rounding.

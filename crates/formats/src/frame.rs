@@ -20,6 +20,10 @@ pub(crate) struct Frame {
     pub(crate) mass_spot: Spot,
     /// Where entries go that the file leaves to their defaults.
     pub(crate) entry_spots: Vec<Spot>,
+    /// Where an inertia goes of which the file leaves all to the defaults.
+    pub(crate) inertia_spot: Option<InertiaSpot>,
+    /// Where elements end by `/>` in which something may have to be written, and their end tags.
+    pub(crate) closed: Vec<(usize, String)>,
     /// Of MJCF with `diaginertia`.
     pub(crate) diagonal: Option<Diagonal>,
 }
@@ -33,6 +37,16 @@ pub(crate) struct Diagonal {
     pub(crate) orientation: Option<Place>,
     /// The four numbers of `quat`.
     pub(crate) quaternion: Option<Vec<Place>>,
+}
+
+/// Where the element `<inertia>` goes, and how it is written.
+#[derive(Clone, Debug)]
+pub(crate) struct InertiaSpot {
+    pub(crate) at: usize,
+    /// With the colon, if there is one.
+    pub(crate) prefix: String,
+    /// Entries are attributes, as in SDFormat 1.0.
+    pub(crate) in_attributes: bool,
 }
 
 /// Where numbers stand, or go if the file leaves them to their defaults.
@@ -58,12 +72,17 @@ impl Spot {
 
     /// A child more of an element.
     fn child(node: Node<'_, '_>, open: &str, name: &str, close: &str) -> Self {
-        let prefix = node.prefix();
-        let colon = if prefix.is_empty() { "" } else { ":" };
-        let after = close.replace(name, &format!("{prefix}{colon}{name}"));
-        let before = format!("<{prefix}{colon}{open}");
+        let prefix = prefix(node);
+        let after = close.replace(name, &format!("{prefix}{name}"));
+        let before = format!("<{prefix}{open}");
         node.inside().map_or(Self::Nowhere, |at| Self::missing(at, before, &after))
     }
+}
+
+/// The prefix of an element with its colon, if it has one.
+fn prefix(node: Node<'_, '_>) -> String {
+    let prefix = node.prefix();
+    if prefix.is_empty() { String::new() } else { format!("{prefix}:") }
 }
 
 /// How the angles of an MJCF file are meant.
@@ -113,6 +132,8 @@ fn urdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
         centre_spot,
         mass_spot: Spot::Nowhere,
         entry_spots: Vec::new(),
+        inertia_spot: None,
+        closed: Vec::new(),
         diagonal: None,
     })
 }
@@ -143,6 +164,8 @@ fn mjcf(node: Node<'_, '_>, angles: &Angles) -> Result<Frame, LinkProblem> {
         centre_spot,
         mass_spot: Spot::Nowhere,
         entry_spots: Vec::new(),
+        inertia_spot: None,
+        closed: Vec::new(),
         diagonal,
     })
 }
@@ -187,6 +210,13 @@ fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
         (None, None) => Spot::child(node, "pose>", "pose", " 0 0 0</pose>"),
     };
     let inertia = node.child("inertia");
+    let inertia_spot = match inertia {
+        Some(_) => None,
+        None => node.inside().map(|at| {
+            let in_attributes = node.attribute("mass").is_some();
+            InertiaSpot { at, prefix: prefix(node), in_attributes }
+        }),
+    };
     let entry = |name: &str| {
         inertia.map_or(Spot::Nowhere, |inertia| match inertia.attribute_names().next() {
             Some(_) => Spot::missing(inertia.after_name(), format!(" {name}=\""), "\""),
@@ -199,8 +229,30 @@ fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
         centre_spot,
         mass_spot: Spot::child(node, "mass>", "mass", "</mass>"),
         entry_spots: NAMES.iter().map(|name| entry(name)).collect(),
+        inertia_spot,
+        closed: [Some(node), pose, inertia]
+            .into_iter()
+            .flatten()
+            .filter_map(Node::closed)
+            .collect(),
         diagonal: None,
     })
+}
+
+/// What an inertia of SDF leaves to the defaults of the format, but for products.
+pub(crate) fn defaults(node: Node<'_, '_>) -> Vec<&'static str> {
+    let says = |node: Node<'_, '_>, name: &str| {
+        node.child(name).is_some() || node.attribute(name).is_some()
+    };
+    let mut left = Vec::new();
+    if !says(node, "mass") {
+        left.push("mass");
+    }
+    match node.child("inertia") {
+        None => left.push("inertia"),
+        Some(inertia) => left.extend(NAMES[..3].iter().filter(|name| !says(inertia, name))),
+    }
+    left
 }
 
 fn is_true(word: &str) -> bool {

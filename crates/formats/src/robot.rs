@@ -2,10 +2,13 @@
 
 use gyradius_inertia::{InertiaMatrix, MassProperties, RELATIVE_TOLERANCE};
 use nalgebra::{Matrix3, Vector3};
-use std::{collections::HashMap, path::Path};
+use std::{
+    collections::{HashMap, HashSet},
+    path::Path,
+};
 
 use crate::{
-    BodyError, Format, Gap, InertiaFile, LinkProblem, Products, RobotError,
+    Body, BodyError, Format, Gap, InertiaFile, LinkProblem, Products, RobotError,
     copy::edits,
     edit::{Edit, edited},
     frame::{self, Frame},
@@ -55,6 +58,7 @@ pub struct RobotLink {
     line: usize,
     read: Result<(LinkNumbers, Frame), LinkProblem>,
     geometry: Result<Vec<Solid>, GeometryProblem>,
+    defaults: Vec<&'static str>,
 }
 
 /// The ten numbers of a link as its file has them, which need not be those of a body.
@@ -86,7 +90,8 @@ impl LinkNumbers {
 }
 
 impl RobotLink {
-    /// Name of the link, `unnamed` if it has none. The second of a name in a file is called `name#2`, and so on.
+    /// Name of the link, `unnamed` if it has none. The second of a name in a file is called `name#2`, or `name##2` if another
+    /// one is called so in the file, and so on. A second inertia in one link has the name of the first, and no numbers.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
@@ -105,6 +110,49 @@ impl RobotLink {
     pub fn numbers(&self) -> Result<&LinkNumbers, &LinkProblem> {
         self.read.as_ref().map(|(numbers, _)| numbers)
     }
+
+    /// What the file leaves to the defaults of SDF: `mass` (1 kg), and `inertia` as a whole or `ixx`, `iyy`, `izz` (1 kg·m²).
+    /// Products, which are zero then, are not named.
+    #[must_use]
+    pub fn defaults(&self) -> &[&'static str] {
+        &self.defaults
+    }
+}
+
+/// Names that are told apart.
+#[derive(Debug)]
+struct Names {
+    taken: HashSet<String>,
+    counts: HashMap<String, usize>,
+}
+
+impl Names {
+    fn of(bodies: &[Body]) -> Self {
+        let taken = bodies.iter().map(|body| named(body).to_owned()).collect();
+        Self { taken, counts: HashMap::new() }
+    }
+
+    /// A name that no other has: of those that are written in the file, the first keeps its own.
+    fn next(&mut self, name: &str) -> String {
+        let count = self.counts.entry(name.to_owned()).or_default();
+        *count += 1;
+        if *count == 1 {
+            return name.to_owned();
+        }
+        let mut marks = "#".to_owned();
+        loop {
+            let told = format!("{name}{marks}{count}");
+            if self.taken.insert(told.clone()) {
+                return told;
+            }
+            marks.push('#');
+        }
+    }
+}
+
+/// The name of a body, or what it is called without one.
+fn named(body: &Body) -> &str {
+    if body.name().is_empty() { "unnamed" } else { body.name() }
 }
 
 impl RobotFile {
@@ -147,15 +195,15 @@ impl RobotFile {
         let text = Text::new(&file.bytes, false).map_err(|_| RobotError::Format { format })?;
         let tree = Tree::parse(&text).map_err(|_| RobotError::Format { format })?;
         let angles = frame::angles(&tree);
-        let mut names: HashMap<String, usize> = HashMap::new();
+        let mut names = Names::of(file.bodies());
         let mut links = Vec::new();
         let extension = known_extension(file.path());
         let _ = robots::each(&tree, format, extension, Products::default(), |node, body| {
-            let name = if body.name().is_empty() { "unnamed" } else { body.name() };
-            let count = names.entry(name.to_owned()).or_default();
-            *count += 1;
-            let name = if *count == 1 { name.to_owned() } else { format!("{name}#{count}") };
+            let repeated = node.is_repeated();
+            let name = if repeated { named(&body).to_owned() } else { names.next(named(&body)) };
             let read = match body.reading() {
+                _ if repeated && format == Format::Mjcf => Err(LinkProblem::SecondOfBody),
+                _ if repeated => Err(LinkProblem::Second),
                 _ if format == Format::Urdf && is_in_gazebo(node) => Err(LinkProblem::Gazebo),
                 None => Err(body.inertia().err().map_or(LinkProblem::Gazebo, Into::into)),
                 Some(reading) => frame::of(node, format, &angles).and_then(|frame| {
@@ -172,7 +220,8 @@ impl RobotFile {
                 }),
             };
             let geometry = geometry::of(node, format, &angles);
-            links.push(RobotLink { name, line: body.line(), read, geometry });
+            let defaults = if format == Format::Sdf { frame::defaults(node) } else { Vec::new() };
+            links.push(RobotLink { name, line: body.line(), read, geometry, defaults });
         });
         let from_geometry = format == Format::Mjcf
             && tree.all("compiler").any(|node| node.attribute("inertiafromgeom") == Some("true"));

@@ -12,6 +12,12 @@ pub enum LinkProblem {
     /// It stands beside the link's own, for Gazebo.
     #[error("it stands in a block for Gazebo, beside the link's own")]
     Gazebo,
+    /// Another one of the link stands before it.
+    #[error("it is a second <inertial> of its link, and simulators read the first alone")]
+    Second,
+    /// Another one of the body stands before it, in MJCF.
+    #[error("it is a second <inertial> of its body, and MuJoCo refuses the file")]
+    SecondOfBody,
     /// Its frame is given in another one than the link's.
     #[error("its pose is relative to \"{frame}\": it must be that in the link")]
     RelativeTo {
@@ -52,9 +58,11 @@ impl LinkProblem {
                 | BodyError::Expression { .. },
             )
             | Self::Orientation { .. }
+            | Self::SecondOfBody
             | Self::OutOfRange => true,
             Self::Body(_)
             | Self::Gazebo
+            | Self::Second
             | Self::RelativeTo { .. }
             | Self::Angles
             | Self::NoPlace { .. } => false,

@@ -33,6 +33,8 @@ pub(crate) struct Element<'a> {
     start: usize,
     /// Where its content begins, if it has an end tag.
     inside: Option<usize>,
+    /// Where its `/>` stands, if it has none.
+    closed: Option<usize>,
     parent: Option<usize>,
     /// Index after its last descendant.
     end: usize,
@@ -86,7 +88,9 @@ impl<'a> Tree<'a> {
                     }
                 }
                 Event::Empty(tag) => {
-                    tree.push(&tag, open.last().copied(), before)?;
+                    let index = tree.push(&tag, open.last().copied(), before)?;
+                    let after = usize::try_from(reader.buffer_position()).ok();
+                    tree.elements[index].closed = after.and_then(|after| after.checked_sub(2));
                 }
                 Event::End(_) => {
                     // That there is one, and of this name, the reader has checked.
@@ -152,6 +156,7 @@ impl<'a> Tree<'a> {
             name: self.own(tag.name().as_ref()),
             start: before,
             inside: None,
+            closed: None,
             parent,
             end: index + 1,
             attributes,
@@ -331,9 +336,21 @@ impl<'t, 'a> Node<'t, 'a> {
         self.element().start + 1 + self.element().name.len()
     }
 
-    /// Where a child more can be written, if the element has an end tag.
+    /// Where a child more can be written: in an element without an end tag, before its `/>`.
     pub(crate) fn inside(self) -> Option<usize> {
-        self.element().inside
+        self.element().inside.or(self.element().closed)
+    }
+
+    /// Where `/>` stands that ends this element, and the end tag that it stands for.
+    pub(crate) fn closed(self) -> Option<(usize, String)> {
+        Some((self.element().closed?, format!("</{}>", self.element().name)))
+    }
+
+    /// Whether a sibling of its name stands before it.
+    pub(crate) fn is_repeated(self) -> bool {
+        let same = |node: &Self| node.name() == self.name();
+        let first = self.parent().and_then(|parent| parent.children().find(same));
+        first.is_some_and(|first| first.index != self.index)
     }
 
     /// The numbers that are the text of this element.

@@ -592,3 +592,153 @@ fn names_are_told_apart_and_paths_found() {
     let file = RobotFile::parse(Path::new("a.xml"), text.as_bytes().to_vec()).unwrap();
     assert_eq!(file.relative_paths(), ["assets/a.stl", "b.xml"]);
 }
+
+/// What `<inertial>` of SDF says and leaves out, in both ways of writing.
+#[derive(Clone, Debug)]
+struct Partial {
+    mass: Option<f64>,
+    pose: Option<bool>,
+    /// Which entries there are, in an element of their own.
+    entries: Option<[bool; 6]>,
+    in_attributes: bool,
+    short: bool,
+    prefix: bool,
+}
+
+const ENTRIES: [(&str, f64); 6] =
+    [("ixx", 2.0), ("iyy", 2.5), ("izz", 3.0), ("ixy", 0.1), ("ixz", -0.2), ("iyz", 0.3)];
+
+impl Partial {
+    fn xml(&self) -> String {
+        let p = if self.prefix { "x:" } else { "" };
+        let element = |name: &str, attributes: &str, inside: &str| {
+            if inside.is_empty() && self.short {
+                format!("<{p}{name}{attributes}/>")
+            } else {
+                format!("<{p}{name}{attributes}>{inside}</{p}{name}>")
+            }
+        };
+        let (mut attributes, mut inside) = (String::new(), String::new());
+        if let Some(mass) = self.mass {
+            if self.in_attributes {
+                attributes = format!(" mass='{mass}'");
+            } else {
+                inside += &format!("<{p}mass>{mass}</{p}mass>");
+            }
+        }
+        if let Some(is_empty) = self.pose {
+            inside += &element("pose", "", if is_empty { "" } else { "0.1 0 0 0 0 0" });
+        }
+        if let Some(there) = self.entries {
+            let given = ENTRIES.into_iter().zip(there).filter(|(_, there)| *there);
+            let (mut of_inertia, mut children) = (String::new(), String::new());
+            for ((name, x), _) in given {
+                if self.in_attributes {
+                    of_inertia += &format!(" {name}='{x}'");
+                } else {
+                    children += &format!("<{p}{name}>{x}</{p}{name}>");
+                }
+            }
+            inside += &element("inertia", &of_inertia, &children);
+        }
+        let inertial = element("inertial", &attributes, &inside);
+        let version = if self.in_attributes { "1.0" } else { "1.9" };
+        format!("<sdf version='{version}'><link name='a'>{inertial}<collision/></link></sdf>")
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// Whatever is left out, the defaults are those of SDF, they are named, and a copy states what differs from them.
+    #[test]
+    fn what_sdf_leaves_to_its_defaults_can_be_drawn(
+        mass in prop::option::of(0.5..4.0_f64),
+        pose in prop::option::of(any::<bool>()),
+        entries in prop::option::of(prop::array::uniform6(any::<bool>())),
+        in_attributes in any::<bool>(),
+        short in any::<bool>(),
+        prefix in any::<bool>(),
+        factor in select(vec![1.0, 1.5]),
+    ) {
+        let partial = Partial { mass, pose, entries, in_attributes, short, prefix };
+        let text = partial.xml();
+        let file = RobotFile::parse(Path::new("a.sdf"), text.clone().into_bytes()).unwrap();
+        let link = &file.links()[0];
+        let numbers = link.numbers().unwrap();
+        prop_assert_eq!(numbers.mass_kg(), mass.unwrap_or(1.0));
+        let centre = Vector3::new(if pose == Some(false) { 0.1 } else { 0.0 }, 0.0, 0.0);
+        prop_assert_eq!(numbers.mass_centre_m(), centre);
+        let there = entries.unwrap_or_default();
+        let six: [f64; 6] = std::array::from_fn(|e| match (there[e], e < 3) {
+            (true, _) => ENTRIES[e].1,
+            (false, true) => 1.0,
+            (false, false) => 0.0,
+        });
+        prop_assert_eq!(numbers.inertia().entries(), six, "{}", text);
+        let mut left = Vec::new();
+        left.extend(mass.is_none().then_some("mass"));
+        match entries {
+            None => left.push("inertia"),
+            Some(there) => left.extend((0..3).filter(|e| !there[*e]).map(|e| ENTRIES[e].0)),
+        }
+        prop_assert_eq!(link.defaults(), left);
+        // Of another mass, and of six other entries or the same.
+        let matrix = numbers.inertia().matrix() * factor
+            + Matrix3::from_diagonal_element(if factor == 1.0 { 0.0 } else { 3.0 });
+        let Ok(inertia) = Inertia::new(matrix) else { return Ok(()) };
+        let other = MassProperties::new(factor * numbers.mass_kg(), centre * factor, inertia).unwrap();
+        let copy = file.copy(&[(0, other)]);
+        prop_assert!(copy.is_ok(), "{text}: {}", copy.unwrap_err());
+        let copy = String::from_utf8(copy.unwrap()).unwrap();
+        prop_assert!(factor != 1.0 || copy == text, "{}", copy);
+        let again = RobotFile::parse(Path::new("a.sdf"), copy.into_bytes()).unwrap();
+        prop_assert!(factor == 1.0 || again.links()[0].defaults().is_empty());
+    }
+
+    /// Names in a file may look like those by which links are told apart.
+    #[test]
+    fn no_two_links_have_one_name(names in prop::collection::vec("(a|b)?#{0,3}2?", 1..9), more in "a#{0,2}2?") {
+        let read = |names: &[String]| {
+            let links: String =
+                names.iter().map(|name| format!("<link name='{name}'><inertial/></link>")).collect();
+            let text = format!("<sdf>{links}</sdf>");
+            let file = RobotFile::parse(Path::new("a.sdf"), text.into_bytes()).unwrap();
+            file.links().iter().map(|link| link.name().to_owned()).collect::<Vec<_>>()
+        };
+        let found = read(&names);
+        for (i, name) in found.iter().enumerate() {
+            prop_assert!(!found[..i].contains(name), "{:?}: {:?}", names, found);
+            if !names[i].is_empty() && !names[..i].contains(&names[i]) {
+                prop_assert_eq!(name, &names[i]);
+            }
+        }
+        // One more at the end changes none, unless it is called as one of them.
+        let longer: Vec<String> = names.iter().chain([&more]).cloned().collect();
+        if !found.contains(&more) {
+            prop_assert_eq!(&read(&longer)[..names.len()], &found[..]);
+        }
+    }
+}
+
+/// Parsers of URDF and SDF read the first of two, and MuJoCo none.
+#[test]
+fn a_second_inertia_of_a_link_is_not_another_link() {
+    let urdf = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>";
+    let mjcf = "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
+    for (name, root, link, inertial, problem) in [
+        ("a.urdf", "robot", "link", urdf, LinkProblem::Second),
+        ("a.sdf", "sdf", "link", "<inertial/>", LinkProblem::Second),
+        ("a.xml", "mujoco", "body", mjcf, LinkProblem::SecondOfBody),
+    ] {
+        let one = |name: &str, times: usize| {
+            format!("<{link} name='{name}'>{}</{link}>", inertial.repeat(times))
+        };
+        let text = format!("<{root}>{}{}{}</{root}>", one("a", 2), one("b", 1), one("a", 1));
+        let file = RobotFile::parse(Path::new(name), text.into_bytes()).unwrap();
+        let names: Vec<&str> = file.links().iter().map(gyradius_formats::RobotLink::name).collect();
+        assert_eq!(names, ["a", "a", "b", "a#2"], "{name}");
+        let found: Vec<_> = file.links().iter().map(|link| link.numbers().err()).collect();
+        assert_eq!(found, [None, Some(&problem), None, None], "{name}");
+    }
+}

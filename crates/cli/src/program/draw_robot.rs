@@ -7,6 +7,7 @@ use gyradius_study::{
     TableFormat,
 };
 use std::{
+    collections::HashSet,
     error::Error,
     fs::File,
     io::{self, IsTerminal, Read, Write},
@@ -205,10 +206,27 @@ fn left_as_they_are(robot: &RobotFile, draw: &RobotDraw<'_>) -> String {
     if draw.left().len() > LISTED {
         out += &format!("left as they are: {} more\n", draw.left().len() - LISTED);
     }
+    for (name, defaults) in defaults_of(robot, draw).iter().take(LISTED) {
+        let fields = defaults.join(", ");
+        out += &format!(
+            "note: {name}: the file does not state {fields}: its draws are about the defaults of SDF, a mass of 1 kg and \
+             moments of inertia of 1 kg·m²\n"
+        );
+    }
     for gap in robot.gaps().iter().filter(|gap| gap.kind() != GapKind::Misplaced) {
         out += &format!("not drawn: {}:{}: {gap}\n", robot.path().display(), gap.line());
     }
     out
+}
+
+/// Links that are drawn about defaults of their format, and of which fields.
+fn defaults_of<'a>(
+    robot: &'a RobotFile,
+    draw: &RobotDraw<'_>,
+) -> Vec<(&'a str, &'a [&'static str])> {
+    let drawn: HashSet<&str> = draw.links().collect();
+    let links = robot.links().iter().map(|link| (link.name(), link.defaults()));
+    links.filter(|(name, defaults)| !defaults.is_empty() && drawn.contains(name)).collect()
 }
 
 /// Standard deviations that came out, and what is to be said of links.

@@ -119,6 +119,11 @@ impl<'a> RobotDraw<'a> {
                     left.push((name, LeftBecause::NotPicked));
                     continue;
                 }
+                // Nobody reads it, whatever its name matches.
+                Err(LinkProblem::Second) => {
+                    left.push((name, LinkProblem::Second.into()));
+                    continue;
+                }
                 // What was asked for by name, or is a slip, is not passed over.
                 Err(problem) if named || problem.is_a_slip() => {
                     unreadable.push(format!("\"{name}\": {problem}"));
