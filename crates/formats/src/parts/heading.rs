@@ -6,6 +6,32 @@ use crate::csv::{entry_of, inertia_unit, length_unit, mass_unit, squeezed};
 pub(crate) const VALUES: [&str; 10] =
     ["mass", "centre_x", "centre_y", "centre_z", "ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
+/// Their standard deviations, and those of three at once, as messages call them: absolute, and in percent.
+const DEVIATIONS: [(Group, &str, &str); 13] = [
+    (Group(0, 1), "sigma_mass", "mass_percent"),
+    (Group(1, 1), "sigma_centre_x", "centre_x_percent"),
+    (Group(2, 1), "sigma_centre_y", "centre_y_percent"),
+    (Group(3, 1), "sigma_centre_z", "centre_z_percent"),
+    (Group(4, 1), "sigma_ixx", "ixx_percent"),
+    (Group(5, 1), "sigma_iyy", "iyy_percent"),
+    (Group(6, 1), "sigma_izz", "izz_percent"),
+    (Group(7, 1), "sigma_ixy", "ixy_percent"),
+    (Group(8, 1), "sigma_ixz", "ixz_percent"),
+    (Group(9, 1), "sigma_iyz", "iyz_percent"),
+    (Group(1, 3), "sigma_centre", "centre_percent"),
+    (Group(4, 3), "sigma_moments", "moments_percent"),
+    (Group(7, 3), "sigma_products", "products_percent"),
+];
+
+/// What messages call the standard deviation of some of the ten.
+pub(super) fn deviation(group: Group, scale: Scale) -> &'static str {
+    let found = DEVIATIONS.iter().find(|(known, ..)| *known == group);
+    found.map_or("standard deviation", |(_, absolute, percent)| match scale {
+        Scale::Unit(_) => absolute,
+        Scale::Percent => percent,
+    })
+}
+
 /// What is written of standard deviations, wherever it stands, and in words of their own beside the name of a number.
 const MARKS: [&str; 5] = ["sigma", "percent", "%", "σ", "±"];
 const WORDS: [&str; 12] = [

@@ -5,7 +5,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde_json::{Map, Value};
 
 use super::error::{PartsError, PartsProblem};
-use super::heading::{Column, Group, Heading, Scale, VALUES};
+use super::heading::{self, Column, Group, Heading, Scale, VALUES};
 use crate::{
     BodyError, Products,
     body::{Number, shortened},
@@ -280,10 +280,10 @@ impl Cells<'_> {
             _ => None,
         };
         for ((Group(first, count), scale), cell) in self.given(of) {
-            let field = VALUES[first];
+            let field = heading::deviation(Group(first, count), scale);
             let value = Number::parse(field, cell, None)?.value;
             if !(value >= 0.0) {
-                let allowed = "zero or more, for it is a standard deviation";
+                let allowed = "zero or more";
                 return Err(PartsProblem::Value { field, value, allowed });
             }
             for i in first..first + count {
@@ -292,12 +292,13 @@ impl Cells<'_> {
                     // Of a centre, a share of its distance from the origin means nothing.
                     Scale::Percent if (1..4).contains(&i) => {
                         let allowed = "a length, for a mass centre has no percent";
-                        return Err(PartsProblem::Value { field: VALUES[i], value, allowed });
+                        return Err(PartsProblem::Value { field, value, allowed });
                     }
                     Scale::Percent => 0.01 * value * nominal[i].abs(),
                 };
                 if found[i].replace(sigma).is_some() {
-                    return Err(PartsProblem::Twice { field: VALUES[i] });
+                    let field = heading::deviation(Group(i, 1), Scale::Unit(1.0));
+                    return Err(PartsProblem::Twice { field });
                 }
             }
         }

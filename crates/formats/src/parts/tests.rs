@@ -143,15 +143,15 @@ fn what_a_row_lacks_is_named() {
         ),
         (
             "name,mass,cx,cy,cz,shape,sigma_mass\na,1,0,0,0,point,-1\n",
-            "line 2: a: mass = -1.0: it must be zero or more",
+            "line 2: a: sigma_mass = -1.0: it must be zero or more",
         ),
         (
             "name,mass,cx,cy,cz,shape,sigma_mass,mass_percent\na,1,0,0,0,point,1,1\n",
-            "line 2: a: mass is given twice",
+            "line 2: a: sigma_mass is given twice",
         ),
         (
             "name,mass,cx,cy,cz,shape,centre_percent\na,1,0,0,0,point,1\n",
-            "line 2: a: centre_x = 1.0: it must be a length",
+            "line 2: a: centre_percent = 1.0: it must be a length",
         ),
         ("name,mass,cx,cy,cz,shape,qx\na,1,0,0,0,point,1\n", "line 2: a: attitude_y is missing"),
         (
@@ -166,6 +166,27 @@ fn what_a_row_lacks_is_named() {
     ] {
         let found = read(text).unwrap_err().to_string();
         assert!(found.starts_with(expected), "{text:?}: {found}");
+    }
+}
+
+/// Whatever is wrong with a standard deviation, its own name is said, not that of the value.
+#[test]
+fn every_wrong_deviation_is_named() {
+    for (heading, field) in [
+        ("sigma_mass_g", "sigma_mass"),
+        ("mass (%)", "mass_percent"),
+        ("sigma_Cy", "sigma_centre_y"),
+        ("centre_sigma_mm", "sigma_centre"),
+        ("sigma_I12", "sigma_ixy"),
+        ("izz_percent", "izz_percent"),
+        ("moments_percent", "moments_percent"),
+        ("sigma_products", "sigma_products"),
+    ] {
+        for (cell, why) in [("-1", "= -1.0: it must be"), ("few", "= \"few\" is not a number")] {
+            let text = format!("name,mass,cx,cy,cz,shape,{heading}\na,1,0,0,0,point,{cell}\n");
+            let found = read(&text).unwrap_err().to_string();
+            assert!(found.starts_with(&format!("line 2: a: {field} {why}")), "{heading}: {found}");
+        }
     }
 }
 

@@ -22,7 +22,7 @@ use draws::{Draws, naive};
 use sums::Sums;
 
 pub use draws::NaiveShares;
-pub use sums::DrawnMoments;
+pub use sums::{DrawnMoments, DrawnSpread};
 
 /// What the run table calls the draws.
 const MODEL: &str = "rollup";

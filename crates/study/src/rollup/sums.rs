@@ -17,9 +17,16 @@ pub struct DrawnMoments {
     pub failed: u64,
     /// How many are no body's: none.
     pub impossible: u64,
-    /// Means, and their standard errors.
-    pub mean: [f64; 10],
-    /// σ/√n.
+    /// Means; none without a draw.
+    pub mean: Option<[f64; 10]>,
+    /// How they scatter; nothing of fewer than two draws.
+    pub spread: Option<DrawnSpread>,
+}
+
+/// How draws of the ten scatter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnSpread {
+    /// Standard errors of the means, σ/√n.
     pub mean_error: [f64; 10],
     /// Standard deviations.
     pub deviation: [f64; 10],
@@ -108,15 +115,19 @@ impl Sums {
             }
         };
         let scaled = |x: &Ten| -> [f64; 10] { x.component_mul(&self.scale).into() };
-        DrawnMoments {
-            draws: self.count,
-            failed: self.failed,
-            impossible: self.impossible,
-            mean: (mean.component_mul(&self.scale) + self.origin).into(),
+        let spread = (self.count > 1).then(|| DrawnSpread {
             mean_error: scaled(&(deviation / n.sqrt())),
             deviation: scaled(&deviation),
             deviation_error: scaled(&error),
             correlation: std::array::from_fn(|i| std::array::from_fn(|j| correlation(i, j))),
+        });
+        let mean: [f64; 10] = (mean.component_mul(&self.scale) + self.origin).into();
+        DrawnMoments {
+            draws: self.count,
+            failed: self.failed,
+            impossible: self.impossible,
+            mean: (self.count > 0).then_some(mean),
+            spread,
         }
     }
 }

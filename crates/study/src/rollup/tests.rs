@@ -33,18 +33,19 @@ fn drawing_agrees_with_first_order_where_deviations_are_small() {
     let drawn = found.draw(&options, &|_| {}).unwrap();
     let (moments, first) = (&drawn.moments, found.assembly().first_order());
     assert_eq!((moments.draws, moments.failed, moments.impossible), (40_000, 0, 0));
+    let spread = moments.spread.as_ref().unwrap();
     let correlations = first.correlations();
     for i in 0..10 {
-        let off = (moments.deviation[i] - first.deviations()[i]) / moments.deviation_error[i];
+        let off = (spread.deviation[i] - first.deviations()[i]) / spread.deviation_error[i];
         assert!(
-            off.abs() < 6.0 || (moments.deviation[i] / first.deviations()[i] - 1.0).abs() < 0.02,
+            off.abs() < 6.0 || (spread.deviation[i] / first.deviations()[i] - 1.0).abs() < 0.02,
             "{i}: {off}"
         );
         // √(2n) times the relative error is 1 of a Gaussian, and more of what has longer tails.
-        let tails = moments.deviation_error[i] * 283.0 / moments.deviation[i];
+        let tails = spread.deviation_error[i] * 283.0 / spread.deviation[i];
         assert!((0.8..1.6).contains(&tails), "{i}: {tails}");
         for j in 0..10 {
-            assert!((moments.correlation[i][j] - correlations[(i, j)]).abs() < 0.03, "{i} {j}");
+            assert!((spread.correlation[i][j] - correlations[(i, j)]).abs() < 0.03, "{i} {j}");
         }
     }
     // A disc with independent moments is never one.
@@ -117,4 +118,17 @@ fn errors_name_the_line() {
     );
     let long = RollupOptions { draws: u64::MAX, ..RollupOptions::default() };
     assert!(matches!(rollup(LIST).draw(&long, &|_| {}), Err(RollupError::Draws { .. })));
+}
+
+/// One draw has a mean and no spread, and none has neither.
+#[test]
+fn one_draw_has_no_deviation() {
+    let found = rollup(LIST);
+    for draws in 0..4 {
+        let options = RollupOptions { draws, ..RollupOptions::default() };
+        let moments = found.draw(&options, &|_| {}).unwrap().moments;
+        assert_eq!((moments.draws, moments.mean.is_some()), (draws, draws > 0));
+        assert_eq!(moments.spread.is_some(), draws > 1, "{draws}");
+        assert!(moments.spread.is_none_or(|spread| spread.deviation.iter().all(|s| *s > 0.0)));
+    }
 }

@@ -53,11 +53,12 @@ struct Drawn {
     draws: u64,
     failed: u64,
     impossible: u64,
-    mean: [f64; 10],
-    mean_error: [f64; 10],
-    deviation: [f64; 10],
-    deviation_error: [f64; 10],
-    correlation: [[f64; 10]; 10],
+    /// Null without a draw, and the others with fewer than two.
+    mean: Option<[f64; 10]>,
+    mean_error: Option<[f64; 10]>,
+    deviation: Option<[f64; 10]>,
+    deviation_error: Option<[f64; 10]>,
+    correlation: Option<[[f64; 10]; 10]>,
     naive: Naive,
 }
 
@@ -101,6 +102,7 @@ pub(super) fn text(shown: &Shown<'_>) -> serde_json::Result<String> {
     });
     let drawn = shown.draws.map(|drawn| {
         let (m, naive) = (&drawn.moments, &drawn.naive);
+        let spread = m.spread.as_ref();
         let part = |(name, impossible): &(String, u64)| NaivePart {
             name: name.clone(),
             impossible: *impossible,
@@ -111,10 +113,10 @@ pub(super) fn text(shown: &Shown<'_>) -> serde_json::Result<String> {
             failed: m.failed,
             impossible: m.impossible,
             mean: m.mean,
-            mean_error: m.mean_error,
-            deviation: m.deviation,
-            deviation_error: m.deviation_error,
-            correlation: m.correlation,
+            mean_error: spread.map(|spread| spread.mean_error),
+            deviation: spread.map(|spread| spread.deviation),
+            deviation_error: spread.map(|spread| spread.deviation_error),
+            correlation: spread.map(|spread| spread.correlation),
             naive: Naive {
                 draws: naive.draws,
                 impossible_whole: naive.whole,

@@ -44,8 +44,11 @@ fn numbers(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
         write!(out, "{name:<16}{:>14}{:>14}", digits(values[i], 7), digits(deviations[i], 5))?;
         if let Some(drawn) = shown.draws {
             let m = &drawn.moments;
-            let mean = with_error(m.mean[i], Some(m.mean_error[i]));
-            let deviation = with_error(m.deviation[i], Some(m.deviation_error[i]));
+            let spread = m.spread.as_ref();
+            let mean = m.mean.map(|mean| with_error(mean[i], spread.map(|s| s.mean_error[i])));
+            let deviation = spread.map(|s| with_error(s.deviation[i], Some(s.deviation_error[i])));
+            let absent = || "-".to_owned();
+            let (mean, deviation) = (mean.unwrap_or_else(absent), deviation.unwrap_or_else(absent));
             write!(out, "{mean:>28}{deviation:>24}")?;
         }
         writeln!(out)?;
@@ -55,11 +58,12 @@ fn numbers(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
 
 fn correlations(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
     let first = shown.rollup.assembly().first_order().correlations();
-    let of = |i: usize, j: usize| match shown.draws {
-        Some(drawn) => drawn.moments.correlation[i][j],
+    let drawn = shown.draws.and_then(|drawn| drawn.moments.spread.as_ref());
+    let of = |i: usize, j: usize| match drawn {
+        Some(spread) => spread.correlation[i][j],
         None => first[(i, j)],
     };
-    let by = if shown.draws.is_some() { "drawing" } else { "first order" };
+    let by = if drawn.is_some() { "drawing" } else { "first order" };
     writeln!(out, "\ncorrelations by {by}")?;
     for i in 1..10 {
         write!(out, "  {:<16}", TenParameters::COLUMNS[i])?;
@@ -68,7 +72,7 @@ fn correlations(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
         }
         writeln!(out)?;
     }
-    if shown.draws.is_some() {
+    if drawn.is_some() {
         let gap = |(i, j): (usize, usize)| (of(i, j) - first[(i, j)]).abs();
         let pairs = (0..10).flat_map(|i| (0..i).map(move |j| (i, j)));
         let most = pairs.map(gap).fold(0.0, f64::max);
