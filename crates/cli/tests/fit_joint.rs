@@ -204,6 +204,7 @@ fn what_is_no_estimate_is_refused() {
             format!(r#"{{"parameters": "odd", "mean": {MEAN:?}, "deviations": {DEVIATIONS:?}}}"#),
             "odd",
         ),
+        ("g.json", format!(r#"{{"parameters": "linear", "mean": {MEAN:?}}}"#), "covariance"),
         ("d.csv", "1,2,3\n".to_owned(), "ten numbers"),
         ("e.txt", String::new(), "extension"),
         ("f.toml", "mean = 3\n".to_owned(), "f.toml"),
@@ -213,6 +214,10 @@ fn what_is_no_estimate_is_refused() {
         assert_eq!((code, out.as_str()), (2, ""), "{name}");
         assert!(message.contains(expected), "{name}: {message}");
     }
+    let (code, _, message) =
+        run(&folder, &["fit", "--estimate", "g.json", "--parameters", "natural"]);
+    let both = "--parameters natural, and the file says parameters = \"linear\"";
+    assert!(code == 2 && message.contains(both), "{message}");
     let (code, _, message) = run(&folder, &["fit"]);
     assert!(code == 2 && message.contains("FILE"), "{message}");
 }

@@ -287,6 +287,17 @@ impl Cells<'_> {
                 return Err(PartsProblem::Value { field, value, allowed });
             }
             for i in first..first + count {
+                // Of a product that is zero, a percentage says nothing, though somebody means something by it.
+                let group = &nominal[first..first + count];
+                if scale == Scale::Percent
+                    && i >= 7
+                    && value > 0.0
+                    && group.iter().all(|x| *x == 0.0)
+                {
+                    let allowed = "empty or zero where the product is zero: a standard deviation in kg·m² stands in \
+                                   the column sigma_ixy, sigma_ixz, sigma_iyz or sigma_products";
+                    return Err(PartsProblem::Value { field, value, allowed });
+                }
                 let sigma = match scale {
                     Scale::Unit(si) => value * si,
                     // Of a centre, a share of its distance from the origin means nothing.

@@ -190,6 +190,44 @@ fn every_wrong_deviation_is_named() {
     }
 }
 
+/// A percentage of products that are all zero, of any of them, is refused unless it is zero too.
+#[test]
+fn no_percentage_is_taken_of_zero_products() {
+    let names = ["ixy", "ixz", "iyz"];
+    for (which, column) in (0..8).flat_map(|w| (0..4).map(move |c| (w, c))) {
+        let of = |i: usize| if which >> i & 1 == 1 { "0.1" } else { "" };
+        let heading =
+            names.get(column).map_or("products_percent".to_owned(), |n| format!("{n}_percent"));
+        for percent in ["", "0", "5"] {
+            let text = format!(
+                "name,mass,cx,cy,cz,ixx,iyy,izz,ixy,ixz,iyz,products,{heading}\n\
+                 a,1,0,0,0,4,5,6,{},{},{},tensor,{percent}\n",
+                of(0),
+                of(1),
+                of(2)
+            );
+            let is_zero = if column < 3 { which >> column & 1 == 0 } else { which == 0 };
+            match read(&text) {
+                Ok(table) => {
+                    assert!(percent != "5" || !is_zero, "{text}");
+                    let sigma = table.rows()[0].numbers().unwrap().deviations();
+                    for i in 0..3 {
+                        let is_asked = percent == "5" && (column == 3 || column == i);
+                        let expected = if is_asked && which >> i & 1 == 1 { 0.005 } else { 0.0 };
+                        assert!((sigma[7 + i] - expected).abs() < 1e-15, "{text}");
+                    }
+                }
+                Err(error) => {
+                    assert!(percent == "5" && is_zero, "{text}: {error}");
+                    let said =
+                        format!("line 2: a: {heading} = 5.0: it must be empty or zero where");
+                    assert!(error.to_string().starts_with(&said), "{error}");
+                }
+            }
+        }
+    }
+}
+
 proptest! {
     /// Garbage, and good tables with garbage in them.
     #[test]

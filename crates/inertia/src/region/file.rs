@@ -5,25 +5,40 @@ use serde::{Deserialize, Serialize};
 
 use super::{Kind, Region, RegionError};
 
-/// The serialized form. Attitudes take the region's own axes to body axes, scalar last.
+/// The serialized form: one of its fields. Attitudes take the region's own axes to body axes, scalar last.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RegionForm {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ellipsoid: Option<EllipsoidForm>,
+    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
+    solid_box: Option<BoxForm>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hull: Option<HullForm>,
+}
+
 #[derive(Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub(super) enum RegionForm {
-    Ellipsoid {
-        middle_m: [f64; 3],
-        semi_axes_m: [f64; 3],
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        attitude: Option<[f64; 4]>,
-    },
-    Box {
-        middle_m: [f64; 3],
-        half_sides_m: [f64; 3],
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        attitude: Option<[f64; 4]>,
-    },
-    Hull {
-        points_m: Vec<[f64; 3]>,
-    },
+#[serde(deny_unknown_fields)]
+struct EllipsoidForm {
+    middle_m: [f64; 3],
+    semi_axes_m: [f64; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    attitude: Option<[f64; 4]>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BoxForm {
+    middle_m: [f64; 3],
+    half_sides_m: [f64; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    attitude: Option<[f64; 4]>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HullForm {
+    points_m: Vec<[f64; 3]>,
 }
 
 impl TryFrom<RegionForm> for Region {
@@ -35,14 +50,19 @@ impl TryFrom<RegionForm> for Region {
             let turn = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
             region.transformed(&Isometry3::from_parts(Vector3::from(middle).into(), turn))
         };
-        match form {
-            RegionForm::Ellipsoid { middle_m, semi_axes_m, attitude } => {
-                placed(Self::ellipsoid([0.0; 3], semi_axes_m)?, middle_m, attitude)
+        let two = |first, second| Err(RegionError::Shapes { first, second });
+        match (form.ellipsoid, form.solid_box, form.hull) {
+            (Some(form), None, None) => {
+                placed(Self::ellipsoid([0.0; 3], form.semi_axes_m)?, form.middle_m, form.attitude)
             }
-            RegionForm::Box { middle_m, half_sides_m, attitude } => {
-                placed(Self::solid_box([0.0; 3], half_sides_m)?, middle_m, attitude)
+            (None, Some(form), None) => {
+                placed(Self::solid_box([0.0; 3], form.half_sides_m)?, form.middle_m, form.attitude)
             }
-            RegionForm::Hull { points_m } => Self::hull(&points_m),
+            (None, None, Some(form)) => Self::hull(&form.points_m),
+            (None, None, None) => Err(RegionError::NoShape),
+            (Some(_), Some(_), _) => two("ellipsoid", "box"),
+            (Some(_), None, Some(_)) => two("ellipsoid", "hull"),
+            (None, Some(_), Some(_)) => two("box", "hull"),
         }
     }
 }
@@ -53,19 +73,27 @@ impl From<Region> for RegionForm {
             let q = pose.rotation.coords;
             (pose.rotation != UnitQuaternion::identity()).then_some([q.x, q.y, q.z, q.w])
         };
+        let none = Self::default();
         match region.0 {
-            Kind::Ellipsoid { pose, semi_axes, .. } => Self::Ellipsoid {
-                middle_m: pose.translation.vector.into(),
-                semi_axes_m: semi_axes.into(),
-                attitude: turned(&pose),
-            },
-            Kind::Box { pose, half_sides } => Self::Box {
-                middle_m: pose.translation.vector.into(),
-                half_sides_m: half_sides.into(),
-                attitude: turned(&pose),
-            },
+            Kind::Ellipsoid { pose, semi_axes, .. } => {
+                let ellipsoid = EllipsoidForm {
+                    middle_m: pose.translation.vector.into(),
+                    semi_axes_m: semi_axes.into(),
+                    attitude: turned(&pose),
+                };
+                Self { ellipsoid: Some(ellipsoid), ..none }
+            }
+            Kind::Box { pose, half_sides } => {
+                let solid_box = BoxForm {
+                    middle_m: pose.translation.vector.into(),
+                    half_sides_m: half_sides.into(),
+                    attitude: turned(&pose),
+                };
+                Self { solid_box: Some(solid_box), ..none }
+            }
             Kind::Hull(hull) => {
-                Self::Hull { points_m: hull.points().iter().map(|p| (*p).into()).collect() }
+                let points_m = hull.points().iter().map(|p| (*p).into()).collect();
+                Self { hull: Some(HullForm { points_m }), ..none }
             }
         }
     }
@@ -101,5 +129,34 @@ mod tests {
         ] {
             assert!(serde_json::from_str::<Region>(bad).is_err(), "{bad}");
         }
+    }
+
+    /// Every subset of the shapes: one is a region, and what is wrong with the others is said.
+    #[test]
+    fn a_region_has_one_shape() {
+        let shapes = [
+            ("ellipsoid", r#""ellipsoid":{"middle_m":[0,0,0],"semi_axes_m":[1,1,1]}"#),
+            ("box", r#""box":{"middle_m":[0,0,0],"half_sides_m":[1,1,1]}"#),
+            ("hull", r#""hull":{"points_m":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}"#),
+        ];
+        for which in 0..8 {
+            let some: Vec<_> = (0..3).filter(|i| which >> i & 1 == 1).map(|i| shapes[i]).collect();
+            let json: Vec<&str> = some.iter().map(|(_, text)| *text).collect();
+            let found = serde_json::from_str::<Region>(&format!("{{{}}}", json.join(",")));
+            match &some[..] {
+                [_] => assert!(found.is_ok()),
+                [] => {
+                    assert!(found.unwrap_err().to_string().contains("there is no shape: it must"))
+                }
+                [(first, _), (second, _), ..] => {
+                    let said =
+                        format!("it has {first} and {second}: it must have one of ellipsoid,");
+                    let error = found.unwrap_err().to_string();
+                    assert!(error.contains(&said), "{error}");
+                }
+            }
+        }
+        let error = serde_json::from_str::<Region>(r#"{"ball":{}}"#).unwrap_err().to_string();
+        assert!(error.contains("unknown field `ball`, expected one of `ellipsoid`, `box`, `hull`"));
     }
 }

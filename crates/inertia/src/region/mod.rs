@@ -461,6 +461,17 @@ pub enum RegionError {
         /// What is wrong with it.
         error: MassPropertiesError,
     },
+    /// A file says no shape.
+    #[error("there is no shape: it must have one of ellipsoid, box and hull")]
+    NoShape,
+    /// A file says two shapes.
+    #[error("it has {first} and {second}: it must have one of ellipsoid, box and hull")]
+    Shapes {
+        /// One of them.
+        first: &'static str,
+        /// Another one.
+        second: &'static str,
+    },
     /// There are no points.
     #[error("no points: a hull has at least one")]
     Empty,

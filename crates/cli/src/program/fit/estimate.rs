@@ -85,7 +85,15 @@ fn form(asked: Option<ParametersArg>, said: Option<&str>) -> Result<TenForm, Str
     };
     match (asked.map(TenForm::from), said.map(of).transpose()?) {
         (Some(asked), Some(said)) if asked != said => {
-            Err("--parameters says one thing and the file another".to_owned())
+            let word = |form| match form {
+                TenForm::Linear => "linear",
+                TenForm::Natural => "natural",
+            };
+            let (asked, said) = (word(asked), word(said));
+            Err(format!(
+                "--parameters {asked}, and the file says parameters = {said:?}: it must be one of them, and the \
+                 option can be left out"
+            ))
         }
         (Some(form), _) | (None, Some(form)) => Ok(form),
         (None, None) => {
