@@ -87,7 +87,7 @@ fn prefix(node: Node<'_, '_>) -> String {
 
 /// How the angles of an MJCF file are meant.
 pub(crate) fn angles(tree: &Tree<'_>) -> Angles {
-    let said = |name| tree.all("compiler").filter_map(move |node| node.attribute(name)).last();
+    let said = |name| tree.said("compiler", name);
     // A file that includes others may have its compiler there, and one that is included has it elsewhere.
     let is_whole = tree.root().name() == "mujoco" && tree.all("include").next().is_none();
     let unit = match said("angle") {

@@ -24,9 +24,19 @@ pub(crate) struct Solid {
     shape: Shape,
 }
 
+impl Solid {
+    /// A shape about its middle, turned in the frame of the link.
+    pub(crate) fn new(centre: Vector3<f64>, rotation: UnitQuaternion<f64>, shape: Shape) -> Self {
+        Self { centre, rotation, shape }
+    }
+}
+
+/// A shape in its own frame.
 #[derive(Clone, Debug)]
-enum Shape {
+pub(crate) enum Shape {
+    /// By its sides, m.
     Box([f64; 3]),
+    /// By its semi-axes, m.
     Ellipsoid([f64; 3]),
     /// Radius and length along the third axis, m, and whether the ends are half spheres.
     Cylinder {
@@ -38,17 +48,18 @@ enum Shape {
         path: String,
         scale: [f64; 3],
     },
+    Points {
+        points: Vec<[f64; 3]>,
+        scale: [f64; 3],
+    },
 }
 
-/// The solids of the link around an inertia.
+/// The solids of the link around an inertia in URDF and SDF; those of MJCF are `mjcf_geoms`.
 pub(crate) fn of(
     inertial: Node<'_, '_>,
     format: Format,
     angles: &Angles,
 ) -> Result<Vec<Solid>, GeometryProblem> {
-    if format == Format::Mjcf {
-        return Err(GeometryProblem::Mjcf);
-    }
     let Some(link) = inertial.parent() else { return Err(GeometryProblem::Nothing) };
     let solids = |name: &'static str| -> Result<Vec<Solid>, GeometryProblem> {
         link.children()
@@ -104,7 +115,7 @@ fn solid(around: Node<'_, '_>, format: Format, angles: &Angles) -> Result<Solid,
         }
         other => return Err(GeometryProblem::Shape { shape: crate::body::shortened(other) }),
     };
-    Ok(Solid { centre, rotation, shape })
+    Ok(Solid::new(centre, rotation, shape))
 }
 
 /// Points of solids, in the frame of the link. Of a sphere or a cylinder they lie on it, so that their hull is in it.
@@ -132,14 +143,16 @@ pub(crate) fn points(solids: &[Solid], robot: &Path) -> Result<Vec<[f64; 3]>, Ge
                     x * *radius + Vector3::z() * (0.5 * length * if x.z < 0.0 { -1.0 } else { 1.0 })
                 })
                 .collect(),
-            Shape::Mesh { path, scale } => mesh_file::vertices(path, robot)?
-                .into_iter()
-                .map(|x| Vector3::from(x).component_mul(&Vector3::from(*scale)))
-                .collect(),
+            Shape::Mesh { path, scale } => scaled(&mesh_file::vertices(path, robot)?, scale),
+            Shape::Points { points, scale } => scaled(points, scale),
         };
         all.extend(own.iter().map(|x| <[f64; 3]>::from(solid.rotation * x + solid.centre)));
     }
     Ok(all)
+}
+
+fn scaled(points: &[[f64; 3]], scale: &[f64; 3]) -> Vec<Vector3<f64>> {
+    points.iter().map(|x| Vector3::from(*x).component_mul(&Vector3::from(*scale))).collect()
 }
 
 fn around() -> impl Iterator<Item = (f64, f64)> {
@@ -165,11 +178,44 @@ pub enum GeometryProblem {
     /// There is none.
     #[error("it has neither collision nor visual geometry")]
     Nothing,
-    /// MuJoCo's geoms.
-    #[error(
-        "the geoms of MJCF, which take what they do not say from default classes, are not read"
-    )]
-    Mjcf,
+    /// A body of MJCF without geoms of its own.
+    #[error("it has no geom")]
+    NoGeoms,
+    /// A part of the file is elsewhere.
+    #[error("its geoms may take what they do not say from other files, which are not followed")]
+    Included,
+    /// A class that is none.
+    #[error("its geometry: there is no default class \"{class}\" in the file")]
+    Class {
+        /// The class.
+        class: String,
+    },
+    /// Geoms in frames of their own.
+    #[error("its geoms in a <{element}> are not read")]
+    Around {
+        /// The element.
+        element: String,
+    },
+    /// A shape that MuJoCo fits to a mesh.
+    #[error("its geom of type {kind} is fitted to a mesh, which is not done here")]
+    Fitted {
+        /// The type.
+        kind: String,
+    },
+    /// A mesh that is not among the assets.
+    #[error("its geometry: there is no mesh \"{mesh}\" among the assets of the file")]
+    NoMesh {
+        /// Its name.
+        mesh: String,
+    },
+    /// A mesh that is not where its file has it.
+    #[error("its mesh \"{mesh}\" has {field}, which is not read")]
+    MeshField {
+        /// The mesh.
+        mesh: String,
+        /// The attribute.
+        field: &'static str,
+    },
     /// Its frame or a number cannot be read.
     #[error("its geometry: {0}")]
     Link(#[from] LinkProblem),

@@ -38,6 +38,7 @@ mod geometry;
 mod judge;
 mod kind;
 mod mesh_file;
+mod mjcf_geoms;
 mod new_file;
 mod orientation;
 mod parts;

@@ -52,11 +52,7 @@ pub(crate) fn of_mjcf(
         Ok(numbers.iter().map(|number| number.value).collect())
     };
     let unit = || angles.unit.ok_or(LinkProblem::Angles);
-    let axis = |x: &[f64]| {
-        let v = Vector3::from_column_slice(x);
-        let size = v.amax();
-        (size > 0.0).then(|| (v / size).normalize())
-    };
+    let axis = |x: &[f64]| direction(Vector3::from_column_slice(x));
     let turned = match name {
         "quat" => list(4)?.try_into().ok().and_then(of_quaternion),
         "axisangle" => {
@@ -75,15 +71,23 @@ pub(crate) fn of_mjcf(
                 Some(UnitQuaternion::from_rotation_matrix(&rotation))
             })
         }
-        // The shortest rotation that takes the third axis there.
-        _ => axis(&list(3)?).map(|z| {
-            let across = Vector3::z().cross(&z);
-            let sine = across.norm();
-            let about_axis = if sine > 0.0 { across / sine } else { Vector3::x() };
-            about(about_axis, libm::atan2(sine, z.z))
-        }),
+        _ => from_third_axis(Vector3::from_column_slice(&list(3)?)),
     };
     turned.ok_or(LinkProblem::Orientation { field: name })
+}
+
+/// The shortest rotation that takes the third axis to the direction of a vector; none of no length.
+pub(crate) fn from_third_axis(along: Vector3<f64>) -> Option<UnitQuaternion<f64>> {
+    let z = direction(along)?;
+    let across = Vector3::z().cross(&z);
+    let sine = across.norm();
+    let about_axis = if sine > 0.0 { across / sine } else { Vector3::x() };
+    Some(about(about_axis, libm::atan2(sine, z.z)))
+}
+
+fn direction(v: Vector3<f64>) -> Option<Vector3<f64>> {
+    let size = v.amax();
+    (size > 0.0).then(|| (v / size).normalize())
 }
 
 fn of_euler(three: &[f64], unit: f64, sequence: &str) -> Option<UnitQuaternion<f64>> {

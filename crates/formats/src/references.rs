@@ -4,7 +4,7 @@ use crate::xml::{Node, Tree};
 
 /// The relative paths of a file, each once, in the order of the file.
 pub(crate) fn relative(tree: &Tree<'_>) -> Vec<String> {
-    let compiler = |name| tree.all("compiler").filter_map(move |node| node.attribute(name)).last();
+    let compiler = |name| tree.said("compiler", name);
     let mut paths: Vec<String> = Vec::new();
     for node in tree.nodes() {
         let named = ["filename", "file", "href"].into_iter().find_map(|name| node.attribute(name));
@@ -23,15 +23,20 @@ pub(crate) fn relative(tree: &Tree<'_>) -> Vec<String> {
         {
             continue;
         }
-        let path = match folder.map(|folder| folder.trim_end_matches('/')) {
-            Some(folder) if !folder.is_empty() => format!("{folder}/{path}"),
-            Some(_) | None => path.to_owned(),
-        };
+        let path = in_folder(folder, path);
         if !paths.contains(&path) {
             paths.push(path);
         }
     }
     paths
+}
+
+/// A path below a folder, if there is one.
+pub(crate) fn in_folder(folder: Option<&str>, path: &str) -> String {
+    match folder.map(|folder| folder.trim_end_matches('/')) {
+        Some(folder) if !folder.is_empty() => format!("{folder}/{path}"),
+        Some(_) | None => path.to_owned(),
+    }
 }
 
 /// Libraries of Gazebo and MuJoCo are found elsewhere.

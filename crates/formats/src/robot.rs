@@ -14,6 +14,7 @@ use crate::{
     frame::{self, Frame},
     geometry::{self, GeometryProblem, Solid},
     kind::known_extension,
+    mjcf_geoms::Geoms,
     references,
     robots::{self, INERTIAL},
     text::Text,
@@ -195,6 +196,7 @@ impl RobotFile {
         let text = Text::new(&file.bytes, false).map_err(|_| RobotError::Format { format })?;
         let tree = Tree::parse(&text).map_err(|_| RobotError::Format { format })?;
         let angles = frame::angles(&tree);
+        let geoms = Geoms::new(&tree, &angles);
         let mut names = Names::of(file.bodies());
         let mut links = Vec::new();
         let extension = known_extension(file.path());
@@ -219,7 +221,11 @@ impl RobotFile {
                     Ok((numbers, frame))
                 }),
             };
-            let geometry = geometry::of(node, format, &angles);
+            let geometry = if format == Format::Mjcf {
+                geoms.of(node)
+            } else {
+                geometry::of(node, format, &angles)
+            };
             let defaults = if format == Format::Sdf { frame::defaults(node) } else { Vec::new() };
             links.push(RobotLink { name, line: body.line(), read, geometry, defaults });
         });

@@ -208,6 +208,11 @@ impl<'a> Tree<'a> {
         self.nodes().filter(move |node| node.name() == name)
     }
 
+    /// An attribute of the last element of this name that has it.
+    pub(crate) fn said(&self, element: &str, attribute: &str) -> Option<&str> {
+        self.all(element).filter_map(|node| node.attribute(attribute)).last()
+    }
+
     /// Lines of the references to entities that the file declares itself, which are not expanded.
     pub(crate) fn entities(&self) -> impl Iterator<Item = usize> {
         self.entities.iter().map(|at| self.source.line(*at))
@@ -232,6 +237,13 @@ impl<'a> Tree<'a> {
 pub(crate) struct Node<'t, 'a> {
     tree: &'t Tree<'a>,
     index: usize,
+}
+
+impl PartialEq for Node<'_, '_> {
+    /// Of one tree: the same element.
+    fn eq(&self, other: &Self) -> bool {
+        self.index == other.index
+    }
 }
 
 impl<'t, 'a> Node<'t, 'a> {

@@ -2,5 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod dressings;
+mod mjcf_geoms;
 mod robots;
 mod samples;
