@@ -151,6 +151,12 @@ impl ScalarLaw {
         self.0.cdf(x)
     }
 
+    /// The probability of a value below zero; a value that is always zero is not.
+    #[must_use]
+    pub fn share_below_zero(&self) -> f64 {
+        self.cdf(-f64::MIN_POSITIVE)
+    }
+
     /// The logarithm of the density at x, −∞ outside of the support. None if the law has no density: it has no
     /// width, or it is of samples or of an event.
     ///

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     body::{Body, Entry},
+    folded::FoldedRoot,
     quantity::Quantity,
 };
 
@@ -41,6 +42,8 @@ pub(crate) enum Alert {
     },
     /// Many of the bodies that were drawn are hardly realizable, or not.
     NearBoundary { model: String, body: String, near: u64, drawn: u64, margin: f64 },
+    /// A length or root of a body lies below zero in part.
+    Folded(FoldedRoot),
 }
 
 impl Alert {
@@ -131,6 +134,7 @@ impl Alert {
                         100.0 * margin
                     ))
             }
+            Self::Folded(root) => Text::default().strong("A law is folded at zero").plain(format!(": {root}.")),
         }
     }
 }

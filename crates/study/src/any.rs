@@ -10,7 +10,7 @@ use std::{
 };
 
 use crate::{
-    Fleet, Notice, Options, Rare, RareOptions, ResultsError, Scenario, ScenarioError,
+    Fleet, FoldedRoot, Notice, Options, Rare, RareOptions, ResultsError, Scenario, ScenarioError,
     SimulatorScenario, Status, Study, StudyError,
     carry_out::carry_out,
     drivers,
@@ -101,6 +101,12 @@ impl AnyScenario {
     #[must_use]
     pub fn kept(&self) -> Kept {
         of_either!(self, scenario => scenario.kept())
+    }
+
+    /// Lengths and roots of its bodies whose laws lie below zero by more than 2.28 %.
+    #[must_use]
+    pub fn folded(&self) -> Vec<FoldedRoot> {
+        of_either!(self, scenario => scenario.folded())
     }
 
     /// The same scenario from another seed.

@@ -37,6 +37,7 @@ mod failure;
 mod faults;
 mod figures_of_study;
 mod fleet;
+mod folded;
 mod fragment;
 mod groups;
 mod head;
@@ -81,6 +82,7 @@ pub use ended::Ended;
 pub use error::StudyError;
 pub use failure::Failure;
 pub use fleet::Fleet;
+pub use folded::FoldedRoot;
 pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_campaign::{
     Again, Bound, CampaignError, Cell, Column, Event, FailedRuns, Forecast, ForeignError,

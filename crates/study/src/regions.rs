@@ -4,8 +4,6 @@ use gyradius_report::{Section, Text, significant};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-use crate::{body::Body, model::Model};
-
 /// What of the draws of a body is kept, for matter in its region can have them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RegionSummary {
@@ -16,14 +14,12 @@ pub(crate) struct RegionSummary {
 }
 
 impl RegionSummary {
-    /// Of the bodies of a model that are kept to a region.
-    pub(crate) fn of(model: &Model) -> Vec<Self> {
-        let of = |(body, (acceptance, standard_error)): (Body, (f64, f64))| Self {
-            body: body.name().into(),
-            acceptance,
-            standard_error,
-        };
-        model.kept().map(of).collect()
+    /// Of a body by its name, from the share that is kept and its standard error.
+    pub(crate) fn new(
+        body: impl Into<Cow<'static, str>>,
+        (acceptance, standard_error): (f64, f64),
+    ) -> Self {
+        Self { body: body.into(), acceptance, standard_error }
     }
 }
 

@@ -217,6 +217,7 @@ impl Summary {
             })
             .collect();
         let alerts = models.iter().zip(runs).flat_map(|(model, seen)| model.alerts(scenario, seen));
+        let alerts = alerts.chain(scenario.folded().into_iter().map(Alert::Folded));
         let head = Head { alerts: alerts.collect(), ..head_of(scenario, columns) };
         Ok(Self {
             head,
@@ -331,7 +332,10 @@ impl ModelSummary {
             law: model.law(),
             realizable_by_construction: model.is_realizable_by_construction(),
             acceptance: model.acceptance(),
-            regions: RegionSummary::of(model),
+            regions: model
+                .kept()
+                .map(|(body, kept)| RegionSummary::new(body.name(), kept))
+                .collect(),
             failed: failures.iter().map(|f| f.1).sum(),
             failures,
             unrealizable: Share::of_dependent(unrealizable, seen.runs(), independent, confidence)?,

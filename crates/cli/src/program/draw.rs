@@ -13,7 +13,7 @@ use crate::program::{
     args::DrawArgs,
     draw_output::{format, refuse_input},
     draw_robot::{draw_robot, is_robot},
-    output::complain,
+    output::{complain, say},
     progress,
     signals::Signals,
     study::scenario,
@@ -32,6 +32,9 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
     let file = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
     let format = format(arguments, file)?;
     let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
+    for root in scenario.folded() {
+        say(&format!("warning: {root}"));
+    }
     let signals = Signals::watch()?;
     let options = DrawOptions {
         models: arguments.models.clone(),

@@ -112,6 +112,16 @@ proptest! {
                 expected.push(("near", format!("{near} {}", body.name())));
             }
         }
+        // Roots within two deviations of zero.
+        for (body, inertia, factor) in [("payload", 2000.0, 1.1), ("stage", 3000.0, 1.05)] {
+            let second = [factor + 0.9 - 1.0, 1.9 - factor, 1.0 + factor - 0.9].map(|k: f64| 0.5 * inertia * k);
+            let variance = spread * spread * inertia * 0.4;
+            for (axis, k) in (1..).zip(second) {
+                if k < 4.0 * variance {
+                    expected.push(("folded", format!("{body} root_{axis}")));
+                }
+            }
+        }
         let told = summary.head().alerts.iter().map(|alert| match alert {
             Alert::Failed { failed, runs, kinds, .. } => {
                 assert_eq!(kinds.iter().map(|(_, count)| count).sum::<u64>(), *failed);
@@ -123,6 +133,7 @@ proptest! {
                 ("heavy", outcomes.len().to_string())
             }
             Alert::NearBoundary { near, body, .. } => ("near", format!("{near} {body}")),
+            Alert::Folded(root) => ("folded", format!("{} {}", root.body(), root.quantity())),
         });
         prop_assert_eq!(told.collect::<Vec<_>>(), expected);
         let written = serde_json::to_string(&summary).unwrap();

@@ -22,6 +22,10 @@ use super::{
     law,
 };
 
+/// What a length and a root are called.
+const LENGTH: &str = "gyration_length";
+const ROOT: &str = "root";
+
 /// A body in its state at the start, and how uncertain its mass properties are.
 #[derive(Clone, Debug)]
 pub(crate) struct UncertainBody {
@@ -148,8 +152,18 @@ impl UncertainBody {
     pub(crate) fn root_numbers(&self) -> Option<([&'static str; 2], &[ScalarLaw; 3])> {
         match &self.inertia {
             BodyInertia::Principal { roots, lengths, .. } => {
-                let name = if *lengths { ["gyration_length", "m"] } else { ["root", "sqrt_kg_m"] };
+                let name = if *lengths { [LENGTH, "m"] } else { [ROOT, "sqrt_kg_m"] };
                 Some((name, independent(roots)?))
+            }
+            BodyInertia::Model(_) => None,
+        }
+    }
+
+    /// What the roots are called, and which shares of their laws lie below zero; nothing of models without such.
+    pub(crate) fn folded_shares(&self) -> Option<(&'static str, [f64; 3])> {
+        match &self.inertia {
+            BodyInertia::Principal { roots, lengths, .. } => {
+                Some((if *lengths { LENGTH } else { ROOT }, roots.folded_shares()))
             }
             BodyInertia::Model(_) => None,
         }

@@ -53,7 +53,7 @@ pub(crate) use parse::{some_whole, whole};
 pub(crate) use scalar::ScalarLawFile;
 pub(crate) use {each::Each, until::UntilFile, vehicles::Size};
 
-use crate::{about::About, body::Body, fleet::Fleet};
+use crate::{about::About, body::Body, fleet::Fleet, folded::FoldedRoot};
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
 
@@ -259,6 +259,17 @@ impl Scenario {
             regions: kept,
             outside: OutsideLaws::default(),
         })
+    }
+
+    /// Lengths and roots of payload and stage whose laws lie below zero by more than 2.28 %, as a normal law does whose mean is
+    /// less than two standard deviations.
+    #[must_use]
+    pub fn folded(&self) -> Vec<FoldedRoot> {
+        let bodies = [(Body::Payload, &self.payload), (Body::Stage, &self.stage)];
+        let of = |(body, own): (Body, &UncertainBody)| {
+            Some(FoldedRoot::of(body.name(), own.folded_shares()?))
+        };
+        bodies.into_iter().filter_map(of).flatten().collect()
     }
 
     /// Its name.

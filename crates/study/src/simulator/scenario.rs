@@ -12,7 +12,7 @@ use super::{
     number::{Number, check_column},
 };
 use crate::{
-    Fleet, ScenarioError,
+    Fleet, FoldedRoot, ScenarioError,
     about::About,
     model,
     scenario::{
@@ -228,6 +228,16 @@ impl SimulatorScenario {
         self.size
     }
 
+    /// Lengths and roots of the bodies whose laws lie below zero by more than 2.28 %, as a normal law does whose mean is less
+    /// than two standard deviations.
+    #[must_use]
+    pub fn folded(&self) -> Vec<FoldedRoot> {
+        let of = |body: &SimulatedBody| {
+            Some(FoldedRoot::of(&body.name, body.uncertain.folded_shares()?))
+        };
+        self.bodies.iter().filter_map(of).flatten().collect()
+    }
+
     /// The law of a body under a model, both by their places, and whether it is the body's own.
     pub(super) fn law(
         &self,
@@ -245,12 +255,22 @@ impl SimulatorScenario {
             let problem = format!("the body {}: {error}", body_of.name);
             ScenarioError::field(place(model) + key, problem)
         })?;
-        let axes = spec.law.own_axes();
-        if let Some(axes) = axes {
-            let place = format!("bodies[{}]", body + 1);
-            self.dispersed.acceptance(body, &place, &body_of.uncertain, axes)?;
-        }
-        Ok((law, axes.is_some()))
+        // That enough draws are kept.
+        self.acceptance(model, body)?;
+        Ok((law, spec.law.own_axes().is_some()))
+    }
+
+    /// The estimated share of draws that the region of a body keeps under a model, both by their places, and its standard
+    /// error; nothing without a region, and of a model that draws by another law than the body's own.
+    pub(super) fn acceptance(
+        &self,
+        model: usize,
+        body: usize,
+    ) -> Result<Option<(f64, f64)>, ScenarioError> {
+        let uncertain = &self.bodies[body].uncertain;
+        let place = format!("bodies[{}]", body + 1);
+        let of = |axes| self.dispersed.acceptance(body, &place, uncertain, axes);
+        self.models[model].law.own_axes().map_or(Ok(None), of)
     }
 
     pub(super) fn bodies(&self) -> &[SimulatedBody] {

@@ -23,6 +23,7 @@ use crate::{
     decisions, drivers,
     groups::{Drawing, Groups},
     head::Head,
+    regions::{self, RegionSummary},
     report,
     steering::Steered,
     subject::{Subject, Summarized, head_of},
@@ -40,7 +41,17 @@ pub struct SimulatorSummary {
     #[serde(flatten)]
     head: Head,
     command: Vec<String>,
+    /// Of the models whose draws are kept to regions, in their order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    regions: Vec<KeptSummary>,
     overview: Overview,
+}
+
+/// What of the draws of a model the regions of its bodies keep.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct KeptSummary {
+    model: String,
+    regions: Vec<RegionSummary>,
 }
 
 impl SimulatorSummary {
@@ -85,6 +96,22 @@ impl SimulatorScenario {
         let heavy = outputs
             .filter_map(|(column, _, samples)| Some((column.to_owned(), samples.get(place)?)));
         unmoved.chain(Alert::heavy_tails(name, heavy)).collect()
+    }
+
+    /// What of the draws of each model the regions of the bodies keep.
+    fn kept_to_regions(&self) -> Result<Vec<KeptSummary>, ScenarioError> {
+        let mut all = Vec::new();
+        for (place, model) in self.model_names().enumerate() {
+            let mut regions = Vec::new();
+            for (number, body) in self.bodies().iter().enumerate() {
+                let kept = self.acceptance(place, number)?;
+                regions.extend(kept.map(|kept| RegionSummary::new(body.name.clone(), kept)));
+            }
+            if !regions.is_empty() {
+                all.push(KeptSummary { model: model.to_owned(), regions });
+            }
+        }
+        Ok(all)
     }
 
     /// The runs of the model in a place.
@@ -272,8 +299,10 @@ impl Subject for SimulatorScenario {
         let overview = Overview::of_surveys(&title, &shown, &surveys)?;
         let alerts = surveys.iter().enumerate();
         let alerts = alerts.flat_map(|(place, surveys)| self.alerts(&overview, place, surveys));
+        let alerts = alerts.chain(self.folded().into_iter().map(Alert::Folded));
         let head = Head { alerts: alerts.collect(), ..head_of(self, columns) };
-        Ok(SimulatorSummary { head, command: self.command().to_vec(), overview })
+        let (command, regions) = (self.command().to_vec(), self.kept_to_regions()?);
+        Ok(SimulatorSummary { head, command, regions, overview })
     }
 
     fn drawn_inputs(&self, summary: &SimulatorSummary, model: &str) -> Vec<DrawnInput> {
@@ -317,6 +346,8 @@ impl Subject for SimulatorScenario {
         let driven = drivers::section(&summary.head, &self.main_outcomes());
         let document = summary.overview.document().led_by(first).sections(driven);
         let document = document.sections(decisions::where_runs_fail(&summary.head));
+        let kept = summary.regions.iter().map(|kept| (&*kept.model, &*kept.regions));
+        let document = document.sections(regions::section(kept));
         let document = report::noting_vehicles(document, &summary.head);
         let inputs = report::inputs(&summary.head, &self.kept(), self.to_toml(), None);
         report::noting_what_is_missing(document, &summary.head).section(inputs)

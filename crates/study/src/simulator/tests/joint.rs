@@ -3,7 +3,9 @@
 use gyradius_inertia::{Containment, Inertia, InertiaMatrix, MassProperties, Region};
 use nalgebra::Vector3;
 
-use super::{SimulatorDraws, SimulatorScenario, drawn, folder, scenario, uniform};
+use super::{
+    MODELS, Options, SimulatorDraws, SimulatorScenario, drawn, folder, fs, scenario, uniform,
+};
 
 /// A body about a mass centre that is not the origin, kept to a region, and one with a whole law.
 const BODIES: &str = r#"
@@ -40,9 +42,13 @@ between = ["a_mass_kg", "a_gyration_length_1_m", "x"]
 coefficient = 0.5
 "#;
 
-/// The drawn bodies of a name.
+/// The drawn bodies of a name, of thirty runs.
 fn bodies(scenario: &SimulatorScenario, name: &str) -> Vec<MassProperties> {
-    let columns = drawn(scenario, 0);
+    bodies_of(&drawn(scenario, 0), name)
+}
+
+/// The bodies of a name in columns.
+fn bodies_of(columns: &[(String, Vec<Option<u64>>)], name: &str) -> Vec<MassProperties> {
     let column = |of: &str| -> Vec<f64> {
         let wanted = format!("{name}_{of}");
         let (_, values) = columns.iter().find(|(column, _)| *column == wanted).unwrap();
@@ -112,5 +118,103 @@ fn what_a_body_cannot_have_is_named() {
     ] {
         let message = refused(from, to);
         assert!(message.starts_with(expected), "{message}\n{expected}");
+    }
+}
+
+/// Summary and report tell the share of draws that a region keeps: that of the draws without it.
+#[test]
+fn what_a_region_keeps_is_told() {
+    let folder = folder();
+    let text = uniform() + BODIES + MODELS;
+    let scenario_of = |text: &str| scenario(text, folder.path()).with_runs(40).unwrap();
+    let study = |text: &str, name: &str| {
+        let options = Options { out: Some(folder.path().join(name)), ..Options::default() };
+        let study = scenario_of(text).study(&options, &|_| {}, &|_| {}).unwrap();
+        let read = |file: &str| fs::read_to_string(study.folder().join(file)).unwrap();
+        let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();
+        (summary, read("report.md"))
+    };
+    let (summary, report) = study(&text, "kept");
+    let regions = summary["regions"].as_array().unwrap();
+    // The other model draws the inertia by a law of its own.
+    assert_eq!((regions.len(), &regions[0]["model"]), (1, &"proposed".into()), "{regions:?}");
+    let bodies = regions[0]["regions"].as_array().unwrap();
+    assert_eq!((bodies.len(), &bodies[0]["body"]), (1, &"a".into()), "{bodies:?}");
+    let [share, error] =
+        ["acceptance", "standard_error"].map(|key| bodies[0][key].as_f64().unwrap());
+
+    let start = text.find("inside = ").unwrap();
+    let line = text[start..].lines().next().unwrap();
+    let open_text = text.replace(line, "");
+    let open = scenario_of(&open_text);
+    let draws = SimulatorDraws::new(&open, 0).unwrap();
+    let (names, _) = (drawn(&open, 0), ());
+    let mut columns: Vec<(String, Vec<Option<u64>>)> =
+        names.into_iter().map(|(name, _)| (name, Vec::new())).collect();
+    let n = 3000;
+    for run in 0..n {
+        let mut numbers = Vec::new();
+        super::Inputs::draw(&draws, run, &mut numbers).unwrap();
+        for ((_, values), number) in columns.iter_mut().zip(numbers) {
+            values.push(number.map(f64::to_bits));
+        }
+    }
+    let region = Region::ellipsoid([1.0, 0.0, 0.5], [0.6; 3]).unwrap();
+    let held = bodies_of(&columns, "a").iter().filter(|body| region.room(body) >= 0.0).count();
+    let expected = held as f64 / n as f64;
+    let off =
+        (share - expected).abs() / (error.powi(2) + expected * (1.0 - expected) / n as f64).sqrt();
+    assert!(
+        error > 0.0 && (0.05..0.95).contains(&share) && off < 4.5,
+        "{share} {error} {expected}"
+    );
+    assert!(
+        report.contains("Regions of matter") && report.contains("of the a's draws"),
+        "{report}"
+    );
+
+    let (summary, report) = study(&open_text, "open");
+    assert!(summary.get("regions").is_none() && !report.contains("Regions of matter"));
+}
+
+/// A length is told of if more than Φ(−2) of its law is below zero, in the order of bodies and axes, and a report tells it.
+#[test]
+fn lengths_that_are_folded_are_told() {
+    let folder = folder();
+    let start = BODIES.find("inside = ").unwrap();
+    let open = BODIES.replace(BODIES[start..].lines().next().unwrap(), "");
+    let entries = InertiaMatrix::from_entries([21.0, 19.0, 26.0], [0.2, -0.1, 0.3]).unwrap();
+    let second = Inertia::try_from(entries).unwrap().second_moments().values();
+    let lengths = second.map(|k| (k / 120.0).sqrt());
+    for which in 0..8 {
+        let sigmas: Vec<String> = (0..3)
+            .map(|i| lengths[i] / if which >> i & 1 == 1 { 1.9 } else { 2.1 })
+            .map(|sigma| sigma.to_string())
+            .collect();
+        let text = open.replace("[0.03, 0.02, 0.02]", &format!("[{}]", sigmas.join(", ")));
+        let read = scenario(&(uniform() + &text), folder.path()).with_runs(3).unwrap();
+        let found = read.folded();
+        let names: Vec<&str> = found.iter().map(|root| root.quantity()).collect();
+        let expected: Vec<String> = (1..4)
+            .filter(|axis| which >> (axis - 1) & 1 == 1)
+            .map(|axis| format!("gyration_length_{axis}"))
+            .collect();
+        assert_eq!(names, expected);
+        for root in &found {
+            // Φ(−1.9)
+            assert!(root.body() == "a" && (root.share() - 0.028_716_56).abs() < 1e-6, "{root}");
+        }
+        if which == 5 {
+            let out = Some(folder.path().join("folded"));
+            let options = Options { out, ..Options::default() };
+            let study = read.study(&options, &|_| {}, &|_| {}).unwrap();
+            let page = fs::read_to_string(study.folder().join("report.md")).unwrap();
+            for axis in [1, 3] {
+                let said =
+                    format!("a: 2.9 % of the law of gyration\\_length\\_{axis} lie below zero");
+                let plain = said.replace('\\', "");
+                assert!(page.contains(&said) || page.contains(&plain), "{page}");
+            }
+        }
     }
 }

@@ -1,0 +1,62 @@
+//! Lengths and roots whose laws lie below zero in part: only squares matter, so that this part is folded.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// A larger share below zero is told: that of a normal law whose mean is two standard deviations, where its absolute value has
+/// a mean that is 0.4 % larger, and a standard deviation that is 3 % smaller.
+const MANY: f64 = 0.0228;
+
+/// A radius of gyration or a root of a body whose law is folded at zero, so that it has not the mean and deviation stated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FoldedRoot {
+    body: String,
+    /// As correlations call it, with its axis.
+    quantity: String,
+    share: f64,
+}
+
+impl FoldedRoot {
+    /// Those of a body of this name, from what its roots are called and the shares of their laws below zero.
+    pub(crate) fn of(body: &str, (quantity, shares): (&str, [f64; 3])) -> Vec<Self> {
+        let all = (1..).zip(shares).filter(|(_, share)| *share > MANY);
+        all.map(|(axis, share)| Self {
+            body: body.to_owned(),
+            quantity: format!("{quantity}_{axis}"),
+            share,
+        })
+        .collect()
+    }
+
+    /// The body.
+    #[must_use]
+    pub fn body(&self) -> &str {
+        &self.body
+    }
+
+    /// `gyration_length_1` or `root_1`, about principal axis 1, and so on.
+    #[must_use]
+    pub fn quantity(&self) -> &str {
+        &self.quantity
+    }
+
+    /// The share of its law that lies below zero.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.share
+    }
+}
+
+impl fmt::Display for FoldedRoot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: {:.1} % of the law of {} lie below zero. Only its square matters, so that these draws are those of its \
+             absolute value, whose mean and standard deviation are not the stated ones: a lognormal or truncated normal \
+             law stays above zero",
+            self.body,
+            100.0 * self.share,
+            self.quantity
+        )
+    }
+}
