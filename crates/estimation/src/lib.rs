@@ -34,6 +34,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod assessment;
 mod estimated;
 mod fit;
 mod mass_fit;
@@ -42,6 +43,7 @@ mod stated_body;
 mod statements;
 mod turns;
 
+pub use assessment::{Test, Verdict};
 pub use estimated::{
     EstimateDistance, EstimatedBody, EstimatedBodyError, TenEstimate, TenEstimateError, TenForm,
 };

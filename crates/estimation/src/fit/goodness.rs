@@ -6,13 +6,13 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::fmt;
 
+use crate::assessment::{Test, Verdict};
+
 use super::{
     AxesFinding, PrincipalFit, matching::mean_attitude, relabel::Sample, root::RootEstimate,
     root::RootFit,
 };
 
-/// The verdict falls when a model that is right would look worse this often.
-const SIZE: f64 = 0.05;
 /// Simulated samples at most, and as few as suffice to see this many that look worse.
 const SIMULATED: usize = 999;
 const SIMULATED_IF_MANY: usize = 399;
@@ -58,76 +58,15 @@ impl fmt::Display for Aspect {
     }
 }
 
-/// One test of the model.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct FitTest {
-    aspect: Aspect,
-    p_value: f64,
-    least: f64,
-}
+/// One test of the model of an inertia.
+pub type FitTest = Test<Aspect>;
 
-impl FitTest {
-    /// What it looks at.
-    #[must_use]
-    pub fn aspect(&self) -> Aspect {
-        self.aspect
-    }
-
-    /// How often samples of the model itself would look worse.
-    #[must_use]
-    pub fn p_value(&self) -> f64 {
-        self.p_value
-    }
-
-    /// The smallest p-value that the test can give, zero if it is not by simulation.
-    #[must_use]
-    pub fn resolution(&self) -> f64 {
-        self.least
-    }
-}
-
-/// Whether the samples look like draws of the fitted model.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Assessment {
-    tests: Vec<FitTest>,
-}
-
-impl Assessment {
-    /// The tests, each at its own level.
-    #[must_use]
-    pub fn tests(&self) -> &[FitTest] {
-        &self.tests
-    }
-
-    /// How often samples of the model itself would fare worse in any of the tests: Šidák's
-    /// 1 − (1 − min p)ᵐ for m tests, which are independent of each other for many samples.
-    #[must_use]
-    pub fn p_value(&self) -> f64 {
-        if self.tests.is_empty() {
-            return 1.0;
-        }
-        let least = self.tests.iter().map(|t| t.p_value).fold(1.0, f64::min);
-        -libm::expm1(self.tests.len() as f64 * libm::log1p(-least))
-    }
-
-    /// Whether nothing speaks against the model at 5 %.
-    #[must_use]
-    pub fn fits(&self) -> bool {
-        self.p_value() >= SIZE
-    }
-
-    /// What speaks against the model: the tests that fail at 5 % though there are several (Šidák).
-    pub fn objections(&self) -> impl Iterator<Item = &FitTest> {
-        let each = -libm::expm1(libm::log1p(-SIZE) / self.tests.len().max(1) as f64);
-        self.tests.iter().filter(move |t| t.p_value < each)
-    }
-}
+/// Whether samples look like draws of the fitted model of an inertia.
+pub type Assessment = Verdict<Aspect>;
 
 impl fmt::Display for Assessment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.tests.is_empty() {
+        if self.tests().is_empty() {
             return f.write_str("nothing scatters, so there is nothing to test");
         }
         if self.fits() {
@@ -141,7 +80,7 @@ impl fmt::Display for Assessment {
         f.write_str("the model does not fit:")?;
         for (i, test) in self.objections().enumerate() {
             f.write_str(if i == 0 { " " } else { "; " })?;
-            match test.aspect {
+            match test.aspect() {
                 Aspect::Root { axis } => write!(f, "k{axis} is not Gaussian")?,
                 Aspect::Roots => f.write_str("the roots depend on each other")?,
                 Aspect::Axes => f.write_str(
@@ -154,9 +93,9 @@ impl fmt::Display for Assessment {
                 Aspect::Tilt => f.write_str("the axis tilts more one way than another")?,
                 Aspect::RootsAndAxes => f.write_str("the axes depend on the roots")?,
             }
-            let below = if test.p_value <= test.least { "≤" } else { "=" };
-            let p = test.p_value;
-            if p == 0.0 || (p < 1e-99 && test.least == 0.0) {
+            let (p, least) = (test.p_value(), test.resolution());
+            let below = if p <= least { "≤" } else { "=" };
+            if p == 0.0 || (p < 1e-99 && least == 0.0) {
                 write!(f, " (p < 1e-99)")?;
             } else if p < 1e-3 {
                 write!(f, " (p {below} {p:.0e})")?;
@@ -210,13 +149,13 @@ impl PrincipalFit {
         for &k in &scatters {
             let values: Vec<f64> = self.samples.iter().map(|s| s.roots[k]).collect();
             let (p_value, least) = root_p_value(&self.roots[k], values, rng, &mut tick);
-            tests.push(FitTest { aspect: Aspect::Root { axis: k + 1 }, p_value, least });
+            tests.push(FitTest::new(Aspect::Root { axis: k + 1 }, p_value, least));
         }
         let roots: Vec<Vec<f64>> =
             scatters.iter().map(|&k| self.samples.iter().map(|s| s.roots[k]).collect()).collect();
         if roots.len() > 1 {
             let p_value = independence(&roots, &[], n);
-            tests.push(FitTest { aspect: Aspect::Roots, p_value, least: 0.0 });
+            tests.push(FitTest::new(Aspect::Roots, p_value, 0.0));
         }
         let turns = self.turns();
         if let Some(observed) = omnibus(&turns) {
@@ -234,21 +173,21 @@ impl PrincipalFit {
                 }
                 omnibus(&self.turns_of(&samples)).unwrap_or(0.0)
             });
-            tests.push(FitTest { aspect: Aspect::Axes, p_value, least });
+            tests.push(FitTest::new(Aspect::Axes, p_value, least));
             if self.axes.finding() == AxesFinding::Determined {
                 let statistic = anderson_darling_of(self.ln_densities(&self.samples), densities);
                 let p_value = tail::anderson_darling(statistic);
-                tests.push(FitTest { aspect: Aspect::Turn, p_value, least: 0.0 });
+                tests.push(FitTest::new(Aspect::Turn, p_value, 0.0));
             }
         }
         if let Some(p_value) = self.axes.isotropy() {
-            tests.push(FitTest { aspect: Aspect::Tilt, p_value, least: 0.0 });
+            tests.push(FitTest::new(Aspect::Tilt, p_value, 0.0));
         }
         if !turns.is_empty() && !roots.is_empty() {
             let p_value = independence(&roots, &turns, n);
-            tests.push(FitTest { aspect: Aspect::RootsAndAxes, p_value, least: 0.0 });
+            tests.push(FitTest::new(Aspect::RootsAndAxes, p_value, 0.0));
         }
-        Assessment { tests }
+        Assessment::new(tests)
     }
 
     /// How many samples [`assess_with`](Self::assess_with) simulates at most.

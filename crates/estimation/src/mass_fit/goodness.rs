@@ -4,10 +4,10 @@ use rand::Rng;
 use std::fmt;
 
 use super::{MassPropertiesFit, ScalarEstimate};
-use crate::fit::{Aspect, independence};
-
-/// The verdict falls when a model that is right would look worse this often.
-const SIZE: f64 = 0.05;
+use crate::{
+    assessment::{Test, Verdict},
+    fit::{Aspect, independence},
+};
 
 /// What of the joint law a test looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,67 +46,10 @@ impl fmt::Display for MassAspect {
 }
 
 /// One test of the joint law.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct MassTest {
-    aspect: MassAspect,
-    p_value: f64,
-    resolution: f64,
-}
-
-impl MassTest {
-    /// What it looks at.
-    #[must_use]
-    pub fn aspect(&self) -> MassAspect {
-        self.aspect
-    }
-
-    /// How often samples of the law itself would look worse.
-    #[must_use]
-    pub fn p_value(&self) -> f64 {
-        self.p_value
-    }
-
-    /// The smallest p-value that the test can give, zero if it is not by simulation.
-    #[must_use]
-    pub fn resolution(&self) -> f64 {
-        self.resolution
-    }
-}
+pub type MassTest = Test<MassAspect>;
 
 /// Whether samples look like draws of the fitted joint law.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct MassAssessment {
-    tests: Vec<MassTest>,
-}
-
-impl MassAssessment {
-    /// The tests, each at its own level.
-    #[must_use]
-    pub fn tests(&self) -> &[MassTest] {
-        &self.tests
-    }
-
-    /// How often samples of the law itself would fare worse in any of the tests (Šidák).
-    #[must_use]
-    pub fn p_value(&self) -> f64 {
-        let least = self.tests.iter().map(|t| t.p_value).fold(1.0, f64::min);
-        -libm::expm1(self.tests.len() as f64 * libm::log1p(-least))
-    }
-
-    /// Whether nothing speaks against the law at 5 %.
-    #[must_use]
-    pub fn fits(&self) -> bool {
-        self.tests.is_empty() || self.p_value() >= SIZE
-    }
-
-    /// What speaks against the law: the tests that fail at 5 % though there are several (Šidák).
-    pub fn objections(&self) -> impl Iterator<Item = &MassTest> {
-        let each = -libm::expm1(libm::log1p(-SIZE) / self.tests.len().max(1) as f64);
-        self.tests.iter().filter(move |t| t.p_value < each)
-    }
-}
+pub type MassAssessment = Verdict<MassAspect>;
 
 impl MassPropertiesFit {
     /// Tests whether the samples look like draws of the law: each scalar by Anderson and Darling's test with estimated
@@ -126,7 +69,7 @@ impl MassPropertiesFit {
     ) -> MassAssessment {
         let mut tests = Vec::new();
         let mut exact = |aspect, p_value: Option<f64>| {
-            tests.extend(p_value.map(|p_value| MassTest { aspect, p_value, resolution: 0.0 }));
+            tests.extend(p_value.map(|p_value| MassTest::new(aspect, p_value, 0.0)));
         };
         exact(MassAspect::Mass { law: self.mass.kind() }, self.mass.p_value());
         for (i, centre) in self.centre.iter().enumerate() {
@@ -140,12 +83,11 @@ impl MassPropertiesFit {
         }
         let own = self.lengths.assess_with(rng, progress);
         tests.extend(own.tests().iter().filter(|test| test.aspect() != Aspect::Roots).map(
-            |test| MassTest {
-                aspect: MassAspect::Inertia(test.aspect()),
-                p_value: test.p_value(),
-                resolution: test.resolution(),
+            |test| {
+                let aspect = MassAspect::Inertia(test.aspect());
+                MassTest::new(aspect, test.p_value(), test.resolution())
             },
         ));
-        MassAssessment { tests }
+        MassAssessment::new(tests)
     }
 }

@@ -1,6 +1,6 @@
 //! The model that statements make, and what they come to.
 
-use gyradius_dispersion::{EntryMoments, RootMoments};
+use gyradius_dispersion::{EntryMoments, RootMoments, following_factor};
 use gyradius_inertia::Inertia;
 use nalgebra::Vector3;
 
@@ -67,7 +67,7 @@ impl StatedMass {
     /// 1 + α(ratio − 1).
     #[must_use]
     pub fn factor(&self, ratio: f64) -> f64 {
-        1.0 + self.follows * (ratio - 1.0)
+        following_factor(ratio, self.follows)
     }
 
     /// The standard deviation of that factor.

@@ -117,6 +117,8 @@ fn a_mass_is_counted_once() {
     let model = statements.model(&nominal, None).unwrap();
     let mass = model.mass().unwrap();
     assert_eq!((mass.relative_deviation(), mass.inertia_follows()), (0.05, 1.0));
+    // As wherever an inertia follows: of the whole change the ratio itself.
+    assert!((1..100).map(|i| 0.01 * f64::from(i)).all(|ratio| mass.factor(ratio) == ratio));
     // Draws of both: mass and inertia at the nominal mass.
     const N: usize = 40_000;
     let mut rng = ChaCha8Rng::seed_from_u64(1);
