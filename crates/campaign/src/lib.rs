@@ -71,6 +71,7 @@ mod format;
 mod hash;
 mod identity;
 mod kept;
+mod kept_runs;
 mod memory;
 mod requirement;
 mod room;
@@ -95,7 +96,10 @@ pub use campaign::{Doing, Look, Plan, run_missing};
 pub use cell::Cell;
 pub use column::{Column, ColumnSummary, Kind};
 pub use designs::{Designs, DesignsError, Mix, Output};
-pub use external::{ExternalSimulation, Inputs, Program, ProgramError, Simulator, Told};
+pub use external::{
+    ExternalSimulation, Inputs, Outputs, Program, ProgramError, RunInputs, Simulator,
+    SimulatorFunction, Told,
+};
 pub use failure::Failure;
 pub use folder::{
     Block, Blocks, Contents, Folder, FolderError, MANIFEST, Manifest, Reduced, Shared, begun,
@@ -108,6 +112,7 @@ pub use gyradius_statistics::Verdict;
 pub use hash::sha256;
 pub use identity::{Difference, Identity};
 pub use kept::{Kept, KeptError, Rows};
+pub use kept_runs::{KeptColumn, KeptRuns, KeptTexts, KeptValues};
 pub use memory::memory_left;
 pub use requirement::{
     Bound, Distribution, DistributionPoint, Estimate, Event, FailedRuns, Judgement, JudgementError,

@@ -305,7 +305,7 @@ pub(crate) fn said(error: &ParquetError) -> String {
     }
 }
 
-fn open(path: &Path) -> Result<SerializedFileReader<File>, ParquetError> {
+pub(crate) fn open(path: &Path) -> Result<SerializedFileReader<File>, ParquetError> {
     SerializedFileReader::new(File::open(path).map_err(|e| ParquetError::External(e.into()))?)
 }
 
@@ -391,6 +391,10 @@ fn cell(reader: ColumnReader, place: usize) -> Result<Cell<'static>, ParquetErro
             };
             one!(r, text)
         }
-        _ => return Err(ParquetError::General("a column of a type that no run table has".into())),
+        _ => return Err(of_no_run_table()),
     })
+}
+
+pub(crate) fn of_no_run_table() -> ParquetError {
+    ParquetError::General("a column of a type that no run table has".to_owned())
 }

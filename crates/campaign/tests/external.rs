@@ -1,6 +1,7 @@
-//! Simulators in a shell script that misbehave in every way, in every place, and in Python: what they do to their own
+//! Simulators in a shell script that misbehave in every way, in every place, in Python, and as functions: what they do to their own
 //! runs, and that they do nothing to others.
 
+mod function;
 mod order;
 
 use gyradius_campaign::{

@@ -41,22 +41,35 @@ pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f6
         (None, Some(text)) => return Err(Trouble::Error { text: text.into_owned() }),
         (Some(_), Some(_)) | (None, None) => return Err(Trouble::OutputsOrError),
     };
+    declared(found, outputs, |value| {
+        let number = value.get().parse::<f64>().ok().filter(|number| number.is_finite());
+        number.ok_or_else(|| shown(value.get().as_bytes(), 40))
+    })
+}
+
+/// The numbers of the declared outputs, in their order, among what was answered by name; what is no finite number is told as it is
+/// shown.
+pub(super) fn declared<N: AsRef<str>, V>(
+    answered: impl IntoIterator<Item = (N, V)>,
+    outputs: &[Column],
+    number: impl Fn(V) -> Result<f64, String>,
+) -> Result<Vec<f64>, Trouble> {
     let mut numbers = vec![None; outputs.len()];
-    for (place, (name, value)) in found.iter().enumerate() {
+    for (place, (name, value)) in answered.into_iter().enumerate() {
+        let name = name.as_ref();
         // Most simulators write them in the order in which they are declared.
         let here = outputs.get(place).filter(|column| column.name() == name);
         let place = here
             .map(|_| place)
             .or_else(|| outputs.iter().position(|column| column.name() == name))
-            .ok_or_else(|| Trouble::Unknown { output: name.to_string() })?;
+            .ok_or_else(|| Trouble::Unknown { output: name.to_owned() })?;
         if numbers[place].is_some() {
-            return Err(Trouble::Repeated { output: name.to_string() });
+            return Err(Trouble::Repeated { output: name.to_owned() });
         }
-        let number = value.get().parse::<f64>().ok().filter(|number| number.is_finite());
-        numbers[place] = Some(number.ok_or_else(|| Trouble::NotFinite {
-            output: Some(name.to_string()),
-            value: shown(value.get().as_bytes(), 40),
-        })?);
+        numbers[place] = Some(
+            number(value)
+                .map_err(|value| Trouble::NotFinite { output: Some(name.to_owned()), value })?,
+        );
     }
     let named = outputs.iter().zip(numbers);
     let number = |(column, number): (&Column, Option<f64>)| {

@@ -1,4 +1,4 @@
-//! A simulator of the user's own, in any language, as a simulation.
+//! A simulator of the user's own, a command in any language or a function, as a simulation.
 
 mod answer;
 #[cfg(unix)]
@@ -6,13 +6,18 @@ mod child;
 #[cfg(not(unix))]
 #[path = "elsewhere.rs"]
 mod child;
+mod function;
+mod inputs;
 mod patience;
+mod processes;
 mod program;
 mod simulation;
 mod simulator;
 mod tail;
 mod trouble;
 
+pub use function::{Outputs, SimulatorFunction};
+pub use inputs::RunInputs;
 pub use program::{Program, ProgramError};
 pub use simulation::{ExternalSimulation, Inputs, Told};
 pub use simulator::Simulator;

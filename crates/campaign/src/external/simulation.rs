@@ -1,10 +1,14 @@
 //! Runs of a simulator: what is drawn for a run is sent, what comes back are columns beside it.
 
 use rand::Rng;
-use serde::{Serialize, Serializer};
-use std::ops::Range;
+use std::{cell::RefCell, ops::Range};
 
-use super::{answer, child::Child, simulator::Simulator, trouble::Trouble};
+use super::{
+    child::Child,
+    inputs::{Named, RunInputs},
+    simulator::{Said, Simulator},
+    trouble::Trouble,
+};
 use crate::{
     cell::Cell,
     column::Column,
@@ -59,6 +63,10 @@ pub trait Inputs: Sync {
 /// # With files
 /// A [`Program::per_run`](super::Program::per_run) is started for each run in a temporary folder of its own,
 /// where it reads the same from `input.json` and writes the same to `output.json`.
+///
+/// # As a function
+/// A [`SimulatorFunction`](super::SimulatorFunction) of the program does runs without any process. It is given the same as a process is
+/// sent, and fails by the same rules; a panic of it is a run that failed.
 ///
 /// # The seed
 /// The seed is for random numbers that the simulator draws itself. It is the first 64-bit word of the run's stream of the
@@ -131,20 +139,6 @@ pub struct Told {
     pub outputs: Result<Vec<f64>, Failure>,
 }
 
-/// What is sent for a run.
-#[derive(Serialize)]
-struct Request<'a> {
-    run: u64,
-    #[serde(flatten)]
-    place: Named<'a, i64>,
-    model: &'a str,
-    seed: u64,
-    inputs: Named<'a, f64>,
-}
-
-/// Numbers by the names of their columns.
-struct Named<'a, T>(&'a [Column], &'a [Option<T>]);
-
 impl<'a, I: Inputs> ExternalSimulation<'a, I> {
     /// Runs of a simulator under a model in a campaign with a seed: what is drawn and sent, and the outputs that it
     /// answers with, which are numbers.
@@ -163,29 +157,10 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
     /// Does a run alone, in a process that is started for it, and tells what was said.
     #[must_use]
     pub fn replay(&self, run: u64) -> Told {
-        let mut numbers = Vec::new();
-        let request = match self.request(run, &mut numbers) {
-            Ok(request) => request,
-            Err(failure) => {
-                return Told {
-                    inputs: numbers,
-                    request: None,
-                    answer: None,
-                    outputs: Err(failure),
-                };
-            }
-        };
-        let told = std::cell::RefCell::new(None);
-        let outputs = self.simulator.ask(&request, &mut None, |answer| {
-            *told.borrow_mut() = Some(String::from_utf8_lossy(answer).into_owned());
-            answer::read(answer, run, &self.outputs)
-        });
-        Told {
-            inputs: numbers,
-            request: Some(String::from_utf8_lossy(&request).trim_end().to_owned()),
-            answer: told.into_inner(),
-            outputs: outputs.map_err(Trouble::failure),
-        }
+        let (mut inputs, said) = (Vec::new(), RefCell::default());
+        let outputs = self.outputs(run, &mut inputs, &mut None, Some(&said));
+        let Said { request, answer } = said.into_inner();
+        Told { inputs, request, answer, outputs }
     }
 
     /// The table of a run that was done alone: the row that a campaign has of it.
@@ -224,8 +199,14 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         rows.push(failure.clone(), cells)
     }
 
-    /// The line that is sent for a run, and the numbers in it, which are there as far as they could be drawn.
-    fn request(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<Vec<u8>, Failure> {
+    /// The outputs of a run. The numbers that are drawn for it are there afterwards, as far as they could be drawn.
+    fn outputs(
+        &self,
+        run: u64,
+        numbers: &mut Vec<Option<f64>>,
+        kept: &mut Option<Child>,
+        said: Option<&RefCell<Said>>,
+    ) -> Result<Vec<f64>, Failure> {
         self.inputs.draw(run, numbers)?;
         let mut sent =
             self.drawn.iter().zip(&*numbers).filter_map(|(column, x)| Some((column, (*x)?)));
@@ -236,22 +217,8 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         let seed = self.seeds.run(self.inputs.seed_stream(run)).next_u64() >> 11;
         let place: Vec<_> = self.inputs.place(run).into_iter().map(Some).collect();
         let (place, inputs) = (Named(&self.places, &place), Named(&self.drawn, numbers));
-        let request = Request { run, place, model: &self.model, seed, inputs };
-        let mut line =
-            serde_json::to_vec(&request).map_err(|error| Trouble::Files(error.into()).failure())?;
-        line.push(b'\n');
-        Ok(line)
-    }
-
-    fn outputs(
-        &self,
-        run: u64,
-        numbers: &mut Vec<Option<f64>>,
-        kept: &mut Option<Child>,
-    ) -> Result<Vec<f64>, Failure> {
-        let request = self.request(run, numbers)?;
-        let read = |answer: &[u8]| answer::read(answer, run, &self.outputs);
-        self.simulator.ask(&request, kept, read).map_err(Trouble::failure)
+        let inputs = RunInputs { run, place, model: &self.model, seed, inputs };
+        self.simulator.ask(&inputs, &self.outputs, kept, said).map_err(Trouble::failure)
     }
 }
 
@@ -274,18 +241,10 @@ impl<I: Inputs> Simulation for ExternalSimulation<'_, I> {
         let mut numbers = Vec::with_capacity(self.drawn.len());
         for run in runs {
             numbers.clear();
-            let outputs = self.outputs(run, &mut numbers, &mut kept);
+            let outputs = self.outputs(run, &mut numbers, &mut kept, None);
             self.push(run, &numbers, outputs, rows)?;
         }
         self.simulator.keep(kept);
         Ok(())
-    }
-}
-
-impl<T: Copy + Serialize> Serialize for Named<'_, T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let named = self.0.iter().zip(self.1);
-        let there = named.filter_map(|(column, number)| Some((column.name(), (*number)?)));
-        serializer.collect_map(there)
     }
 }

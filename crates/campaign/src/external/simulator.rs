@@ -1,39 +1,43 @@
-//! A simulator that is ready: its processes, of which each thread that does runs has one.
+//! A simulator that is ready: the processes of a program, or a function.
 
-use std::{
-    fs,
-    io::{self, ErrorKind, Read},
-    path::Path,
-    sync::{Mutex, PoisonError},
-    time::{Duration, Instant},
-};
+use std::cell::RefCell;
 
 use super::{
-    LIMIT,
+    answer,
     child::Child,
+    function::{Outputs, SimulatorFunction},
+    inputs::RunInputs,
+    processes::Processes,
     program::{Program, ProgramError},
     trouble::Trouble,
 };
+use crate::column::Column;
 
-/// How long processes that are not needed any more may take to end by themselves.
-const PARTING: Duration = Duration::from_secs(1);
-
-/// A simulator that is ready to do runs: the processes of a [`Program`].
+/// A simulator that is ready to do runs: the processes of a [`Program`], or a [`SimulatorFunction`].
 ///
 /// Every thread that does runs has a process, which is kept. When the simulator is dropped, their standard input is
 /// closed, and what has not ended one second later is killed with everything in its process group.
 #[derive(Debug)]
-pub struct Simulator {
-    program: Program,
-    /// Processes that wait to be asked.
-    idle: Mutex<Vec<Child>>,
+pub struct Simulator(Way);
+
+#[derive(Debug)]
+enum Way {
+    Processes(Processes),
+    Function(SimulatorFunction),
+}
+
+/// What was said in a run that is told of: what was sent, and what came back.
+#[derive(Debug, Default)]
+pub(super) struct Said {
+    pub(super) request: Option<String>,
+    pub(super) answer: Option<String>,
 }
 
 impl Simulator {
     /// Whose processes are started when they are needed.
     #[must_use]
     pub fn new(program: Program) -> Self {
-        Self { program, idle: Mutex::default() }
+        Self(Way::Processes(Processes::new(program)))
     }
 
     /// Starts the first process, or finds the program if it is to be started for each run.
@@ -46,151 +50,96 @@ impl Simulator {
         Ok(simulator)
     }
 
-    /// Makes certain that the command can be started: starts the first process, or finds the program if it is to be started
+    /// A function, which needs no process.
+    #[must_use]
+    pub fn function(function: SimulatorFunction) -> Self {
+        Self(Way::Function(function))
+    }
+
+    /// Makes certain that a command can be started: starts the first process, or finds the program if it is to be started
     /// for each run.
     ///
     /// # Errors
     /// The command cannot be started, or its folder is not there.
     pub fn check(&self) -> Result<(), ProgramError> {
-        let program = &self.program;
-        let first = if program.is_per_run() {
-            // It is not started without a run: nobody knows what it does then.
-            found(program).map(|()| None)
-        } else {
-            Child::start(program).map(Some)
-        };
-        let first = first.map_err(|error| ProgramError::Start {
-            command: program.shown(),
-            problem: error.to_string(),
-        })?;
-        self.keep(first);
-        Ok(())
+        match &self.0 {
+            Way::Processes(processes) => processes.check(),
+            Way::Function(_) => Ok(()),
+        }
     }
 
-    /// Its command.
+    /// Its command; none of a function.
     #[must_use]
-    pub fn program(&self) -> &Program {
-        &self.program
+    pub fn program(&self) -> Option<&Program> {
+        match &self.0 {
+            Way::Processes(processes) => Some(processes.program()),
+            Way::Function(_) => None,
+        }
     }
 
     /// A process that waits, if there is one.
     pub(super) fn take(&self) -> Option<Child> {
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop()
+        match &self.0 {
+            Way::Processes(processes) => processes.take(),
+            Way::Function(_) => None,
+        }
     }
 
     /// Keeps a process for runs to come.
     pub(super) fn keep(&self, child: Option<Child>) {
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).extend(child);
+        match &self.0 {
+            Way::Processes(processes) => processes.keep(child),
+            Way::Function(_) => {}
+        }
     }
 
-    /// Sends the request of a run and gives the answer to `read`. `kept` is the process to ask, which is none afterwards
-    /// if it had to be killed.
-    ///
-    /// A process that has done runs before may be blamed for what is theirs. If it does not answer as agreed, the run is
-    /// sent once more to a process that is started for it, and what that does counts.
-    pub(super) fn ask<T>(
+    /// Does a run and gives the declared outputs in their order. `kept` is the process to ask, which is none afterwards if it had to
+    /// be killed; `said` is told what was sent and what came back.
+    pub(super) fn ask(
         &self,
-        request: &[u8],
+        inputs: &RunInputs<'_>,
+        outputs: &[Column],
         kept: &mut Option<Child>,
-        read: impl Fn(&[u8]) -> Result<T, Trouble>,
-    ) -> Result<T, Trouble> {
-        if self.program.is_per_run() {
-            let answer = self.ask_with_files(request)?;
-            return read(&answer).map_err(Trouble::in_a_file);
-        }
-        let ask = |mut child: Child, kept: &mut Option<Child>| {
-            let result =
-                child.ask(request, self.program.patience()).and_then(|answer| read(&answer));
-            if result.as_ref().map_or_else(Trouble::is_an_answer, |_| true) {
-                *kept = Some(child);
+        said: Option<&RefCell<Said>>,
+    ) -> Result<Vec<f64>, Trouble> {
+        let line = || serde_json::to_vec(inputs).map_err(|error| Trouble::Files(error.into()));
+        let sent = |line: &[u8]| {
+            if let Some(said) = said {
+                said.borrow_mut().request = Some(String::from_utf8_lossy(line).into_owned());
             }
-            result
         };
-        if let Some(mut child) = kept.take()
-            && child.is_quiet()
-        {
-            let result = ask(child, kept);
-            if kept.is_some() || matches!(result, Err(Trouble::Stopped)) {
-                return result;
+        let came = |answer: &dyn Fn() -> String| {
+            if let Some(said) = said {
+                said.borrow_mut().answer = Some(answer());
+            }
+        };
+        match &self.0 {
+            Way::Processes(processes) => {
+                let mut line = line()?;
+                sent(&line);
+                line.push(b'\n');
+                processes.ask(&line, kept, |answer| {
+                    came(&|| String::from_utf8_lossy(answer).into_owned());
+                    answer::read(answer, inputs.run(), outputs)
+                })
+            }
+            Way::Function(function) => {
+                if said.is_some() {
+                    sent(&line()?);
+                }
+                function.ask(inputs, outputs, |answer| came(&|| shown(answer)))
             }
         }
-        ask(Child::start(&self.program).map_err(Trouble::Start)?, kept)
-    }
-
-    /// Starts a process for one run, which reads and writes files.
-    fn ask_with_files(&self, request: &[u8]) -> Result<Vec<u8>, Trouble> {
-        let folder = tempfile::tempdir().map_err(Trouble::Files)?;
-        fs::write(folder.path().join("input.json"), request).map_err(Trouble::Files)?;
-        let mut child = Child::start_in(&self.program, folder.path()).map_err(Trouble::Start)?;
-        child.finish(self.program.patience())?;
-        left(&folder.path().join("output.json"))
     }
 }
 
-impl Drop for Simulator {
-    fn drop(&mut self) {
-        let mut idle = std::mem::take(self.idle.get_mut().unwrap_or_else(PoisonError::into_inner));
-        idle.iter_mut().for_each(Child::close);
-        let deadline = Instant::now() + PARTING;
-        for child in &mut idle {
-            child.ends_by(deadline);
+/// What a function returned, in the words of a process.
+fn shown(answer: &Result<Outputs, String>) -> String {
+    match answer {
+        Ok(outputs) => {
+            let outputs = outputs.iter().map(|(name, number)| format!("{name:?}:{number:?}"));
+            format!("{{\"outputs\":{{{}}}}}", outputs.collect::<Vec<_>>().join(","))
         }
+        Err(text) => format!("{{\"error\":{text:?}}}"),
     }
-}
-
-/// The file that a process left.
-fn left(file: &Path) -> Result<Vec<u8>, Trouble> {
-    match fs::symlink_metadata(file) {
-        Ok(found) if found.is_file() => {}
-        // A pipe would be waited for.
-        Ok(found) => return Err(Trouble::NotAFile { what: what(found.file_type()) }),
-        Err(e) if e.kind() == ErrorKind::NotFound => return Err(Trouble::NoFile),
-        Err(e) => return Err(Trouble::Files(e)),
-    }
-    let mut answer = Vec::new();
-    let file = fs::File::open(file).map_err(Trouble::Files)?;
-    file.take(LIMIT as u64 + 1).read_to_end(&mut answer).map_err(Trouble::Files)?;
-    if answer.len() > LIMIT { Err(Trouble::TooLong { limit: LIMIT }) } else { Ok(answer) }
-}
-
-/// What is no regular file.
-fn what(kind: fs::FileType) -> &'static str {
-    if kind.is_dir() {
-        return "a folder";
-    }
-    if kind.is_symlink() {
-        return "a symbolic link";
-    }
-    #[cfg(unix)]
-    if std::os::unix::fs::FileTypeExt::is_fifo(&kind) {
-        return "a named pipe";
-    }
-    "something else, such as a socket or a device,"
-}
-
-/// Whether a program is there to be started.
-fn found(program: &Program) -> io::Result<()> {
-    let name = program.words().first().ok_or(ErrorKind::InvalidInput)?;
-    let paths = std::env::var_os("PATH").unwrap_or_default();
-    let in_path = || std::env::split_paths(&paths).map(|folder| folder.join(name));
-    let is_path = Path::new(name).components().count() > 1;
-    let is_there =
-        |file: &Path| fs::metadata(file).is_ok_and(|file| file.is_file() && can_start(&file));
-    if is_path && is_there(&program.folder().join(name))
-        || !is_path && in_path().any(|file| is_there(&file))
-    {
-        return Ok(());
-    }
-    Err(io::Error::new(ErrorKind::NotFound, "there is no such program, or it must not be started"))
-}
-
-#[cfg(unix)]
-fn can_start(file: &fs::Metadata) -> bool {
-    use std::os::unix::fs::PermissionsExt;
-    file.permissions().mode() & 0o111 != 0
-}
-
-#[cfg(not(unix))]
-fn can_start(_: &fs::Metadata) -> bool {
-    true
 }

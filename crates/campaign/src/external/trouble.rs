@@ -53,6 +53,8 @@ pub(super) enum Trouble {
     OutputsOrError,
     /// The simulator says that the run failed.
     Error { text: String },
+    /// The simulator, a function, panicked.
+    Panicked { text: Option<String> },
 }
 
 impl Trouble {
@@ -64,7 +66,8 @@ impl Trouble {
             | Self::Unknown { .. }
             | Self::NotFinite { .. }
             | Self::OutputsOrError
-            | Self::Error { .. } => true,
+            | Self::Error { .. }
+            | Self::Panicked { .. } => true,
             Self::Input { .. }
             | Self::Start(_)
             | Self::Files(_)
@@ -200,6 +203,11 @@ impl Trouble {
                 "neither outputs nor an error",
                 "the answer must have either `outputs` or `error`".to_owned(),
             ),
+            Self::Panicked { text } => {
+                let text = text.map(|text| format!(": {}", shown(text.as_bytes(), TOLD)));
+                let panicked = "the simulator panicked";
+                (panicked, format!("{panicked}{}", text.unwrap_or_default()))
+            }
             Self::Error { text } => {
                 let text = shown(text.as_bytes(), TOLD);
                 return Failure::new(

@@ -176,6 +176,21 @@ impl Manifest {
         blocks.find(|block| block.model == model && block.range().contains(&run))
     }
 
+    /// The blocks of the runs of a model, in the order of their runs.
+    #[must_use]
+    pub fn blocks_of(&self, model: &str) -> Vec<&Block> {
+        let all = self.blocks.iter().map(|entry| &entry.block);
+        let mut own: Vec<&Block> = all.filter(|block| block.model == model).collect();
+        own.sort_by_key(|block| block.first_run);
+        own
+    }
+
+    /// The columns of the run tables, those that are not kept too.
+    #[must_use]
+    pub fn columns(&self) -> &[ColumnSummary] {
+        &self.columns
+    }
+
     /// What is kept of the run tables.
     #[must_use]
     pub fn kept(&self) -> &Kept {

@@ -1,0 +1,181 @@
+//! The processes of a program that simulates, of which each thread that does runs has one.
+
+use std::{
+    fs,
+    io::{self, ErrorKind, Read},
+    path::Path,
+    sync::{Mutex, PoisonError},
+    time::{Duration, Instant},
+};
+
+use super::{
+    LIMIT,
+    child::Child,
+    program::{Program, ProgramError},
+    trouble::Trouble,
+};
+
+/// How long processes that are not needed any more may take to end by themselves.
+const PARTING: Duration = Duration::from_secs(1);
+
+/// The processes of a [`Program`].
+///
+/// Every thread that does runs has a process, which is kept. When they are dropped, their standard input is
+/// closed, and what has not ended one second later is killed with everything in its process group.
+#[derive(Debug)]
+pub(super) struct Processes {
+    program: Program,
+    /// Processes that wait to be asked.
+    idle: Mutex<Vec<Child>>,
+}
+
+impl Processes {
+    /// Which are started when they are needed.
+    pub(super) fn new(program: Program) -> Self {
+        Self { program, idle: Mutex::default() }
+    }
+
+    /// Makes certain that the command can be started: starts the first process, or finds the program if it is to be started
+    /// for each run.
+    pub(super) fn check(&self) -> Result<(), ProgramError> {
+        let program = &self.program;
+        let first = if program.is_per_run() {
+            // It is not started without a run: nobody knows what it does then.
+            found(program).map(|()| None)
+        } else {
+            Child::start(program).map(Some)
+        };
+        let first = first.map_err(|error| ProgramError::Start {
+            command: program.shown(),
+            problem: error.to_string(),
+        })?;
+        self.keep(first);
+        Ok(())
+    }
+
+    /// Their command.
+    pub(super) fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// A process that waits, if there is one.
+    pub(super) fn take(&self) -> Option<Child> {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop()
+    }
+
+    /// Keeps a process for runs to come.
+    pub(super) fn keep(&self, child: Option<Child>) {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).extend(child);
+    }
+
+    /// Sends the request of a run and gives the answer to `read`. `kept` is the process to ask, which is none afterwards
+    /// if it had to be killed.
+    ///
+    /// A process that has done runs before may be blamed for what is theirs. If it does not answer as agreed, the run is
+    /// sent once more to a process that is started for it, and what that does counts.
+    pub(super) fn ask<T>(
+        &self,
+        request: &[u8],
+        kept: &mut Option<Child>,
+        read: impl Fn(&[u8]) -> Result<T, Trouble>,
+    ) -> Result<T, Trouble> {
+        if self.program.is_per_run() {
+            let answer = self.ask_with_files(request)?;
+            return read(&answer).map_err(Trouble::in_a_file);
+        }
+        let ask = |mut child: Child, kept: &mut Option<Child>| {
+            let result =
+                child.ask(request, self.program.patience()).and_then(|answer| read(&answer));
+            if result.as_ref().map_or_else(Trouble::is_an_answer, |_| true) {
+                *kept = Some(child);
+            }
+            result
+        };
+        if let Some(mut child) = kept.take()
+            && child.is_quiet()
+        {
+            let result = ask(child, kept);
+            if kept.is_some() || matches!(result, Err(Trouble::Stopped)) {
+                return result;
+            }
+        }
+        ask(Child::start(&self.program).map_err(Trouble::Start)?, kept)
+    }
+
+    /// Starts a process for one run, which reads and writes files.
+    fn ask_with_files(&self, request: &[u8]) -> Result<Vec<u8>, Trouble> {
+        let folder = tempfile::tempdir().map_err(Trouble::Files)?;
+        fs::write(folder.path().join("input.json"), request).map_err(Trouble::Files)?;
+        let mut child = Child::start_in(&self.program, folder.path()).map_err(Trouble::Start)?;
+        child.finish(self.program.patience())?;
+        left(&folder.path().join("output.json"))
+    }
+}
+
+impl Drop for Processes {
+    fn drop(&mut self) {
+        let mut idle = std::mem::take(self.idle.get_mut().unwrap_or_else(PoisonError::into_inner));
+        idle.iter_mut().for_each(Child::close);
+        let deadline = Instant::now() + PARTING;
+        for child in &mut idle {
+            child.ends_by(deadline);
+        }
+    }
+}
+
+/// The file that a process left.
+fn left(file: &Path) -> Result<Vec<u8>, Trouble> {
+    match fs::symlink_metadata(file) {
+        Ok(found) if found.is_file() => {}
+        // A pipe would be waited for.
+        Ok(found) => return Err(Trouble::NotAFile { what: what(found.file_type()) }),
+        Err(e) if e.kind() == ErrorKind::NotFound => return Err(Trouble::NoFile),
+        Err(e) => return Err(Trouble::Files(e)),
+    }
+    let mut answer = Vec::new();
+    let file = fs::File::open(file).map_err(Trouble::Files)?;
+    file.take(LIMIT as u64 + 1).read_to_end(&mut answer).map_err(Trouble::Files)?;
+    if answer.len() > LIMIT { Err(Trouble::TooLong { limit: LIMIT }) } else { Ok(answer) }
+}
+
+/// What is no regular file.
+fn what(kind: fs::FileType) -> &'static str {
+    if kind.is_dir() {
+        return "a folder";
+    }
+    if kind.is_symlink() {
+        return "a symbolic link";
+    }
+    #[cfg(unix)]
+    if std::os::unix::fs::FileTypeExt::is_fifo(&kind) {
+        return "a named pipe";
+    }
+    "something else, such as a socket or a device,"
+}
+
+/// Whether a program is there to be started.
+fn found(program: &Program) -> io::Result<()> {
+    let name = program.words().first().ok_or(ErrorKind::InvalidInput)?;
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    let in_path = || std::env::split_paths(&paths).map(|folder| folder.join(name));
+    let is_path = Path::new(name).components().count() > 1;
+    let is_there =
+        |file: &Path| fs::metadata(file).is_ok_and(|file| file.is_file() && can_start(&file));
+    if is_path && is_there(&program.folder().join(name))
+        || !is_path && in_path().any(|file| is_there(&file))
+    {
+        return Ok(());
+    }
+    Err(io::Error::new(ErrorKind::NotFound, "there is no such program, or it must not be started"))
+}
+
+#[cfg(unix)]
+fn can_start(file: &fs::Metadata) -> bool {
+    use std::os::unix::fs::PermissionsExt;
+    file.permissions().mode() & 0o111 != 0
+}
+
+#[cfg(not(unix))]
+fn can_start(_: &fs::Metadata) -> bool {
+    true
+}
