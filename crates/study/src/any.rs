@@ -1,7 +1,8 @@
 //! A scenario of either kind, and what becomes of it: for programs that are given a file or a folder.
 
 use gyradius_campaign::{
-    Event, Forecast, Kept, Progress, Shard, StoppingRule, Until, begun, folder_of,
+    Event, Forecast, Kept, Progress, Shard, SimulatorFunction, StoppingRule, Until, begun,
+    folder_of,
 };
 use serde::Serialize;
 use std::{
@@ -60,6 +61,22 @@ impl AnyScenario {
             return Ok(Self::Simulator(Box::new(scenario)));
         }
         Ok(Self::Separation(Box::new(Scenario::from_toml(text)?)))
+    }
+
+    /// The same scenario, whose simulation is a function of the program: [`SimulatorScenario::with_function`].
+    ///
+    /// # Errors
+    /// As there; the scenario is of separations.
+    pub fn with_function(self, function: SimulatorFunction) -> Result<Self, ScenarioError> {
+        match self {
+            Self::Simulator(scenario) => {
+                Ok(Self::Simulator(Box::new(scenario.with_function(function)?)))
+            }
+            Self::Separation(_) => {
+                let problem = "missing: a scenario of separations takes no function, for gyradius simulates them itself";
+                Err(ScenarioError::field("simulation", problem))
+            }
+        }
     }
 
     /// The same scenario with another number of runs for each model.

@@ -13,7 +13,8 @@ def spin_up(inputs):
     torque = [0.0, 0.0, inputs["torque_n_m"]]
 
     def dot(a, b):
-        return sum(x * y for x, y in zip(a, b))
+        # Not sum(): since Python 3.12 it rounds otherwise.
+        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
     def cross(a, b):
         return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
@@ -26,7 +27,7 @@ def spin_up(inputs):
 
     def rate(w):
         load = [t - c for t, c in zip(torque, cross(w, momentum(w)))]
-        return [sum(rows[k][j] * load[k] for k in range(3)) / determinant for j in range(3)]
+        return [dot([row[j] for row in rows], load) / determinant for j in range(3)]
 
     w, step = [0.0, 0.0, 0.0], inputs["burn_s"] / STEPS
     for _ in range(STEPS):

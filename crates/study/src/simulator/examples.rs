@@ -1,6 +1,8 @@
-//! The examples in Python, where it is there, with what they import.
+//! The examples in Python, where it is there, with what they import; the first of them as a function, too.
 
-use std::path::Path;
+use gyradius_campaign::{Outputs, RunInputs, SimulatorFunction};
+use nalgebra::{Matrix3, Vector3};
+use std::{fs, path::Path};
 
 use super::{SimulatorScenario, SimulatorSummary};
 use crate::{Options, Study};
@@ -48,6 +50,69 @@ fn the_satellite_spins_up() {
             // Basilisk's steps are whole nanoseconds.
             assert!(own.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-6), "{column}");
         }
+    }
+}
+
+/// What `spin_up.py` computes, in its operations and their order.
+fn spin_up(run: &RunInputs<'_>) -> Result<Outputs, String> {
+    const STEPS: u32 = 200;
+    let given = |name: &str| run.input(name).ok_or(format!("no {name}"));
+    let i = |place: &str| given(&format!("hub_i{place}"));
+    let inertia = [
+        Vector3::new(i("11")?, i("12")?, i("13")?),
+        Vector3::new(i("12")?, i("22")?, i("23")?),
+        Vector3::new(i("13")?, i("23")?, i("33")?),
+    ];
+    let torque = Vector3::new(0.0, 0.0, given("torque_n_m")?);
+    let dot = |a: &Vector3<f64>, b: &Vector3<f64>| a.x * b.x + a.y * b.y + a.z * b.z;
+    let momentum = |w: &Vector3<f64>| Vector3::from(inertia.map(|row| dot(&row, w)));
+    let rows = [(1, 2), (2, 0), (0, 1)].map(|(j, k)| inertia[j].cross(&inertia[k]));
+    let determinant = dot(&inertia[0], &rows[0]);
+    let adjugate = Matrix3::from_columns(&rows);
+    let rate = |w: &Vector3<f64>| {
+        let load = torque - w.cross(&momentum(w));
+        let row = |j: usize| adjugate.row(j).transpose();
+        Vector3::from([0, 1, 2].map(|j| dot(&row(j), &load) / determinant))
+    };
+    let (mut w, step) = (Vector3::zeros(), given("burn_s")? / f64::from(STEPS));
+    for _ in 0..STEPS {
+        let a = rate(&w);
+        let b = rate(&(w + step / 2.0 * a));
+        let c = rate(&(w + step / 2.0 * b));
+        let d = rate(&(w + step * c));
+        w += step / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+    }
+    let h = momentum(&w);
+    let nutation = (h.z / dot(&h, &h).sqrt()).acos().to_degrees();
+    let outputs = [
+        ("spin_rad_per_s", dot(&w, &w).sqrt()),
+        ("nutation_deg", nutation),
+        ("mass_again_kg", given("hub_mass_kg")?),
+    ];
+    Ok(outputs.map(|(name, number)| (name.to_owned(), number)).into())
+}
+
+/// The same computed by a function of the program leaves the same run tables, to the byte.
+#[test]
+fn a_function_leaves_what_the_script_does() {
+    let Some((_folder, study)) = example("spin_up.toml", "json") else { return };
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulators/spin_up.toml"));
+    let text = fs::read_to_string(file).unwrap();
+    let command = "command = [\"python3\", \"spin_up.py\"]\ntimeout_s = 20.0\n";
+    assert!(text.contains(command));
+    let text = text.replace(command, "function = \"spin_up.py, in Rust\"\n");
+    let scenario = SimulatorScenario::from_toml(&text, Path::new("/")).unwrap();
+    let scenario = scenario.with_runs(30).unwrap();
+    let scenario = scenario.with_function(SimulatorFunction::new(spin_up)).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let options = Options { out: Some(folder.path().join("out")), ..Options::default() };
+    let own = scenario.study(&options, &|_| {}, &|_| {}).unwrap();
+    for model in scenario.model_names() {
+        let [own, other] = [&own, &study].map(|study| {
+            fs::read(study.folder().join(format!("runs/{model}/000000000-000000029.parquet")))
+                .unwrap()
+        });
+        assert_eq!(own, other, "{model}");
     }
 }
 

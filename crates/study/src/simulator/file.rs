@@ -61,6 +61,10 @@ pub(super) struct File {
     pub(super) models: Vec<ModelFile<BodyName>>,
 }
 
+/// Seconds that a run of a command may take, if nothing is said.
+const TIMEOUT_S: f64 = 60.0;
+/// Longest text that says which function it is.
+const MOST_CHARACTERS: usize = 200;
 /// Runs between looks, if nothing is said: a block.
 const LOOK_EVERY: u64 = 256;
 
@@ -73,15 +77,20 @@ impl File {
     }
 }
 
-/// How the simulator is started, and what it answers with.
+/// How the simulator is started, or which function of a program it is, and what it answers with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SimulationFile {
-    pub(super) command: Vec<String>,
-    #[serde(default)]
-    pub(super) per_run: bool,
-    #[serde(default = "default_timeout")]
-    pub(super) timeout_s: f64,
+    /// In the place of a command: which function of the calling program it is, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) function: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) command: Option<Vec<String>>,
+    /// Filled in for a command.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) per_run: Option<bool>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) timeout_s: Option<f64>,
     /// Where the command belongs; the folder of the scenario if not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) folder: Option<PathBuf>,
@@ -89,7 +98,50 @@ pub(super) struct SimulationFile {
     /// resolved.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) files_sha256: Option<String>,
+    #[serde(default)]
     pub(super) outputs: Vec<OutputFile>,
+}
+
+impl SimulationFile {
+    /// That it is either a command or a function, and has no key of the other; what is not said of a command is filled in.
+    pub(super) fn fill(&mut self) -> Result<(), ScenarioError> {
+        let refused = |key: &str, problem: &str| {
+            Err(ScenarioError::field(format!("simulation.{key}"), problem))
+        };
+        let Some(function) = &self.function else {
+            if self.command.is_none() {
+                let problem = "missing: it says which program simulates; `function` in its place says that the calling program \
+                               gives a function";
+                return refused("command", problem);
+            }
+            self.per_run.get_or_insert_default();
+            self.timeout_s.get_or_insert(TIMEOUT_S);
+            return Ok(());
+        };
+        let of_commands = [
+            ("command", self.command.is_some()),
+            ("per_run", self.per_run.is_some()),
+            ("timeout_s", self.timeout_s.is_some()),
+            ("folder", self.folder.is_some()),
+            ("files_sha256", self.files_sha256.is_some()),
+        ];
+        if let Some((key, _)) = of_commands.into_iter().find(|(_, given)| *given) {
+            return refused(key, "the simulation is a function, for which no command is started");
+        }
+        if function.trim().is_empty() || function.chars().count() > MOST_CHARACTERS {
+            let problem =
+                format!("it must say in 1 to {MOST_CHARACTERS} characters which function it is");
+            return refused("function", &problem);
+        }
+        Ok(())
+    }
+}
+
+impl OutputFile {
+    /// Of which nothing is known but the name.
+    pub(super) fn named(name: String) -> Self {
+        Self { name, unit: default_unit(), meaning: default_output_meaning() }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -213,10 +265,6 @@ fn says_nothing(dispersion: &DispersionFile) -> bool {
 
 fn default_seed() -> u64 {
     1
-}
-
-fn default_timeout() -> f64 {
-    60.0
 }
 
 fn default_unit() -> String {

@@ -6,6 +6,7 @@ mod draws;
 #[cfg(test)]
 mod examples;
 mod file;
+mod function;
 mod number;
 mod read;
 mod replay;

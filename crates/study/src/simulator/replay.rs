@@ -10,7 +10,7 @@ use crate::{Fleet, ReplayError, Which, replay::Held, subject::Subject};
 const CAUSES: &str = "the table was changed, or something that the simulator uses, such as a file that it imports or the \
                       interpreter, or the simulator answers otherwise to the same inputs and seed";
 
-/// One run of a simulator again, in a process that is started for it.
+/// One run of a simulator again, in a process that is started for it, or by the function that the scenario was given.
 #[derive(Clone, Debug)]
 pub struct SimulatorReplay {
     model: String,
@@ -27,7 +27,7 @@ impl SimulatorReplay {
     /// Sends a run again. The model is the first of the scenario if not given.
     ///
     /// # Errors
-    /// There is no such model or run, or the command cannot be started.
+    /// There is no such model or run, the command cannot be started, or the function was not given.
     pub fn new(
         scenario: &SimulatorScenario,
         model: Option<&str>,
@@ -61,6 +61,12 @@ impl SimulatorReplay {
         self.held = None;
         self.held = Some(Held::against(folder, &self.own, CAUSES)?);
         Ok(())
+    }
+
+    /// The table of this run alone: its row has what was drawn, what was answered, and how it ended.
+    #[must_use]
+    pub fn table(&self) -> &Table {
+        &self.own
     }
 
     /// What was told to and by the simulator.

@@ -1,14 +1,14 @@
 //! A scenario of a simulator, checked: the command, what is uncertain, how often.
 
 use gyradius_campaign::{
-    Column, Kept, Program, ProgramError, Requirement, StoppingRule, Table, Until,
+    Column, Kept, Program, ProgramError, Requirement, SimulatorFunction, StoppingRule, Table, Until,
 };
 use gyradius_dispersion::{InertiaLaw, ModelKind, ScalarLaw};
 use std::{path::Path, sync::Arc};
 
 use super::{
     body::SimulatedBody,
-    file::{BodyName, File, SimulatedBodyFile},
+    file::{BodyName, File, OutputFile, SimulatedBodyFile},
     number::{Number, check_column},
 };
 use crate::{
@@ -27,7 +27,7 @@ const MOST: usize = 300;
 /// What a resolved scenario says in the place of a SHA-256 if the command names no file that is there.
 const NO_FILES: &str = "the command names no file that is there";
 
-/// A campaign of a simulator of the user's own: its command, the bodies and the quantities that are drawn for each run,
+/// A campaign of a simulator of the user's own: its command or its function, the bodies and the quantities that are drawn for each run,
 /// the outputs that it answers with, how many runs from which seed. Everything has been checked.
 #[derive(Clone, Debug)]
 pub struct SimulatorScenario {
@@ -40,6 +40,8 @@ pub struct SimulatorScenario {
     dispersed: Joint<usize>,
     outputs: Vec<Column>,
     models: Vec<ModelSpec>,
+    /// The function that simulates, once the program gave it.
+    function: Option<SimulatorFunction>,
 }
 
 changed!(SimulatorScenario, File);
@@ -64,10 +66,12 @@ impl SimulatorScenario {
         let until = file.until(size)?;
         base_runs(file.drivers)?;
         check_seed(file.seed)?;
+        file.simulation.fill()?;
+        let is_function = file.simulation.function.is_some();
         let lists = [
             ("bodies", file.bodies.len(), 0),
             ("quantities", file.quantities.len(), 0),
-            ("simulation.outputs", file.simulation.outputs.len(), 1),
+            ("simulation.outputs", file.simulation.outputs.len(), usize::from(!is_function)),
         ];
         for (field, count, least) in lists {
             if !(least..=MOST).contains(&count) {
@@ -76,7 +80,7 @@ impl SimulatorScenario {
             }
         }
         // What was resolved stays as it is: the files may be elsewhere, and nothing may be left to be run.
-        if file.simulation.files_sha256.is_none() {
+        if !is_function && file.simulation.files_sha256.is_none() {
             let given = file.simulation.folder.clone().unwrap_or_else(|| folder.to_owned());
             file.simulation.folder = Some(std::path::absolute(&given).unwrap_or(given));
             file.simulation.files_sha256 = Some(files_sha256(&program(&file)?));
@@ -117,7 +121,9 @@ impl SimulatorScenario {
             dispersed.correlate_roots(i, &mut body.uncertain);
         }
         let models = models(&mut file, &bodies)?;
-        let scenario = Self { file, size, until, bodies, quantities, dispersed, outputs, models };
+        let function = None;
+        let scenario =
+            Self { file, size, until, bodies, quantities, dispersed, outputs, models, function };
         scenario.check_columns()?;
         Ok(scenario)
     }
@@ -189,10 +195,34 @@ impl SimulatorScenario {
         toml::to_string(&self.file).unwrap_or_default()
     }
 
-    /// The words of the command of the simulator.
+    /// The words of the command of the simulator; none if it is a function.
     #[must_use]
     pub fn command(&self) -> &[String] {
-        &self.file.simulation.command
+        self.file.simulation.command.as_deref().unwrap_or_default()
+    }
+
+    /// Which function of the calling program simulates, in words; none if a command does.
+    #[must_use]
+    pub fn function_name(&self) -> Option<&str> {
+        self.file.simulation.function.as_deref()
+    }
+
+    /// The function that simulates, if the program gave it.
+    pub(super) fn function(&self) -> Option<&SimulatorFunction> {
+        self.function.as_ref()
+    }
+
+    /// The same, which a function simulates.
+    pub(super) fn given(self, function: SimulatorFunction) -> Self {
+        Self { function: Some(function), ..self }
+    }
+
+    /// The same, which answers with outputs of which only the names are known.
+    pub(super) fn declaring(&self, outputs: Vec<String>) -> Result<Self, ScenarioError> {
+        let mut declaring = self.clone();
+        declaring.file.simulation.outputs = outputs.into_iter().map(OutputFile::named).collect();
+        let scenario = Self::parse(&declaring.to_toml(), Path::new("."))?;
+        Ok(Self { function: declaring.function, ..scenario })
     }
 
     /// The command, ready to be started.
@@ -311,8 +341,12 @@ fn files_sha256(program: &Program) -> String {
 fn program(file: &File) -> Result<Program, ScenarioError> {
     let simulation = &file.simulation;
     let folder = simulation.folder.as_deref().unwrap_or(Path::new("."));
-    let program = Program::new(&simulation.command, folder)
-        .and_then(|program| program.with_timeout(simulation.timeout_s))
+    let command = simulation.command.as_deref().unwrap_or_default();
+    let program = Program::new(command, folder)
+        .and_then(|program| match simulation.timeout_s {
+            Some(timeout_s) => program.with_timeout(timeout_s),
+            None => Ok(program),
+        })
         .map_err(|error| {
             let key = match error {
                 ProgramError::Folder { .. } => "folder",
@@ -321,7 +355,7 @@ fn program(file: &File) -> Result<Program, ScenarioError> {
             };
             ScenarioError::field(format!("simulation.{key}"), error)
         })?;
-    Ok(if simulation.per_run { program.per_run() } else { program })
+    Ok(if simulation.per_run == Some(true) { program.per_run() } else { program })
 }
 
 /// The models of a file; one is filled in where there is none.

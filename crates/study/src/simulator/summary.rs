@@ -2,7 +2,7 @@
 
 use gyradius_campaign::{
     Column, ExternalSimulation, FirstLook, Forecast, Kept, Progress, Requirement, Runs,
-    SampleSummary, Simulator, Surveys, Until,
+    SampleSummary, Simulator, SimulatorFunction, Surveys, Until,
 };
 use gyradius_report::{Document, Overview, file_of, optional, with_unit};
 use gyradius_statistics::Confidence;
@@ -40,10 +40,13 @@ const MAIN: usize = 4;
 pub struct SimulatorSummary {
     #[serde(flatten)]
     head: Head,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     command: Vec<String>,
     /// Of the models whose draws are kept to regions, in their order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     regions: Vec<KeptSummary>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    function: Option<String>,
     overview: Overview,
 }
 
@@ -73,7 +76,7 @@ impl SimulatorScenario {
     /// there is to say before it begins.
     ///
     /// # Errors
-    /// The command cannot be started; the folder holds another study and `force` is not set, or something cannot be
+    /// The command cannot be started, or the function was not [given](Self::with_function); the folder holds another study and `force` is not set, or something cannot be
     /// written. What was there stays as it was.
     pub fn study(
         &self,
@@ -207,6 +210,13 @@ impl Subject for SimulatorScenario {
     }
 
     fn prepare(&self, stop: Option<&Arc<AtomicBool>>) -> Result<Simulator, ScenarioError> {
+        if let Some(name) = self.function_name() {
+            let absent = || {
+                let problem = not_given(name);
+                SimulatorFunction::new(move |_| Err(problem.clone()))
+            };
+            return Ok(Simulator::function(self.function().cloned().unwrap_or_else(absent)));
+        }
         let program = self.program()?;
         Ok(Simulator::new(match stop {
             Some(stop) => program.stopped_by(Arc::clone(stop)),
@@ -215,7 +225,12 @@ impl Subject for SimulatorScenario {
     }
 
     fn begin(&self, simulator: &Simulator) -> Result<(), ScenarioError> {
-        self.check_files(simulator.program())?;
+        if let Some(name) = self.function_name().filter(|_| self.function().is_none()) {
+            return Err(ScenarioError::field("simulation.function", not_given(name)));
+        }
+        if let Some(program) = simulator.program() {
+            self.check_files(program)?;
+        }
         simulator.check().map_err(|error| ScenarioError::field("simulation.command", error))
     }
 
@@ -302,7 +317,8 @@ impl Subject for SimulatorScenario {
         let alerts = alerts.chain(self.folded().into_iter().map(Alert::Folded));
         let head = Head { alerts: alerts.collect(), ..head_of(self, columns) };
         let (command, regions) = (self.command().to_vec(), self.kept_to_regions()?);
-        Ok(SimulatorSummary { head, command, regions, overview })
+        let function = self.function_name().map(str::to_owned);
+        Ok(SimulatorSummary { head, command, function, regions, overview })
     }
 
     fn drawn_inputs(&self, summary: &SimulatorSummary, model: &str) -> Vec<DrawnInput> {
@@ -352,6 +368,15 @@ impl Subject for SimulatorScenario {
         let inputs = report::inputs(&summary.head, &self.kept(), self.to_toml(), None);
         report::noting_what_is_missing(document, &summary.head).section(inputs)
     }
+}
+
+/// That runs need a function that the program did not give.
+fn not_given(name: &str) -> String {
+    format!(
+        "{name:?} is a function of the program that made the study, and no file holds it: runs need that program, which gives it \
+         by `SimulatorScenario::with_function` in Rust, or by `gyradius.study(..., simulation=...)` in Python; status and report need the \
+         folder alone"
+    )
 }
 
 impl Summarized for SimulatorSummary {

@@ -3,6 +3,7 @@
 mod again;
 mod failing;
 mod fleets;
+mod function;
 mod joint;
 mod models;
 mod refusals;

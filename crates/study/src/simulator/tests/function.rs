@@ -1,0 +1,325 @@
+//! Functions in the place of a command: the same study, to the byte; what is refused without them.
+
+use gyradius_campaign::{Cell, Event, KeptRuns, KeptValues, RunInputs, SimulatorFunction};
+use proptest::prelude::*;
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+};
+
+use super::{
+    BODY, HEAD, MODELS, SimulatorReplay, SimulatorScenario, folder, quantity, scenario, uniform,
+};
+use crate::{
+    AnyScenario, CampaignError, Kept, Options, RareOptions, ReplayError, Rows, Scenario, Shard,
+    Status, StudyError, put_together, write_report,
+};
+
+const COMMAND: &str = "command = [\"sh\", \"answer.sh\"]\ntimeout_s = 60.0\n";
+const FUNCTION: &str = "function = \"as the script\"\n";
+
+/// Answers as the script does.
+fn answer() -> SimulatorFunction {
+    SimulatorFunction::new(|run: &RunInputs<'_>| {
+        let x = run.input("x").ok_or("no x")?;
+        if (0.9..1.0).contains(&x) {
+            return Err(format!("too large: {x}"));
+        }
+        Ok(vec![("y".to_owned(), x)])
+    })
+}
+
+/// What stands in the run tables below a folder, by name.
+fn tables(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    for model in fs::read_dir(folder.join("runs")).unwrap().map(|entry| entry.unwrap().path()) {
+        for file in fs::read_dir(model).unwrap().map(|entry| entry.unwrap().path()) {
+            let name = file.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
+            all.insert(name, fs::read(file).unwrap());
+        }
+    }
+    all
+}
+
+/// A summary, without what tells a command from a function.
+fn summary(folder: &Path) -> serde_json::Value {
+    let text = fs::read_to_string(folder.join("summary.json")).unwrap();
+    let mut summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let summary_of = summary.as_object_mut().unwrap();
+    let there = ["command", "function", "fingerprint"].map(|key| summary_of.remove(key).is_some());
+    assert!(there[0] != there[1] && there[2]);
+    for drivers in
+        summary_of.get_mut("drivers").and_then(|d| d.as_array_mut()).into_iter().flatten()
+    {
+        drivers.as_object_mut().unwrap().remove("identity");
+    }
+    summary
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// Whatever a scenario asks for, on however many threads: a function leaves what a command leaves.
+    #[test]
+    fn a_function_leaves_what_a_command_does(
+        body in any::<bool>(),
+        vehicles in any::<bool>(),
+        until in any::<bool>(),
+        drivers in any::<bool>(),
+        declared in any::<bool>(),
+        threads in 1_usize..4,
+        stopped in 0_u64..700,
+    ) {
+        let folder = folder();
+        let mut text = uniform() + &quantity("z", "{ law = \"normal\", mean = 1.0, sigma = 0.1 }");
+        if body {
+            text += "\n[[bodies]]\nname = \"hub\"";
+            text += &(BODY.replace("DISPERSION", "mass_percent = 1.0") + MODELS);
+        }
+        text = text.replace("runs = 300", if vehicles { "vehicles = 75\nflights = 8" } else { "runs = 600" });
+        text += "\n[[requirements]]\nname = \"near\"\nquantity = \"y\"\nat_most = 0.8\nprobability = 0.5\nconfidence = 0.9\n";
+        if until {
+            text += "\n[until]\nrule = \"decided\"\n";
+        }
+        if drivers {
+            text = format!("drivers = 100\n{text}");
+        }
+        let command = scenario(&text, folder.path());
+        let mut text = text.replace(COMMAND, FUNCTION);
+        if !declared {
+            let outputs = "[[simulation.outputs]]\nname = \"y\"\nunit = \"m\"\nmeaning = \"x again.\"\n";
+            prop_assert!(text.contains(outputs));
+            text = text.replace(outputs, "");
+        }
+        let waiting = scenario(&text, folder.path());
+        let function = waiting.with_function(answer()).unwrap();
+        let options = |name: &str| Options {
+            out: Some(folder.path().join(name)), threads: Some(threads), ..Options::default()
+        };
+        command.study(&options("command"), &|_| {}, &|_| {}).unwrap();
+        // Stopped on the way, it goes on.
+        let stop = Arc::new(AtomicBool::new(false));
+        let first = Options { stop: Some(Arc::clone(&stop)), ..options("function") };
+        let progress = |done: u64| stop.store(done >= stopped, Ordering::Relaxed);
+        let ended = function.study(&first, &progress, &|_| {});
+        if let Err(error) = ended {
+            prop_assert!(matches!(error, StudyError::Campaign(CampaignError::Stopped)), "{error}");
+            function.study(&options("function"), &|_| {}, &|_| {}).unwrap();
+        }
+        let [own, other] = ["function", "command"].map(|name| folder.path().join(name));
+        prop_assert_eq!(tables(&own), tables(&other));
+        if declared {
+            prop_assert_eq!(summary(&own), summary(&other));
+        }
+        // A run again is its row.
+        let mut again = SimulatorReplay::new(&function, None, 17).unwrap();
+        again.hold_against(&own).unwrap();
+        // Reports need the folder alone.
+        let page = fs::read(own.join("report.html")).unwrap();
+        write_report(&own, None, false).unwrap();
+        prop_assert_eq!(fs::read(own.join("report.html")).unwrap(), page);
+    }
+}
+
+/// What drives a rare event is found with a function too, and shards are put together without it.
+#[test]
+fn rare_events_and_shards_take_functions() {
+    let folder = folder();
+    let text = HEAD.to_owned() + &quantity("x", "{ law = \"normal\", mean = 0.3, sigma = 0.1 }");
+    let command = AnyScenario::from_toml(&text, folder.path()).unwrap();
+    let waiting = AnyScenario::from_toml(&text.replace(COMMAND, FUNCTION), folder.path()).unwrap();
+    let function = waiting.clone().with_function(answer()).unwrap();
+    let event: Event = "y >= 0.7".parse().unwrap();
+    let options = RareOptions { per_level: 100, ..RareOptions::default() };
+    let [own, other] = [&function, &command].map(|scenario| {
+        serde_json::to_string(&scenario.rare(&event, &options, &|_| {}).unwrap()).unwrap()
+    });
+    assert_eq!(own, other);
+    assert!(
+        waiting.rare(&event, &options, &|_| {}).unwrap_err().to_string().contains("as the script")
+    );
+
+    let out = folder.path().join("shards");
+    let options = Options { out: Some(out.clone()), ..Options::default() };
+    for number in 1..=2 {
+        let shard = Shard::new(number, 2).unwrap();
+        let refused = waiting.run_shard(&options, shard, &|_| {}, &|_| {}).unwrap_err();
+        assert!(refused.to_string().contains("simulation.function"), "{refused}");
+        function.run_shard(&options, shard, &|_| {}, &|_| {}).unwrap();
+    }
+    assert!(!Status::read(&out).unwrap().is_complete());
+    put_together(&out, &options, &|_| {}).unwrap();
+    assert!(Status::read(&out).unwrap().is_complete());
+    let whole = Options { out: Some(folder.path().join("whole")), ..Options::default() };
+    function.run(&whole, &|_| {}, &|_| {}).unwrap();
+    assert_eq!(tables(&out), tables(&folder.path().join("whole")));
+}
+
+/// Without the function, runs are refused and nothing is left; what is done already is shown.
+#[test]
+fn runs_need_the_function() {
+    let folder = folder();
+    let waiting = scenario(&uniform().replace(COMMAND, FUNCTION), folder.path());
+    let out = folder.path().join("out");
+    let options = Options { out: Some(out.clone()), ..Options::default() };
+    let says =
+        |error: &str| error.contains("simulation.function") && error.contains("with_function");
+    let refused = waiting.study(&options, &|_| {}, &|_| {}).unwrap_err().to_string();
+    assert!(says(&refused) && !out.exists(), "{refused}");
+    let refused = SimulatorReplay::new(&waiting, None, 1).unwrap_err();
+    assert!(
+        matches!(&refused, ReplayError::Scenario(error) if says(&error.to_string())),
+        "{refused}"
+    );
+    let calls = Arc::new(AtomicU64::new(0));
+    let (counted, answer) = (Arc::clone(&calls), answer());
+    let counting = SimulatorFunction::new(move |run| {
+        counted.fetch_add(1, Ordering::Relaxed);
+        answer.run(run)
+    });
+    let given = waiting.clone().with_function(counting).unwrap();
+    given.study(&options, &|_| {}, &|_| {}).unwrap();
+    assert_eq!(calls.load(Ordering::Relaxed), 300);
+    // It is complete: nothing is called.
+    for scenario in [&given, &waiting, &SimulatorScenario::read(&out).unwrap()] {
+        assert_eq!(scenario.study(&options, &|_| {}, &|_| {}).unwrap().folder(), out);
+    }
+    assert_eq!(calls.load(Ordering::Relaxed), 300);
+    // Another version is another study.
+    let text = uniform().replace(COMMAND, "function = \"another\"\n");
+    let other = scenario(&text, folder.path()).with_function(self::answer()).unwrap();
+    let refused = other.study(&options, &|_| {}, &|_| {}).unwrap_err().to_string();
+    assert!(refused.contains("simulation.function"), "{refused}");
+}
+
+/// What cannot be, at its key.
+#[test]
+fn refusals_name_their_key() {
+    let folder = folder();
+    let function = uniform().replace(COMMAND, FUNCTION);
+    let with = |more: &str| function.replace(FUNCTION, &format!("{FUNCTION}{more}\n"));
+    let cases = [
+        (with("command = [\"sh\"]"), "simulation.command"),
+        (with("per_run = false"), "simulation.per_run"),
+        (with("timeout_s = 1.0"), "simulation.timeout_s"),
+        (with("folder = \"/\""), "simulation.folder"),
+        (with("files_sha256 = \"\""), "simulation.files_sha256"),
+        (function.replace("as the script", " "), "simulation.function"),
+        (function.replace("as the script", &"x".repeat(201)), "simulation.function"),
+        (function.replace(FUNCTION, ""), "simulation.command"),
+    ];
+    for (text, key) in cases {
+        let refused = SimulatorScenario::from_toml(&text, folder.path()).unwrap_err().to_string();
+        assert!(refused.starts_with(&format!("{key}: ")), "{key}: {refused}");
+    }
+    let command = scenario(&uniform(), folder.path()).with_function(answer());
+    assert!(command.unwrap_err().to_string().starts_with("simulation.command: "));
+    let separations = AnyScenario::Separation(Box::new(Scenario::peck_2003().unwrap()));
+    assert!(
+        separations.with_function(answer()).unwrap_err().to_string().starts_with("simulation: ")
+    );
+    // Outputs that the first answers tell.
+    let outputs = function.find("[[simulation.outputs]]").unwrap()
+        ..function.find("\n[[quantities]]").unwrap();
+    let mut silent = function.clone();
+    silent.replace_range(outputs, "");
+    let silent = scenario(&silent, folder.path());
+    let tells = |answer: fn(&RunInputs<'_>) -> Result<Vec<(String, f64)>, String>| {
+        silent.clone().with_function(SimulatorFunction::new(answer))
+    };
+    let refused = |answer| tells(answer).unwrap_err().to_string();
+    assert!(refused(|_| Err("no licence".into())).contains("no licence"));
+    assert!(refused(|_| Ok(Vec::new())).starts_with("simulation.outputs: "));
+    assert!(refused(|_| Ok(vec![("a b".into(), 1.0)])).starts_with("simulation.outputs[1].name: "));
+    assert!(refused(|_| Ok(vec![("x".into(), 1.0)])).starts_with("simulation.outputs"));
+    let late = tells(|run| match run.run() {
+        9 => Ok(vec![("b".into(), 1.0), ("a".into(), f64::NAN)]),
+        _ => Err("not yet".into()),
+    });
+    let named: Vec<_> = late.unwrap().outputs().iter().map(|c| c.name().to_owned()).collect();
+    assert_eq!(named, ["b", "a"]);
+    assert!(
+        refused(|run| if run.run() < 10 {
+            Err("never".into())
+        } else {
+            Ok(vec![("b".into(), 1.0)])
+        })
+        .contains("never")
+    );
+}
+
+/// What a study kept, column by column, is what its tables have.
+#[test]
+fn kept_columns_are_those_of_the_tables() {
+    let folder = folder();
+    let text = uniform().replace(COMMAND, FUNCTION) + "\n[[bodies]]\nname = \"hub\"";
+    let text = (text + &BODY.replace("DISPERSION", "") + MODELS)
+        .replace("runs = 300", "vehicles = 60\nflights = 10");
+    let given = scenario(&text, folder.path()).with_function(answer()).unwrap();
+    for (place, (rows, columns)) in [
+        (Rows::All, None),
+        (Rows::Failed, None),
+        (Rows::All, Some(vec!["y".to_owned()])),
+        (Rows::None, None),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let out = folder.path().join(place.to_string());
+        let options = Options { out: Some(out.clone()), ..Options::default() };
+        let all = given
+            .clone()
+            .study(
+                &Options { out: Some(folder.path().join("all")), ..Options::default() },
+                &|_| {},
+                &|_| {},
+            )
+            .unwrap();
+        given
+            .clone()
+            .with_kept(&Kept::new(rows, columns.clone()))
+            .study(&options, &|_| {}, &|_| {})
+            .unwrap();
+        for table in all.tables().unwrap() {
+            let kept = KeptRuns::read(&out, table.model()).unwrap();
+            let expected: Vec<_> = table
+                .rows()
+                .filter(|row| rows == Rows::All || rows == Rows::Failed && row.failure().is_some())
+                .collect();
+            assert_eq!((kept.model(), kept.len()), (table.model(), expected.len()));
+            assert_eq!(kept.is_empty(), rows == Rows::None);
+            let own = ["model", "run", "status", "status_kind"];
+            let named = |name: &str| {
+                columns.as_ref().is_none_or(|c| own.contains(&name) || c.contains(&name.to_owned()))
+            };
+            let there: Vec<_> =
+                table.columns().iter().filter(|c| rows != Rows::None && named(c.name())).collect();
+            assert_eq!(kept.columns().len(), there.len());
+            for (column, own) in there.into_iter().zip(kept.columns()) {
+                let said = (own.name(), own.unit(), own.meaning());
+                assert_eq!(said, (column.name(), column.unit(), column.meaning()));
+                for (place, row) in expected.iter().enumerate() {
+                    let found = match own.values() {
+                        KeptValues::Numbers(numbers) => {
+                            Some(numbers[place]).filter(|x| !x.is_nan()).into()
+                        }
+                        KeptValues::Integers(integers) => {
+                            integers[place].map_or(Cell::Null, Cell::Integer)
+                        }
+                        KeptValues::Texts(texts) => {
+                            texts.texts().nth(place).unwrap().map_or(Cell::Null, Cell::from)
+                        }
+                        KeptValues::Flags(flags) => flags[place].map_or(Cell::Null, Cell::Flag),
+                    };
+                    assert_eq!(Some(found), row.cell(column.name()), "{}", column.name());
+                }
+            }
+        }
+    }
+    assert!(KeptRuns::read(folder.path(), "proposed").is_err());
+}
