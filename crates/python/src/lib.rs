@@ -16,6 +16,7 @@ mod rows;
 mod scalars;
 mod stated;
 mod stream;
+mod study;
 mod tensors;
 
 /// What `gyradius._core` has. It is not for users: the Python part is.
@@ -49,6 +50,8 @@ mod _core {
     use super::stated::stated_law;
     #[pymodule_export]
     use super::stream::Stream;
+    #[pymodule_export]
+    use super::study::{ScenarioCore, StudyCore};
     #[pymodule_export]
     use super::tensors::{
         inertia_is_realizable, inertia_margin, inertia_nearest, inertia_principal_axes,

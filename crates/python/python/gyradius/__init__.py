@@ -62,6 +62,7 @@ from gyradius._laws import (
     uniform_attitude,
 )
 from gyradius._rng import key
+from gyradius._study import Replay, Study, Verdict, study
 
 __all__ = [
     "COLUMNS",
@@ -74,9 +75,12 @@ __all__ = [
     "MujocoBodies",
     "PrincipalAxes",
     "Region",
+    "Replay",
     "Report",
     "ScalarLaw",
     "StatedLaw",
+    "Study",
+    "Verdict",
     "__version__",
     "about_axis",
     "bingham",
@@ -99,6 +103,7 @@ __all__ = [
     "radially_constrained_gaussian",
     "report",
     "small_rotations",
+    "study",
     "uniform",
     "uniform_attitude",
 ]

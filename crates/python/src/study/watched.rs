@@ -1,0 +1,102 @@
+//! What takes long, in a thread of its own, while the thread that called looks for interrupts and tells of progress.
+
+use gyradius_study::StudyError;
+use pyo3::{Py, PyAny, PyErr, PyResult, Python};
+use std::{
+    panic::resume_unwind,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+        mpsc::{self, RecvTimeoutError},
+    },
+    thread,
+    time::Duration,
+};
+
+use super::called::Called;
+use crate::error::refused;
+
+/// How long the calling thread waits between looks.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Told how many runs are done, of how many.
+type More<'a> = &'a (dyn Fn(u64, u64) + Sync);
+
+/// What takes long, in a thread of its own. Signals, such as that of Ctrl-C, are looked for by the thread that called, which is the only
+/// one that Python tells of them; so the function in Python may run in any thread.
+pub(super) struct Watched {
+    stop: Arc<AtomicBool>,
+    progress: Option<Py<PyAny>>,
+}
+
+impl Watched {
+    /// With a function in Python that is told how many runs are done, of how many, if there is one.
+    pub(super) fn new(progress: Option<Py<PyAny>>) -> Self {
+        Self { stop: Arc::default(), progress }
+    }
+
+    /// Set once it is to stop.
+    pub(super) fn stop(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stop)
+    }
+
+    /// Does the work with the interpreter let go.
+    ///
+    /// # Errors
+    /// What interrupted it, if anything did; what went wrong with the work or the function that is told of progress.
+    pub(super) fn run<T: Send>(
+        &self,
+        py: Python<'_>,
+        called: Option<&Called>,
+        work: impl FnOnce(More<'_>) -> Result<T, StudyError> + Send,
+    ) -> PyResult<T> {
+        let (done, total) = (AtomicU64::new(0), AtomicU64::new(0));
+        let more = |runs: u64, of: u64| {
+            total.store(of, Ordering::Relaxed);
+            done.fetch_max(runs, Ordering::Relaxed);
+        };
+        let mut raised = None;
+        let mut told = 0;
+        let mut look = || {
+            let runs = done.load(Ordering::Relaxed);
+            let looked = Python::attach(|py| {
+                py.check_signals()?;
+                match &self.progress {
+                    Some(progress) if runs > told => {
+                        progress.call1(py, (runs, total.load(Ordering::Relaxed))).map(|_| ())
+                    }
+                    Some(_) | None => Ok(()),
+                }
+            });
+            told = runs;
+            looked
+        };
+        let result = py.detach(|| {
+            thread::scope(|scope| {
+                let (ended, end) = mpsc::channel::<()>();
+                let more = &more;
+                let worker = scope.spawn(move || {
+                    // It is dropped when the work has ended, or panics.
+                    let _ended = ended;
+                    work(more)
+                });
+                while end.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
+                    if raised.is_none()
+                        && let Err(error) = look()
+                    {
+                        self.stop.store(true, Ordering::Relaxed);
+                        raised = Some(error);
+                    }
+                }
+                worker.join().unwrap_or_else(|panic| resume_unwind(panic))
+            })
+        });
+        let interrupt: Option<PyErr> = called.and_then(Called::interrupt);
+        if let Some(error) = interrupt.or(raised) {
+            return Err(error);
+        }
+        let result = result.map_err(refused)?;
+        look()?;
+        Ok(result)
+    }
+}
