@@ -8,9 +8,11 @@ import html
 import inspect
 import json
 import os
+import shutil
 import sys
 import tempfile
 import warnings
+import weakref
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -75,19 +77,19 @@ class Study:
     is in a temporary folder, which is removed with the object.
     """
 
-    __slots__ = ("__weakref__", "_core", "_temporary")
+    __slots__ = ("__weakref__", "_core")
 
     _core: _core.StudyCore
-    _temporary: tempfile.TemporaryDirectory[str] | None
 
     def __init__(self) -> None:
         raise TypeError("gyradius.study(...) makes studies")
 
     @classmethod
-    def _of(cls, core: _core.StudyCore, temporary: tempfile.TemporaryDirectory[str] | None) -> Study:
+    def _of(cls, core: _core.StudyCore, temporary: str | None) -> Study:
         made = object.__new__(cls)
         made._core = core
-        made._temporary = temporary
+        if temporary is not None:
+            weakref.finalize(made, shutil.rmtree, temporary, ignore_errors=True)
         return made
 
     @property
@@ -336,23 +338,27 @@ def study(
         columns=None if columns is None else list(columns),
         drivers=drivers,
     )
-    temporary = None
-    if out is None and place is None:
-        temporary = tempfile.TemporaryDirectory(prefix="gyradius-")
-        out = Path(temporary.name) / core.name
     if threads is None and called is not None:
         threads = 1
     tell, close = _progress(progress)
+    temporary = None
+    if out is None and place is None:
+        temporary = tempfile.mkdtemp(prefix="gyradius-")
+        place = Path(temporary) / core.name
     try:
         done = core.run(
             simulation=called,
-            out=Path(place if out is None else out),  # type: ignore[arg-type]
+            out=place if out is None else Path(out),
             threads=threads,
             force=force,
             retry_failed=retry_failed,
             even_if_full=even_if_full,
             progress=tell,
         )
+    except BaseException:
+        if temporary is not None:
+            shutil.rmtree(temporary, ignore_errors=True)
+        raise
     finally:
         close()
     for block in done.warnings:

@@ -1,0 +1,470 @@
+"""Studies with functions in Python: the same as with a process, whatever fails, interrupted and going on."""
+
+from __future__ import annotations
+
+import math
+import re
+import shutil
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import gyradius
+
+CRATES = Path(__file__).parents[2]
+EXAMPLE = CRATES / "study/examples/simulators/spin_up.toml"
+PECK = CRATES / "study/src/scenario/peck-2003.toml"
+NORMAL = {"law": "normal", "mean": 1.0, "sigma": 0.25}
+UNIFORM = {"law": "uniform", "low": 0.0, "high": 1.0}
+BODY = {
+    "name": "hub",
+    "mass_kg": 120.0,
+    "inertia_kg_m2": [[21.0, 0.2, -0.1], [0.2, 19.0, 0.3], [-0.1, 0.3, 26.0]],
+    "dispersion": {
+        "mass_percent": 1.0,
+        "root_second_moment_variance_kg_m2": [0.001] * 3,
+        "axes": "fixed",
+    },
+}
+MODELS = [
+    {"name": "proposed", "law": "principal", "axes": "whole-sphere"},
+    {"name": "naive", "law": "entrywise", "matched_to": "proposed"},
+]
+REQUIREMENT = {"name": "low", "quantity": "y", "at_most": 2.0, "probability": 0.9, "confidence": 0.9}
+
+
+def scenario(**keys: Any) -> dict[str, Any]:
+    """A scenario with two quantities."""
+    quantities = [{"name": "x", "unit": "m", "law": NORMAL}, {"name": "u", "law": UNIFORM}]
+    return {"name": "made", "runs": 100, "seed": 5, "quantities": quantities, **keys}
+
+
+def double(inputs: dict[str, float]) -> dict[str, float]:
+    """Twice one, and the other."""
+    return {"y": 2.0 * inputs["x"], "z": inputs["u"]}
+
+
+def spin_up() -> Any:
+    """The function of the shipped example, without what reads and writes."""
+    text = EXAMPLE.with_suffix(".py").read_text(encoding="utf-8")
+    space: dict[str, Any] = {"__name__": "spin_up"}
+    exec(text[: text.index("for line in sys.stdin")], space)
+    return space["spin_up"]
+
+
+def tables(folder: Path) -> dict[str, bytes]:
+    """The files of the run tables."""
+    return {str(file.relative_to(folder)): file.read_bytes() for file in sorted(folder.glob("runs/**/*.parquet"))}
+
+
+def test_a_function_leaves_what_a_process_does(tmp_path: Path) -> None:
+    command = gyradius.study(EXAMPLE, runs=40, out=tmp_path / "command")
+    text = EXAMPLE.read_text(encoding="utf-8")
+    asked = 'command = ["python3", "spin_up.py"]\ntimeout_s = 20.0\n'
+    assert asked in text
+    (tmp_path / "spin.toml").write_text(text.replace(asked, ""), encoding="utf-8")
+    function = gyradius.study(tmp_path / "spin.toml", spin_up(), runs=40, out=tmp_path / "function")
+    assert len(tables(command.folder)) == 2
+    assert tables(command.folder) == tables(function.folder)
+    assert command.to_numpy()["naive"].keys() == function.units.keys() | {"model", "run", "status", "status_kind"}
+    # The scenario of a command takes no function.
+    with pytest.raises(ValueError, match=r"simulation\.command"):
+        gyradius.study(EXAMPLE, spin_up(), out=tmp_path / "both")
+
+
+@settings(max_examples=12)
+@given(
+    bodies=st.booleans(),
+    fleet=st.booleans(),
+    declared=st.booleans(),
+    requirement=st.booleans(),
+    threads=st.integers(1, 3),
+    seed=st.integers(0, 2**63 - 1),
+    runs=st.integers(12, 300),
+    faulty=st.sets(st.integers(0, 40), max_size=8),
+)
+def test_rows_are_what_the_function_says(
+    bodies: bool, fleet: bool, declared: bool, requirement: bool, threads: int, seed: int, runs: int, faulty: set[int]
+) -> None:
+    lock = threading.Lock()
+    asked: dict[tuple[str, int], tuple[int, dict[str, float]]] = {}
+
+    def simulate(inputs: dict[str, float], *, run: int, model: str, seed: int) -> dict[str, float]:
+        assert 0 <= seed < 2**53
+        with lock:
+            known = asked.setdefault((model, run), (seed, dict(inputs)))
+        assert known == (seed, inputs)
+        if run in faulty:
+            raise ArithmeticError(f"diverged at {inputs['x']} s")
+        return {"y": np.float32(inputs["x"]), "flag": run % 2 == 0}  # type: ignore[dict-item]
+
+    scene = scenario(runs=runs)
+    if fleet:
+        del scene["runs"]
+        scene |= {"vehicles": runs // 4, "flights": 4}
+        runs = runs // 4 * 4
+    if bodies:
+        scene |= {"bodies": [BODY], "models": MODELS}
+    if requirement:
+        scene["requirements"] = [REQUIREMENT]
+    outputs = {"y": "m", "flag": "1"} if declared else None
+    study = gyradius.study(scene, simulate, outputs=outputs, threads=threads, seed=seed)
+    assert study.models == (("proposed", "naive") if bodies else ("all",))
+    failed = sorted(run for run in faulty if run < runs)
+    assert study.failed == dict.fromkeys(study.models, len(failed))
+    assert study.runs == dict.fromkeys(study.models, runs)
+    assert len(study.verdicts) == (len(study.models) if requirement else 0)
+    assert len(asked) == runs * len(study.models)
+    for model, table in study.to_numpy().items():
+        assert table["run"].tolist() == list(range(runs))
+        assert table.keys() == study.columns.keys()
+        bad = np.isin(table["run"], failed)
+        assert (table["status"] == "ok").tolist() == (~bad).tolist()
+        said = [f"simulator: ArithmeticError: diverged at {x!r} s" for x in table["x"][bad].tolist()]
+        assert table["status"][bad].tolist() == said
+        assert np.isnan(table["y"]).tolist() == bad.tolist()
+        np.testing.assert_array_equal(table["y"][~bad], table["x"][~bad].astype(np.float32))
+        for run in range(runs):
+            assert all(table[name][run] == value for name, value in asked[model, run][1].items())
+        if fleet:
+            assert table["vehicle"].tolist() == [run // 4 for run in range(runs)]
+    run = min(runs - 1, 7)
+    again = study.replay(run, model=study.models[-1])
+    assert (again.run, again.model) == (run, study.models[-1])
+    assert (again.status == "ok") == (run not in faulty)
+    assert again.inputs == asked[study.models[-1], run][1]
+
+
+@pytest.mark.parametrize(
+    ("answer", "reason"),
+    [
+        ({"y": 1.0}, "the output `z` is not in the answer"),
+        ({"y": 1.0, "z": math.nan}, "the output `z` is not a finite number"),
+        ({"y": math.inf, "z": 1.0}, "the output `y` is not a finite number"),
+        ({"y": 1.0, "z": 1.0, "w": 1.0}, "has an output `w`, which is not declared"),
+        ({"y": 1.0, "z": "one"}, "TypeError: the output `z` is str: it must be a number"),
+        ({"y": 1.0, "z": 1j}, "TypeError: the output `z` is complex: it must be a number"),
+        ({"y": 1.0, 2: 1.0}, "TypeError: the name of an output is int"),
+        (None, "TypeError: the simulation returned NoneType: it must return a dictionary"),
+        ([1.0, 2.0], "TypeError: the simulation returned list"),
+        (ValueError("no\nroot"), "ValueError: no"),
+        (KeyError("k"), "KeyError: 'k'"),
+        (AssertionError(), "AssertionError"),
+    ],
+)
+def test_wrong_answers_are_rows(answer: Any, reason: str) -> None:
+    def simulate(inputs: dict[str, float], run: int) -> Any:
+        if run != 3:
+            return double(inputs)
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+    study = gyradius.study(scenario(runs=12), simulate, outputs={"y": "m", "z": "1"})
+    table = study.to_numpy()["all"]
+    assert [run for run, status in enumerate(table["status"]) if status != "ok"] == [3]
+    assert reason in table["status"][3]
+
+
+def test_outputs_are_declared_by_the_first_answer() -> None:
+    tried = []
+
+    def simulate(inputs: dict[str, float], run: int) -> dict[str, float]:
+        tried.append(run)
+        if run < 4:
+            raise RuntimeError("too early")
+        return double(inputs)
+
+    study = gyradius.study(scenario(runs=12), simulate)
+    assert tried == [0, 1, 2, 3, 4, *range(12)]
+    assert list(study.units) == ["x", "u", "y", "z"]
+    assert study.units["y"] == "1"
+    assert study.failed == {"all": 4}
+
+    def broken(inputs: dict[str, float]) -> dict[str, float]:
+        raise ZeroDivisionError("float division by zero")
+
+    with pytest.raises(ValueError, match="ZeroDivisionError: float division by zero"):
+        gyradius.study(scenario(), broken)
+    with pytest.raises(ValueError, match=r"simulation\.outputs"):
+        gyradius.study(scenario(), lambda inputs: {})
+
+
+def test_runs_are_the_same_in_any_order(tmp_path: Path) -> None:
+    def simulate(inputs: dict[str, float], seed: int) -> dict[str, float]:
+        return {"y": np.random.default_rng(seed).normal(inputs["x"])}
+
+    studies = [gyradius.study(scenario(runs=700), simulate, threads=n, out=tmp_path / str(n)) for n in (1, 3)]
+    assert tables(studies[0].folder) == tables(studies[1].folder)
+
+
+@pytest.mark.parametrize("name", ["pandas", "polars"])
+def test_frames_have_what_arrays_have(name: str) -> None:
+    pytest.importorskip(name)
+
+    def simulate(inputs: dict[str, float], run: int) -> dict[str, float]:
+        if run == 5:
+            raise ValueError("five")
+        return double(inputs)
+
+    study = gyradius.study(scenario(bodies=[BODY], models=MODELS), simulate)
+    arrays = study.to_numpy()
+    frame = study.to_pandas() if name == "pandas" else study.to_polars()
+    assert frame.shape == (200, len(study.columns))
+    assert list(frame.columns) == list(study.columns)
+    assert list(frame["model"]) == ["proposed"] * 100 + ["naive"] * 100
+    for column in ("x", "y", "hub_q1", "hub_mass_kg"):
+        expected = np.concatenate([arrays[model][column] for model in study.models])
+        np.testing.assert_array_equal(frame[column].to_numpy(), expected)
+    assert frame["status"][5] == "simulator: ValueError: five"
+
+
+def test_what_is_kept_is_what_there_is() -> None:
+    def simulate(inputs: dict[str, float]) -> dict[str, float]:
+        if inputs["u"] > 0.8:
+            raise ValueError("too large")
+        return double(inputs)
+
+    outputs = {"y": "m", "z": "1"}
+    whole = gyradius.study(scenario(), simulate, outputs=outputs).to_numpy()["all"]
+    bad = whole["status"] != "ok"
+    assert 5 < bad.sum() < 40
+    failed = gyradius.study(scenario(), simulate, outputs=outputs, rows="failed").to_numpy()["all"]
+    assert failed["run"].tolist() == whole["run"][bad].tolist()
+    one = gyradius.study(scenario(), simulate, outputs=outputs, columns=["y"]).to_numpy()["all"]
+    assert list(one) == ["model", "run", "status", "y", "status_kind"]
+    none = gyradius.study(scenario(), simulate, outputs=outputs, rows="none")
+    assert none.to_numpy() == {"all": {}}
+    assert none.failed == {"all": int(bad.sum())}
+    for package, table in (("polars", none.to_polars), ("pandas", none.to_pandas)):
+        pytest.importorskip(package)
+        assert len(table()) == 0
+    with pytest.raises(ValueError, match='"all", "failed", "none"'):
+        gyradius.study(scenario(), simulate, rows="some")
+    with pytest.raises(ValueError, match="no such column"):
+        gyradius.study(scenario(), simulate, columns=["w"])
+
+
+def test_changes_go_before_the_scenario() -> None:
+    scene = scenario(requirements=[REQUIREMENT])
+    study = gyradius.study(scene, double, runs=2000, seed=9, until="decided", look_every=256)
+    assert study.runs["all"] < 2000
+    assert study.verdicts[0].verdict == "not met"
+    assert "seed = 9" in study.scenario
+    assert "not met" in repr(study)
+    assert str(study.folder) in repr(study)
+    driven = gyradius.study(scene, double, runs=50, drivers=100)
+    assert driven.summary["drivers"][0]["groups"][:2] == ["x", "u"]
+    with pytest.raises(ValueError, match="until"):
+        gyradius.study(scenario(), double, until="decided")
+
+
+def test_a_folder_is_gone_on_with(tmp_path: Path) -> None:
+    calls: list[int] = []
+
+    def simulate(inputs: dict[str, float], run: int) -> dict[str, float]:
+        calls.append(run)
+        return double(inputs)
+
+    out = tmp_path / "out"
+    outputs = {"y": "m", "z": "1"}
+    first = gyradius.study(scenario(), simulate, outputs=outputs, out=out)
+    assert calls == list(range(100))
+    # It is complete: nothing is called, with the function and without.
+    again = [
+        gyradius.study(scenario(), simulate, outputs=outputs, out=out),
+        gyradius.study(out),
+        gyradius.study(out, simulate),
+    ]
+    assert [one.folder for one in again] == [out] * 3
+    assert len(calls) == 100
+    assert all(one.to_numpy()["all"]["y"].tolist() == first.to_numpy()["all"]["y"].tolist() for one in again)
+    more = gyradius.study(out, simulate, runs=130)
+    assert calls == list(range(130))
+    assert more.runs == {"all": 130}
+    # Another function is another study.
+    for other in (scenario(), out):
+        with pytest.raises(ValueError, match="simulation"):
+            gyradius.study(other, double, outputs=outputs, runs=200, out=out)
+    # Nobody else can do its runs.
+    with pytest.raises(ValueError, match=r"gyradius\.study\("):
+        gyradius.study(out, runs=200)
+    with pytest.raises(ValueError, match=r"gyradius\.study\("):
+        gyradius.study(out).replay(3)
+    assert len(calls) == 130
+
+
+def test_a_run_that_is_another_is_told() -> None:
+    state = {"shift": 0.0}
+
+    def simulate(inputs: dict[str, float]) -> dict[str, float]:
+        return {"y": inputs["x"] + state["shift"]}
+
+    study = gyradius.study(scenario(), simulate)
+    assert "the same, bit for bit" in str(study.replay(3))
+    state["shift"] = 1e-12
+    with pytest.raises(ValueError, match="y"):
+        study.replay(3)
+    wrong: list[dict[str, Any]] = [{"run": 100}, {"run": 3, "model": "none"}, {}, {"run": 1, "vehicle": 0, "flight": 0}]
+    for which in wrong:
+        with pytest.raises(ValueError, match="run|model"):
+            study.replay(**which)
+
+
+def test_temporary_folders_go_with_their_study() -> None:
+    study = gyradius.study(scenario(), double)
+    folder = study.folder
+    assert study.report.read_text(encoding="utf-8").startswith("<!")
+    assert study._repr_html_().count("<iframe") == 1
+    del study
+    assert not folder.exists()
+    with pytest.raises(TypeError):
+        gyradius.Study()
+
+
+def test_separations_are_studied() -> None:
+    study = gyradius.study(PECK, runs=20)
+    table = study.to_numpy()[study.models[0]]
+    assert len(table["nutation_deg"]) == 20
+    assert np.isfinite(table["nutation_deg"]).all()
+    assert table["realizable"].dtype == bool
+    assert study.replay(2).row["nutation_deg"] == table["nutation_deg"][2]
+    assert study.replay(2).inputs == {}
+
+
+def test_laws_and_arrays_stand_for_what_they_are_in_files() -> None:
+    def simulate(inputs: dict[str, float]) -> dict[str, float]:
+        return {"y": inputs["x"]}
+
+    quantities = [{"name": "x", "law": gyradius.normal(1.0, 0.25), "unit": None}]
+    one = gyradius.study(scenario(quantities=quantities), simulate)
+    two = gyradius.study(scenario(quantities=[{"name": "x", "law": NORMAL}]), simulate)
+    assert one.to_numpy()["all"]["y"].tolist() == two.to_numpy()["all"]["y"].tolist()
+    body = BODY | {"inertia_kg_m2": np.array(BODY["inertia_kg_m2"]), "mass_kg": np.float32(120.0)}
+    assert gyradius.study(scenario(bodies=[body], runs=np.int64(10)), double).runs == {"principal": 10}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (scenario(runs=0), "runs"),
+        (scenario(colour="red"), "colour"),
+        (scenario(runs="many"), "runs"),
+        (scenario(runs=2**70), "runs: a whole number"),
+        (scenario(quantities=[{"name": "x", "law": {"law": "normal", "mean": 1.0, "sigma": -1.0}}]), "sigma"),
+        (scenario(quantities=[{"name": "x", "law": object()}]), r"quantities\[1\]\.law: object"),
+        ({1: 2}, "keys must be texts"),
+        ([1], "path or a dictionary"),
+        (None, "path or a dictionary"),
+        ("name = 'x'\nruns = 3", "tomllib"),
+        ("no-such-file.toml", "no-such-file"),
+        (Path("/"), "scenario"),
+    ],
+)
+def test_refusals_are_value_errors(wrong: Any, message: str) -> None:
+    with pytest.raises((ValueError, OSError), match=message) as told:
+        gyradius.study(wrong, double)
+    assert "(line" not in str(told.value)
+
+
+def test_nested_without_end_is_refused() -> None:
+    scene: dict[str, Any] = scenario()
+    scene["author"] = scene
+    with pytest.raises(ValueError, match="less deep"):
+        gyradius.study(scene, double)
+
+
+def test_simulations_take_what_they_name() -> None:
+    class Simulator:
+        def __call__(self, inputs: dict[str, float], **about: Any) -> dict[str, float]:
+            return {"y": float(about["run"])}
+
+    def every(*all_of_them: Any, run: int = 0) -> dict[str, float]:
+        return {"y": float(run + len(all_of_them))}
+
+    assert gyradius.study(scenario(runs=10), Simulator()).to_numpy()["all"]["y"].tolist() == list(range(10))
+    assert gyradius.study(scenario(runs=10), every).to_numpy()["all"]["y"].tolist() == list(range(1, 11))
+    wrong: list[Any] = [lambda: {}, lambda inputs, wind: {}, lambda *, inputs: {}, 3, "f"]
+    for one in wrong:
+        with pytest.raises(ValueError, match="simulation"):
+            gyradius.study(scenario(), one)
+
+
+def test_progress_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    def slow(inputs: dict[str, float]) -> dict[str, float]:
+        time.sleep(0.004)
+        return double(inputs)
+
+    told: list[tuple[int, int]] = []
+    gyradius.study(scenario(), slow, progress=lambda *now: told.append(now))
+    assert len(told) > 2
+    assert told[-1] == (100, 100)
+    assert told == sorted(told)
+    assert {of for _, of in told} == {100}
+    gyradius.study(scenario(), slow, progress=True)
+    assert "100" in capsys.readouterr().err
+
+    def bad(done: int, of: int) -> None:
+        raise RuntimeError("no bar")
+
+    with pytest.raises(RuntimeError, match="no bar"):
+        gyradius.study(scenario(runs=3000), slow, progress=bad)
+    with pytest.raises(ValueError, match="progress"):
+        gyradius.study(scenario(), slow, progress="bar")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("way", ["os.kill(os.getpid(), signal.SIGINT)", "raise KeyboardInterrupt"])
+def test_interrupts_stop_and_the_same_call_goes_on(way: str, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    text = f"""
+        import os, signal, time
+        import gyradius
+        done = []
+        def simulate(inputs):
+            done.append(1)
+            if len(done) == 400:
+                {way}
+            time.sleep(0.002)
+            return {{"y": inputs["x"]}}
+        scene = {scenario(runs=600)!r}
+        def study():
+            return gyradius.study(scene, simulate, outputs={{"y": "m"}}, out={str(out)!r})
+        try:
+            study()
+        except KeyboardInterrupt:
+            before = len(done)
+            found = study()
+            print("interrupted", before, len(done) - before, found.runs["all"])
+    """
+    # Functions of a text have no source, and are called by their names alone.
+    call = [sys.executable, "-c", textwrap.dedent(text)]
+    said = subprocess.run(call, capture_output=True, text=True, timeout=300, check=False)
+    found = re.fullmatch(r"interrupted (\d+) (\d+) 600\n", said.stdout)
+    assert found is not None, said
+    # A block of 256 runs was finished.
+    assert 400 <= int(found[1]) < 600
+    assert int(found[2]) == 600 - 256
+    shutil.rmtree(out)
+
+
+def test_studies_in_threads(tmp_path: Path) -> None:
+    found: list[Any] = []
+
+    def one(seed: int) -> None:
+        found.append(gyradius.study(scenario(seed=seed), double, out=tmp_path / str(seed)).summary["seed"])
+
+    together = [threading.Thread(target=one, args=(seed,)) for seed in range(4)]
+    for thread in together:
+        thread.start()
+    for thread in together:
+        thread.join()
+    assert sorted(found) == [0, 1, 2, 3]
