@@ -45,20 +45,20 @@ impl ScenarioCore {
     fn read(
         path: PathBuf,
         function: Option<String>,
-        outputs: Option<Bound<'_, PyAny>>,
+        outputs: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let (folder, begun) = match path.is_dir() {
-            true => (&*path, begun(&path)),
-            false => (folder_of(&path), None),
-        };
-        let file = if path.is_dir() { path.join("scenario.toml") } else { path.clone() };
-        let scenario = match (begun, function.is_some() || outputs.is_some()) {
-            (None, false) => AnyScenario::read(&file).map_err(refused)?,
-            (begun, _) => {
-                let table =
-                    begun.map_or_else(|| given::read(&file), |text| given::parse(&text, &path))?;
-                given::scenario(table, folder, function, outputs)?
-            }
+        let is_folder = path.is_dir();
+        let folder = if is_folder { path.clone() } else { folder_of(&path).to_owned() };
+        let file = if is_folder { path.join("scenario.toml") } else { path };
+        let begun = if is_folder { begun(&folder) } else { None };
+        let scenario = if begun.is_none() && function.is_none() && outputs.is_none() {
+            AnyScenario::read(&file).map_err(refused)?
+        } else {
+            let table = match begun {
+                Some(text) => given::parse(&text, &folder)?,
+                None => given::read(&file)?,
+            };
+            given::scenario(table, &folder, function, outputs)?
         };
         Ok(Self { scenario })
     }
@@ -66,11 +66,11 @@ impl ScenarioCore {
     /// Of a dictionary with the keys of a file that is in the working directory.
     #[staticmethod]
     fn of(
-        given: Bound<'_, PyAny>,
+        given: &Bound<'_, PyAny>,
         function: Option<String>,
-        outputs: Option<Bound<'_, PyAny>>,
+        outputs: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let table = given::table(&given)?;
+        let table = given::table(given)?;
         Ok(Self { scenario: given::scenario(table, Path::new("."), function, outputs)? })
     }
 

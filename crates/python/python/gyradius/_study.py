@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import html
+import importlib
 import inspect
 import json
 import os
@@ -77,9 +78,9 @@ class Study:
     is in a temporary folder, which is removed with the object.
     """
 
-    __slots__ = ("__weakref__", "_core")
+    __slots__ = ("__weakref__", "_done")
 
-    _core: _core.StudyCore
+    _done: _core.StudyCore
 
     def __init__(self) -> None:
         raise TypeError("gyradius.study(...) makes studies")
@@ -87,7 +88,7 @@ class Study:
     @classmethod
     def _of(cls, core: _core.StudyCore, temporary: str | None) -> Study:
         made = object.__new__(cls)
-        made._core = core
+        made._done = core
         if temporary is not None:
             weakref.finalize(made, shutil.rmtree, temporary, ignore_errors=True)
         return made
@@ -95,12 +96,12 @@ class Study:
     @property
     def name(self) -> str:
         """The name of the scenario."""
-        return self._core.name
+        return self._done.name
 
     @property
     def folder(self) -> Path:
         """Where everything is."""
-        return Path(self._core.folder)
+        return self._done.folder
 
     @property
     def report(self) -> Path:
@@ -110,27 +111,27 @@ class Study:
     @property
     def scenario(self) -> str:
         """The resolved scenario as a TOML file, every default spelled out."""
-        return self._core.scenario
+        return self._done.scenario
 
     @property
     def models(self) -> tuple[str, ...]:
         """The models, in their order."""
-        return tuple(model for model, _, _ in self._core.failed)
+        return tuple(model for model, _, _ in self._done.failed)
 
     @property
     def failed(self) -> dict[str, int]:
         """How many runs of each model failed; the column ``status`` says why."""
-        return {model: failed for model, failed, _ in self._core.failed}
+        return {model: failed for model, failed, _ in self._done.failed}
 
     @property
     def runs(self) -> dict[str, int]:
         """How many runs of each model there are, those that failed too."""
-        return {model: runs for model, _, runs in self._core.failed}
+        return {model: runs for model, _, runs in self._done.failed}
 
     @property
     def verdicts(self) -> list[Verdict]:
         """What the runs say of the requirements of the scenario, model by model."""
-        return [Verdict(*verdict) for verdict in self._core.verdicts]
+        return [Verdict(*verdict) for verdict in self._done.verdicts]
 
     @property
     def summary(self) -> dict[str, Any]:
@@ -158,14 +159,13 @@ class Study:
 
     def to_pandas(self) -> Any:
         """The run tables of all models as one `pandas.DataFrame`, one row a run; the column ``model`` says of which model it is."""
-        import pandas
-
+        pandas: Any = importlib.import_module("pandas")
         tables = [pandas.DataFrame(table) for table in self.to_numpy().values()]
         return pandas.concat([table for table in tables if len(table)] or tables, ignore_index=True)
 
     def to_polars(self) -> Any:
         """The run tables of all models as one `polars.DataFrame`, one row a run; the column ``model`` says of which model it is."""
-        import polars
+        polars: Any = importlib.import_module("polars")
 
         def table(columns: dict[str, NDArray[Any]]) -> Any:
             # What has no number is null, as in the files.
@@ -198,27 +198,27 @@ class Study:
             There is no such run or model; or the run is not what the study has of it, because the simulation has changed or does not
             depend on its inputs and its seed alone.
         """
-        row, request, text = self._core.replay(run=run, vehicle=vehicle, flight=flight, model=model)
+        row, request, text = self._done.replay(run=run, vehicle=vehicle, flight=flight, model=model)
         inputs = json.loads(request)["inputs"] if request else {}
         return Replay(row["model"], row["run"], row["status"], row, inputs, text)
 
     def _arrays(self, model: str) -> dict[str, NDArray[Any]]:
-        return {name: _array(values) for name, _, _, values in self._core.columns(model)}
+        return {name: _array(values) for name, _, _, values in self._done.columns(model)}
 
     def __repr__(self) -> str:
-        runs = ", ".join(f"{model}: {runs} runs, {failed} failed" for model, failed, runs in self._core.failed)
+        runs = ", ".join(f"{model}: {runs} runs, {failed} failed" for model, failed, runs in self._done.failed)
         said = "".join(f", {one.requirement} {one.verdict} ({one.model})" for one in self.verdicts)
         return f"<gyradius.Study {self.name!r}: {runs}{said}, in {str(self.folder)!r}>"
 
     def __str__(self) -> str:
-        return str(self._core)
+        return str(self._done)
 
     def _repr_html_(self) -> str:
         def row(cells: Sequence[object], tag: str = "td") -> str:
             return "<tr>" + "".join(f"<{tag}>{html.escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"
 
         runs = [row(("model", "runs", "failed"), "th")]
-        runs += [row((model, runs, failed)) for model, failed, runs in self._core.failed]
+        runs += [row((model, runs, failed)) for model, failed, runs in self._done.failed]
         said = [row(("requirement", "model", "verdict"), "th")] if self.verdicts else []
         said += [row(one[:3]) for one in self.verdicts]
         # The report is a page of its own, which a notebook shows in a frame.
@@ -342,13 +342,15 @@ def study(
         threads = 1
     tell, close = _progress(progress)
     temporary = None
-    if out is None and place is None:
+    if out is not None:
+        place = Path(out)
+    if place is None:
         temporary = tempfile.mkdtemp(prefix="gyradius-")
         place = Path(temporary) / core.name
     try:
         done = core.run(
             simulation=called,
-            out=place if out is None else Path(out),
+            out=place,
             threads=threads,
             force=force,
             retry_failed=retry_failed,
@@ -376,7 +378,9 @@ def _scenario(
         raise ValueError(f"scenario: it must be a path or a dictionary, not {type(scenario).__name__}")
     path = Path(os.fspath(scenario))
     if isinstance(scenario, str) and "\n" in scenario:
-        raise ValueError("scenario: a text of several lines is no path; give a dictionary, as tomllib.loads(text) makes it")
+        raise ValueError(
+            "scenario: a text of several lines is no path; give a dictionary, as tomllib.loads(text) makes it"
+        )
     core = _core.ScenarioCore.read(path, function, outputs)
     if not path.is_dir():
         return core, None
@@ -401,7 +405,11 @@ def _called(simulation: Simulation) -> Callable[[dict[str, float], dict[str, Any
     except (TypeError, ValueError):
         # Nobody knows what some functions in C take.
         return lambda inputs, about: simulation(inputs)
-    by_place = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
+    by_place = (
+        inspect.Parameter.POSITIONAL_ONLY,
+        inspect.Parameter.POSITIONAL_OR_KEYWORD,
+        inspect.Parameter.VAR_POSITIONAL,
+    )
     if not parameters or parameters[0].kind not in by_place:
         raise ValueError("simulation: it must take the dictionary of the inputs as its first argument")
     first, *others = parameters
@@ -409,7 +417,9 @@ def _called(simulation: Simulation) -> Callable[[dict[str, float], dict[str, Any
         others = parameters
     by_name = (inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
     everything = any(other.kind is inspect.Parameter.VAR_KEYWORD for other in others)
-    wanted = ABOUT if everything else tuple(other.name for other in others if other.kind in by_name and other.name in ABOUT)
+    wanted = (
+        ABOUT if everything else tuple(other.name for other in others if other.kind in by_name and other.name in ABOUT)
+    )
     for other in others:
         named = other.kind in by_name and other.name in ABOUT
         various = other.kind in (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
@@ -446,7 +456,7 @@ def _progress(progress: Any) -> tuple[Callable[[int, int], object] | None, Calla
     if progress is not True:
         raise ValueError(f"progress: it must be True, False or callable, not {type(progress).__name__}")
     try:
-        from tqdm.auto import tqdm
+        tqdm: Any = importlib.import_module("tqdm.auto").tqdm
     except ImportError:
         return _line, lambda: print(file=sys.stderr)
     bar = tqdm(unit="run")

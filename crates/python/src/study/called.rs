@@ -64,7 +64,7 @@ impl Called {
                 "the simulation returned {found}: it must return a dictionary of the outputs"
             ))
         })?;
-        answer.items()?.iter().map(output).collect()
+        answer.items()?.iter().map(|item| output(&item)).collect()
     }
 
     /// Why a run failed, in the words of an exception.
@@ -81,7 +81,7 @@ impl Called {
 }
 
 /// An output with its name.
-fn output(item: Bound<'_, PyAny>) -> PyResult<(String, f64)> {
+fn output(item: &Bound<'_, PyAny>) -> PyResult<(String, f64)> {
     let (name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = item.extract()?;
     let name: String = name.extract().map_err(|_| {
         wrong(format!("the name of an output is {}: it must be a text", type_name(&name)))

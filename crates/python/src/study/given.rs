@@ -48,7 +48,7 @@ pub(super) fn scenario(
     mut table: Table,
     folder: &Path,
     function: Option<String>,
-    outputs: Option<Bound<'_, PyAny>>,
+    outputs: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<AnyScenario> {
     if function.is_some() || outputs.is_some() {
         let simulation = table.entry(SIMULATION).or_insert_with(|| Table::new().into());
@@ -60,7 +60,7 @@ pub(super) fn scenario(
             simulation.entry("function").or_insert_with(|| function.into());
         }
         if let Some(outputs) = outputs {
-            simulation.insert("outputs".to_owned(), value(&outputs, "outputs", 0)?);
+            simulation.insert("outputs".to_owned(), value(outputs, "outputs", 0)?);
         }
     }
     let text = toml::to_string(&table).map_err(refused)?;
