@@ -376,6 +376,19 @@ def test_refusals_are_value_errors(wrong: Any, message: str) -> None:
     assert "(line" not in str(told.value)
 
 
+@pytest.mark.parametrize("name", ["runs", "vehicles", "seed", "look_every", "drivers", "threads"])
+@pytest.mark.parametrize("wrong", [-1, 2.5, math.nan, "many", 2**64, 1j])
+def test_numbers_that_are_none_are_named(name: str, wrong: Any) -> None:
+    with pytest.raises(ValueError, match=name):
+        gyradius.study(scenario(), double, **{name: wrong})
+
+
+def test_a_million_may_be_written_as_a_float() -> None:
+    assert gyradius.study(scenario(), double, runs=2e1).runs == {"all": 20}
+    with pytest.raises(ValueError, match="simulation: missing"):
+        gyradius.study(scenario())
+
+
 def test_nested_without_end_is_refused() -> None:
     scene: dict[str, Any] = scenario()
     scene["author"] = scene

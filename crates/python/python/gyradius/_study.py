@@ -8,6 +8,7 @@ import html
 import importlib
 import inspect
 import json
+import operator
 import os
 import shutil
 import sys
@@ -198,7 +199,9 @@ class Study:
             There is no such run or model; or the run is not what the study has of it, because the simulation has changed or does not
             depend on its inputs and its seed alone.
         """
-        row, request, text = self._done.replay(run=run, vehicle=vehicle, flight=flight, model=model)
+        row, request, text = self._done.replay(
+            run=_whole("run", run), vehicle=_whole("vehicle", vehicle), flight=_whole("flight", flight), model=model
+        )
         inputs = json.loads(request)["inputs"] if request else {}
         return Replay(row["model"], row["run"], row["status"], row, inputs, text)
 
@@ -329,15 +332,16 @@ def study(
     function = None if simulation is None else _described(simulation)
     core, place = _scenario(scenario, function, given)
     core = core.changed(
-        runs=runs,
-        vehicles=vehicles,
-        seed=seed,
+        runs=_whole("runs", runs),
+        vehicles=_whole("vehicles", vehicles),
+        seed=_whole("seed", seed),
         until=until,
-        look_every=look_every,
+        look_every=_whole("look_every", look_every),
         rows=rows,
         columns=None if columns is None else list(columns),
-        drivers=drivers,
+        drivers=_whole("drivers", drivers),
     )
+    threads = _whole("threads", threads)
     if threads is None and called is not None:
         threads = 1
     tell, close = _progress(progress)
@@ -373,6 +377,10 @@ def _scenario(
 ) -> tuple[_core.ScenarioCore, Path | None]:
     """The scenario, and the folder that it belongs to if it is that of a study."""
     if isinstance(scenario, Mapping):
+        if function is None and "quantities" in scenario and "simulation" not in scenario:
+            raise ValueError(
+                "simulation: missing: a scenario with quantities needs a function or a command that simulates"
+            )
         return _core.ScenarioCore.of(scenario, function, outputs), None
     if not isinstance(scenario, (str, os.PathLike)):
         raise ValueError(f"scenario: it must be a path or a dictionary, not {type(scenario).__name__}")
@@ -390,6 +398,21 @@ def _scenario(
             "the scenario itself and another folder as `out`"
         )
     return core, path
+
+
+def _whole(name: str, given: Any) -> int | None:
+    """A whole number that is not negative, also one that is written as ``1e6``."""
+    if given is None:
+        return None
+    if isinstance(given, float) and given.is_integer():
+        return _whole(name, int(given))
+    try:
+        found = operator.index(given)
+    except TypeError:
+        raise ValueError(f"{name} = {given!r}: it must be a whole number") from None
+    if not 0 <= found < 2**63:
+        raise ValueError(f"{name} = {found}: it must not be negative, and below 2⁶³")
+    return found
 
 
 def _mapping(name: str, given: Any) -> Any:
