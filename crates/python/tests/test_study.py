@@ -384,7 +384,8 @@ def test_numbers_that_are_none_are_named(name: str, wrong: Any) -> None:
 
 
 def test_a_million_may_be_written_as_a_float() -> None:
-    assert gyradius.study(scenario(), double, runs=2e1).runs == {"all": 20}
+    twenty: Any = 2e1
+    assert gyradius.study(scenario(), double, runs=twenty).runs == {"all": 20}
     with pytest.raises(ValueError, match="simulation: missing"):
         gyradius.study(scenario())
 
@@ -410,6 +411,22 @@ def test_simulations_take_what_they_name() -> None:
     for one in wrong:
         with pytest.raises(ValueError, match="simulation"):
             gyradius.study(scenario(), one)
+
+
+def test_flights_know_their_vehicles() -> None:
+    def simulate(inputs: dict[str, float], vehicle: int, flight: int, model: str) -> dict[str, float]:
+        assert model == "all"
+        return {"place": 4.0 * vehicle + flight, "x_again": inputs["x"]}
+
+    scene = scenario(vehicles=9, flights=4)
+    del scene["runs"]
+    scene["quantities"][0]["law"] = NORMAL | {"drawn": "vehicle"}
+    study = gyradius.study(scene, simulate, threads=2)
+    table = study.to_numpy()["all"]
+    assert table["place"].tolist() == list(range(36))
+    assert table["vehicle"].dtype == table["flight"].dtype == np.int64
+    assert np.unique(table["x_again"]).size == 9
+    assert study.replay(vehicle=3, flight=2).run == 14
 
 
 def test_progress_is_told(capsys: pytest.CaptureFixture[str]) -> None:
