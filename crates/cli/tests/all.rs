@@ -18,6 +18,7 @@ mod killed;
 #[cfg(unix)]
 mod output;
 mod rare;
+mod readme;
 mod report;
 mod requirements;
 mod rollup;

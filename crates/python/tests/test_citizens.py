@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import copy
+import doctest
+import importlib
 import os
 import pickle
-import resource
+import pkgutil
 import signal
 import subprocess
 import sys
@@ -15,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import bodies
+from conftest import URDF, bodies
 from test_laws import laws_of_bodies
 
 import gyradius
@@ -71,6 +73,12 @@ def test_everything_that_is_public_is_told_of() -> None:
                     assert value.__doc__, f"{name}.{member}"
 
 
+@pytest.mark.parametrize("name", [one.name for one in pkgutil.iter_modules(gyradius.__path__)])
+def test_examples_in_docstrings(name: str) -> None:
+    failed, _ = doctest.testmod(importlib.import_module(f"gyradius.{name}"))
+    assert failed == 0
+
+
 def test_stubs() -> None:
     pytest.importorskip("mypy")
     allow = Path(__file__).parent / "stubtest-allowlist.txt"
@@ -85,20 +93,26 @@ def test_types() -> None:
     assert done.returncode == 0, done.stdout
 
 
+MEMORY = """
+import gyradius, numpy as np, os
+law, matrix, page = gyradius.uniform_attitude(), np.eye(3), os.sysconf("SC_PAGE_SIZE")
+
+def calls(count):
+    for i in range(count):
+        law.rvs(3, rng=i)
+        gyradius.is_realizable(matrix)
+    return int(open("/proc/self/statm").read().split()[1]) * page
+
+before = calls(5_000)
+print(calls(100_000) - before)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="how much memory a process has is not told here")
 def test_memory_does_not_grow() -> None:
-    law = gyradius.uniform_attitude()
-    matrix = np.eye(3)
-
-    def calls(count: int) -> None:
-        for i in range(count):
-            law.rvs(3, rng=i)
-            gyradius.is_realizable(matrix)
-
-    calls(5_000)
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    calls(100_000)
-    # Kilobytes: a leak of one array a call would be ten thousand.
-    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 3_000
+    done = subprocess.run([sys.executable, "-c", MEMORY], capture_output=True, text=True, check=True)
+    # A leak of the smallest array a call would be ten million bytes.
+    assert int(done.stdout) < 2_000_000
 
 
 def test_threads_of_python() -> None:
@@ -185,3 +199,40 @@ def test_import_is_quick_and_brings_nothing() -> None:
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, env=dict(os.environ))
     assert done.stdout == "[]\n"
+
+
+def test_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    readme = (Path(__file__).parents[3] / "README.md").read_text()
+    (tmp_path / "robot.urdf").write_text(URDF)
+    monkeypatch.chdir(tmp_path)
+    blocks = readme.split("```python\n")[1:]
+    assert len(blocks) == 1
+    names: dict[str, object] = {}
+    exec(blocks[0].split("```")[0], names)
+    assert set(names["draws"]) == {"forearm", "hand"}  # type: ignore[call-overload]
+
+
+def test_the_picture_of_the_readme() -> None:
+    root = Path(__file__).parents[3]
+    program = Path(__file__).parents[1] / "examples" / "slender_stage.py"
+    made = subprocess.run(
+        [sys.executable, "-c", f"import sys; sys.path.insert(0, {str(program.parent)!r}); import slender_stage as s; print(s.picture(), end='')"],
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    assert made == (root / "docs" / "images" / "slender-stage.svg").read_text()
+    assert made.count("#d1242f") > 1
+
+
+@pytest.mark.parametrize("name", ["lengths", "inertia", "naive"])
+def test_pictures_in_notebooks(name: str) -> None:
+    import xml.etree.ElementTree as tree
+
+    one = objects()[name]
+    page = one._repr_html_()  # type: ignore[attr-defined]
+    assert tree.fromstring(page).tag.endswith("svg")
+    assert ("#d1242f" in page) == (name == "naive")
+    some = bodies(np.random.default_rng(1), 20)
+    assert tree.fromstring(some._repr_html_()).tag.endswith("svg")
+    assert some[0]._repr_html_().startswith("<pre>")

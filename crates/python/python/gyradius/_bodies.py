@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -288,6 +289,13 @@ class MassProperties:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return MassProperties.of, (self._array,)
+
+    def _repr_html_(self) -> str:
+        from gyradius._figure import triangle
+
+        if self.shape == ():
+            return f"<pre>{html.escape(repr(self))}</pre>"
+        return triangle([(repr(self).strip("<>"), self.inertia.reshape(-1, 3, 3))], "Mass properties")
 
     def __repr__(self) -> str:
         if self.shape != ():

@@ -430,6 +430,9 @@ class InertiaLaw(Law):
         made = _make(InertiaLaw, "of_form", law)
         return Fit(law=made, found=json.loads(found), fits=fits, p_value=p_value, notes=tuple(notes))
 
+    def _repr_html_(self) -> str:
+        return _picture(self, self.rvs(500, rng=0))
+
     def __repr__(self) -> str:
         return _repr(self)
 
@@ -632,6 +635,9 @@ class MassPropertiesLaw(Law):
         made = _make(MassPropertiesLaw, "joint", law)
         return Fit(law=made, found=json.loads(found), fits=fits, p_value=p_value, notes=tuple(notes))
 
+    def _repr_html_(self) -> str:
+        return _picture(self, self.rvs(500, rng=0).inertia)
+
     def __repr__(self) -> str:
         return _repr(self)
 
@@ -830,6 +836,12 @@ def _known(law: Law, value: Any) -> Any:
     if value is None:
         raise ValueError(f"it is not known of {law!r}")
     return value
+
+
+def _picture(law: InertiaLaw | MassPropertiesLaw, inertia: NDArray[Any]) -> str:
+    from gyradius._figure import triangle
+
+    return triangle([(f"{type(law).__name__} {law.name}", inertia)], repr(law))
 
 
 def _repr(law: Law) -> str:
