@@ -1,6 +1,8 @@
 """The compiled part: flat rows of 64-bit floats in and out. It is not for users."""
 
+from collections.abc import Callable
 from os import PathLike
+from pathlib import Path
 from typing import Any, final
 
 from numpy import bool_, float64, uint64
@@ -89,6 +91,61 @@ class BodyCore:
     def moments(self) -> tuple[list[float], list[float]] | None: ...
     def linear_moments(self) -> tuple[list[float], list[float]] | None: ...
     def acceptance(self) -> float | None: ...
+
+@final
+class ScenarioCore:
+    @staticmethod
+    def read(
+        path: str | PathLike[str], function: str | None, outputs: list[dict[str, str]] | None
+    ) -> ScenarioCore: ...
+    @staticmethod
+    def of(given: Any, function: str | None, outputs: list[dict[str, str]] | None) -> ScenarioCore: ...
+    def changed(
+        self,
+        *,
+        runs: int | None,
+        vehicles: int | None,
+        seed: int | None,
+        until: str | None,
+        look_every: int | None,
+        rows: str | None,
+        columns: list[str] | None,
+        drivers: int | None,
+    ) -> ScenarioCore: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def function(self) -> str | None: ...
+    def run(
+        self,
+        *,
+        simulation: Callable[[dict[str, float], dict[str, Any]], Any] | None,
+        out: str | PathLike[str],
+        threads: int | None,
+        force: bool,
+        retry_failed: bool,
+        even_if_full: bool,
+        progress: Callable[[int, int], object] | None,
+    ) -> StudyCore: ...
+
+@final
+class StudyCore:
+    @property
+    def folder(self) -> Path: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def scenario(self) -> str: ...
+    @property
+    def failed(self) -> list[tuple[str, int, int]]: ...
+    @property
+    def verdicts(self) -> list[tuple[str, str, str, str]]: ...
+    def columns(self, model: str) -> list[tuple[str, str | None, str, Any]]: ...
+    def replay(
+        self, *, run: int | None, vehicle: int | None, flight: int | None, model: str | None
+    ) -> tuple[dict[str, Any], str | None, str]: ...
 
 def inertia_is_realizable(matrices: _Rows, tolerance: float | None) -> NDArray[bool_]: ...
 def inertia_margin(matrices: _Rows) -> _Rows: ...
