@@ -1,6 +1,6 @@
 //! Functions in the place of a command: the same study, to the byte; what is refused without them.
 
-use gyradius_campaign::{Cell, Event, KeptRuns, KeptValues, RunInputs, SimulatorFunction};
+use gyradius_campaign::{Cell, Event, KeptRuns, KeptValues, Outputs, RunInputs, SimulatorFunction};
 use proptest::prelude::*;
 use std::{
     collections::BTreeMap,
@@ -229,7 +229,7 @@ fn refusals_name_their_key() {
     let mut silent = function.clone();
     silent.replace_range(outputs, "");
     let silent = scenario(&silent, folder.path());
-    let tells = |answer: fn(&RunInputs<'_>) -> Result<Vec<(String, f64)>, String>| {
+    let tells = |answer: fn(&RunInputs<'_>) -> Result<Outputs, String>| {
         silent.clone().with_function(SimulatorFunction::new(answer))
     };
     let refused = |answer| tells(answer).unwrap_err().to_string();
