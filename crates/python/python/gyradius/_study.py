@@ -17,7 +17,7 @@ import warnings
 import weakref
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, Union
 
 import numpy as np
 
@@ -26,8 +26,11 @@ from gyradius import _core
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Simulation = Callable[..., Mapping[str, float]]
-    Progress = bool | Callable[[int, int], object]
+Simulation: TypeAlias = Callable[..., Mapping[str, float]]
+"""What simulates a run: its inputs in, its outputs out."""
+
+Progress: TypeAlias = Union[bool, Callable[[int, int], object]]
+"""Whether a bar is shown, or what is told how far a study is."""
 
 ABOUT = ("run", "model", "seed", "vehicle", "flight")
 """What a simulation is told of its run by keyword, if it has parameters of these names."""
