@@ -81,10 +81,9 @@ impl Batch {
     /// A block and those that follow it in its stream, up to a number of them.
     pub(crate) fn from(first: Block, places: usize) -> Self {
         let mut states = first.state().map(|word| [word; BATCH]);
-        for place in 0..places.min(BATCH) {
-            let number = first.later(place).number;
-            (states[12][place], states[13][place]) = (number as u32, (number >> 32) as u32);
-        }
+        let number = |place| first.later(place).number;
+        states[12] = std::array::from_fn(|place| number(place) as u32);
+        states[13] = std::array::from_fn(|place| (number(place) >> 32) as u32);
         Self::mixed(states, places.min(BATCH))
     }
 
