@@ -17,10 +17,14 @@ const MAIN: &str = "main";
 
 /// What the geoms of a file take from elsewhere in it.
 pub(crate) struct Geoms<'t, 'a> {
-    tree: &'t Tree<'a>,
     angles: &'t Angles,
     /// The elements `default` of each class, the class itself first and those around it after it.
     classes: HashMap<&'t str, Vec<Node<'t, 'a>>>,
+    /// The meshes among the assets, by name.
+    meshes: HashMap<&'t str, Node<'t, 'a>>,
+    /// Where their files are, and whether only the last part of their paths counts.
+    folder: Option<&'t str>,
+    strips: bool,
     /// Whether nothing of it is in another file.
     is_whole: bool,
 }
@@ -40,7 +44,18 @@ impl<'t, 'a> Geoms<'t, 'a> {
             }
         }
         let is_whole = tree.root().name() == "mujoco" && tree.all("include").next().is_none();
-        Self { tree, angles, classes, is_whole }
+        let mut meshes = HashMap::new();
+        let assets = tree.all("mesh").filter(|n| n.parent().is_some_and(|p| p.name() == "asset"));
+        for mesh in assets {
+            let stem = || mesh.attribute("file").map(|file| stem(file.trim()));
+            if let Some(name) = mesh.attribute("name").or_else(stem) {
+                meshes.entry(name).or_insert(mesh);
+            }
+        }
+        let said = |name| tree.said("compiler", name);
+        let strips = said("strippath").is_some_and(|word| word.trim() == "true");
+        let folder = said("meshdir").or(said("assetdir"));
+        Self { angles, classes, meshes, folder, strips, is_whole }
     }
 
     /// The solids of the body around an inertia: of the geoms that can collide, or of all if none can.
@@ -151,13 +166,8 @@ impl<'t, 'a> Geoms<'t, 'a> {
 
     /// The mesh of a name: that of the element, or of its file without the extension.
     fn mesh(&self, name: &str) -> Result<Shape, GeometryProblem> {
-        let of_asset = |node: &Node<'_, '_>| node.parent().is_some_and(|p| p.name() == "asset");
-        let is_it = |node: &Node<'_, '_>| {
-            let stem = || node.attribute("file").map(|file| stem(file.trim()));
-            node.attribute("name").or_else(stem) == Some(name)
-        };
-        let found = self.tree.all("mesh").filter(of_asset).find(is_it);
-        let mesh = found.ok_or_else(|| GeometryProblem::NoMesh { mesh: shortened(name) })?;
+        let found = self.meshes.get(name);
+        let mesh = *found.ok_or_else(|| GeometryProblem::NoMesh { mesh: shortened(name) })?;
         let chain = self.chain(mesh)?;
         let attribute = |name: &str| chain.iter().find_map(|node| node.attribute(name));
         for field in ["refpos", "refquat", "builtin"] {
@@ -177,11 +187,8 @@ impl<'t, 'a> Geoms<'t, 'a> {
                 scale,
             });
         };
-        let said = |name| self.tree.said("compiler", name);
-        let strips = said("strippath").is_some_and(|word| word.trim() == "true");
-        let file = if strips { last_part(file) } else { file };
-        let folder =
-            if file.starts_with('/') { None } else { said("meshdir").or(said("assetdir")) };
+        let file = if self.strips { last_part(file) } else { file };
+        let folder = self.folder.filter(|_| !file.starts_with('/'));
         Ok(Shape::Mesh { path: in_folder(folder, file), scale })
     }
 }

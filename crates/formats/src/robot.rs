@@ -226,7 +226,8 @@ impl RobotFile {
             } else {
                 geometry::of(node, format, &angles)
             };
-            let defaults = if format == Format::Sdf { frame::defaults(node) } else { Vec::new() };
+            let of_sdf = format == Format::Sdf && !repeated;
+            let defaults = if of_sdf { frame::defaults(node) } else { Vec::new() };
             links.push(RobotLink { name, line: body.line(), read, geometry, defaults });
         });
         let from_geometry = format == Format::Mjcf
