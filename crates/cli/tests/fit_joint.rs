@@ -204,7 +204,6 @@ fn what_is_no_estimate_is_refused() {
             format!(r#"{{"parameters": "odd", "mean": {MEAN:?}, "deviations": {DEVIATIONS:?}}}"#),
             "odd",
         ),
-        ("g.json", format!(r#"{{"parameters": "linear", "mean": {MEAN:?}}}"#), "covariance"),
         ("d.csv", "1,2,3\n".to_owned(), "ten numbers"),
         ("e.txt", String::new(), "extension"),
         ("f.toml", "mean = 3\n".to_owned(), "f.toml"),
@@ -214,6 +213,9 @@ fn what_is_no_estimate_is_refused() {
         assert_eq!((code, out.as_str()), (2, ""), "{name}");
         assert!(message.contains(expected), "{name}: {message}");
     }
+    let linear =
+        format!(r#"{{"parameters": "linear", "mean": {MEAN:?}, "deviations": {DEVIATIONS:?}}}"#);
+    fs::write(folder.path().join("g.json"), linear).unwrap();
     let (code, _, message) =
         run(&folder, &["fit", "--estimate", "g.json", "--parameters", "natural"]);
     let both = "--parameters natural, and the file says parameters = \"linear\"";

@@ -224,7 +224,8 @@ impl DrawnLink {
         let mut rng = self.streams.run(draw);
         loop {
             let drawn = self.inset(self.law.sample(&mut rng));
-            // Ends: of the trials enough were held.
+            // Ends: of the trials enough were held. A joint law's own region would judge what was drawn, and this is what is
+            // written, a little inside of it.
             if self.region.as_ref().is_none_or(|region| inside::holds(region, &drawn)) {
                 return drawn;
             }
