@@ -95,6 +95,15 @@ fn draws_are_written_once_and_are_the_same_on_any_number_of_threads() {
     );
     assert_eq!(fs::read_to_string(shell.path("parts.csv")).unwrap(), SAWE);
     assert!(!shell.rollup(&["parts.csv", "-n", "0"]).contains("draws: mean"));
+    // Of one draw there is a mean, and nothing else.
+    let one = shell.rollup(&["parts.csv", "-n", "1"]);
+    let row = one.lines().find(|line| line.starts_with("mass_kg")).unwrap();
+    let words: Vec<&str> = row.split_whitespace().collect();
+    assert!(words.len() == 5 && words[4] == "-" && words[3].starts_with('7'), "{one}");
+    assert!(one.contains("correlations by first order"), "{one}");
+    let one: Value =
+        serde_json::from_str(&shell.rollup(&["parts.csv", "-n", "1", "--format", "json"])).unwrap();
+    assert!(one["drawn"]["mean"][0].is_number() && one["drawn"]["deviation"].is_null());
 }
 
 #[test]

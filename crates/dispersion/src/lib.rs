@@ -98,7 +98,7 @@ pub use mass_properties::{
     JointScalar, LogCholeskyTen, LogCholeskyTenError, MassPropertiesLaw, MassPropertiesLawError,
     MassPropertiesModel, MaximumEntropy, MaximumEntropyError, NaiveBody, NaiveBodyError, NaiveRule,
     PseudoInertiaWishart, PseudoInertiaWishartError, RegionAcceptanceError, TenMoments,
-    TenParameters, TensorLaw, TensorLawError, TensorParts, following_factor,
+    TenParameters, TenSpread, TenSums, TensorLaw, TensorLawError, TensorParts, following_factor,
 };
 pub use matched::{MatchError, Matched};
 pub use model::{DispersionModel, ModelKind, UnknownModel};

@@ -102,9 +102,7 @@ pub use results::{Results, ResultsError};
 pub use robots::{
     Inside, LeftBecause, LinkSummary, RobotDraw, RobotDrawError, RobotDrawOptions, RobotFolder,
 };
-pub use rollup::{
-    DrawnMoments, DrawnSpread, NaiveShares, Rollup, RollupDraws, RollupError, RollupOptions,
-};
+pub use rollup::{DrawnMoments, NaiveShares, Rollup, RollupDraws, RollupError, RollupOptions};
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};
 pub use shards::{ModelStatus, Status};
 pub use simulator::{SimulatorReplay, SimulatorScenario, SimulatorSummary};

@@ -1,6 +1,6 @@
 //! `gyradius model`: a nominal inertia and plain statements, and what they come to.
 
-use gyradius_dispersion::{TenMoments, TenParameters};
+use gyradius_dispersion::{MassPropertiesLaw, TenMoments, TenParameters, TenSpread, TenSums};
 use gyradius_estimation::{
     AxesStatement, CentreStatement, MassStatement, MomentsStatement, ProductsStatement, StatedBody,
     StatedModel, Statements,
@@ -15,7 +15,7 @@ use std::{error::Error, fmt::Write};
 use crate::program::{
     args::ModelArgs,
     fit::{FragmentJson, wrapped},
-    number::short,
+    number::{short, with_error},
     output,
 };
 
@@ -77,10 +77,12 @@ struct Document {
 #[derive(Serialize)]
 struct LawJson {
     columns: [&'static str; 10],
-    /// Null where draws are kept to a region.
     mean: Option<[f64; 10]>,
     deviation: Option<[f64; 10]>,
     covariance: Option<[[f64; 10]; 10]>,
+    /// Standard errors where draws are kept to a region, of which these are estimates; null where they are exact.
+    mean_error: Option<[f64; 10]>,
+    deviation_error: Option<[f64; 10]>,
     /// The share of draws that the region keeps, and its standard error; 1 and 0 without one.
     acceptance: [f64; 2],
     mass_properties_law: serde_json::Value,
@@ -218,7 +220,7 @@ fn write_report(out: &mut String, file: &str, Told { model, body }: &Told) -> st
             "inside: of the draws without the region {share} ± {error} % are possible for matter there, and only such are \
              drawn; the deviations above are those without it"
         );
-        for line in wrapped(&line) {
+        for line in wrapped(&line).into_iter().chain(wrapped(&in_region(law))) {
             writeln!(out, "{line}")?;
         }
     }
@@ -228,6 +230,24 @@ fn write_report(out: &mut String, file: &str, Told { model, body }: &Told) -> st
         }
     }
     Ok(())
+}
+
+/// The deviations of draws that are kept to a region.
+fn in_region(law: &MassPropertiesLaw) -> String {
+    let drawn = law.moments_in_region();
+    let Some((drawn, spread)) = drawn.and_then(|drawn| Some((drawn, drawn.spread()?))) else {
+        return String::new();
+    };
+    let size = |i: usize| with_error(spread.deviation[i], Some(spread.deviation_error[i]));
+    let list = |range: std::ops::Range<usize>| range.map(size).collect::<Vec<_>>().join(", ");
+    format!(
+        "deviations with it, by {} draws: mass {} kg; mass centre {} m; moments {} kg·m²; products {} kg·m²",
+        drawn.count(),
+        list(0..1),
+        list(1..4),
+        list(4..7),
+        list(7..10)
+    )
 }
 
 fn json(
@@ -258,13 +278,21 @@ fn law_json(body: &StatedBody) -> serde_json::Result<LawJson> {
     let law = body.law();
     let moments = law.moments();
     let moments = moments.as_ref();
+    let drawn = law.moments_in_region();
+    let spread = drawn.and_then(TenSums::spread);
+    let exact = moments.map(|moments| {
+        std::array::from_fn(|i| std::array::from_fn(|j| moments.covariance()[(i, j)]))
+    });
+    let estimated = spread.as_ref().map(|TenSpread { deviation: d, correlation, .. }| {
+        std::array::from_fn(|i| std::array::from_fn(|j| d[i] * d[j] * correlation[i][j]))
+    });
     Ok(LawJson {
         columns: TenParameters::COLUMNS,
-        mean: moments.map(|moments| (*moments.mean()).into()),
-        deviation: moments.map(TenMoments::deviations),
-        covariance: moments.map(|moments| {
-            std::array::from_fn(|i| std::array::from_fn(|j| moments.covariance()[(i, j)]))
-        }),
+        mean: moments.map(|m| (*m.mean()).into()).or_else(|| drawn?.mean()),
+        deviation: moments.map(TenMoments::deviations).or(spread.as_ref().map(|s| s.deviation)),
+        covariance: exact.or(estimated),
+        mean_error: spread.as_ref().map(|spread| spread.mean_error),
+        deviation_error: spread.as_ref().map(|spread| spread.deviation_error),
         acceptance: law.acceptance().into(),
         mass_properties_law: serde_json::to_value(law)?,
     })

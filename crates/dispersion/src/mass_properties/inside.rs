@@ -2,6 +2,8 @@
 
 use gyradius_inertia::{Containment, MassProperties, Region};
 
+use super::{ten_parameters::TenParameters, ten_sums::TenSums};
+
 /// Trial draws that tell how many are possible in an ellipsoid, and in other regions.
 const EXACT_TRIALS: u32 = 20_000;
 const REGION_TRIALS: u32 = 4_000;
@@ -14,6 +16,8 @@ pub(super) struct Inside {
     region: Region,
     possible: u32,
     trials: u32,
+    /// Of the draws that were.
+    sums: Box<TenSums>,
 }
 
 impl Inside {
@@ -23,15 +27,20 @@ impl Inside {
         mut draw: impl FnMut() -> MassProperties,
     ) -> Result<Self, RegionAcceptanceError> {
         let trials = if region.is_exact() { EXACT_TRIALS } else { REGION_TRIALS };
-        let mut inside = Self { region, possible: 0, trials };
+        let mut held = None;
+        let mut possible = 0;
         for _ in 0..trials {
-            inside.possible += u32::from(inside.holds(&draw()));
+            let body = draw();
+            if is_held(&region, &body) {
+                possible += 1;
+                held.get_or_insert_with(|| about(&body)).add(TenParameters::from(body).values());
+            }
         }
-        let possible = inside.possible;
         if f64::from(possible) < LEAST_SHARE * f64::from(trials) {
             return Err(RegionAcceptanceError { possible, trials });
         }
-        Ok(inside)
+        let sums = held.ok_or(RegionAcceptanceError { possible, trials })?;
+        Ok(Self { region, possible, trials, sums: Box::new(sums) })
     }
 
     pub(super) fn region(&self) -> &Region {
@@ -45,7 +54,12 @@ impl Inside {
     /// Whether matter in the region was shown to have these mass properties.
     #[inline]
     pub(super) fn holds(&self, body: &MassProperties) -> bool {
-        self.region.containment(body) == Containment::Possible
+        is_held(&self.region, body)
+    }
+
+    /// Sums over the trial draws that were possible.
+    pub(super) fn sums(&self) -> &TenSums {
+        &self.sums
     }
 
     /// The estimated share of draws that are possible, and its standard error.
@@ -54,6 +68,24 @@ impl Inside {
         let p = f64::from(self.possible) / n;
         (p, (p * (1.0 - p) / n).sqrt())
     }
+}
+
+/// Whether matter in a region was shown to have these mass properties.
+#[inline]
+fn is_held(region: &Region, body: &MassProperties) -> bool {
+    region.containment(body) == Containment::Possible
+}
+
+/// Sums about a draw.
+fn about(body: &MassProperties) -> TenSums {
+    let trace = body.inertia().matrix().trace();
+    let length = (trace / body.mass_kg()).sqrt().max(body.mass_centre_m().amax());
+    let scale = std::array::from_fn(|i| match i {
+        0 => body.mass_kg(),
+        1..=3 => length,
+        _ => trace,
+    });
+    TenSums::about(TenParameters::from(*body).values(), scale)
 }
 
 /// Next to no trial draw is possible in the region.

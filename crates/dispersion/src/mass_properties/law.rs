@@ -207,9 +207,9 @@ impl MassPropertiesLaw {
         std::iter::once(&self.mass).chain(&self.centre).chain(shape)
     }
 
-    /// Whether draws are rejected, so that the laws of the parts are not those of the whole.
-    pub(super) fn is_rejected(&self) -> bool {
-        self.inside.is_some()
+    /// What draws are kept to by rejection, so that the laws of the parts are not those of the whole.
+    pub(super) fn kept_to(&self) -> Option<&Inside> {
+        self.inside.as_ref()
     }
 
     /// Whether the region, if there is one, holds a body.

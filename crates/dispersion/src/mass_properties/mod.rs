@@ -17,6 +17,7 @@ mod rival_tests;
 mod scores;
 mod ten_moments;
 mod ten_parameters;
+mod ten_sums;
 mod tensor;
 #[cfg(test)]
 mod tests;
@@ -30,4 +31,5 @@ pub use naive::{NaiveBody, NaiveBodyError, NaiveRule};
 pub use pseudo_inertia_wishart::{PseudoInertiaWishart, PseudoInertiaWishartError};
 pub use ten_moments::TenMoments;
 pub use ten_parameters::TenParameters;
+pub use ten_sums::{TenSpread, TenSums};
 pub use tensor::{TensorLaw, TensorLawError, TensorParts, following_factor};

@@ -3,10 +3,11 @@
 use nalgebra::{SMatrix, SVector};
 use std::cell::RefCell;
 
-use super::TenMoments;
+use super::inside::Inside;
 use super::law::MassPropertiesLaw;
 use super::scores::{Monomial, Scores};
 use super::tensor::{Of, Principal};
+use super::{TenMoments, TenSums};
 use crate::entry_moments::ENTRIES;
 use crate::{AttitudeMoments, EntryMoments, InertiaLaw, SecondMomentStatistics};
 
@@ -22,8 +23,8 @@ const SHAPE: usize = 4;
 
 impl MassPropertiesLaw {
     /// Mean and covariance of m, c₁, c₂, c₃ and the six entries of the inertia about the mass centre: in closed form or
-    /// by quadrature. None of a law that is kept to a region by rejection, or of a model whose own moments are not
-    /// known.
+    /// by quadrature. None of a law that is kept to a region by rejection, of which
+    /// [`moments_in_region`](Self::moments_in_region) has estimates, or of a model whose own moments are not known.
     #[must_use]
     pub fn moments(&self) -> Option<TenMoments> {
         let one = Monomial::default();
@@ -55,6 +56,14 @@ impl MassPropertiesLaw {
         )
     }
 
+    /// Of a law that is kept to a region, sums over the trial draws that were possible in it: their means, deviations and
+    /// correlations of m, c and the six entries about the mass centre, with standard errors. None without a region, for
+    /// [`moments`](Self::moments) are exact then.
+    #[must_use]
+    pub fn moments_in_region(&self) -> Option<&TenSums> {
+        self.kept_to().map(Inside::sums)
+    }
+
     /// Of ten numbers: four that are linear in `others`, and six entries, to which `added` adds what is linear in them.
     fn moments_with(
         &self,
@@ -62,7 +71,7 @@ impl MassPropertiesLaw {
         four: impl Fn(&[f64]) -> SVector<f64, 4>,
         added: impl Fn(&[f64]) -> SVector<f64, 6>,
     ) -> Option<TenMoments> {
-        if self.is_rejected() {
+        if self.kept_to().is_some() {
             return None;
         }
         let shares = self.shares();
@@ -75,7 +84,10 @@ impl MassPropertiesLaw {
         let (size, axes) = self.size(&scores)?;
         let n = others.len();
         let pairs = |f: &Monomial, g: &Monomial| scores.covariance(f, g);
-        let means: Vec<f64> = others.iter().map(|f| pairs(f, f).0).collect();
+        // Each pair once.
+        let own: Vec<Vec<(f64, f64)>> =
+            (0..n).map(|i| (0..=i).map(|j| pairs(&others[i], &others[j])).collect()).collect();
+        let means: Vec<f64> = own.iter().map(|row| row.last().map_or(0.0, |own| own.0)).collect();
         // Rows of the map from the others and the own entries to the ten.
         let place = |x: &[f64]| {
             let (four, six) = (four(x), added(x));
@@ -85,10 +97,10 @@ impl MassPropertiesLaw {
         let maps: Vec<SVector<f64, 10>> = (0..n).map(|i| place(&unit(i))).collect();
         let mut mean = place(&means);
         let mut covariance = SMatrix::<f64, 10, 10>::zeros();
-        for i in 0..n {
-            for j in 0..n {
-                let own = pairs(&others[i], &others[j]).1;
-                covariance += maps[i] * maps[j].transpose() * own;
+        for (i, row) in own.iter().enumerate() {
+            for (j, (_, own)) in row.iter().enumerate() {
+                let half = maps[i] * maps[j].transpose() * *own;
+                covariance += if i == j { half } else { half + half.transpose() };
             }
         }
         // The own entries, and how they go with the others.

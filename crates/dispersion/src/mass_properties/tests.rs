@@ -87,6 +87,8 @@ pub(super) fn any_law() -> impl Strategy<Value = MassPropertiesLaw> {
 /// Largest |z| of means and covariances of draws against those expected.
 pub(super) fn worst(moments: &TenMoments, rows: &[SVector<f64, 10>]) -> f64 {
     let n = rows.len() as f64;
+    let halves = moments.covariance().rows(0, 4).into_owned();
+    assert_eq!(halves, moments.covariance().columns(0, 4).transpose(), "both halves are one");
     let mut worst = 0f64;
     let mut count = |gap: f64, deviation: f64, size: f64| {
         if gap.abs() > 1e-9 * size {
@@ -212,6 +214,42 @@ fn batches_stay_in_the_region() {
         let rng = &mut ChaCha8Rng::seed_from_u64(1);
         let error = law.sample_columns(rng, columns.each_mut().map(Vec::as_mut_slice)).unwrap_err();
         assert_eq!(error.lengths, [10, 11]);
+    }
+}
+
+/// Moments in a region are those of other draws that are kept to it, and not those without it.
+#[test]
+fn moments_in_a_region_are_those_of_its_draws() {
+    const N: usize = 30_000;
+    let region = Region::ellipsoid([0.4, 0.8, 0.3], [0.8, 0.8, 0.8]).unwrap();
+    let centre = || [scalar(0, 0.4, 0.2), scalar(1, 0.8, 0.2), scalar(2, 0.3, 0.2)];
+    for kind in 0..4 {
+        let law =
+            MassPropertiesLaw::new(scalar(0, 9.0, 1.1), centre(), tensor(kind, [0.0; 3], [0; 3]));
+        let open = law.unwrap();
+        assert_eq!(open.moments_in_region(), None);
+        let law = open.clone().inside(region.clone()).unwrap();
+        assert_eq!(law.moments(), None);
+        let sums = law.moments_in_region().unwrap();
+        let (share, _) = law.acceptance();
+        assert_eq!(sums.count(), (share * 20_000.0).round() as u64);
+        let (mean, spread) = (sums.mean().unwrap(), sums.spread().unwrap());
+        let mut rows = vec![[0.0; 10]; N];
+        law.sample_into(&mut ChaCha8Rng::seed_from_u64(9), &mut rows);
+        let more = (1.0 + sums.count() as f64 / N as f64).sqrt();
+        let mut gap = 0_f64;
+        for i in 0..10 {
+            let average = rows.iter().map(|row| row[i]).sum::<f64>() / N as f64;
+            let variance =
+                rows.iter().map(|row| (row[i] - average).powi(2)).sum::<f64>() / N as f64;
+            let z = (average - mean[i]) / (spread.mean_error[i] * more);
+            assert!(z.abs() < 4.5, "{kind} {i}: {z}");
+            let z = (variance.sqrt() - spread.deviation[i]) / (spread.deviation_error[i] * more);
+            assert!(z.abs() < 4.5, "{kind} {i}: {z}");
+            let without = open.moments().map_or(0.0, |moments| moments.deviations()[i]);
+            gap = gap.max((without - spread.deviation[i]).abs() / spread.deviation_error[i]);
+        }
+        assert!(gap > 10.0, "negative control: {kind} {gap}");
     }
 }
 

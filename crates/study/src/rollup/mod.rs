@@ -22,7 +22,7 @@ use draws::{Draws, naive};
 use sums::Sums;
 
 pub use draws::NaiveShares;
-pub use sums::{DrawnMoments, DrawnSpread};
+pub use sums::DrawnMoments;
 
 /// What the run table calls the draws.
 const MODEL: &str = "rollup";

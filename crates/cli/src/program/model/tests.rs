@@ -184,6 +184,23 @@ fn every_file_gives_the_joint_law() {
         let kept = stated(&(text.clone() + inside)).unwrap();
         let (share, _) = kept.body.as_ref().unwrap().law().acceptance();
         assert!(share > 0.9, "{share}");
+        // Estimates with errors where there is a region, and exact ones without.
+        assert!(document["mean_error"].is_null() && document["deviation_error"].is_null());
+        let kept: serde_json::Value =
+            serde_json::to_value(law_json(kept.body.as_ref().unwrap()).unwrap()).unwrap();
+        for i in 0..10 {
+            let number = |key: &str| kept[key][i].as_f64().unwrap();
+            let (sigma, error) = (number("deviation"), number("deviation_error"));
+            assert!(sigma <= 1.05 * deviations[i] + 6.0 * error, "{i}: {sigma} {error} {text}");
+            assert!(
+                (kept["covariance"][i][i].as_f64().unwrap() - sigma * sigma).abs()
+                    <= 1e-9 * sigma * sigma
+            );
+            assert!(
+                (number("mean") - moments.mean()[i]).abs()
+                    <= deviations[i] + 6.0 * number("mean_error") + 1e-9
+            );
+        }
         let far = inside.replace("1.5]", "9.0]");
         let error = stated(&(text.clone() + &far)).unwrap_err();
         assert!(error.starts_with("inside: "), "{error}");
