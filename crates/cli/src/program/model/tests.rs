@@ -162,8 +162,7 @@ fn every_file_gives_the_joint_law() {
         let body = told.body.as_ref().unwrap();
         let document: serde_json::Value = serde_json::to_value(law_json(body).unwrap()).unwrap();
         let law = &document["mass_properties_law"];
-        let back: gyradius_dispersion::MassPropertiesLaw =
-            serde_json::from_value(law.clone()).unwrap();
+        let back: MassPropertiesLaw = serde_json::from_value(law.clone()).unwrap();
         assert_eq!(back.moments(), body.law().moments());
         let moments = body.law().moments().unwrap();
         let deviations = moments.deviations();

@@ -3,6 +3,8 @@
 use gyradius_inertia::{Containment, Inertia, InertiaMatrix, MassProperties, Region};
 use nalgebra::Vector3;
 
+use crate::FoldedRoot;
+
 use super::{
     MODELS, Options, SimulatorDraws, SimulatorScenario, drawn, folder, fs, scenario, uniform,
 };
@@ -194,7 +196,7 @@ fn lengths_that_are_folded_are_told() {
         let text = open.replace("[0.03, 0.02, 0.02]", &format!("[{}]", sigmas.join(", ")));
         let read = scenario(&(uniform() + &text), folder.path()).with_runs(3).unwrap();
         let found = read.folded();
-        let names: Vec<&str> = found.iter().map(|root| root.quantity()).collect();
+        let names: Vec<&str> = found.iter().map(FoldedRoot::quantity).collect();
         let expected: Vec<String> = (1..4)
             .filter(|axis| which >> (axis - 1) & 1 == 1)
             .map(|axis| format!("gyration_length_{axis}"))
