@@ -20,7 +20,7 @@ use crate::{
 pub(crate) struct AttitudeCore(Law);
 
 enum Law {
-    Axes(AxesLaw),
+    Axes(Box<AxesLaw>),
     FisherBingham(Box<FisherBingham>),
     AboutAxis(AboutAxis),
 }
@@ -30,7 +30,7 @@ impl AttitudeCore {
     /// A law in its form in files.
     #[staticmethod]
     fn of_form(form: &str) -> PyResult<Self> {
-        Ok(Self(Law::Axes(json::read(form)?)))
+        Ok(Self(Law::Axes(Box::new(json::read(form)?))))
     }
 
     /// A radially constrained Gaussian with a covariance of the four coordinates.
@@ -38,7 +38,7 @@ impl AttitudeCore {
     fn gaussian(mean: [f64; 4], covariance: [[f64; 4]; 4]) -> PyResult<Self> {
         let covariance = Matrix4::from_fn(|i, j| covariance[i][j]);
         let law = RadiallyConstrainedGaussian::new(attitude(mean), covariance).map_err(refused)?;
-        Ok(Self(Law::Axes(law.into())))
+        Ok(Self(Law::Axes(Box::new(law.into()))))
     }
 
     /// One with a covariance of small rotations, rad².
@@ -46,7 +46,7 @@ impl AttitudeCore {
     fn of_small_rotations(mean: [f64; 4], covariance: [[f64; 3]; 3]) -> PyResult<Self> {
         let covariance = Matrix3::from_fn(|i, j| covariance[i][j]);
         let law = RadiallyConstrainedGaussian::of_small_rotations(attitude(mean), covariance);
-        Ok(Self(Law::Axes(law.map_err(refused)?.into())))
+        Ok(Self(Law::Axes(Box::new(law.map_err(refused)?.into()))))
     }
 
     /// Fisher-Bingham's law ∝ exp(−½ xᵀPx + bᵀx).
@@ -119,11 +119,13 @@ impl AttitudeCore {
     /// The mean attitude and the covariance of small rotations about it in rad², where they are known.
     fn moments(&self) -> Option<([f64; 4], [[f64; 3]; 3])> {
         let (mean, covariance) = match &self.0 {
-            Law::Axes(AxesLaw::WholeSphere(law)) => {
-                (law.mean_attitude(), law.rotation_covariance())
-            }
+            Law::Axes(law) => match &**law {
+                AxesLaw::WholeSphere(law) => (law.mean_attitude(), law.rotation_covariance()),
+                // Their moments are those of entries of an inertia alone. The enum may grow.
+                _ => return None,
+            },
             Law::FisherBingham(law) => (law.mean_attitude(), law.rotation_covariance()),
-            Law::Axes(_) | Law::AboutAxis(_) => return None,
+            Law::AboutAxis(_) => return None,
         };
         Some((row_of_attitude(&mean), covariance.transpose().into()))
     }

@@ -23,7 +23,7 @@ use crate::{
 pub(crate) struct BodyCore(Law);
 
 enum Law {
-    Joint(MassPropertiesLaw),
+    Joint(Box<MassPropertiesLaw>),
     Other(Arc<dyn MassPropertiesModel>),
 }
 
@@ -32,7 +32,7 @@ pub(crate) type Moments = ([f64; 10], Vec<f64>);
 
 impl BodyCore {
     pub(crate) fn joint_law(law: MassPropertiesLaw) -> Self {
-        Self(Law::Joint(law))
+        Self(Law::Joint(Box::new(law)))
     }
 
     fn other(law: impl MassPropertiesModel + 'static) -> Self {
@@ -41,7 +41,7 @@ impl BodyCore {
 
     fn law(&self) -> &dyn MassPropertiesModel {
         match &self.0 {
-            Law::Joint(law) => law,
+            Law::Joint(law) => &**law,
             Law::Other(law) => &**law,
         }
     }
@@ -52,7 +52,7 @@ impl BodyCore {
     /// The joint law in its form in files.
     #[staticmethod]
     fn joint(form: &str) -> PyResult<Self> {
-        Ok(Self(Law::Joint(json::read(form)?)))
+        Ok(Self(Law::Joint(Box::new(json::read(form)?))))
     }
 
     /// From the mean of the coordinates.

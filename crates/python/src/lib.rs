@@ -3,6 +3,8 @@
 //! Arrays come in flat, of rows of 9, 10 or 4 numbers, of 64-bit floats, and go out likewise; shapes, types and keywords are
 //! the business of the Python part. Everything that takes long is done with the interpreter let go and by all cores.
 
+#![allow(clippy::needless_pass_by_value, reason = "PyO3 gives arguments by value")]
+
 mod attitudes;
 mod bodies;
 mod error;
