@@ -7,6 +7,7 @@ mod compare;
 #[cfg(target_os = "linux")]
 mod disk;
 mod draw;
+mod draw_links;
 mod draw_robots;
 mod drivers;
 mod fit;

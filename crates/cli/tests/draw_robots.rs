@@ -1,8 +1,8 @@
 //! `gyradius draw` of robots: in files and in a table, for random robots in every format.
 
 use gyradius_formats::{RobotFile, is_same_but_numbers};
-use gyradius_inertia::{Containment, Inertia, MassProperties, Region, SecondMoments};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use gyradius_inertia::{Inertia, SecondMoments};
+use nalgebra::{Quaternion, UnitQuaternion};
 use std::{
     collections::{BTreeMap, HashMap},
     fmt::Write as _,
@@ -14,7 +14,7 @@ use std::{
 use crate::scratch::{Scratch, files};
 
 /// What most tests state.
-const STATED: [&str; 8] =
+pub(crate) const STATED: [&str; 8] =
     ["--mass", "10%", "--centre", "5mm", "--moments", "15%", "--axes", "5deg"];
 
 const FORMATS: [&str; 3] = ["urdf", "xml", "sdf"];
@@ -128,7 +128,7 @@ fn robot(names: &[&str], format: &str) -> String {
 }
 
 /// The ten of each link and draw, as they stand in a CSV table.
-fn rows(csv: &[u8]) -> BTreeMap<(String, u64), [f64; 10]> {
+pub(crate) fn rows(csv: &[u8]) -> BTreeMap<(String, u64), [f64; 10]> {
     let mut lines = csv::Reader::from_reader(csv);
     let head: Vec<String> = lines.headers().unwrap().iter().map(str::to_owned).collect();
     assert_eq!(
@@ -154,7 +154,7 @@ fn ten(path: &Path) -> HashMap<String, [f64; 10]> {
     links.collect()
 }
 
-fn draw(shell: &Scratch, arguments: &[&str]) -> Vec<u8> {
+pub(crate) fn draw(shell: &Scratch, arguments: &[&str]) -> Vec<u8> {
     let output = shell.run(&[&["draw"], arguments].concat());
     let message = String::from_utf8_lossy(&output.stderr);
     // Beside a table on standard output stands what there is to say of it, and nothing else.
@@ -164,7 +164,7 @@ fn draw(shell: &Scratch, arguments: &[&str]) -> Vec<u8> {
     output.stdout
 }
 
-fn refused(shell: &Scratch, arguments: &[&str]) -> String {
+pub(crate) fn refused(shell: &Scratch, arguments: &[&str]) -> String {
     let output = shell.run(&[&["draw"], arguments].concat());
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
@@ -361,85 +361,6 @@ fn what_cannot_be_drawn_is_said() {
         let message = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.success() && message.contains("m.stl") == warned, "{message}");
     }
-}
-
-/// What SDF leaves to its defaults is drawn in files as in the table, and both say so; a second inertia of a link is listed.
-#[test]
-fn defaults_and_second_inertias_are_told() {
-    let shell = Scratch::new();
-    let text = "<sdf version='1.9'><model name='m'><link name='a'><inertial><mass>2</mass></inertial></link>\n\
-                <link name='b'><inertial><mass>2</mass><inertia><ixx>2</ixx><iyy>2</iyy><izz>2</izz></inertia></inertial>\
-                <inertial/></link><link name='c'><inertial/></link></model></sdf>";
-    fs::write(shell.path("a.sdf"), text).unwrap();
-    let run = |more: &[&str]| {
-        let output = shell.run(&[&["draw", "a.sdf", "-n", "3"], &STATED[..], more].concat());
-        assert!(output.status.success(), "{output:?}");
-        output
-    };
-    let table = run(&[]);
-    let robots = run(&["-o", "robots"]);
-    for told in [&table.stderr, &robots.stdout].map(|said| String::from_utf8_lossy(said)) {
-        for line in [
-            "note: a: the file does not state inertia: its draws are about the defaults of SDF",
-            "note: c: the file does not state mass, inertia: ",
-            "left as it is: b: it is a second <inertial> of its link",
-        ] {
-            assert!(told.lines().any(|said| said.starts_with(line)), "{line}\n{told}");
-        }
-        assert!(!told.contains("note: b"), "{told}");
-    }
-    let drawn = rows(&table.stdout);
-    assert_eq!(drawn.len(), 9);
-    for number in 0..3 {
-        let path = shell.path(&format!("robots/a-000{number}.sdf"));
-        let robot = RobotFile::read(&path).unwrap();
-        for link in robot.links().iter().filter(|link| link.numbers().is_ok()) {
-            let found = link.numbers().unwrap();
-            let row = drawn[&(link.name().to_owned(), number)];
-            assert_eq!(found.mass_kg(), row[0]);
-            assert_eq!(found.inertia().entries(), row[4..]);
-            assert!(link.defaults().is_empty());
-        }
-    }
-}
-
-/// Within its own box, whatever is drawn; without it, some bodies have matter outside.
-#[test]
-fn matter_stays_inside_of_the_geometry() {
-    let shell = Scratch::new();
-    let solid = "<robot><link name='base'><inertial><origin xyz='0.1 0 0'/><mass value='2'/><inertia ixx='0.0108' \
-                 ixy='0' ixz='0' iyy='0.0133' iyz='0' izz='0.0108'/></inertial><collision><origin xyz='0.1 0 0'/>\
-                 <geometry><box size='0.3 0.2 0.3'/></geometry></collision></link></robot>";
-    fs::write(shell.path("a.urdf"), solid).unwrap();
-    let geoms = "<mujoco><default><geom type='box'/></default><worldbody><body name='base'><inertial pos='0.1 0 0' \
-                 mass='2' diaginertia='0.0108 0.0133 0.0108'/><geom size='0.15 0.1 0.15' pos='0.1 0 0'/></body>\
-                 </worldbody></mujoco>";
-    fs::write(shell.path("a.xml"), geoms).unwrap();
-    let stated = ["a.urdf", "-n", "300", "--mass", "10%", "--centre", "4cm", "--moments", "25%"];
-    let region = Region::solid_box([0.1, 0.0, 0.0], [0.15, 0.1, 0.15]).unwrap();
-    let outside = |table: &[u8]| {
-        let is_out = |ten: &&[f64; 10]| {
-            let [m, x, y, z, a, b, c, d, e, f] = **ten;
-            let matrix = nalgebra::Matrix3::new(a, d, e, d, b, f, e, f, c);
-            let inertia = Inertia::new(matrix).unwrap();
-            let body = MassProperties::new(m, Vector3::new(x, y, z), inertia).unwrap();
-            region.containment(&body) != Containment::Possible
-        };
-        rows(table).values().filter(is_out).count()
-    };
-    assert!(outside(&draw(&shell, &stated)) > 10);
-    for inside in ["box", "mesh"] {
-        let table = draw(&shell, &[&stated[..], &["--inside", inside]].concat());
-        assert_eq!((rows(&table).len(), outside(&table)), (300, 0), "{inside}");
-        // The same body in MJCF, of which a class says the shape.
-        let of_geoms = draw(&shell, &[&["a.xml"], &stated[1..], &["--inside", inside]].concat());
-        assert_eq!(table, of_geoms, "{inside}");
-    }
-    let table = draw(&shell, &[&stated[..], &["--inside", "ellipsoid"]].concat());
-    assert_eq!(rows(&table).len(), 300);
-    fs::write(shell.path("a.urdf"), solid.replace("0.3 0.2 0.3", "0.1 0.1 0.1")).unwrap();
-    let message = refused(&shell, &[&stated[..], &["--inside", "box"]].concat());
-    assert!(message.contains("its nominal numbers are not"), "{message}");
 }
 
 /// Whether Python is there with a module.
