@@ -201,15 +201,18 @@ def test_import_is_quick_and_brings_nothing() -> None:
     assert done.stdout == "[]\n"
 
 
-def test_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    readme = (Path(__file__).parents[3] / "README.md").read_text()
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md", "crates/python/README.md"])
+def test_the_pages(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = (Path(__file__).parents[3] / page).read_text()
     (tmp_path / "robot.urdf").write_text(URDF)
     monkeypatch.chdir(tmp_path)
-    blocks = readme.split("```python\n")[1:]
-    assert len(blocks) == 1
     names: dict[str, object] = {}
-    exec(blocks[0].split("```")[0], names)
-    assert set(names["draws"]) == {"forearm", "hand"}  # type: ignore[call-overload]
+    blocks = text.split("```python\n")[1:]
+    assert blocks
+    for block in blocks:
+        exec(block.split("```")[0], names)
+    if page == "README.md":
+        assert set(names["draws"]) == {"forearm", "hand"}  # type: ignore[call-overload]
 
 
 def test_the_picture_of_the_readme() -> None:

@@ -19,6 +19,16 @@ Random numbers
 True
 """
 
+from gyradius._attitude_laws import (
+    AttitudeLaw,
+    about_axis,
+    bingham,
+    fisher_bingham,
+    fixed_attitude,
+    radially_constrained_gaussian,
+    small_rotations,
+    uniform_attitude,
+)
 from gyradius._bodies import (
     COLUMNS,
     MassProperties,
@@ -31,7 +41,9 @@ from gyradius._bodies import (
     log_cholesky,
     pseudo_inertia,
 )
+from gyradius._body_laws import MassPropertiesLaw
 from gyradius._core import __version__
+from gyradius._estimate import Estimate, from_estimate
 from gyradius._inertia import (
     PrincipalAxes,
     Report,
@@ -41,27 +53,11 @@ from gyradius._inertia import (
     principal_axes,
     report,
 )
-from gyradius._laws import (
-    AttitudeLaw,
-    Estimate,
-    Fit,
-    InertiaLaw,
-    MassPropertiesLaw,
-    ScalarLaw,
-    StatedLaw,
-    about_axis,
-    bingham,
-    fisher_bingham,
-    fixed_attitude,
-    from_estimate,
-    law,
-    normal,
-    radially_constrained_gaussian,
-    small_rotations,
-    uniform,
-    uniform_attitude,
-)
+from gyradius._inertia_laws import InertiaLaw
+from gyradius._law import Fit
 from gyradius._rng import key
+from gyradius._scalar_laws import ScalarLaw, normal, uniform
+from gyradius._stated import StatedLaw, law
 from gyradius._study import Replay, Study, Verdict, study
 
 __all__ = [

@@ -1,0 +1,138 @@
+"""Laws of attitudes."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gyradius import _core
+from gyradius._arrays import attitudes, numbers, ordered, out
+from gyradius._law import Fit, Law, count, known, make, nested, one_attitude, short, vector
+from gyradius._rng import streams
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+    from gyradius._rng import RNG
+
+
+class AttitudeLaw(Law):
+    """A law of attitudes: made by `uniform_attitude`, `radially_constrained_gaussian`, `small_rotations`, `bingham`,
+    `fisher_bingham`, `fixed_attitude` and `about_axis`.
+
+    Quaternions are unit quaternions of which q and -q are the same attitude. Where an attitude is that of principal axes, it
+    takes body components to principal components.
+    """
+
+    __slots__ = ()
+    _kind = "Attitude"
+
+    def rvs(
+        self,
+        size: int | tuple[int, ...] | None = None,
+        rng: RNG = None,
+        *,
+        order: str = "xyzw",
+        dtype: DTypeLike | None = None,
+    ) -> NDArray[np.floating[Any]]:
+        """Draws as unit quaternions.
+
+        Parameters
+        ----------
+        size : int or tuple of ints, optional
+            How many; one if it is not said.
+        rng : None, int, `numpy.random.SeedSequence`, `numpy.random.Generator` or `gyradius.key`
+            Where random numbers come from. Integers and keys give the same bits as Rust and the program, however many draws
+            there are, in whatever calls and on however many threads. A generator gives 256 bits, which decide all
+            draws of the call.
+        order : {"xyzw", "wxyz"}
+            Scalar last, or first.
+        dtype : optional
+            Type of floats of the result. Draws are made in 64 bits.
+
+        Returns
+        -------
+        array, shape (*size, 4)
+        """
+        stream, places, shape = streams(rng, size)
+        return out(ordered(self._core.draw(stream, count(shape), places), order), (*shape, 4), dtype)
+
+    def logpdf(self, q: ArrayLike, *, order: str = "xyzw") -> Any:
+        """ln of the density of attitudes (..., 4) with respect to Haar measure: 0 everywhere for the uniform law.
+
+        Less ln 8π² it is the density with respect to small rotation vectors in rad.
+        """
+        flat, lead = attitudes("q", q, order)
+        return out(known(self, self._core.ln_density(flat)), lead)
+
+    @property
+    def mean(self) -> NDArray[np.float64]:
+        """(4,): the mean attitude, scalar last."""
+        return np.array(known(self, self._core.moments())[0])
+
+    @property
+    def cov(self) -> NDArray[np.float64]:
+        """(3, 3): the covariance of small rotations about the mean, in rad²."""
+        return np.array(known(self, self._core.moments())[1])
+
+    @staticmethod
+    def fit(q: ArrayLike, *, order: str = "xyzw") -> Fit[AttitudeLaw]:
+        """A radially constrained Gaussian of attitudes (n, 4), by maximum likelihood."""
+        law, found = _core.fit_attitudes(attitudes("q", q, order)[0])
+        return Fit(law=make(AttitudeLaw, "of_form", law), found=json.loads(found), fits=None, p_value=None, notes=())
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+def uniform_attitude() -> AttitudeLaw:
+    """All attitudes are equally likely."""
+    return make(AttitudeLaw, "of_form", json.dumps({"law": "uniform"}))
+
+
+def radially_constrained_gaussian(mean: ArrayLike, cov: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
+    """A Gaussian in the four coordinates of a quaternion, given that its norm is one (Peck 2003).
+
+    Parameters
+    ----------
+    mean : array_like, shape (4,)
+        A quaternion.
+    cov : array_like, shape (4, 4)
+        Covariance of the four coordinates before the constraint, rows and columns in the order of the quaternion.
+    order : {"xyzw", "wxyz"}
+        Scalar last, or first.
+    """
+    matrix = numbers("cov", cov)
+    if matrix.shape == (4, 4) and order == "wxyz":
+        matrix = matrix[np.ix_([1, 2, 3, 0], [1, 2, 3, 0])]
+    return make(AttitudeLaw, "gaussian", one_attitude("mean", mean, order), nested("cov", matrix, 4))
+
+
+def small_rotations(mean: ArrayLike, cov: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
+    """A radially constrained Gaussian whose small rotations about the mean have a covariance (3, 3) in rad²."""
+    return make(AttitudeLaw, "of_small_rotations", one_attitude("mean", mean, order), nested("cov", cov, 3))
+
+
+def bingham(precision: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
+    """Bingham's law, with density ∝ exp(-½ qᵀ P q) and P of shape (4, 4)."""
+    return fisher_bingham(precision, np.zeros(4), order=order)
+
+
+def fisher_bingham(precision: ArrayLike, linear: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
+    """The Fisher-Bingham law, with density ∝ exp(-½ qᵀ P q + bᵀ q), P of shape (4, 4) and b of shape (4,)."""
+    matrix, slope = numbers("precision", precision), numbers("linear", linear)
+    if matrix.shape == (4, 4) and slope.shape == (4,) and order == "wxyz":
+        matrix, slope = matrix[np.ix_([1, 2, 3, 0], [1, 2, 3, 0])], slope[[1, 2, 3, 0]]
+    return make(AttitudeLaw, "fisher_bingham", nested("precision", matrix, 4), vector("linear", slope, 4))
+
+
+def fixed_attitude(q: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
+    """One attitude, which is known."""
+    return make(AttitudeLaw, "of_form", json.dumps({"law": "fixed", "attitude": one_attitude("q", q, order)}))
+
+
+def about_axis(q: ArrayLike, axis: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
+    """Any turn about a known axis (3,) in body components, from an attitude."""
+    return make(AttitudeLaw, "about_axis", one_attitude("q", q, order), vector("axis", axis, 3))

@@ -1,0 +1,234 @@
+"""Laws of mass, mass centre and inertia together."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gyradius import _core
+from gyradius._arrays import form, numbers, out, rows
+from gyradius._attitude_laws import AttitudeLaw
+from gyradius._bodies import MassProperties, Region
+from gyradius._inertia_laws import InertiaLaw
+from gyradius._law import Fit, Law, Matrix, count, known, make, picture, short, vector
+from gyradius._rng import streams
+from gyradius._scalar_laws import ScalarLaw, scalar
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from gyradius._rng import RNG
+
+
+class MassPropertiesLaw(Law):
+    """A law of mass, mass centre and inertia together.
+
+    `gyradius.law` makes one of plain statements, `MassPropertiesLaw.joint` of laws of its parts, `gyradius.from_estimate` of an
+    identification, and `fit` of samples. All draw bodies alone, but for `naive`, which is what people do without them.
+    """
+
+    __slots__ = ()
+    _kind = "Body"
+
+    @staticmethod
+    def joint(
+        mass: Any,
+        centre: Sequence[Any],
+        *,
+        gyration_lengths: Sequence[Any] | None = None,
+        roots: Sequence[Any] | None = None,
+        axes: AttitudeLaw | None = None,
+        inertia: InertiaLaw | None = None,
+        follows: float | None = None,
+        nominal_mass: float | None = None,
+        correlations: Sequence[tuple[str, str, float]] = (),
+        inside: Region | None = None,
+    ) -> MassPropertiesLaw:
+        """Mass, mass centre and inertia from laws of their own, correlated where it is said.
+
+        Parameters
+        ----------
+        mass : `ScalarLaw` or number
+            kg.
+        centre : three of them
+            m.
+        gyration_lengths, roots : three of them
+            Radii of gyration in m, with which the inertia follows the mass, or roots of the second moments in √kg·m; about
+            principal axes, which have the attitudes of `axes`.
+        inertia : InertiaLaw
+            In their place, any law whose draws are all bodies.
+        follows, nominal_mass : float
+            The share of the relative change of the mass, from its nominal value, that the inertia takes. With roots or a law of
+            the inertia alone.
+        correlations : sequence of (str, str, float)
+            Between ``"mass"``, ``"centre1"`` to ``"centre3"`` and ``"shape1"`` to ``"shape3"`` (lengths or roots).
+        inside : Region
+            Where the matter must be possible: draws that are not are drawn again.
+
+        Examples
+        --------
+        >>> import gyradius
+        >>> law = gyradius.MassPropertiesLaw.joint(
+        ...     gyradius.normal(2.4, 0.1),
+        ...     [gyradius.normal(0.15, 0.003), 0.0, 0.0],
+        ...     gyration_lengths=[gyradius.normal(0.12, 0.006), 0.03, 0.02],
+        ...     axes=gyradius.uniform_attitude(),
+        ...     correlations=[("mass", "shape1", 0.6)],
+        ... )
+        >>> links = law.rvs(1000, rng=7)
+        >>> bool(links.is_realizable.all())
+        True
+        """
+        given = [one is not None for one in (gyration_lengths, roots, inertia)]
+        if sum(given) != 1:
+            raise ValueError("one of gyration_lengths, roots and inertia must be given")
+        if inertia is not None:
+            if axes is not None:
+                raise ValueError("axes: a law of the inertia has its own")
+            of: dict[str, Any] = {"model": inertia.form}
+        else:
+            name = "roots" if gyration_lengths is None else "gyration_lengths"
+            three: Sequence[Any] = roots if gyration_lengths is None else gyration_lengths  # type: ignore[assignment]
+            if axes is None:
+                raise ValueError(f"axes: {name} need a law of attitudes")
+            if len(three) != 3:
+                raise ValueError(f"{name}: {len(three)} laws, and there must be 3")
+            laws = [scalar(f"{name}[{i}]", law) for i, law in enumerate(three)]
+            of = {name.replace("_", "-"): {"laws": laws, "axes": axes.form}}
+        tensor: dict[str, Any] = {"of": of}
+        if follows is not None:
+            if nominal_mass is None:
+                raise ValueError("nominal_mass: follows needs it")
+            tensor["follows"] = {"share": float(follows), "nominal_mass_kg": float(nominal_mass)}
+        if len(centre) != 3:
+            raise ValueError(f"centre: {len(centre)} laws, and there must be 3")
+        said: dict[str, Any] = {
+            "mass_kg": scalar("mass", mass),
+            "mass_centre_m": [scalar(f"centre[{i}]", law) for i, law in enumerate(centre)],
+            "inertia": tensor,
+        }
+        if correlations:
+            said["correlations"] = [[one, other, float(value)] for one, other, value in correlations]
+        if inside is not None:
+            said["inside"] = inside.form
+        return MassPropertiesLaw.of(said)
+
+    @staticmethod
+    def of(said: Mapping[str, Any]) -> MassPropertiesLaw:
+        """A joint law as it stands in files."""
+        return make(MassPropertiesLaw, "joint", form("", said))
+
+    @staticmethod
+    def log_cholesky(mean: MassProperties | ArrayLike, cov: ArrayLike) -> MassPropertiesLaw:
+        """A Gaussian in the ten log-Cholesky coordinates, from their covariance (10, 10) and a body, or their mean (10,).
+
+        See `MassProperties.log_cholesky` for the coordinates.
+        """
+        coordinates = mean.log_cholesky if isinstance(mean, MassProperties) else mean
+        return make(MassPropertiesLaw, "log_cholesky", vector("mean", coordinates, 10), Matrix.of("cov", cov, (10, 10)))
+
+    @staticmethod
+    def maximum_entropy(
+        mean: MassProperties,
+        *,
+        mass_delta: float,
+        centre_std: ArrayLike,
+        delta: float,
+        inside: Region | None = None,
+    ) -> MassPropertiesLaw:
+        """Gamma mass, Gaussian mass centre and Wishart second moments per unit of mass (after Batou & Soize 2012).
+
+        `mass_delta` is the relative deviation of the mass, `delta` the dispersion of the second moments, `centre_std` (3,) in m.
+        """
+        region = None if inside is None else json.dumps(inside.form)
+        centre = vector("centre_std", np.broadcast_to(numbers("centre_std", centre_std), (3,)), 3)
+        return make(MassPropertiesLaw, "maximum_entropy", ten_of(mean), float(mass_delta), centre, float(delta), region)
+
+    @staticmethod
+    def pseudo_inertia_wishart(mean: MassProperties, degrees_of_freedom: float) -> MassPropertiesLaw:
+        """The Wishart law of the pseudo-inertia about that of a body."""
+        return make(MassPropertiesLaw, "pseudo_inertia_wishart", ten_of(mean), float(degrees_of_freedom))
+
+    @staticmethod
+    def naive(
+        nominal: MassProperties, rule: str, law: ScalarLaw, *, mass: ScalarLaw | None = None, centre: ScalarLaw | None = None
+    ) -> MassPropertiesLaw:
+        """What people do without regard to what bodies there are, to compare with.
+
+        `rule` is ``"diagonal-factors"``, ``"entry-factors"``, ``"principal-factors"``, ``"entry-noise"`` or ``"scale-all"``; each
+        random number is drawn anew from `law`. `mass` is a factor of the mass, `centre` is added to the mass centre.
+        """
+        laws = [None if one is None else json.dumps(one.form) for one in (law, mass, centre)]
+        return make(MassPropertiesLaw, "naive", ten_of(nominal), rule, *laws)
+
+    def rvs(self, size: int | tuple[int, ...] | None = None, rng: RNG = None) -> MassProperties:
+        """Draws, as `MassProperties` of the shape `size`: see `AttitudeLaw.rvs` for `rng`."""
+        stream, places, shape = streams(rng, size)
+        return MassProperties._of(self._core.draw(stream, count(shape), places).reshape(*shape, 10))
+
+    def logpdf(self, bodies: MassProperties | ArrayLike) -> Any:
+        """ln of the density with respect to dm d³c d⁶I in kg, m and kg·m², -inf of what no draw can be.
+
+        A `ValueError` if the law has no density that is known.
+        """
+        flat, lead = rows("bodies", bodies, (10,))
+        return out(known(self, self._core.ln_density(flat)), lead)
+
+    @property
+    def mean(self) -> MassProperties:
+        """The mean of the ten numbers."""
+        return MassProperties.of(known(self, self._core.moments())[0])
+
+    @property
+    def cov(self) -> NDArray[np.float64]:
+        """(10, 10): the covariance of the ten numbers, in the order of `gyradius.COLUMNS`."""
+        return np.array(known(self, self._core.moments())[1]).reshape(10, 10)
+
+    @property
+    def std(self) -> NDArray[np.float64]:
+        """(10,): the standard deviations of the ten numbers."""
+        return np.sqrt(np.diag(self.cov))
+
+    @property
+    def linear_moments(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Mean (10,) and covariance (10, 10) of m, m c and the inertia about the origin."""
+        mean, cov = known(self, self._core.linear_moments())
+        return np.array(mean), np.array(cov).reshape(10, 10)
+
+    @property
+    def name(self) -> str:
+        """What kind of law it is."""
+        return self._core.name()
+
+    @property
+    def is_realizable(self) -> bool:
+        """Whether no draw can be of no body, whatever is drawn."""
+        return self._core.is_realizable_by_construction()
+
+    @property
+    def acceptance(self) -> float:
+        """The share of proposals that are kept: 1 where there is no rejection."""
+        found = self._core.acceptance()
+        return 1.0 if found is None else found
+
+    @staticmethod
+    def fit(bodies: MassProperties | ArrayLike) -> Fit[MassPropertiesLaw]:
+        """The joint law of samples (n, 10), of 13 bodies or more."""
+        law, found, fits, p_value, notes = _core.fit_bodies(rows("bodies", bodies, (10,))[0])
+        made = make(MassPropertiesLaw, "joint", law)
+        return Fit(law=made, found=json.loads(found), fits=fits, p_value=p_value, notes=tuple(notes))
+
+    def _repr_html_(self) -> str:
+        return picture(self, self.rvs(500, rng=0).inertia)
+
+    def __repr__(self) -> str:
+        return short(self)
+
+
+def ten_of(body: MassProperties) -> tuple[float, ...]:
+    if not isinstance(body, MassProperties) or body.shape != ():
+        raise ValueError("it must be one MassProperties")
+    return tuple(body.array.tolist())

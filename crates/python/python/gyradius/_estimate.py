@@ -1,0 +1,67 @@
+"""The law of an estimate: of an identification or a posterior."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+
+from gyradius import _core
+from gyradius._bodies import MassProperties
+from gyradius._body_laws import MassPropertiesLaw
+from gyradius._law import Matrix, make, vector
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+class Estimate(NamedTuple):
+    """The laws of bodies that are as near as can be to an estimate of the ten parameters."""
+
+    law: MassPropertiesLaw
+    """The nearer of the two below."""
+    nearest: MassProperties
+    """The nearest body to the mean, in the metric of the covariance."""
+    moved: float
+    """How far that is, in standard deviations: 0 if the mean is that of a body."""
+    joint: MassPropertiesLaw | None
+    """Of mass, mass centre, gyration lengths and axes."""
+    joint_distance: dict[str, Any] | None
+    """How far its moments are from those of the estimate."""
+    log_cholesky: MassPropertiesLaw | None
+    """A Gaussian in the log-Cholesky coordinates."""
+    log_cholesky_distance: dict[str, Any] | None
+    """How far its moments are from those of the estimate."""
+
+
+def from_estimate(phi: ArrayLike, cov: ArrayLike, *, form: Literal["linear", "natural"] = "linear") -> Estimate:
+    """The laws of bodies with the mean and covariance of an estimate, as nearly as any have them.
+
+    Parameters
+    ----------
+    phi : array_like, shape (10,)
+        The estimate; it may be that of no body.
+    cov : array_like, shape (10, 10)
+        Its covariance.
+    form : {"linear", "natural"}
+        ``"linear"``: m, m c, and the inertia about the origin, as identification gives them. ``"natural"``: mass, mass centre, and
+        the inertia about it.
+    """
+    if form not in ("linear", "natural"):
+        raise ValueError(f'form = {form!r}: it must be "linear" or "natural"')
+    covariance = np.array(Matrix.of("cov", cov, (10, 10)))
+    nearest, moved, joint, log_cholesky = _core.from_estimate(vector("phi", phi, 10), covariance, form == "linear")
+    laws: list[tuple[MassPropertiesLaw | None, dict[str, Any] | None]] = []
+    laws.append((None, None) if joint is None else (make(MassPropertiesLaw, "joint", joint[0]), json.loads(joint[1])))
+    if log_cholesky is None:
+        laws.append((None, None))
+    else:
+        mean, flat, distance = log_cholesky
+        made = MassPropertiesLaw.log_cholesky(mean, np.reshape(flat, (10, 10)))
+        laws.append((made, json.loads(distance)))
+    known = [(law, distance) for law, distance in laws if law is not None and distance is not None]
+    if not known:
+        raise ValueError("no law of bodies is near the estimate")
+    best = min(known, key=lambda one: (not one[1]["is_exact"], one[1]["mahalanobis"] + one[1]["correlation"]))
+    return Estimate(best[0], MassProperties.of(nearest), moved, *laws[0], *laws[1])

@@ -1,0 +1,145 @@
+"""Laws of the inertia alone."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gyradius import _core
+from gyradius._arrays import form, out, rows
+from gyradius._attitude_laws import AttitudeLaw
+from gyradius._law import Fit, Law, Matrix, count, known, make, picture, short, vector
+from gyradius._rng import streams
+from gyradius._scalar_laws import scalar
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+    from gyradius._rng import RNG
+
+
+class InertiaLaw(Law):
+    """A law of the inertia of a body about its mass centre: made by `principal`, `about`, `matched` and `fit`.
+
+    The entries have the order 11, 22, 33, 12, 13, 23, in kg·m².
+    """
+
+    __slots__ = ()
+    _kind = "Inertia"
+
+    @staticmethod
+    def principal(roots: Sequence[Any], axes: AttitudeLaw) -> InertiaLaw:
+        """Roots of the second moments from three laws of numbers in √kg·m, and principal axes from a law of attitudes
+        (Peck 2003): every draw is a body.
+
+        Parameters
+        ----------
+        roots : sequence of three `ScalarLaw` or numbers
+        axes : AttitudeLaw
+            One that has a form in files: not a Fisher-Bingham law, nor turns about an axis.
+        """
+        if len(roots) != 3:
+            raise ValueError(f"roots: {len(roots)} laws, and there must be 3")
+        laws = [scalar(f"roots[{i}]", law) for i, law in enumerate(roots)]
+        said = {"model": "principal", "roots": {"law": "independent", "laws_sqrt_kg_m": laws}, "axes": axes.form}
+        return InertiaLaw.of(said)
+
+    @staticmethod
+    def of(said: Mapping[str, Any]) -> InertiaLaw:
+        """A law as it stands in files."""
+        return make(InertiaLaw, "of_form", form("", said))
+
+    @staticmethod
+    def about(kind: str, inertia: ArrayLike, **parameters: Any) -> InertiaLaw:
+        """A model by its name about a nominal inertia (3, 3), with the parameters that it has in scenarios.
+
+        ``InertiaLaw.kinds()`` lists the names and what each needs.
+
+        Examples
+        --------
+        >>> import numpy as np, gyradius
+        >>> law = gyradius.InertiaLaw.about("wishart", np.diag([5.0, 4.0, 3.0]), delta=0.1)
+        >>> bool(gyradius.is_realizable(law.rvs(100, rng=7)).all())
+        True
+        """
+        flat, lead = rows("inertia", inertia, (3, 3))
+        if lead != ():
+            raise ValueError("inertia: it must be one matrix, of shape (3, 3)")
+        return make(InertiaLaw, "about", kind, tuple(flat[0].tolist()), form("", parameters))
+
+    @staticmethod
+    def matched(kind: str, mean: ArrayLike, cov: ArrayLike) -> InertiaLaw:
+        """The model of a kind whose six entries have this mean (6,) and covariance (6, 6), as far as the kind can."""
+        return make(InertiaLaw, "matched", kind, vector("mean", mean, 6), Matrix.of("cov", cov, (6, 6)))
+
+    @staticmethod
+    def kinds() -> dict[str, dict[str, Any]]:
+        """The models by their names: what each is, whether every draw is a body, and which parameters `about` needs."""
+        found = _core.InertiaCore.kinds()
+        return {
+            name: {"description": text, "realizable": realizable, "needs": tuple(needs)}
+            for name, text, realizable, needs in found
+        }
+
+    def rvs(
+        self, size: int | tuple[int, ...] | None = None, rng: RNG = None, *, dtype: DTypeLike | None = None
+    ) -> NDArray[np.floating[Any]]:
+        """Draws, shape (*size, 3, 3) in kg·m²: see `AttitudeLaw.rvs` for `rng`."""
+        stream, places, shape = streams(rng, size)
+        return out(self._core.draw(stream, count(shape), places), (*shape, 3, 3), dtype)
+
+    def logpdf(self, inertia: ArrayLike) -> Any:
+        """ln of the density of matrices (..., 3, 3) with respect to their six entries in kg·m².
+
+        -inf of what no draw can be. A `ValueError` if the law has no density that is known.
+        """
+        flat, lead = rows("inertia", inertia, (3, 3))
+        return out(known(self, self._core.ln_density(flat)), lead)
+
+    @property
+    def mean(self) -> NDArray[np.float64]:
+        """(3, 3) in kg·m²."""
+        entries = np.array(known(self, self._core.moments())[0])
+        return entries[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
+
+    @property
+    def cov(self) -> NDArray[np.float64]:
+        """(6, 6): covariance of the entries 11, 22, 33, 12, 13, 23 in (kg·m²)²."""
+        return np.array(known(self, self._core.moments())[1]).reshape(6, 6)
+
+    @property
+    def std(self) -> NDArray[np.float64]:
+        """(6,): standard deviations of the entries in kg·m²."""
+        return np.sqrt(np.diag(self.cov))
+
+    @property
+    def name(self) -> str:
+        """What the model is called in scenarios."""
+        return self._core.name()
+
+    @property
+    def is_realizable(self) -> bool:
+        """Whether no draw can be of no body, whatever is drawn."""
+        return self._core.is_realizable_by_construction()
+
+    @property
+    def acceptance(self) -> float:
+        """The share of proposals that are kept: 1 where there is no rejection."""
+        found = self._core.acceptance()
+        return 1.0 if found is None else found
+
+    @staticmethod
+    def fit(inertia: ArrayLike) -> Fit[InertiaLaw]:
+        """The law of Peck (2003) of samples (n, 3, 3), of 13 bodies or more."""
+        law, found, fits, p_value, notes = _core.fit_inertias(rows("inertia", inertia, (3, 3))[0])
+        made = make(InertiaLaw, "of_form", law)
+        return Fit(law=made, found=json.loads(found), fits=fits, p_value=p_value, notes=tuple(notes))
+
+    def _repr_html_(self) -> str:
+        return picture(self, self.rvs(500, rng=0))
+
+    def __repr__(self) -> str:
+        return short(self)

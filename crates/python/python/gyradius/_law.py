@@ -1,0 +1,155 @@
+"""What all laws have in common: frozen objects in the manner of `scipy.stats`."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import numpy as np
+
+from gyradius import _core
+from gyradius._arrays import attitudes, rows
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+L = TypeVar("L", bound="Law")
+
+
+class Law:
+    """What all laws have in common: they do not change, and are equal if they are made alike."""
+
+    __slots__ = ("_core", "_made")
+
+    _core: Any
+    _made: tuple[str, tuple[Any, ...]]
+
+    @classmethod
+    def _of(cls: type[L], core: Any, how: str, *arguments: Any) -> L:
+        law = object.__new__(cls)
+        object.__setattr__(law, "_core", core)
+        object.__setattr__(law, "_made", (how, arguments))
+        return law
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{name}: a law does not change")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{name}: a law does not change")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return again, (type(self), *self._made)
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return self._made == other._made
+
+    def __hash__(self) -> int:
+        return hash((type(self), repr(self._made)))
+
+    @property
+    def form(self) -> dict[str, Any]:
+        """The law as it stands in files, JSON and scenarios."""
+        found = self._core.form()
+        if found is None:
+            raise ValueError(f"{self!r} has no form in files")
+        return json.loads(found)
+
+
+def again(kind: type[Law], how: str, arguments: tuple[Any, ...]) -> Law:
+    """A law from how it was made, for pickles."""
+    core = getattr(getattr(_core, f"{kind._kind}Core"), how)(*map(given, arguments))  # type: ignore[attr-defined]
+    return kind._of(core[0] if isinstance(core, tuple) else core, how, *arguments)
+
+
+def make(kind: type[L], how: str, *arguments: Any) -> L:
+    return again(kind, how, arguments)  # type: ignore[return-value]
+
+
+def given(argument: Any) -> Any:
+    """Matrices are kept as nested tuples, so that laws can be compared, and given as arrays where rows are asked for."""
+    if isinstance(argument, Matrix):
+        return np.array(argument)
+    return argument
+
+
+class Matrix(tuple):  # type: ignore[type-arg]
+    __slots__ = ()
+
+    @classmethod
+    def of(cls, name: str, value: ArrayLike, shape: tuple[int, ...]) -> Matrix:
+        flat, lead = rows(name, value, shape)
+        if lead != ():
+            raise ValueError(f"{name}: its shape is {np.shape(value)}, and it must be {shape}")
+        return cls(map(tuple, flat.reshape(shape).tolist()))
+
+
+def vector(name: str, value: ArrayLike, size: int) -> tuple[float, ...]:
+    flat, lead = rows(name, value, (size,))
+    if lead != ():
+        raise ValueError(f"{name}: its shape is {np.shape(value)}, and it must be ({size},)")
+    return tuple(flat[0].tolist())
+
+
+def nested(name: str, value: ArrayLike, size: int) -> tuple[tuple[float, ...], ...]:
+    return tuple(Matrix.of(name, value, (size, size)))
+
+
+def one_attitude(name: str, value: ArrayLike, order: str) -> tuple[float, ...]:
+    flat, lead = attitudes(name, value, order)
+    if lead != ():
+        raise ValueError(f"{name}: it must be one quaternion, of shape (4,)")
+    return tuple(flat[0].tolist())
+
+
+class Fit(Generic[L]):
+    """What was fitted to samples."""
+
+    __slots__ = ("fits", "found", "law", "notes", "p_value")
+
+    def __init__(
+        self, law: L, found: dict[str, Any], fits: bool | None, p_value: float | None, notes: tuple[str, ...]
+    ) -> None:
+        self.law = law
+        """The law."""
+        self.found = found
+        """Estimates and their standard errors, by name."""
+        self.fits = fits
+        """Whether nothing speaks against the law at 1 %; None where it was not tested."""
+        self.p_value = p_value
+        """How likely samples of the law are as far from it as these."""
+        self.notes = notes
+        """What was noticed, in words."""
+
+    def __repr__(self) -> str:
+        said = "" if self.fits is None else f", fits={self.fits}, p_value={self.p_value:.3g}"
+        return f"<Fit of {self.law!r}{said}>"
+
+
+def count(shape: tuple[int, ...]) -> int:
+    count = 1
+    for one in shape:
+        count *= one
+    if count > 2**48:
+        raise ValueError(f"size = {shape}: too many")
+    return count
+
+
+def known(law: Law, value: Any) -> Any:
+    if value is None:
+        raise ValueError(f"it is not known of {law!r}")
+    return value
+
+
+def picture(law: Law, inertia: NDArray[Any]) -> str:
+    from gyradius._figure import triangle
+
+    return triangle([(f"{type(law).__name__} {law._core.name()}", inertia)], repr(law))
+
+
+def short(law: Law) -> str:
+    how, arguments = law._made
+    short = ", ".join(text if len(text) < 60 else text[:57] + "..." for text in map(repr, arguments))
+    return f"<{type(law).__name__} {how}({short})>"
