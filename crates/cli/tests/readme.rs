@@ -6,6 +6,8 @@ use crate::scratch::Scratch;
 
 const README: &str = include_str!("../../../README.md");
 
+const REQUIREMENTS: &str = include_str!("../../../docs/requirements.md");
+
 const ROBOT: &str = r#"<robot name="arm">
   <link name="forearm"><inertial><origin xyz="0.15 0.01 -0.02"/><mass value="2.4"/>
     <inertia ixx="0.004" ixy="0.0003" ixz="-0.0002" iyy="0.021" iyz="0.0001" izz="0.022"/></inertial></link>
@@ -30,6 +32,12 @@ fn words(line: &str) -> Vec<&str> {
         }
     }
     words
+}
+
+/// The page, whose verdict is held against the program, has it too.
+#[test]
+fn the_verdict_of_the_readme_is_that_of_the_page() {
+    assert!(REQUIREMENTS.contains(block(README, "## Is the requirement met?", "text")));
 }
 
 #[test]

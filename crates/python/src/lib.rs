@@ -7,6 +7,7 @@
 
 mod attitudes;
 mod bodies;
+mod cores;
 mod error;
 mod estimate;
 mod inertias;

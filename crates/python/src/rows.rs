@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use std::{convert::Infallible, fmt::Display};
 
 use crate::{
+    cores::on_all,
     error::{refused, refused_row},
     stream::Places,
 };
@@ -131,11 +132,13 @@ fn fill<T: Copy + Send + Sync, E: Display + Send>(
             if new.len() <= GRAIN {
                 return fill((0, new)).err();
             }
-            new.par_chunks_mut(GRAIN)
-                .enumerate()
-                .map(fill)
-                .filter_map(Result::err)
-                .min_by_key(|failed| failed.0)
+            on_all(|| {
+                new.par_chunks_mut(GRAIN)
+                    .enumerate()
+                    .map(fill)
+                    .filter_map(Result::err)
+                    .min_by_key(|failed| failed.0)
+            })
         });
         if let Some((row, error)) = failed {
             return Err(refused_row(row, count, error));

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import doctest
 import importlib
+import multiprocessing
 import os
 import pickle
 import pkgutil
@@ -130,6 +131,19 @@ def test_threads_of_python() -> None:
     for thread in threads:
         thread.join()
     assert (np.concatenate([found[part] for part in range(4)]) == whole).all()
+
+
+def total(seed: int) -> float:
+    return float(gyradius.uniform_attitude().rvs(20_000, rng=seed).sum())
+
+
+@pytest.mark.parametrize("method", multiprocessing.get_all_start_methods())
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_processes_that_are_forked_or_begun_anew(method: str) -> None:
+    expected = [total(seed) for seed in range(4)]
+    context = multiprocessing.get_context(method)
+    with context.Pool(2) as pool:
+        assert pool.map_async(total, range(4)).get(timeout=120) == expected
 
 
 def test_others_run_while_it_draws() -> None:
