@@ -180,3 +180,21 @@ def test_regions() -> None:
             gyradius.box(**bad)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="points"):
         gyradius.hull(np.zeros(3))
+
+
+def test_rods_have_no_negative_moments_in_simulators() -> None:
+    along = np.random.default_rng(0).normal(size=(2000, 3))
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    rods = MassProperties(1.0, np.zeros(3), np.eye(3) - along[:, :, None] * along[:, None, :])
+    assert rods.is_realizable.all()
+    assert (rods.to_mujoco().body_inertia >= 0.0).all()
+
+
+def test_zeros_of_either_sign_and_masses() -> None:
+    one, two = (MassProperties(1.0, [zero, 0.0, 0.0], np.eye(3)) for zero in (0.0, -0.0))
+    assert one == two and hash(one) == hash(two)
+    for bad in (0.0, -1.0, np.nan, np.inf):
+        with pytest.raises(ValueError, match="mass"):
+            one.with_mass(bad)
+    with pytest.raises(ValueError, match="mass"):
+        MassProperties(0.0, np.zeros(3), np.eye(3)).with_mass(1.0)

@@ -129,3 +129,26 @@ def test_rotation_keeps_the_margin() -> None:
     turns = rotations(rng, 500)
     turned = turns @ one @ turns.transpose(0, 2, 1)
     assert np.allclose(gyradius.margin(turned), gyradius.margin(one), atol=1e-12)
+
+
+def test_matrices_in_32_bits() -> None:
+    rng = np.random.default_rng(4)
+    wide = inertias(rng, 500).astype(np.float32)
+    turns = rotations(rng, 500).astype(np.float32)
+    turned = turns @ wide @ turns.transpose(0, 2, 1)
+    # Not symmetric to the last bit, and plates and rods beyond the boundary by rounding.
+    assert (turned != turned.transpose(0, 2, 1)).any()
+    assert gyradius.is_realizable(turned).all()
+    assert not gyradius.is_realizable(turned.astype(float)).all()
+    assert gyradius.is_realizable(gyradius.nearest(turned)).all()
+    assert gyradius.principal_axes(turned).moments.shape == (500, 3)
+    assert not gyradius.is_realizable(np.diag([1.0, 1.0, 2.001]).astype(np.float32))
+    with pytest.raises(ValueError, match="symmetric"):
+        gyradius.nearest([[1.0, 0.1, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+
+
+def test_masked_entries_are_no_numbers() -> None:
+    masked = np.ma.MaskedArray(np.eye(3), mask=np.eye(3, dtype=bool))
+    with pytest.raises(ValueError, match="masked"):
+        gyradius.margin(masked)
+    assert gyradius.is_realizable(np.ma.MaskedArray(np.eye(3)))

@@ -223,7 +223,7 @@ def test_statements_come_true(said: dict[str, object], link: MassProperties) -> 
         ({"centre": "5%"}, "centre"),
         ({"moments": "5%,6%"}, "moments"),
         ({"axes": "nan deg"}, "axes"),
-        ({"mass": {"percent": 5}}, "sigmas"),
+        ({"mass": {"percent": 5, "sigmas": 0}}, "sigmas"),
         ({"mass": {"percent": 5, "sigmas": 1, "colour": 2}}, "colour"),
         ({"mass": "5%", "sigmas": 0.0}, "sigmas"),
     ],
@@ -365,3 +365,20 @@ LAWS: list[Callable[[], object]] = [
 def test_laws_that_are_refused(make: Callable[[], object]) -> None:
     with pytest.raises(ValueError):
         make()
+
+
+def test_sigmas_of_dicts_and_texts_are_one(link: MassProperties) -> None:
+    said = [
+        gyradius.law(link, mass="9%", sigmas=3.0),
+        gyradius.law(link, mass={"percent": 9}, sigmas=3.0),
+        gyradius.law(link, mass={"percent": 9, "sigmas": 3.0}, sigmas=1.0),
+    ]
+    assert said[0] == said[1] == said[2]
+    for kind in (gyradius.AttitudeLaw, gyradius.InertiaLaw, MassPropertiesLaw, gyradius.StatedLaw):
+        with pytest.raises(TypeError, match="made by"):
+            kind()
+    for bad in ({"axes": [0, 0, 0, 1]}, {"inertia": np.eye(3)}, {"inside": "box"}):
+        with pytest.raises(ValueError, match=next(iter(bad))):
+            MassPropertiesLaw.joint(1.0, [0, 0, 0], **bad)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="inside"):
+        gyradius.law(link, inside="box")  # type: ignore[arg-type]

@@ -65,17 +65,17 @@ class AttitudeLaw(Law):
         Less ln 8π² it is the density with respect to small rotation vectors in rad.
         """
         flat, lead = attitudes("q", q, order)
-        return out(known(self, self._core.ln_density(flat)), lead)
+        return out(known(self, "density", self._core.ln_density(flat)), lead)
 
     @property
     def mean(self) -> NDArray[np.float64]:
         """(4,): the mean attitude, scalar last."""
-        return np.array(known(self, self._core.moments())[0])
+        return np.array(known(self, "moments", self._core.moments())[0])
 
     @property
     def cov(self) -> NDArray[np.float64]:
         """(3, 3): the covariance of small rotations about the mean, in rad²."""
-        return np.array(known(self, self._core.moments())[1])
+        return np.array(known(self, "moments", self._core.moments())[1])
 
     @staticmethod
     def fit(q: ArrayLike, *, order: str = "xyzw") -> Fit[AttitudeLaw]:
@@ -111,7 +111,11 @@ def radially_constrained_gaussian(mean: ArrayLike, cov: ArrayLike, *, order: str
 
 
 def small_rotations(mean: ArrayLike, cov: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
-    """A radially constrained Gaussian whose small rotations about the mean have a covariance (3, 3) in rad²."""
+    """A radially constrained Gaussian whose small rotations have a covariance (3, 3) in rad².
+
+    A draw is the mean times a small rotation, about the axes that the mean takes components from: body axes, where the attitude is
+    that of principal axes. The rotation is twice the vector part of its quaternion, which is the rotation vector where it is small.
+    """
     return make(AttitudeLaw, "of_small_rotations", one_attitude("mean", mean, order), nested("cov", cov, 3))
 
 

@@ -238,6 +238,10 @@ class MassProperties:
     def with_mass(self, mass: ArrayLike) -> MassProperties:
         """The same bodies of another density: the inertia follows the mass."""
         mass = numbers("mass", mass)
+        if not np.all((mass > 0) & np.isfinite(mass)):
+            raise ValueError(f"mass = {mass}: it must be positive and finite")
+        if not np.all(self.mass > 0):
+            raise ValueError("mass: a body of no mass has no density that could change")
         factor = (mass / self.mass)[..., None]
         lead = np.broadcast_shapes(mass.shape, self.shape)
         parts = [np.broadcast_to(mass[..., None], (*lead, 1)), np.broadcast_to(self.centre, (*lead, 3))]
@@ -250,7 +254,8 @@ class MassProperties:
         return MujocoBodies(
             body_mass=out(found[:, 0].copy(), self.shape, kind),
             body_ipos=self.centre.astype(kind),
-            body_inertia=out(found[:, 1:4].copy(), (*self.shape, 3), kind),
+            # Rounding may leave less than nothing of a moment of a rod.
+            body_inertia=out(np.maximum(found[:, 1:4], 0.0), (*self.shape, 3), kind),
             body_iquat=out(ordered(found[:, 4:], "wxyz"), (*self.shape, 4), kind),
         )
 
@@ -279,7 +284,8 @@ class MassProperties:
         return np.array_equal(self._array, other._array)
 
     def __hash__(self) -> int:
-        return hash((self.shape, self._array.tobytes()))
+        # -0.0 is 0.0.
+        return hash((self.shape, (self._array + 0.0).tobytes()))
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{name}: mass properties do not change")
@@ -317,6 +323,9 @@ class Region:
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{name}: a region does not change")
 
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{name}: a region does not change")
+
     @property
     def form(self) -> dict[str, Any]:
         """As it stands in files."""
@@ -324,8 +333,8 @@ class Region:
 
     def holds(self, bodies: MassProperties) -> Any:
         """Whether matter inside can have the mass properties: 1 if it can, 0 if not, and NaN where neither was shown."""
-        flat = np.ascontiguousarray(np.asarray(bodies).reshape(-1, 10))
-        return out(_core.region_holds(self._form, flat), bodies.shape)
+        flat, lead = rows("bodies", bodies, (10,))
+        return out(_core.region_holds(self._form, flat), lead)
 
     def __eq__(self, other: object) -> bool:
         return self._form == other._form if isinstance(other, Region) else NotImplemented

@@ -82,6 +82,10 @@ class MassPropertiesLaw(Law):
         >>> bool(links.is_realizable.all())
         True
         """
+        kinds: list[tuple[str, Any, type]] = [("axes", axes, AttitudeLaw), ("inertia", inertia, InertiaLaw), ("inside", inside, Region)]
+        for name, one, kind in kinds:
+            if one is not None and not isinstance(one, kind):
+                raise ValueError(f"{name} = {one!r}: it must be a {kind.__name__}")
         given = [one is not None for one in (gyration_lengths, roots, inertia)]
         if sum(given) != 1:
             raise ValueError("one of gyration_lengths, roots and inertia must be given")
@@ -175,17 +179,17 @@ class MassPropertiesLaw(Law):
         A `ValueError` if the law has no density that is known.
         """
         flat, lead = rows("bodies", bodies, (10,))
-        return out(known(self, self._core.ln_density(flat)), lead)
+        return out(known(self, "density", self._core.ln_density(flat)), lead)
 
     @property
     def mean(self) -> MassProperties:
         """The mean of the ten numbers."""
-        return MassProperties.of(known(self, self._core.moments())[0])
+        return MassProperties.of(known(self, "moments", self._core.moments())[0])
 
     @property
     def cov(self) -> NDArray[np.float64]:
         """(10, 10): the covariance of the ten numbers, in the order of `gyradius.COLUMNS`."""
-        return np.array(known(self, self._core.moments())[1]).reshape(10, 10)
+        return np.array(known(self, "moments", self._core.moments())[1]).reshape(10, 10)
 
     @property
     def std(self) -> NDArray[np.float64]:
@@ -195,7 +199,7 @@ class MassPropertiesLaw(Law):
     @property
     def linear_moments(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Mean (10,) and covariance (10, 10) of m, m c and the inertia about the origin."""
-        mean, cov = known(self, self._core.linear_moments())
+        mean, cov = known(self, "moments", self._core.linear_moments())
         return np.array(mean), np.array(cov).reshape(10, 10)
 
     @property

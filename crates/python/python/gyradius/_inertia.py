@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import out, ordered, rows
+from gyradius._arrays import ordered, out, rows, symmetric
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -25,7 +25,7 @@ def is_realizable(inertia: ArrayLike, tolerance: float | None = None) -> Any:
         In kg·m² about any point, with products as tensor entries, I₁₂ = -∫ x₁ x₂ dm.
     tolerance : float, optional
         How far below zero a second moment may be, and how far from symmetric a matrix, as a share of its trace: 1.4e-14
-        if it is not said, for rounding. Numbers with six digits need 1e-6.
+        if it is not said, for rounding, and 7.6e-6 for arrays in 32 bits. Numbers with six digits need 1e-6.
 
     Returns
     -------
@@ -41,7 +41,7 @@ def is_realizable(inertia: ArrayLike, tolerance: float | None = None) -> Any:
     array([False,  True])
     """
     flat, lead = rows("inertia", inertia, (3, 3))
-    found = out(_core.inertia_is_realizable(flat, _tolerance(tolerance)), lead)
+    found = out(_core.inertia_is_realizable(flat, _tolerance(tolerance, inertia)), lead)
     return bool(found) if lead == () else found
 
 
@@ -110,7 +110,7 @@ def report(inertia: ArrayLike, tolerance: float | None = None) -> Report:
     not realizable: I33 = 3.3 kg·m² exceeds the sum of the others, 1 + 2 kg·m², by 10.00 %
     """
     flat, lead = rows("inertia", inertia, (3, 3))
-    found = _core.inertia_report(flat, _tolerance(tolerance))
+    found = _core.inertia_report(flat, _tolerance(tolerance, inertia))
     nothing = [np.nan] * 3
 
     def column(place: int, missing: Any, tail: tuple[int, ...] = ()) -> Any:
@@ -168,7 +168,7 @@ def nearest(
     >>> gyradius.nearest(np.diag([1.0, 2.0, 3.3])).diagonal().round(6).tolist()
     [1.1, 2.1, 3.2]
     """
-    flat, lead = rows("inertia", inertia, (3, 3))
+    flat, lead = symmetric("inertia", inertia)
     return out(_core.inertia_nearest(flat, method), (*lead, 3, 3), dtype)
 
 
@@ -205,7 +205,7 @@ def principal_axes(
     >>> bool(np.allclose(found.axes @ np.diag(found.moments) @ found.axes.T, inertia))
     True
     """
-    flat, lead = rows("inertia", inertia, (3, 3))
+    flat, lead = symmetric("inertia", inertia)
     found = _core.inertia_principal_axes(flat)
     quaternions = found[:, 3:]
     return PrincipalAxes(
@@ -225,9 +225,12 @@ def _transposed_rotation(xyzw: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.moveaxis(np.array(entries), 2, 0)
 
 
-def _tolerance(tolerance: float | None) -> float | None:
+def _tolerance(tolerance: float | None, inertia: ArrayLike) -> float | None:
+    """What is said; otherwise 64 units in the last place of the numbers, of which the compiled part knows those of 64 bits."""
     if tolerance is None:
-        return None
+        dtype = getattr(inertia, "dtype", None)
+        narrow = isinstance(dtype, np.dtype) and dtype.kind == "f" and dtype.itemsize < 8
+        return 64.0 * float(np.finfo(dtype).eps) if narrow else None
     found = float(tolerance)
     if not 0.0 <= found < np.inf:
         raise ValueError(f"tolerance = {tolerance!r}: it must be zero or positive, and finite")

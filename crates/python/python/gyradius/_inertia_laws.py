@@ -97,18 +97,18 @@ class InertiaLaw(Law):
         -inf of what no draw can be. A `ValueError` if the law has no density that is known.
         """
         flat, lead = rows("inertia", inertia, (3, 3))
-        return out(known(self, self._core.ln_density(flat)), lead)
+        return out(known(self, "density", self._core.ln_density(flat)), lead)
 
     @property
     def mean(self) -> NDArray[np.float64]:
         """(3, 3) in kg·m²."""
-        entries = np.array(known(self, self._core.moments())[0])
+        entries = np.array(known(self, "moments", self._core.moments())[0])
         return entries[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
 
     @property
     def cov(self) -> NDArray[np.float64]:
         """(6, 6): covariance of the entries 11, 22, 33, 12, 13, 23 in (kg·m²)²."""
-        return np.array(known(self, self._core.moments())[1]).reshape(6, 6)
+        return np.array(known(self, "moments", self._core.moments())[1]).reshape(6, 6)
 
     @property
     def std(self) -> NDArray[np.float64]:

@@ -25,6 +25,9 @@ class Law:
     _core: Any
     _made: tuple[str, tuple[Any, ...]]
 
+    def __init__(self) -> None:
+        raise TypeError(f"laws are made by functions: see help(gyradius.{type(self).__name__})")
+
     @classmethod
     def _of(cls: type[L], core: Any, how: str, *arguments: Any) -> L:
         law = object.__new__(cls)
@@ -137,9 +140,9 @@ def count(shape: tuple[int, ...]) -> int:
     return count
 
 
-def known(law: Law, value: Any) -> Any:
+def known(law: Law, what: str, value: Any) -> Any:
     if value is None:
-        raise ValueError(f"it is not known of {law!r}")
+        raise ValueError(f"{what}: not known of {law!r}, or it has none")
     return value
 
 

@@ -9,7 +9,8 @@ from gyradius import _core
 
 def main() -> int:
     """Runs the program with the arguments of the command line, and gives its exit code."""
-    sys.stdout.flush()
+    if sys.stdout is not None and not sys.stdout.closed:
+        sys.stdout.flush()
     return _core.run_program(["gyradius", *sys.argv[1:]])
 
 

@@ -68,7 +68,7 @@ class ScalarLaw(Law):
     def logpdf(self, x: ArrayLike) -> Any:
         """ln of the density; a `ValueError` if the law has none."""
         array = numbers("x", x)
-        return out(known(self, self._core.ln_density(np.ascontiguousarray(array).reshape(-1))), array.shape)
+        return out(known(self, "density", self._core.ln_density(np.ascontiguousarray(array).reshape(-1))), array.shape)
 
     def cdf(self, x: ArrayLike) -> Any:
         """The share of draws that are at most x."""

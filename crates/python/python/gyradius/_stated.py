@@ -47,7 +47,8 @@ def law(
     sigmas : float
         How many standard deviations ± stands for in all of these.
 
-    Each statement may also be a dict as in the file of `gyradius model`, such as ``{"percent": 10, "sigmas": 3}``.
+    Each statement may also be a dict as in the file of `gyradius model`, such as ``{"percent": 10, "sigmas": 3}``; what a dict says of
+    ``sigmas`` comes first.
 
     Returns
     -------
@@ -65,13 +66,17 @@ def law(
     """
     if not isinstance(body, MassProperties) or body.shape != ():
         raise ValueError("body: it must be one MassProperties")
+    if inside is not None and not isinstance(inside, Region):
+        raise ValueError(f"inside = {inside!r}: it must be a box, an ellipsoid or a hull of gyradius")
 
     def said(name: str, value: Any) -> str | None:
         if value is None:
             return None
         if isinstance(value, (list, tuple)) and all(isinstance(one, str) for one in value):
             value = ",".join(value)
-        if isinstance(value, (str, Mapping)):
+        if isinstance(value, Mapping):
+            return form(name, {"sigmas": sigmas, **value})
+        if isinstance(value, str):
             return form(name, value)
         raise ValueError(f'{name} = {value!r}: it must be a text with a unit, such as "5%", or a dict as in a file')
 
