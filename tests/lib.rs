@@ -71,7 +71,3 @@ struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/models/mass-properties.md")]
 struct MassPropertiesPage;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
