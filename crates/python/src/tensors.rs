@@ -1,6 +1,9 @@
 //! Inertia matrices, many at a time: which belong to a body, how far they are from it, the nearest that does.
 
-use gyradius_inertia::{InertiaMatrix, RealizabilityReport, Repair, RepairMethod};
+use gyradius_inertia::{
+    InertiaMatrix, InertiaMatrixError, RealizabilityReport, Repair, RepairMethod,
+};
+use nalgebra::Matrix3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::{Bound, PyResult, Python, pyfunction};
 use std::convert::Infallible;
@@ -9,6 +12,21 @@ use crate::{
     error::{refused, refused_row},
     rows::{made, made_one, matrix, row_of, row_of_attitude, rows},
 };
+
+/// How far from symmetric a matrix may be beside its largest entry, as those in 32 bits and in files are.
+const SKEW: f64 = 1e-6;
+
+/// A matrix that is symmetric but for such rounding.
+fn nearly_symmetric(matrix: &Matrix3<f64>) -> Result<InertiaMatrix, InertiaMatrixError> {
+    match InertiaMatrix::new(*matrix) {
+        Err(InertiaMatrixError::NotSymmetric { .. })
+            if (matrix - matrix.transpose()).amax() <= SKEW * matrix.amax() =>
+        {
+            InertiaMatrix::new((matrix + matrix.transpose()) * 0.5)
+        }
+        found => found,
+    }
+}
 
 /// Which of (n, 9) matrices belong to a body; not those with entries that are not finite or not symmetric.
 #[pyfunction]
@@ -58,7 +76,7 @@ pub(crate) fn inertia_nearest<'py>(
         }
     };
     made(py, all.len(), |i| {
-        let matrix = InertiaMatrix::new(matrix(&all[i])).map_err(|error| error.to_string())?;
+        let matrix = nearly_symmetric(&matrix(&all[i])).map_err(|error| error.to_string())?;
         let repair = Repair::new(&matrix, method).map_err(|error| error.to_string())?;
         Ok::<_, String>(row_of(repair.inertia().matrix()))
     })
@@ -72,10 +90,10 @@ pub(crate) fn inertia_principal_axes<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let all = rows::<9>(&matrices)?;
     made(py, all.len(), |i| {
-        let axes = InertiaMatrix::new(matrix(&all[i]))?.principal_axes();
+        let axes = nearly_symmetric(&matrix(&all[i]))?.principal_axes();
         let [a, b, c] = axes.moments();
         let [x, y, z, w] = row_of_attitude(&axes.attitude());
-        Ok::<_, gyradius_inertia::InertiaMatrixError>([a, b, c, x, y, z, w])
+        Ok::<_, InertiaMatrixError>([a, b, c, x, y, z, w])
     })
 }
 

@@ -13,9 +13,6 @@ if TYPE_CHECKING:
 
 ORDERS = ("xyzw", "wxyz")
 
-SKEW = 1e-6
-"""How far from symmetric a matrix may be beside its largest entry, as those in 32 bits and in files are."""
-
 
 def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """The value as an array of 64-bit floats, without a copy where it is one."""
@@ -37,19 +34,6 @@ def rows(name: str, value: ArrayLike, tail: tuple[int, ...]) -> tuple[NDArray[np
         raise ValueError(f"{name}: its shape is {array.shape}, and it must be ({wanted})")
     lead = array.shape[: array.ndim - len(tail)]
     return np.ascontiguousarray(array).reshape(-1, int(np.prod(tail))), lead
-
-
-def symmetric(name: str, value: ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
-    """Matrices of shape (..., 3, 3) as rows, made symmetric where they are but for the rounding of 32 bits."""
-    flat, lead = rows(name, value, (3, 3))
-    matrix = flat.reshape(-1, 3, 3)
-    with np.errstate(invalid="ignore", over="ignore"):
-        skew = np.abs(matrix - matrix.transpose(0, 2, 1)).max(axis=(1, 2), initial=0.0)
-        size = np.abs(matrix).max(axis=(1, 2), initial=0.0)
-        near = (skew > 0) & (skew <= SKEW * size)
-    if near.any():
-        matrix = np.where(near[:, None, None], 0.5 * (matrix + matrix.transpose(0, 2, 1)), matrix)
-    return np.ascontiguousarray(matrix.reshape(-1, 9)), lead
 
 
 def together(*arrays: tuple[str, ArrayLike, tuple[int, ...]]) -> tuple[list[NDArray[np.float64]], tuple[int, ...]]:

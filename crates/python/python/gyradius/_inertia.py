@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import ordered, out, rows, symmetric
+from gyradius._arrays import ordered, out, rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -168,7 +168,7 @@ def nearest(
     >>> gyradius.nearest(np.diag([1.0, 2.0, 3.3])).diagonal().round(6).tolist()
     [1.1, 2.1, 3.2]
     """
-    flat, lead = symmetric("inertia", inertia)
+    flat, lead = rows("inertia", inertia, (3, 3))
     return out(_core.inertia_nearest(flat, method), (*lead, 3, 3), dtype)
 
 
@@ -205,7 +205,7 @@ def principal_axes(
     >>> bool(np.allclose(found.axes @ np.diag(found.moments) @ found.axes.T, inertia))
     True
     """
-    flat, lead = symmetric("inertia", inertia)
+    flat, lead = rows("inertia", inertia, (3, 3))
     found = _core.inertia_principal_axes(flat)
     quaternions = found[:, 3:]
     return PrincipalAxes(
