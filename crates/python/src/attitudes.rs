@@ -6,12 +6,11 @@ use nalgebra::{Matrix3, Matrix4, Unit, UnitQuaternion, Vector3, Vector4};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::{Bound, PyResult, Python, pyclass, pymethods};
 use rand_distr::Distribution;
-use std::convert::Infallible;
 
 use crate::{
     error::refused,
     json,
-    rows::{attitude, drawn, made_one, row_of_attitude, rows},
+    rows::{attitude, densities, drawn, row_of_attitude, rows},
     stream::{Places, Stream},
 };
 
@@ -107,13 +106,8 @@ impl AttitudeCore {
             Law::FisherBingham(law) => Some(law.ln_haar_density(q)),
             Law::AboutAxis(_) => None,
         };
-        if ln_density(&UnitQuaternion::identity()).is_none() {
-            return Ok(None);
-        }
-        let densities = made_one(py, all.len(), |i| {
-            Ok::<_, Infallible>(ln_density(&attitude(all[i])).unwrap_or(f64::NAN))
-        });
-        densities.map(Some)
+        let somewhere = ln_density(&UnitQuaternion::identity());
+        densities(py, all.len(), somewhere, |i| ln_density(&attitude(all[i])))
     }
 
     /// The mean attitude and the covariance of small rotations about it in rad², where they are known.

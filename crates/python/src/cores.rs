@@ -20,7 +20,7 @@ pub(crate) fn on_all<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// None where threads cannot be had now.
+/// None where threads cannot be had now, or another thread is just getting them: rayon's own do the work then.
 fn cores() -> Option<Arc<ThreadPool>> {
     // Whoever held this while another thread forked holds it for ever in the child.
     let mut known = CORES.try_lock().ok()?;

@@ -12,6 +12,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::{PyResult, Python, pyfunction};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use serde::Serialize;
+use std::fmt::Display;
 
 use crate::{
     bodies::{body, ten},
@@ -20,16 +21,23 @@ use crate::{
     rows::{attitude, matrix, rows},
 };
 
-/// Fits a law of inertias: the law, what was found, whether the samples speak against it, and notes.
+/// What was fitted: the law, what was found, whether nothing speaks against the law, how likely that is, and notes.
+type Fitted = (String, String, bool, f64, Vec<String>);
+
+/// Each row as a sample.
+fn samples_of<const N: usize, T, E: Display>(
+    samples: &PyReadonlyArray2<'_, f64>,
+    sample: impl Fn(&[f64; N]) -> Result<T, E>,
+) -> PyResult<Vec<T>> {
+    let all = rows::<N>(samples)?;
+    let one = |(i, row)| sample(row).map_err(|error| refused_row(i, all.len(), error));
+    all.iter().enumerate().map(one).collect()
+}
+
+/// Fits a law of inertias.
 #[pyfunction]
-pub(crate) fn fit_inertias(
-    py: Python<'_>,
-    samples: PyReadonlyArray2<'_, f64>,
-) -> PyResult<(String, String, bool, f64, Vec<String>)> {
-    let all = rows::<9>(&samples)?;
-    let inertia =
-        |(i, row)| Inertia::new(matrix(row)).map_err(|error| refused_row(i, all.len(), error));
-    let samples = all.iter().enumerate().map(inertia).collect::<PyResult<Vec<_>>>()?;
+pub(crate) fn fit_inertias(py: Python<'_>, samples: PyReadonlyArray2<'_, f64>) -> PyResult<Fitted> {
+    let samples = samples_of(&samples, |row| Inertia::new(matrix(row)))?;
     py.detach(|| {
         let fit = PrincipalFit::new(&samples).map_err(refused)?;
         let assessment = fit.assess(&mut verdict());
@@ -39,15 +47,10 @@ pub(crate) fn fit_inertias(
     })
 }
 
-/// Fits a joint law of bodies: likewise.
+/// Fits a joint law of bodies.
 #[pyfunction]
-pub(crate) fn fit_bodies(
-    py: Python<'_>,
-    samples: PyReadonlyArray2<'_, f64>,
-) -> PyResult<(String, String, bool, f64, Vec<String>)> {
-    let all = rows::<10>(&samples)?;
-    let one = |(i, row)| body(row).map_err(|error| refused_row(i, all.len(), error));
-    let samples = all.iter().enumerate().map(one).collect::<PyResult<Vec<_>>>()?;
+pub(crate) fn fit_bodies(py: Python<'_>, samples: PyReadonlyArray2<'_, f64>) -> PyResult<Fitted> {
+    let samples = samples_of(&samples, body)?;
     py.detach(|| {
         let fit = MassPropertiesFit::new(&samples, MassChoice::default()).map_err(refused)?;
         let assessment = fit.assess(&mut verdict());

@@ -12,12 +12,12 @@ use serde::{
     Deserialize, Deserializer,
     de::{Error, MapAccess, Visitor},
 };
-use std::{convert::Infallible, fmt};
+use std::fmt;
 
 use crate::{
     error::refused,
     json,
-    rows::{drawn, made_one, matrix, row_of, rows},
+    rows::{densities, density_of_nothing, drawn, matrix, row_of, rows},
     stream::{Places, Stream},
 };
 
@@ -79,13 +79,13 @@ impl InertiaCore {
             .map_err(refused)
     }
 
-    /// The model of a kind with given mean and covariance of the entries, and what of them it has.
+    /// The model of a kind with given mean and covariance of the entries, as far as the kind can.
     #[staticmethod]
     fn matched(
         kind: &str,
         mean: [f64; 6],
         covariance: PyReadonlyArray2<'_, f64>,
-    ) -> PyResult<(Self, &'static str)> {
+    ) -> PyResult<Self> {
         let kind: ModelKind = kind.parse().map_err(refused)?;
         let covariance = rows::<6>(&covariance)?;
         if covariance.len() != 6 {
@@ -94,8 +94,7 @@ impl InertiaCore {
         let covariance = SMatrix::from_fn(|i, j| covariance[i][j]);
         let moments = EntryMoments::new(mean, covariance).map_err(refused)?;
         let matched = DispersionModel::matched(kind, &moments).map_err(refused)?;
-        let what = matched.what();
-        Ok((Self(matched.into_model()), what))
+        Ok(Self(matched.into_model()))
     }
 
     /// The names of all models, and what each is.
@@ -141,19 +140,13 @@ impl InertiaCore {
         matrices: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
         let all = rows::<9>(&matrices)?;
-        // Whether a law has a density does not depend on where it is asked.
         let unit = InertiaMatrix::from_entries([1.0; 3], [0.0; 3]).map_err(refused)?;
-        if self.0.ln_density(&unit).is_none() {
-            return Ok(None);
-        }
-        let densities = made_one(py, all.len(), |i| {
-            Ok::<_, Infallible>(match InertiaMatrix::new(matrix(&all[i])) {
-                Ok(inertia) => self.0.ln_density(&inertia).unwrap_or(f64::NAN),
-                Err(_) if all[i].iter().any(|x| x.is_nan()) => f64::NAN,
-                Err(_) => f64::NEG_INFINITY,
-            })
-        });
-        densities.map(Some)
+        densities(py, all.len(), self.0.ln_density(&unit), |i| {
+            match InertiaMatrix::new(matrix(&all[i])) {
+                Ok(inertia) => self.0.ln_density(&inertia),
+                Err(_) => density_of_nothing(&all[i]),
+            }
+        })
     }
 
     /// Mean and covariance of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.

@@ -8,13 +8,13 @@ use gyradius_inertia::{LogCholesky, Region};
 use nalgebra::SMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::{Bound, PyResult, Python, pyclass, pymethods};
-use std::{convert::Infallible, sync::Arc};
+use std::sync::Arc;
 
 use crate::{
     bodies::{body, ten},
     error::refused,
     json,
-    rows::{drawn, made_one, rows},
+    rows::{densities, density_of_nothing, drawn, rows},
     stream::{Places, Stream},
 };
 
@@ -156,19 +156,11 @@ impl BodyCore {
     ) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
         let all = rows::<10>(&bodies)?;
         let law = self.law();
-        // Whether a law has a density does not depend on where it is asked.
         let unit = body(&[1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]).map_err(refused)?;
-        if law.ln_density(&unit).is_none() {
-            return Ok(None);
-        }
-        let densities = made_one(py, all.len(), |i| {
-            Ok::<_, Infallible>(match body(&all[i]) {
-                Ok(body) => law.ln_density(&body).unwrap_or(f64::NAN),
-                Err(_) if all[i].iter().any(|x| x.is_nan()) => f64::NAN,
-                Err(_) => f64::NEG_INFINITY,
-            })
-        });
-        densities.map(Some)
+        densities(py, all.len(), law.ln_density(&unit), |i| match body(&all[i]) {
+            Ok(body) => law.ln_density(&body),
+            Err(_) => density_of_nothing(&all[i]),
+        })
     }
 
     /// Mean and covariance of the ten.

@@ -63,6 +63,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        module.add("__version__", env!("CARGO_PKG_VERSION"))
+        module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+        module.add("COLUMNS", gyradius_dispersion::TenParameters::COLUMNS.to_vec())
     }
 }

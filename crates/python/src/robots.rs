@@ -1,6 +1,7 @@
 //! The links of robot files.
 
-use gyradius_formats::RobotFile;
+use gyradius_dispersion::TenParameters;
+use gyradius_formats::{RobotFile, RobotLink};
 use pyo3::{PyResult, Python, pyfunction};
 use std::path::PathBuf;
 
@@ -14,12 +15,14 @@ type Link = (String, Option<[f64; 10]>, Option<String>);
 pub(crate) fn load_robot(py: Python<'_>, path: PathBuf) -> PyResult<Vec<Link>> {
     py.detach(|| {
         let robot = RobotFile::read(&path).map_err(refused)?;
-        let of = |link: &gyradius_formats::RobotLink| match link.numbers() {
+        let of = |link: &RobotLink| match link.numbers() {
             Ok(numbers) => {
-                let [x, y, z] = numbers.mass_centre_m().into();
-                let [i11, i22, i33, i12, i13, i23] = numbers.inertia().entries();
-                let ten = [numbers.mass_kg(), x, y, z, i11, i22, i33, i12, i13, i23];
-                (link.name().to_owned(), Some(ten), None)
+                let ten = TenParameters {
+                    mass_kg: numbers.mass_kg(),
+                    mass_centre_m: numbers.mass_centre_m(),
+                    inertia: *numbers.inertia(),
+                };
+                (link.name().to_owned(), Some(ten.values()), None)
             }
             Err(problem) => (link.name().to_owned(), None, Some(problem.to_string())),
         };

@@ -47,12 +47,37 @@ pub(crate) fn made<'py, const N: usize, E: Display + Send>(
 }
 
 /// The same of rows of one number.
-pub(crate) fn made_one<'py, T: numpy::Element + Copy + Default, E: Display + Send>(
+fn made_one<'py, T: numpy::Element + Copy + Default, E: Display + Send>(
     py: Python<'py>,
     count: usize,
     make: impl Fn(usize) -> Result<T, E> + Sync,
 ) -> PyResult<Bound<'py, PyArray1<T>>> {
     Ok(PyArray1::from_vec(py, try_make(py, count, T::default(), make)?))
+}
+
+/// The same where each can be made.
+pub(crate) fn answered<'py, T: numpy::Element + Copy + Default>(
+    py: Python<'py>,
+    count: usize,
+    answer: impl Fn(usize) -> T + Sync,
+) -> PyResult<Bound<'py, PyArray1<T>>> {
+    made_one(py, count, |row| Ok::<_, Infallible>(answer(row)))
+}
+
+/// Logarithms of a density, none if `somewhere`, anywhere at all, it is not known: that does not depend on where it is asked.
+pub(crate) fn densities<'py>(
+    py: Python<'py>,
+    count: usize,
+    somewhere: Option<f64>,
+    at: impl Fn(usize) -> Option<f64> + Sync,
+) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+    let at = |row| at(row).unwrap_or(f64::NAN);
+    somewhere.map(|_| answered(py, count, at)).transpose()
+}
+
+/// What the density is of a row that is nothing that could be drawn.
+pub(crate) fn density_of_nothing(row: &[f64]) -> Option<f64> {
+    Some(if row.iter().any(|x| x.is_nan()) { f64::NAN } else { f64::NEG_INFINITY })
 }
 
 /// Draws rows of `N` numbers, each from a stream of its own. Most draws take about as many `u64` as `words` says, which

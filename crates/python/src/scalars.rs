@@ -5,13 +5,12 @@ use gyradius_inertia::{Containment, Region};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::{Bound, PyResult, Python, pyclass, pyfunction, pymethods};
 use rand_distr::Distribution;
-use std::convert::Infallible;
 
 use crate::{
     bodies::body,
     error::refused,
     json,
-    rows::{drawn_one, made_one, rows},
+    rows::{answered, densities, drawn_one, rows},
     stream::{Places, Stream},
 };
 
@@ -57,11 +56,8 @@ impl ScalarCore {
         values: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
         let all = values.as_slice().map_err(refused)?;
-        if self.0.ln_density(self.0.mean()).is_none() {
-            return Ok(None);
-        }
-        let of = |i: usize| Ok::<_, Infallible>(self.0.ln_density(all[i]).unwrap_or(f64::NAN));
-        made_one(py, all.len(), of).map(Some)
+        let somewhere = self.0.ln_density(self.0.mean());
+        densities(py, all.len(), somewhere, |i| self.0.ln_density(all[i]))
     }
 
     fn cdf<'py>(
@@ -70,7 +66,7 @@ impl ScalarCore {
         values: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let all = values.as_slice().map_err(refused)?;
-        made_one(py, all.len(), |i| Ok::<_, Infallible>(self.0.cdf(all[i])))
+        answered(py, all.len(), |i| self.0.cdf(all[i]))
     }
 }
 
@@ -89,13 +85,13 @@ pub(crate) fn region_holds<'py>(
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let region: Region = json::read(form)?;
     let all = rows::<10>(&bodies)?;
-    made_one(py, all.len(), |i| {
+    answered(py, all.len(), |i| {
         // What is no body is possible nowhere.
-        let Ok(body) = body(&all[i]) else { return Ok(0.0) };
-        Ok::<_, Infallible>(match region.containment(&body) {
+        let Ok(body) = body(&all[i]) else { return 0.0 };
+        match region.containment(&body) {
             Containment::Possible => 1.0,
             Containment::Impossible => 0.0,
             Containment::Undecided => f64::NAN,
-        })
+        }
     })
 }

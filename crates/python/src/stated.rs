@@ -3,54 +3,30 @@
 use gyradius_estimation::{StatedAmount, StatedBody, Statements};
 use gyradius_inertia::Region;
 use pyo3::{PyResult, Python, pyfunction};
-use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::fmt::Display;
 
 use crate::{bodies::body, error::refused, json, laws::BodyCore};
 
-/// What is said of one part: an amount with its unit, or the table of a file.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Said<T> {
-    Amount(String),
-    Table(T),
-}
-
-impl<T> Said<T> {
-    fn statement<E: std::fmt::Display>(
-        self,
-        part: &str,
-        read: fn(&str) -> Result<StatedAmount, String>,
-        make: impl Fn(StatedAmount) -> Result<T, E>,
-    ) -> PyResult<T> {
-        match self {
-            Self::Table(table) => Ok(table),
-            Self::Amount(text) => {
-                let amount = read(&text)
-                    .map_err(|error| refused(format_args!("{part} = {text:?}: {error}")))?;
-                make(amount).map_err(refused)
-            }
-        }
-    }
-}
-
-/// Reads what is said of a part.
-fn said<T: serde::de::DeserializeOwned, E: std::fmt::Display>(
+/// Reads what is said of a part: an amount with its unit, or the table of a file.
+fn said<T: DeserializeOwned, E: Display>(
     part: &str,
     given: Option<&str>,
     read: fn(&str) -> Result<StatedAmount, String>,
     make: impl Fn(StatedAmount) -> Result<T, E>,
 ) -> PyResult<Option<T>> {
     let Some(given) = given else { return Ok(None) };
-    let value: serde_json::Value = json::read(given)?;
-    // Not as an untagged enum, which forgets what was wrong.
-    let said = match value {
-        serde_json::Value::String(text) => Said::Amount(text),
-        table => Said::Table(
-            serde_json::from_value(table)
-                .map_err(|error| refused(format_args!("{part}: {error}")))?,
-        ),
+    let statement = match json::read(given)? {
+        Value::String(text) => {
+            let amount =
+                read(&text).map_err(|error| refused(format_args!("{part} = {text:?}: {error}")))?;
+            make(amount).map_err(refused)?
+        }
+        table => serde_json::from_value(table)
+            .map_err(|error| refused(format_args!("{part}: {error}")))?,
     };
-    said.statement(part, read, make).map(Some)
+    Ok(Some(statement))
 }
 
 /// The joint law that statements make about a body, and the warnings.

@@ -1,26 +1,26 @@
 //! Inertia matrices, many at a time: which belong to a body, how far they are from it, the nearest that does.
 
 use gyradius_inertia::{
-    InertiaMatrix, InertiaMatrixError, RealizabilityReport, Repair, RepairMethod,
+    InertiaMatrix, InertiaMatrixError, RELATIVE_TOLERANCE, RealizabilityReport, Repair,
+    RepairMethod,
 };
 use nalgebra::Matrix3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::{Bound, PyResult, Python, pyfunction};
-use std::convert::Infallible;
 
 use crate::{
     error::{refused, refused_row},
-    rows::{made, made_one, matrix, row_of, row_of_attitude, rows},
+    rows::{answered, made, matrix, row_of, row_of_attitude, rows},
 };
 
 /// How far from symmetric a matrix may be beside its largest entry, as those in 32 bits and in files are.
 const SKEW: f64 = 1e-6;
 
-/// A matrix that is symmetric but for such rounding.
-fn nearly_symmetric(matrix: &Matrix3<f64>) -> Result<InertiaMatrix, InertiaMatrixError> {
+/// A matrix that is symmetric but for so much of its largest entry.
+fn nearly_symmetric(matrix: &Matrix3<f64>, skew: f64) -> Result<InertiaMatrix, InertiaMatrixError> {
     match InertiaMatrix::new(*matrix) {
         Err(InertiaMatrixError::NotSymmetric { .. })
-            if (matrix - matrix.transpose()).amax() <= SKEW * matrix.amax() =>
+            if (matrix - matrix.transpose()).amax() <= skew * matrix.amax() =>
         {
             InertiaMatrix::new((matrix + matrix.transpose()) * 0.5)
         }
@@ -36,12 +36,11 @@ pub(crate) fn inertia_is_realizable<'py>(
     tolerance: Option<f64>,
 ) -> PyResult<Bound<'py, PyArray1<bool>>> {
     let all = rows::<9>(&matrices)?;
-    made_one(py, all.len(), |i| {
-        let matrix = matrix(&all[i]);
-        Ok::<_, Infallible>(match tolerance {
-            None => InertiaMatrix::new(matrix).is_ok_and(|matrix| matrix.is_realizable()),
-            Some(tolerance) => RealizabilityReport::within(&matrix, tolerance).is_realizable(),
-        })
+    // As `RealizabilityReport::within`, which also finds the reasons.
+    let tolerance = tolerance.unwrap_or_default().max(RELATIVE_TOLERANCE);
+    answered(py, all.len(), |i| {
+        nearly_symmetric(&matrix(&all[i]), tolerance)
+            .is_ok_and(|matrix| matrix.is_realizable_within(tolerance))
     })
 }
 
@@ -52,9 +51,8 @@ pub(crate) fn inertia_margin<'py>(
     matrices: PyReadonlyArray2<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let all = rows::<9>(&matrices)?;
-    made_one(py, all.len(), |i| {
-        let report = RealizabilityReport::of(&matrix(&all[i]));
-        Ok::<_, Infallible>(report.margin().unwrap_or(f64::NAN))
+    answered(py, all.len(), |i| {
+        RealizabilityReport::of(&matrix(&all[i])).margin().unwrap_or(f64::NAN)
     })
 }
 
@@ -76,7 +74,7 @@ pub(crate) fn inertia_nearest<'py>(
         }
     };
     made(py, all.len(), |i| {
-        let matrix = nearly_symmetric(&matrix(&all[i])).map_err(|error| error.to_string())?;
+        let matrix = nearly_symmetric(&matrix(&all[i]), SKEW).map_err(|error| error.to_string())?;
         let repair = Repair::new(&matrix, method).map_err(|error| error.to_string())?;
         Ok::<_, String>(row_of(repair.inertia().matrix()))
     })
@@ -90,7 +88,7 @@ pub(crate) fn inertia_principal_axes<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let all = rows::<9>(&matrices)?;
     made(py, all.len(), |i| {
-        let axes = nearly_symmetric(&matrix(&all[i]))?.principal_axes();
+        let axes = nearly_symmetric(&matrix(&all[i]), SKEW)?.principal_axes();
         let [a, b, c] = axes.moments();
         let [x, y, z, w] = row_of_attitude(&axes.attitude());
         Ok::<_, InertiaMatrixError>([a, b, c, x, y, z, w])

@@ -152,3 +152,13 @@ def test_masked_entries_are_no_numbers() -> None:
     with pytest.raises(ValueError, match="masked"):
         gyradius.margin(masked)
     assert gyradius.is_realizable(np.ma.MaskedArray(np.eye(3)))
+
+
+@given(st.integers(0, 2**32), st.sampled_from([0.0, 1e-16, 1e-9, 1e-6, 1e-3, 0.5]))
+def test_a_tolerance_means_the_same_to_the_quick_and_the_thorough_way(seed: int, tolerance: float) -> None:
+    rng = np.random.default_rng(seed)
+    # On both sides of the boundary and of symmetry, by about as much as the tolerance allows.
+    some = inertias(rng, 100)
+    size = np.abs(some).max(axis=(1, 2), keepdims=True)
+    some = some + 2.0 * tolerance * size * rng.normal(size=(100, 3, 3))
+    assert (gyradius.is_realizable(some, tolerance) == gyradius.report(some, tolerance).is_realizable).all()

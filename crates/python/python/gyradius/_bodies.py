@@ -19,18 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-COLUMNS = (
-    "mass_kg",
-    "mass_centre_1_m",
-    "mass_centre_2_m",
-    "mass_centre_3_m",
-    "i11",
-    "i22",
-    "i33",
-    "i12",
-    "i13",
-    "i23",
-)
+COLUMNS: tuple[str, ...] = tuple(_core.COLUMNS)
 """What the ten numbers of a body are called, in their order; the last six are in kg·m²."""
 
 ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))

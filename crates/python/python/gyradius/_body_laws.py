@@ -13,7 +13,7 @@ from gyradius._arrays import form, numbers, out, rows
 from gyradius._attitude_laws import AttitudeLaw
 from gyradius._bodies import MassProperties, Region
 from gyradius._inertia_laws import InertiaLaw
-from gyradius._law import Fit, Law, Matrix, count, known, make, picture, short, vector
+from gyradius._law import Fit, LawOfBodies, Matrix, count, known, make, picture, short, vector
 from gyradius._rng import streams
 from gyradius._scalar_laws import ScalarLaw, scalar
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from gyradius._rng import RNG
 
 
-class MassPropertiesLaw(Law):
+class MassPropertiesLaw(LawOfBodies):
     """A law of mass, mass centre and inertia together.
 
     `gyradius.law` makes one of plain statements, `MassPropertiesLaw.joint` of laws of its parts, `gyradius.from_estimate` of an
@@ -192,38 +192,15 @@ class MassPropertiesLaw(Law):
         return np.array(known(self, "moments", self._core.moments())[1]).reshape(10, 10)
 
     @property
-    def std(self) -> NDArray[np.float64]:
-        """(10,): the standard deviations of the ten numbers."""
-        return np.sqrt(np.diag(self.cov))
-
-    @property
     def linear_moments(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Mean (10,) and covariance (10, 10) of m, m c and the inertia about the origin."""
         mean, cov = known(self, "moments", self._core.linear_moments())
         return np.array(mean), np.array(cov).reshape(10, 10)
 
-    @property
-    def name(self) -> str:
-        """What kind of law it is."""
-        return self._core.name()
-
-    @property
-    def is_realizable(self) -> bool:
-        """Whether no draw can be of no body, whatever is drawn."""
-        return self._core.is_realizable_by_construction()
-
-    @property
-    def acceptance(self) -> float:
-        """The share of proposals that are kept: 1 where there is no rejection."""
-        found = self._core.acceptance()
-        return 1.0 if found is None else found
-
     @staticmethod
     def fit(bodies: MassProperties | ArrayLike) -> Fit[MassPropertiesLaw]:
         """The joint law of samples (n, 10), of 13 bodies or more."""
-        law, found, fits, p_value, notes = _core.fit_bodies(rows("bodies", bodies, (10,))[0])
-        made = make(MassPropertiesLaw, "joint", law)
-        return Fit(law=made, found=json.loads(found), fits=fits, p_value=p_value, notes=tuple(notes))
+        return MassPropertiesLaw._fit("joint", _core.fit_bodies(rows("bodies", bodies, (10,))[0]))
 
     def _repr_html_(self) -> str:
         return picture(self, self.rvs(500, rng=0).inertia)

@@ -9,6 +9,7 @@ from numpy import bool_, float64, uint64
 from numpy.typing import NDArray
 
 __version__: str
+COLUMNS: list[str]
 
 _Rows = NDArray[float64]
 _Places = NDArray[uint64] | None
@@ -56,7 +57,7 @@ class InertiaCore:
     @staticmethod
     def about(kind: str, nominal: _Ten, parameters: str) -> InertiaCore: ...
     @staticmethod
-    def matched(kind: str, mean: _Ten, covariance: _Rows) -> tuple[InertiaCore, str]: ...
+    def matched(kind: str, mean: _Ten, covariance: _Rows) -> InertiaCore: ...
     @staticmethod
     def kinds() -> list[tuple[str, str, bool, list[str]]]: ...
     def form(self) -> str: ...

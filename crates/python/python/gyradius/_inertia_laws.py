@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +10,7 @@ import numpy as np
 from gyradius import _core
 from gyradius._arrays import form, out, rows
 from gyradius._attitude_laws import AttitudeLaw
-from gyradius._law import Fit, Law, Matrix, count, known, make, picture, short, vector
+from gyradius._law import Fit, LawOfBodies, Matrix, count, known, make, picture, short, vector
 from gyradius._rng import streams
 from gyradius._scalar_laws import scalar
 
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
     from gyradius._rng import RNG
 
 
-class InertiaLaw(Law):
+class InertiaLaw(LawOfBodies):
     """A law of the inertia of a body about its mass centre: made by `principal`, `about`, `matched` and `fit`.
 
     The entries have the order 11, 22, 33, 12, 13, 23, in kg·m².
@@ -110,33 +109,10 @@ class InertiaLaw(Law):
         """(6, 6): covariance of the entries 11, 22, 33, 12, 13, 23 in (kg·m²)²."""
         return np.array(known(self, "moments", self._core.moments())[1]).reshape(6, 6)
 
-    @property
-    def std(self) -> NDArray[np.float64]:
-        """(6,): standard deviations of the entries in kg·m²."""
-        return np.sqrt(np.diag(self.cov))
-
-    @property
-    def name(self) -> str:
-        """What the model is called in scenarios."""
-        return self._core.name()
-
-    @property
-    def is_realizable(self) -> bool:
-        """Whether no draw can be of no body, whatever is drawn."""
-        return self._core.is_realizable_by_construction()
-
-    @property
-    def acceptance(self) -> float:
-        """The share of proposals that are kept: 1 where there is no rejection."""
-        found = self._core.acceptance()
-        return 1.0 if found is None else found
-
     @staticmethod
     def fit(inertia: ArrayLike) -> Fit[InertiaLaw]:
         """The law of Peck (2003) of samples (n, 3, 3), of 13 bodies or more."""
-        law, found, fits, p_value, notes = _core.fit_inertias(rows("inertia", inertia, (3, 3))[0])
-        made = make(InertiaLaw, "of_form", law)
-        return Fit(law=made, found=json.loads(found), fits=fits, p_value=p_value, notes=tuple(notes))
+        return InertiaLaw._fit("of_form", _core.fit_inertias(rows("inertia", inertia, (3, 3))[0]))
 
     def _repr_html_(self) -> str:
         return picture(self, self.rvs(500, rng=0))

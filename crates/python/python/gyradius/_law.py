@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
@@ -61,13 +62,51 @@ class Law:
         return json.loads(found)
 
 
+class LawOfBodies(Law):
+    """What laws of inertias and laws of bodies have in common."""
+
+    __slots__ = ()
+
+    @property
+    def cov(self) -> NDArray[np.float64]:
+        """The covariance of what is drawn."""
+        raise NotImplementedError
+
+    @property
+    def std(self) -> NDArray[np.float64]:
+        """The standard deviations of the numbers of which `cov` is the covariance."""
+        return np.sqrt(np.diag(self.cov))
+
+    @property
+    def name(self) -> str:
+        """What kind of law it is; of a model of the inertia what it is called in scenarios."""
+        return self._core.name()
+
+    @property
+    def is_realizable(self) -> bool:
+        """Whether no draw can be of no body, whatever is drawn."""
+        return self._core.is_realizable_by_construction()
+
+    @property
+    def acceptance(self) -> float:
+        """The share of proposals that are kept: 1 where there is no rejection."""
+        found = self._core.acceptance()
+        return 1.0 if found is None else found
+
+    @classmethod
+    def _fit(cls: type[L], how: str, fitted: tuple[str, str, bool, float, list[str]]) -> Fit[L]:
+        law, found, fits, p_value, notes = fitted
+        return Fit(make(cls, how, law), json.loads(found), fits, p_value, tuple(notes))
+
+
 def again(kind: type[Law], how: str, arguments: tuple[Any, ...]) -> Law:
     """A law from how it was made, for pickles."""
     core = getattr(getattr(_core, f"{kind._kind}Core"), how)(*map(given, arguments))  # type: ignore[attr-defined]
-    return kind._of(core[0] if isinstance(core, tuple) else core, how, *arguments)
+    return kind._of(core, how, *arguments)
 
 
 def make(kind: type[L], how: str, *arguments: Any) -> L:
+    """A law by what the compiled part calls the way to make it."""
     return again(kind, how, arguments)  # type: ignore[return-value]
 
 
@@ -79,6 +118,8 @@ def given(argument: Any) -> Any:
 
 
 class Matrix(tuple):  # type: ignore[type-arg]
+    """A matrix as nested tuples."""
+
     __slots__ = ()
 
     @classmethod
@@ -90,6 +131,7 @@ class Matrix(tuple):  # type: ignore[type-arg]
 
 
 def vector(name: str, value: ArrayLike, size: int) -> tuple[float, ...]:
+    """One vector of so many numbers."""
     flat, lead = rows(name, value, (size,))
     if lead != ():
         raise ValueError(f"{name}: its shape is {np.shape(value)}, and it must be ({size},)")
@@ -97,10 +139,12 @@ def vector(name: str, value: ArrayLike, size: int) -> tuple[float, ...]:
 
 
 def nested(name: str, value: ArrayLike, size: int) -> tuple[tuple[float, ...], ...]:
+    """One square matrix."""
     return tuple(Matrix.of(name, value, (size, size)))
 
 
 def one_attitude(name: str, value: ArrayLike, order: str) -> tuple[float, ...]:
+    """One quaternion of norm one, scalar last."""
     flat, lead = attitudes(name, value, order)
     if lead != ():
         raise ValueError(f"{name}: it must be one quaternion, of shape (4,)")
@@ -120,7 +164,7 @@ class Fit(Generic[L]):
         self.found = found
         """Estimates and their standard errors, by name."""
         self.fits = fits
-        """Whether nothing speaks against the law at 1 %; None where it was not tested."""
+        """Whether nothing speaks against the law at 5 %; None where it was not tested."""
         self.p_value = p_value
         """How likely samples of the law are as far from it as these."""
         self.notes = notes
@@ -132,27 +176,29 @@ class Fit(Generic[L]):
 
 
 def count(shape: tuple[int, ...]) -> int:
-    count = 1
-    for one in shape:
-        count *= one
-    if count > 2**48:
+    """How many draws have a shape."""
+    found = math.prod(shape)
+    if found > 2**48:
         raise ValueError(f"size = {shape}: too many")
-    return count
+    return found
 
 
 def known(law: Law, what: str, value: Any) -> Any:
+    """What is known of a law."""
     if value is None:
         raise ValueError(f"{what}: not known of {law!r}, or it has none")
     return value
 
 
 def picture(law: Law, inertia: NDArray[Any]) -> str:
+    """Draws of a law in the triangle of bodies."""
     from gyradius._figure import triangle
 
     return triangle([(f"{type(law).__name__} {law._core.name()}", inertia)], repr(law))
 
 
 def short(law: Law) -> str:
+    """A law in a line."""
     how, arguments = law._made
     short = ", ".join(text if len(text) < 60 else text[:57] + "..." for text in map(repr, arguments))
     return f"<{type(law).__name__} {how}({short})>"
