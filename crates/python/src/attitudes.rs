@@ -3,7 +3,7 @@
 use gyradius_attitude::{AboutAxis, FisherBingham, RadiallyConstrainedGaussian};
 use gyradius_dispersion::{AttitudeMoments, AxesLaw};
 use nalgebra::{Matrix3, Matrix4, Unit, UnitQuaternion, Vector3, Vector4};
-use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::{Bound, PyResult, Python, pyclass, pymethods};
 use rand_distr::Distribution;
 
@@ -11,7 +11,7 @@ use crate::{
     error::refused,
     json,
     rows::{attitude, densities, drawn, row_of_attitude, rows},
-    stream::{Places, Stream},
+    stream::Draws,
 };
 
 /// A law of attitudes. Quaternions have the scalar last, and norm one.
@@ -76,15 +76,8 @@ impl AttitudeCore {
     }
 
     /// Draws, as (n, 4), each from a stream of its own.
-    fn draw<'py>(
-        &self,
-        py: Python<'py>,
-        stream: &Stream,
-        count: usize,
-        places: Option<PyReadonlyArray1<'py, u64>>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let places = Places::new(count, places.as_ref())?;
-        drawn(py, count, (stream.streams(), &places), 6, |rng| {
+    fn draw<'py>(&self, py: Python<'py>, draws: &Draws) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        drawn(py, draws, 6, |rng| {
             let drawn: UnitQuaternion<f64> = match &self.0 {
                 Law::Axes(law) => law.sample(rng),
                 Law::FisherBingham(law) => law.sample(rng),

@@ -5,7 +5,7 @@ use gyradius_dispersion::{
 };
 use gyradius_inertia::{Inertia, InertiaMatrix};
 use nalgebra::SMatrix;
-use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::{Bound, PyResult, Python, pyclass, pymethods};
 use rand_distr::Distribution;
 use serde::{
@@ -18,7 +18,7 @@ use crate::{
     error::refused,
     json,
     rows::{densities, density_of_nothing, drawn, matrix, row_of, rows},
-    stream::{Places, Stream},
+    stream::Draws,
 };
 
 /// A law of inertias about the mass centre.
@@ -119,15 +119,8 @@ impl InertiaCore {
     }
 
     /// Draws, as (n, 9), each from a stream of its own.
-    fn draw<'py>(
-        &self,
-        py: Python<'py>,
-        stream: &Stream,
-        count: usize,
-        places: Option<PyReadonlyArray1<'py, u64>>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let places = Places::new(count, places.as_ref())?;
-        drawn(py, count, (stream.streams(), &places), 10, |rng| {
+    fn draw<'py>(&self, py: Python<'py>, draws: &Draws) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        drawn(py, draws, 10, |rng| {
             let draw: ModelDraw = self.0.sample(rng);
             row_of(draw.inertia.matrix())
         })

@@ -6,7 +6,7 @@ use gyradius_dispersion::{
 };
 use gyradius_inertia::{LogCholesky, Region};
 use nalgebra::SMatrix;
-use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::{Bound, PyResult, Python, pyclass, pymethods};
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::{
     error::refused,
     json,
     rows::{densities, density_of_nothing, drawn, rows},
-    stream::{Places, Stream},
+    stream::Draws,
 };
 
 /// A law of bodies.
@@ -129,22 +129,14 @@ impl BodyCore {
     }
 
     /// Draws, as (n, 10), each from a stream of its own.
-    fn draw<'py>(
-        &self,
-        py: Python<'py>,
-        stream: &Stream,
-        count: usize,
-        places: Option<PyReadonlyArray1<'py, u64>>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let places = Places::new(count, places.as_ref())?;
-        let from = (stream.streams(), &places);
+    fn draw<'py>(&self, py: Python<'py>, draws: &Draws) -> PyResult<Bound<'py, PyArray2<f64>>> {
         match &self.0 {
             // Not through a generator behind a pointer.
-            Law::Joint(law) => drawn(py, count, from, 12, |rng| {
+            Law::Joint(law) => drawn(py, draws, 12, |rng| {
                 use rand_distr::Distribution;
                 ten(law.sample(rng))
             }),
-            Law::Other(law) => drawn(py, count, from, 12, |rng| law.draw(rng).values()),
+            Law::Other(law) => drawn(py, draws, 12, |rng| law.draw(rng).values()),
         }
     }
 

@@ -52,7 +52,7 @@ mod _core {
     #[pymodule_export]
     use super::stated::stated_law;
     #[pymodule_export]
-    use super::stream::Stream;
+    use super::stream::Draws;
     #[pymodule_export]
     use super::study::{ScenarioCore, StudyCore};
     #[pymodule_export]

@@ -10,7 +10,7 @@ use std::{convert::Infallible, fmt::Display};
 use crate::{
     cores::on_all,
     error::{refused, refused_row},
-    stream::Places,
+    stream::Draws,
 };
 
 /// Rows that one core does at a time: fewer than this many are not worth a second core.
@@ -84,36 +84,33 @@ pub(crate) fn density_of_nothing(row: &[f64]) -> Option<f64> {
 /// changes none of them.
 pub(crate) fn drawn<'py, const N: usize>(
     py: Python<'py>,
-    count: usize,
-    from: (&Streams, &Places<'_>),
+    draws: &Draws,
     words: usize,
     draw: impl Fn(&mut StreamRng) -> [f64; N] + Sync,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let drawn = try_draw(py, count, [0.0; N], from, words, draw)?;
-    PyArray1::from_vec(py, drawn.into_flattened()).reshape([count, N])
+    let drawn = try_draw(py, draws, [0.0; N], words, draw)?;
+    PyArray1::from_vec(py, drawn.into_flattened()).reshape([draws.count(), N])
 }
 
 /// The same of rows of one number.
 pub(crate) fn drawn_one<'py>(
     py: Python<'py>,
-    count: usize,
-    from: (&Streams, &Places<'_>),
+    draws: &Draws,
     words: usize,
     draw: impl Fn(&mut StreamRng) -> f64 + Sync,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    Ok(PyArray1::from_vec(py, try_draw(py, count, 0.0, from, words, draw)?))
+    Ok(PyArray1::from_vec(py, try_draw(py, draws, 0.0, words, draw)?))
 }
 
 fn try_draw<T: Copy + Send + Sync>(
     py: Python<'_>,
-    count: usize,
+    draws: &Draws,
     zero: T,
-    (streams, places): (&Streams, &Places<'_>),
     words: usize,
     draw: impl Fn(&mut StreamRng) -> T + Sync,
 ) -> PyResult<Vec<T>> {
-    fill(py, count, zero, |first, out| {
-        let each = (first..first + out.len()).map(|row| (streams, places.at(row)));
+    fill(py, draws.count(), zero, |first, out| {
+        let each = (first..first + out.len()).map(|row| draws.stream(row));
         let mut out = out.iter_mut();
         Streams::each(each, words, |rng| {
             if let Some(out) = out.next() {

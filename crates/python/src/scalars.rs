@@ -11,7 +11,7 @@ use crate::{
     error::refused,
     json,
     rows::{answered, densities, drawn_one, rows},
-    stream::{Places, Stream},
+    stream::Draws,
 };
 
 /// A law of one number.
@@ -38,15 +38,8 @@ impl ScalarCore {
         self.0.deviation()
     }
 
-    fn draw<'py>(
-        &self,
-        py: Python<'py>,
-        stream: &Stream,
-        count: usize,
-        places: Option<PyReadonlyArray1<'py, u64>>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let places = Places::new(count, places.as_ref())?;
-        drawn_one(py, count, (stream.streams(), &places), 1, |rng| self.0.sample(rng))
+    fn draw<'py>(&self, py: Python<'py>, draws: &Draws) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        drawn_one(py, draws, 1, |rng| self.0.sample(rng))
     }
 
     /// ln of the density; none where the law has none.

@@ -1,65 +1,52 @@
 //! Where random numbers come from: one stream of a generator for each draw.
 
 use gyradius_campaign::Streams;
-use numpy::{PyReadonlyArray1, PyUntypedArrayMethods};
+use numpy::PyReadonlyArray1;
 use pyo3::{PyResult, pyclass, pymethods};
 
 use crate::error::refused;
 
-/// The streams of a seed and a term, or of 32 bytes.
+/// So many draws, each of which has a stream of its own: among those of a seed and a term, or of 32 bytes.
 #[pyclass(frozen, module = "gyradius._core")]
-pub(crate) struct Stream(Streams);
+pub(crate) struct Draws {
+    streams: Streams,
+    count: usize,
+    /// The streams of the draws; none where they are the first.
+    places: Option<Vec<u64>>,
+}
 
 #[pymethods]
-impl Stream {
-    /// Those of the draws of a seed under a name: the same as the program's.
+impl Draws {
+    /// The first draws of a seed under a name: the same as the program's.
     #[staticmethod]
-    fn of(seed: u64, term: &str) -> Self {
-        Self(Streams::of_draws(seed, term))
+    fn first(seed: u64, term: &str, count: usize) -> Self {
+        Self { streams: Streams::of_draws(seed, term), count, places: None }
     }
 
-    /// Those of a key of 32 bytes.
+    /// Those at some places.
     #[staticmethod]
-    fn from_key(key: [u8; 32]) -> Self {
-        Self(Streams::from_key(key))
+    fn at(seed: u64, term: &str, places: PyReadonlyArray1<'_, u64>) -> PyResult<Self> {
+        let places = places.as_slice().map_err(refused)?.to_vec();
+        let streams = Streams::of_draws(seed, term);
+        Ok(Self { streams, count: places.len(), places: Some(places) })
+    }
+
+    /// The first draws of a key of 32 bytes.
+    #[staticmethod]
+    fn of_key(key: [u8; 32], count: usize) -> Self {
+        Self { streams: Streams::from_key(key), count, places: None }
     }
 }
 
-impl Stream {
-    pub(crate) fn streams(&self) -> &Streams {
-        &self.0
-    }
-}
-
-/// Which streams draws come from.
-pub(crate) enum Places<'a> {
-    /// Those of their own numbers.
-    First,
-    /// These.
-    These(&'a [u64]),
-}
-
-impl<'a> Places<'a> {
-    /// As Python gives them: a count, or numbers.
-    pub(crate) fn new(
-        count: usize,
-        these: Option<&'a PyReadonlyArray1<'_, u64>>,
-    ) -> PyResult<Self> {
-        let Some(these) = these else { return Ok(Self::First) };
-        if these.len() != count {
-            return Err(refused(format_args!("{} places of {count} draws", these.len())));
-        }
-        these
-            .as_slice()
-            .map(Self::These)
-            .map_err(|_| refused("the array of places must be contiguous"))
+impl Draws {
+    /// How many there are.
+    pub(crate) fn count(&self) -> usize {
+        self.count
     }
 
-    /// The stream of a draw.
-    pub(crate) fn at(&self, draw: usize) -> u64 {
-        match self {
-            Self::First => draw as u64,
-            Self::These(places) => places[draw],
-        }
+    /// The stream of a draw, among those of which.
+    pub(crate) fn stream(&self, draw: usize) -> (&Streams, u64) {
+        let place = self.places.as_ref().map_or(draw as u64, |places| places[draw]);
+        (&self.streams, place)
     }
 }

@@ -9,8 +9,8 @@ import numpy as np
 
 from gyradius import _core
 from gyradius._arrays import attitudes, numbers, ordered, out
-from gyradius._law import Fit, Law, count, known, make, nested, one_attitude, short, vector
-from gyradius._rng import streams
+from gyradius._law import Fit, Law, known, make, nested, one_attitude, short, vector
+from gyradius._rng import draws_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -56,8 +56,8 @@ class AttitudeLaw(Law):
         -------
         array, shape (*size, 4)
         """
-        stream, places, shape = streams(rng, size)
-        return out(ordered(self._core.draw(stream, count(shape), places), order), (*shape, 4), dtype)
+        draws, shape = draws_of(rng, size)
+        return out(ordered(self._core.draw(draws), order), (*shape, 4), dtype)
 
     def logpdf(self, q: ArrayLike, *, order: str = "xyzw") -> Any:
         """ln of the density of attitudes (..., 4) with respect to Haar measure: 0 everywhere for the uniform law.

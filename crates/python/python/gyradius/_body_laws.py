@@ -13,8 +13,8 @@ from gyradius._arrays import form, numbers, out, rows
 from gyradius._attitude_laws import AttitudeLaw
 from gyradius._bodies import MassProperties, Region
 from gyradius._inertia_laws import InertiaLaw
-from gyradius._law import Fit, LawOfBodies, Matrix, count, known, make, picture, short, vector
-from gyradius._rng import streams
+from gyradius._law import Fit, LawOfBodies, Matrix, known, make, picture, short, vector
+from gyradius._rng import draws_of
 from gyradius._scalar_laws import ScalarLaw, scalar
 
 if TYPE_CHECKING:
@@ -170,8 +170,8 @@ class MassPropertiesLaw(LawOfBodies):
 
     def rvs(self, size: int | tuple[int, ...] | None = None, rng: RNG = None) -> MassProperties:
         """Draws, as `MassProperties` of the shape `size`: see `AttitudeLaw.rvs` for `rng`."""
-        stream, places, shape = streams(rng, size)
-        return MassProperties._of(self._core.draw(stream, count(shape), places).reshape(*shape, 10))
+        draws, shape = draws_of(rng, size)
+        return MassProperties._of(self._core.draw(draws).reshape(*shape, 10))
 
     def logpdf(self, bodies: MassProperties | ArrayLike) -> Any:
         """ln of the density with respect to dm d³c d⁶I in kg, m and kg·m², -inf of what no draw can be.

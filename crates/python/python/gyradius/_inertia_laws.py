@@ -10,8 +10,8 @@ import numpy as np
 from gyradius import _core
 from gyradius._arrays import form, out, rows
 from gyradius._attitude_laws import AttitudeLaw
-from gyradius._law import Fit, LawOfBodies, Matrix, count, known, make, picture, short, vector
-from gyradius._rng import streams
+from gyradius._law import Fit, LawOfBodies, Matrix, known, make, picture, short, vector
+from gyradius._rng import draws_of
 from gyradius._scalar_laws import scalar
 
 if TYPE_CHECKING:
@@ -87,8 +87,8 @@ class InertiaLaw(LawOfBodies):
         self, size: int | tuple[int, ...] | None = None, rng: RNG = None, *, dtype: DTypeLike | None = None
     ) -> NDArray[np.floating[Any]]:
         """Draws, shape (*size, 3, 3) in kg·m²: see `AttitudeLaw.rvs` for `rng`."""
-        stream, places, shape = streams(rng, size)
-        return out(self._core.draw(stream, count(shape), places), (*shape, 3, 3), dtype)
+        draws, shape = draws_of(rng, size)
+        return out(self._core.draw(draws), (*shape, 3, 3), dtype)
 
     def logpdf(self, inertia: ArrayLike) -> Any:
         """ln of the density of matrices (..., 3, 3) with respect to their six entries in kg·m².

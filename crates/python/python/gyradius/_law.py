@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
@@ -173,14 +172,6 @@ class Fit(Generic[L]):
     def __repr__(self) -> str:
         said = "" if self.fits is None else f", fits={self.fits}, p_value={self.p_value:.3g}"
         return f"<Fit of {self.law!r}{said}>"
-
-
-def count(shape: tuple[int, ...]) -> int:
-    """How many draws have a shape."""
-    found = math.prod(shape)
-    if found > 2**48:
-        raise ValueError(f"size = {shape}: too many")
-    return found
 
 
 def known(law: Law, what: str, value: Any) -> Any:

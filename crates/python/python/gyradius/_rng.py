@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, TypeAlias, Union
 
 import numpy as np
@@ -12,6 +13,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 MOST = 2**64 - 1
+
+MOST_DRAWS = 2**48
+"""More draws than any memory holds."""
 
 
 class key:  # noqa: N801 - it is written as a function is
@@ -113,27 +117,27 @@ def shape_of(size: int | tuple[int, ...] | None) -> tuple[int, ...]:
     return tuple(int(one) for one in sizes)
 
 
-def streams(
-    rng: RNG, size: int | tuple[int, ...] | None
-) -> tuple[_core.Stream, NDArray[np.uint64] | None, tuple[int, ...]]:
-    """The streams of draws, which of them (the first so many where nothing is said), and the shape of the draws."""
+def draws_of(rng: RNG, size: int | tuple[int, ...] | None) -> tuple[_core.Draws, tuple[int, ...]]:
+    """Draws with their random numbers, and their shape."""
     shape = shape_of(size)
-    if isinstance(rng, key):
-        stream = _core.Stream.of(rng.seed, rng.term)
-        if rng.index is None:
-            return stream, None, shape
+    if isinstance(rng, key) and rng.index is not None:
         if size is not None and shape != rng.index.shape:
             raise ValueError(f"size = {size!r}: the index of the key has the shape {rng.index.shape}")
-        return stream, rng.index.reshape(-1), rng.index.shape
+        return _core.Draws.at(rng.seed, rng.term, rng.index.reshape(-1)), rng.index.shape
+    count = math.prod(shape)
+    if count > MOST_DRAWS:
+        raise ValueError(f"size = {shape}: too many")
+    if isinstance(rng, key):
+        return _core.Draws.first(rng.seed, rng.term, count), shape
     if rng is None:
         rng = np.random.SeedSequence()
     if isinstance(rng, np.random.SeedSequence):
-        return _core.Stream.from_key(_bytes(rng.generate_state(8, np.uint32))), None, shape
+        return _core.Draws.of_key(_bytes(rng.generate_state(8, np.uint32)), count), shape
     if isinstance(rng, np.random.Generator):
         words = rng.integers(0, MOST, size=4, dtype=np.uint64, endpoint=True)
-        return _core.Stream.from_key(_bytes(words)), None, shape
+        return _core.Draws.of_key(_bytes(words), count), shape
     if isinstance(rng, (int, np.integer)) and not isinstance(rng, (bool, np.bool_)):
-        return _core.Stream.of(_whole("rng", rng), ""), None, shape
+        return _core.Draws.first(_whole("rng", rng), "", count), shape
     allowed = "None, a whole number, a SeedSequence, a Generator or a gyradius.key"
     raise ValueError(f"rng = {rng!r}: it must be {allowed}")
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from gyradius import _core
 from gyradius._arrays import form, numbers, out
-from gyradius._law import Law, count, known
-from gyradius._rng import streams
+from gyradius._law import Law, known
+from gyradius._rng import draws_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike
@@ -62,8 +62,8 @@ class ScalarLaw(Law):
         self, size: int | tuple[int, ...] | None = None, rng: RNG = None, *, dtype: DTypeLike | None = None
     ) -> Any:
         """Draws of the shape `size`: see `AttitudeLaw.rvs` for `rng`."""
-        stream, places, shape = streams(rng, size)
-        return out(self._core.draw(stream, count(shape), places), shape, dtype)
+        draws, shape = draws_of(rng, size)
+        return out(self._core.draw(draws), shape, dtype)
 
     def logpdf(self, x: ArrayLike) -> Any:
         """ln of the density; a `ValueError` if the law has none."""
