@@ -146,7 +146,8 @@ class MassProperties:
     @property
     def inertia(self) -> NDArray[np.float64]:
         """(..., 3, 3): about the mass centre in kg·m²."""
-        return self._array[..., [4, 7, 8, 7, 5, 9, 8, 9, 6]].reshape(*self.shape, 3, 3)
+        # In the order of C, which what takes matrices need not copy.
+        return np.take(self._array, [4, 7, 8, 7, 5, 9, 8, 9, 6], axis=-1).reshape(*self.shape, 3, 3)
 
     @property
     def is_realizable(self) -> Any:
