@@ -5,6 +5,7 @@ use serde::{
     de::{self, DeserializeOwned},
 };
 use serde_path_to_error::{Path, Segment};
+use toml::de::{DeTable, DeValue};
 
 /// Longest reason that is told.
 const MOST_CHARACTERS: usize = 400;
@@ -14,8 +15,14 @@ const MOST_CHARACTERS: usize = 400;
 /// # Errors
 /// The text is no TOML, or a key of it is missing, unknown or has a value that is not allowed.
 pub fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
-    let toml = toml::Deserializer::parse(text).map_err(|error| told(&error, text))?;
-    let refused = |error: serde_path_to_error::Error<toml::de::Error>| {
+    // From values, which know no lines, because what reads with lines passes over what is left of a list after
+    // the three numbers of a vector, say; the line is looked up where something is wrong.
+    let values: toml::Table = toml::from_str(text)
+        .map_err(|error| located(told(&error), error.span().map(|span| span.start), text))?;
+    serde_path_to_error::deserialize(values).map_err(|error| {
+        let reason = told(error.inner());
+        let start = start_of(error.path(), reason.starts_with("unknown field"), text);
+        let message = located(reason, start, text);
         let path = said(error.path());
         let missing = error.inner().message().strip_prefix("missing field `");
         let missing = missing.and_then(|rest| rest.split_once('`')).map(|(name, _)| name);
@@ -24,18 +31,36 @@ pub fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
             (false, Some(missing)) => format!("{path}.{missing}"),
             (_, None) => path,
         };
-        let message = told(error.inner(), text);
         if path.is_empty() || names(&message, &path) {
             message
         } else {
             format!("{path}: {message}")
         }
-    };
-    serde_path_to_error::deserialize::<_, T>(toml).map_err(refused)?;
-    // Once more from values, which knows no lines, but does not pass over what is left of a list after
-    // the three numbers of a vector, say.
-    let values: toml::Table = toml::from_str(text).map_err(|error| told(&error, text))?;
-    serde_path_to_error::deserialize(values).map_err(refused)
+    })
+}
+
+/// Where the value at a path begins in a text, in bytes, or the last key of the path.
+fn start_of(path: &Path, at_key: bool, text: &str) -> Option<usize> {
+    let mut value = DeValue::Table(DeTable::parse(text).ok()?.into_inner());
+    let mut start = 0;
+    for segment in path {
+        let found = match (segment, value) {
+            (Segment::Map { key } | Segment::Enum { variant: key }, DeValue::Table(mut table)) => {
+                table.remove_entry(key.as_str()).map(|(key, below)| (Some(key), below))
+            }
+            (Segment::Seq { index }, DeValue::Array(list)) => {
+                list.into_iter().nth(*index).map(|below| (None, below))
+            }
+            (_, _) => None,
+        };
+        let Some((key, below)) = found else { break };
+        start = match key {
+            Some(key) if at_key => key.span().start,
+            Some(_) | None => below.span().start,
+        };
+        value = below.into_inner();
+    }
+    Some(start)
 }
 
 /// Whether a message begins with a key, or with one below it.
@@ -43,14 +68,16 @@ fn names(message: &str, key: &str) -> bool {
     message.strip_prefix(key).is_some_and(|rest| rest.starts_with(['.', '[', ':', ' ']))
 }
 
-/// The reason in our words, and the line. Not the line itself, which may be of any length.
-fn told(error: &toml::de::Error, text: &str) -> String {
+/// The reason in our words.
+fn told(error: &toml::de::Error) -> String {
     let mut message = error.message().trim_end().to_owned();
     if let Some((reason, _)) = message.split_once("expected struct ") {
         message = format!("{reason}expected a table");
     }
     // A word out of several, for which serde would take a table as well.
-    if message == "wanted string or table" || message.starts_with("wanted exactly 1 element") {
+    if message.starts_with("invalid type: unit variant")
+        || message.starts_with("wanted exactly 1 element")
+    {
         message = "invalid type, expected one of the texts that are allowed".to_owned();
     }
     if let Some(reason) = message.strip_suffix("expected f64") {
@@ -64,15 +91,17 @@ fn told(error: &toml::de::Error, text: &str) -> String {
         message.truncate(end);
         message.push('…');
     }
-    let before = error.span().and_then(|span| text.get(..span.start));
-    match before {
-        Some(before) => {
-            let line = before.matches('\n').count() + 1;
-            let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-            format!("{message} (line {line}, column {column})")
-        }
-        None => message,
-    }
+    message
+}
+
+/// A reason with its line. Not the line itself, which may be of any length.
+fn located(reason: String, start: Option<usize>, text: &str) -> String {
+    let Some(before) = start.and_then(|start| text.get(..start)) else {
+        return reason;
+    };
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    format!("{reason} (line {line}, column {column})")
 }
 
 /// Numbers that are written out in hundreds of digits, in a few.
