@@ -9,7 +9,7 @@ use crate::{Correlation, ScalarLaw};
 pub(super) const SCALARS: usize = 7;
 
 /// The function ∏ x_s^p_s of scalars, times a power of the factor that goes with the first.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(super) struct Monomial {
     pub(super) powers: [i32; SCALARS],
     pub(super) factor: i32,
@@ -24,6 +24,18 @@ impl Monomial {
     fn involves(&self, scalar: usize) -> bool {
         self.powers[scalar] != 0 || (scalar == 0 && self.factor != 0)
     }
+
+    /// The part of it that is a function of some of the scalars.
+    fn of(&self, scalars: &[usize]) -> Self {
+        let mut part = Self::default();
+        for &scalar in scalars {
+            part.powers[scalar] = self.powers[scalar];
+            if scalar == 0 {
+                part.factor = self.factor;
+            }
+        }
+        part
+    }
 }
 
 /// Scalar laws with a Gaussian copula, of which expectations are taken.
@@ -36,10 +48,11 @@ pub(super) struct Scores<'a, F> {
     pub(super) known: RefCell<HashMap<Vec<usize>, Rc<Nodes>>>,
 }
 
-/// Weights and values of the scalars of a block, one after the other.
+/// Weights and values of the scalars of a block, one after the other, and what monomials come to there.
 pub(super) struct Nodes {
     weights: Vec<f64>,
     values: Vec<f64>,
+    monomials: RefCell<HashMap<Monomial, Rc<[f64]>>>,
 }
 
 /// E f, E g, E fg and Cov(f, g).
@@ -96,24 +109,34 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
             self.known.borrow_mut().insert(block.to_vec(), Rc::clone(&nodes));
             nodes
         });
-        let value = |monomial: &Monomial, x: &[f64]| {
-            block.iter().zip(x).fold(1.0, |product, (&scalar, &x)| {
-                let own = product * x.powi(monomial.powers[scalar]);
-                if scalar == 0 { own * (self.factor)(x).powi(monomial.factor) } else { own }
-            })
-        };
-        let each = || nodes.weights.iter().zip(nodes.values.chunks_exact(block.len()));
+        let [f, g] = [f, g].map(|monomial| self.at_nodes(&nodes, block, monomial.of(block)));
+        let each = || nodes.weights.iter().zip(f.iter().zip(g.iter()));
         let (mut first, mut second, mut product, mut covariance) = (0.0, 0.0, 0.0, 0.0);
-        for (weight, x) in each() {
-            let (f, g) = (value(f, x), value(g, x));
+        for (weight, (f, g)) in each() {
             first += weight * f;
             second += weight * g;
             product += weight * f * g;
         }
-        for (weight, x) in each() {
-            covariance += weight * (value(f, x) - first) * (value(g, x) - second);
+        for (weight, (f, g)) in each() {
+            covariance += weight * (f - first) * (g - second);
         }
         Pair { first, second, product, covariance }
+    }
+
+    /// What a monomial of the scalars of a block comes to at its nodes. It is asked for in a pair with each of the others.
+    fn at_nodes(&self, nodes: &Nodes, block: &[usize], monomial: Monomial) -> Rc<[f64]> {
+        let known = nodes.monomials.borrow().get(&monomial).cloned();
+        known.unwrap_or_else(|| {
+            let each = nodes.values.chunks_exact(block.len()).map(|x| {
+                block.iter().zip(x).fold(1.0, |product, (&scalar, &x)| {
+                    let own = product * x.powi(monomial.powers[scalar]);
+                    if scalar == 0 { own * (self.factor)(x).powi(monomial.factor) } else { own }
+                })
+            });
+            let values: Rc<[f64]> = each.collect();
+            nodes.monomials.borrow_mut().insert(monomial, Rc::clone(&values));
+            values
+        })
     }
 
     /// Weights and values of the scalars of a block.
@@ -136,6 +159,7 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
         let mut nodes = Nodes {
             weights: Vec::with_capacity(count),
             values: Vec::with_capacity(count * block.len()),
+            monomials: RefCell::default(),
         };
         let mut scores = vec![0.0; block.len()];
         for node in 0..count {
