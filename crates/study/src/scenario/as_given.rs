@@ -8,6 +8,8 @@ use serde::{
 };
 use toml::Table;
 
+use super::placed::Placed;
+
 /// A table as given, and what it says: what is written again need not have the same bits.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct AsGiven<T> {
@@ -40,14 +42,12 @@ impl<'de, T: Said> Deserialize<'de> for AsGiven<T> {
         if let Some(problem) = T::wrong_keys(&given) {
             return Err(D::Error::custom(problem));
         }
-        let said = serde_path_to_error::deserialize(given.clone()).map_err(|error| {
-            let path = error.path().to_string();
-            let problem = error.inner().message();
-            // A dot stands for the table itself.
-            D::Error::custom(if path == "." {
-                problem.to_owned()
+        let said = T::deserialize(Placed(given.clone().into())).map_err(|error| {
+            let path = error.said();
+            D::Error::custom(if path.is_empty() {
+                error.reason
             } else {
-                format!("{path}: {problem}")
+                format!("{path}: {}", error.reason)
             })
         })?;
         Ok(Self { given, said })

@@ -19,6 +19,7 @@ mod model;
 mod model_file;
 mod outside;
 mod parse;
+mod placed;
 mod scalar;
 mod sides;
 mod until;

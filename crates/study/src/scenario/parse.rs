@@ -4,8 +4,9 @@ use serde::{
     Deserializer,
     de::{self, DeserializeOwned},
 };
-use serde_path_to_error::{Path, Segment};
 use toml::de::{DeTable, DeValue};
+
+use super::placed::{Placed, Step};
 
 /// Longest reason that is told.
 const MOST_CHARACTERS: usize = 400;
@@ -15,16 +16,16 @@ const MOST_CHARACTERS: usize = 400;
 /// # Errors
 /// The text is no TOML, or a key of it is missing, unknown or has a value that is not allowed.
 pub fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
-    // From values, which know no lines, because what reads with lines passes over what is left of a list after
-    // the three numbers of a vector, say; the line is looked up where something is wrong.
-    let values: toml::Table = toml::from_str(text)
-        .map_err(|error| located(told(&error), error.span().map(|span| span.start), text))?;
-    serde_path_to_error::deserialize(values).map_err(|error| {
-        let reason = told(error.inner());
+    // From values, which know no lines: the line is looked up where something is wrong.
+    let values: toml::Table = toml::from_str(text).map_err(|error| {
+        located(told(error.message()), error.span().map(|span| span.start), text)
+    })?;
+    T::deserialize(Placed(values.into())).map_err(|error| {
+        let reason = told(&error.reason);
         let start = start_of(error.path(), reason.starts_with("unknown field"), text);
         let message = located(reason, start, text);
-        let path = said(error.path());
-        let missing = error.inner().message().strip_prefix("missing field `");
+        let path = error.said();
+        let missing = error.reason.strip_prefix("missing field `");
         let missing = missing.and_then(|rest| rest.split_once('`')).map(|(name, _)| name);
         let path = match (path.is_empty(), missing) {
             (true, Some(missing)) => missing.to_owned(),
@@ -39,19 +40,19 @@ pub fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     })
 }
 
-/// Where the value at a path begins in a text, in bytes, or the last key of the path.
-fn start_of(path: &Path, at_key: bool, text: &str) -> Option<usize> {
+/// Where the value at the end of some steps begins in a text, in bytes, or the last key.
+fn start_of<'a>(steps: impl Iterator<Item = &'a Step>, at_key: bool, text: &str) -> Option<usize> {
     let mut value = DeValue::Table(DeTable::parse(text).ok()?.into_inner());
     let mut start = 0;
-    for segment in path {
-        let found = match (segment, value) {
-            (Segment::Map { key } | Segment::Enum { variant: key }, DeValue::Table(mut table)) => {
+    for step in steps {
+        let found = match (step, value) {
+            (Step::Key(key), DeValue::Table(mut table)) => {
                 table.remove_entry(key.as_str()).map(|(key, below)| (Some(key), below))
             }
-            (Segment::Seq { index }, DeValue::Array(list)) => {
+            (Step::Entry(index), DeValue::Array(list)) => {
                 list.into_iter().nth(*index).map(|below| (None, below))
             }
-            (_, _) => None,
+            (Step::Key(_) | Step::Entry(_), _) => None,
         };
         let Some((key, below)) = found else { break };
         start = match key {
@@ -69,22 +70,13 @@ fn names(message: &str, key: &str) -> bool {
 }
 
 /// The reason in our words.
-fn told(error: &toml::de::Error) -> String {
-    let mut message = error.message().trim_end().to_owned();
+fn told(reason: &str) -> String {
+    let mut message = reason.trim_end().to_owned();
     if let Some((reason, _)) = message.split_once("expected struct ") {
         message = format!("{reason}expected a table");
     }
-    // A word out of several, for which serde would take a table as well.
-    if message.starts_with("invalid type: unit variant")
-        || message.starts_with("wanted exactly 1 element")
-    {
-        message = "invalid type, expected one of the texts that are allowed".to_owned();
-    }
     if let Some(reason) = message.strip_suffix("expected f64") {
         message = format!("{reason}expected a number");
-    }
-    if let Some(reason) = message.strip_suffix("expected fewer elements in array") {
-        message = format!("{reason}expected fewer entries in this list");
     }
     let mut message = short_numbers(&message);
     if let Some((end, _)) = message.char_indices().nth(MOST_CHARACTERS) {
@@ -120,24 +112,6 @@ fn short_numbers(text: &str) -> String {
         rest = &rest[start + length..];
     }
     out + rest
-}
-
-/// As all messages write it: entries of lists are counted from 1.
-fn said(path: &Path) -> String {
-    let mut out = String::new();
-    for segment in path {
-        match segment {
-            Segment::Seq { index } => out.push_str(&format!("[{}]", index + 1)),
-            Segment::Map { key } | Segment::Enum { variant: key } => {
-                if !out.is_empty() {
-                    out.push('.');
-                }
-                out.push_str(key);
-            }
-            Segment::Unknown => {}
-        }
-    }
-    out
 }
 
 /// A whole number, which may be written as `1e6` as well.

@@ -1,0 +1,266 @@
+//! Values of TOML, read by serde so that an error knows the path of the value that is wrong.
+
+use serde::{
+    Deserializer,
+    de::{
+        DeserializeSeed, EnumAccess, Error, IntoDeserializer, MapAccess, SeqAccess, Unexpected,
+        VariantAccess, Visitor, value::StringDeserializer,
+    },
+    forward_to_deserialize_any,
+};
+use std::fmt;
+use toml::{Table, Value, map};
+
+/// A value, whose errors say where below it they are.
+#[derive(Clone, Debug)]
+pub(super) struct Placed(pub(super) Value);
+
+/// A step from a value to one that it holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Step {
+    /// The value of a key.
+    Key(String),
+    /// An entry of a list, counted from 0.
+    Entry(usize),
+}
+
+/// What is wrong with a value, and the way to it.
+#[derive(Clone, Debug)]
+pub(super) struct Misplaced {
+    pub(super) reason: String,
+    /// From the value that is wrong outwards.
+    outwards: Vec<Step>,
+}
+
+impl Misplaced {
+    fn below(mut self, step: Step) -> Self {
+        self.outwards.push(step);
+        self
+    }
+
+    /// The steps to the value that is wrong.
+    pub(super) fn path(&self) -> impl Iterator<Item = &Step> {
+        self.outwards.iter().rev()
+    }
+
+    /// The path as all messages write it: entries of lists are counted from 1.
+    pub(super) fn said(&self) -> String {
+        let mut out = String::new();
+        for step in self.path() {
+            match step {
+                Step::Entry(index) => out.push_str(&format!("[{}]", index + 1)),
+                Step::Key(key) if out.is_empty() => out.push_str(key),
+                Step::Key(key) => out.push_str(&format!(".{key}")),
+            }
+        }
+        out
+    }
+}
+
+impl fmt::Display for Misplaced {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.reason)
+    }
+}
+
+impl std::error::Error for Misplaced {}
+
+impl Error for Misplaced {
+    fn custom<T: fmt::Display>(reason: T) -> Self {
+        Self { reason: reason.to_string(), outwards: Vec::new() }
+    }
+}
+
+impl<'de> Deserializer<'de> for Placed {
+    type Error = Misplaced;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misplaced> {
+        match self.0 {
+            Value::String(text) => visitor.visit_string(text),
+            Value::Integer(number) => visitor.visit_i64(number),
+            Value::Float(number) => visitor.visit_f64(number),
+            Value::Boolean(yes) => visitor.visit_bool(yes),
+            Value::Datetime(date) => visitor.visit_string(date.to_string()),
+            Value::Array(list) => {
+                let count = list.len();
+                let mut entries = Entries { rest: list.into_iter(), next: 0 };
+                let read = visitor.visit_seq(&mut entries)?;
+                // What reads three numbers passes over a fourth.
+                match entries.rest.len() {
+                    0 => Ok(read),
+                    _ => Err(Error::invalid_length(count, &"fewer entries in this list")),
+                }
+            }
+            Value::Table(table) => visitor.visit_map(Keys::of(table)),
+        }
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Misplaced> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, Misplaced> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Misplaced> {
+        match self.0 {
+            Value::String(variant) => visitor.visit_enum(variant.into_deserializer()),
+            Value::Table(table) if table.len() == 1 => visitor.visit_enum(Keys::of(table)),
+            // A word out of several, for which serde would take a table as well.
+            Value::Integer(_)
+            | Value::Float(_)
+            | Value::Boolean(_)
+            | Value::Datetime(_)
+            | Value::Array(_)
+            | Value::Table(_) => {
+                Err(Error::custom("invalid type, expected one of the texts that are allowed"))
+            }
+        }
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
+        tuple_struct map struct identifier ignored_any
+    }
+}
+
+/// The entries of a list.
+struct Entries {
+    rest: std::vec::IntoIter<Value>,
+    next: usize,
+}
+
+impl<'de> SeqAccess<'de> for &mut Entries {
+    type Error = Misplaced;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(
+        &mut self,
+        seed: T,
+    ) -> Result<Option<T::Value>, Misplaced> {
+        let Some(entry) = self.rest.next() else {
+            return Ok(None);
+        };
+        let step = Step::Entry(self.next);
+        self.next += 1;
+        seed.deserialize(Placed(entry)).map(Some).map_err(|error| error.below(step))
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.rest.len())
+    }
+}
+
+/// The keys of a table, with the value of the key that was read last.
+struct Keys {
+    rest: map::IntoIter<String, Value>,
+    last: Option<(String, Value)>,
+}
+
+impl Keys {
+    fn of(table: Table) -> Self {
+        Self { rest: table.into_iter(), last: None }
+    }
+
+    /// Reads the next key, which is kept with its value.
+    fn key<'de, K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> Result<Option<K::Value>, Misplaced> {
+        self.last = self.rest.next();
+        let Some((key, _)) = &self.last else {
+            return Ok(None);
+        };
+        let given: StringDeserializer<Misplaced> = key.clone().into_deserializer();
+        seed.deserialize(given).map(Some).map_err(|error| error.below(Step::Key(key.clone())))
+    }
+
+    /// Reads the value of the key that was read last.
+    fn value<T>(
+        &mut self,
+        read: impl FnOnce(Value) -> Result<T, Misplaced>,
+    ) -> Result<T, Misplaced> {
+        let (key, value) =
+            self.last.take().ok_or_else(|| Misplaced::custom("a value without a key"))?;
+        read(value).map_err(|error| error.below(Step::Key(key)))
+    }
+}
+
+impl<'de> MapAccess<'de> for Keys {
+    type Error = Misplaced;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(
+        &mut self,
+        seed: K,
+    ) -> Result<Option<K::Value>, Misplaced> {
+        self.key(seed)
+    }
+
+    fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, Misplaced> {
+        self.value(|value| seed.deserialize(Placed(value)))
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.rest.len())
+    }
+}
+
+/// A table of one key is a variant with what it holds.
+impl<'de> EnumAccess<'de> for Keys {
+    type Error = Misplaced;
+    type Variant = Self;
+
+    fn variant_seed<T: DeserializeSeed<'de>>(
+        mut self,
+        seed: T,
+    ) -> Result<(T::Value, Self), Misplaced> {
+        // That a variant is unknown is wrong with the table.
+        let variant = self.key(seed).map_err(|error| Misplaced::custom(error.reason))?;
+        Ok((variant.ok_or_else(|| Misplaced::custom("a variant is missing"))?, self))
+    }
+}
+
+impl<'de> VariantAccess<'de> for Keys {
+    type Error = Misplaced;
+
+    fn unit_variant(mut self) -> Result<(), Misplaced> {
+        self.value(|value| match value {
+            Value::Table(table) if table.is_empty() => Ok(()),
+            other => {
+                Err(Error::invalid_type(Unexpected::Other(other.type_str()), &"the word alone"))
+            }
+        })
+    }
+
+    fn newtype_variant_seed<T: DeserializeSeed<'de>>(
+        mut self,
+        seed: T,
+    ) -> Result<T::Value, Misplaced> {
+        self.value(|value| seed.deserialize(Placed(value)))
+    }
+
+    fn tuple_variant<V: Visitor<'de>>(
+        mut self,
+        _: usize,
+        visitor: V,
+    ) -> Result<V::Value, Misplaced> {
+        self.value(|value| Placed(value).deserialize_any(visitor))
+    }
+
+    fn struct_variant<V: Visitor<'de>>(
+        mut self,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Misplaced> {
+        self.value(|value| Placed(value).deserialize_any(visitor))
+    }
+}
