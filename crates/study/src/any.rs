@@ -20,7 +20,7 @@ use crate::{
     scenario::{parse_toml, read_file, scenario_file},
     shards,
     study::{self},
-    subject::{Subject, Summarized},
+    subject::Summarized,
 };
 
 /// A scenario of separations, or of a simulator of the user's own, which has a table `[simulation]`.
@@ -38,6 +38,16 @@ macro_rules! of_either {
         match $any {
             AnyScenario::Separation($scenario) => $done,
             AnyScenario::Simulator($scenario) => $done,
+        }
+    };
+}
+
+/// Makes another scenario of a scenario of either kind, which it stays.
+macro_rules! either_again {
+    ($any:expr, $scenario:ident => $again:expr) => {
+        match $any {
+            AnyScenario::Separation($scenario) => AnyScenario::Separation(Box::new($again)),
+            AnyScenario::Simulator($scenario) => AnyScenario::Simulator(Box::new($again)),
         }
     };
 }
@@ -84,10 +94,7 @@ impl AnyScenario {
     /// # Errors
     /// The number is out of range.
     pub fn with_runs(self, runs: u64) -> Result<Self, ScenarioError> {
-        Ok(match self {
-            Self::Separation(scenario) => Self::Separation(Box::new(scenario.with_runs(runs)?)),
-            Self::Simulator(scenario) => Self::Simulator(Box::new(scenario.with_runs(runs)?)),
-        })
+        Ok(either_again!(self, scenario => scenario.with_runs(runs)?))
     }
 
     /// The same scenario with another number of vehicles, each with as many flights.
@@ -95,23 +102,13 @@ impl AnyScenario {
     /// # Errors
     /// The number is out of range, or the scenario has no vehicles.
     pub fn with_vehicles(self, vehicles: u64) -> Result<Self, ScenarioError> {
-        Ok(match self {
-            Self::Separation(scenario) => {
-                Self::Separation(Box::new(scenario.with_vehicles(vehicles)?))
-            }
-            Self::Simulator(scenario) => {
-                Self::Simulator(Box::new(scenario.with_vehicles(vehicles)?))
-            }
-        })
+        Ok(either_again!(self, scenario => scenario.with_vehicles(vehicles)?))
     }
 
     /// The same scenario, which keeps so much of its run tables.
     #[must_use]
     pub fn with_kept(self, kept: &Kept) -> Self {
-        match self {
-            Self::Separation(scenario) => Self::Separation(Box::new(scenario.with_kept(kept))),
-            Self::Simulator(scenario) => Self::Simulator(Box::new(scenario.with_kept(kept))),
-        }
+        either_again!(self, scenario => scenario.with_kept(kept))
     }
 
     /// What is kept of its run tables once all runs are done.
@@ -131,10 +128,7 @@ impl AnyScenario {
     /// # Errors
     /// The seed does not fit into a TOML integer.
     pub fn with_seed(self, seed: u64) -> Result<Self, ScenarioError> {
-        Ok(match self {
-            Self::Separation(scenario) => Self::Separation(Box::new(scenario.with_seed(seed)?)),
-            Self::Simulator(scenario) => Self::Simulator(Box::new(scenario.with_seed(seed)?)),
-        })
+        Ok(either_again!(self, scenario => scenario.with_seed(seed)?))
     }
 
     /// The same scenario, whose runs go on until a rule ends them, and are as many at most as they would be. They are looked at
@@ -147,14 +141,7 @@ impl AnyScenario {
         rule: StoppingRule,
         look_every: Option<u64>,
     ) -> Result<Self, ScenarioError> {
-        Ok(match self {
-            Self::Separation(scenario) => {
-                Self::Separation(Box::new(scenario.with_until(rule, look_every)?))
-            }
-            Self::Simulator(scenario) => {
-                Self::Simulator(Box::new(scenario.with_until(rule, look_every)?))
-            }
-        })
+        Ok(either_again!(self, scenario => scenario.with_until(rule, look_every)?))
     }
 
     /// The same scenario, of which it is found what drives the outcome, by so many base runs: each of them is done once for each
@@ -163,14 +150,7 @@ impl AnyScenario {
     /// # Errors
     /// There are fewer than 100, or more than ten million.
     pub fn with_drivers(self, base_runs: u64) -> Result<Self, ScenarioError> {
-        Ok(match self {
-            Self::Separation(scenario) => {
-                Self::Separation(Box::new(scenario.with_drivers(base_runs)?))
-            }
-            Self::Simulator(scenario) => {
-                Self::Simulator(Box::new(scenario.with_drivers(base_runs)?))
-            }
-        })
+        Ok(either_again!(self, scenario => scenario.with_drivers(base_runs)?))
     }
 
     /// How many runs it takes to find what drives the outcome, of all models; 0 if that is not asked.
@@ -202,7 +182,7 @@ impl AnyScenario {
     /// The vehicles whose flights the runs are, if there are vehicles.
     #[must_use]
     pub fn fleet(&self) -> Option<Fleet> {
-        of_either!(self, scenario => Subject::fleet(&**scenario))
+        of_either!(self, scenario => scenario.fleet())
     }
 
     /// How many models there are.

@@ -1,14 +1,12 @@
 //! Separations as a study: how their runs are simulated, and what they amount to.
 
-use gyradius_campaign::{CampaignError, Column, Forecast, Kept, Kind, Requirement, Runs, Until};
+use gyradius_campaign::{CampaignError, Column, Forecast, Kind, Runs};
 use gyradius_report::Document;
 use rayon::ThreadPool;
 use std::sync::{Arc, atomic::AtomicBool};
 
 use crate::{
-    Fleet, Scenario, ScenarioError, StudyError, Summary,
-    about::About,
-    claims,
+    Scenario, ScenarioError, StudyError, Summary, claims,
     column::Column as Declared,
     compare::Section,
     figures_of_study,
@@ -38,54 +36,6 @@ impl Subject for Scenario {
         Self::from_toml(text)
     }
 
-    fn name(&self) -> &str {
-        self.name()
-    }
-
-    fn about(&self) -> About {
-        self.about()
-    }
-
-    fn seed(&self) -> u64 {
-        self.seed()
-    }
-
-    fn runs(&self) -> u64 {
-        self.runs()
-    }
-
-    fn fleet(&self) -> Option<Fleet> {
-        self.fleet()
-    }
-
-    fn independent_runs(&self) -> Option<u64> {
-        self.sharing().map(Fleet::vehicles)
-    }
-
-    fn kept(&self) -> Kept {
-        self.kept()
-    }
-
-    fn requirements(&self) -> &[Requirement] {
-        self.requirements()
-    }
-
-    fn until(&self) -> Option<&Until> {
-        self.until()
-    }
-
-    fn ended_after(&self, runs: u64, first_look: Option<u64>) -> Result<Self, ScenarioError> {
-        self.ended_after(runs, first_look)
-    }
-
-    fn model_names(&self) -> impl Iterator<Item = &str> {
-        self.model_names()
-    }
-
-    fn to_toml(&self) -> String {
-        self.to_toml()
-    }
-
     fn prepare(&self, _: Option<&Arc<AtomicBool>>) -> Result<Vec<Model>, ScenarioError> {
         Model::all(self)
     }
@@ -111,10 +61,6 @@ impl Subject for Scenario {
         models: &'a Vec<Model>,
     ) -> Result<Vec<(&'a str, Separations<'a>)>, ScenarioError> {
         Ok(models.iter().map(|model| (model.name(), Separations::new(self, model))).collect())
-    }
-
-    fn drivers(&self) -> Option<u64> {
-        self.drivers()
     }
 
     fn groups(&self, models: &Vec<Model>, place: usize) -> Result<Groups, ScenarioError> {

@@ -1,8 +1,6 @@
 //! What a study is of: a scenario of separations, or of a simulator of the user's own.
 
-use gyradius_campaign::{
-    Column, FirstLook, Forecast, Kept, Requirement, Runs, Simulation, Table, Until, sha256,
-};
+use gyradius_campaign::{Column, FirstLook, Forecast, Runs, Simulation, Table, sha256};
 use gyradius_report::Document;
 use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
@@ -14,16 +12,16 @@ use std::{
 };
 
 use crate::{
-    Fleet, ScenarioError, StudyError,
-    about::About,
+    ScenarioError, StudyError,
     groups::{Drawing, Groups},
     head::Head,
+    scenario::Framed,
     steering::Steered,
     unusual::DrawnInput,
 };
 
 /// What a study is of: models whose runs are simulated, what they amount to, and the pages that show it.
-pub(crate) trait Subject: Sync + Sized {
+pub(crate) trait Subject: Framed + Sync {
     /// Runs of a block: what is lost, at most, on each thread that is interrupted.
     const BLOCK_RUNS: u64;
     /// Keys of the resolved scenario, by their paths, that no run depends on.
@@ -44,34 +42,6 @@ pub(crate) trait Subject: Sync + Sized {
 
     /// Reads a scenario that was resolved, as the folder of a study has it.
     fn resolved(text: &str) -> Result<Self, ScenarioError>;
-    /// Its name.
-    fn name(&self) -> &str;
-    /// What it says of itself.
-    fn about(&self) -> About;
-    /// Seed of all random streams.
-    fn seed(&self) -> u64;
-    /// Runs of each model.
-    fn runs(&self) -> u64;
-    /// The vehicles whose flights the runs are, if there are vehicles.
-    fn fleet(&self) -> Option<Fleet> {
-        None
-    }
-    /// How many of the runs are independent of each other, if not all are.
-    fn independent_runs(&self) -> Option<u64> {
-        None
-    }
-    /// What is kept of the run tables once all runs are done.
-    fn kept(&self) -> Kept;
-    /// What the runs are to show.
-    fn requirements(&self) -> &[Requirement];
-    /// Until when its runs go on, if not to their number.
-    fn until(&self) -> Option<&Until>;
-    /// The same, whose runs ended after so many, and were looked at first after so many, if that is said.
-    fn ended_after(&self, runs: u64, first_look: Option<u64>) -> Result<Self, ScenarioError>;
-    /// Names of the models, in order.
-    fn model_names(&self) -> impl Iterator<Item = &str>;
-    /// The resolved scenario.
-    fn to_toml(&self) -> String;
     /// Makes what draws and simulates, and lets go of runs at hand once `stop` is true, if they can take long.
     fn prepare(&self, stop: Option<&Arc<AtomicBool>>) -> Result<Self::Prepared, ScenarioError>;
     /// Makes certain, before the first run, that runs can be done.
@@ -88,8 +58,6 @@ pub(crate) trait Subject: Sync + Sized {
         &'a self,
         models: &'a Self::Prepared,
     ) -> Result<Vec<(&'a str, Self::Simulation<'a>)>, ScenarioError>;
-    /// Base runs by which it is found what drives the outcome, if that is asked.
-    fn drivers(&self) -> Option<u64>;
     /// The groups of inputs that the model in a place draws independently of each other.
     fn groups(&self, models: &Self::Prepared, place: usize) -> Result<Groups, ScenarioError>;
     /// The runs of the model in a place that draw this of these groups.

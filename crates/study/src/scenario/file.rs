@@ -1,104 +1,49 @@
 //! A scenario as it stands in a TOML file.
 
-use gyradius_campaign::{Requirement, Rows, Until};
+use gyradius_campaign::{Requirement, Until};
 use gyradius_dispersion::{MassPropertiesLaw, ScalarLawForm};
 use gyradius_inertia::Region;
 use gyradius_separation::{BodyParameter, LoadId, Spring, StackParameter};
 use serde::{Deserialize, Serialize};
-
-use crate::about::About;
 
 use super::{
     ScenarioError,
     as_given::AsGiven,
     each::Each,
     follows::Follows,
+    frame::framed_file,
     law::{GivenLaw, VectorLawFile},
     load::{self, GivenLoad, LoadFile},
     model_file::ModelFile,
-    parse,
     scalar::ScalarLawFile,
-    until::UntilFile,
-    vehicles::Size,
 };
 
-/// A scenario as it stands in a TOML file, defaults filled in. Units are in the names.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct ScenarioFile {
-    pub(crate) name: String,
-    /// What it is about, in words of the user.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) vehicle: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) question: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) author: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) date: Option<String>,
-    /// Filled in unless there are vehicles and flights.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "parse::some_whole"
-    )]
-    pub(crate) runs: Option<u64>,
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "parse::some_whole"
-    )]
-    pub(crate) vehicles: Option<u64>,
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "parse::some_whole"
-    )]
-    pub(crate) flights: Option<u64>,
-    #[serde(default = "default_seed", deserialize_with = "parse::whole")]
-    pub(crate) seed: u64,
-    /// Which rows of the run tables are kept, and which columns, if not all.
-    #[serde(default, skip_serializing_if = "Rows::is_all")]
-    pub(crate) rows: Rows,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) columns: Option<Vec<String>>,
-    /// Base runs by which it is found what drives the outcome.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "parse::some_whole"
-    )]
-    pub(crate) drivers: Option<u64>,
-    /// Until when the runs go on, if not to their number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) until: Option<UntilFile>,
-    #[serde(default = "default_spin_axis")]
-    pub(crate) spin_axis: [f64; 3],
-    /// Inertial axes; the force of the springs at the start if not given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) separation_direction: Option<[f64; 3]>,
-    /// Inertial axes; the spin axis at the start if not given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) momentum_direction: Option<[f64; 3]>,
-    pub(crate) payload: BodyFile,
-    pub(crate) stage: BodyFile,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) stack: Option<StackFile>,
-    #[serde(default)]
-    pub(crate) integration: IntegrationFile,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) source: Option<SourceFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) clearance: Option<ClearanceFile>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) springs: Vec<LoadFile<Spring>>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) correlations: Vec<CorrelationFile>,
-    pub(crate) models: Vec<ModelFile>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) requirements: Vec<Requirement>,
-    #[serde(default)]
-    pub(crate) comparisons: Vec<ComparisonFile>,
+framed_file! {
+    /// A scenario as it stands in a TOML file, defaults filled in. Units are in the names.
+    ScenarioFile, LOOK_EVERY, {
+        #[serde(default = "default_spin_axis")]
+        pub(crate) spin_axis: [f64; 3],
+        /// Inertial axes; the force of the springs at the start if not given.
+        pub(crate) separation_direction: Option<[f64; 3]>,
+        /// Inertial axes; the spin axis at the start if not given.
+        pub(crate) momentum_direction: Option<[f64; 3]>,
+        pub(crate) payload: BodyFile,
+        pub(crate) stage: BodyFile,
+        pub(crate) stack: Option<StackFile>,
+        #[serde(default)]
+        pub(crate) integration: IntegrationFile,
+        pub(crate) source: Option<SourceFile>,
+        pub(crate) clearance: Option<ClearanceFile>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub(crate) springs: Vec<LoadFile<Spring>>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub(crate) correlations: Vec<CorrelationFile>,
+        pub(crate) models: Vec<ModelFile>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub(crate) requirements: Vec<Requirement>,
+        #[serde(default)]
+        pub(crate) comparisons: Vec<ComparisonFile>,
+    }
 }
 
 pub(super) const VARIANCE: &str = "root_second_moment_variance_kg_m2";
@@ -114,19 +59,6 @@ pub(super) const FOLLOWS: &str = "inertia_follows_mass";
 const LOOK_EVERY: u64 = 1000;
 
 impl ScenarioFile {
-    /// Until when the runs go on, all of it filled in.
-    pub(super) fn until(&mut self, size: Size) -> Result<Option<Until>, ScenarioError> {
-        let requirements = self.requirements.len();
-        let fill = |until: &mut UntilFile| until.fill(size, LOOK_EVERY, requirements);
-        self.until.as_mut().map(fill).transpose()
-    }
-
-    /// What it says of itself.
-    pub(crate) fn about(&self) -> About {
-        let Self { vehicle, question, author, date, .. } = self.clone();
-        About { vehicle, question, author, date }
-    }
-
     /// The loads between the bodies and which they are, kind by kind, in the order of the fields that hold them.
     pub(crate) fn loads(&self) -> impl Iterator<Item = (LoadId, &dyn GivenLoad)> {
         load::given(&self.springs)
@@ -149,7 +81,6 @@ pub(crate) struct BodyFile {
     #[serde(default)]
     pub(crate) dispersion: DispersionFile,
     /// Of mass, mass centre and inertia, in the place of what the dispersion says of them.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) law: Option<AsGiven<MassPropertiesLaw>>,
 }
 
@@ -162,45 +93,28 @@ pub(crate) struct DispersionFile {
     #[serde(default, skip_serializing_if = "Each::is_flight")]
     pub(crate) inertia_drawn: Each,
     /// Filled in unless gyration lengths or a whole law say it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) roots: Option<RootsFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) root_second_moment_variance_kg_m2: Option<[f64; 3]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) root_second_moment_covariance_kg_m2: Option<[[f64; 3]; 3]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) root_second_moment_bounds_sqrt_kg_m: Option<[[f64; 2]; 3]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) root_second_moment_samples_sqrt_kg_m: Option<Vec<[f64; 3]>>,
     /// Of the roots themselves, not of changes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) root_second_moment_laws_sqrt_kg_m: Option<[ScalarLawForm; 3]>,
     /// Of changes from the nominal lengths, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) gyration_lengths_m: Option<[ScalarLawForm; 3]>,
     /// Filled in unless a whole law says it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) axes: Option<AxesLawFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) axes_covariance: Option<[[f64; 4]; 4]>,
     /// Where the matter is, body axes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) inside: Option<AsGiven<Region>>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) mass_kg: Option<ScalarLawFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) mass_percent: Option<ScalarLawFile>,
     #[serde(default, skip_serializing_if = "Follows::not_at_all")]
     pub(crate) inertia_follows_mass: Option<Follows>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) mass_centre_m: Option<VectorLawFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) position_m: Option<VectorLawFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) velocity_m_per_s: Option<VectorLawFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) attitude_deg: Option<VectorLawFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) angular_velocity_rad_per_s: Option<VectorLawFile>,
 }
 
@@ -208,16 +122,13 @@ pub(crate) struct DispersionFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StackFile {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) dispersion: Option<StackDispersionFile>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StackDispersionFile {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) attitude_deg: Option<VectorLawFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) angular_velocity_rad_per_s: Option<VectorLawFile>,
 }
 
@@ -320,9 +231,7 @@ pub(crate) struct ComparisonFile {
 #[serde(deny_unknown_fields)]
 pub(crate) struct SourceFile {
     pub(crate) title: String,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) inertia_ratio: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) wobble_deg: Option<f64>,
 }
 
@@ -335,10 +244,6 @@ impl Default for IntegrationFile {
 
 fn default_coast() -> f64 {
     60.0
-}
-
-fn default_seed() -> u64 {
-    1
 }
 
 fn default_spin_axis() -> [f64; 3] {

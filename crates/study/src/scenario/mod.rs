@@ -3,12 +3,12 @@
 mod as_given;
 mod body;
 mod chance;
-mod changed;
 mod clearance;
 mod dispersions;
 mod each;
 mod file;
 mod follows;
+mod frame;
 mod joint;
 mod joint_body;
 mod law;
@@ -33,7 +33,6 @@ use std::path::{Path, PathBuf};
 
 pub(crate) use as_given::AsGiven;
 pub(crate) use body::UncertainBody;
-pub(crate) use changed::changed;
 use clearance::Outlines;
 pub(crate) use clearance::distance_m;
 pub(crate) use dispersions::{Dispersions, check_follows};
@@ -41,6 +40,7 @@ use file::ScenarioFile;
 pub(crate) use file::{
     AxesLawFile, BodyFile, CorrelationFile, DispersionFile, RootsFile, ShapeFile,
 };
+pub(crate) use frame::{Framed, check_name, check_seed, default_seed, framed, framed_file};
 pub(crate) use joint::{Dispersed, Joint, Number, Target};
 pub(crate) use law::{GivenLaw, refused};
 pub(crate) use limits::base_runs;
@@ -54,7 +54,7 @@ pub(crate) use parse::{some_whole, whole};
 pub(crate) use scalar::ScalarLawFile;
 pub(crate) use {each::Each, until::UntilFile, vehicles::Size};
 
-use crate::{about::About, body::Body, fleet::Fleet, folded::FoldedRoot};
+use crate::{body::Body, fleet::Fleet, folded::FoldedRoot};
 
 const PECK_2003: &str = include_str!("peck-2003.toml");
 
@@ -134,7 +134,7 @@ pub struct Scenario {
 /// The estimated share of draws that a region keeps and its standard error, of payload and stage where they have one.
 pub(crate) type KeptShares = [Option<(f64, f64)>; 2];
 
-changed!(Scenario, ScenarioFile);
+framed!(Scenario, ScenarioFile);
 
 impl Scenario {
     /// The separation study of Peck (2003: Table 1, Eq. 27, 30 and 31), under four models.
@@ -165,23 +165,10 @@ impl Scenario {
         Self::check(file)
     }
 
-    /// What it says of itself.
-    pub(crate) fn about(&self) -> About {
-        self.file.about()
-    }
-
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
         file.models.iter_mut().for_each(|model| model.fill(&Body::BOTH));
         [&mut file.payload, &mut file.stage].into_iter().for_each(BodyFile::fill);
-        check_name("name", &file.name)?;
-        let said = file.about().check();
-        said.map_err(|(key, problem)| ScenarioError::field(key, problem))?;
-        let keys = [file.runs, file.vehicles, file.flights];
-        let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
-        [file.runs, file.vehicles, file.flights] = size.keys();
-        let until = file.until(size)?;
-        base_runs(file.drivers)?;
-        check_seed(file.seed)?;
+        let (size, until) = file.check_frame()?;
         let spin_axis = direction("spin_axis", file.spin_axis)?;
         if let Some(source) = &file.source {
             let values =
@@ -273,24 +260,6 @@ impl Scenario {
         bodies.into_iter().filter_map(of).flatten().collect()
     }
 
-    /// Its name.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        &self.file.name
-    }
-
-    /// Runs of each model: the flights of all vehicles, if it has vehicles.
-    #[must_use]
-    pub fn runs(&self) -> u64 {
-        self.size.runs()
-    }
-
-    /// Its vehicles and how often each flies, if it has both.
-    #[must_use]
-    pub fn fleet(&self) -> Option<Fleet> {
-        self.size.fleet()
-    }
-
     /// The fleet, if flights of a vehicle have something in common, so that runs are not independent.
     pub(crate) fn sharing(&self) -> Option<Fleet> {
         self.size.sharing(self.dispersions.drawn_for())
@@ -299,24 +268,6 @@ impl Scenario {
     /// The number of the random stream that a run takes for what is drawn for each vehicle, or for each flight.
     pub(crate) fn stream(&self, each: Each, run: u64) -> u64 {
         self.size.stream(each, run)
-    }
-
-    /// Seed of all random streams.
-    #[must_use]
-    pub fn seed(&self) -> u64 {
-        self.file.seed
-    }
-
-    /// Names of the models, in order.
-    pub fn model_names(&self) -> impl Iterator<Item = &str> {
-        self.models.iter().map(|m| m.name.as_str())
-    }
-
-    /// The resolved scenario as a TOML file, every default spelled out: enough to run it again.
-    #[must_use]
-    pub fn to_toml(&self) -> String {
-        // Numbers, strings and tables of them always serialize.
-        toml::to_string(&self.file).unwrap_or_default()
     }
 
     /// SHA-256 of [`to_toml`](Self::to_toml), in hexadecimal: two studies with the same fingerprint
@@ -464,29 +415,6 @@ pub(crate) fn read_file(path: &Path) -> Result<String, ScenarioError> {
     gyradius_campaign::restore(gyradius_campaign::folder_of(path))
         .map_err(|error| unread(std::io::Error::other(error)))?;
     read_text(path, limits::BYTES).map_err(unread)
-}
-
-pub(crate) fn check_seed(seed: u64) -> Result<(), ScenarioError> {
-    if i64::try_from(seed).is_ok() {
-        Ok(())
-    } else {
-        let problem = format!("{seed}: it must be between 0 and {}", i64::MAX);
-        Err(ScenarioError::field("seed", problem))
-    }
-}
-
-/// Names become names of folders.
-pub(crate) fn check_name(field: &str, name: &str) -> Result<(), ScenarioError> {
-    let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    // What Windows takes for devices.
-    let device = ["con", "prn", "aux", "nul"].contains(&name.to_ascii_lowercase().as_str());
-    if !name.is_empty() && name.len() <= 64 && name.chars().all(allowed) && !device {
-        return Ok(());
-    }
-    let problem = format!(
-        "{name:?}: it must be 1 to 64 letters, digits, hyphens and underscores, for it names a folder"
-    );
-    Err(ScenarioError::field(field, problem))
 }
 
 #[cfg(test)]

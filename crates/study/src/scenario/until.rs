@@ -12,25 +12,13 @@ use crate::fleet::Fleet;
 pub(crate) struct UntilFile {
     rule: StoppingRule,
     /// Filled in if there were more runs before than the rule would have asked for.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "parse::some_whole"
-    )]
+    #[serde(default, deserialize_with = "parse::some_whole")]
     first_look: Option<u64>,
     /// Filled in.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "parse::some_whole"
-    )]
+    #[serde(default, deserialize_with = "parse::some_whole")]
     look_every: Option<u64>,
     /// Filled in: the runs of the scenario.
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "parse::some_whole"
-    )]
+    #[serde(default, deserialize_with = "parse::some_whole")]
     most_runs: Option<u64>,
 }
 

@@ -1,64 +1,33 @@
 //! A scenario of a simulator as it stands in a TOML file.
 
-use gyradius_campaign::{Requirement, Rows, Until};
+use gyradius_campaign::{Requirement, Until};
 use gyradius_dispersion::{MassPropertiesLaw, ModelKind, ModelParameters};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 use crate::{
     ScenarioError,
-    about::About,
     scenario::{
         AsGiven, AxesLawFile, BodyFile, CorrelationFile, DispersionFile, ModelFile, ModelLaw,
-        Owner, RootsFile, ScalarLawFile, Size, UntilFile, some_whole, whole,
+        Owner, RootsFile, ScalarLawFile, framed_file,
     },
 };
 
-/// A scenario of a simulator, defaults filled in. Units are in the names.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct File {
-    pub(super) name: String,
-    /// What it is about, in words of the user.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) vehicle: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) question: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) author: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) date: Option<String>,
-    /// Filled in unless there are vehicles and flights.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "some_whole")]
-    pub(super) runs: Option<u64>,
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "some_whole")]
-    pub(super) vehicles: Option<u64>,
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "some_whole")]
-    pub(super) flights: Option<u64>,
-    #[serde(default = "default_seed", deserialize_with = "whole")]
-    pub(super) seed: u64,
-    /// Which rows of the run tables are kept, and which columns, if not all.
-    #[serde(default, skip_serializing_if = "Rows::is_all")]
-    pub(super) rows: Rows,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) columns: Option<Vec<String>>,
-    /// Base runs by which it is found what drives the outcome.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "some_whole")]
-    pub(super) drivers: Option<u64>,
-    /// Until when the runs go on, if not to their number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) until: Option<UntilFile>,
-    pub(super) simulation: SimulationFile,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) bodies: Vec<SimulatedBodyFile>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) quantities: Vec<QuantityFile>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) correlations: Vec<CorrelationFile>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) requirements: Vec<Requirement>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) models: Vec<ModelFile<BodyName>>,
+framed_file! {
+    /// A scenario of a simulator, defaults filled in. Units are in the names.
+    File, LOOK_EVERY, {
+        pub(super) simulation: SimulationFile,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub(super) bodies: Vec<SimulatedBodyFile>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub(super) quantities: Vec<QuantityFile>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub(super) correlations: Vec<CorrelationFile>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub(super) requirements: Vec<Requirement>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub(super) models: Vec<ModelFile<BodyName>>,
+    }
 }
 
 /// Seconds that a run of a command may take, if nothing is said.
@@ -68,35 +37,20 @@ const MOST_CHARACTERS: usize = 200;
 /// Runs between looks, if nothing is said: a block.
 const LOOK_EVERY: u64 = 256;
 
-impl File {
-    /// Until when the runs go on, all of it filled in.
-    pub(super) fn until(&mut self, size: Size) -> Result<Option<Until>, ScenarioError> {
-        let requirements = self.requirements.len();
-        let fill = |until: &mut UntilFile| until.fill(size, LOOK_EVERY, requirements);
-        self.until.as_mut().map(fill).transpose()
-    }
-}
-
 /// How the simulator is started, or which function of a program it is, and what it answers with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SimulationFile {
     /// In the place of a command: which function of the calling program it is, in words.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) function: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) command: Option<Vec<String>>,
     /// Filled in for a command.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) per_run: Option<bool>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) timeout_s: Option<f64>,
     /// Where the command belongs; the folder of the scenario if not given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) folder: Option<PathBuf>,
     /// SHA-256 of the files that the command names, so that runs of another simulator are not mixed with these; in what is
     /// resolved.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) files_sha256: Option<String>,
     #[serde(default)]
     pub(super) outputs: Vec<OutputFile>,
@@ -159,13 +113,11 @@ pub(super) struct OutputFile {
 pub(super) struct SimulatedBodyFile {
     pub(super) name: String,
     pub(super) mass_kg: f64,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) mass_centre_m: Option<[f64; 3]>,
     pub(super) inertia_kg_m2: [[f64; 3]; 3],
     #[serde(default, skip_serializing_if = "says_nothing")]
     pub(super) dispersion: DispersionFile,
     /// Of mass, mass centre and inertia, in the place of what the dispersion says of them.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) law: Option<AsGiven<MassPropertiesLaw>>,
 }
 
@@ -206,12 +158,6 @@ impl Owner for BodyName {
 }
 
 impl File {
-    /// What it says of itself.
-    pub(super) fn about(&self) -> About {
-        let Self { vehicle, question, author, date, .. } = self.clone();
-        About { vehicle, question, author, date }
-    }
-
     /// Whether a model draws the roots and the axes of bodies: one that is principal, to which any other may be matched. It is
     /// filled in where there is none.
     pub(super) fn draws_roots_and_axes(&self) -> bool {
@@ -261,10 +207,6 @@ fn says_nothing(dispersion: &DispersionFile) -> bool {
         nothing.fill();
         *dispersion == nothing
     }
-}
-
-fn default_seed() -> u64 {
-    1
 }
 
 fn default_unit() -> String {

@@ -12,12 +12,10 @@ use super::{
     number::{Number, check_column},
 };
 use crate::{
-    Fleet, FoldedRoot, ScenarioError,
-    about::About,
-    model,
+    Fleet, FoldedRoot, ScenarioError, model,
     scenario::{
-        Axes, Joint, Law, List, ModelFile, ModelLaw, ModelSpec, Size, UntilFile, base_runs,
-        changed, check_models, check_name, check_seed, parse_toml, place, refused,
+        Axes, Joint, Law, List, ModelFile, ModelLaw, ModelSpec, Size, check_models, framed,
+        parse_toml, place, refused,
     },
 };
 
@@ -44,28 +42,14 @@ pub struct SimulatorScenario {
     function: Option<SimulatorFunction>,
 }
 
-changed!(SimulatorScenario, File);
+framed!(SimulatorScenario, File);
 
 impl SimulatorScenario {
-    /// Whether the text of a scenario file is of a simulator: whether it has a table `[simulation]`.
-    #[must_use]
-    pub fn is_one(text: &str) -> bool {
-        parse_toml::<toml::Table>(text).is_ok_and(|table| table.contains_key("simulation"))
-    }
-
     /// Of the text of a file that is in a folder; what models need of the bodies is not checked yet.
     pub(super) fn parse(text: &str, folder: &Path) -> Result<Self, ScenarioError> {
         let mut file = parse_toml::<File>(text)
             .map_err(|message| ScenarioError::Parse { path: None, message })?;
-        check_name("name", &file.name)?;
-        let said = file.about().check();
-        said.map_err(|(key, problem)| ScenarioError::field(key, problem))?;
-        let keys = [file.runs, file.vehicles, file.flights];
-        let size = Size::of(UntilFile::runs(file.until.as_ref(), keys))?;
-        [file.runs, file.vehicles, file.flights] = size.keys();
-        let until = file.until(size)?;
-        base_runs(file.drivers)?;
-        check_seed(file.seed)?;
+        let (size, until) = file.check_frame()?;
         file.simulation.fill()?;
         let is_function = file.simulation.function.is_some();
         let lists = [
@@ -148,51 +132,10 @@ impl SimulatorScenario {
         Ok(())
     }
 
-    /// What it says of itself.
-    pub(crate) fn about(&self) -> About {
-        self.file.about()
-    }
-
-    /// Its name.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        &self.file.name
-    }
-
-    /// Runs of each model: the flights of all vehicles, if it has vehicles.
-    #[must_use]
-    pub fn runs(&self) -> u64 {
-        self.size.runs()
-    }
-
-    /// Its vehicles and how often each flies, if it has both.
-    #[must_use]
-    pub fn fleet(&self) -> Option<Fleet> {
-        self.size.fleet()
-    }
-
     /// The fleet, if flights of a vehicle have something in common, so that runs are not independent.
     pub(super) fn sharing(&self) -> Option<Fleet> {
         let inertias = self.bodies.iter().map(|body| body.inertia_drawn);
         self.size.sharing(inertias.chain(self.dispersed.drawn_for()))
-    }
-
-    /// Seed of all random streams.
-    #[must_use]
-    pub fn seed(&self) -> u64 {
-        self.file.seed
-    }
-
-    /// Names of the models, in order.
-    pub fn model_names(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.models.iter().map(|model| model.name.as_str())
-    }
-
-    /// The resolved scenario as a TOML file, every default spelled out: enough to run it again.
-    #[must_use]
-    pub fn to_toml(&self) -> String {
-        // Numbers, strings and tables of them always serialize.
-        toml::to_string(&self.file).unwrap_or_default()
     }
 
     /// The words of the command of the simulator; none if it is a function.

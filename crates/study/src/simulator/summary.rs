@@ -1,8 +1,8 @@
 //! Campaigns of simulators as studies: how their runs are simulated, and what they amount to.
 
 use gyradius_campaign::{
-    Column, ExternalSimulation, FirstLook, Forecast, Kept, Progress, Requirement, Runs,
-    SampleSummary, Simulator, SimulatorFunction, Surveys, Until,
+    Column, ExternalSimulation, FirstLook, Forecast, Progress, Runs, SampleSummary, Simulator,
+    SimulatorFunction, Surveys,
 };
 use gyradius_report::{Document, Overview, file_of, optional, with_unit};
 use gyradius_statistics::Confidence;
@@ -17,7 +17,6 @@ use std::{
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
 use crate::{
     Fleet, Notice, Options, ScenarioError, Study, StudyError,
-    about::About,
     alerts::{self, Alert},
     carry_out::carry_out,
     decisions, drivers,
@@ -161,54 +160,6 @@ impl Subject for SimulatorScenario {
         Self::from_toml(text, Path::new("."))
     }
 
-    fn name(&self) -> &str {
-        self.name()
-    }
-
-    fn about(&self) -> About {
-        self.about()
-    }
-
-    fn seed(&self) -> u64 {
-        self.seed()
-    }
-
-    fn runs(&self) -> u64 {
-        self.runs()
-    }
-
-    fn kept(&self) -> Kept {
-        self.kept()
-    }
-
-    fn fleet(&self) -> Option<Fleet> {
-        self.fleet()
-    }
-
-    fn independent_runs(&self) -> Option<u64> {
-        self.sharing().map(Fleet::vehicles)
-    }
-
-    fn requirements(&self) -> &[Requirement] {
-        self.requirements()
-    }
-
-    fn until(&self) -> Option<&Until> {
-        self.until()
-    }
-
-    fn ended_after(&self, runs: u64, first_look: Option<u64>) -> Result<Self, ScenarioError> {
-        self.ended_after(runs, first_look)
-    }
-
-    fn model_names(&self) -> impl Iterator<Item = &str> {
-        self.model_names()
-    }
-
-    fn to_toml(&self) -> String {
-        self.to_toml()
-    }
-
     fn prepare(&self, stop: Option<&Arc<AtomicBool>>) -> Result<Simulator, ScenarioError> {
         if let Some(name) = self.function_name() {
             let absent = || {
@@ -251,10 +202,6 @@ impl Subject for SimulatorScenario {
         let simulation =
             |(place, name): (usize, &'a str)| Ok((name, self.simulation(simulator, place)?));
         self.model_names().enumerate().map(simulation).collect()
-    }
-
-    fn drivers(&self) -> Option<u64> {
-        self.drivers()
     }
 
     fn groups(&self, _: &Simulator, place: usize) -> Result<Groups, ScenarioError> {
