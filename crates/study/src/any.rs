@@ -367,7 +367,7 @@ impl Outcome {
         Self {
             folder: study.folder().to_owned(),
             head: summary.head().clone(),
-            complete: summary.head().missing().is_empty(),
+            complete: summary.head().missing.is_empty(),
             models: summary
                 .failed()
                 .into_iter()
@@ -391,13 +391,13 @@ impl Outcome {
     /// What the runs say of the requirements, model by model.
     #[must_use]
     pub fn requirements(&self) -> &[Judged] {
-        self.head.requirements()
+        &self.head.requirements
     }
 
     /// The runs that are not done; none of a complete study.
     #[must_use]
     pub fn missing(&self) -> &[Missing] {
-        self.head.missing()
+        &self.head.missing
     }
 }
 
@@ -405,30 +405,30 @@ impl Outcome {
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (head, report) = (&self.head, self.folder.join("report.html"));
-        let (name, runs, seed) = (head.scenario(), head.runs_per_model(), head.seed());
-        let vehicles = head.fleet().map_or_else(String::new, |fleet| format!("{fleet}, "));
+        let (name, runs, seed) = (&head.scenario, head.runs_per_model, head.seed);
+        let vehicles = head.fleet.map_or_else(String::new, |fleet| format!("{fleet}, "));
         writeln!(f, "{name}: {vehicles}{runs} runs a model, seed {seed}\n")?;
-        if let Some(ended) = head.ended() {
+        if let Some(ended) = &head.ended {
             writeln!(f, "{ended}\n")?;
         }
-        for judged in head.requirements() {
+        for judged in &head.requirements {
             let requirement = judged.judgement().requirement().name();
             writeln!(f, "requirement {requirement}, {}\n{}", judged.model(), judged.judgement())?;
         }
-        for drivers in head.drivers() {
-            for driven in drivers.outputs().iter().filter(|driven| driven.unit().is_none()) {
-                let ranked = driven.ranked(drivers.groups()).into_iter().take(3);
+        for drivers in &head.drivers {
+            for driven in drivers.outputs.iter().filter(|driven| driven.unit.is_none()) {
+                let ranked = driven.ranked(&drivers.groups).into_iter().take(3);
                 let shares = ranked.filter_map(|(group, index)| {
                     let total = index.total()?.clipped(0.0, 1.0).value();
                     Some(format!("{group} {total:.2}"))
                 });
                 let shares = shares.collect::<Vec<_>>().join(", ");
-                let (output, model) = (driven.output(), drivers.model());
+                let (output, model) = (&driven.output, &drivers.model);
                 writeln!(f, "what fails {output}, {model}, by total Sobol' indices: {shares}\n")?;
             }
         }
         writeln!(f, "{}", self.table)?;
-        head.missing().iter().try_for_each(|runs| writeln!(f, "missing: {runs}"))?;
+        head.missing.iter().try_for_each(|runs| writeln!(f, "missing: {runs}"))?;
         writeln!(f, "report: {}", report.display())
     }
 }

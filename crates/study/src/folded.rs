@@ -10,10 +10,12 @@ const MANY: f64 = 0.0228;
 /// A radius of gyration or a root of a body whose law is folded at zero, so that it has not the mean and deviation stated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FoldedRoot {
-    body: String,
-    /// As correlations call it, with its axis.
-    quantity: String,
-    share: f64,
+    /// The body.
+    pub body: String,
+    /// `gyration_length_1` or `root_1`, about principal axis 1, and so on.
+    pub quantity: String,
+    /// The share of its law that lies below zero.
+    pub share: f64,
 }
 
 impl FoldedRoot {
@@ -26,24 +28,6 @@ impl FoldedRoot {
             share,
         })
         .collect()
-    }
-
-    /// The body.
-    #[must_use]
-    pub fn body(&self) -> &str {
-        &self.body
-    }
-
-    /// `gyration_length_1` or `root_1`, about principal axis 1, and so on.
-    #[must_use]
-    pub fn quantity(&self) -> &str {
-        &self.quantity
-    }
-
-    /// The share of its law that lies below zero.
-    #[must_use]
-    pub fn share(&self) -> f64 {
-        self.share
     }
 }
 

@@ -13,39 +13,42 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Head {
     pub(crate) gyradius_version: Cow<'static, str>,
-    pub(crate) scenario: String,
+    /// The name of the scenario.
+    pub scenario: String,
     /// What the scenario says of itself.
     #[serde(default, skip_serializing_if = "About::is_empty")]
     pub(crate) about: About,
     /// SHA-256 of the resolved scenario.
     pub(crate) fingerprint: String,
-    pub(crate) seed: u64,
-    pub(crate) runs_per_model: u64,
-    /// Whose flights they are, if there are vehicles.
+    /// The seed of all random numbers.
+    pub seed: u64,
+    /// Runs of each model, those that are missing too.
+    pub runs_per_model: u64,
+    /// The vehicles whose flights the runs are, if there are vehicles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) fleet: Option<Fleet>,
+    pub fleet: Option<Fleet>,
     /// Runs that are independent of each other, the first flights of the vehicles, if flights of a vehicle have something
     /// in common.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) independent_runs_per_model: Option<u64>,
     /// Runs that are not done, where not all are.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) missing: Vec<Missing>,
+    pub missing: Vec<Missing>,
     /// How many runs were done again because they had failed.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub(crate) done_again: u64,
     /// What ended the runs, if they were not done to a number that was stated before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) ended: Option<Ended>,
+    pub ended: Option<Ended>,
     /// What a reader should know before the results.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) alerts: Vec<Alert>,
     /// What the runs say of the requirements, model by model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) requirements: Vec<Judged>,
+    pub requirements: Vec<Judged>,
     /// What drives the outcome, model by model, if that was asked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(crate) drivers: Vec<Drivers>,
+    pub drivers: Vec<Drivers>,
     /// Where runs fail, model by model, if there is anything to tell.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) where_runs_fail: Vec<WhereRunsFail>,
@@ -56,57 +59,9 @@ pub struct Head {
 }
 
 impl Head {
-    /// The name of the scenario.
-    #[must_use]
-    pub fn scenario(&self) -> &str {
-        &self.scenario
-    }
-
-    /// The seed of all random numbers.
-    #[must_use]
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
-    /// Runs of each model, those that are missing too.
-    #[must_use]
-    pub fn runs_per_model(&self) -> u64 {
-        self.runs_per_model
-    }
-
-    /// The vehicles whose flights the runs are, if there are vehicles.
-    #[must_use]
-    pub fn fleet(&self) -> Option<Fleet> {
-        self.fleet
-    }
-
     /// How many runs of each model are independent of each other.
     pub(crate) fn independent_runs(&self) -> u64 {
         self.independent_runs_per_model.unwrap_or(self.runs_per_model)
-    }
-
-    /// What the runs say of the requirements, model by model.
-    #[must_use]
-    pub fn requirements(&self) -> &[Judged] {
-        &self.requirements
-    }
-
-    /// What ended the runs, if they were not done to a number that was stated before.
-    #[must_use]
-    pub fn ended(&self) -> Option<&Ended> {
-        self.ended.as_ref()
-    }
-
-    /// What drives the outcome, model by model; none if that was not asked.
-    #[must_use]
-    pub fn drivers(&self) -> &[Drivers] {
-        &self.drivers
-    }
-
-    /// The runs that are not done; none of a complete study.
-    #[must_use]
-    pub fn missing(&self) -> &[Missing] {
-        &self.missing
     }
 }
 
@@ -138,7 +93,8 @@ impl Judged {
 /// Runs of a model that are not done.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Missing {
-    model: String,
+    /// The model.
+    pub model: String,
     first_run: u64,
     runs: u64,
 }
@@ -147,12 +103,6 @@ impl Missing {
     pub(crate) fn new(model: &str, runs: Range<u64>) -> Self {
         let (first_run, runs) = (runs.start, runs.end - runs.start);
         Self { model: model.to_owned(), first_run, runs }
-    }
-
-    /// The model.
-    #[must_use]
-    pub fn model(&self) -> &str {
-        &self.model
     }
 
     /// The runs.

@@ -117,20 +117,27 @@ fn agree<C: Subject>(scenario: &C, folder: &Path) -> Result<(), StudyError> {
 /// What of a study is there.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Status {
-    scenario: String,
+    /// The name of the scenario.
+    pub scenario: String,
     /// Whether all runs are done and put together.
-    complete: bool,
-    runs_per_model: u64,
-    models: Vec<ModelStatus>,
-    missing: Vec<Missing>,
+    pub complete: bool,
+    /// Runs that each model is to have.
+    pub runs_per_model: u64,
+    /// What of each model is there.
+    pub models: Vec<ModelStatus>,
+    /// The runs that are not done.
+    pub missing: Vec<Missing>,
 }
 
 /// What of the runs of a model is there.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ModelStatus {
-    model: String,
-    finished: u64,
-    failed: u64,
+    /// Its name.
+    pub model: String,
+    /// Runs in finished blocks.
+    pub finished: u64,
+    /// How many of them failed.
+    pub failed: u64,
 }
 
 impl Status {
@@ -164,55 +171,5 @@ impl Status {
             models,
             missing,
         })
-    }
-
-    /// The name of the scenario.
-    #[must_use]
-    pub fn scenario(&self) -> &str {
-        &self.scenario
-    }
-
-    /// Whether all runs are done and put together.
-    #[must_use]
-    pub fn is_complete(&self) -> bool {
-        self.complete
-    }
-
-    /// Runs that each model is to have.
-    #[must_use]
-    pub fn runs_per_model(&self) -> u64 {
-        self.runs_per_model
-    }
-
-    /// What of each model is there.
-    #[must_use]
-    pub fn models(&self) -> &[ModelStatus] {
-        &self.models
-    }
-
-    /// The runs that are not done.
-    #[must_use]
-    pub fn missing(&self) -> &[Missing] {
-        &self.missing
-    }
-}
-
-impl ModelStatus {
-    /// Its name.
-    #[must_use]
-    pub fn model(&self) -> &str {
-        &self.model
-    }
-
-    /// Runs in finished blocks.
-    #[must_use]
-    pub fn finished(&self) -> u64 {
-        self.finished
-    }
-
-    /// How many of them failed.
-    #[must_use]
-    pub fn failed(&self) -> u64 {
-        self.failed
     }
 }

@@ -148,7 +148,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
     });
     let (runs, mut summary) = done.inspect_err(|_| blocks.abandon())?;
 
-    let complete = summary.head().missing().is_empty();
+    let complete = summary.head().missing.is_empty();
     let mut beside = None;
     if doing == Doing::All {
         let before = || whole_summary::<C>(&place);
@@ -200,7 +200,7 @@ fn write<C: Subject>(
     options: &Options,
     threads: &ThreadPool,
 ) -> Result<(PathBuf, C::Summary), StudyError> {
-    if summary.head().missing().is_empty() {
+    if summary.head().missing.is_empty() {
         let empty = empty_tables(simulations)?;
         folder.adopt(blocks, &empty, &scenario.kept(), threads, options.stop.as_deref())?;
     }
@@ -268,7 +268,7 @@ fn reduced<C: Subject>(
 fn whole_summary<C: Subject>(place: &Path) -> Option<C::Summary> {
     let read = fs::read_to_string(place.join("summary.json")).ok()?;
     let summary = serde_json::from_str::<C::Summary>(&read).ok()?;
-    summary.head().missing().is_empty().then_some(summary)
+    summary.head().missing.is_empty().then_some(summary)
 }
 
 /// Puts together what is there of a study whose runs are not all done, in its folder, which holds this scenario.
@@ -335,7 +335,7 @@ fn finished<C: Subject>(
     }
     let place = folder.place().to_owned();
     let Some(summary) = whole_summary::<C>(&place) else { return Ok(None) };
-    if summary.head().drivers().is_empty() && drivers {
+    if summary.head().drivers.is_empty() && drivers {
         return Ok(None);
     }
     let empty = empty_tables(simulations)?;

@@ -19,25 +19,25 @@ pub(crate) fn status(arguments: &StatusArgs) -> Result<ExitCode, Box<dyn Error>>
     } else {
         print(&text(&status, folder))?;
     }
-    Ok(if status.is_complete() { ExitCode::SUCCESS } else { ExitCode::from(UNFINISHED) })
+    Ok(if status.complete { ExitCode::SUCCESS } else { ExitCode::from(UNFINISHED) })
 }
 
 fn text(status: &Status, folder: &Path) -> String {
-    let of = status.runs_per_model();
-    let widest = status.models().iter().map(|model| model.model().chars().count());
+    let of = status.runs_per_model;
+    let widest = status.models.iter().map(|model| model.model.chars().count());
     let width = widest.max().unwrap_or(0).max("model".len());
-    let mut text = format!("{}: {of} runs a model\n\n", status.scenario());
+    let mut text = format!("{}: {of} runs a model\n\n", status.scenario);
     // Writing to a string does not fail.
     let _ =
         writeln!(text, "{:width$}  {:>12}  {:>12}  {:>12}", "model", "done", "missing", "failed");
-    for model in status.models() {
-        let (name, done, failed) = (model.model(), model.finished(), model.failed());
+    for model in &status.models {
+        let (name, done, failed) = (&model.model, model.finished, model.failed);
         let missing = of.saturating_sub(done);
         let _ = writeln!(text, "{name:width$}  {done:>12}  {missing:>12}  {failed:>12}");
     }
     text.push('\n');
-    let missing = status.missing();
-    if status.is_complete() {
+    let missing = &status.missing;
+    if status.complete {
         text.push_str("All runs are done and put together.\n");
     } else if missing.is_empty() {
         let _ = writeln!(

@@ -1,7 +1,7 @@
 //! Words of the user: read back, refused, and without effect on runs.
 
 use super::*;
-use crate::{Scenario, ScenarioError, contents::identity};
+use crate::{Scenario, ScenarioError, contents::identity, scenario::Framed};
 use proptest::prelude::*;
 
 /// The keys, with a text for each that has one.

@@ -133,7 +133,7 @@ proptest! {
                 ("heavy", outcomes.len().to_string())
             }
             Alert::NearBoundary { near, body, .. } => ("near", format!("{near} {body}")),
-            Alert::Folded(root) => ("folded", format!("{} {}", root.body(), root.quantity())),
+            Alert::Folded(root) => ("folded", format!("{} {}", root.body, root.quantity)),
         });
         prop_assert_eq!(told.collect::<Vec<_>>(), expected);
         let written = serde_json::to_string(&summary).unwrap();

@@ -22,8 +22,8 @@ use std::{
 
 use super::{SimulatorDraws, SimulatorReplay, SimulatorScenario, SimulatorSummary};
 use crate::{
-    AnyScenario, CampaignError, ModelKind, ModelStatus, Options, Scenario, Shard, Status, Study,
-    StudyError, is_begun,
+    AnyScenario, CampaignError, ModelKind, Options, Scenario, Shard, Status, Study, StudyError,
+    is_begun,
     model::{self, Separations},
     put_together, write_report,
 };
@@ -349,9 +349,9 @@ fn shards_are_put_together_without_the_simulator() {
         any.run_shard(&options, shard(i, 3), &|_| {}, &|_| {}).unwrap();
     }
     let status = Status::read(&out("shards")).unwrap();
-    let done: u64 = status.models().iter().map(ModelStatus::finished).sum();
+    let done: u64 = status.models.iter().map(|model| model.finished).sum();
     assert_eq!(done, any.planned_runs(Some(shard(1, 3))) + any.planned_runs(Some(shard(2, 3))));
-    assert!(!status.is_complete() && is_begun(&out("shards")));
+    assert!(!status.complete && is_begun(&out("shards")));
     let part = put_together(&out("shards"), &Options::default(), &|_| {}).unwrap();
     assert_eq!(
         part.missing().iter().map(|m| m.range().end - m.range().start).sum::<u64>(),
@@ -364,7 +364,7 @@ fn shards_are_put_together_without_the_simulator() {
     fs::remove_file(folder.path().join("answer.sh")).unwrap();
     let together = put_together(&out("shards"), &Options::default(), &|_| {}).unwrap();
     assert!(together.missing().is_empty() && !is_begun(&out("shards")));
-    assert!(Status::read(&out("shards")).unwrap().is_complete());
+    assert!(Status::read(&out("shards")).unwrap().complete);
     for name in ["scenario.toml", "summary.json", "report.html", "report.md"] {
         let [a, b] =
             [whole.folder(), together.folder()].map(|place| fs::read(place.join(name)).unwrap());
@@ -376,7 +376,7 @@ fn shards_are_put_together_without_the_simulator() {
     let more = scenario.with_runs(1200).unwrap();
     let refused = more.study(&again, &|_| {}, &|_| {}).unwrap_err().to_string();
     assert!(refused.contains("simulation."), "{refused}");
-    assert!(Status::read(&out("shards")).unwrap().is_complete());
+    assert!(Status::read(&out("shards")).unwrap().complete);
 }
 
 /// Scores of what is correlated have the coefficient, and the marginal laws stay.

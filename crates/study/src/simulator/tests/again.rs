@@ -52,7 +52,7 @@ done
         let ended = scenario.study(&first, &progress, &|_| {});
         assert_eq!(ended.is_err(), stopped);
         let status = Status::read(&folder.path().join(&name)).unwrap();
-        let failed = status.models()[0].failed();
+        let failed = status.models[0].failed;
         assert!(failed > 100, "{failed}");
 
         // It is stopped in the middle of what is done again: what was there still counts.
@@ -61,7 +61,7 @@ done
         let error = scenario.study(&again, &|_| {}, &|_| {}).unwrap_err();
         assert!(matches!(error, StudyError::Campaign(CampaignError::Stopped)), "{error}");
         let status = Status::read(&folder.path().join(&name)).unwrap();
-        assert_eq!((status.models()[0].failed(), status.is_complete()), (failed, !stopped));
+        assert_eq!((status.models[0].failed, status.complete), (failed, !stopped));
 
         // Still busy: they fail again, and are told so.
         let said = std::sync::Mutex::new(Vec::new());
@@ -73,7 +73,7 @@ done
         let again = Options { retry_failed: true, ..options(&name) };
         scenario.study(&again, &|_| {}, &say).unwrap();
         assert_eq!(said.lock().unwrap()[..], [(failed, failed)]);
-        let all = Status::read(&folder.path().join(&name)).unwrap().models()[0].failed();
+        let all = Status::read(&folder.path().join(&name)).unwrap().models[0].failed;
 
         fs::remove_file(&busy).unwrap();
         let before = asked();
@@ -89,7 +89,7 @@ done
         assert_eq!(said.lock().unwrap().len(), 2);
         assert_eq!((asked() - before) as u64, all);
         let status = Status::read(study.folder()).unwrap();
-        assert!(status.is_complete() && status.models()[0].failed() == 0);
+        assert!(status.complete && status.models[0].failed == 0);
         assert!(!study.folder().join(".gyradius/campaign").exists());
     }
 }

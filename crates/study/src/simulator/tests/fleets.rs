@@ -5,8 +5,8 @@ use gyradius_statistics::{Confidence, Moments, Proportion};
 use std::collections::BTreeMap;
 
 use super::{
-    AnyScenario, ModelStatus, Options, Path, Shard, SimulatorReplay, SimulatorScenario,
-    SimulatorSummary, Status, Study, folder, fs, put_together, scenario, vehicles::text,
+    AnyScenario, Options, Path, Shard, SimulatorReplay, SimulatorScenario, SimulatorSummary,
+    Status, Study, folder, fs, put_together, scenario, vehicles::text,
 };
 use crate::{Draw, DrawOptions, Which};
 
@@ -199,7 +199,7 @@ fn shards_of_vehicles_are_one_study() {
             any.run_shard(&options(&name, threads), shard, &|_| {}, &|_| {}).unwrap();
         }
         let done: u64 =
-            Status::read(&out(&name)).unwrap().models().iter().map(ModelStatus::finished).sum();
+            Status::read(&out(&name)).unwrap().models.iter().map(|model| model.finished).sum();
         assert_eq!(done, 2 * 63 * 30);
         put_together(&out(&name), &Options::default(), &|_| {}).unwrap();
         let own = written(&name);

@@ -152,9 +152,9 @@ fn rare_events_and_shards_take_functions() {
         assert!(refused.to_string().contains("simulation.function"), "{refused}");
         function.run_shard(&options, shard, &|_| {}, &|_| {}).unwrap();
     }
-    assert!(!Status::read(&out).unwrap().is_complete());
+    assert!(!Status::read(&out).unwrap().complete);
     put_together(&out, &options, &|_| {}).unwrap();
-    assert!(Status::read(&out).unwrap().is_complete());
+    assert!(Status::read(&out).unwrap().complete);
     let whole = Options { out: Some(folder.path().join("whole")), ..Options::default() };
     function.run(&whole, &|_| {}, &|_| {}).unwrap();
     assert_eq!(tables(&out), tables(&folder.path().join("whole")));

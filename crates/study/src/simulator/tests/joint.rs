@@ -3,8 +3,6 @@
 use gyradius_inertia::{Containment, Inertia, InertiaMatrix, MassProperties, Region};
 use nalgebra::Vector3;
 
-use crate::FoldedRoot;
-
 use super::{
     MODELS, Options, SimulatorDraws, SimulatorScenario, drawn, folder, fs, scenario, uniform,
 };
@@ -196,7 +194,7 @@ fn lengths_that_are_folded_are_told() {
         let text = open.replace("[0.03, 0.02, 0.02]", &format!("[{}]", sigmas.join(", ")));
         let read = scenario(&(uniform() + &text), folder.path()).with_runs(3).unwrap();
         let found = read.folded();
-        let names: Vec<&str> = found.iter().map(FoldedRoot::quantity).collect();
+        let names: Vec<&str> = found.iter().map(|root| root.quantity.as_str()).collect();
         let expected: Vec<String> = (1..4)
             .filter(|axis| which >> (axis - 1) & 1 == 1)
             .map(|axis| format!("gyration_length_{axis}"))
@@ -204,7 +202,7 @@ fn lengths_that_are_folded_are_told() {
         assert_eq!(names, expected);
         for root in &found {
             // Φ(−1.9)
-            assert!(root.body() == "a" && (root.share() - 0.028_716_56).abs() < 1e-6, "{root}");
+            assert!(root.body == "a" && (root.share - 0.028_716_56).abs() < 1e-6, "{root}");
         }
         if which == 5 {
             let out = Some(folder.path().join("folded"));
