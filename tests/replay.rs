@@ -237,7 +237,7 @@ fn what_cannot_be_replayed_is_named() {
     assert_eq!(error(None, 5, 0.0), "run 5: the runs are numbered from 0 to 4");
     assert_eq!(
         error(Some("naif"), 0, 0.0),
-        "model \"naif\": the scenario has proposed, published, naive, naive-matched"
+        "model: \"naif\": the scenario has proposed, published, naive, naive-matched"
     );
     for coast in [-1.0, f64::NAN, f64::INFINITY, 1e9] {
         assert!(error(None, 0, coast).contains("it must lie between 0 and 3600"));

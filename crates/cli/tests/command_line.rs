@@ -297,7 +297,7 @@ fn a_run_is_replayed_into_a_folder() {
     assert!(shell.refused(&["replay", "--run", "-1"]).contains("-1"));
     assert!(shell.refused(&["replay"]).contains("--run"));
     let model = shell.refused(&["replay", "--run", "0", "--model", "naif"]);
-    assert!(model.contains("model \"naif\": the scenario has proposed"), "{model}");
+    assert!(model.contains("model: \"naif\": the scenario has proposed"), "{model}");
     assert!(shell.refused(&["replay", "--run", "0", "--coast", "-1"]).contains("coast = -1.0 s"));
     let taken =
         shell.refused(&["replay", "--run", "1", "--out", "target/replay/peck-2003/naive-7"]);

@@ -318,7 +318,7 @@ fn files_are_whole_and_replace_nothing_unasked() {
         (&["s.toml", "-o", ".", "--format", "csv", "--force"], "not a regular file"),
         (
             &["s.toml", "--model", "nemo", "-o", "c.csv"],
-            "model \"nemo\": the scenario has the models proposed",
+            "model: \"nemo\": the scenario has proposed",
         ),
         (&["s.toml", "--threads", "0", "-o", "c.csv"], "threads: 0: it must be between"),
         (&["--first", "9223372036854775807", "-n", "1"], "1 runs from run 9223372036854775807 on"),

@@ -196,12 +196,10 @@ fn chosen<C: Subject, D>(
     options: &DrawOptions,
     model: impl Fn(usize) -> Result<D, ScenarioError>,
 ) -> Result<Vec<(String, D)>, DrawError> {
-    let names: Vec<&str> = scenario.model_names().collect();
-    if let Some(unknown) = options.models.iter().find(|asked| !names.contains(&asked.as_str())) {
-        return Err(DrawError::Model { model: unknown.clone(), models: names.join(", ") });
-    }
-    let asked = |name: &str| options.models.is_empty() || options.models.iter().any(|n| n == name);
-    let asked = names.into_iter().enumerate().filter(|(_, name)| asked(name));
+    let asked = options.models.iter().map(|name| scenario.place_of(Some(name)));
+    let asked: Vec<usize> = asked.collect::<Result<_, _>>()?;
+    let all = scenario.model_names().enumerate();
+    let asked = all.filter(|(place, _)| asked.is_empty() || asked.contains(place));
     asked.map(|(place, name)| Ok((name.to_owned(), model(place)?))).collect()
 }
 
@@ -238,14 +236,6 @@ impl Simulation for SeparationDraws<'_> {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DrawError {
-    /// The scenario has no such model.
-    #[error("model {model:?}: the scenario has the models {models}")]
-    Model {
-        /// The model.
-        model: String,
-        /// Those that it has.
-        models: String,
-    },
     /// The last run would have a number that is too large.
     #[error("{runs} runs from run {first} on: the number of the last must be below {MOST}")]
     Runs {

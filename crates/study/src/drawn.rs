@@ -1,87 +1,100 @@
 //! Draws of what is uncertain besides the inertias, and the separation that they make.
 
 use gyradius_campaign::{Mix, StreamRng, Streams};
-use gyradius_dispersion::{InertiaLaw, ModelDraw};
+use gyradius_dispersion::ModelDraw;
 use gyradius_inertia::InertiaMatrix;
 use gyradius_separation::{BodyParameter, Separation, Stack};
 use nalgebra::Vector3;
 use rand_distr::{Distribution, StandardNormal};
-use std::sync::Arc;
 
 use crate::{
     body::Body,
     failure::Failure,
-    groups::Groups,
-    scenario::{Dispersions, Each, Joint, Number, Scenario, Target},
-    steering::Steering,
+    groups::{BodyLaw, Drawing, Groups},
+    scenario::{Dispersions, Each, Joint, Number, Scenario, Size, Target},
+    steering::{Steered, Steering},
 };
 
-/// The random streams of a model's dispersions, one for each quantity.
+/// What a model draws: the laws of its bodies, the random streams of its dispersions, one for each quantity, and its groups.
 #[derive(Debug)]
 pub(crate) struct Draws {
+    pub(crate) bodies: Vec<BodyLaw>,
     streams: Vec<Streams>,
-}
-
-/// The law of the inertia of a body under a model.
-#[derive(Debug)]
-pub(crate) struct BodyLaw {
-    pub(crate) law: Arc<dyn InertiaLaw>,
-    pub(crate) streams: Streams,
-    /// For what the inertia is drawn.
-    pub(crate) each: Each,
-    /// Whether it is the body's own, so that mass, mass centre and inertia are drawn from their joint law.
-    pub(crate) own: bool,
+    pub(crate) groups: Groups,
 }
 
 /// What draws a run takes: of each group, for vehicles or for flights, and steered if the run is.
 #[derive(Clone, Copy)]
 pub(crate) struct Taken<'a> {
     pub(crate) mix: Mix<'a>,
-    /// The number of the stream of what is drawn for a vehicle, or for a flight.
-    pub(crate) stream: &'a dyn Fn(Each) -> u64,
+    pub(crate) size: Size,
     pub(crate) steering: Option<&'a Steering>,
 }
 
+impl Taken<'_> {
+    /// The number of the stream of what is drawn for a vehicle, or for a flight.
+    fn stream(&self, each: Each) -> u64 {
+        self.size.stream(each, self.mix.base())
+    }
+}
+
 impl Draws {
-    pub(crate) fn new<T>(seed: u64, model: &str, joint: &Joint<T>) -> Self {
+    pub(crate) fn new<T>(
+        (seed, model): (u64, &str),
+        bodies: Vec<BodyLaw>,
+        joint: &Joint<T>,
+    ) -> Self {
         let stream = |number: Number<'_>| Streams::new(seed, model, number.column);
-        Self { streams: joint.numbers().map(stream).collect() }
+        let (streams, groups) =
+            (joint.numbers().map(stream).collect(), Groups::new(&bodies, joint));
+        Self { bodies, streams, groups }
+    }
+
+    /// What a run takes of a scenario of this size that draws this.
+    pub(crate) fn taken<'a>(&self, drawing: &'a Drawing, size: Size, run: u64) -> Taken<'a> {
+        let mix = self.groups.mix(drawing, run, size.fleet());
+        Taken { mix, size, steering: drawing.steering() }
+    }
+
+    /// What so many runs chose that are steered, and their scores.
+    pub(crate) fn steered<T>(
+        &self,
+        joint: &Joint<T>,
+        drawing: &Drawing,
+        size: Size,
+        runs: u64,
+    ) -> Vec<Steered> {
+        let Some(steering) = drawing.steering() else { return Vec::new() };
+        let of = |run| {
+            let taken = self.taken(drawing, size, run);
+            let scores = steering.of(&self.scores(joint, taken));
+            Steered { choice: steering.choice(taken.mix.base()), scores }
+        };
+        (0..runs).map(of).collect()
     }
 
     /// The independent scores of a run, in the order of what is dispersed: one from the stream of each, steered if the run is.
-    pub(crate) fn scores<T>(
-        &self,
-        joint: &Joint<T>,
-        groups: &Groups,
-        taken: Taken<'_>,
-    ) -> Vec<f64> {
-        let Taken { mix, stream, steering } = taken;
+    fn scores<T>(&self, joint: &Joint<T>, taken: Taken<'_>) -> Vec<f64> {
         let numbers = self.streams.iter().zip(joint.numbers()).enumerate();
         let each = numbers.map(|(place, (streams, number))| {
-            (streams, groups.stream_of(place, mix, stream(number.each)))
+            (streams, self.groups.stream_of(place, taken.mix, taken.stream(number.each)))
         });
         let mut scores = Vec::with_capacity(self.streams.len());
         Streams::each(each, 1, |rng| scores.push(StandardNormal.sample(rng)));
-        if let Some(steering) = steering {
-            steering.steer(mix.base(), &mut scores);
+        if let Some(steering) = taken.steering {
+            steering.steer(taken.mix.base(), &mut scores);
         }
         scores
     }
 
     /// What a run draws: the values of all that has a column, and of each body the inertia at its mass. What is kept to a region is
     /// drawn again, from where its streams stand, until it is there.
-    pub(crate) fn run<T>(
-        &self,
-        joint: &Joint<T>,
-        groups: &Groups,
-        bodies: &[BodyLaw],
-        taken: Taken<'_>,
-    ) -> (Vec<f64>, Vec<ModelDraw>) {
-        let Taken { mix, stream, .. } = taken;
-        let mut scores = self.scores(joint, groups, taken);
-        let inertia = |(i, body): (usize, &BodyLaw)| {
-            groups.inertia(i, mix, stream(body.each), (&*body.law, &body.streams))
-        };
+    pub(crate) fn run<T>(&self, joint: &Joint<T>, taken: Taken<'_>) -> (Vec<f64>, Vec<ModelDraw>) {
+        let Self { bodies, groups, .. } = self;
+        let mix = taken.mix;
+        let mut scores = self.scores(joint, taken);
+        let inertia =
+            |(i, body): (usize, &BodyLaw)| groups.inertia(i, mix, taken.stream(body.each), body);
         let mut draws: Vec<ModelDraw> = bodies.iter().enumerate().map(inertia).collect();
         for kept in groups.kept() {
             let (own, body) = (&joint.bodies[kept.body], &bodies[kept.body]);
@@ -95,11 +108,11 @@ impl Draws {
                     let streams = self.streams.iter().zip(joint.numbers()).enumerate();
                     let own = streams.filter(|(place, _)| kept.numbers.contains(place));
                     let numbers = own.map(|(place, (streams, number))| {
-                        let first = groups.stream_of(place, mix, stream(number.each));
+                        let first = groups.stream_of(place, mix, taken.stream(number.each));
                         (place, past_first_score(streams.run(first)))
                     });
-                    let first = groups.inertia_stream(kept.body, mix, stream(body.each));
-                    let mut inertia = body.streams.run(first);
+                    let first = groups.inertia_stream(kept.body, mix, taken.stream(body.each));
+                    let mut inertia = body.stream(first);
                     body.law.draw(&mut inertia);
                     (numbers.collect::<Vec<_>>(), inertia)
                 });

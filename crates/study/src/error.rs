@@ -4,7 +4,6 @@ use gyradius_campaign::{
     CampaignError, DesignsError, FolderError, JudgementError, Kept, RunsError, rough_size,
 };
 use gyradius_statistics::StatisticsError;
-use parquet::errors::ParquetError;
 use std::path::PathBuf;
 
 use crate::ScenarioError;
@@ -81,14 +80,6 @@ pub enum StudyError {
         there: Kept,
         /// What was to be kept here.
         here: Kept,
-    },
-    /// A run table cannot be written.
-    #[error("cannot write the run table of {model}: {source}")]
-    RunTable {
-        /// The model.
-        model: String,
-        /// Why.
-        source: ParquetError,
     },
     /// The runs cannot be made on so many threads, or leave no rows.
     #[error(transparent)]

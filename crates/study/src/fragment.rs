@@ -6,21 +6,13 @@ use gyradius_dispersion::{
     ScalarRoots, ScalarRootsError,
 };
 use gyradius_inertia::{Inertia, RealizabilityError, Region};
+/// Which body of a scenario a [`Fragment`] is for.
+pub use gyradius_separation::Role as FragmentBody;
 use nalgebra::{Matrix3, Matrix4};
 use std::fmt;
 
 /// Two mean attitudes nearer than this, rad, are one to any study.
 const SAME: f64 = 1e-6;
-
-/// Which body of a scenario a [`Fragment`] is for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FragmentBody {
-    /// `[payload]`
-    #[default]
-    Payload,
-    /// `[stage]`
-    Stage,
-}
 
 /// Why a law cannot be written into a scenario.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -234,15 +226,6 @@ impl Fragment {
     #[must_use]
     pub fn axes_covariance(&self) -> [[f64; 4]; 4] {
         self.covariance
-    }
-}
-
-impl fmt::Display for FragmentBody {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Payload => "payload",
-            Self::Stage => "stage",
-        })
     }
 }
 

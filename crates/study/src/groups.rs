@@ -1,12 +1,12 @@
 //! The groups of inputs that are drawn independently of each other, and what of them a run draws.
 
-use gyradius_campaign::{Designs, Mix, Streams};
+use gyradius_campaign::{Designs, Mix, StreamRng, Streams};
 use gyradius_dispersion::{InertiaLaw, ModelDraw};
 use std::{collections::BTreeMap, sync::Arc};
 
 use crate::{
     fleet::Fleet,
-    scenario::{Joint, Number},
+    scenario::{Each, Joint, Number},
     steering::Steering,
 };
 
@@ -36,12 +36,35 @@ pub(crate) struct Kept {
     pub(crate) numbers: Vec<usize>,
 }
 
-/// A body of a model: what it is called, the law of its inertia, and whether this is the body's own.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GroupedBody<'a> {
-    pub(crate) name: &'a str,
-    pub(crate) law: &'a dyn InertiaLaw,
+/// A body of a model: what it is called, and the law of its inertia.
+#[derive(Debug)]
+pub(crate) struct BodyLaw {
+    pub(crate) name: String,
+    pub(crate) law: Arc<dyn InertiaLaw>,
+    streams: Streams,
+    /// For what the inertia is drawn.
+    pub(crate) each: Each,
+    /// Whether it is the body's own, so that mass, mass centre and inertia are drawn from their joint law.
     pub(crate) own: bool,
+}
+
+impl BodyLaw {
+    /// Of a body of this name under a model with this seed and name.
+    pub(crate) fn new(
+        (seed, model): (u64, &str),
+        name: &str,
+        law: Arc<dyn InertiaLaw>,
+        each: Each,
+        own: bool,
+    ) -> Self {
+        let streams = Streams::new(seed, model, &format!("{name} inertia"));
+        Self { name: name.to_owned(), law, streams, each, own }
+    }
+
+    /// The stream of random numbers of this number.
+    pub(crate) fn stream(&self, number: u64) -> StreamRng {
+        self.streams.run(number)
+    }
 }
 
 /// What the runs of a simulation draw.
@@ -71,11 +94,7 @@ impl Drawing {
 impl Groups {
     /// Of bodies, and of what else is dispersed: the components of a parameter, and all that is correlated with them, are a
     /// group, and so is all that is drawn of a body with them until its matter is in its region.
-    pub(crate) fn new<'a, T>(
-        bodies: impl IntoIterator<Item = GroupedBody<'a>>,
-        joint: &Joint<T>,
-    ) -> Self {
-        let bodies: Vec<GroupedBody<'_>> = bodies.into_iter().collect();
+    pub(crate) fn new<T>(bodies: &[BodyLaw], joint: &Joint<T>) -> Self {
         let numbers: Vec<Number<'_>> = joint.numbers().collect();
         let count = numbers.len();
         let kept = |body: usize| bodies[body].own && joint.bodies[body].region.is_some();
@@ -107,7 +126,7 @@ impl Groups {
         let mut of_sets: BTreeMap<usize, usize> = BTreeMap::new();
         let mut inertias: Vec<[usize; 2]> = Vec::new();
         for (place, body) in bodies.iter().enumerate() {
-            let (first, name) = (names.len(), body.name);
+            let (first, name) = (names.len(), &body.name);
             let own = kept.iter().find(|kept| kept.body == place);
             if let Some(own) = own {
                 let parts = own.numbers.iter().map(|i| numbers[*i].part_of);
@@ -210,12 +229,12 @@ impl Groups {
         body: usize,
         mix: Mix<'_>,
         first: u64,
-        (law, streams): (&dyn InertiaLaw, &Streams),
+        own: &BodyLaw,
     ) -> ModelDraw {
         let of = self.inertias.get(body).map(|groups| groups.map(|group| mix.stream(group, first)));
         let [moments, axes] = of.unwrap_or([first; 2]);
-        let draw = law.draw(&mut streams.run(moments));
-        if moments == axes { draw } else { draw.about_axes_of(&law.draw(&mut streams.run(axes))) }
+        let draw = |number| own.law.draw(&mut own.stream(number));
+        if moments == axes { draw(moments) } else { draw(moments).about_axes_of(&draw(axes)) }
     }
 }
 

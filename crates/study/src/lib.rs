@@ -75,7 +75,7 @@ mod where_runs_fail;
 
 pub use any::{AnyScenario, Outcome, is_begun, put_together, write_report};
 pub use body::Entry;
-pub use compare::{CompareError, CompareOptions, ModelComparison, Reference};
+pub use compare::{CompareOptions, ModelComparison, Reference};
 pub use draw::{Draw, DrawError, DrawOptions};
 pub use driven::{Driven, Drivers};
 pub use ended::Ended;

@@ -1,8 +1,6 @@
 //! Inertia models ready to draw, and the runs that their draws make.
 
-use gyradius_campaign::{
-    Column as RunColumn, Failure, Mix, Simulation, Streams, Table, TableError,
-};
+use gyradius_campaign::{Column as RunColumn, Failure, Simulation, Table, TableError};
 use gyradius_dispersion::{DispersionModel, EntryMoments, InertiaLaw, ModelKind, ModelParameters};
 use gyradius_separation::Batch;
 use std::{ops::Range, sync::Arc};
@@ -10,11 +8,11 @@ use std::{ops::Range, sync::Arc};
 use crate::{
     body::Body,
     column::Column,
-    drawn::{self, BodyLaw, Draws, Taken},
-    groups::{Drawing, GroupedBody, Groups},
+    drawn::{self, Draws},
+    groups::{BodyLaw, Drawing, Groups},
     run::{Case, Run},
     scenario::{KeptShares, Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
-    steering::{Steered, Steering},
+    steering::Steered,
 };
 
 /// A model ready to draw: a law and its random streams for either body.
@@ -24,10 +22,8 @@ pub(crate) struct Model {
     law: ModelLaw,
     /// Of the six entries of payload and stage, if the law is entrywise.
     given: Option<[[f64; 6]; 2]>,
-    /// Payload and stage.
-    bodies: [BodyLaw; 2],
+    /// Of payload and stage.
     draws: Draws,
-    groups: Groups,
     /// The estimated share of draws that the region of payload and stage keeps, and its standard error.
     kept: KeptShares,
 }
@@ -49,26 +45,17 @@ impl Model {
         let (payload, payload_given) = law(Body::Payload, scenario.payload())?;
         let (stage, stage_given) = law(Body::Stage, scenario.stage())?;
         let dispersions = scenario.dispersions();
-        let joint = &dispersions.joint;
+        let key = (scenario.seed(), spec.name.as_str());
         let body = |which: Body, law: Arc<dyn InertiaLaw>| {
-            let purpose = format!("{} inertia", which.name());
-            let streams = Streams::new(scenario.seed(), &spec.name, &purpose);
             let (each, own) = (dispersions.inertia[which as usize], spec.law.own_axes().is_some());
-            BodyLaw { law, streams, each, own }
+            BodyLaw::new(key, which.name(), law, each, own)
         };
-        let bodies = [body(Body::Payload, payload), body(Body::Stage, stage)];
-        let grouped = Body::BOTH.into_iter().zip(&bodies).map(|(which, body)| GroupedBody {
-            name: which.name(),
-            law: &*body.law,
-            own: body.own,
-        });
+        let bodies = vec![body(Body::Payload, payload), body(Body::Stage, stage)];
         Ok(Self {
-            groups: Groups::new(grouped, joint),
             name: spec.name.clone(),
             law: spec.law.named(),
             given: payload_given.zip(stage_given).map(<[_; 2]>::from),
-            bodies,
-            draws: Draws::new(scenario.seed(), &spec.name, joint),
+            draws: Draws::new(key, bodies, &dispersions.joint),
             kept: scenario.regions(spec),
         })
     }
@@ -85,12 +72,12 @@ impl Model {
 
     /// Whether no draw can be unrealizable.
     pub(crate) fn is_realizable_by_construction(&self) -> bool {
-        self.bodies.iter().all(|body| body.law.is_realizable_by_construction())
+        self.draws.bodies.iter().all(|body| body.law.is_realizable_by_construction())
     }
 
     /// The estimated shares of draws for payload and stage that rejection keeps, where it rejects.
     pub(crate) fn acceptance(&self) -> Option<[f64; 2]> {
-        let [payload, stage] = &self.bodies;
+        let [payload, stage] = &self.draws.bodies[..] else { return None };
         Some([payload.law.acceptance()?, stage.law.acceptance()?])
     }
 
@@ -107,12 +94,12 @@ impl Model {
 
     /// The groups of inputs that it draws independently of each other.
     pub(crate) fn groups(&self) -> &Groups {
-        &self.groups
+        &self.draws.groups
     }
 
     /// Draws the bodies of one run.
     pub(crate) fn draw(&self, scenario: &Scenario, run: u64) -> Case {
-        self.draw_mixed(scenario, Mix::plain(run), None)
+        self.draw_of(scenario, &Drawing::Plain, run)
     }
 
     /// The scores of runs that are steered.
@@ -122,33 +109,13 @@ impl Model {
         drawing: &Drawing,
         runs: u64,
     ) -> Vec<Steered> {
-        let Some(steering) = drawing.steering() else { return Vec::new() };
-        let of = |run| {
-            let mix = self.groups.mix(drawing, run, scenario.fleet());
-            let scores = self.scores(scenario, mix, Some(steering));
-            Steered { choice: steering.choice(mix.base()), scores: steering.of(&scores) }
-        };
-        (0..runs).map(of).collect()
-    }
-
-    /// The independent scores of a run.
-    fn scores(&self, scenario: &Scenario, mix: Mix<'_>, steering: Option<&Steering>) -> Vec<f64> {
-        let stream = |each| scenario.stream(each, mix.base());
-        let taken = Taken { mix, stream: &stream, steering };
-        self.draws.scores(&scenario.dispersions().joint, &self.groups, taken)
+        self.draws.steered(&scenario.dispersions().joint, drawing, scenario.size(), runs)
     }
 
     /// Draws the bodies of a run, of which some groups of inputs may be those of a second draw, or scores may be steered.
-    pub(crate) fn draw_mixed(
-        &self,
-        scenario: &Scenario,
-        mix: Mix<'_>,
-        steering: Option<&Steering>,
-    ) -> Case {
-        let (run, joint) = (mix.base(), &scenario.dispersions().joint);
-        let stream = |each| scenario.stream(each, run);
-        let taken = Taken { mix, stream: &stream, steering };
-        let (drawn, inertias) = self.draws.run(joint, &self.groups, &self.bodies, taken);
+    pub(crate) fn draw_of(&self, scenario: &Scenario, drawing: &Drawing, run: u64) -> Case {
+        let taken = self.draws.taken(drawing, scenario.size(), run);
+        let (drawn, inertias) = self.draws.run(&scenario.dispersions().joint, taken);
         let drawn = drawn::with_starts(scenario, drawn);
         let [payload, stage] = Body::BOTH.map(|body| inertias[body as usize]);
         let separation = drawn::separation(scenario, &drawn, payload.inertia, stage.inertia);
@@ -159,7 +126,7 @@ impl Model {
             stage_axes: stage.axes,
             separation,
             drawn,
-            flight: scenario.fleet().map(|fleet| fleet.numbers(run)),
+            flight: scenario.fleet().map(|fleet| fleet.numbers(taken.mix.base())),
         }
     }
 }
@@ -182,11 +149,6 @@ impl<'a> Separations<'a> {
     /// The same, whose runs draw this.
     pub(crate) fn drawing(self, drawing: Drawing) -> Self {
         Self { drawing, ..self }
-    }
-
-    fn draw(&self, run: u64) -> Case {
-        let mix = self.model.groups.mix(&self.drawing, run, self.scenario.fleet());
-        self.model.draw_mixed(self.scenario, mix, self.drawing.steering())
     }
 
     /// What is drawn for a run, by column, with every digit.
@@ -224,7 +186,8 @@ impl Simulation for Separations<'_> {
     /// Draws the bodies of several runs and separates them together, to the bits that each has alone.
     fn run(&self, runs: Range<u64>, batch: &mut Batch, rows: &mut Table) -> Result<(), TableError> {
         let scenario = self.scenario;
-        let cases: Vec<Case> = runs.map(|run| self.draw(run)).collect();
+        let cases: Vec<Case> =
+            runs.map(|run| self.model.draw_of(scenario, &self.drawing, run)).collect();
         let sound = |i: &usize| cases[*i].separation.is_ok();
         let places: Vec<usize> = (0..cases.len()).filter(sound).collect();
         let mut results: Vec<_> = cases.iter().map(|_| None).collect();
@@ -344,7 +307,7 @@ mod tests {
             assert!(refused.contains("is a program's own"), "{refused}");
 
             let (payload, stage) =
-                (Arc::clone(&model.bodies[0].law), Arc::clone(&model.bodies[1].law));
+                (Arc::clone(&model.draws.bodies[0].law), Arc::clone(&model.draws.bodies[1].law));
             let given = bare.with_model(model.name(), payload, stage).unwrap();
             let models = Model::all(&given).unwrap();
             assert!(draws(&given, &models) == expected, "{}", model.name());
@@ -356,7 +319,7 @@ mod tests {
             assert_eq!(read.fingerprint(), given.fingerprint());
             assert_ne!(read.fingerprint(), built_in.fingerprint());
             let refused = Model::all(&read).unwrap_err().to_string();
-            let name = format!("its law {:?} is a program's own", model.bodies[0].law.name());
+            let name = format!("its law {:?} is a program's own", model.draws.bodies[0].law.name());
             assert!(refused.contains(&name) && refused.starts_with("models["), "{refused}");
         }
     }
@@ -381,17 +344,12 @@ mod tests {
                 names.iter().enumerate().all(|(i, name)| !names[..i].contains(name)),
                 "{names:?}"
             );
-            let splits = model.bodies[0].law.has_independent_axes();
+            let splits = model.draws.bodies[0].law.has_independent_axes();
             assert_eq!(splits, names.contains(&"payload axes".to_owned()), "{names:?}");
             for base in 0..20 {
                 let first = groups.designs().runs(base);
-                let draw = |design: u64| {
-                    model.draw_mixed(
-                        &scenario,
-                        groups.mix(&Drawing::Exchanging, first + design, None),
-                        None,
-                    )
-                };
+                let draw =
+                    |design: u64| model.draw_of(&scenario, &Drawing::Exchanging, first + design);
                 let (a, b) = (draw(0), draw(1));
                 assert_eq!(format!("{a:?}"), format!("{:?}", model.draw(&scenario, base)));
                 for (place, name) in names.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! `gyradius compare`: options in, tables out.
 
-use gyradius_study::{CompareError, CompareOptions, ModelComparison, Reference, Scenario};
+use gyradius_study::{CompareOptions, ModelComparison, Reference, Scenario, ScenarioError};
 
 use crate::program::{
     args::{CompareArgs, CompareForm, ReferenceName},
@@ -27,7 +27,7 @@ pub(crate) fn compare(arguments: &CompareArgs) -> Result<(), String> {
     }
 }
 
-fn options(arguments: &CompareArgs) -> Result<CompareOptions, CompareError> {
+fn options(arguments: &CompareArgs) -> Result<CompareOptions, ScenarioError> {
     let scenario = arguments.scenario.as_deref().map(Scenario::read).transpose()?;
     let default = CompareOptions::default();
     Ok(CompareOptions {

@@ -2,8 +2,7 @@
 
 use gyradius_inertia::{Inertia, InertiaMatrix};
 
-use super::CompareError;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, ScenarioError};
 
 /// Bodies on which the models differ, with their entries I11, I22, I33, I12, I13, I23 in kg·m²: the
 /// payload of Peck (2003), a slender stage, a plate-like panel, a compact bus.
@@ -24,10 +23,10 @@ pub(crate) struct NominalBody {
 }
 
 impl NominalBody {
-    pub(crate) fn new(name: &str, inertia: Inertia) -> Result<Self, CompareError> {
+    pub(crate) fn new(name: &str, inertia: Inertia) -> Result<Self, ScenarioError> {
         let largest = inertia.principal_axes().moments().into_iter().fold(0.0, f64::max);
         if !SIZES.contains(&largest) {
-            return Err(CompareError::field(
+            return Err(ScenarioError::field(
                 format!("body {name}"),
                 format!(
                     "largest moment {largest:e} kg·m²: it must lie between {:e} and {:e}",
@@ -45,7 +44,7 @@ impl NominalBody {
     }
 
     /// The built-in bodies, or payload and stage of the scenario of a user.
-    pub(crate) fn known(scenario: Option<&Scenario>) -> Result<Vec<Self>, CompareError> {
+    pub(crate) fn known(scenario: Option<&Scenario>) -> Result<Vec<Self>, ScenarioError> {
         if let Some(scenario) = scenario {
             return Ok(vec![
                 Self::new("payload", *scenario.payload().nominal())?,
@@ -56,7 +55,7 @@ impl NominalBody {
     }
 
     /// A body by the name of a known one, or by three moments or six entries with commas between.
-    pub(crate) fn read(text: &str, known: &[Self]) -> Result<Self, CompareError> {
+    pub(crate) fn read(text: &str, known: &[Self]) -> Result<Self, ScenarioError> {
         let text = text.trim();
         if let Some(body) = known.iter().find(|body| body.name == text) {
             return Ok(body.clone());
@@ -67,7 +66,7 @@ impl NominalBody {
                 "{text:?}: it must be {}, or numbers in kg·m²: I11,I22,I33 or I11,I22,I33,I12,I13,I23",
                 names.join(", ")
             );
-            CompareError::field("body", problem)
+            ScenarioError::field("body", problem)
         };
         let numbers: Result<Vec<f64>, _> =
             text.split(',').map(|number| number.trim().parse::<f64>()).collect();
@@ -79,8 +78,8 @@ impl NominalBody {
         Self::of_entries(&text.replace(' ', ""), &entries)
     }
 
-    fn of_entries(name: &str, &[a, b, c, d, e, f]: &[f64; 6]) -> Result<Self, CompareError> {
-        let refuse = |e: &dyn std::fmt::Display| CompareError::field(format!("body {name}"), e);
+    fn of_entries(name: &str, &[a, b, c, d, e, f]: &[f64; 6]) -> Result<Self, ScenarioError> {
+        let refuse = |e: &dyn std::fmt::Display| ScenarioError::field(format!("body {name}"), e);
         let matrix = InertiaMatrix::from_entries([a, b, c], [d, e, f]).map_err(|e| refuse(&e))?;
         Self::new(name, Inertia::try_from(matrix).map_err(|e| refuse(&e))?)
     }

@@ -16,7 +16,7 @@ mod table;
 mod tests;
 mod text;
 
-use gyradius_campaign::{CampaignError, Contents, Folder, FolderError, Progress, Streams, threads};
+use gyradius_campaign::{Contents, Folder, Progress, Streams, threads};
 use gyradius_dispersion::ModelKind;
 use gyradius_report::{Document, file_of};
 use gyradius_statistics::StatisticsError;
@@ -33,60 +33,12 @@ pub use reference::Reference;
 
 pub(crate) use section::{EVERY_MODEL, Section};
 
-use crate::{
-    StudyError,
-    scenario::{Scenario, ScenarioError},
-};
+use crate::{StudyError, scenario::Scenario};
 use body::NominalBody;
 use contest::{Cell, measures, nutation};
 use measure::Measure;
 use options::{Plan, Size};
 use reference::Target;
-
-/// Why models could not be compared. Nothing has been overwritten.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum CompareError {
-    /// A value is not allowed.
-    #[error("{field}: {problem}")]
-    Field {
-        /// Which.
-        field: String,
-        /// The value and what is allowed.
-        problem: String,
-    },
-    /// The scenario is refused.
-    #[error(transparent)]
-    Scenario(#[from] ScenarioError),
-    /// The draws cannot be summarised.
-    #[error("cannot summarise the draws: {0}")]
-    Statistics(#[from] StatisticsError),
-    /// The result cannot be written, or no threads be started.
-    #[error(transparent)]
-    Write(#[from] StudyError),
-    /// The result cannot be put into JSON.
-    #[error("cannot write the comparison: {0}")]
-    Json(#[from] serde_json::Error),
-}
-
-impl From<CampaignError> for CompareError {
-    fn from(error: CampaignError) -> Self {
-        Self::Write(error.into())
-    }
-}
-
-impl From<FolderError> for CompareError {
-    fn from(error: FolderError) -> Self {
-        Self::Write(error.into())
-    }
-}
-
-impl CompareError {
-    #[allow(clippy::needless_pass_by_value, reason = "errors are given away as they come")]
-    fn field(field: impl Into<String>, problem: impl std::fmt::Display) -> Self {
-        Self::Field { field: field.into(), problem: format!("{problem}") }
-    }
-}
 
 /// The page of a comparison.
 #[cfg(test)]
@@ -170,7 +122,7 @@ impl ModelComparison {
     /// # Errors
     /// An option is refused, or the folder holds something else and `force` is not set, or something
     /// cannot be written. What was there stays as it was.
-    pub fn run(options: &CompareOptions, progress: Progress<'_>) -> Result<Self, CompareError> {
+    pub fn run(options: &CompareOptions, progress: Progress<'_>) -> Result<Self, StudyError> {
         let plan = Plan::new(options)?;
         let threads = threads(options.threads)?;
         let settings = Settings::new(&plan);
@@ -200,7 +152,7 @@ impl ModelComparison {
         Ok(comparison)
     }
 
-    fn write(&self, mut folder: Folder<'_>) -> Result<PathBuf, CompareError> {
+    fn write(&self, mut folder: Folder<'_>) -> Result<PathBuf, StudyError> {
         for (name, content) in self.document().files(page::NAME) {
             folder.write(&name, &content)?;
         }
@@ -219,7 +171,7 @@ impl ModelComparison {
     ///
     /// # Errors
     /// None for what this program computes: numbers that JSON does not know are null.
-    pub fn to_json(&self) -> Result<String, CompareError> {
+    pub fn to_json(&self) -> Result<String, StudyError> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 }

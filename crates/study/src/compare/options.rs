@@ -3,8 +3,8 @@
 use gyradius_dispersion::ModelKind;
 use std::path::PathBuf;
 
-use super::{CompareError, Reference, body::NominalBody};
-use crate::scenario::Scenario;
+use super::{Reference, body::NominalBody};
+use crate::scenario::{Scenario, ScenarioError, check_seed};
 
 /// What levels are refused beyond: the reference's roots have no larger deviation.
 const MAX_LEVEL_PERCENT: f64 = 100.0;
@@ -81,19 +81,19 @@ pub(crate) struct Size {
 }
 
 impl Plan {
-    pub(crate) fn new(options: &CompareOptions) -> Result<Self, CompareError> {
+    pub(crate) fn new(options: &CompareOptions) -> Result<Self, ScenarioError> {
         let known = NominalBody::known(options.scenario.as_ref())?;
         let mut bodies: Vec<NominalBody> = Vec::new();
         for text in &options.bodies {
             let body = NominalBody::read(text, &known)?;
             if bodies.iter().any(|b| b.name() == body.name()) {
-                return Err(CompareError::field("body", format!("{text:?}: it is there twice")));
+                return Err(ScenarioError::field("body", format!("{text:?}: it is there twice")));
             }
             bodies.push(body);
         }
         if bodies.len() > MAX_LEVELS {
             let problem = format!("{}: at most {MAX_LEVELS}", bodies.len());
-            return Err(CompareError::field("bodies", problem));
+            return Err(ScenarioError::field("bodies", problem));
         }
         if bodies.is_empty() {
             bodies = known;
@@ -102,7 +102,7 @@ impl Plan {
         for kind in &options.models {
             if models.contains(kind) {
                 let problem = format!("{kind}: it is there twice");
-                return Err(CompareError::field("models", problem));
+                return Err(ScenarioError::field("models", problem));
             }
             models.push(*kind);
         }
@@ -134,31 +134,28 @@ impl CompareOptions {
     ///
     /// # Errors
     /// Something is refused.
-    pub fn cells(&self) -> Result<u64, CompareError> {
+    pub fn cells(&self) -> Result<u64, ScenarioError> {
         Ok(Plan::new(self)?.total())
     }
 }
 
 impl Size {
-    fn new(draws: u64, separations: u64, seed: u64) -> Result<Self, CompareError> {
+    fn new(draws: u64, separations: u64, seed: u64) -> Result<Self, ScenarioError> {
         if !(2..=MAX_DRAWS).contains(&draws) {
             let problem = format!("{draws}: it must be between 2 and {MAX_DRAWS}");
-            return Err(CompareError::field("draws", problem));
+            return Err(ScenarioError::field("draws", problem));
         }
         if separations > draws {
             let problem = format!("{separations}: it must be between 0 and the {draws} draws");
-            return Err(CompareError::field("separations", problem));
+            return Err(ScenarioError::field("separations", problem));
         }
-        if i64::try_from(seed).is_err() {
-            let problem = format!("{seed}: it must be between 0 and {}", i64::MAX);
-            return Err(CompareError::field("seed", problem));
-        }
+        check_seed(seed)?;
         Ok(Self { draws, separations, seed })
     }
 }
 
-fn levels(percent: &[f64]) -> Result<Vec<f64>, CompareError> {
-    let refuse = |problem: String| Err(CompareError::field("levels", problem));
+fn levels(percent: &[f64]) -> Result<Vec<f64>, ScenarioError> {
+    let refuse = |problem: String| Err(ScenarioError::field("levels", problem));
     if percent.is_empty() || percent.len() > MAX_LEVELS {
         return refuse(format!("{} of them: from 1 to {MAX_LEVELS}", percent.len()));
     }

@@ -14,7 +14,6 @@ use crate::{
     ScenarioError, StudyError,
     decisions::known,
     groups::{Drawing, Groups},
-    scenario::place,
     steering::Steered,
     subject::Subject,
 };
@@ -41,16 +40,8 @@ impl<'a, C: Subject> EventRuns<'a, C> {
         options: &RareOptions,
         progress: Progress<'a>,
     ) -> Result<Self, StudyError> {
-        let names: Vec<&str> = scenario.model_names().collect();
-        let at = match &options.model {
-            None => 0,
-            Some(name) => names.iter().position(|known| known == name).ok_or_else(|| {
-                let problem = format!("{name:?}: the scenario has {}", names.join(", "));
-                ScenarioError::field("model", problem)
-            })?,
-        };
-        let model =
-            *names.get(at).ok_or_else(|| ScenarioError::field(place(at), "there is no model"))?;
+        let at = scenario.place_of(options.model.as_deref())?;
+        let model = scenario.model_names().nth(at).unwrap_or_default();
         let prepared = scenario.prepare(options.stop.as_ref())?;
         let columns = scenario.drawing(&prepared, at, Drawing::Plain)?.columns();
         let columns = Table::new(model, 0, columns).map_err(CampaignError::from)?;

@@ -24,14 +24,6 @@ pub enum ReplayError {
     /// The run leaves no row.
     #[error(transparent)]
     Row(#[from] TableError),
-    /// The scenario has no such model.
-    #[error("model {model:?}: the scenario has {}", known.join(", "))]
-    Model {
-        /// What was asked for.
-        model: String,
-        /// What there is.
-        known: Vec<String>,
-    },
     /// There is no such run.
     #[error("run {run}: the runs are numbered from 0 to {}", runs - 1)]
     Run {

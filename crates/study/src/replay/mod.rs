@@ -22,6 +22,7 @@ use crate::{
     Results, ResultsError, Scenario,
     model::{Model, Separations},
     run::{Case, End},
+    scenario::Framed,
     subject::Subject,
 };
 use error::MOST_COAST;
@@ -140,12 +141,7 @@ impl Replay {
             return Err(ReplayError::Coast { value: coast_s });
         }
         let run = run.into().run(scenario)?;
-        let specs = scenario.models();
-        let asked = specs.iter().find(|spec| model.is_none_or(|name| spec.name == name));
-        let Some(spec) = asked else {
-            let known = scenario.model_names().map(str::to_owned).collect();
-            return Err(ReplayError::Model { model: model.unwrap_or_default().to_owned(), known });
-        };
+        let spec = &scenario.models()[scenario.place_of(model)?];
         let model = Model::new(spec, scenario)?;
         let case = model.draw(scenario, run);
         let (mut steps, mut result) = (Vec::<Step>::new(), None);

@@ -34,6 +34,18 @@ pub(crate) trait Framed: Sized {
     fn model_names(&self) -> impl Iterator<Item = &str>;
     /// The resolved scenario.
     fn to_toml(&self) -> String;
+
+    /// The place of the model that is asked for by its name; of the first if none is.
+    fn place_of(&self, model: Option<&str>) -> Result<usize, ScenarioError> {
+        let mut names = self.model_names();
+        let place = names.position(|name| model.is_none_or(|model| name == model));
+        place.ok_or_else(|| {
+            let (model, known) =
+                (model.unwrap_or_default(), self.model_names().collect::<Vec<_>>());
+            let problem = format!("{model:?}: the scenario has {}", known.join(", "));
+            ScenarioError::field("model", problem)
+        })
+    }
 }
 
 /// Declares a scenario as it stands in a TOML file, defaults filled in: what every scenario says, and then what it says of its own.
@@ -118,6 +130,11 @@ macro_rules! framed {
             #[must_use]
             pub fn runs(&self) -> u64 {
                 self.size.runs()
+            }
+
+            /// How many runs of each model there are, and of which vehicles.
+            pub(crate) fn size(&self) -> $crate::scenario::Size {
+                self.size
             }
 
             /// Its vehicles and how often each flies, if it has both.

@@ -265,11 +265,6 @@ impl Scenario {
         self.size.sharing(self.dispersions.drawn_for())
     }
 
-    /// The number of the random stream that a run takes for what is drawn for each vehicle, or for each flight.
-    pub(crate) fn stream(&self, each: Each, run: u64) -> u64 {
-        self.size.stream(each, run)
-    }
-
     /// SHA-256 of [`to_toml`](Self::to_toml), in hexadecimal: two studies with the same fingerprint
     /// by the same version have the same results. Of a law from [`with_model`](Self::with_model) the file holds
     /// a digest of its draws, so that this is then as sure as that the law always draws the same.

@@ -1,16 +1,14 @@
 //! What a model draws of the bodies and the quantities of a simulator.
 
-use gyradius_campaign::{
-    Cell, Column, Failure, Inputs, Mix, Simulation, Streams, Table, TableError,
-};
+use gyradius_campaign::{Cell, Column, Failure, Inputs, Simulation, Table, TableError};
 use std::ops::Range;
 
 use super::{body::SimulatedBody, number::Number, scenario::SimulatorScenario};
 use crate::{
     ScenarioError,
-    drawn::{self, BodyLaw, Taken},
-    groups::{Drawing, GroupedBody, Groups},
-    scenario::{Each, Joint, Size},
+    drawn::{Draws, Taken},
+    groups::{BodyLaw, Drawing, Groups},
+    scenario::{Joint, Size},
     steering::Steered,
 };
 
@@ -22,11 +20,9 @@ pub(crate) struct SimulatorDraws<'a> {
     own: Vec<Column>,
     columns: Vec<Column>,
     bodies: &'a [SimulatedBody],
-    laws: Vec<BodyLaw>,
     quantities: &'a [Number],
     dispersed: &'a Joint<usize>,
-    draws: drawn::Draws,
-    groups: Groups,
+    draws: Draws,
     drawing: Drawing,
 }
 
@@ -39,31 +35,24 @@ impl<'a> SimulatorDraws<'a> {
         scenario: &'a SimulatorScenario,
         place: usize,
     ) -> Result<Self, ScenarioError> {
-        let (seed, name) = (scenario.seed(), scenario.model_names().nth(place).unwrap_or_default());
-        let body = |(i, body): (usize, &'a SimulatedBody)| {
+        let name = scenario.model_names().nth(place).unwrap_or_default();
+        let (key, bodies) = ((scenario.seed(), name), scenario.bodies());
+        let law = |(i, body): (usize, &SimulatedBody)| {
             let (law, own) = scenario.law(place, i)?;
-            let streams = Streams::new(seed, name, &format!("{} inertia", body.name));
-            Ok(BodyLaw { law, streams, each: body.inertia_drawn, own })
+            Ok(BodyLaw::new(key, &body.name, law, body.inertia_drawn, own))
         };
-        let bodies = scenario.bodies();
-        let laws = bodies.iter().enumerate().map(body);
-        let laws: Vec<BodyLaw> = laws.collect::<Result<_, ScenarioError>>()?;
-        let grouped = bodies.iter().zip(&laws).map(|(body, drawn)| GroupedBody {
-            name: &body.name,
-            law: &*drawn.law,
-            own: drawn.own,
-        });
+        let laws = bodies.iter().enumerate().map(law).collect::<Result<_, ScenarioError>>()?;
+        let mut draws = Draws::new(key, laws, scenario.dispersed());
+        draws.groups = draws.groups.and(SIMULATOR);
         Ok(Self {
-            groups: Groups::new(grouped, scenario.dispersed()).and(SIMULATOR),
+            draws,
             drawing: Drawing::Plain,
             size: scenario.size(),
             own: scenario.own(),
             columns: scenario.inputs().collect(),
             bodies,
-            laws,
             quantities: scenario.quantities(),
             dispersed: scenario.dispersed(),
-            draws: drawn::Draws::new(seed, name, scenario.dispersed()),
         })
     }
 }
@@ -71,7 +60,7 @@ impl<'a> SimulatorDraws<'a> {
 impl SimulatorDraws<'_> {
     /// The groups of inputs that are drawn independently of each other.
     pub(crate) fn groups(&self) -> &Groups {
-        &self.groups
+        &self.draws.groups
     }
 
     /// The same, which draw this.
@@ -81,25 +70,12 @@ impl SimulatorDraws<'_> {
 
     /// The scores of runs that are steered.
     pub(crate) fn steered(&self, runs: u64) -> Vec<Steered> {
-        let Some(steering) = self.drawing.steering() else { return Vec::new() };
-        let of = |run| {
-            let mix = self.mix(run);
-            let scores = steering.of(&self.scores(mix));
-            Steered { choice: steering.choice(mix.base()), scores }
-        };
-        (0..runs).map(of).collect()
+        self.draws.steered(self.dispersed, &self.drawing, self.size, runs)
     }
 
-    /// The independent scores of a run.
-    fn scores(&self, mix: Mix<'_>) -> Vec<f64> {
-        let stream = |each| self.size.stream(each, mix.base());
-        let taken = Taken { mix, stream: &stream, steering: self.drawing.steering() };
-        self.draws.scores(self.dispersed, &self.groups, taken)
-    }
-
-    /// Which draws a run takes.
-    fn mix(&self, run: u64) -> Mix<'_> {
-        self.groups.mix(&self.drawing, run, self.size.fleet())
+    /// What a run takes.
+    fn taken(&self, run: u64) -> Taken<'_> {
+        self.draws.taken(&self.drawing, self.size, run)
     }
 }
 
@@ -113,23 +89,20 @@ impl Inputs for SimulatorDraws<'_> {
     }
 
     fn place(&self, run: u64) -> Vec<i64> {
-        let base = self.mix(run).base();
+        let base = self.taken(run).mix.base();
         self.size.fleet().map_or_else(Vec::new, |fleet| fleet.numbers(base).into())
     }
 
     fn seed_stream(&self, run: u64) -> u64 {
-        let mix = self.mix(run);
-        mix.stream(self.groups.names().len() - 1, mix.base())
+        let mix = self.taken(run).mix;
+        mix.stream(self.groups().names().len() - 1, mix.base())
     }
 
     fn draw(&self, run: u64, numbers: &mut Vec<Option<f64>>) -> Result<(), Failure> {
         let of_bodies = self.bodies.iter().flat_map(|body| &body.numbers);
         let mut values: Vec<f64> =
             of_bodies.chain(self.quantities).map(|number| number.nominal).collect();
-        let mix = self.mix(run);
-        let stream = |each: Each| self.size.stream(each, mix.base());
-        let taken = Taken { mix, stream: &stream, steering: self.drawing.steering() };
-        let (drawn, inertias) = self.draws.run(self.dispersed, &self.groups, &self.laws, taken);
+        let (drawn, inertias) = self.draws.run(self.dispersed, self.taken(run));
         for (d, value) in self.dispersed.all.iter().zip(drawn) {
             values[d.target] = value;
         }

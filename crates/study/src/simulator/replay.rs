@@ -4,7 +4,7 @@ use gyradius_campaign::{Table, Told};
 use std::{fmt, path::Path};
 
 use super::scenario::SimulatorScenario;
-use crate::{Fleet, ReplayError, Which, replay::Held, subject::Subject};
+use crate::{Fleet, ReplayError, Which, replay::Held, scenario::Framed, subject::Subject};
 
 /// Why a row may be another than that of the study.
 const CAUSES: &str = "the table was changed, or something that the simulator uses, such as a file that it imports or the \
@@ -34,12 +34,7 @@ impl SimulatorReplay {
         run: impl Into<Which>,
     ) -> Result<Self, ReplayError> {
         let run = run.into().run(scenario)?;
-        let mut names = scenario.model_names();
-        let place =
-            names.position(|name| model.is_none_or(|model| name == model)).ok_or_else(|| {
-                let known = scenario.model_names().map(str::to_owned).collect();
-                ReplayError::Model { model: model.unwrap_or_default().to_owned(), known }
-            })?;
+        let place = scenario.place_of(model)?;
         let simulator = scenario.prepare(None)?;
         scenario.begin(&simulator)?;
         let simulation = scenario.simulation(&simulator, place)?;

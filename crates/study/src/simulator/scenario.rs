@@ -197,10 +197,6 @@ impl SimulatorScenario {
         &self.outputs
     }
 
-    pub(super) fn size(&self) -> Size {
-        self.size
-    }
-
     /// Lengths and roots of the bodies whose laws lie below zero by more than 2.28 %, as a normal law does whose mean is less
     /// than two standard deviations.
     #[must_use]

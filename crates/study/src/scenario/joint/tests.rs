@@ -326,10 +326,7 @@ fn groups_of_joint_laws_are_exchanged() {
         let scenario = read(&format!("{payload}{region}"), rest);
         let model = &Model::all(&scenario).unwrap()[0];
         let groups = model.groups();
-        let draw = |run: u64| {
-            let mix = groups.mix(&Drawing::Exchanging, run, None);
-            model.draw_mixed(&scenario, mix, None)
-        };
+        let draw = |run: u64| model.draw_of(&scenario, &Drawing::Exchanging, run);
         for base in 0..10 {
             let first = groups.designs().runs(base);
             let (a, b) = (draw(first), draw(first + 1));
