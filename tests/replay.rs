@@ -291,13 +291,16 @@ fn nothing_of_the_users_is_overwritten() {
     let page = folder.join("animation.html");
     let before = fs::read(&page).unwrap();
     let error = replay(1).write(&folder, false).unwrap_err();
-    assert!(matches!(error, ReplayError::Exists { .. }) && error.to_string().contains("--force"));
+    assert!(
+        matches!(error, ReplayError::Write(WriteError::Exists(_)))
+            && error.to_string().contains("--force")
+    );
     assert!(fs::read(&page).unwrap() == before);
     replay(1).write(&folder, true).unwrap();
     assert!(fs::read(&page).unwrap() != before);
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 3, "no drafts are left");
     let file = scratch.path().join("file");
     fs::write(&file, "mine").unwrap();
-    assert!(matches!(replay(0).write(&file, true), Err(ReplayError::Write { .. })));
+    assert!(matches!(replay(0).write(&file, true), Err(ReplayError::Write(_))));
     assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
 }

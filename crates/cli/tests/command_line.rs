@@ -301,7 +301,7 @@ fn a_run_is_replayed_into_a_folder() {
     assert!(shell.refused(&["replay", "--run", "0", "--coast", "-1"]).contains("coast = -1.0 s"));
     let taken =
         shell.refused(&["replay", "--run", "1", "--out", "target/replay/peck-2003/naive-7"]);
-    assert!(taken.contains("history.csv is there already"), "{taken}");
+    assert!(taken.contains("history.csv exists: --force replaces it"), "{taken}");
 
     // A scenario file has no table.
     let file = shell.scenario("runs = 5", "runs = 9");

@@ -131,11 +131,10 @@ impl AnyScenario {
         Ok(either_again!(self, scenario => scenario.with_seed(seed)?))
     }
 
-    /// The same scenario, whose runs go on until a rule ends them, and are as many at most as they would be. They are looked at
-    /// after `look_every` first, if that is said.
+    /// As [`Scenario::with_until`].
     ///
     /// # Errors
-    /// The rule is about requirements, and there are none; `look_every` is zero, or not a whole number of vehicles.
+    /// As there.
     pub fn with_until(
         self,
         rule: StoppingRule,
@@ -144,11 +143,10 @@ impl AnyScenario {
         Ok(either_again!(self, scenario => scenario.with_until(rule, look_every)?))
     }
 
-    /// The same scenario, of which it is found what drives the outcome, by so many base runs: each of them is done once for each
-    /// group of inputs and twice more.
+    /// As [`Scenario::with_drivers`].
     ///
     /// # Errors
-    /// There are fewer than 100, or more than ten million.
+    /// As there.
     pub fn with_drivers(self, base_runs: u64) -> Result<Self, ScenarioError> {
         Ok(either_again!(self, scenario => scenario.with_drivers(base_runs)?))
     }

@@ -1,11 +1,66 @@
-//! A scenario carried out: its runs to their number, or until a rule ends them, and what comes of them.
+//! A scenario carried out: its runs to their number, or until they have shown enough, and what comes of them.
 
-use gyradius_campaign::{Doing, Progress};
+use gyradius_campaign::{Doing, End, Evidence, Folder, Progress, run_again, run_until, threads};
 
 use crate::{
-    Notice, Options, Scenario, Study, StudyError, study::do_what_is_left, subject::Subject,
-    until::run_to_the_end,
+    Notice, Options, Scenario, Study, StudyError,
+    contents::{contents, identity},
+    decisions::{group, requirements_of},
+    ended::Ended,
+    study::{check_columns, do_what_is_left, plan, to_be_done},
+    subject::Subject,
 };
+
+/// Does the runs of a scenario until they have shown enough, in blocks that are not put together. Returns the scenario with
+/// as many runs as there are then, and what ended them; none if its runs go to their number, or if all of them are put
+/// together already and not all of them kept.
+fn run_to_the_end<C: Subject>(
+    scenario: &C,
+    options: &Options,
+    progress: Progress<'_>,
+    say: &dyn Fn(Notice),
+) -> Result<Option<(C, Ended)>, StudyError> {
+    let Some(until) = scenario.until() else { return Ok(None) };
+    let scenario = &scenario.ended_after(until.most_runs(), until.first_look())?;
+    let threads = threads(options.threads)?;
+    let models = scenario.prepare(options.stop.as_ref())?;
+    let simulations = scenario.simulations(&models)?;
+    let contents = contents(scenario);
+    let folder = Folder::prepare(&options.place(scenario.name()), &contents, options.force)?;
+    check_columns(scenario, &simulations)?;
+    let ended = |End { runs, enough, first_look }: End| {
+        let until = until.clone().with_first_look(first_look);
+        let ended = Ended::new(&until, runs, enough);
+        Ok(Some((scenario.ended_after(runs, first_look)?, ended)))
+    };
+    let begun = (&identity(scenario), scenario.to_toml());
+    if let Some(there) = folder.reduced(begun.0)?
+        && !options.force
+    {
+        // Nothing can be added to it, whatever it shows.
+        let first_look = until.first_look();
+        return ended(End { runs: there.runs(), enough: true, first_look });
+    }
+    let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), options.force, &threads)?;
+    let plan = plan(scenario, options, Doing::All);
+    to_be_done(&simulations, plan, (&folder, &blocks), say)?;
+    let evidence = || {
+        let own = scenario.model_names().map(|model| requirements_of(scenario, model)).collect();
+        Evidence::new(until.rule().clone(), own, group(scenario))
+    };
+    let done = (|| {
+        // Nobody knows how many runs there will be: nothing is foretold, and nothing refused for want of room.
+        scenario.begin(&models)?;
+        if options.retry_failed && blocks.any_failed() {
+            // Before the rule is asked, which these runs may change.
+            let stop = options.stop.as_deref();
+            let done = threads.install(|| run_again(&simulations, &blocks, stop))?;
+            say(Notice::Again(done));
+        }
+        Ok(threads.install(|| run_until(&simulations, &blocks, plan, progress, until, evidence))?)
+    })();
+    ended(done.inspect_err(|_: &StudyError| blocks.abandon())?)
+}
 
 impl Study {
     /// Runs a scenario and writes its folder: the resolved scenario, run tables, summary, figures

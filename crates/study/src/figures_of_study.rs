@@ -182,10 +182,7 @@ mod tests {
             let scenario = Scenario::from_toml(&text).unwrap().with_runs(6).unwrap();
             let names: Vec<String> = names(&scenario).iter().map(|name| file_of(name)).collect();
             let scratch = tempfile::tempdir().unwrap();
-            let options = |place: &str| Options {
-                out: Some(scratch.path().join(place)),
-                ..Options::default()
-            };
+            let options = |place: &str| Options::to(scratch.path().join(place));
             let study = Study::run(&scenario, &options("free"), &|_| {}).unwrap();
             let mut written = 0;
             for entry in std::fs::read_dir(study.folder().join("figures")).unwrap() {

@@ -20,7 +20,7 @@ pub struct FoldedRoot {
 
 impl FoldedRoot {
     /// Those of a body of this name, from what its roots are called and the shares of their laws below zero.
-    pub(crate) fn of(body: &str, (quantity, shares): (&str, [f64; 3])) -> Vec<Self> {
+    pub(crate) fn of(body: &str, quantity: &str, shares: [f64; 3]) -> Vec<Self> {
         let all = (1..).zip(shares).filter(|(_, share)| *share > MANY);
         all.map(|(axis, share)| Self {
             body: body.to_owned(),

@@ -69,7 +69,6 @@ mod summary;
 mod text;
 #[cfg(test)]
 mod two_loops;
-mod until;
 mod unusual;
 mod where_runs_fail;
 

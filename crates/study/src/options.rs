@@ -50,6 +50,12 @@ pub enum Notice {
 }
 
 impl Options {
+    /// Into a folder, and else as usual.
+    #[must_use]
+    pub fn to(folder: impl Into<PathBuf>) -> Self {
+        Self { out: Some(folder.into()), ..Self::default() }
+    }
+
     /// The folder that a study of a scenario with a name goes to.
     pub(crate) fn place(&self, name: &str) -> PathBuf {
         let default = || Path::new("target/study").join(name);

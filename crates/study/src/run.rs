@@ -1,7 +1,7 @@
 //! A run that has ended: what was drawn for it, and what came of it.
 
 use gyradius_clearance::{Approach, Clearance, ClearanceError};
-use gyradius_inertia::InertiaMatrix;
+use gyradius_dispersion::ModelDraw;
 use gyradius_separation::{EnergySplit, Outcome as Separated, RunError, Separation, SpinMetrics};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::fmt::Write;
@@ -11,10 +11,8 @@ use crate::{body::Body, drawn, failure::Failure, loads::Short, scenario::Scenari
 /// What is drawn for a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
-    pub(crate) payload: InertiaMatrix,
-    pub(crate) stage: InertiaMatrix,
-    pub(crate) payload_axes: Option<UnitQuaternion<f64>>,
-    pub(crate) stage_axes: Option<UnitQuaternion<f64>>,
+    /// Of payload and stage.
+    pub(crate) bodies: [ModelDraw; 2],
     pub(crate) separation: Result<Separation, Failure>,
     /// What else was drawn, in the order of the scenario's dispersions.
     pub(crate) drawn: Box<[f64]>,
@@ -52,10 +50,8 @@ impl Case {
     /// The bodies without any dispersion.
     pub(crate) fn nominal(scenario: &Scenario) -> Self {
         Self {
-            payload: *scenario.payload().nominal().as_inertia_matrix(),
-            stage: *scenario.stage().nominal().as_inertia_matrix(),
-            payload_axes: None,
-            stage_axes: None,
+            bodies: [scenario.payload(), scenario.stage()]
+                .map(|body| ModelDraw::from(*body.nominal().as_inertia_matrix())),
             separation: Ok(scenario.separation().clone()),
             drawn: Box::default(),
             flight: None,
@@ -111,23 +107,17 @@ impl<'a> Run<'a> {
 
     /// The drawn inertia: I11, I22, I33, I12, I13, I23, kg·m².
     pub(crate) fn inertia(&self, body: Body) -> [f64; 6] {
-        match body {
-            Body::Payload => self.case.payload.entries(),
-            Body::Stage => self.case.stage.entries(),
-        }
+        self.case.bodies[body as usize].inertia.entries()
     }
 
     /// Whether both drawn inertias are realizable.
     pub(crate) fn realizable(&self) -> bool {
-        self.case.payload.is_realizable() && self.case.stage.is_realizable()
+        self.case.bodies.iter().all(|drawn| drawn.inertia.is_realizable())
     }
 
     /// The attitude of the principal axes of a body, as drawn.
     pub(crate) fn axes(&self, body: Body) -> Option<UnitQuaternion<f64>> {
-        match body {
-            Body::Payload => self.case.payload_axes,
-            Body::Stage => self.case.stage_axes,
-        }
+        self.case.bodies[body as usize].axes
     }
 }
 

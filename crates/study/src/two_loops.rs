@@ -383,9 +383,8 @@ fn studies_of_vehicles_go_on() {
     };
     let scratch = tempfile::tempdir().unwrap();
     let options = |place: &str, threads| Options {
-        out: Some(scratch.path().join(place)),
         threads: Some(threads),
-        ..Options::default()
+        ..Options::to(scratch.path().join(place))
     };
     let run = |scenario: &Scenario, place: &str, threads| {
         Study::run(scenario, &options(place, threads), &|_| {})

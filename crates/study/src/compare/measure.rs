@@ -28,17 +28,6 @@ impl Measure {
     /// Those that every draw has, without a separation.
     pub(crate) const OF_DRAWS: usize = 5;
 
-    pub(crate) fn label(self) -> &'static str {
-        match self {
-            Self::LargestMoment => "largest moment",
-            Self::MiddleMoment => "middle moment",
-            Self::SmallestMoment => "smallest moment",
-            Self::InertiaRatio => "inertia ratio",
-            Self::Wobble => "wobble",
-            Self::Nutation => "nutation",
-        }
-    }
-
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::LargestMoment => "largest_moment",
@@ -48,6 +37,10 @@ impl Measure {
             Self::Wobble => "wobble",
             Self::Nutation => "nutation",
         }
+    }
+
+    pub(crate) fn label(self) -> String {
+        self.name().replace('_', " ")
     }
 
     pub(crate) fn unit(self) -> &'static str {
@@ -69,8 +62,12 @@ impl Measure {
 
     /// The same with measure and unit.
     pub(crate) fn title(self) -> String {
-        let unit = if self.unit() == "1" { String::new() } else { format!(", {}", self.unit()) };
-        format!("{}: {}{unit}", self.label(), self.headline().0)
+        format!("{}: {}{}", self.label(), self.headline().0, self.comma_unit())
+    }
+
+    /// A comma and its unit, if it has one.
+    pub(crate) fn comma_unit(self) -> String {
+        if self.unit() == "1" { String::new() } else { format!(", {}", self.unit()) }
     }
 }
 

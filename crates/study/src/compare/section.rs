@@ -68,7 +68,7 @@ impl Section {
         let payload = self.bodies.first()?;
         let level = payload.levels.first()?;
         let panel = |measure: Measure| RangePanel {
-            label: with_unit(measure.label(), measure.unit()),
+            label: with_unit(&measure.label(), measure.unit()),
             nominal: payload.nominal(measure),
             ranges: kinds(payload)
                 .into_iter()
@@ -123,7 +123,7 @@ impl Section {
             let label = PageCell::from(measure.label()).line(format!(
                 "{}{}",
                 measure.headline().0,
-                unit(measure)
+                measure.comma_unit()
             ));
             table = table.numbers(label, cell(of_payload, Block::Spread(measure)));
         }
@@ -139,8 +139,4 @@ impl Section {
                 .warnings(remarks.into_iter().flatten()),
         )
     }
-}
-
-fn unit(measure: Measure) -> String {
-    if measure.unit() == "1" { String::new() } else { format!(", {}", measure.unit()) }
 }

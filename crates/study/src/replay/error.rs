@@ -4,7 +4,7 @@ use gyradius_campaign::TableError;
 use gyradius_formats::WriteError;
 use gyradius_separation::RunError;
 use parquet::errors::ParquetError;
-use std::{io, path::PathBuf};
+use std::path::PathBuf;
 
 use crate::{Fleet, ResultsError, ScenarioError};
 
@@ -89,35 +89,7 @@ pub enum ReplayError {
         /// What may be the cause.
         causes: &'static str,
     },
-    /// A file is there already, and another.
-    #[error(
-        "{} is there already; choose another folder with --out, or pass --force to replace it",
-        path.display()
-    )]
-    Exists {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A file cannot be written.
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-}
-
-impl From<WriteError> for ReplayError {
-    fn from(error: WriteError) -> Self {
-        match error {
-            WriteError::Exists(path) => Self::Exists { path },
-            WriteError::Io { path, error } => Self::Write { path, source: error },
-            WriteError::NoFile(path) => {
-                let source = io::Error::other("it is not a regular file");
-                Self::Write { path, source }
-            }
-            other => Self::Write { path: PathBuf::new(), source: io::Error::other(other) },
-        }
-    }
+    /// A file is there already, and another, or cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }

@@ -6,12 +6,11 @@ mod history;
 mod outlines;
 pub(crate) mod page;
 mod picture;
-mod short;
 mod words;
 
 use gyradius_campaign::{Row, Simulation, Table, folder_of, restore};
 use gyradius_clearance::Clearance;
-use gyradius_formats::{must_write, write_file};
+use gyradius_formats::{WriteError, must_write, write_file};
 use gyradius_separation::{Separation, Step};
 use std::{
     fs,
@@ -213,7 +212,7 @@ impl Replay {
             must_write(path, content.as_bytes(), force)?;
         }
         fs::create_dir_all(folder)
-            .map_err(|source| ReplayError::Write { path: folder.to_owned(), source })?;
+            .map_err(|error| WriteError::Io { path: folder.to_owned(), error })?;
         for (path, content) in &files {
             write_file(path, content.as_bytes(), force)?;
         }

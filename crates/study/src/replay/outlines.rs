@@ -3,7 +3,6 @@
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-use super::short::short;
 use crate::{scenario::ShapeFile, solid::radii};
 
 /// Corners of a hull up to which its edges are looked for; beyond, its shadow is drawn alone.
@@ -30,6 +29,16 @@ pub(super) fn drawn(shapes: &[ShapeFile], centre: &Vector3<f64>) -> Vec<Value> {
         }
     };
     shapes.iter().map(shape).collect()
+}
+
+/// Numbers as the animation takes them, to six digits; what is not finite is zero, which draws.
+pub(super) fn short(values: &[f64]) -> Vec<Value> {
+    let number = |x: &f64| {
+        let text = if x.is_finite() { format!("{x:.5e}") } else { "0".to_owned() };
+        // Back from text, for the shortest form of it.
+        json!(text.parse::<f64>().unwrap_or(0.0))
+    };
+    values.iter().map(number).collect()
 }
 
 /// Edges of the convex hull of points: pairs that, seen along their line, are a corner of all the others.

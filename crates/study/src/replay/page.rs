@@ -6,7 +6,11 @@ use gyradius_separation::{MovingBody, Separation};
 use maud::{PreEscaped, html};
 use serde_json::{Value, json};
 
-use super::{Replay, history::Moment, outlines, short::short};
+use super::{
+    Replay,
+    history::Moment,
+    outlines::{self, short},
+};
 use crate::{column::REALIZABLE, drawn, loads::Short, scenario::distance_m, solid::uniform_box};
 
 const SCRIPT: &str = include_str!("page.js");

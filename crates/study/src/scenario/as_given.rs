@@ -8,7 +8,7 @@ use serde::{
 };
 use toml::Table;
 
-use super::placed::Placed;
+use super::{parse::unknown, placed::Placed};
 
 /// A table as given, and what it says: what is written again need not have the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,12 +64,11 @@ impl Said for MassPropertiesLaw {
 impl Said for Region {
     fn wrong_keys(given: &Table) -> Option<String> {
         const KINDS: [&str; 3] = ["ellipsoid", "box", "hull"];
-        let known = KINDS.map(|kind| format!("`{kind}`")).join(", ");
-        let unknown = given.keys().find(|key| !KINDS.contains(&key.as_str()));
-        match unknown {
-            Some(key) => Some(format!("unknown field `{key}`, expected one of {known}")),
+        let wrong = given.keys().find(|key| !KINDS.contains(&key.as_str()));
+        match wrong {
+            Some(key) => Some(unknown(key, KINDS)),
             None if given.len() == 1 => None,
-            None => Some(format!("there must be exactly one of {known}")),
+            None => Some("there must be exactly one of `ellipsoid`, `box`, `hull`".to_owned()),
         }
     }
 }

@@ -21,6 +21,7 @@ use super::{
     follows::Follows,
     law,
 };
+use crate::folded::FoldedRoot;
 
 /// What a length and a root are called.
 const LENGTH: &str = "gyration_length";
@@ -159,13 +160,13 @@ impl UncertainBody {
         }
     }
 
-    /// What the roots are called, and which shares of their laws lie below zero; nothing of models without such.
-    pub(crate) fn folded_shares(&self) -> Option<(&'static str, [f64; 3])> {
+    /// Roots of the body, which has this name, whose laws lie below zero; nothing of models without such.
+    pub(crate) fn folded(&self, body: &str) -> Vec<FoldedRoot> {
         match &self.inertia {
             BodyInertia::Principal { roots, lengths, .. } => {
-                Some((if *lengths { LENGTH } else { ROOT }, roots.folded_shares()))
+                FoldedRoot::of(body, if *lengths { LENGTH } else { ROOT }, roots.folded_shares())
             }
-            BodyInertia::Model(_) => None,
+            BodyInertia::Model(_) => Vec::new(),
         }
     }
 

@@ -2,11 +2,11 @@
 
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
-    de::{Error, MapAccess, Visitor, value::MapAccessDeserializer},
+    de::{MapAccess, Visitor, value::MapAccessDeserializer},
 };
 use std::fmt;
 
-use super::each::Each;
+use super::{each::Each, parse::whole_numbers};
 
 /// A probability, and for what it is drawn whether the event is there: a number, or a table with both.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,13 +60,7 @@ impl<'de> Visitor<'de> for ChanceVisitor {
         Ok(ChanceFile { probability, drawn: Each::default() })
     }
 
-    fn visit_i64<E: Error>(self, probability: i64) -> Result<ChanceFile, E> {
-        self.visit_f64(probability as f64)
-    }
-
-    fn visit_u64<E: Error>(self, probability: u64) -> Result<ChanceFile, E> {
-        self.visit_f64(probability as f64)
-    }
+    whole_numbers!();
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ChanceFile, A::Error> {
         let Table { probability, drawn } = Table::deserialize(MapAccessDeserializer::new(map))?;

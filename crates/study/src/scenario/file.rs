@@ -254,18 +254,12 @@ fn default_attitude() -> [f64; 4] {
     [0.0, 0.0, 0.0, 1.0]
 }
 
-impl BodyFile {
-    /// Fills in what is not said.
-    pub(super) fn fill(&mut self) {
-        if self.law.is_none() {
-            self.dispersion.fill();
-        }
-    }
-}
-
 impl DispersionFile {
-    /// Fills in what is not said, where no whole law says it.
-    pub(crate) fn fill(&mut self) {
+    /// Fills in what is not said, unless a whole law says it.
+    pub(crate) fn fill(&mut self, law: Option<&AsGiven<MassPropertiesLaw>>) {
+        if law.is_some() {
+            return;
+        }
         if self.gyration_lengths_m.is_none() {
             self.roots.get_or_insert_default();
         }

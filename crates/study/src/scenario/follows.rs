@@ -3,6 +3,8 @@
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error, de::Visitor};
 use std::fmt;
 
+use super::parse::whole_numbers;
+
 /// The share of the mass's relative change that the inertia takes: `true` is all of it, `false` none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Follows(f64);
@@ -58,13 +60,7 @@ impl Visitor<'_> for FollowsVisitor {
         }
     }
 
-    fn visit_i64<E: Error>(self, share: i64) -> Result<Follows, E> {
-        self.visit_f64(share as f64)
-    }
-
-    fn visit_u64<E: Error>(self, share: u64) -> Result<Follows, E> {
-        self.visit_f64(share as f64)
-    }
+    whole_numbers!();
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use serde::{
 };
 use std::fmt;
 
-use super::{ScenarioError, each::Each, scalar::ScalarLawFile};
+use super::{ScenarioError, each::Each, parse::whole_numbers, scalar::ScalarLawFile};
 
 /// Laws of the components of a vector: one for all, one for each, or a covariance.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,9 +42,7 @@ impl<'de> Visitor<'de> for VectorLawVisitor {
         ScalarLawFile::deserialize(sigma.into_deserializer()).map(VectorLawFile::Same)
     }
 
-    fn visit_i64<E: Error>(self, sigma: i64) -> Result<VectorLawFile, E> {
-        self.visit_f64(sigma as f64)
-    }
+    whole_numbers!();
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<VectorLawFile, A::Error> {
         ScalarLawFile::deserialize(MapAccessDeserializer::new(map)).map(VectorLawFile::Same)

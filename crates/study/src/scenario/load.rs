@@ -12,6 +12,7 @@ use std::{fmt, marker::PhantomData};
 use super::{
     chance::ChanceFile,
     law::{GivenLaw, VectorLawFile},
+    parse::unknown,
     scalar::ScalarLawFile,
 };
 
@@ -345,10 +346,8 @@ impl<E: Copy> Visitor<'_> for OneOf<'_, E> {
 
     fn visit_str<X: Error>(self, key: &str) -> Result<E, X> {
         let known = self.0.iter().find(|(known, _)| known == key);
-        known.map(|(_, entry)| *entry).ok_or_else(|| {
-            let keys: Vec<_> = self.0.iter().map(|(key, _)| format!("`{key}`")).collect();
-            X::custom(format!("unknown field `{key}`, expected one of {}", keys.join(", ")))
-        })
+        let keys = || self.0.iter().map(|(key, _)| key);
+        known.map(|(_, entry)| *entry).ok_or_else(|| X::custom(unknown(key, keys())))
     }
 }
 

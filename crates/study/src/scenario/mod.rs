@@ -167,7 +167,9 @@ impl Scenario {
 
     fn check(mut file: ScenarioFile) -> Result<Self, ScenarioError> {
         file.models.iter_mut().for_each(|model| model.fill(&Body::BOTH));
-        [&mut file.payload, &mut file.stage].into_iter().for_each(BodyFile::fill);
+        for body in [&mut file.payload, &mut file.stage] {
+            body.dispersion.fill(body.law.as_ref());
+        }
         let (size, until) = file.check_frame()?;
         let spin_axis = direction("spin_axis", file.spin_axis)?;
         if let Some(source) = &file.source {
@@ -254,10 +256,7 @@ impl Scenario {
     #[must_use]
     pub fn folded(&self) -> Vec<FoldedRoot> {
         let bodies = [(Body::Payload, &self.payload), (Body::Stage, &self.stage)];
-        let of = |(body, own): (Body, &UncertainBody)| {
-            Some(FoldedRoot::of(body.name(), own.folded_shares()?))
-        };
-        bodies.into_iter().filter_map(of).flatten().collect()
+        bodies.into_iter().flat_map(|(body, own)| own.folded(body.name())).collect()
     }
 
     /// The fleet, if flights of a vehicle have something in common, so that runs are not independent.
@@ -415,4 +414,4 @@ pub(crate) fn read_file(path: &Path) -> Result<String, ScenarioError> {
 #[cfg(test)]
 mod mutations;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

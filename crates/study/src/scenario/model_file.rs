@@ -8,6 +8,7 @@ use serde::{
 };
 use std::{fmt, marker::PhantomData, mem};
 
+use super::parse::unknown;
 use crate::body::Body;
 
 /// A model: its law, and for each body what the law needs. Bodies are payload and stage, or have names of their own.
@@ -247,9 +248,7 @@ impl<O: Owner> Visitor<'_> for AnyKey<O> {
             other => O::of(other).map(|(body, key)| Key::Parameter(body, key)).ok_or_else(|| {
                 let [first, last] = [&[NAME, LAW, AXES][..], &[MATCHED_TO, OUTSIDE]]
                     .map(|keys| keys.iter().map(|key| (*key).to_owned()));
-                let known = first.chain(O::keys()).chain(last).map(|key| format!("`{key}`"));
-                let known = known.collect::<Vec<_>>().join(", ");
-                E::custom(format!("unknown field `{text}`, expected one of {known}"))
+                E::custom(unknown(text, first.chain(O::keys()).chain(last)))
             }),
         }
     }

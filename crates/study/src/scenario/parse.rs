@@ -153,3 +153,26 @@ pub fn whole_number(value: f64) -> Option<u64> {
     let certain = (0.0..=2f64.powi(53)).contains(&value) && value.fract() == 0.0;
     certain.then_some(value as u64)
 }
+
+/// That a key is not known where others are.
+pub(super) fn unknown(
+    key: &str,
+    known: impl IntoIterator<Item = impl std::fmt::Display>,
+) -> String {
+    let known: Vec<_> = known.into_iter().map(|key| format!("`{key}`")).collect();
+    format!("unknown field `{key}`, expected one of {}", known.join(", "))
+}
+
+/// In a visitor that takes a number: whole ones too.
+macro_rules! whole_numbers {
+    () => {
+        fn visit_i64<E: serde::de::Error>(self, number: i64) -> Result<Self::Value, E> {
+            self.visit_f64(number as f64)
+        }
+
+        fn visit_u64<E: serde::de::Error>(self, number: u64) -> Result<Self::Value, E> {
+            self.visit_f64(number as f64)
+        }
+    };
+}
+pub(super) use whole_numbers;

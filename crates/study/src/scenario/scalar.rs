@@ -9,7 +9,10 @@ use serde::{
 };
 use std::fmt;
 
-use super::each::{DRAWN, Each};
+use super::{
+    each::{DRAWN, Each},
+    parse::{unknown, whole_numbers},
+};
 
 /// A law of one number, and for what it is drawn: a key of the law's table, beside those of the law.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,13 +61,7 @@ impl<'de> Visitor<'de> for LawVisitor {
         Ok(ScalarLawFile { form, drawn: Each::default() })
     }
 
-    fn visit_i64<E: Error>(self, sigma: i64) -> Result<ScalarLawFile, E> {
-        self.visit_f64(sigma as f64)
-    }
-
-    fn visit_u64<E: Error>(self, sigma: u64) -> Result<ScalarLawFile, E> {
-        self.visit_f64(sigma as f64)
-    }
+    whole_numbers!();
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ScalarLawFile, A::Error> {
         let mut drawn = Each::default();
@@ -93,9 +90,7 @@ impl<'de, A: MapAccess<'de>> MapAccess<'de> for OfLaw<'_, A> {
             } else if ScalarLawForm::keys().any(|known| known == key) {
                 return seed.deserialize(key.into_deserializer()).map(Some);
             } else {
-                let known = ScalarLawForm::keys().chain([DRAWN]).map(|known| format!("`{known}`"));
-                let known = known.collect::<Vec<_>>().join(", ");
-                let problem = format!("unknown field `{key}`, expected one of {known}");
+                let problem = unknown(&key, ScalarLawForm::keys().chain([DRAWN]));
                 return Err(A::Error::custom(problem));
             }
         }

@@ -2,6 +2,14 @@
 
 use super::*;
 
+/// The cases of a table, one a line, whose parts stand between bars; in them `\n` begins a line.
+pub(crate) fn cases<const N: usize>(table: &str) -> impl Iterator<Item = [String; N]> {
+    table.trim().lines().map(|line| {
+        let parts = line.split('|').map(|part| part.trim().replace("\\n", "\n"));
+        parts.collect::<Vec<_>>().try_into().unwrap_or_else(|_| panic!("{line}"))
+    })
+}
+
 fn error(from: &str, to: &str) -> String {
     assert!(PECK_2003.contains(from), "nothing to replace: {from}");
     Scenario::from_toml(&PECK_2003.replacen(from, to, 1)).unwrap_err().to_string()
@@ -36,50 +44,24 @@ fn directions_and_outlines_are_read_resolved_and_checked() {
         assert!(text.contains(from), "{from}");
         Scenario::from_toml(&text.replacen(from, to, 1)).unwrap_err().to_string()
     };
-    for (from, to, expected) in [
-        ("[0.1, 0.0, 3.0]", "[0.0, 0.0, 0.0]", "separation_direction: [0.0, 0.0, 0.0]: it must"),
-        ("[1e300, 1e299, 0.0]", "[nan, 1.0, 0.0]", "momentum_direction: [NaN, 1.0, 0.0]"),
-        ("radius_m = 0.3", "radius_m = -0.3", "clearance.stage[1].ring.radius_m: "),
-        (
-            "radius_m = 0.3",
-            "radius_m = nan",
-            "clearance.stage[1].ring.radius_m: ring radius = NaN m: it must",
-        ),
-        (
-            "[0.0, 1.0, 7.0]",
-            "[0.0, 0.0, 0.0]",
-            "clearance.stage[1].ring.axis: ring axis of length 0.0: it",
-        ),
-        (
-            "[0.5, 0.0, -0.5]",
-            "[nan, 0.0, 0.0]",
-            "clearance.payload[1].hull_m: hull_m has coordinate NaN m",
-        ),
-        (
-            "[0.5, 0.0, -0.5]",
-            "[0.0, 1e300, 0.0]",
-            "clearance.payload[1].hull_m: 1e300 m from the mass centre: it must be at most 10000.0 m",
-        ),
-        (
-            "points_m = [[0.0, 0.0, 0.3]]",
-            "points_m = []",
-            "clearance.stage[2].points_m: points_m is empty",
-        ),
-        (
-            "[0.0, 0.0, 0.3]]",
-            many.as_str(),
-            "clearance.stage[2].points_m: 1001 points in an outline: at most",
-        ),
-        (
-            "payload = [{ hull_m = [[0.0, 0.0, -0.5], [0.5, 0.0, -0.5]] }]",
-            "payload = []",
-            "clearance.payload: outline is empty",
-        ),
-        ("[clearance]\n", "[clearance]\ncoast_s = 0.0\n", "clearance.coast_s: 0.0: it must"),
-        ("[clearance]\n", "[clearance]\ncoast_s = nan\n", "clearance.coast_s: NaN"),
-    ] {
-        let message = error(from, to);
-        assert!(message.starts_with(expected), "{message}");
+    for [from, to, expected] in cases(
+        r#"
+        [0.1, 0.0, 3.0] | [0.0, 0.0, 0.0] | separation_direction: [0.0, 0.0, 0.0]: it must
+        [1e300, 1e299, 0.0] | [nan, 1.0, 0.0] | momentum_direction: [NaN, 1.0, 0.0]
+        radius_m = 0.3 | radius_m = -0.3 | clearance.stage[1].ring.radius_m: 
+        radius_m = 0.3 | radius_m = nan | clearance.stage[1].ring.radius_m: ring radius = NaN m: it must
+        [0.0, 1.0, 7.0] | [0.0, 0.0, 0.0] | clearance.stage[1].ring.axis: ring axis of length 0.0: it
+        [0.5, 0.0, -0.5] | [nan, 0.0, 0.0] | clearance.payload[1].hull_m: hull_m has coordinate NaN m
+        [0.5, 0.0, -0.5] | [0.0, 1e300, 0.0] | clearance.payload[1].hull_m: 1e300 m from the mass centre: it must be at most 10000.0 m
+        points_m = [[0.0, 0.0, 0.3]] | points_m = [] | clearance.stage[2].points_m: points_m is empty
+        [0.0, 0.0, 0.3]] | MANY | clearance.stage[2].points_m: 1001 points in an outline: at most
+        payload = [{ hull_m = [[0.0, 0.0, -0.5], [0.5, 0.0, -0.5]] }] | payload = [] | clearance.payload: outline is empty
+        [clearance]\n | [clearance]\ncoast_s = 0.0\n | clearance.coast_s: 0.0: it must
+        [clearance]\n | [clearance]\ncoast_s = nan\n | clearance.coast_s: NaN
+        "#,
+    ) {
+        let message = error(&from, &to.replace("MANY", &many));
+        assert!(message.starts_with(&expected), "{message}");
     }
     // The paper's springs push along z, and its payload is to spin about inertial x.
     let paper = Scenario::peck_2003().unwrap();
@@ -136,59 +118,36 @@ fn the_resolved_scenario_reads_back_the_same() {
 
 #[test]
 fn bad_values_name_the_field_the_value_and_what_is_allowed() {
-    let cases = [
-        ("runs = 2000", "runs = 0", "runs: 0: it must be between 1"),
-        ("mass_kg = 10000.0", "mass_kg = -3.0", "payload.mass_kg: mass = -3.0 kg: it must be pos"),
-        ("mass_kg = 10000.0", "mass_kg = nan", "payload.mass_kg: mass = NaN kg"),
-        ("[[5000.0, 20.0, 2.0]", "[[9000.0, 20.0, 2.0]", "payload.inertia_kg_m2: no body has"),
-        ("[[5000.0, 20.0, 2.0]", "[[5000.0, 21.0, 2.0]", "payload.inertia_kg_m2: I12 = 21.0 kg"),
-        ("[2e-5, 0.0,", "[-2e-5, 0.0,", "payload.dispersion.axes_covariance: covariance with"),
-        ("[0.125, 0.1,", "[0.125, -0.1,", "root_second_moment_variance_kg_m2: variance of k_2"),
-        (
-            "stiffness_n_per_m = 1e5",
-            "stiffness_n_per_m = 0.0",
-            "springs[1].stiffness_n_per_m: stiffness = 0.0 N/m",
-        ),
-        ("stroke_m = 0.1", "stroke_m = inf", "springs[1].stroke_m: inf: it must be at most 1e3"),
-        (
-            "stage_point_m = [1.0,",
-            "stage_point_m = [nan,",
-            "springs[1].stage_point_m: stage attachment point has entry NaN",
-        ),
-        ("stroke_m = 0.1", "stroke_m = 0.1\nstart_s = -1.0", "springs[1].start_s: start = -1.0 s"),
-        ("spin_axis = [1.0,", "spin_axis = [0.0,", "spin_axis: [0.0, 0.0, 0.0]: it must be"),
-        ("name = \"peck-2003\"", "name = \"../peck\"", "name: \"../peck\": it must be 1 to 64"),
-        (
-            "name = \"published\"",
-            "name = \"proposed\"",
-            "models[2].name: two are named \"proposed\"",
-        ),
-        ("axes = \"whole-sphere\"", "", "models[1].axes: missing: law \"principal\" needs axes"),
-        ("matched_to = \"proposed\"", "matched_to = \"naive\"", "models[4].matched_to"),
-        ("physical = \"published\"", "physical = \"none\"", "comparisons[1].physical: \"none\""),
-        ("physical = \"published\"", "physical = \"naive\"", "comparisons[1].physical: \"naive\""),
-        ("naive = \"naive\"", "naive = \"proposed\"", "comparisons[1].naive: \"proposed\""),
-        (
-            "name = \"published\"",
-            "name = \"Proposed\"",
-            "models[2].name: two are named \"Proposed\"",
-        ),
-        (
-            "[source]",
-            "[integration]\nhorizon_s = -1e300\n[source]",
-            "integration.horizon_s: horizon = -1e300 s: it must be positive and finite",
-        ),
-        (
-            "[source]",
-            "[integration]\nrelative_tolerance = nan\n[source]",
-            "integration.relative_tolerance: relative tolerance = NaN",
-        ),
-        ("wobble_deg = 1.144", "wobble_deg = nan", "source.wobble_deg: NaN"),
-        ("spin_axis = [1.0,", "spin_axis = [nan,", "spin_axis: [NaN, 0.0, 0.0]"),
-    ];
-    for (from, to, expected) in cases {
-        let message = error(from, to);
-        assert!(message.starts_with(expected) || message.contains(expected), "{message}");
+    for [from, to, expected] in cases(
+        r#"
+        runs = 2000 | runs = 0 | runs: 0: it must be between 1
+        mass_kg = 10000.0 | mass_kg = -3.0 | payload.mass_kg: mass = -3.0 kg: it must be pos
+        mass_kg = 10000.0 | mass_kg = nan | payload.mass_kg: mass = NaN kg
+        [[5000.0, 20.0, 2.0] | [[9000.0, 20.0, 2.0] | payload.inertia_kg_m2: no body has
+        [[5000.0, 20.0, 2.0] | [[5000.0, 21.0, 2.0] | payload.inertia_kg_m2: I12 = 21.0 kg
+        [2e-5, 0.0, | [-2e-5, 0.0, | payload.dispersion.axes_covariance: covariance with
+        [0.125, 0.1, | [0.125, -0.1, | root_second_moment_variance_kg_m2: variance of k_2
+        stiffness_n_per_m = 1e5 | stiffness_n_per_m = 0.0 | springs[1].stiffness_n_per_m: stiffness = 0.0 N/m
+        stroke_m = 0.1 | stroke_m = inf | springs[1].stroke_m: inf: it must be at most 1e3
+        stage_point_m = [1.0, | stage_point_m = [nan, | springs[1].stage_point_m: stage attachment point has entry NaN
+        stroke_m = 0.1 | stroke_m = 0.1\nstart_s = -1.0 | springs[1].start_s: start = -1.0 s
+        spin_axis = [1.0, | spin_axis = [0.0, | spin_axis: [0.0, 0.0, 0.0]: it must be
+        name = "peck-2003" | name = "../peck" | name: "../peck": it must be 1 to 64
+        name = "published" | name = "proposed" | models[2].name: two are named "proposed"
+        axes = "whole-sphere" |  | models[1].axes: missing: law "principal" needs axes
+        matched_to = "proposed" | matched_to = "naive" | models[4].matched_to
+        physical = "published" | physical = "none" | comparisons[1].physical: "none"
+        physical = "published" | physical = "naive" | comparisons[1].physical: "naive"
+        naive = "naive" | naive = "proposed" | comparisons[1].naive: "proposed"
+        name = "published" | name = "Proposed" | models[2].name: two are named "Proposed"
+        [source] | [integration]\nhorizon_s = -1e300\n[source] | integration.horizon_s: horizon = -1e300 s: it must be positive and finite
+        [source] | [integration]\nrelative_tolerance = nan\n[source] | integration.relative_tolerance: relative tolerance = NaN
+        wobble_deg = 1.144 | wobble_deg = nan | source.wobble_deg: NaN
+        spin_axis = [1.0, | spin_axis = [nan, | spin_axis: [NaN, 0.0, 0.0]
+        "#,
+    ) {
+        let message = error(&from, &to);
+        assert!(message.contains(&expected), "{message}");
     }
 }
 
@@ -441,46 +400,20 @@ fn bad_parameters_of_models_are_named() {
 
 #[test]
 fn bad_dispersions_are_named() {
-    let place = "payload.dispersion";
-    let cases = [
-        (VARIANCE.to_owned(), String::new(), "root_second_moment_variance_kg_m2: missing"),
-        (
-            VARIANCE.to_owned(),
-            "roots = \"empirical\"".to_owned(),
-            "root_second_moment_samples_sqrt_kg_m: missing",
-        ),
-        (
-            VARIANCE.to_owned(),
-            "roots = \"empirical\"\nroot_second_moment_samples_sqrt_kg_m = [[1.0, nan, 2.0]]"
-                .to_owned(),
-            "root_second_moment_samples_sqrt_kg_m: sample 1, k_2",
-        ),
-        (
-            VARIANCE.to_owned(),
-            format!("roots = \"correlated-gaussian\"\n{VARIANCE}"),
-            "root_second_moment_variance_kg_m2: roots = \"correlated-gaussian\" does not take it",
-        ),
-        (
-            VARIANCE.to_owned(),
-            format!("roots = \"truncated-gaussian\"\n{VARIANCE}"),
-            "root_second_moment_bounds_sqrt_kg_m: missing",
-        ),
-        (
-            VARIANCE.to_owned(),
-            format!(
-                "roots = \"truncated-gaussian\"\n{VARIANCE}\nroot_second_moment_bounds_sqrt_kg_m = [[0.0, 1.0], [0.0, 1.0], [0.0, 1.0]]"
-            ),
-            "root_second_moment_bounds_sqrt_kg_m: k_1",
-        ),
-        (
-            VARIANCE.to_owned(),
-            format!("{VARIANCE}\naxes = \"uniform\""),
-            "axes_covariance: axes = \"uniform\"",
-        ),
-    ];
-    for (from, to, expected) in cases {
-        let message = error(&from, &to);
-        assert!(message.starts_with(&format!("{place}.{expected}")), "{message}\n{expected}");
+    for [to, expected] in cases(
+        r#"
+         | root_second_moment_variance_kg_m2: missing
+        roots = "empirical" | root_second_moment_samples_sqrt_kg_m: missing
+        roots = "empirical"\nroot_second_moment_samples_sqrt_kg_m = [[1.0, nan, 2.0]] | root_second_moment_samples_sqrt_kg_m: sample 1, k_2
+        roots = "correlated-gaussian"\nVARIANCE | root_second_moment_variance_kg_m2: roots = "correlated-gaussian" does not take it
+        roots = "truncated-gaussian"\nVARIANCE | root_second_moment_bounds_sqrt_kg_m: missing
+        roots = "truncated-gaussian"\nVARIANCE\nroot_second_moment_bounds_sqrt_kg_m = [[0.0, 1.0], [0.0, 1.0], [0.0, 1.0]] | root_second_moment_bounds_sqrt_kg_m: k_1
+        VARIANCE\naxes = "uniform" | axes_covariance: axes = "uniform"
+        "#,
+    ) {
+        let message = error(VARIANCE, &to.replace("VARIANCE", VARIANCE));
+        let expected = format!("payload.dispersion.{expected}");
+        assert!(message.starts_with(&expected), "{message}\n{expected}");
     }
     let message = error(VARIANCE, &format!("{VARIANCE}\nroots = \"normal\""));
     assert!(message.contains("normal") && message.contains("lognormal"), "{message}");

@@ -2,10 +2,7 @@
 
 use gyradius_campaign::Column;
 
-use super::{
-    file::SimulatedBodyFile,
-    number::{Number, check_column},
-};
+use super::file::SimulatedBodyFile;
 use crate::{
     ScenarioError,
     body::Entry,
@@ -137,4 +134,24 @@ impl SimulatedBody {
         let numbers = self.numbers.iter().map(|number| number.column.clone());
         numbers.chain(Entry::ALL.into_iter().map(entry)).chain((1..=4).map(axes))
     }
+}
+
+/// A number that is sent, and what it is where nothing is drawn.
+#[derive(Clone, Debug)]
+pub(super) struct Number {
+    pub(super) column: Column,
+    pub(super) nominal: f64,
+}
+
+/// Names of bodies, quantities and outputs are keys in JSON and columns.
+pub(super) fn check_column(field: &str, name: &str) -> Result<(), ScenarioError> {
+    let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
+    if begins && name.len() <= 64 && name.chars().all(letters) {
+        return Ok(());
+    }
+    let problem = format!(
+        "{name:?}: it must be 1 to 64 letters, digits and underscores, and begin with a letter, for it names a column"
+    );
+    Err(ScenarioError::field(field, problem))
 }

@@ -3,7 +3,10 @@
 use gyradius_campaign::{Cell, Column, Failure, Inputs, Simulation, Table, TableError};
 use std::ops::Range;
 
-use super::{body::SimulatedBody, number::Number, scenario::SimulatorScenario};
+use super::{
+    body::{Number, SimulatedBody},
+    scenario::SimulatorScenario,
+};
 use crate::{
     ScenarioError,
     drawn::{Draws, Taken},

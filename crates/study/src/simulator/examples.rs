@@ -17,7 +17,7 @@ fn example(name: &str, modules: &str) -> Option<(tempfile::TempDir, Study<Simula
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulators"));
     let scenario = SimulatorScenario::read(&folder.join(name)).unwrap().with_runs(30).unwrap();
     let out = tempfile::tempdir().unwrap();
-    let options = Options { out: Some(out.path().join("out")), ..Options::default() };
+    let options = Options::to(out.path().join("out"));
     let study = scenario.study(&options, &|_| {}, &|_| {}).unwrap();
     for runs in study.runs() {
         let table = runs.table().unwrap();
@@ -105,7 +105,7 @@ fn a_function_leaves_what_the_script_does() {
     let scenario = scenario.with_runs(30).unwrap();
     let scenario = scenario.with_function(SimulatorFunction::new(spin_up)).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let options = Options { out: Some(folder.path().join("out")), ..Options::default() };
+    let options = Options::to(folder.path().join("out"));
     let own = scenario.study(&options, &|_| {}, &|_| {}).unwrap();
     for model in scenario.model_names() {
         let [own, other] = [&own, &study].map(|study| {

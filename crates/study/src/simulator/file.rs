@@ -167,13 +167,6 @@ impl File {
 }
 
 impl SimulatedBodyFile {
-    /// Fills in what is not said.
-    pub(super) fn fill(&mut self) {
-        if self.law.is_none() {
-            self.dispersion.fill();
-        }
-    }
-
     /// As a body of a separation that rests where it is. Where no model draws roots and axes, they may be left out, and do not
     /// scatter.
     pub(super) fn at_rest(&self, draws_roots_and_axes: bool) -> BodyFile {
@@ -204,7 +197,7 @@ impl SimulatedBodyFile {
 fn says_nothing(dispersion: &DispersionFile) -> bool {
     let mut nothing = DispersionFile::default();
     *dispersion == nothing || {
-        nothing.fill();
+        nothing.fill(None);
         *dispersion == nothing
     }
 }

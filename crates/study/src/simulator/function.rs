@@ -46,7 +46,7 @@ impl SimulatorScenario {
     /// # let folder = tempfile::tempdir()?;
     /// # let folder = folder.path();
     /// let scenario = SimulatorScenario::from_toml(scenario, folder)?.with_function(throw)?;
-    /// let options = Options { out: Some(folder.join("throw")), ..Options::default() };
+    /// let options = Options::to(folder.join("throw"));
     /// let study = scenario.study(&options, &|_done| {}, &|_notice| {})?;
     /// let ranges = study.tables()?[0].values("range_m").unwrap_or_default();
     /// assert!(ranges.len() > 190);

@@ -7,7 +7,6 @@ mod draws;
 mod examples;
 mod file;
 mod function;
-mod number;
 mod read;
 mod replay;
 mod scenario;

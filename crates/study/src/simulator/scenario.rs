@@ -7,9 +7,8 @@ use gyradius_dispersion::{InertiaLaw, ModelKind, ScalarLaw};
 use std::{path::Path, sync::Arc};
 
 use super::{
-    body::SimulatedBody,
-    file::{BodyName, File, OutputFile, SimulatedBodyFile},
-    number::{Number, check_column},
+    body::{Number, SimulatedBody, check_column},
+    file::{BodyName, File, OutputFile},
 };
 use crate::{
     Fleet, FoldedRoot, ScenarioError, model,
@@ -69,7 +68,7 @@ impl SimulatorScenario {
             file.simulation.folder = Some(std::path::absolute(&given).unwrap_or(given));
             file.simulation.files_sha256 = Some(files_sha256(&program(&file)?));
         }
-        file.bodies.iter_mut().for_each(SimulatedBodyFile::fill);
+        file.bodies.iter_mut().for_each(|body| body.dispersion.fill(body.law.as_ref()));
         let mut list = List::of(size.fleet());
         let (mut bodies, mut count) = (Vec::<SimulatedBody>::new(), 0);
         let drawn = file.draws_roots_and_axes();
@@ -201,10 +200,7 @@ impl SimulatorScenario {
     /// than two standard deviations.
     #[must_use]
     pub fn folded(&self) -> Vec<FoldedRoot> {
-        let of = |body: &SimulatedBody| {
-            Some(FoldedRoot::of(&body.name, body.uncertain.folded_shares()?))
-        };
-        self.bodies.iter().filter_map(of).flatten().collect()
+        self.bodies.iter().flat_map(|body| body.uncertain.folded(&body.name)).collect()
     }
 
     /// The law of a body under a model, both by their places, and whether it is the body's own.

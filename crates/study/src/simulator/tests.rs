@@ -267,9 +267,8 @@ fn campaigns_go_on() {
     let text = uniform();
     let scenario = scenario(&text, folder.path()).with_runs(700).unwrap();
     let options = |name: &str, threads: usize| Options {
-        out: Some(folder.path().join(name)),
         threads: Some(threads),
-        ..Options::default()
+        ..Options::to(folder.path().join(name))
     };
     let run =
         |scenario: &SimulatorScenario, options: &Options| scenario.study(options, &|_| {}, &|_| {});
@@ -341,7 +340,7 @@ fn shards_are_put_together_without_the_simulator() {
     let scenario = scenario(&(uniform() + &correlated()), folder.path()).with_runs(1000).unwrap();
     let any = AnyScenario::Simulator(Box::new(scenario.clone()));
     let out = |name: &str| folder.path().join(name);
-    let options = |name: &str| Options { out: Some(out(name)), ..Options::default() };
+    let options = |name: &str| Options::to(out(name));
     let whole = scenario.study(&options("whole"), &|_| {}, &|_| {}).unwrap();
     let shard = |i: u64, of: u64| -> Shard { format!("{i}/{of}").parse().unwrap() };
     for (i, threads) in [(2, 1), (1, 3)] {

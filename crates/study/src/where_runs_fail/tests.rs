@@ -286,7 +286,7 @@ fn a_study_tells_where_its_runs_fail() {
     let scenario = Scenario::from_toml(&text).unwrap().with_runs(600).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    let options = Options { out: Some(out.clone()), ..Options::default() };
+    let options = Options::to(out.clone());
     let study = Study::run(&scenario, &options, &|_| {}).unwrap();
     let told = &study.summary().head().where_runs_fail;
     assert_eq!(told.len(), study.runs().len());

@@ -102,7 +102,8 @@ fn body(scenario: &Scenario, case: &Case) -> Option<MassProperties> {
     };
     let centre = [0, 1, 2].map(|i| value(BodyParameter::MassCentre, i).unwrap_or(0.0));
     let mass = value(BodyParameter::Mass, 0).unwrap_or(MASS);
-    MassProperties::new(mass, Vector3::from(centre), Inertia::try_from(case.payload).ok()?).ok()
+    let inertia = Inertia::try_from(case.bodies[0].inertia).ok()?;
+    MassProperties::new(mass, Vector3::from(centre), inertia).ok()
 }
 
 fn bodies(scenario: &Scenario, model: usize, runs: u64) -> Vec<MassProperties> {
@@ -299,7 +300,8 @@ fn a_region_conditions_the_law() {
         let models = Model::all(s).unwrap();
         (0..200).map(|run| models[0].draw(s, run)).collect::<Vec<_>>()
     });
-    let same = |(a, b): &(&Case, &Case)| a.drawn == b.drawn && a.payload == b.payload;
+    let same =
+        |(a, b): &(&Case, &Case)| a.drawn == b.drawn && a.bodies[0].inertia == b.bodies[0].inertia;
     let same = open.iter().zip(&closed).filter(same).count();
     assert!((50..200).contains(&same), "{same}");
     let one = models[0].groups();
@@ -334,9 +336,12 @@ fn groups_of_joint_laws_are_exchanged() {
             for (i, name) in groups.names().iter().enumerate() {
                 let c = draw(first + 2 + i as u64);
                 let of = |name: &str, from: &Case| match name {
-                    "axes" => format!("{:?}", from.payload_axes),
+                    "axes" => format!("{:?}", from.bodies[0].axes),
                     "centre" => format!("{:?}", &from.drawn[1..4]),
-                    _ => format!("{:?}", (from.drawn[0], from.payload.matrix().trace() as f32)),
+                    _ => {
+                        let trace = from.bodies[0].inertia.matrix().trace() as f32;
+                        format!("{:?}", (from.drawn[0], trace))
+                    }
                 };
                 let own: &[&str] = match name.as_str() {
                     "payload inertia, payload mass, payload mass centre and 1 more, correlated" => {

@@ -31,11 +31,8 @@ done
     let folder = folder();
     fs::write(folder.path().join("answer.sh"), SOMETIMES).unwrap();
     let scenario = scenario(&uniform(), folder.path()).with_runs(700).unwrap();
-    let options = |name: &str| Options {
-        out: Some(folder.path().join(name)),
-        threads: Some(2),
-        ..Options::default()
-    };
+    let options =
+        |name: &str| Options { threads: Some(2), ..Options::to(folder.path().join(name)) };
     let asked = || fs::read(folder.path().join("asked")).map_or(0, |asked| asked.len() / 2);
     let rows = |study: &Study<SimulatorSummary>| {
         let table = study.runs()[0].table().unwrap();
@@ -121,7 +118,7 @@ done
     let studied = |rows: Rows, kept: Option<Vec<String>>, name: &str| {
         let scenario = scenario.clone().with_kept(&Kept::new(rows, kept));
         let out = folder.path().join(name);
-        let options = Options { out: Some(out.clone()), threads: Some(2), ..Options::default() };
+        let options = Options { threads: Some(2), ..Options::to(out.clone()) };
         scenario.study(&options, &|_| {}, &|_| {}).unwrap();
         out
     };
@@ -199,7 +196,7 @@ done
     let gone = SimulatorReplay::new(&scenario, None, 0).unwrap_err().to_string();
     assert!(gone.contains("a file that the command names is not there any more"), "{gone}");
     let without = SimulatorScenario::from_toml(&uniform(), folder.path()).unwrap();
-    let options = Options { out: Some(all), ..Options::default() };
+    let options = Options::to(all);
     let refused = without.study(&options, &|_| {}, &|_| {}).unwrap_err().to_string();
     assert!(refused.contains("the command names no file that is there"), "{refused}");
     // Nor are vehicles counted where there are none.

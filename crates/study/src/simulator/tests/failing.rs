@@ -13,7 +13,7 @@ fn a_campaign_tells_where_its_runs_fail() {
         let text = uniform() + &other + required + left_out;
         let scenario = scenario(&text, folder.path()).with_runs(700).unwrap();
         let out = folder.path().join(format!("out-{told}"));
-        let options = Options { out: Some(out.clone()), ..Options::default() };
+        let options = Options::to(out.clone());
         scenario.study(&options, &|_| {}, &|_| {}).unwrap();
         let page = fs::read_to_string(out.join("report.md")).unwrap();
         assert_eq!(page.contains("## Where runs fail"), told, "{page}");

@@ -55,9 +55,8 @@ fn campaigns_of_vehicles_go_on() {
         scenario(&study_text(&size), folder.path())
     };
     let options = |place: &str, threads| Options {
-        out: Some(folder.path().join(place)),
         threads: Some(threads),
-        ..Options::default()
+        ..Options::to(folder.path().join(place))
     };
     let run = |scenario: &SimulatorScenario, place: &str, threads| {
         scenario.study(&options(place, threads), &|_| {}, &|_| {})
@@ -179,11 +178,8 @@ fn shards_of_vehicles_are_one_study() {
     let scenario = scenario(&study_text("vehicles = 63\nflights = 30"), folder.path());
     let any = AnyScenario::Simulator(Box::new(scenario.clone()));
     let out = |name: &str| folder.path().join(name);
-    let options = |name: &str, threads| Options {
-        out: Some(out(name)),
-        threads: Some(threads),
-        ..Options::default()
-    };
+    let options =
+        |name: &str, threads| Options { threads: Some(threads), ..Options::to(out(name)) };
     scenario.study(&options("whole", 2), &|_| {}, &|_| {}).unwrap();
     let written = |name: &str| {
         let mut all = BTreeMap::new();

@@ -98,9 +98,7 @@ proptest! {
         }
         let waiting = scenario(&text, folder.path());
         let function = waiting.with_function(answer()).unwrap();
-        let options = |name: &str| Options {
-            out: Some(folder.path().join(name)), threads: Some(threads), ..Options::default()
-        };
+        let options = |name: &str| Options { threads: Some(threads), ..Options::to(folder.path().join(name)) };
         command.study(&options("command"), &|_| {}, &|_| {}).unwrap();
         // Stopped on the way, it goes on.
         let stop = Arc::new(AtomicBool::new(false));
@@ -145,7 +143,7 @@ fn rare_events_and_shards_take_functions() {
     );
 
     let out = folder.path().join("shards");
-    let options = Options { out: Some(out.clone()), ..Options::default() };
+    let options = Options::to(out.clone());
     for number in 1..=2 {
         let shard = Shard::new(number, 2).unwrap();
         let refused = waiting.run_shard(&options, shard, &|_| {}, &|_| {}).unwrap_err();
@@ -155,7 +153,7 @@ fn rare_events_and_shards_take_functions() {
     assert!(!Status::read(&out).unwrap().complete);
     put_together(&out, &options, &|_| {}).unwrap();
     assert!(Status::read(&out).unwrap().complete);
-    let whole = Options { out: Some(folder.path().join("whole")), ..Options::default() };
+    let whole = Options::to(folder.path().join("whole"));
     function.run(&whole, &|_| {}, &|_| {}).unwrap();
     assert_eq!(tables(&out), tables(&folder.path().join("whole")));
 }
@@ -166,7 +164,7 @@ fn runs_need_the_function() {
     let folder = folder();
     let waiting = scenario(&uniform().replace(COMMAND, FUNCTION), folder.path());
     let out = folder.path().join("out");
-    let options = Options { out: Some(out.clone()), ..Options::default() };
+    let options = Options::to(out.clone());
     let says =
         |error: &str| error.contains("simulation.function") && error.contains("with_function");
     let refused = waiting.study(&options, &|_| {}, &|_| {}).unwrap_err().to_string();
@@ -271,15 +269,9 @@ fn kept_columns_are_those_of_the_tables() {
     .enumerate()
     {
         let out = folder.path().join(place.to_string());
-        let options = Options { out: Some(out.clone()), ..Options::default() };
-        let all = given
-            .clone()
-            .study(
-                &Options { out: Some(folder.path().join("all")), ..Options::default() },
-                &|_| {},
-                &|_| {},
-            )
-            .unwrap();
+        let options = Options::to(out.clone());
+        let all =
+            given.clone().study(&Options::to(folder.path().join("all")), &|_| {}, &|_| {}).unwrap();
         given
             .clone()
             .with_kept(&Kept::new(rows, columns.clone()))

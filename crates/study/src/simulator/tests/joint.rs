@@ -128,7 +128,7 @@ fn what_a_region_keeps_is_told() {
     let text = uniform() + BODIES + MODELS;
     let scenario_of = |text: &str| scenario(text, folder.path()).with_runs(40).unwrap();
     let study = |text: &str, name: &str| {
-        let options = Options { out: Some(folder.path().join(name)), ..Options::default() };
+        let options = Options::to(folder.path().join(name));
         let study = scenario_of(text).study(&options, &|_| {}, &|_| {}).unwrap();
         let read = |file: &str| fs::read_to_string(study.folder().join(file)).unwrap();
         let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();

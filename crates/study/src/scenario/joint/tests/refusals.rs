@@ -1,52 +1,36 @@
 //! What of the joint law of a body is refused, by its key.
 
 use super::*;
+use crate::scenario::tests::cases;
 
 #[test]
 fn what_contradicts_itself_is_named() {
     let lengths = "gyration_lengths_m = [0.01, 0.01, 0.01]\n";
     let roots = "root_second_moment_variance_kg_m2 = [0.01, 0.01, 0.01]\n";
     let fixed = "axes = \"fixed\"\n";
-    let region = |region: &str| format!("{lengths}{fixed}inside = {{ {region} }}\n");
     let small = "ellipsoid = { middle_m = [0.0, 0.0, 0.0], semi_axes_m = [0.1, 0.1, 0.1] }";
-    let at = "payload.dispersion.";
-    for (dispersion, expected) in [
-        (format!("{lengths}{fixed}{roots}"), "root_second_moment_variance_kg_m2: there is"),
-        (
-            format!("{lengths}{fixed}roots = \"gaussian\"\n"),
-            "roots: there is payload.dispersion.gyr",
-        ),
-        (
-            format!("{lengths}{fixed}mass_kg = 1.0\ninertia_follows_mass = 0.5\n"),
-            "inertia_follows_mass: there",
-        ),
-        (
-            format!("{lengths}{fixed}mass_kg = 1.0\ninertia_follows_mass = false\n"),
-            "inertia_follows_mass: there",
-        ),
-        (lengths.replacen("0.01", "-0.01", 1) + fixed, "gyration_lengths_m[1]: -0.01"),
-        (
-            lengths.replacen("0.01", "{ law = \"uniform\", low = 1.0 }", 1) + fixed,
-            "gyration_lengths_m[1].high",
-        ),
-        (lengths.replacen(", 0.01", "", 1) + fixed, "gyration_lengths_m"),
-        (region(small), "inside: region: 0 of 20000 trial draws"),
-        (region(&small.replace("0.1, 0.1, 0.1", "0.1, 0.1, -0.1")), "inside: "),
-        (region("sphere = { radius_m = 1.0 }"), "inside: unknown field `sphere`"),
-        (
-            region(&format!("{small}, hull = {{ points_m = [] }}")),
-            "inside: there must be exactly one",
-        ),
-        (region("hull = { points_m = [] }"), "inside: "),
-        (
-            region(
-                "box = { middle_m = [0.0, 0.0, 0.0], half_sides_m = [1.0, 1.0, 1.0], colour = 1 }",
-            ),
-            "inside: box.colour: unknown field `colour`",
-        ),
-    ] {
-        let message = refusal(&format!("[payload.dispersion]\n{dispersion}"), "");
-        assert!(message.starts_with(&format!("{at}{expected}")), "{message}\n{at}{expected}");
+    for [dispersion, expected] in cases(
+        r#"
+        LENGTHS FIXED ROOTS | root_second_moment_variance_kg_m2: there is
+        LENGTHS FIXED roots = "gaussian" | roots: there is payload.dispersion.gyr
+        LENGTHS FIXED mass_kg = 1.0\ninertia_follows_mass = 0.5 | inertia_follows_mass: there
+        LENGTHS FIXED mass_kg = 1.0\ninertia_follows_mass = false | inertia_follows_mass: there
+        gyration_lengths_m = [-0.01, 0.01, 0.01]\nFIXED | gyration_lengths_m[1]: -0.01
+        gyration_lengths_m = [{ law = "uniform", low = 1.0 }, 0.01, 0.01]\nFIXED | gyration_lengths_m[1].high
+        gyration_lengths_m = [0.01, 0.01]\nFIXED | gyration_lengths_m
+        LENGTHS FIXED inside = { SMALL } | inside: region: 0 of 20000 trial draws
+        LENGTHS FIXED inside = { ellipsoid = { middle_m = [0.0, 0.0, 0.0], semi_axes_m = [0.1, 0.1, -0.1] } } | inside:
+        LENGTHS FIXED inside = { sphere = { radius_m = 1.0 } } | inside: unknown field `sphere`
+        LENGTHS FIXED inside = { SMALL, hull = { points_m = [] } } | inside: there must be exactly one
+        LENGTHS FIXED inside = { hull = { points_m = [] } } | inside:
+        LENGTHS FIXED inside = { box = { middle_m = [0.0, 0.0, 0.0], half_sides_m = [1.0, 1.0, 1.0], colour = 1 } } | inside: box.colour: unknown field `colour`
+        "#,
+    ) {
+        let tokens = [("LENGTHS", lengths), ("FIXED", fixed), ("ROOTS", roots), ("SMALL", small)];
+        let said = tokens.iter().fold(dispersion, |said, (token, text)| said.replace(token, text));
+        let message = refusal(&format!("[payload.dispersion]\n{said}\n"), "");
+        let expected = format!("payload.dispersion.{expected}");
+        assert!(message.starts_with(&expected), "{message}\n{expected}");
     }
     // What names no number, or none of the body's own.
     let correlated =
