@@ -18,7 +18,6 @@ use crate::{
 /// A model ready to draw: a law and its random streams for either body.
 #[derive(Debug)]
 pub(crate) struct Model {
-    name: String,
     law: ModelLaw,
     /// Of the six entries of payload and stage, if the law is entrywise.
     given: Option<[[f64; 6]; 2]>,
@@ -52,17 +51,11 @@ impl Model {
         };
         let bodies = vec![body(Body::Payload, payload), body(Body::Stage, stage)];
         Ok(Self {
-            name: spec.name.clone(),
             law: spec.law.named(),
             given: payload_given.zip(stage_given).map(<[_; 2]>::from),
             draws: Draws::new(key, bodies, &dispersions.joint),
             kept: scenario.regions(spec),
         })
-    }
-
-    /// What it is called.
-    pub(crate) fn name(&self) -> &str {
-        &self.name
     }
 
     /// Which law it has.
@@ -102,16 +95,6 @@ impl Model {
         self.draw_of(scenario, &Drawing::Plain, run)
     }
 
-    /// The scores of runs that are steered.
-    pub(crate) fn steered(
-        &self,
-        scenario: &Scenario,
-        drawing: &Drawing,
-        runs: u64,
-    ) -> Vec<Steered> {
-        self.draws.steered(&scenario.dispersions().joint, drawing, scenario.size(), runs)
-    }
-
     /// Draws the bodies of a run, of which some groups of inputs may be those of a second draw, or scores may be steered.
     pub(crate) fn draw_of(&self, scenario: &Scenario, drawing: &Drawing, run: u64) -> Case {
         let taken = self.draws.taken(drawing, scenario.size(), run);
@@ -146,6 +129,17 @@ impl<'a> Separations<'a> {
     /// The same, whose runs draw this.
     pub(crate) fn drawing(self, drawing: Drawing) -> Self {
         Self { drawing, ..self }
+    }
+
+    /// Whose bodies they have.
+    pub(crate) fn model(&self) -> &Model {
+        self.model
+    }
+
+    /// The scores of so many runs, if they are steered.
+    pub(crate) fn scores(&self, runs: u64) -> Vec<Steered> {
+        let (joint, size) = (&self.scenario.dispersions().joint, self.scenario.size());
+        self.model.draws.steered(joint, &self.drawing, size, runs)
     }
 
     /// What is drawn for a run, by column, with every digit.
@@ -294,9 +288,9 @@ mod tests {
             runs.map(|(model, run)| format!("{:?}", model.draw(scenario, run))).collect()
         };
         let expected = draws(&built_in, &own);
-        for (i, model) in own.iter().enumerate() {
+        for (i, (model, name)) in own.iter().zip(built_in.model_names()).enumerate() {
             let mut table = table.clone();
-            let only = [("name", model.name()), ("law", "outside")];
+            let only = [("name", name), ("law", "outside")];
             let only = only.map(|(key, value)| (key.to_owned(), Value::from(value)));
             table["models"][i] = Value::Table(only.into_iter().collect());
             let bare = scenario(&table);
@@ -305,9 +299,9 @@ mod tests {
 
             let (payload, stage) =
                 (Arc::clone(&model.draws.bodies[0].law), Arc::clone(&model.draws.bodies[1].law));
-            let given = bare.with_model(model.name(), payload, stage).unwrap();
+            let given = bare.with_model(name, payload, stage).unwrap();
             let models = Model::all(&given).unwrap();
-            assert!(draws(&given, &models) == expected, "{}", model.name());
+            assert!(draws(&given, &models) == expected, "{name}");
             assert_eq!(models[i].law(), ModelLaw::Outside);
             let sound = model.is_realizable_by_construction();
             assert_eq!(models[i].is_realizable_by_construction(), sound);

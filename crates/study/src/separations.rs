@@ -16,10 +16,20 @@ use crate::{
     report,
     seen::{Looking, Seen},
     steering::Steered,
-    subject::Subject,
+    subject::{Grouped, Subject},
     summary::ModelSummary,
     unusual::DrawnInput,
 };
+
+impl Grouped for Separations<'_> {
+    fn groups(&self) -> &Groups {
+        self.model().groups()
+    }
+
+    fn steered(&self, runs: u64) -> Vec<Steered> {
+        self.scores(runs)
+    }
+}
 
 impl Subject for Scenario {
     /// Some tenths of a second of separations.
@@ -56,17 +66,6 @@ impl Subject for Scenario {
         Ok(forecast.map_err(CampaignError::from)?)
     }
 
-    fn simulations<'a>(
-        &'a self,
-        models: &'a Vec<Model>,
-    ) -> Result<Vec<(&'a str, Separations<'a>)>, ScenarioError> {
-        Ok(models.iter().map(|model| (model.name(), Separations::new(self, model))).collect())
-    }
-
-    fn groups(&self, models: &Vec<Model>, place: usize) -> Result<Groups, ScenarioError> {
-        Ok(models[place].groups().clone())
-    }
-
     fn drawing<'a>(
         &'a self,
         models: &'a Vec<Model>,
@@ -74,16 +73,6 @@ impl Subject for Scenario {
         drawing: Drawing,
     ) -> Result<Separations<'a>, ScenarioError> {
         Ok(Separations::new(self, &models[place]).drawing(drawing))
-    }
-
-    fn steered(
-        &self,
-        models: &Vec<Model>,
-        place: usize,
-        drawing: &Drawing,
-        runs: u64,
-    ) -> Result<Vec<Steered>, ScenarioError> {
-        Ok(models[place].steered(self, drawing, runs))
     }
 
     fn is_outcome(&self, column: &Column) -> bool {

@@ -399,9 +399,9 @@ pub(crate) fn judged(scenario: &Scenario, models: &Vec<Model>) -> Summary {
 #[cfg(test)]
 pub(crate) fn all_runs(scenario: &Scenario, models: &[Model]) -> Vec<Runs> {
     let threads = threads(Some(1)).unwrap();
-    let table = |model: &Model| {
+    let table = |(model, name): (&Model, &str)| {
         let simulation = Separations::new(scenario, model);
-        run(&simulation, model.name(), scenario.runs(), &threads, &|_| {}).unwrap()
+        run(&simulation, name, scenario.runs(), &threads, &|_| {}).unwrap()
     };
-    models.iter().map(|model| Runs::from(table(model))).collect()
+    models.iter().zip(scenario.model_names()).map(|model| Runs::from(table(model))).collect()
 }

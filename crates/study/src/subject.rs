@@ -30,7 +30,7 @@ pub(crate) trait Subject: Framed + Sync {
     /// What is made of the scenario before its runs.
     type Prepared: Sync;
     /// The runs of a model.
-    type Simulation<'a>: Simulation
+    type Simulation<'a>: Grouped
     where
         Self: 'a;
     /// What is seen of the runs of a model while they are done.
@@ -53,28 +53,13 @@ pub(crate) trait Subject: Framed + Sync {
         left: u64,
         threads: &ThreadPool,
     ) -> Result<Forecast, StudyError>;
-    /// The runs of each model, by its name.
-    fn simulations<'a>(
-        &'a self,
-        models: &'a Self::Prepared,
-    ) -> Result<Vec<(&'a str, Self::Simulation<'a>)>, ScenarioError>;
-    /// The groups of inputs that the model in a place draws independently of each other.
-    fn groups(&self, models: &Self::Prepared, place: usize) -> Result<Groups, ScenarioError>;
-    /// The runs of the model in a place that draw this of these groups.
+    /// The runs of the model in a place that draw this of its groups of inputs.
     fn drawing<'a>(
         &'a self,
         models: &'a Self::Prepared,
         place: usize,
         drawing: Drawing,
     ) -> Result<Self::Simulation<'a>, ScenarioError>;
-    /// The scores of so many runs of the model in a place that draw this; none unless it steers.
-    fn steered(
-        &self,
-        models: &Self::Prepared,
-        place: usize,
-        drawing: &Drawing,
-        runs: u64,
-    ) -> Result<Vec<Steered>, ScenarioError>;
     /// Whether a column is a number that comes of a run, and is not drawn for it.
     fn is_outcome(&self, column: &Column) -> bool;
     /// The columns of numbers that are drawn for a run.
@@ -96,6 +81,25 @@ pub(crate) trait Subject: Framed + Sync {
     fn report_files(&self) -> Vec<String>;
     /// The report, from a summary that was read back.
     fn report(&self, summary: &Self::Summary) -> Document;
+
+    /// The runs of each model, by its name.
+    fn simulations<'a>(
+        &'a self,
+        models: &'a Self::Prepared,
+    ) -> Result<Vec<(&'a str, Self::Simulation<'a>)>, ScenarioError> {
+        let of = |(place, name): (usize, &'a str)| {
+            Ok((name, self.drawing(models, place, Drawing::Plain)?))
+        };
+        self.model_names().enumerate().map(of).collect()
+    }
+}
+
+/// Runs of a model of which it is known what they draw.
+pub(crate) trait Grouped: Simulation {
+    /// The groups of inputs that the model draws independently of each other.
+    fn groups(&self) -> &Groups;
+    /// The scores of so many of these runs; none unless they are steered.
+    fn steered(&self, runs: u64) -> Vec<Steered>;
 }
 
 /// What runs amount to, for a terminal, for a file and for a report.

@@ -154,6 +154,12 @@ impl<'a, I: Inputs> ExternalSimulation<'a, I> {
         Self { simulator, model: model.to_owned(), seeds, inputs, places, drawn, outputs }
     }
 
+    /// What is drawn and sent.
+    #[must_use]
+    pub fn inputs(&self) -> &I {
+        &self.inputs
+    }
+
     /// Does a run alone, in a process that is started for it, and tells what was said.
     #[must_use]
     pub fn replay(&self, run: u64) -> Told {

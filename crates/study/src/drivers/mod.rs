@@ -10,12 +10,12 @@ use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
 
 use crate::{
-    Options, ScenarioError, StudyError,
+    Options, StudyError,
     decisions::requirements_of,
     driven::{Driven, Drivers},
     groups::Drawing,
     head::Head,
-    subject::{Subject, Summarized},
+    subject::{Grouped, Subject, Summarized},
 };
 
 pub(crate) use section::{figure_names, section};
@@ -27,9 +27,8 @@ const BESIDE: &str = "drivers";
 pub(crate) fn runs<C: Subject>(scenario: &C) -> Result<u64, StudyError> {
     let Some(base) = scenario.drivers() else { return Ok(0) };
     let models = scenario.prepare(None)?;
-    let groups = (0..scenario.model_names().count()).map(|place| scenario.groups(&models, place));
-    let runs = groups.map(|groups| Ok(groups?.designs().runs(base)));
-    runs.sum::<Result<u64, ScenarioError>>().map_err(StudyError::from)
+    let simulations = scenario.simulations(&models)?;
+    Ok(simulations.iter().map(|(_, simulation)| simulation.groups().designs().runs(base)).sum())
 }
 
 /// What drives the outcome of each model, if the scenario asks for that: as it was found before, or from runs of their own
@@ -66,18 +65,19 @@ impl<C: Subject> Finding<'_, '_, C> {
             return Ok((there.head().drivers.clone(), None));
         }
         self.scenario.begin(self.models)?;
-        let groups = (0..names.len()).map(|place| self.scenario.groups(self.models, place));
-        let groups = groups.collect::<Result<Vec<_>, _>>()?;
-        let most = groups.iter().map(|groups| groups.designs().runs(base)).max().unwrap_or(0);
+        let exchanging = |place| self.scenario.drawing(self.models, place, Drawing::Exchanging);
+        let simulations = (0..names.len()).map(exchanging).collect::<Result<Vec<_>, _>>()?;
+        let runs = simulations.iter().map(|simulation| simulation.groups().designs().runs(base));
+        let most = runs.max().unwrap_or(0);
         // What was begun otherwise is of no use to anybody.
         let (mark, force) = (self.scenario.to_toml(), true);
         let blocks =
             self.folder.blocks_beside(BESIDE, (self.identity, &mark), most, force, self.threads)?;
         let (mut all, mut done) = (Vec::new(), 0);
-        for ((place, model), groups) in names.into_iter().enumerate().zip(&groups) {
-            let designs = groups.designs();
-            let simulation =
-                [(model, self.scenario.drawing(self.models, place, Drawing::Exchanging)?)];
+        for (model, simulation) in names.into_iter().zip(simulations) {
+            let groups = simulation.groups().names().to_vec();
+            let designs = simulation.groups().designs();
+            let simulation = [(model, simulation)];
             let plan = Plan {
                 runs: designs.runs(base),
                 block_runs: C::BLOCK_RUNS,
@@ -111,7 +111,7 @@ impl<C: Subject> Finding<'_, '_, C> {
                 base_runs: base,
                 runs: plan.runs,
                 failed: blocks.failed(model),
-                groups: groups.names().to_vec(),
+                groups,
                 outputs: driven.collect(),
                 identity: identity.clone(),
             });

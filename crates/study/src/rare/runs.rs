@@ -15,7 +15,7 @@ use crate::{
     decisions::known,
     groups::{Drawing, Groups},
     steering::Steered,
-    subject::Subject,
+    subject::{Grouped, Subject},
 };
 
 /// Runs of a model that are done to look for an event.
@@ -43,11 +43,12 @@ impl<'a, C: Subject> EventRuns<'a, C> {
         let at = scenario.place_of(options.model.as_deref())?;
         let model = scenario.model_names().nth(at).unwrap_or_default();
         let prepared = scenario.prepare(options.stop.as_ref())?;
-        let columns = scenario.drawing(&prepared, at, Drawing::Plain)?.columns();
-        let columns = Table::new(model, 0, columns).map_err(CampaignError::from)?;
+        let plain = scenario.drawing(&prepared, at, Drawing::Plain)?;
+        let columns = Table::new(model, 0, plain.columns()).map_err(CampaignError::from)?;
         known(event.quantity(), columns.columns())
             .map_err(|problem| ScenarioError::field("event", problem))?;
-        let groups = scenario.groups(&prepared, at)?;
+        let groups = plain.groups().clone();
+        drop(plain);
         let (threads, stop) = (threads(options.threads)?, options.stop.clone());
         let done = Cell::new(0);
         Ok(Self { scenario, prepared, at, model, event, groups, threads, stop, progress, done })
@@ -95,7 +96,8 @@ impl<'a, C: Subject> EventRuns<'a, C> {
         drawing: Drawing,
         runs: u64,
     ) -> Result<Vec<(Steered, f64)>, StudyError> {
-        let drawn = self.scenario.steered(&self.prepared, self.at, &drawing, runs)?;
+        let simulation = self.scenario.drawing(&self.prepared, self.at, drawing.clone())?;
+        let drawn = simulation.steered(runs);
         Ok(drawn.into_iter().zip(self.excesses(drawing, runs)?).collect())
     }
 }

@@ -4,7 +4,7 @@ use gyradius_campaign::{Simulator, SimulatorFunction};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::scenario::SimulatorScenario;
-use crate::ScenarioError;
+use crate::{ScenarioError, groups::Drawing};
 
 /// Runs that are tried, at most, to see what the outputs are.
 const TRIES: u64 = 10;
@@ -80,7 +80,7 @@ impl SimulatorScenario {
             Ok(outputs)
         });
         let simulator = Simulator::function(watched);
-        let simulation = self.simulation(&simulator, 0)?;
+        let simulation = self.simulation(&simulator, 0, Drawing::Plain)?;
         let mut reason = None;
         for run in 0..self.runs().min(TRIES) {
             let told = simulation.replay(run);

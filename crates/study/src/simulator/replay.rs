@@ -4,7 +4,9 @@ use gyradius_campaign::{Table, Told};
 use std::{fmt, path::Path};
 
 use super::scenario::SimulatorScenario;
-use crate::{Fleet, ReplayError, Which, replay::Held, scenario::Framed, subject::Subject};
+use crate::{
+    Fleet, ReplayError, Which, groups::Drawing, replay::Held, scenario::Framed, subject::Subject,
+};
 
 /// Why a row may be another than that of the study.
 const CAUSES: &str = "the table was changed, or something that the simulator uses, such as a file that it imports or the \
@@ -37,7 +39,7 @@ impl SimulatorReplay {
         let place = scenario.place_of(model)?;
         let simulator = scenario.prepare(None)?;
         scenario.begin(&simulator)?;
-        let simulation = scenario.simulation(&simulator, place)?;
+        let simulation = scenario.simulation(&simulator, place, Drawing::Plain)?;
         let told = simulation.replay(run);
         let own = simulation.table(run, &told)?;
         let outputs = scenario.outputs().iter();

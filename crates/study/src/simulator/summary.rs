@@ -25,7 +25,7 @@ use crate::{
     regions::{self, RegionSummary},
     report,
     steering::Steered,
-    subject::{Subject, Summarized, head_of},
+    subject::{Grouped, Subject, Summarized, head_of},
     unusual::DrawnInput,
 };
 
@@ -116,23 +116,26 @@ impl SimulatorScenario {
         Ok(all)
     }
 
-    /// The runs of the model in a place.
+    /// The runs of the model in a place that draw this.
     pub(super) fn simulation<'a>(
         &'a self,
         simulator: &'a Simulator,
         place: usize,
+        drawing: Drawing,
     ) -> Result<ExternalSimulation<'a, SimulatorDraws<'a>>, ScenarioError> {
-        self.simulation_of(simulator, place, SimulatorDraws::new(self, place)?)
-    }
-
-    fn simulation_of<'a>(
-        &'a self,
-        simulator: &'a Simulator,
-        place: usize,
-        draws: SimulatorDraws<'a>,
-    ) -> Result<ExternalSimulation<'a, SimulatorDraws<'a>>, ScenarioError> {
+        let draws = SimulatorDraws::new(self, place)?.drawing(drawing);
         let name = self.model_names().nth(place).unwrap_or_default();
         Ok(ExternalSimulation::new(simulator, self.seed(), name, draws, self.outputs().to_vec()))
+    }
+}
+
+impl Grouped for ExternalSimulation<'_, SimulatorDraws<'_>> {
+    fn groups(&self) -> &Groups {
+        self.inputs().groups()
+    }
+
+    fn steered(&self, runs: u64) -> Vec<Steered> {
+        self.inputs().steered(runs)
     }
 }
 
@@ -195,36 +198,13 @@ impl Subject for SimulatorScenario {
         Ok(Forecast::untimed(left, self.columns().count(), threads.current_num_threads()))
     }
 
-    fn simulations<'a>(
-        &'a self,
-        simulator: &'a Simulator,
-    ) -> Result<Vec<(&'a str, Self::Simulation<'a>)>, ScenarioError> {
-        let simulation =
-            |(place, name): (usize, &'a str)| Ok((name, self.simulation(simulator, place)?));
-        self.model_names().enumerate().map(simulation).collect()
-    }
-
-    fn groups(&self, _: &Simulator, place: usize) -> Result<Groups, ScenarioError> {
-        Ok(SimulatorDraws::new(self, place)?.groups().clone())
-    }
-
     fn drawing<'a>(
         &'a self,
         simulator: &'a Simulator,
         place: usize,
         drawing: Drawing,
     ) -> Result<Self::Simulation<'a>, ScenarioError> {
-        self.simulation_of(simulator, place, SimulatorDraws::new(self, place)?.drawing(drawing))
-    }
-
-    fn steered(
-        &self,
-        _: &Simulator,
-        place: usize,
-        drawing: &Drawing,
-        runs: u64,
-    ) -> Result<Vec<Steered>, ScenarioError> {
-        Ok(SimulatorDraws::new(self, place)?.drawing(drawing.clone()).steered(runs))
+        self.simulation(simulator, place, drawing)
     }
 
     fn is_outcome(&self, column: &Column) -> bool {

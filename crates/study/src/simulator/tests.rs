@@ -242,8 +242,7 @@ fn bodies_draw_what_payload_and_stage_do() {
     let folder = folder();
     let scenario = scenario(&toml::to_string(&own).unwrap(), folder.path());
     for (place, name) in names.iter().enumerate() {
-        let model = models.iter().find(|model| model.name() == name).unwrap();
-        let separations = Separations::new(&separation, model);
+        let separations = Separations::new(&separation, &models[place]);
         let mut rows = Table::new(name, 0, separations.columns()).unwrap();
         separations.run(0..30, &mut separations.worker(), &mut rows).unwrap();
         let mut compared = 0;
