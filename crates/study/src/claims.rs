@@ -330,7 +330,7 @@ impl Shape {
 impl std::fmt::Display for Shape {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let name = |q: Quantity| {
-            let of_stage = Quantity::STAGE_INERTIA.contains(&q);
+            let of_stage = Entry::ALL.iter().any(|e| Quantity::entry(Body::Stage, *e) == q);
             let body = if of_stage { Body::Stage } else { Body::Payload };
             format!("{} {}", body.name(), q.label())
         };

@@ -195,24 +195,6 @@ quantities! {
 }
 
 impl Quantity {
-    /// Entries of the payload's inertia matrix.
-    pub const PAYLOAD_INERTIA: [Self; 6] = [
-        Self::PayloadI11,
-        Self::PayloadI22,
-        Self::PayloadI33,
-        Self::PayloadI12,
-        Self::PayloadI13,
-        Self::PayloadI23,
-    ];
-    /// Entries of the stage's inertia matrix.
-    pub const STAGE_INERTIA: [Self; 6] = [
-        Self::StageI11,
-        Self::StageI22,
-        Self::StageI33,
-        Self::StageI12,
-        Self::StageI13,
-        Self::StageI23,
-    ];
     /// Angular velocity of the payload after the last release.
     pub const PAYLOAD_RATE: [Self; 3] =
         [Self::PayloadRate1, Self::PayloadRate2, Self::PayloadRate3];
@@ -228,13 +210,10 @@ impl Quantity {
     /// Angular momentum of the payload.
     pub const MOMENTUM: [Self; 3] = [Self::Momentum1, Self::Momentum2, Self::Momentum3];
 
-    /// An entry of the inertia matrix of a body.
-    pub(crate) fn entry(body: Body, entry: Entry) -> Self {
-        let entries = match body {
-            Body::Payload => Self::PAYLOAD_INERTIA,
-            Body::Stage => Self::STAGE_INERTIA,
-        };
-        entries[entry as usize]
+    /// An entry of the inertia matrix of a body: these stand first, body by body.
+    #[must_use]
+    pub fn entry(body: Body, entry: Entry) -> Self {
+        Self::ALL[body as usize * Entry::ALL.len() + entry as usize]
     }
 
     /// The last one before `realizable` in the run table; the rest come after the attitudes.

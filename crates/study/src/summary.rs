@@ -29,8 +29,9 @@ use crate::{
 /// Every number that the report shows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
+    /// Of what it is.
     #[serde(flatten)]
-    pub(crate) head: Head,
+    pub head: Head,
     pub(crate) nominal: Vec<Nominal>,
     pub(crate) models: Vec<ModelSummary>,
     pub(crate) comparisons: Vec<ComparisonSummary>,
@@ -228,12 +229,6 @@ impl Summary {
             every_model,
             figures: Vec::new(),
         })
-    }
-
-    /// Of what it is.
-    #[must_use]
-    pub fn head(&self) -> &Head {
-        &self.head
     }
 
     pub(crate) fn model(&self, name: &str) -> Option<&ModelSummary> {

@@ -405,7 +405,7 @@ fn studies_of_vehicles_go_on() {
 
     let table = &large.tables().unwrap()[0];
     let summary = large.summary();
-    assert_eq!(summary.head().independent_runs_per_model, Some(12));
+    assert_eq!(summary.head.independent_runs_per_model, Some(12));
     for quantity in [Quantity::RelativeSpeed, Quantity::PayloadI11] {
         let column = quantity.column();
         let values: Vec<f64> = table.numbers(&column).unwrap().present().collect();

@@ -53,7 +53,7 @@ const NORMAL: &str = "stiffness_n_per_m = { law = \"normal\", sigma = 200.0 }";
 fn an_ordinary_scenario_has_no_alert() {
     let scenario = ordinary(2000, 0.01, NORMAL);
     let (summary, _) = study(&scenario);
-    assert_eq!(summary.head().alerts, []);
+    assert_eq!(summary.head.alerts, []);
     assert!(!scenario.report(&summary).html().contains("Before you read the results"));
 }
 
@@ -122,7 +122,7 @@ proptest! {
                 }
             }
         }
-        let told = summary.head().alerts.iter().map(|alert| match alert {
+        let told = summary.head.alerts.iter().map(|alert| match alert {
             Alert::Failed { failed, runs, kinds, .. } => {
                 assert_eq!(kinds.iter().map(|(_, count)| count).sum::<u64>(), *failed);
                 ("failed", format!("{failed} of {runs}"))
@@ -138,10 +138,10 @@ proptest! {
         prop_assert_eq!(told.collect::<Vec<_>>(), expected);
         let written = serde_json::to_string(&summary).unwrap();
         let read: Summary = serde_json::from_str(&written).unwrap();
-        prop_assert_eq!(&read.head().alerts, &summary.head().alerts);
+        prop_assert_eq!(&read.head.alerts, &summary.head.alerts);
         let page = scenario.report(&read).markdown();
         let place = page.find("Before you read the results");
-        prop_assert_eq!(place.is_some(), !summary.head().alerts.is_empty());
+        prop_assert_eq!(place.is_some(), !summary.head.alerts.is_empty());
         if let Some(place) = place {
             prop_assert!(place < page.find("What the payload does").unwrap());
         }

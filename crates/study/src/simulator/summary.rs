@@ -37,8 +37,9 @@ const MAIN: usize = 4;
 /// Every number that the report of a campaign of a simulator shows, and of what it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulatorSummary {
+    /// Of what it is.
     #[serde(flatten)]
-    head: Head,
+    pub head: Head,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     command: Vec<String>,
     /// Of the models whose draws are kept to regions, in their order.
@@ -46,7 +47,8 @@ pub struct SimulatorSummary {
     regions: Vec<KeptSummary>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     function: Option<String>,
-    overview: Overview,
+    /// What the runs amount to.
+    pub overview: Overview,
 }
 
 /// What of the draws of a model the regions of its bodies keep.
@@ -54,20 +56,6 @@ pub struct SimulatorSummary {
 struct KeptSummary {
     model: String,
     regions: Vec<RegionSummary>,
-}
-
-impl SimulatorSummary {
-    /// Of what it is.
-    #[must_use]
-    pub fn head(&self) -> &Head {
-        &self.head
-    }
-
-    /// What the runs amount to.
-    #[must_use]
-    pub fn overview(&self) -> &Overview {
-        &self.overview
-    }
 }
 
 impl SimulatorScenario {

@@ -95,6 +95,19 @@ fn scenario(text: &str, folder: &Path) -> SimulatorScenario {
     scenario
 }
 
+/// Payload and stage of a separation, as bodies of a simulator.
+fn bodies_of(separation: &toml::Table) -> toml::Value {
+    let body = |name: &str| {
+        let given = separation[name].as_table().unwrap();
+        let keys = ["mass_kg", "inertia_kg_m2", "dispersion"];
+        let mut body: toml::Table =
+            keys.iter().map(|key| ((*key).to_owned(), given[*key].clone())).collect();
+        body.insert("name".to_owned(), name.into());
+        toml::Value::Table(body)
+    };
+    vec![body("payload"), body("stage")].into()
+}
+
 /// A second quantity, which goes against the first.
 fn correlated() -> String {
     quantity("z", "{ law = \"normal\", mean = 1.0, sigma = 0.1 }")
@@ -226,15 +239,7 @@ fn bodies_draw_what_payload_and_stage_do() {
     let table: toml::Table = toml::from_str(&text).unwrap();
     let mut own: toml::Table = toml::from_str(&uniform()).unwrap();
     own["seed"] = table["seed"].clone();
-    let body = |name: &str| {
-        let given = table[name].as_table().unwrap();
-        let keys = ["mass_kg", "inertia_kg_m2", "dispersion"];
-        let mut body: toml::Table =
-            keys.iter().map(|key| ((*key).to_owned(), given[*key].clone())).collect();
-        body.insert("name".to_owned(), name.into());
-        toml::Value::Table(body)
-    };
-    own.insert("bodies".to_owned(), vec![body("payload"), body("stage")].into());
+    own.insert("bodies".to_owned(), bodies_of(&table));
     let given = table["models"].as_array().unwrap();
     let names: Vec<String> =
         given.iter().map(|model| model["name"].as_str().unwrap().to_owned()).collect();
@@ -300,7 +305,7 @@ fn campaigns_go_on() {
     }
 
     // Failures are counted together, whatever their numbers.
-    let failures: Vec<_> = whole.summary().overview().failures().collect();
+    let failures: Vec<_> = whole.summary().overview.failures().collect();
     let [(_, [(kind, count)])] = failures[..] else { panic!("{failures:?}") };
     assert_eq!(kind, "simulator: too large: #");
     assert!((20..80).contains(count), "{count}");

@@ -288,7 +288,7 @@ fn a_study_tells_where_its_runs_fail() {
     let out = folder.path().join("out");
     let options = Options::to(out.clone());
     let study = Study::run(&scenario, &options, &|_| {}).unwrap();
-    let told = &study.summary().head().where_runs_fail;
+    let told = &study.summary().head.where_runs_fail;
     assert_eq!(told.len(), study.runs().len());
     let mut inputs = Vec::new();
     for (own, runs) in told.iter().zip(study.runs()) {

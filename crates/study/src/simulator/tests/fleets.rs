@@ -102,7 +102,7 @@ fn campaigns_of_vehicles_go_on() {
         assert_eq!(means.len(), 30);
         let expected = Moments::new(&means).unwrap().mean_interval(Confidence::default());
         let (_, _, samples) =
-            large.summary().overview().quantities().find(|(name, ..)| *name == column).unwrap();
+            large.summary().overview.quantities().find(|(name, ..)| *name == column).unwrap();
         let interval = samples[0].mean_interval.unwrap();
         let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * a.abs();
         assert!(near(interval.lower(), expected.lower()), "{column}: {interval} {expected}");

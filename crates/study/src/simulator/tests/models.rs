@@ -2,10 +2,12 @@
 
 use gyradius_dispersion::ModelParameters;
 use proptest::prelude::*;
-use toml::{Table, Value};
+use toml::Table;
 
-use super::{BODY, HEAD, ModelKind, SimulatorScenario, drawn, folder, scenario, uniform};
-use crate::Scenario;
+use super::{
+    BODY, HEAD, ModelKind, SimulatorScenario, bodies_of, drawn, folder, scenario, uniform,
+};
+use crate::{Scenario, scenario::tests::wrong_parameters};
 
 /// A square matrix with so much on its diagonal.
 fn diagonal(size: usize, value: f64) -> String {
@@ -110,45 +112,16 @@ proptest! {
 /// Of payload and stage, whatever is wrong with the parameters of a model is told as separations tell it.
 #[test]
 fn messages_are_those_of_separations() {
-    let both = |key: &str, value: &str| format!("payload_{key} = {value}\nstage_{key} = {value}");
     let separation = Scenario::peck_2003().unwrap().to_toml();
     let (head, _) = separation.split_once("[[models]]").unwrap();
     let table: Table = toml::from_str(&separation).unwrap();
-    let own = |name: &str| {
-        let given = table[name].as_table().unwrap();
-        let keys = ["mass_kg", "inertia_kg_m2", "dispersion"];
-        let mut body: Table =
-            keys.iter().map(|key| ((*key).to_owned(), given[*key].clone())).collect();
-        body.insert("name".to_owned(), name.into());
-        Value::Table(body)
-    };
     let mut simulator: Table = toml::from_str(&uniform()).unwrap();
-    simulator.insert("bodies".to_owned(), vec![own("payload"), own("stage")].into());
+    simulator.insert("bodies".to_owned(), bodies_of(&table));
     let folder = folder();
-    let principal = "name = \"p\"\nlaw = \"principal\"\naxes = \"whole-sphere\"";
-    let cases = [
-        ("wishart", both("delta", "1.5")),
-        ("wishart", both("delta", "nan")),
-        ("wishart", both("delta", "[1.0]")),
-        ("wishart", "payload_delta = 0.1".to_owned()),
-        ("wishart", "stage_delta = 0.1".to_owned()),
-        ("wishart", String::new()),
-        ("wishart", both("deviation_kg_m2", &diagonal(3, 1.0))),
-        ("wishart", both("delta", "0.1") + "\nmatched_to = \"p\""),
-        ("wishart", "matched_to = \"m\"".to_owned()),
-        ("wishart", "axes = \"mean-half\"".to_owned()),
-        ("correlated-entries", both("covariance_kg2_m4", &diagonal(6, -1.0))),
-        ("realizable-entrywise", both("deviation_kg_m2", &diagonal(3, -1.0))),
-        ("log-cholesky", both("log_cholesky_covariance", &diagonal(6, 100.0))),
-        ("basilisk", both("diagonal_deviation_kg_m2", "1.0")),
-        ("principal", "axes = \"mean-half\"\nstage_delta = 0.1".to_owned()),
-        ("principal", "axes = \"mean-half\"\nmatched_to = \"p\"".to_owned()),
-        ("principal", String::new()),
-        ("wishart", "[models.outside]\npayload = \"x\"".to_owned()),
-    ];
-    for (law, fields) in cases {
+    let principal = "name = \"proposed\"\nlaw = \"principal\"\naxes = \"whole-sphere\"";
+    for [law, fields, _] in wrong_parameters() {
         let models = format!(
-            "[[models]]\n{principal}\n[[models]]\nname = \"m\"\nlaw = \"{law}\"\n{fields}\n"
+            "[[models]]\n{principal}\n[[models]]\nname = \"naive\"\nlaw = \"{law}\"\n{fields}\n"
         );
         let of_separation = Scenario::from_toml(&format!("{head}{models}")).unwrap_err();
         let own = toml::to_string(&simulator).unwrap() + "\n" + &models;
