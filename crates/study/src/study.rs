@@ -5,12 +5,12 @@ use crate::{
     Scenario,
     model::{Model, Separations},
 };
-#[cfg(test)]
-use gyradius_campaign::run;
 use gyradius_campaign::{
     Blocks, CampaignError, Doing, Folder, MANIFEST, Plan, Progress, Reduced, Runs, RunsError,
     Simulation, Table, disk_left, is_stopped, memory_left, run_again, run_missing, threads, told,
 };
+#[cfg(test)]
+use gyradius_campaign::{Cell, Row, run};
 use rayon::ThreadPool;
 use std::{
     collections::BTreeSet,
@@ -384,6 +384,20 @@ fn looks<'a, C: Subject>(
         Ok(scenario.look(model, table.columns()))
     };
     simulations.iter().map(look).collect()
+}
+
+#[cfg(test)]
+impl<S> Study<S> {
+    /// The cells of all runs, model by model, numbers by their bits.
+    pub(crate) fn rows(&self) -> Vec<Vec<String>> {
+        let cell = |cell: Cell<'_>| match cell {
+            Cell::Number(x) => format!("{:x}", x.to_bits()),
+            other => other.to_string(),
+        };
+        let row = |row: Row<'_>| row.cells().map(|(_, own)| cell(own)).collect::<Vec<_>>();
+        let tables = self.tables().unwrap();
+        tables.iter().flat_map(|table| table.rows().map(row).collect::<Vec<_>>()).collect()
+    }
 }
 
 /// What the runs of a scenario amount to, made in memory.

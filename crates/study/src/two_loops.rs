@@ -1,6 +1,5 @@
 //! Tests of the two loops: what is drawn for a vehicle is the same in all of its flights, and nothing else is touched.
 
-use gyradius_campaign::{Cell, Row};
 use gyradius_statistics::{Confidence, Moments};
 use rand_chacha::{
     ChaCha8Rng,
@@ -358,19 +357,6 @@ fn variance_splits_into_that_of_vehicles_and_of_flights() {
     assert!(bound < 0.5, "{bound}");
 }
 
-/// The cells of all runs of a study, model by model.
-fn rows(study: &Study) -> Vec<Vec<String>> {
-    let row = |row: Row<'_>| row.cells().map(|(_, cell)| bits(&cell)).collect::<Vec<_>>();
-    study.tables().unwrap().iter().flat_map(|t| t.rows().map(row).collect::<Vec<_>>()).collect()
-}
-
-fn bits(cell: &Cell<'_>) -> String {
-    match cell {
-        Cell::Number(x) => format!("{:x}", x.to_bits()),
-        other => other.to_string(),
-    }
-}
-
 /// The same rows on any number of threads; more vehicles leave the rows that are there, and another number of flights is
 /// another study. What is told of means is of vehicles, and a flight is replayed to the bit.
 #[test]
@@ -390,10 +376,10 @@ fn studies_of_vehicles_go_on() {
         Study::run(scenario, &options(place, threads), &|_| {})
     };
     let small = run(&make(8, 5), "a", 1).unwrap();
-    let before = rows(&small);
-    assert_eq!(rows(&run(&make(8, 5), "b", 2).unwrap()), before);
+    let before = small.rows();
+    assert_eq!(run(&make(8, 5), "b", 2).unwrap().rows(), before);
     let large = run(&make(12, 5), "a", 2).unwrap();
-    let after = rows(&large);
+    let after = large.rows();
     assert_eq!((before.len(), after.len()), (80, 120));
     assert!(before[..40] == after[..40] && before[40..] == after[60..100]);
     for other in [make(12, 6), make(30, 2)] {

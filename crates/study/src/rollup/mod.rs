@@ -117,7 +117,7 @@ impl Rollup {
         options: &RollupOptions,
         progress: Progress<'_>,
     ) -> Result<RollupDraws, RollupError> {
-        self.drawn(options, progress, |_, _| Ok(()))
+        self.drawn(options, progress, |_| Ok(()))
     }
 
     /// Draws, and writes a table of the draws: run, status and the ten.
@@ -145,7 +145,7 @@ impl Rollup {
         }
         let empty = Table::new(MODEL, 0, draws.columns()).map_err(CampaignError::from)?;
         let mut writer = format.writer(&empty, &extent, output)?;
-        let found = self.drawn(options, progress, |table, _| Ok(writer.write(table)?))?;
+        let found = self.drawn(options, progress, |table| Ok(writer.write(table)?))?;
         writer.finish()?;
         Ok(found)
     }
@@ -154,7 +154,7 @@ impl Rollup {
         &self,
         options: &RollupOptions,
         progress: Progress<'_>,
-        mut take: impl FnMut(&Table, u64) -> Result<(), RollupError> + Send,
+        mut take: impl FnMut(&Table) -> Result<(), RollupError> + Send,
     ) -> Result<RollupDraws, RollupError> {
         if options.draws > MOST {
             return Err(RollupError::Draws { draws: options.draws });
@@ -166,7 +166,7 @@ impl Rollup {
         let naive = threads(options.threads)?.install(|| {
             each(&draws, options, &more, |table| {
                 sums.add(table);
-                take(table, table.first())
+                take(table)
             })?;
             Ok::<_, RollupError>(naive(&self.assembly, options.seed, options.draws.min(NAIVE)))
         })?;

@@ -20,10 +20,9 @@ use std::{
     },
 };
 
-use super::{SimulatorDraws, SimulatorReplay, SimulatorScenario, SimulatorSummary};
+use super::{SimulatorDraws, SimulatorReplay, SimulatorScenario};
 use crate::{
-    AnyScenario, CampaignError, ModelKind, Options, Scenario, Shard, Status, Study, StudyError,
-    is_begun,
+    AnyScenario, CampaignError, ModelKind, Options, Scenario, Shard, Status, StudyError, is_begun,
     model::{self, Separations},
     put_together, write_report,
 };
@@ -276,12 +275,8 @@ fn campaigns_go_on() {
     };
     let run =
         |scenario: &SimulatorScenario, options: &Options| scenario.study(options, &|_| {}, &|_| {});
-    let rows = |study: &Study<SimulatorSummary>| {
-        let table = study.runs()[0].table().unwrap();
-        table.rows().map(|row| format!("{:?}", row.cells().collect::<Vec<_>>())).collect::<Vec<_>>()
-    };
     let whole = run(&scenario, &options("whole", 2)).unwrap();
-    let expected = rows(&whole);
+    let expected = whole.rows();
     assert_eq!(expected.len(), 700);
 
     let stop = Arc::new(AtomicBool::new(false));
@@ -298,7 +293,7 @@ fn campaigns_go_on() {
     assert!((301..310).contains(&most.into_inner()));
     run(&short, &options("stopped", 3)).unwrap();
     let extended = run(&scenario, &options("stopped", 2)).unwrap();
-    assert_eq!(rows(&extended), expected);
+    assert_eq!(extended.rows(), expected);
     for name in ["summary.json", "report.html", "report.md"] {
         let [a, b] = [&whole, &extended].map(|study| fs::read(study.folder().join(name)).unwrap());
         assert!(a == b, "{name}");

@@ -8,10 +8,8 @@ use std::{
     },
 };
 
-use super::{SimulatorReplay, SimulatorScenario, SimulatorSummary, folder, scenario, uniform};
-use crate::{
-    CampaignError, Kept, Notice, Options, ReplayError, Rows, Status, Study, StudyError, Which,
-};
+use super::{SimulatorReplay, SimulatorScenario, folder, scenario, uniform};
+use crate::{CampaignError, Kept, Notice, Options, ReplayError, Rows, Status, StudyError, Which};
 
 /// Runs that failed for a reason that is gone are done again, and no other: of a study that is complete, and of one that was
 /// stopped. Until the new blocks are there, the old ones count.
@@ -34,10 +32,6 @@ done
     let options =
         |name: &str| Options { threads: Some(2), ..Options::to(folder.path().join(name)) };
     let asked = || fs::read(folder.path().join("asked")).map_or(0, |asked| asked.len() / 2);
-    let rows = |study: &Study<SimulatorSummary>| {
-        let table = study.runs()[0].table().unwrap();
-        table.rows().map(|row| format!("{row:?}")).collect::<Vec<_>>()
-    };
     let well = scenario.study(&options("well"), &|_| {}, &|_| {}).unwrap();
     let busy = folder.path().join("busy");
     for stopped in [false, true] {
@@ -77,7 +71,7 @@ done
         let study = scenario.study(&again, &|_| {}, &say).unwrap();
         assert_eq!((asked() - before) as u64, all);
         assert_eq!(said.lock().unwrap()[1], (all, 0));
-        assert_eq!(rows(&study), rows(&well));
+        assert_eq!(study.rows(), well.rows());
         let page = fs::read_to_string(study.folder().join("report.html")).unwrap();
         let told = format!("{} runs that had failed were done again", failed + all);
         assert!(page.contains(&told), "{told}");

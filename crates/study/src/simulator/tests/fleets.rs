@@ -1,12 +1,11 @@
 //! Campaigns of vehicles and flights: they go on, are put together of shards, and tell what is independent.
 
-use gyradius_campaign::{Cell, Row};
 use gyradius_statistics::{Confidence, Moments, Proportion};
 use std::collections::BTreeMap;
 
 use super::{
-    AnyScenario, Options, Path, Shard, SimulatorReplay, SimulatorScenario, SimulatorSummary,
-    Status, Study, folder, fs, put_together, scenario, vehicles::text,
+    AnyScenario, Options, Path, Shard, SimulatorReplay, SimulatorScenario, Status, folder, fs,
+    put_together, scenario, vehicles::text,
 };
 use crate::{Draw, DrawOptions, Which};
 
@@ -35,16 +34,6 @@ fn script() -> tempfile::TempDir {
     folder
 }
 
-fn rows(study: &Study<SimulatorSummary>) -> Vec<Vec<String>> {
-    let cell = |cell: Cell<'_>| match cell {
-        Cell::Number(x) => format!("{:x}", x.to_bits()),
-        other => other.to_string(),
-    };
-    let row = |row: Row<'_>| row.cells().map(|(_, c)| cell(c)).collect::<Vec<_>>();
-    let tables = study.tables().unwrap();
-    tables.iter().flat_map(|table| table.rows().map(row).collect::<Vec<_>>()).collect()
-}
-
 /// More vehicles leave the rows that are there; fewer, or another number of flights, are refused. What is told of means and
 /// failures is of vehicles; a flight is replayed to the bit, and is drawn alone as it was sent.
 #[test]
@@ -61,12 +50,12 @@ fn campaigns_of_vehicles_go_on() {
     let run = |scenario: &SimulatorScenario, place: &str, threads| {
         scenario.study(&options(place, threads), &|_| {}, &|_| {})
     };
-    let before = rows(&run(&make(12, 5), "a", 1).unwrap());
+    let before = run(&make(12, 5), "a", 1).unwrap().rows();
     let large = run(&make(30, 5), "a", 2).unwrap();
-    let after = rows(&large);
+    let after = large.rows();
     assert_eq!((before.len(), after.len()), (120, 300));
     assert!(before[..60] == after[..60] && before[60..] == after[150..210]);
-    assert!(rows(&run(&make(30, 5), "b", 1).unwrap()) == after);
+    assert!(run(&make(30, 5), "b", 1).unwrap().rows() == after);
     for (other, told) in [
         (make(30, 6), "flights is 5 there and 6 here"),
         (make(29, 5), "vehicles is 30 there and 29 here"),
