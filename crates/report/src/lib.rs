@@ -70,7 +70,7 @@ pub use figure::{Drawing, Figure, Picture, file_of};
 pub use histogram::HistogramGrid;
 pub use inline::{Text, Tone};
 pub use lines::{Line, LineGrid, LinePanel, LinePoint, Range};
-pub use numbers::{below_hundred, interval, optional, significant, with_unit};
+pub use numbers::{below_hundred, interval, optional, round_below, significant, with_unit};
 pub use overview::{Overview, spread};
 pub use page::page;
 pub use ranges::{Label, RangeGrid, RangePanel};

@@ -40,9 +40,33 @@ pub fn below_hundred(percent: f64) -> String {
     if missing.contains('e') { format!("{percent}") } else { format!("{percent:.decimals$}") }
 }
 
+/// The nearest of 1, 2 and 5 times a power of ten that is no larger, by way of text: the same on every platform. 1 of what is not
+/// finite.
+pub fn round_below(x: f64) -> f64 {
+    let text = format!("{x:e}");
+    let Some((digits, exponent)) = text.split_once('e') else { return 1.0 };
+    let digit = match digits.parse::<f64>() {
+        Ok(x) if x >= 5.0 => 5,
+        Ok(x) if x >= 2.0 => 2,
+        _ => 1,
+    };
+    let rounded = format!("{digit}e{exponent}").parse().unwrap_or(x);
+    if rounded > 0.0 { rounded } else { f64::MIN_POSITIVE }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::significant;
+    use super::{round_below, significant};
+
+    #[test]
+    fn lengths_are_round() {
+        let cases = [(1.0, 1.0), (0.99, 0.5), (4.9, 2.0), (0.03, 0.02), (730.0, 500.0)];
+        for (x, expected) in cases.into_iter().chain([(0.0026, 0.002), (7.3e-9, 5e-9), (1.99, 1.0)])
+        {
+            assert_eq!(round_below(x), expected);
+        }
+        assert!(round_below(0.0) > 0.0 && round_below(5e-324) > 0.0);
+    }
 
     #[test]
     fn digits_are_significant() {

@@ -3,6 +3,7 @@
 use crate::Drawing;
 use crate::field::{TICK, WIDTH};
 use crate::legend::{Entry, legend};
+use crate::numbers::round_below;
 use crate::style::{self, MARGIN};
 use crate::svg::{Anchor, Look, Svg, px};
 use crate::text::{fit, significant, width};
@@ -72,7 +73,7 @@ fn svg(title: &str, views: &[SketchView]) -> String {
         draw(&mut svg, view, (left, top), scale);
     }
     let y = y + PITCH * views.len().div_ceil(2) as f64;
-    let metres = round_length(120.0 / scale);
+    let metres = round_below(120.0 / scale);
     let d = format!("M{} {}v8m0 -4h{}m0 -4v8", px(MARGIN), px(y), px(metres * scale));
     svg.path(&format!("stroke=\"{}\" stroke-width=\"1.4\"", style::INK), &d);
     svg.text(
@@ -82,18 +83,6 @@ fn svg(title: &str, views: &[SketchView]) -> String {
         &format!("{} m", significant(metres, 1)),
     );
     svg.finish_within(640.0, (WIDTH, y + 20.0), title, &description(views))
-}
-
-/// The largest of 1, 2 and 5 times a power of ten that is no larger.
-fn round_length(most: f64) -> f64 {
-    let power = power_below(most);
-    [5.0, 2.0, 1.0].into_iter().map(|m| m * power).find(|length| *length <= most).unwrap_or(power)
-}
-
-/// The power of ten that is no larger, by way of text: the same on every platform.
-fn power_below(x: f64) -> f64 {
-    let text = format!("{x:e}");
-    text.split_once('e').and_then(|(_, e)| format!("1e{e}").parse().ok()).unwrap_or(1.0)
 }
 
 /// What a view spans.
@@ -377,13 +366,6 @@ mod tests {
                     prop_assert!(turn >= 0.0, "{:?} {:?} {:?}", a, b, p);
                 }
             }
-        }
-    }
-
-    #[test]
-    fn lengths_of_the_bar_are_round() {
-        for (most, length) in [(1.0, 1.0), (0.99, 0.5), (4.9, 2.0), (0.03, 0.02), (730.0, 500.0)] {
-            assert_eq!(round_length(most), length);
         }
     }
 

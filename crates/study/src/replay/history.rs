@@ -1,5 +1,6 @@
 //! The motion of a run, sampled, and as a table.
 
+use gyradius_report::round_below;
 use gyradius_separation::{AnyLoad, LoadId, LoadState, MovingBody, Outcome, Snapshot, Step};
 use nalgebra::{Unit, Vector3};
 use std::{borrow::Cow, iter};
@@ -50,7 +51,7 @@ impl History {
         }
         let last = releases.last().map_or(end, |(_, time)| *time);
         let most = MOST.min(NUMBERS / columns(&ids).len() as f64);
-        let interval = round(f64::max(last / PUSHING, end / most));
+        let interval = round_below(f64::max(last / PUSHING, end / most));
         let mut moments: Vec<Moment> = Vec::new();
         let mut next = 0_u32;
         for step in steps {
@@ -159,19 +160,6 @@ impl History {
     }
 }
 
-/// The nearest of 1, 2 and 5 times a power of ten below.
-fn round(interval: f64) -> f64 {
-    let text = format!("{interval:e}");
-    let Some((digits, exponent)) = text.split_once('e') else { return interval };
-    let digit = match digits.parse::<f64>() {
-        Ok(x) if x >= 5.0 => 5,
-        Ok(x) if x >= 2.0 => 2,
-        _ => 1,
-    };
-    let rounded = format!("{digit}e{exponent}").parse().unwrap_or(interval);
-    if rounded > 0.0 { rounded } else { f64::MIN_POSITIVE }
-}
-
 /// Loads that let go together, as in `springs 1 and 2`.
 fn together(loads: &[LoadId]) -> String {
     let kinds = loads.chunk_by(|a, b| a.kind == b.kind).map(|of| {
@@ -226,16 +214,7 @@ pub(crate) fn energies(now: &Snapshot) -> [f64; 5] {
 
 #[cfg(test)]
 mod tests {
-    use super::round;
     use crate::{Replay, Scenario};
-
-    #[test]
-    fn intervals_are_round() {
-        for (x, expected) in [(0.0026, 0.002), (1.0, 1.0), (7.3e-9, 5e-9), (1.99, 1.0)] {
-            assert_eq!(round(x), expected);
-        }
-        assert!(round(0.0) > 0.0 && round(5e-324) > 0.0);
-    }
 
     /// A spring that fails is not waited for: the pushing ends with the others'.
     #[test]
