@@ -4,6 +4,7 @@
 //! nothing is looked at, and that is said.
 
 mod pages;
+mod rules;
 
 use serde_json::Value;
 use std::{

@@ -51,7 +51,9 @@ pub(super) fn all() -> Vec<(&'static str, String)> {
     let folder = scratch.path();
     let paper = Scenario::peck_2003().unwrap();
     let many = Scenario::from_toml(&format!("{}{}", paper.to_toml(), many_models())).unwrap();
-    let full = Scenario::from_toml(&full(&paper)).unwrap();
+    // Titles that are markup.
+    let full = full(&paper).replace("title = \"", "title = \"<b>&\\\"</i> ");
+    let full = Scenario::from_toml(&full).unwrap();
     vec![
         ("report", report(&paper, 200, &folder.join("paper"))),
         ("report of many models", report(&many, 40, &folder.join("many"))),
@@ -67,13 +69,9 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap()
 }
 
-fn options(out: &Path) -> Options {
-    Options { out: Some(out.to_owned()), ..Options::default() }
-}
-
 fn report(scenario: &Scenario, runs: u64, out: &Path) -> String {
     let scenario = scenario.clone().with_runs(runs).unwrap();
-    Study::run(&scenario, &options(out), &|_| {}).unwrap();
+    Study::run(&scenario, &Options::to(out), &|_| {}).unwrap();
     read(&out.join("report.html"))
 }
 
@@ -81,7 +79,7 @@ fn simulator(folder: &Path) -> String {
     fs::write(folder.join("answer.sh"), ANSWER).unwrap();
     let scenario = AnyScenario::from_toml(SIMULATOR, folder).unwrap();
     let out = folder.join("simulator");
-    scenario.run(&options(&out), &|_| {}, &|_| {}).unwrap();
+    scenario.run(&Options::to(&out), &|_| {}, &|_| {}).unwrap();
     read(&out.join("report.html"))
 }
 

@@ -44,8 +44,6 @@ mod head;
 mod loads;
 mod model;
 mod options;
-#[cfg(test)]
-mod pages;
 mod quantity;
 mod rare;
 mod regions;

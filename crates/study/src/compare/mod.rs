@@ -40,12 +40,6 @@ use measure::Measure;
 use options::{Plan, Size};
 use reference::Target;
 
-/// The page of a comparison.
-#[cfg(test)]
-pub(crate) fn page_of(comparison: &ModelComparison) -> String {
-    comparison.document().html()
-}
-
 /// Models of inertia uncertainty compared.
 ///
 /// Every draw depends on (seed, model, body, level, number of the draw) alone: results are the same

@@ -1,11 +1,9 @@
 //! Every page that the program makes, held against the rules of HTML that its pages could break.
 
+use gyradius_study::{Options, Scenario, Study};
 use std::collections::BTreeSet;
 
-use crate::{
-    CompareOptions, ModelComparison, Replay, Scenario, compare, model::Model, replay, report,
-    study::judged,
-};
+use super::pages;
 
 /// Elements without content.
 const VOID: [&str; 6] = ["meta", "br", "input", "link", "img", "hr"];
@@ -183,53 +181,24 @@ fn read(tag: &str) -> (String, Vec<(String, String)>) {
     (name.to_owned(), attributes)
 }
 
-/// The report of a scenario, without its folder.
-fn report_of(scenario: &Scenario) -> String {
-    let models = Model::all(scenario).unwrap();
-    let summary = judged(scenario, &models);
-    // The end of a study on the terminal is made of the same.
-    assert!(!summary.to_string().contains("[0.00") && !summary.to_string().contains("0 % ["));
-    report::report(scenario, &summary).html()
-}
-
-/// The paper's study with names that are markup, with what else can be told: outlines, dispersions.
-fn full() -> Scenario {
-    let text = Scenario::peck_2003().unwrap().to_toml();
-    let second = text.match_indices("[[springs]]").nth(1).unwrap().0;
-    let (head, tail) = text.split_at(second);
-    let text = format!(
-        "{head}[springs.dispersion]\nfailure_probability = 0.3\nstart_s = {{ law = \"uniform\", low = 0.0, high = 0.4 }}\n\n{tail}\n\
-         [clearance]\npayload = [{{ ring = {{ centre_m = [0.0, 0.0, -1.0], axis = [0.0, 0.0, 1.0], radius_m = 0.6 }} }}]\n\
-         stage = [{{ ring = {{ centre_m = [0.0, 0.0, 1.0], axis = [0.0, 0.0, 1.0], radius_m = 0.6 }} }}, \
-         {{ points_m = [[1.0, 1.0, 1.2]] }}]\n"
-    );
-    Scenario::from_toml(&text.replace("title = \"", "title = \"<b>&\\\"</i> ")).unwrap()
-}
-
+/// What the program makes, of a study of one run and of one in which every run fails, too.
 #[test]
-fn reports_are_valid() {
-    for runs in [1, 12] {
-        check(&report_of(&full().with_runs(runs).unwrap()));
+fn every_page_keeps_the_rules() {
+    pages::all().iter().for_each(|(_, page)| check(page));
+    let paper = Scenario::peck_2003().unwrap();
+    // The horizon is too short.
+    let failing = paper.to_toml().replace("horizon_s = 60.0", "horizon_s = 0.01");
+    assert_ne!(failing, paper.to_toml());
+    let failing = Scenario::from_toml(&failing).unwrap().with_runs(3).unwrap();
+    for scenario in [paper.with_runs(1).unwrap(), failing] {
+        let scratch = tempfile::tempdir().unwrap();
+        let study =
+            Study::run(&scenario, &Options::to(scratch.path().join("out")), &|_| {}).unwrap();
+        check(&std::fs::read_to_string(study.folder().join("report.html")).unwrap());
+        // The end of a study on the terminal is made of the same.
+        let told = study.summary().to_string();
+        assert!(!told.contains("[0.00") && !told.contains("0 % ["), "{told}");
     }
-    // Every run fails: the horizon is too short.
-    let text = Scenario::peck_2003().unwrap().with_runs(3).unwrap().to_toml();
-    let failing = text.replace("horizon_s = 60.0", "horizon_s = 0.01");
-    assert_ne!(failing, text);
-    check(&report_of(&Scenario::from_toml(&failing).unwrap()));
-}
-
-#[test]
-fn replays_are_valid() {
-    for run in 0..3 {
-        let replay = Replay::new(&full(), None, run, 2.0).unwrap();
-        check(&replay::page::html(&replay));
-    }
-}
-
-#[test]
-fn comparisons_are_valid() {
-    let options = CompareOptions { draws: 60, separations: 4, ..CompareOptions::default() };
-    check(&compare::page_of(&ModelComparison::run(&options, &|_| {}).unwrap()));
 }
 
 /// The rules do refuse what they are about.
