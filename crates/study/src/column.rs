@@ -16,8 +16,8 @@ use crate::{
 /// A column of the run table, after `model`, `run` and `status`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Column {
-    Vehicle,
-    Flight,
+    /// Which vehicle the run is of, and then which of its flights.
+    Place(usize),
     Number(Quantity),
     Realizable,
     /// A component of the attitude of a body's principal axes, scalar last.
@@ -45,7 +45,7 @@ impl Column {
     fn all(separation: &Separation, vehicles: bool, drawn: usize) -> Vec<Self> {
         let mut columns = Vec::new();
         if vehicles {
-            columns.extend([Self::Vehicle, Self::Flight]);
+            columns.extend([0, 1].map(Self::Place));
         }
         for quantity in Quantity::of(separation) {
             columns.push(Self::Number(quantity));
@@ -65,14 +65,7 @@ impl Column {
     pub(crate) fn declaration(self, drawn: &[String]) -> RunColumn {
         use Kind::{Flag, Number, Text};
         match self {
-            Self::Vehicle => {
-                let [vehicle, _] = Fleet::columns();
-                vehicle
-            }
-            Self::Flight => {
-                let [_, flight] = Fleet::columns();
-                flight
-            }
+            Self::Place(i) => Fleet::columns()[i].clone(),
             Self::Number(q) => RunColumn::number(q.column(), q.unit(), q.meaning()),
             Self::Realizable => {
                 let meaning = "Whether the inertias of both bodies are realizable.";
@@ -114,9 +107,7 @@ impl Column {
     pub(crate) fn is_drawn(self) -> bool {
         match self {
             Self::Number(quantity) => quantity.is_drawn(),
-            Self::Vehicle | Self::Flight | Self::Realizable | Self::Axes(..) | Self::Drawn(_) => {
-                true
-            }
+            Self::Place(_) | Self::Realizable | Self::Axes(..) | Self::Drawn(_) => true,
             Self::ReleaseOrder | Self::Recompressed | Self::ClearanceNote => false,
         }
     }
@@ -125,10 +116,7 @@ impl Column {
     pub(crate) fn cell(self, run: &Run<'_>) -> Cell<'static> {
         let text = |text: Option<String>| text.map_or(Cell::Null, |text| Cell::Text(text.into()));
         match self {
-            Self::Vehicle => {
-                run.case.flight.map_or(Cell::Null, |[vehicle, _]| Cell::Integer(vehicle))
-            }
-            Self::Flight => run.case.flight.map_or(Cell::Null, |[_, flight]| Cell::Integer(flight)),
+            Self::Place(i) => run.case.flight.map_or(Cell::Null, |place| Cell::Integer(place[i])),
             Self::Number(quantity) => quantity.value(run).into(),
             Self::Realizable => run.realizable().into(),
             Self::Axes(body, i) => run.axes(body).map(|q| q.coords[i]).into(),

@@ -180,7 +180,7 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
         notes.push(Text::from(format!(
             "{ended} {}. Verdicts, bounds and intervals of the requirements are those of a rule that may be asked after any number of \
              looks.",
-            ended.until().rule().reason()
+            ended.until.rule().reason()
         )));
     }
     if head.independent_runs_per_model.is_some() {

@@ -7,13 +7,15 @@ use std::fmt;
 /// What ended the runs of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ended {
+    /// The rule, and how many runs there might have been.
     #[serde(flatten)]
-    until: Until,
-    runs: u64,
+    pub until: Until,
+    /// How many there are of each model.
+    pub runs: u64,
     /// How often they were looked at, if nothing was there before.
     looks: u64,
     /// Whether that was enough, and not the greatest number of runs.
-    enough: bool,
+    pub enough: bool,
 }
 
 impl Ended {
@@ -23,22 +25,10 @@ impl Ended {
         Self { until: until.clone(), runs, looks, enough }
     }
 
-    /// The rule, and how many runs there might have been.
-    #[must_use]
-    pub fn until(&self) -> &Until {
-        &self.until
-    }
-
     /// After how many runs of each model they were looked at.
     #[must_use]
     pub fn looks(&self) -> Vec<u64> {
         self.until.looks().take_while(|look| *look <= self.runs).collect()
-    }
-
-    /// Whether that was enough, and not the greatest number of runs.
-    #[must_use]
-    pub fn is_enough(&self) -> bool {
-        self.enough
     }
 }
 

@@ -189,7 +189,7 @@ fn columns(loads: &[LoadId]) -> Vec<String> {
     }
     names.extend((1..=3).map(|i| format!("momentum_{i}_kg_m_per_s")));
     names.extend((1..=3).map(|i| format!("angular_momentum_{i}_kg_m2_per_s")));
-    for name in [
+    let energies = [
         "springs_j",
         "payload_translation_j",
         "payload_rotation_j",
@@ -197,9 +197,8 @@ fn columns(loads: &[LoadId]) -> Vec<String> {
         "stage_rotation_j",
         "energy_j",
         "payload_nutation_deg",
-    ] {
-        names.push(name.to_owned());
-    }
+    ];
+    names.extend(energies.map(str::to_owned));
     names
 }
 

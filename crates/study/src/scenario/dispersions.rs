@@ -88,10 +88,8 @@ impl List {
         let target = |parameter| move |i| Target::Body(body, parameter, i);
         for &parameter in BodyParameter::ALL {
             let uncertain = uncertain(parameter, moving, d.given(parameter));
-            match own.given_law().and_then(|law| given(law, parameter)) {
-                Some(laws) => self.laws(name, &uncertain, laws, each, target(parameter)),
-                None => self.parameter(name, name, &uncertain, target(parameter))?,
-            }
+            let laws = own.given_law().and_then(|law| given(law, parameter));
+            self.of_body([name; 2], &uncertain, laws, each, target(parameter))?;
         }
         check_follows(&format!("{name}.dispersion"), d)?;
         let (mass, centre) = (target(BodyParameter::Mass), target(BodyParameter::MassCentre));

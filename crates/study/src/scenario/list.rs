@@ -152,15 +152,17 @@ impl<T> List<T> {
         Ok(())
     }
 
-    /// A parameter of what is called by a name, whose laws are given.
-    pub(crate) fn laws(
+    /// A parameter of the body that stands at a place of the file and is called by a name, whose laws may be given as part of a
+    /// whole law that is drawn for this.
+    pub(crate) fn of_body(
         &mut self,
-        name: &str,
+        [place, name]: [&str; 2],
         uncertain: &Uncertain<'_>,
-        laws: &[ScalarLaw],
+        laws: Option<&[ScalarLaw]>,
         each: Each,
         target: impl Fn(usize) -> T,
-    ) {
+    ) -> Result<(), ScenarioError> {
+        let Some(laws) = laws else { return self.parameter(place, name, uncertain, target) };
         let Uncertain { name: quantity, unit, nominal, law: _ } = uncertain;
         let part_of = format!("{name}_{quantity}");
         for (i, (law, nominal)) in laws.iter().zip(nominal).enumerate() {
@@ -168,6 +170,7 @@ impl<T> List<T> {
             let name = if laws.len() > 1 { &component } else { &part_of };
             self.push([name, &part_of], unit, *nominal, (law.clone(), each), target(i));
         }
+        Ok(())
     }
 
     /// How mass, mass centre and inertia of a body go together, whose numbers have these targets and nominal values, and

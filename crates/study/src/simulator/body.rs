@@ -72,13 +72,9 @@ impl SimulatedBody {
             nominal: vec![file.mass_kg],
             law: GivenLaw::Number(d.mass_kg.as_ref(), d.mass_percent.as_ref()),
         };
-        let law = uncertain.given_law();
-        match law {
-            Some(law) => {
-                list.laws(name, &mass, std::slice::from_ref(law.mass()), inertia_drawn, |_| first);
-            }
-            None => list.parameter(&field, name, &mass, |_| first)?,
-        }
+        let (law, place) = (uncertain.given_law(), [field.as_str(), name]);
+        let own = law.map(|law| std::slice::from_ref(law.mass()));
+        list.of_body(place, &mass, own, inertia_drawn, |_| first)?;
         let meaning = format!("Mass of the body {name}, as drawn.");
         let column = Column::number(format!("{name}_mass_kg"), "kg", meaning);
         let mut numbers = vec![Number { column, nominal: file.mass_kg }];
@@ -90,10 +86,8 @@ impl SimulatedBody {
                 law: GivenLaw::Vector(d.mass_centre_m.as_ref()),
             };
             let target = |i| first + 1 + i;
-            match law {
-                Some(law) => list.laws(name, &centre, law.centre(), inertia_drawn, target),
-                None => list.parameter(&field, name, &centre, target)?,
-            }
+            let own = law.map(|law| &law.centre()[..]);
+            list.of_body(place, &centre, own, inertia_drawn, target)?;
             for (i, nominal) in nominal.into_iter().enumerate() {
                 let meaning = format!(
                     "Coordinate {} of the mass centre of the body {name}, as drawn.",
