@@ -3,7 +3,7 @@
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::truncated_normal::MAX_DISTANCE;
+use crate::{normal, truncated_normal::MAX_DISTANCE};
 use form::Declaration;
 use laws::DECLARATIONS;
 
@@ -54,6 +54,10 @@ macro_rules! laws {
                 match self { $(Self::$law(law) => law.cdf(x),)* }
             }
 
+            pub(super) fn quantile(&self, p: f64) -> f64 {
+                match self { $(Self::$law(law) => law.quantile(p),)* }
+            }
+
             pub(super) fn ln_density(&self, x: f64) -> Option<f64> {
                 match self { $(Self::$law(law) => law.ln_density(x),)* }
             }
@@ -91,6 +95,8 @@ use laws::Kind;
 
 /// Largest magnitude of what a law may be given.
 const MAX: f64 = 1e100;
+/// Scores beyond it are not looked for.
+const END: f64 = 38.0;
 
 /// A law of one number: of a mass, a stiffness, a coordinate.
 ///
@@ -129,7 +135,6 @@ impl ScalarLaw {
     /// [`at_score`](Self::at_score) is not below the value, within ±38.
     #[must_use]
     pub fn score(&self, x: f64) -> f64 {
-        const END: f64 = 38.0;
         if let Some([mean, variance]) = self.as_normal()
             && variance > 0.0
         {
@@ -149,6 +154,29 @@ impl ScalarLaw {
     #[must_use]
     pub fn cdf(&self, x: f64) -> f64 {
         self.0.cdf(x)
+    }
+
+    /// The probability of a value above x: 1 − F(x), without cancellation far out.
+    #[must_use]
+    pub fn share_above(&self, x: f64) -> f64 {
+        let below = self.cdf(x);
+        if !(below > 0.5) || self.ln_density(x).is_none() {
+            return 1.0 - below;
+        }
+        let z = self.score(x);
+        if x >= self.at_score(f64::INFINITY) || z >= END { 0.0 } else { normal::above(z) }
+    }
+
+    /// The smallest value that is not exceeded with a probability of at least p: the inverse of [`cdf`](Self::cdf), with the bounds of
+    /// the law at 0 and 1. NaN where p is no probability.
+    #[must_use]
+    pub fn quantile(&self, p: f64) -> f64 {
+        if !(0.0..=1.0).contains(&p) {
+            return f64::NAN;
+        }
+        let x = self.0.quantile(p);
+        // Of a law without width that is infinitely far out of nothing.
+        if x.is_nan() { self.at_score(0.0) } else { x }
     }
 
     /// The probability of a value below zero; a value that is always zero is not.

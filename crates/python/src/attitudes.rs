@@ -108,6 +108,7 @@ impl AttitudeCore {
         let (mean, covariance) = match &self.0 {
             Law::Axes(law) => match &**law {
                 AxesLaw::WholeSphere(law) => (law.mean_attitude(), law.rotation_covariance()),
+                AxesLaw::Fixed(law) => (law.attitude(), Matrix3::zeros()),
                 // Their moments are those of entries of an inertia alone. The enum may grow.
                 _ => return None,
             },

@@ -21,6 +21,7 @@ mod stated;
 mod stream;
 mod study;
 mod tensors;
+mod words;
 
 /// What `gyradius._core` has. It is not for users: the Python part is.
 #[pyo3::pymodule(gil_used = false)]
@@ -34,7 +35,7 @@ mod _core {
     use super::attitudes::AttitudeCore;
     #[pymodule_export]
     use super::bodies::{
-        body_add, body_from_log_cholesky, body_from_pseudo_inertia, body_inertia_about,
+        body_add, body_from_log_cholesky, body_from_pseudo_inertia, body_inertia_about, body_inset,
         body_log_cholesky, body_pseudo_inertia, body_subtract, body_to_principal, body_transform,
     };
     #[pymodule_export]
@@ -57,8 +58,8 @@ mod _core {
     use super::study::{ScenarioCore, StudyCore};
     #[pymodule_export]
     use super::tensors::{
-        inertia_is_realizable, inertia_margin, inertia_nearest, inertia_principal_axes,
-        inertia_report,
+        body_of_parts, inertia_is_realizable, inertia_margin, inertia_nearest,
+        inertia_principal_axes, inertia_report,
     };
 
     #[pymodule_init]

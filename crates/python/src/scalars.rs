@@ -58,8 +58,37 @@ impl ScalarCore {
         py: Python<'py>,
         values: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let all = values.as_slice().map_err(refused)?;
-        answered(py, all.len(), |i| self.0.cdf(all[i]))
+        self.of_each(py, &values, ScalarLaw::cdf)
+    }
+
+    fn share_above<'py>(
+        &self,
+        py: Python<'py>,
+        values: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.of_each(py, &values, ScalarLaw::share_above)
+    }
+
+    fn quantile<'py>(
+        &self,
+        py: Python<'py>,
+        shares: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.of_each(py, &shares, ScalarLaw::quantile)
+    }
+}
+
+impl ScalarCore {
+    /// What the law says of each number; NaN of NaN.
+    fn of_each<'py>(
+        &self,
+        py: Python<'py>,
+        numbers: &PyReadonlyArray1<'py, f64>,
+        of: fn(&ScalarLaw, f64) -> f64,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let all = numbers.as_slice().map_err(refused)?;
+        let one = |x: f64| if x.is_nan() { x } else { of(&self.0, x) };
+        answered(py, all.len(), |i| one(all[i]))
     }
 }
 

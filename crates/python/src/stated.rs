@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::fmt::Display;
 
-use crate::{bodies::body, error::refused, json, laws::BodyCore};
+use crate::{bodies::body, error::refused, json, laws::BodyCore, words::in_python};
 
 /// Reads what is said of a part: an amount with its unit, or the table of a file.
 fn said<T: DeserializeOwned, E: Display>(
@@ -23,8 +23,12 @@ fn said<T: DeserializeOwned, E: Display>(
                 read(&text).map_err(|error| refused(format_args!("{part} = {text:?}: {error}")))?;
             make(amount).map_err(refused)?
         }
-        table => serde_json::from_value(table)
-            .map_err(|error| refused(format_args!("{part}: {error}")))?,
+        table => serde_json::from_value(table).map_err(|error| {
+            let message = in_python(&error.to_string());
+            // Some messages begin with the part themselves.
+            let says_it = message.starts_with(part);
+            if says_it { refused(message) } else { refused(format_args!("{part}: {message}")) }
+        })?,
     };
     Ok(Some(statement))
 }

@@ -4,6 +4,7 @@ mod called;
 mod given;
 mod kept;
 mod watched;
+mod words;
 
 use gyradius_campaign::{Kept, Rows, StoppingRule, Verdict, begun, folder_of};
 use gyradius_study::{
@@ -129,6 +130,12 @@ impl ScenarioCore {
         }
     }
 
+    /// Whether its runs are flights of vehicles.
+    #[getter]
+    fn has_vehicles(&self) -> bool {
+        self.scenario.fleet().is_some()
+    }
+
     /// Carries it out. `simulation` is called as [`Called`] says; `progress` with how many runs are done, of how many.
     #[pyo3(signature = (*, simulation, out, threads, force, retry_failed, even_if_full, progress))]
     #[allow(clippy::too_many_arguments, reason = "as many as a command has options")]
@@ -171,6 +178,13 @@ impl ScenarioCore {
 
 #[pymethods]
 impl StudyCore {
+    /// The one in a folder, as its files tell.
+    #[staticmethod]
+    fn read(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        let (scenario, outcome) = py.detach(|| Outcome::read(&folder)).map_err(refused)?;
+        Ok(Self { scenario, outcome, called: None, warnings: Vec::new() })
+    }
+
     /// Where it is.
     #[getter]
     fn folder(&self) -> &Path {

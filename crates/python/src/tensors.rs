@@ -16,16 +16,42 @@ use crate::{
 /// How far from symmetric a matrix may be beside its largest entry, as those in 32 bits and in files are.
 const SKEW: f64 = 1e-6;
 
+/// The means of what stands across the diagonal; none if that differs by more than so much of the largest entry. What is not finite
+/// differs from nothing.
+fn symmetric(matrix: &Matrix3<f64>, skew: f64) -> Option<Matrix3<f64>> {
+    let across = matrix.transpose();
+    let differs = (matrix - across).amax() > skew * matrix.amax();
+    (!differs).then(|| (matrix + across) * 0.5)
+}
+
 /// A matrix that is symmetric but for so much of its largest entry.
 fn nearly_symmetric(matrix: &Matrix3<f64>, skew: f64) -> Result<InertiaMatrix, InertiaMatrixError> {
-    match InertiaMatrix::new(*matrix) {
-        Err(InertiaMatrixError::NotSymmetric { .. })
-            if (matrix - matrix.transpose()).amax() <= skew * matrix.amax() =>
-        {
-            InertiaMatrix::new((matrix + matrix.transpose()) * 0.5)
+    let found = InertiaMatrix::new(*matrix);
+    match &found {
+        Err(InertiaMatrixError::NotSymmetric { .. }) => {
+            symmetric(matrix, skew).map_or(found, InertiaMatrix::new)
         }
-        found => found,
+        Ok(_) | Err(_) => found,
     }
+}
+
+/// Rows of ten numbers of masses, mass centres and inertia matrices, of a body or not.
+#[pyfunction]
+pub(crate) fn body_of_parts<'py>(
+    py: Python<'py>,
+    masses: PyReadonlyArray2<'py, f64>,
+    centres: PyReadonlyArray2<'py, f64>,
+    matrices: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let (masses, centres) = (rows::<1>(&masses)?, rows::<3>(&centres)?);
+    let matrices = rows::<9>(&matrices)?;
+    made(py, matrices.len(), |i| {
+        let m = symmetric(&matrix(&matrices[i]), SKEW).ok_or("inertia: it must be symmetric")?;
+        let ([mass], [x, y, z]) = (masses[i], centres[i]);
+        let (products, moments) = ([m[(0, 1)], m[(0, 2)], m[(1, 2)]], m.diagonal());
+        let [a, b, c] = products;
+        Ok::<_, &str>([mass, x, y, z, moments[0], moments[1], moments[2], a, b, c])
+    })
 }
 
 /// Which of (n, 9) matrices belong to a body; not those with entries that are not finite or not symmetric.

@@ -34,8 +34,41 @@ def test_numbers_have_the_laws_of_scipy(law: ScalarLaw, other: stats.rv_continuo
     assert law.std == pytest.approx(other.std(), rel=1e-9)
     x = np.linspace(law.mean - 4 * law.std, law.mean + 4 * law.std, 41)
     assert np.allclose(law.cdf(x), other.cdf(x), atol=1e-9)
+    assert np.allclose(law.sf(x), other.sf(x), atol=1e-12, rtol=0)
+    # Farther out SciPy's beta law warns.
+    least = -9 if law.form["law"] == "beta" else -300
+    q = np.concatenate([np.linspace(0, 1, 101), 10.0 ** np.arange(least, 0, 4), 1 - 10.0 ** np.arange(-9, 0)])
+    assert np.allclose(law.ppf(q), other.ppf(q), rtol=1e-9, atol=1e-12)
+    # Far out, as a share.
+    far = other.isf([1e-3, 1e-6, 1e-9])
+    assert np.allclose(law.sf(far) / other.sf(far), 1.0, rtol=1e-4)
+    assert law.sf(np.inf) == 0.0 and law.sf(-np.inf) == 1.0 and law.cdf(-np.inf) == 0.0
+    wrong = np.array([[np.nan, -1e-9], [1 + 1e-9, np.inf]])
+    assert np.isnan(law.ppf(wrong)).all() and np.isnan(law.cdf(np.nan)) and np.isnan(law.sf(np.nan))
+    assert law.ppf(0.5).shape == () and law.ppf(np.full((2, 0, 3), 0.5)).shape == (2, 0, 3)
     inside = other.pdf(x) > 0
     assert np.allclose(law.logpdf(x)[inside], other.logpdf(x[inside]), atol=1e-8)
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=40), st.floats(0.0, 1.0))
+def test_steps_are_inverted_as_scipy_does(samples: list[float], p: float) -> None:
+    law = ScalarLaw("samples", samples=samples)
+    x = np.sort(samples)
+    shares = np.append(np.arange(1, len(x) + 1) / len(x), p)
+    # The first of the samples whose share reaches that.
+    expected = [x[np.argmax(np.arange(1, len(x) + 1) / len(x) >= share)] for share in shares]
+    assert law.ppf(shares).tolist() == expected
+    assert (law.cdf(law.ppf(shares)) >= shares).all()
+    assert np.allclose(law.sf(x), 1 - law.cdf(x), atol=1e-15)
+    event = ScalarLaw("bernoulli", probability=p)
+    inner = shares[(shares > 0) & (abs(shares - (1 - p)) > 1e-12)]
+    assert event.ppf(inner).tolist() == stats.bernoulli(p).ppf(inner).tolist()
+
+
+@pytest.mark.parametrize("law", [normal(2.0, 0.0), uniform(2.0, 2.0), ScalarLaw("weibull", low=2.0, scale=0.0, shape=2.0)])
+def test_what_is_known_has_itself_as_every_quantile(law: ScalarLaw) -> None:
+    assert law.ppf([0.0, 0.3, 1.0]).tolist() == [2.0] * 3
+    assert law.sf([1.0, 2.0, 3.0]).tolist() == [1.0, 0.0, 0.0]
 
 
 def test_table_of_samples() -> None:

@@ -121,6 +121,45 @@ def test_the_program_draws_the_same_bits(tmp_path: Path) -> None:
         theirs = np.array([[row[column] for column in row if column not in ("link", "draw")] for row in mine])
         assert theirs.shape == drawn.shape
         assert (theirs == drawn).all()
+        # Nothing here is near to the boundary.
+        assert (stated.rvs(50, rng=key(7, name), inset=True).array == drawn).all()
+
+
+FLAT = """<robot name="flat">
+  <link name="plate"><inertial><origin xyz="0.1 0 0"/><mass value="1.5"/>
+    <inertia ixx="0.25" ixy="0.125" ixz="0" iyy="0.25" iyz="0" izz="0.5"/></inertial></link>
+  <link name="rod"><inertial><mass value="0.6"/>
+    <inertia ixx="0" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.002"/></inertial></link>
+  <link name="ball"><inertial><mass value="2"/>
+    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(
+    "said", [{"moments": "10%"}, {"mass": "5%"}, {"centre": "5mm"}, {"axes": "2deg"}, {"mass": "5%", "axes": "2deg", "moments": "1%"}]
+)
+def test_the_program_moves_plates_and_rods_inside_and_so_does_inset(said: dict[str, str], tmp_path: Path) -> None:
+    (tmp_path / "flat.urdf").write_text(FLAT)
+    flags = [word for name, amount in said.items() for word in (f"--{name}", amount)]
+    program = [sys.executable, "-m", "gyradius", "draw", "flat.urdf", "-n", "40", *flags, "--seed", "7", "-o", "links.jsonl"]
+    subprocess.run(program, cwd=tmp_path, check=True, capture_output=True)
+    rows = [json.loads(line) for line in (tmp_path / "links.jsonl").read_text().splitlines()]
+    moved = 0
+    for name, link in gyradius.load(tmp_path / "flat.urdf").items():
+        stated = gyradius.law(link, mass=said.get("mass"), centre=said.get("centre"), moments=said.get("moments"), axes=said.get("axes"))
+        mine = [row for row in rows if row["link"] == name]
+        theirs = np.array([[row[column] for column in row if column not in ("link", "draw")] for row in mine])
+        for law in (stated, pickle.loads(pickle.dumps(stated))):
+            drawn = law.rvs((8, 5), rng=key(7, name), inset=True)
+            assert (drawn.array.reshape(-1, 10) == theirs).all()
+        plain = stated.rvs((8, 5), rng=key(7, name))
+        changes = (plain.array != drawn.array).any(axis=-1)
+        moved += int(changes.sum())
+        assert not (name == "ball" and changes.any())
+        # By a hair.
+        assert np.allclose(plain.array, drawn.array, rtol=0, atol=1e-8)
+    assert (moved > 0) == (said != {"centre": "5mm"})
 
 
 def test_bits_of_rust() -> None:

@@ -361,9 +361,12 @@ struct ModelOutcome {
 
 impl Outcome {
     fn of<S: Summarized>(study: &Study<S>) -> Self {
-        let summary = study.summary();
+        Self::of_summary(study.folder(), study.summary())
+    }
+
+    fn of_summary<S: Summarized>(folder: &Path, summary: &S) -> Self {
         Self {
-            folder: study.folder().to_owned(),
+            folder: folder.to_owned(),
             head: summary.head().clone(),
             complete: summary.head().missing.is_empty(),
             models: summary
@@ -373,6 +376,23 @@ impl Outcome {
                 .collect(),
             table: summary.to_string(),
         }
+    }
+
+    /// Of the study in a folder, and its scenario, as the files there tell: nothing is done, nothing written, and nobody kept out.
+    ///
+    /// # Errors
+    /// As [`Results::read`](crate::Results::read).
+    pub fn read(folder: &Path) -> Result<(AnyScenario, Self), ResultsError> {
+        fn of<C: Subject>(folder: &Path) -> Result<(C, Outcome), ResultsError> {
+            let (scenario, summary) = results::read::<C>(folder)?.into_parts();
+            Ok((scenario, Outcome::of_summary(folder, &summary)))
+        }
+        if SimulatorScenario::is_in(folder) {
+            let (scenario, outcome) = of(folder)?;
+            return Ok((AnyScenario::Simulator(Box::new(scenario)), outcome));
+        }
+        let (scenario, outcome) = of(folder)?;
+        Ok((AnyScenario::Separation(Box::new(scenario)), outcome))
     }
 
     /// Where it is.

@@ -49,15 +49,16 @@ fn run_to_the_end<C: Subject>(
         Evidence::new(until.rule().clone(), own, group(scenario))
     };
     let done = (|| {
-        // Nobody knows how many runs there will be: nothing is foretold, and nothing refused for want of room.
-        scenario.begin(&models)?;
         if options.retry_failed && blocks.any_failed() {
+            scenario.begin(&models)?;
             // Before the rule is asked, which these runs may change.
             let stop = options.stop.as_deref();
             let done = threads.install(|| run_again(&simulations, &blocks, stop))?;
             say(Notice::Again(done));
         }
-        Ok(threads.install(|| run_until(&simulations, &blocks, plan, progress, until, evidence))?)
+        // Nobody knows how many runs there will be: nothing is foretold, and nothing refused for want of room.
+        let begin = || Ok(scenario.begin(&models)?);
+        threads.install(|| run_until(&simulations, &blocks, plan, progress, until, evidence, begin))
     })();
     ended(done.inspect_err(|_: &StudyError| blocks.abandon())?)
 }

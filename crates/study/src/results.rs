@@ -116,6 +116,11 @@ impl<C, S> Results<C, S> {
     pub fn summary(&self) -> &S {
         &self.summary
     }
+
+    /// The scenario, and what its runs amount to.
+    pub(crate) fn into_parts(self) -> (C, S) {
+        (self.scenario, self.summary)
+    }
 }
 
 /// The results in a folder.

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::parameters::{Given, Key, Of, Value};
 use super::{MAX, ScalarLaw, ScalarLawError};
 use crate::incomplete_beta::IncompleteBeta;
-use crate::normal::{LN_ROOT_TAU, above, below};
+use crate::normal::{LN_ROOT_TAU, above, below, score};
 use crate::truncated_draw::Truncated;
 use crate::truncated_normal::WindowError;
 
@@ -35,6 +35,11 @@ pub(super) trait Law: Sized {
 
     /// The probability of a value of at most x.
     fn cdf(&self, x: f64) -> f64;
+
+    /// The smallest x with a probability of at least p, which is one, of a value of at most x.
+    fn quantile(&self, p: f64) -> f64 {
+        self.at_score(score(p))
+    }
 
     /// The logarithm of the density at a finite x; none if the law has no density.
     fn ln_density(&self, x: f64) -> Option<f64>;
@@ -943,6 +948,14 @@ impl Law for Samples {
         self.values.partition_point(|v| *v <= x) as f64 / self.values.len() as f64
     }
 
+    fn quantile(&self, p: f64) -> f64 {
+        let count = self.values.len() as f64;
+        // The shares that `cdf` has, however they were rounded.
+        let enough = (p * count).ceil();
+        let enough = if (enough - 1.0) / count >= p { enough - 1.0 } else { enough };
+        self.values[(enough.max(1.0) as usize).min(self.values.len()) - 1]
+    }
+
     fn ln_density(&self, _: f64) -> Option<f64> {
         None
     }
@@ -1015,6 +1028,10 @@ impl Law for Bernoulli {
 
     fn cdf(&self, x: f64) -> f64 {
         if x >= 1.0 { 1.0 } else { (1.0 - self.probability) * step(0.0, x) }
+    }
+
+    fn quantile(&self, p: f64) -> f64 {
+        f64::from(u8::from(p > 1.0 - self.probability))
     }
 
     fn ln_density(&self, _: f64) -> Option<f64> {

@@ -151,6 +151,23 @@ proptest! {
         }
     }
 
+    /// The quantile is the smallest value whose share reaches p, and the share above a value is what is left.
+    #[test]
+    fn quantiles_and_shares_above_are_those_of_the_shares_below(p in 0.0..=1.0f64, tail in 1e-300..1e-12f64) {
+        for law in laws() {
+            let x = law.quantile(p);
+            prop_assert!(law.cdf(x.next_down()) <= p + 1e-12 && p <= law.cdf(x.next_up()) + 1e-12, "{:?} {}: {}", law, p, x);
+            prop_assert!((law.share_above(x) - (1.0 - law.cdf(x))).abs() <= 1e-12, "{:?} {}: {}", law, x, law.share_above(x));
+            prop_assert!(law.quantile(0.0) <= law.quantile(tail) && law.quantile(tail) <= x && x <= law.quantile(1.0));
+            prop_assert!(law.quantile(-p - 1e-9).is_nan() && law.quantile(f64::NAN).is_nan());
+        }
+        let normal = ScalarLaw::normal(0.0, 1.0).unwrap();
+        let z = normal.quantile(tail);
+        for found in [normal.cdf(z), normal.share_above(-z)] {
+            prop_assert!((found / tail - 1.0).abs() < 1e-12, "{:e}: {:e}", tail, found);
+        }
+    }
+
     /// Any law that is taken keeps its promises: scores rise, the distribution function is one, moments are
     /// finite, and a file gives it back to the bit.
     #[test]

@@ -43,28 +43,29 @@ impl StatedAmount {
         amounts(text, &[("mm", Some(1e-3)), ("cm", Some(1e-2)), ("m", Some(1.0))], 3)
     }
 
-    /// Of the moments of inertia about the body axes: `%` or `kgm2`.
+    /// Of the moments of inertia about the body axes: `%` or `kgm2`, also written `kg·m²`.
     ///
     /// # Errors
     /// What must be written.
     pub fn moments(text: &str) -> Result<Self, String> {
-        amounts(text, &[PERCENT, ("kgm2", Some(1.0))], 3)
+        amounts(text, &[&[PERCENT], &INERTIA[..]].concat(), 3)
     }
 
-    /// Of the products of inertia I₁₂, I₁₃, I₂₃: `kgm2`.
+    /// Of the products of inertia I₁₂, I₁₃, I₂₃: `kgm2`, also written `kg·m²`.
     ///
     /// # Errors
     /// What must be written.
     pub fn products(text: &str) -> Result<Self, String> {
-        amounts(text, &[("kgm2", Some(1.0))], 3)
+        amounts(text, &INERTIA, 3)
     }
 
-    /// Of the rotation about the principal axes: `deg` or `rad`.
+    /// Of the rotation about the principal axes: `deg` or `rad`; `°` is `deg`.
     ///
     /// # Errors
     /// What must be written.
     pub fn axes(text: &str) -> Result<Self, String> {
-        amounts(text, &[("deg", Some(1.0)), ("rad", Some(1_f64.to_degrees()))], 3)
+        let units = [("deg", Some(1.0)), ("°", Some(1.0)), ("rad", Some(1_f64.to_degrees()))];
+        amounts(text, &units, 3)
     }
 
     /// States it of the mass, as so many standard deviations; only what [`mass`](Self::mass) has read makes sense.
@@ -119,6 +120,8 @@ impl StatedAmount {
 type Unit = (&'static str, Option<f64>);
 
 const PERCENT: Unit = ("%", None);
+
+const INERTIA: [Unit; 3] = [("kgm2", Some(1.0)), ("kg·m²", Some(1.0)), ("kg m²", Some(1.0))];
 
 /// One amount, or as many as there may be, with commas between them.
 fn amounts(text: &str, units: &[Unit], most: usize) -> Result<StatedAmount, String> {

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+import operator
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -14,14 +15,52 @@ if TYPE_CHECKING:
 ORDERS = ("xyzw", "wxyz")
 
 
+def whole(name: str, value: Any, most: int, *, of_float: bool = False) -> int:
+    """A whole number from 0 to the greatest that is allowed; with `of_float` also one that is written as ``1e6``."""
+    if of_float and isinstance(value, (float, np.floating)) and value.is_integer():
+        value = int(value)
+    if isinstance(value, (bool, np.bool_)):
+        raise ValueError(f"{name} = {value!r}: it must be a whole number")
+    try:
+        found = operator.index(value)
+    except TypeError:
+        raise ValueError(f"{name} = {value!r}: it must be a whole number") from None
+    if not 0 <= found <= most:
+        raise ValueError(f"{name} = {found}: it must be from 0 to 2**{most.bit_length()} - 1")
+    return found
+
+
+def real(name: str, value: Any) -> float:
+    """One number."""
+    array = numbers(name, value)
+    if array.shape != ():
+        raise ValueError(f"{name}: its shape is {array.shape}, and it must be one number")
+    return float(array)
+
+
+A = TypeVar("A", bound="NDArray[Any]")
+
+
+def frozen(array: A) -> A:
+    """The array of which nobody else knows, as a view that cannot be made writeable again."""
+    memory: Any = array
+    while isinstance(memory, np.ndarray):
+        memory.flags.writeable = False
+        memory = memory.base
+    return array.view()
+
+
 def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """The value as an array of 64-bit floats, without a copy where it is one."""
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise ValueError(f"{name}: some of its entries are masked")
-    array = np.asarray(value)
-    if array.dtype == object or not (np.issubdtype(array.dtype, np.number) or array.dtype == bool):
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: it must be numbers: {error}") from None
+    if array.dtype.kind not in "biufc":
         raise ValueError(f"{name}: it must be numbers, not {array.dtype}")
-    if np.issubdtype(array.dtype, np.complexfloating):
+    if array.dtype.kind == "c":
         raise ValueError(f"{name}: it must be real numbers, not {array.dtype}")
     return array.astype(np.float64, copy=False)
 
@@ -63,7 +102,10 @@ def out(flat: NDArray[Any], shape: tuple[int, ...], dtype: DTypeLike | None = No
 
 def floating(dtype: DTypeLike) -> np.dtype[Any]:
     """The type of results, which must be one of floats."""
-    found = np.dtype(dtype)
+    try:
+        found = np.dtype(dtype)
+    except TypeError as error:
+        raise ValueError(f"dtype = {dtype!r}: {error}") from None
     if not np.issubdtype(found, np.floating):
         raise ValueError(f"dtype = {found}: it must be one of floats")
     return found
@@ -90,6 +132,9 @@ def attitudes(name: str, value: ArrayLike, order: str) -> tuple[NDArray[np.float
     if not np.all(np.isfinite(largest) & (largest > 0)):
         place = int(np.argmin((np.isfinite(largest) & (largest > 0))[:, 0]))
         raise ValueError(f"{name}: row {place} = {flat[place]}: it must be finite, and not zero")
+    # Of numbers near the ends of the range of floats the norm is beyond it, or of few digits.
+    scale = np.where((largest > 1e-150) & (largest < 1e150), 1.0, largest)
+    flat, largest = flat / scale, largest / scale
     norm = np.linalg.norm(flat / largest, axis=1, keepdims=True) * largest
     # What has norm one already keeps its bits.
     flat = np.where(np.abs(norm - 1.0) <= 4e-16, flat, flat / norm)
@@ -99,6 +144,21 @@ def attitudes(name: str, value: ArrayLike, order: str) -> tuple[NDArray[np.float
 def ordered(flat: NDArray[np.float64], order: str) -> NDArray[np.float64]:
     """Rows of quaternions, scalar last, in another order."""
     return np.ascontiguousarray(flat[:, [3, 0, 1, 2]]) if check_order(order) else flat
+
+
+def text(name: str, value: Any) -> str:
+    """A text."""
+    if not isinstance(value, str):
+        raise ValueError(f"{name} = {value!r}: it must be a text")
+    return value
+
+
+def three(name: str, value: Any) -> list[Any]:
+    """Three of something, such as laws."""
+    found = list(value) if isinstance(value, (Sequence, np.ndarray)) and not isinstance(value, str) else None
+    if found is None or len(found) != 3:
+        raise ValueError(f"{name} = {value!r}: there must be 3 laws or numbers")
+    return found
 
 
 def form(name: str, value: Any) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import attitudes, numbers, ordered, out
+from gyradius._arrays import attitudes, check_order, numbers, ordered, out
 from gyradius._law import Fit, Law, known, make, nested, one_attitude, short, vector
 from gyradius._rng import draws_of
 
@@ -104,8 +104,8 @@ def radially_constrained_gaussian(mean: ArrayLike, cov: ArrayLike, *, order: str
     order : {"xyzw", "wxyz"}
         Scalar last, or first.
     """
-    matrix = numbers("cov", cov)
-    if matrix.shape == (4, 4) and order == "wxyz":
+    matrix, first = numbers("cov", cov), check_order(order)
+    if matrix.shape == (4, 4) and first:
         matrix = matrix[np.ix_([1, 2, 3, 0], [1, 2, 3, 0])]
     return make(AttitudeLaw, "gaussian", one_attitude("mean", mean, order), nested("cov", matrix, 4))
 
@@ -126,8 +126,8 @@ def bingham(precision: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
 
 def fisher_bingham(precision: ArrayLike, linear: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
     """The Fisher-Bingham law, with density ∝ exp(-½ qᵀ P q + bᵀ q), P of shape (4, 4) and b of shape (4,)."""
-    matrix, slope = numbers("precision", precision), numbers("linear", linear)
-    if matrix.shape == (4, 4) and slope.shape == (4,) and order == "wxyz":
+    matrix, slope, first = numbers("precision", precision), numbers("linear", linear), check_order(order)
+    if matrix.shape == (4, 4) and slope.shape == (4,) and first:
         matrix, slope = matrix[np.ix_([1, 2, 3, 0], [1, 2, 3, 0])], slope[[1, 2, 3, 0]]
     return make(AttitudeLaw, "fisher_bingham", nested("precision", matrix, 4), vector("linear", slope, 4))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import attitudes, floating, numbers, ordered, out, rows, together
+from gyradius._arrays import attitudes, floating, frozen, numbers, ordered, out, rows, together
 from gyradius._arrays import form as _form
 
 if TYPE_CHECKING:
@@ -66,24 +67,17 @@ class MassProperties:
     """
 
     __slots__ = ("_array",)
+    # An array and bodies have no sum, of which NumPy would make one of ten numbers.
+    __array_ufunc__ = None
 
     _array: NDArray[np.float64]
 
     def __init__(self, mass: ArrayLike, centre: ArrayLike, inertia: ArrayLike) -> None:
-        (m, c, i), lead = together(("mass", mass, ()), ("centre", centre, (3,)), ("inertia", inertia, (3, 3)))
-        matrix = i.reshape(-1, 3, 3)
-        size = np.abs(matrix).max(axis=(1, 2), initial=0.0)
-        skew = np.abs(matrix - matrix.transpose(0, 2, 1)).max(axis=(1, 2), initial=0.0)
-        # Not `>`, so that NaN, which is no number of a body, is left to what asks whether it is one.
-        if np.any(skew > 1e-6 * size):
-            raise ValueError("inertia: it must be symmetric")
-        matrix = 0.5 * (matrix + matrix.transpose(0, 2, 1))
-        entries = np.stack([matrix[:, a, b] for a, b in ENTRIES], axis=1)
-        self._set(np.concatenate([m, c, entries], axis=1).reshape(*lead, 10))
+        parts, lead = together(("mass", mass, ()), ("centre", centre, (3,)), ("inertia", inertia, (3, 3)))
+        self._set(_core.body_of_parts(*parts).reshape(*lead, 10))
 
     def _set(self, array: NDArray[np.float64]) -> None:
-        array.flags.writeable = False
-        object.__setattr__(self, "_array", array)
+        object.__setattr__(self, "_array", frozen(array))
 
     @classmethod
     def of(cls, array: ArrayLike) -> MassProperties:
@@ -126,6 +120,8 @@ class MassProperties:
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         array = self._array if dtype is None else self._array.astype(dtype, copy=False)
+        if copy is False and array is not self._array:
+            raise ValueError(f"dtype = {array.dtype}: without a copy it must be float64")
         return array.copy() if copy else array
 
     @property
@@ -204,6 +200,10 @@ class MassProperties:
         """Two bodies, described in one frame, as one."""
         return self._with(other, _core.body_add)
 
+    def __radd__(self, other: object) -> MassProperties:
+        # `sum` begins with zero.
+        return self if isinstance(other, int) and other == 0 else NotImplemented
+
     def __sub__(self, other: object) -> MassProperties:
         """What is left of a body without a part."""
         return self._with(other, _core.body_subtract)
@@ -264,6 +264,10 @@ class MassProperties:
         if self.shape == ():
             raise TypeError("one body has no length")
         return self.shape[0]
+
+    def __bool__(self) -> bool:
+        # One body is something, although it has no length; of an array, as of a list.
+        return self.shape == () or self.shape[0] > 0
 
     def __iter__(self) -> Iterator[MassProperties]:
         return (self[place] for place in range(len(self)))
@@ -400,13 +404,16 @@ def load(path: str | os.PathLike[str], *, strict: bool = False) -> dict[str, Mas
     -------
     dict of str to MassProperties
         In the order of the file, in the frame of each link. As they are in the file: `is_realizable` says whether they belong
-        to a body.
+        to a body. A `RuntimeWarning` tells of macros that are not expanded and of files that are not followed, in which there may be more
+        links; with `strict` it is an error.
     """
-    found = _core.load_robot(Path(path))
+    found, unread = _core.load_robot(Path(path))
     if strict:
-        bad = [f"{name}: {why}" for name, ten, why in found if ten is None]
+        bad = [f"{name}: {why}" for name, ten, why in found if ten is None] + unread
         if bad:
             raise ValueError(f"{path}: {'; '.join(bad)}")
+    for what in unread:
+        warnings.warn(f"{path}: {what}", RuntimeWarning, stacklevel=2)
     return {name: MassProperties.of(ten) for name, ten, _ in found if ten is not None}
 
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import form, numbers, out, rows
+from gyradius._arrays import form, numbers, out, real, rows, three
 from gyradius._attitude_laws import AttitudeLaw
 from gyradius._bodies import MassProperties, Region
 from gyradius._inertia_laws import InertiaLaw
 from gyradius._law import Fit, LawOfBodies, Matrix, known, make, picture, short, vector
 from gyradius._rng import draws_of
-from gyradius._scalar_laws import ScalarLaw, scalar
+from gyradius._scalar_laws import ScalarLaw, law_of, scalar
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -95,27 +95,25 @@ class MassPropertiesLaw(LawOfBodies):
             of: dict[str, Any] = {"model": inertia.form}
         else:
             name = "roots" if gyration_lengths is None else "gyration_lengths"
-            three: Sequence[Any] = roots if gyration_lengths is None else gyration_lengths  # type: ignore[assignment]
+            given_laws = roots if gyration_lengths is None else gyration_lengths
             if axes is None:
                 raise ValueError(f"axes: {name} need a law of attitudes")
-            if len(three) != 3:
-                raise ValueError(f"{name}: {len(three)} laws, and there must be 3")
-            laws = [scalar(f"{name}[{i}]", law) for i, law in enumerate(three)]
+            laws = [scalar(f"{name}[{i}]", law) for i, law in enumerate(three(name, given_laws))]
             of = {name.replace("_", "-"): {"laws": laws, "axes": axes.form}}
         tensor: dict[str, Any] = {"of": of}
         if follows is not None:
             if nominal_mass is None:
                 raise ValueError("nominal_mass: follows needs it")
-            tensor["follows"] = {"share": float(follows), "nominal_mass_kg": float(nominal_mass)}
-        if len(centre) != 3:
-            raise ValueError(f"centre: {len(centre)} laws, and there must be 3")
+            tensor["follows"] = {"share": real("follows", follows), "nominal_mass_kg": real("nominal_mass", nominal_mass)}
         said: dict[str, Any] = {
             "mass_kg": scalar("mass", mass),
-            "mass_centre_m": [scalar(f"centre[{i}]", law) for i, law in enumerate(centre)],
+            "mass_centre_m": [scalar(f"centre[{i}]", law) for i, law in enumerate(three("centre", centre))],
             "inertia": tensor,
         }
         if correlations:
-            said["correlations"] = [[one, other, float(value)] for one, other, value in correlations]
+            if not all(isinstance(one, (list, tuple)) and len(one) == 3 for one in correlations):
+                raise ValueError(f"correlations = {correlations!r}: each must be two names and a number")
+            said["correlations"] = [[one, other, real("correlations", value)] for one, other, value in correlations]
         if inside is not None:
             said["inside"] = inside.form
         return MassPropertiesLaw.of(said)
@@ -149,12 +147,14 @@ class MassPropertiesLaw(LawOfBodies):
         """
         region = None if inside is None else json.dumps(inside.form)
         centre = vector("centre_std", np.broadcast_to(numbers("centre_std", centre_std), (3,)), 3)
-        return make(MassPropertiesLaw, "maximum_entropy", ten_of(mean), float(mass_delta), centre, float(delta), region)
+        deltas = real("mass_delta", mass_delta), real("delta", delta)
+        return make(MassPropertiesLaw, "maximum_entropy", ten_of(mean), deltas[0], centre, deltas[1], region)
 
     @staticmethod
     def pseudo_inertia_wishart(mean: MassProperties, degrees_of_freedom: float) -> MassPropertiesLaw:
         """The Wishart law of the pseudo-inertia about that of a body."""
-        return make(MassPropertiesLaw, "pseudo_inertia_wishart", ten_of(mean), float(degrees_of_freedom))
+        freedom = real("degrees_of_freedom", degrees_of_freedom)
+        return make(MassPropertiesLaw, "pseudo_inertia_wishart", ten_of(mean), freedom)
 
     @staticmethod
     def naive(
@@ -165,7 +165,8 @@ class MassPropertiesLaw(LawOfBodies):
         `rule` is ``"diagonal-factors"``, ``"entry-factors"``, ``"principal-factors"``, ``"entry-noise"`` or ``"scale-all"``; each
         random number is drawn anew from `law`. `mass` is a factor of the mass, `centre` is added to the mass centre.
         """
-        laws = [None if one is None else json.dumps(one.form) for one in (law, mass, centre)]
+        given = {"law": law, "mass": mass, "centre": centre}
+        laws = [json.dumps(law_of(name, one).form) if name == "law" or one is not None else None for name, one in given.items()]
         return make(MassPropertiesLaw, "naive", ten_of(nominal), rule, *laws)
 
     def rvs(self, size: int | tuple[int, ...] | None = None, rng: RNG = None) -> MassProperties:
@@ -211,5 +212,5 @@ class MassPropertiesLaw(LawOfBodies):
 
 def ten_of(body: MassProperties) -> tuple[float, ...]:
     if not isinstance(body, MassProperties) or body.shape != ():
-        raise ValueError("it must be one MassProperties")
+        raise ValueError(f"{body!r}: it must be one MassProperties")
     return tuple(body.array.tolist())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import ordered, out, rows
+from gyradius._arrays import ordered, out, real, rows, text
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -169,7 +169,7 @@ def nearest(
     [1.1, 2.1, 3.2]
     """
     flat, lead = rows("inertia", inertia, (3, 3))
-    return out(_core.inertia_nearest(flat, method), (*lead, 3, 3), dtype)
+    return out(_core.inertia_nearest(flat, text("method", method)), (*lead, 3, 3), dtype)
 
 
 class PrincipalAxes(NamedTuple):
@@ -231,7 +231,7 @@ def _tolerance(tolerance: float | None, inertia: ArrayLike) -> float | None:
         dtype = getattr(inertia, "dtype", None)
         narrow = isinstance(dtype, np.dtype) and dtype.kind == "f" and dtype.itemsize < 8
         return 64.0 * float(np.finfo(dtype).eps) if narrow else None
-    found = float(tolerance)
+    found = real("tolerance", tolerance)
     if not 0.0 <= found < np.inf:
         raise ValueError(f"tolerance = {tolerance!r}: it must be zero or positive, and finite")
     return found

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import form, out, rows
+from gyradius._arrays import form, out, rows, text, three
 from gyradius._attitude_laws import AttitudeLaw
 from gyradius._law import Fit, LawOfBodies, Matrix, known, make, picture, short, vector
 from gyradius._rng import draws_of
@@ -40,9 +40,9 @@ class InertiaLaw(LawOfBodies):
         axes : AttitudeLaw
             One that has a form in files: not a Fisher-Bingham law, nor turns about an axis.
         """
-        if len(roots) != 3:
-            raise ValueError(f"roots: {len(roots)} laws, and there must be 3")
-        laws = [scalar(f"roots[{i}]", law) for i, law in enumerate(roots)]
+        if not isinstance(axes, AttitudeLaw):
+            raise ValueError(f"axes = {axes!r}: it must be an AttitudeLaw")
+        laws = [scalar(f"roots[{i}]", law) for i, law in enumerate(three("roots", roots))]
         said = {"model": "principal", "roots": {"law": "independent", "laws_sqrt_kg_m": laws}, "axes": axes.form}
         return InertiaLaw.of(said)
 
@@ -67,12 +67,12 @@ class InertiaLaw(LawOfBodies):
         flat, lead = rows("inertia", inertia, (3, 3))
         if lead != ():
             raise ValueError("inertia: it must be one matrix, of shape (3, 3)")
-        return make(InertiaLaw, "about", kind, tuple(flat[0].tolist()), form("", parameters))
+        return make(InertiaLaw, "about", text("kind", kind), tuple(flat[0].tolist()), form("", parameters))
 
     @staticmethod
     def matched(kind: str, mean: ArrayLike, cov: ArrayLike) -> InertiaLaw:
         """The model of a kind whose six entries have this mean (6,) and covariance (6, 6), as far as the kind can."""
-        return make(InertiaLaw, "matched", kind, vector("mean", mean, 6), Matrix.of("cov", cov, (6, 6)))
+        return make(InertiaLaw, "matched", text("kind", kind), vector("mean", mean, 6), Matrix.of("cov", cov, (6, 6)))
 
     @staticmethod
     def kinds() -> dict[str, dict[str, Any]]:

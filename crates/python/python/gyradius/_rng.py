@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, Union
 import numpy as np
 
 from gyradius import _core
+from gyradius._arrays import frozen, whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -52,7 +53,7 @@ class key:  # noqa: N801 - it is written as a function is
     def __init__(self, seed: int, term: str = "", index: ArrayLike | None = None) -> None:
         if not isinstance(term, str):
             raise ValueError(f"term = {term!r}: it must be a text")
-        object.__setattr__(self, "seed", _whole("seed", seed))
+        object.__setattr__(self, "seed", whole("seed", seed, MOST))
         object.__setattr__(self, "term", term)
         object.__setattr__(self, "index", None if index is None else _places(index))
 
@@ -85,14 +86,6 @@ RNG: TypeAlias = Union[None, int, np.integer[Any], np.random.SeedSequence, np.ra
 """What random numbers may come from."""
 
 
-def _whole(name: str, value: object) -> int:
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
-        raise ValueError(f"{name} = {value!r}: it must be a whole number")
-    if not 0 <= value <= MOST:
-        raise ValueError(f"{name} = {value}: it must be from 0 to 2**64 - 1")
-    return int(value)
-
-
 def _places(index: ArrayLike) -> NDArray[np.uint64]:
     array = np.asarray(index)
     if not np.issubdtype(array.dtype, np.integer):
@@ -101,9 +94,7 @@ def _places(index: ArrayLike) -> NDArray[np.uint64]:
         array = array.astype(np.uint64)
     if array.size and array.min() < 0:
         raise ValueError(f"index: {array.min()} is below 0")
-    array = np.array(array, dtype=np.uint64, order="C")
-    array.flags.writeable = False
-    return array
+    return frozen(np.array(array, dtype=np.uint64, order="C"))
 
 
 def shape_of(size: int | tuple[int, ...] | None) -> tuple[int, ...]:
@@ -137,7 +128,7 @@ def draws_of(rng: RNG, size: int | tuple[int, ...] | None) -> tuple[_core.Draws,
         words = rng.integers(0, MOST, size=4, dtype=np.uint64, endpoint=True)
         return _core.Draws.of_key(_bytes(words), count), shape
     if isinstance(rng, (int, np.integer)) and not isinstance(rng, (bool, np.bool_)):
-        return _core.Draws.first(_whole("rng", rng), "", count), shape
+        return _core.Draws.first(whole("rng", rng, MOST), "", count), shape
     allowed = "None, a whole number, a SeedSequence, a Generator or a gyradius.key"
     raise ValueError(f"rng = {rng!r}: it must be {allowed}")
 

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import form, numbers, out
+from gyradius._arrays import form, numbers, out, real
 from gyradius._law import Law, known
 from gyradius._rng import draws_of
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, DTypeLike
+    from numpy.typing import ArrayLike, DTypeLike, NDArray
 
     from gyradius._rng import RNG
 
@@ -71,9 +72,25 @@ class ScalarLaw(Law):
         return out(known(self, "density", self._core.ln_density(np.ascontiguousarray(array).reshape(-1))), array.shape)
 
     def cdf(self, x: ArrayLike) -> Any:
-        """The share of draws that are at most x."""
-        array = numbers("x", x)
-        return out(self._core.cdf(np.ascontiguousarray(array).reshape(-1)), array.shape)
+        """The share of draws that are at most x; NaN of NaN."""
+        return _of_each("x", x, self._core.cdf)
+
+    def sf(self, x: ArrayLike) -> Any:
+        """The share of draws that are greater than x: 1 - cdf, without cancellation far out."""
+        return _of_each("x", x, self._core.share_above)
+
+    def ppf(self, q: ArrayLike) -> Any:
+        """The smallest number that a share q of draws does not exceed: the inverse of `cdf`.
+
+        The bounds of the law at 0 and 1, infinite or not; NaN outside of these.
+
+        Examples
+        --------
+        >>> import gyradius
+        >>> gyradius.uniform(2.0, 4.0).ppf([0.0, 0.25, 1.0]).tolist()
+        [2.0, 2.5, 4.0]
+        """
+        return _of_each("q", q, self._core.quantile)
 
     def __repr__(self) -> str:
         said = self.form
@@ -81,23 +98,33 @@ class ScalarLaw(Law):
         return f"ScalarLaw({said['law']!r}{keys})"
 
 
+def _of_each(name: str, value: ArrayLike, of: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> Any:
+    array = numbers(name, value)
+    return out(of(np.ascontiguousarray(array).reshape(-1)), array.shape)
+
+
 def normal(mean: float, sigma: float) -> ScalarLaw:
     """A normal law from its mean and standard deviation."""
-    return ScalarLaw("normal", mean=float(mean), sigma=float(sigma))
+    return ScalarLaw("normal", mean=real("mean", mean), sigma=real("sigma", sigma))
 
 
 def uniform(low: float, high: float) -> ScalarLaw:
     """All numbers between two are equally likely."""
-    return ScalarLaw("uniform", low=float(low), high=float(high))
+    return ScalarLaw("uniform", low=real("low", low), high=real("high", high))
 
 
 def scalar(name: str, value: ScalarLaw | float | Mapping[str, Any]) -> dict[str, Any]:
     """A law of a number, or a number that is known, in the form of files."""
-    if isinstance(value, ScalarLaw):
-        return value.form
-    if isinstance(value, Mapping):
-        return ScalarLaw(**value).form
     try:
-        return normal(float(value), 0.0).form
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} = {value!r}: it must be a number or a ScalarLaw ({error})") from None
+        if isinstance(value, Mapping):
+            return json.loads(_core.ScalarCore.of_form(form("", value)).form())
+        return value.form if isinstance(value, ScalarLaw) else normal(real(name, value), 0.0).form
+    except ValueError as error:
+        raise ValueError(f"{name} = {value!r}: it must be a number or a ScalarLaw: {error}") from None
+
+
+def law_of(name: str, value: object) -> ScalarLaw:
+    """A law of a number."""
+    if not isinstance(value, ScalarLaw):
+        raise ValueError(f"{name} = {value!r}: it must be a ScalarLaw")
+    return value

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gyradius import _core
-from gyradius._arrays import form
+from gyradius._arrays import form, real
 from gyradius._bodies import MassProperties, Region
 from gyradius._body_laws import MassPropertiesLaw, ten_of
+
+if TYPE_CHECKING:
+    from gyradius._rng import RNG
 
 
 def law(
@@ -37,11 +40,12 @@ def law(
     centre : str
         Along each axis, ± ``"1cm"``, ``"5mm"`` or ``"0.01m"``, or three of them, ``"5mm, 5mm, 2cm"``.
     moments : str
-        Of inertia about the axes of the body, ± ``"10%"`` or ``"0.3kgm2"``, or three; what the mass does to them is a part.
+        Of inertia about the axes of the body, ± ``"10%"`` or ``"0.3kgm2"`` (or ``"0.3 kg·m²"``), or three; what the mass does to them is
+        a part.
     products : str
         Of inertia, ± ``"0.01kgm2"``, or three, of 12, 13 and 23.
     axes : str
-        The rotation about each principal axis, ± ``"2deg"`` or ``"0.03rad"``, or three.
+        The rotation about each principal axis, ± ``"2deg"``, ``"2°"`` or ``"0.03rad"``, or three.
     inside : Region
         Where all matter must be possible: `box`, `ellipsoid` or `hull`.
     sigmas : float
@@ -87,20 +91,41 @@ def law(
         said("moments", moments),
         said("products", products),
         said("axes", axes),
-        float(sigmas),
+        real("sigmas", sigmas),
         None if inside is None else json.dumps(inside.form),
     )
-    made = StatedLaw._of(core, "joint", core.form())
-    object.__setattr__(made, "_warnings", tuple(warnings))
-    return made
+    return _stated(core, core.form(), tuple(warnings), ten_of(body))
 
 
 class StatedLaw(MassPropertiesLaw):
     """The law of mass, mass centre and inertia that statements make: see `gyradius.law`."""
 
-    __slots__ = ("_warnings",)
+    __slots__ = ("_nominal", "_warnings")
 
+    _nominal: tuple[float, ...]
     _warnings: tuple[str, ...]
+
+    def rvs(
+        self, size: int | tuple[int, ...] | None = None, rng: RNG = None, *, inset: bool = False
+    ) -> MassProperties:
+        """Draws, as `MassProperties` of the shape `size`: see `AttitudeLaw.rvs` for `rng`.
+
+        With `inset`, bodies that lie on the boundary of what bodies can have, such as flat plates and thin rods, are moved inside by 1e-9
+        of the trace of their inertia, as the robots are that ``gyradius draw`` writes: programs that compare without tolerance, or
+        hold numbers of 32 bits, take them then. Bodies of which no statement changes the inertia stay as they are.
+
+        Examples
+        --------
+        >>> import numpy as np, gyradius
+        >>> plate = gyradius.MassProperties(1.0, [0.0, 0.0, 0.0], np.diag([0.1, 0.2, 0.3]))
+        >>> law = gyradius.law(plate, moments="5%")
+        >>> [bool(gyradius.margin(law.rvs(rng=7, inset=inset).inertia) > 1e-10) for inset in (False, True)]
+        [False, True]
+        """
+        drawn = super().rvs(size, rng)
+        if not inset:
+            return drawn
+        return MassProperties._of(_core.body_inset(drawn._flat(), self._nominal).reshape(*drawn.shape, 10))
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -108,10 +133,15 @@ class StatedLaw(MassPropertiesLaw):
         return self._warnings
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _stated_again, (*self._made[1], self._warnings)
+        return _stated_again, (*self._made[1], self._warnings, self._nominal)
 
 
-def _stated_again(form: str, warnings: tuple[str, ...]) -> StatedLaw:
-    made = StatedLaw._of(_core.BodyCore.joint(form), "joint", form)
+def _stated_again(form: str, warnings: tuple[str, ...], nominal: tuple[float, ...]) -> StatedLaw:
+    return _stated(_core.BodyCore.joint(form), form, warnings, nominal)
+
+
+def _stated(core: _core.BodyCore, form: str | None, warnings: tuple[str, ...], nominal: tuple[float, ...]) -> StatedLaw:
+    made = StatedLaw._of(core, "joint", form)
     object.__setattr__(made, "_warnings", warnings)
+    object.__setattr__(made, "_nominal", nominal)
     return made

@@ -2,45 +2,29 @@
 
 from __future__ import annotations
 
-import functools
-import hashlib
 import html
 import importlib
-import inspect
 import json
-import operator
 import os
 import shutil
-import sys
 import tempfile
 import warnings
 import weakref
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, Union
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gyradius import _core
+from gyradius._arrays import text, whole
+from gyradius._simulation import ABOUT, OF_VEHICLES, SOURCE, Progress, Simulation, called_with, described, progress_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-Simulation: TypeAlias = Callable[..., Mapping[str, float]]
-"""What simulates a run: its inputs in, its outputs out."""
-
-Progress: TypeAlias = Union[bool, Callable[[int, int], object]]
-"""Whether a bar is shown, or what is told how far a study is."""
-
-ABOUT = ("run", "model", "seed", "vehicle", "flight")
-"""What a simulation is told of its run by keyword, if it has parameters of these names."""
-
-SOURCE = ", source "
-"""What stands before the SHA-256 of a function's source in what a scenario says of it."""
-
-LONGEST = 200
-"""Characters that a scenario may say of its function."""
-
+MOST = 2**63 - 1
+"""The greatest whole number of a scenario."""
 
 class Verdict(NamedTuple):
     """What the runs of a model say of a requirement."""
@@ -80,11 +64,16 @@ class Study:
 
     Its folder has the resolved scenario, run tables in Parquet, ``summary.json``, figures and ``report.html``. A study without ``out``
     is in a temporary folder, which is removed with the object.
+
+    A study does not change, and a copy is the study itself. In a pickle is the path of its folder, from which it is read again, and of a
+    study without ``out`` all that its folder has. The simulation is in no pickle, so that runs of what is read again are not
+    replayed.
     """
 
-    __slots__ = ("__weakref__", "_done")
+    __slots__ = ("__weakref__", "_done", "_is_temporary")
 
     _done: _core.StudyCore
+    _is_temporary: bool
 
     def __init__(self) -> None:
         raise TypeError("gyradius.study(...) makes studies")
@@ -93,6 +82,7 @@ class Study:
     def _of(cls, core: _core.StudyCore, temporary: str | None) -> Study:
         made = object.__new__(cls)
         made._done = core
+        made._is_temporary = temporary is not None
         if temporary is not None:
             weakref.finalize(made, shutil.rmtree, temporary, ignore_errors=True)
         return made
@@ -202,14 +192,26 @@ class Study:
             There is no such run or model; or the run is not what the study has of it, because the simulation has changed or does not
             depend on its inputs and its seed alone.
         """
-        row, request, text = self._done.replay(
+        row, request, told = self._done.replay(
             run=_whole("run", run), vehicle=_whole("vehicle", vehicle), flight=_whole("flight", flight), model=model
         )
         inputs = json.loads(request)["inputs"] if request else {}
-        return Replay(row["model"], row["run"], row["status"], row, inputs, text)
+        return Replay(row["model"], row["run"], row["status"], row, inputs, told)
 
     def _arrays(self, model: str) -> dict[str, NDArray[Any]]:
         return {name: _array(values) for name, _, _, values in self._done.columns(model)}
+
+    def __copy__(self) -> Study:
+        return self
+
+    def __deepcopy__(self, known: object) -> Study:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if not self._is_temporary:
+            return _read_again, (self.folder.absolute(),)
+        files = (file for file in self.folder.rglob("*") if file.is_file())
+        return _made_again, (self.name, {file.relative_to(self.folder).parts: file.read_bytes() for file in files})
 
     def __repr__(self) -> str:
         runs = ", ".join(f"{model}: {runs} runs, {failed} failed" for model, failed, runs in self._done.failed)
@@ -233,6 +235,24 @@ class Study:
             f"<h3>{html.escape(self.name)}</h3><table>{''.join(runs)}</table><table>{''.join(said)}</table>"
             f'<details><summary>Report</summary><iframe srcdoc="{page}" width="100%" height="600"></iframe></details>'
         )
+
+
+def _read_again(folder: Path) -> Study:
+    return Study._of(_core.StudyCore.read(folder), None)
+
+
+def _made_again(name: str, files: dict[tuple[str, ...], bytes]) -> Study:
+    temporary = tempfile.mkdtemp(prefix="gyradius-")
+    try:
+        folder = Path(temporary) / name
+        for parts, content in files.items():
+            file = folder.joinpath(*parts)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(content)
+        return Study._of(_core.StudyCore.read(folder), temporary)
+    except BaseException:
+        shutil.rmtree(temporary, ignore_errors=True)
+        raise
 
 
 def study(
@@ -269,7 +289,8 @@ def study(
         failed run: a row with the exception's type and text. Without it, gyradius simulates separations, and a file names a command.
     outputs : dict, optional
         Names and units of the outputs. If neither this nor the scenario declares any, the first of ten runs that does not fail does,
-        and units are ``"1"``; that run is done again with the others.
+        and units are ``"1"``; that run is done again with the others. With declared outputs no run is tried before: if all fail, as with a
+        command, all rows say why.
     runs, vehicles, seed : int, optional
         In the place of what the scenario says.
     until : str, optional
@@ -328,26 +349,36 @@ def study(
     >>> table["range_m"].shape, bool((table["range_m"] == table["speed_m_per_s"] ** 2 / 9.81).all())
     ((500,), True)
     """
+    for flag, value in (("force", force), ("retry_failed", retry_failed), ("even_if_full", even_if_full)):
+        if not isinstance(value, (bool, np.bool_)):
+            raise ValueError(f"{flag} = {value!r}: it must be True or False")
+    if columns is not None and (isinstance(columns, str) or not all(isinstance(one, str) for one in columns)):
+        raise ValueError(f"columns = {columns!r}: it must be a list of names")
     given = None if outputs is None else [{"name": name, "unit": unit} for name, unit in _mapping("outputs", outputs)]
     if simulation is not None and not callable(simulation):
         raise ValueError(f"simulation: it must be callable, not {type(simulation).__name__}")
-    called = None if simulation is None else _called(simulation)
-    function = None if simulation is None else _described(simulation)
+    called, needed = (None, set()) if simulation is None else called_with(simulation)
+    function = None if simulation is None else described(simulation)
     core, place = _scenario(scenario, function, given)
     core = core.changed(
         runs=_whole("runs", runs),
         vehicles=_whole("vehicles", vehicles),
         seed=_whole("seed", seed),
-        until=until,
+        until=None if until is None else text("until", until),
         look_every=_whole("look_every", look_every),
-        rows=rows,
+        rows=None if rows is None else text("rows", rows),
         columns=None if columns is None else list(columns),
         drivers=_whole("drivers", drivers),
     )
+    if not core.has_vehicles and needed & OF_VEHICLES:
+        raise ValueError(
+            f"simulation: it asks for {' and '.join(sorted(needed & OF_VEHICLES))}, and the scenario has no vehicles; what is known of "
+            f"its runs is {', '.join(name for name in ABOUT if name not in OF_VEHICLES)}"
+        )
     threads = _whole("threads", threads)
     if threads is None and called is not None:
         threads = 1
-    tell, close = _progress(progress)
+    tell, close = progress_of(progress)
     temporary = None
     if out is not None:
         place = Path(out)
@@ -359,9 +390,9 @@ def study(
             simulation=called,
             out=place,
             threads=threads,
-            force=force,
-            retry_failed=retry_failed,
-            even_if_full=even_if_full,
+            force=bool(force),
+            retry_failed=bool(retry_failed),
+            even_if_full=bool(even_if_full),
             progress=tell,
         )
     except BaseException:
@@ -372,7 +403,13 @@ def study(
         close()
     for block in done.warnings:
         warnings.warn(f"{block}: its runs were done again", RuntimeWarning, stacklevel=2)
-    return Study._of(done, temporary)
+    found = Study._of(done, temporary)
+    for model, failed, of in done.failed:
+        if failed == of > 0:
+            # If the rows were kept.
+            reason = "".join(f"; the first: {status}" for status in found._arrays(model).get("status", [])[:1])
+            warnings.warn(f"{model}: all {of} runs failed{reason}", RuntimeWarning, stacklevel=2)
+    return found
 
 
 def _scenario(
@@ -405,97 +442,13 @@ def _scenario(
 
 def _whole(name: str, given: Any) -> int | None:
     """A whole number that is not negative, also one that is written as ``1e6``."""
-    if given is None:
-        return None
-    if isinstance(given, float) and given.is_integer():
-        return _whole(name, int(given))
-    try:
-        found = operator.index(given)
-    except TypeError:
-        raise ValueError(f"{name} = {given!r}: it must be a whole number") from None
-    if not 0 <= found < 2**63:
-        raise ValueError(f"{name} = {found}: it must not be negative, and below 2⁶³")
-    return found
+    return None if given is None else whole(name, given, MOST, of_float=True)
 
 
 def _mapping(name: str, given: Any) -> Any:
     if not isinstance(given, Mapping):
         raise ValueError(f"{name}: it must be a dictionary of names and units, not {type(given).__name__}")
     return given.items()
-
-
-def _called(simulation: Simulation) -> Callable[[dict[str, float], dict[str, Any]], Any]:
-    """The simulation, called with its inputs and, by keyword, with what it has parameters for."""
-    try:
-        parameters = list(inspect.signature(simulation).parameters.values())
-    except (TypeError, ValueError):
-        # Nobody knows what some functions in C take.
-        return lambda inputs, about: simulation(inputs)
-    by_place = (
-        inspect.Parameter.POSITIONAL_ONLY,
-        inspect.Parameter.POSITIONAL_OR_KEYWORD,
-        inspect.Parameter.VAR_POSITIONAL,
-    )
-    if not parameters or parameters[0].kind not in by_place:
-        raise ValueError("simulation: it must take the dictionary of the inputs as its first argument")
-    first, *others = parameters
-    if first.kind is inspect.Parameter.VAR_POSITIONAL:
-        others = parameters
-    by_name = (inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
-    everything = any(other.kind is inspect.Parameter.VAR_KEYWORD for other in others)
-    wanted = (
-        ABOUT if everything else tuple(other.name for other in others if other.kind in by_name and other.name in ABOUT)
-    )
-    for other in others:
-        named = other.kind in by_name and other.name in ABOUT
-        various = other.kind in (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
-        if not (named or various) and other.default is inspect.Parameter.empty:
-            known = ", ".join(ABOUT)
-            raise ValueError(f"simulation: nothing is known for its parameter {other.name!r}; what is known is {known}")
-    if not wanted:
-        return lambda inputs, about: simulation(inputs)
-    return lambda inputs, about: simulation(inputs, **{name: about[name] for name in wanted if name in about})
-
-
-def _described(simulation: Simulation) -> str:
-    """Which function it is: by module, name and source."""
-    function: Any = simulation
-    while isinstance(function, functools.partial):
-        function = function.func
-    if not hasattr(function, "__qualname__"):
-        function = type(function)
-    name = f"{getattr(function, '__module__', None)}.{function.__qualname__}"
-    try:
-        source = inspect.getsource(function)
-    except (OSError, TypeError):
-        return name[:LONGEST]
-    said = f"{SOURCE}{hashlib.sha256(source.encode()).hexdigest()[:16]}"
-    return name[: LONGEST - len(said)] + said
-
-
-def _progress(progress: Any) -> tuple[Callable[[int, int], object] | None, Callable[[], object]]:
-    """What is told of progress, and what is called at the end."""
-    if progress is None or progress is False:
-        return None, lambda: None
-    if callable(progress):
-        return progress, lambda: None
-    if progress is not True:
-        raise ValueError(f"progress: it must be True, False or callable, not {type(progress).__name__}")
-    try:
-        tqdm: Any = importlib.import_module("tqdm.auto").tqdm
-    except ImportError:
-        return _line, lambda: print(file=sys.stderr)
-    bar = tqdm(unit="run")
-
-    def tell(done: int, of: int) -> None:
-        bar.total = of
-        bar.update(done - bar.n)
-
-    return tell, bar.close
-
-
-def _line(done: int, of: int) -> None:
-    print(f"\r{done} of {of} runs", end="", file=sys.stderr, flush=True)
 
 
 def _array(values: Any) -> NDArray[Any]:

@@ -11,7 +11,7 @@ use pyo3::{
 use std::path::Path;
 use toml::{Table, Value};
 
-use crate::error::refused;
+use crate::{error::refused, words::in_python};
 
 /// Deepest nesting of a scenario.
 const DEEPEST: usize = 32;
@@ -65,7 +65,7 @@ pub(super) fn scenario(
     }
     let text = toml::to_string(&table).map_err(refused)?;
     AnyScenario::from_toml(&text, folder).map_err(|error| match error {
-        ScenarioError::Parse { message, .. } => refused(without_line(&message)),
+        ScenarioError::Parse { message, .. } => refused(in_python(without_line(&message))),
         other => refused(other),
     })
 }

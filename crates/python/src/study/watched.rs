@@ -13,7 +13,7 @@ use std::{
     time::Duration,
 };
 
-use super::called::Called;
+use super::{called::Called, words::in_keywords};
 use crate::error::refused;
 
 /// How long the calling thread waits between looks.
@@ -95,7 +95,7 @@ impl Watched {
         if let Some(error) = interrupt.or(raised) {
             return Err(error);
         }
-        let result = result.map_err(refused)?;
+        let result = result.map_err(|error| refused(in_keywords(&error)))?;
         look()?;
         Ok(result)
     }

@@ -27,8 +27,7 @@ const TRIALS_MODEL: &str = "robot, trials";
 const TRIALS: u64 = 400;
 /// How many of them must be possible in the region of a link, so that draws do not take too long.
 const LEAST_HELD: u64 = 4;
-/// How far inside of what a body can have the inertia of a drawn link lies, as a part of its trace: programs that compare
-/// without tolerance, or read fewer digits, take flat plates and thin rods too then.
+/// How far inside of what a body can have the inertia of a drawn link lies, as a part of its trace.
 const INSET: f64 = 1e-9;
 
 /// Which draws of which links.
@@ -223,7 +222,7 @@ impl DrawnLink {
     fn body(&self, draw: u64) -> MassProperties {
         let mut rng = self.streams.run(draw);
         loop {
-            let drawn = self.inset(self.law.sample(&mut rng));
+            let drawn = inset(self.law.sample(&mut rng), self.law.nominal());
             // Ends: of the trials enough were held. A joint law's own region would judge what was drawn, and this is what is
             // written, a little inside of it.
             if self.region.as_ref().is_none_or(|region| inside::holds(region, &drawn)) {
@@ -231,19 +230,20 @@ impl DrawnLink {
             }
         }
     }
+}
 
-    /// What was drawn, a little inside of what a body can have.
-    fn inset(&self, drawn: MassProperties) -> MassProperties {
-        // What nothing is stated of stays as it is.
-        if drawn.inertia() == self.law.nominal().inertia() {
-            return drawn;
-        }
-        off_boundary(drawn.inertia())
-            .and_then(|inertia| {
-                MassProperties::new(drawn.mass_kg(), drawn.mass_centre_m(), inertia).ok()
-            })
-            .unwrap_or(drawn)
+/// What was drawn of a body, moved a little inside of what a body can have, by 1e-9 of the trace of its inertia, as the robots that are
+/// written have it: programs that compare without tolerance, or read fewer digits, take flat plates and thin rods too then. What
+/// has the inertia of the nominal body, because nothing was stated of it, stays as it is.
+#[must_use]
+pub fn inset(drawn: MassProperties, nominal: &MassProperties) -> MassProperties {
+    if drawn.inertia() == nominal.inertia() {
+        return drawn;
     }
+    let moved = off_boundary(drawn.inertia()).and_then(|inertia| {
+        MassProperties::new(drawn.mass_kg(), drawn.mass_centre_m(), inertia).ok()
+    });
+    moved.unwrap_or(drawn)
 }
 
 /// The nominal body of a link, or the nearest where rounding to six digits has made it impossible.

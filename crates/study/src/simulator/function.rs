@@ -75,6 +75,10 @@ impl SimulatorScenario {
         let (seen, function) = (Arc::clone(&names), function.clone());
         let watched = SimulatorFunction::new(move |inputs| {
             let outputs = function.run(inputs)?;
+            // None is declared yet, so nobody else looks at the numbers.
+            if let Some((name, value)) = outputs.iter().find(|(_, value)| !value.is_finite()) {
+                return Err(format!("the output `{name}` is not a finite number: {value}"));
+            }
             *seen.lock().unwrap_or_else(PoisonError::into_inner) =
                 outputs.iter().map(|(name, _)| name.clone()).collect();
             Ok(outputs)

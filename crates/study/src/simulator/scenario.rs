@@ -126,9 +126,19 @@ impl SimulatorScenario {
                 return Err(ScenarioError::field(format!("{list}[{}].name", i + 1), problem));
             }
         }
-        Table::new("", 0, self.columns().collect())
-            .map_err(|error| ScenarioError::field("simulation.outputs", error))?;
-        Ok(())
+        let columns: Vec<Column> = self.columns().collect();
+        let refused = |count: &usize| Table::new("", 0, columns[..*count].to_vec()).err();
+        let Some(error) = refused(&columns.len()) else { return Ok(()) };
+        // The first that is refused is the one that is to blame.
+        let (all, outputs) = (columns.len(), self.outputs.len());
+        let place = (1..all).find(|count| refused(count).is_some()).unwrap_or(all) - 1;
+        let drawn = all - outputs - self.quantities.len();
+        let field = match place.checked_sub(drawn) {
+            None => "bodies".to_owned(),
+            Some(i) if i < self.quantities.len() => format!("quantities[{}].name", i + 1),
+            Some(i) => format!("simulation.outputs[{}].name", i - self.quantities.len() + 1),
+        };
+        Err(ScenarioError::field(field, error))
     }
 
     /// The fleet, if flights of a vehicle have something in common, so that runs are not independent.

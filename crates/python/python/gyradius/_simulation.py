@@ -1,0 +1,106 @@
+"""Functions in Python that simulate runs: what they are told, which they are, and what is told of progress."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import importlib
+import inspect
+import sys
+from collections.abc import Callable, Mapping
+from typing import Any, TypeAlias, Union
+
+Simulation: TypeAlias = Callable[..., Mapping[str, float]]
+"""What simulates a run: its inputs in, its outputs out."""
+
+Progress: TypeAlias = Union[bool, Callable[[int, int], object]]
+"""Whether a bar is shown, or what is told how far a study is."""
+
+ABOUT = ("run", "model", "seed", "vehicle", "flight")
+"""What a simulation is told of its run by keyword, if it has parameters of these names."""
+
+OF_VEHICLES = {"vehicle", "flight"}
+"""What of it there is in scenarios with vehicles alone."""
+
+SOURCE = ", source "
+"""What stands before the SHA-256 of a function's source in what a scenario says of it."""
+
+LONGEST = 200
+"""Characters that a scenario may say of its function."""
+
+
+def called_with(simulation: Simulation) -> tuple[Callable[[dict[str, float], dict[str, Any]], Any], set[str]]:
+    """The simulation, called with its inputs and, by keyword, with what it has parameters for; and which of these it needs."""
+    try:
+        parameters = list(inspect.signature(simulation).parameters.values())
+    except (TypeError, ValueError):
+        # Nobody knows what some functions in C take.
+        return lambda inputs, about: simulation(inputs), set()
+    by_place = (
+        inspect.Parameter.POSITIONAL_ONLY,
+        inspect.Parameter.POSITIONAL_OR_KEYWORD,
+        inspect.Parameter.VAR_POSITIONAL,
+    )
+    if not parameters or parameters[0].kind not in by_place:
+        raise ValueError("simulation: it must take the dictionary of the inputs as its first argument")
+    first, *others = parameters
+    if first.kind is inspect.Parameter.VAR_POSITIONAL:
+        others = parameters
+    by_name = (inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    everything = any(other.kind is inspect.Parameter.VAR_KEYWORD for other in others)
+    wanted = (
+        ABOUT if everything else tuple(other.name for other in others if other.kind in by_name and other.name in ABOUT)
+    )
+    needed = set()
+    for other in others:
+        named = other.kind in by_name and other.name in ABOUT
+        if named and other.default is inspect.Parameter.empty:
+            needed.add(other.name)
+        various = other.kind in (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
+        if not (named or various) and other.default is inspect.Parameter.empty:
+            known = ", ".join(ABOUT)
+            raise ValueError(f"simulation: nothing is known for its parameter {other.name!r}; what is known is {known}")
+    if not wanted:
+        return lambda inputs, about: simulation(inputs), needed
+    return lambda inputs, about: simulation(inputs, **{name: about[name] for name in wanted if name in about}), needed
+
+
+def described(simulation: Simulation) -> str:
+    """Which function it is: by module, name and source."""
+    function: Any = simulation
+    while isinstance(function, functools.partial):
+        function = function.func
+    if not hasattr(function, "__qualname__"):
+        function = type(function)
+    name = f"{getattr(function, '__module__', None)}.{function.__qualname__}"
+    try:
+        source = inspect.getsource(function)
+    except (OSError, TypeError):
+        return name[:LONGEST]
+    said = f"{SOURCE}{hashlib.sha256(source.encode()).hexdigest()[:16]}"
+    return name[: LONGEST - len(said)] + said
+
+
+def progress_of(progress: Any) -> tuple[Callable[[int, int], object] | None, Callable[[], object]]:
+    """What is told of progress, and what is called at the end."""
+    if progress is None or progress is False:
+        return None, lambda: None
+    if callable(progress):
+        return progress, lambda: None
+    if progress is not True:
+        raise ValueError(f"progress: it must be True, False or callable, not {type(progress).__name__}")
+    try:
+        tqdm: Any = importlib.import_module("tqdm.auto").tqdm
+    except ImportError:
+        return _line, lambda: print(file=sys.stderr)
+    bar = tqdm(unit="run")
+
+    def tell(done: int, of: int) -> None:
+        bar.total = of
+        bar.update(done - bar.n)
+
+    return tell, bar.close
+
+
+def _line(done: int, of: int) -> None:
+    print(f"\r{done} of {of} runs", end="", file=sys.stderr, flush=True)
