@@ -121,6 +121,7 @@ def test_sizes_that_are_none_are_refused(size: Any) -> None:
     for law in (gyradius.uniform_attitude(), gyradius.normal(0, 1), gyradius.law(SOME[0], mass="1%")):
         with pytest.raises(ValueError, match="size"):
             law.rvs(size, rng=1)
+    assert gyradius.uniform_attitude().rvs(np.array([2, 3]), rng=1).shape == (2, 3, 4)  # type: ignore[arg-type]
     with pytest.raises(MemoryError):
         gyradius.uniform_attitude().rvs(2**47, rng=1)
 
@@ -164,6 +165,45 @@ def test_arrays_of_bodies_as_numpy_asks_for_them() -> None:
     assert np.shares_memory(body.__array__(copy=False), body.array)
     with pytest.raises(ValueError, match="float32"):
         body.__array__(np.dtype(np.float32), copy=False)
+
+
+@given(st.lists(st.integers(0, 11), min_size=1, max_size=3), st.data())
+def test_indices_pick_bodies_and_never_their_numbers(shape: list[int], data: st.DataObject) -> None:
+    some = MassProperties.of(np.random.default_rng(1).normal(size=(*shape, 10)))
+    numbers = np.arange(np.prod(shape)).reshape(shape)
+    one = st.one_of(
+        st.integers(-12, 12),
+        st.just(Ellipsis),
+        st.none(),
+        st.slices(4),
+        st.lists(st.integers(-3, 3), max_size=3),
+        st.just(numbers % 2 == 0),
+    )
+    place = data.draw(st.one_of(one, st.lists(one, max_size=4).map(tuple)))
+    try:
+        expected = numbers[place]
+    except IndexError:
+        with pytest.raises(IndexError):
+            some[place]
+        return
+    found = some[place]
+    assert (found.array == some.array.reshape(-1, 10)[expected]).all() and found.shape == np.shape(expected)
+    assert not found.array.flags.writeable
+
+
+def test_subclasses_stay_what_they_are() -> None:
+    class Link(MassProperties):
+        """With a method of its own."""
+
+        def doubled(self) -> MassProperties:
+            return self + self
+
+    globals()["Link"] = Link
+    Link.__qualname__ = "Link"
+    link = Link(1.0, [0.0] * 3, np.eye(3))
+    for again in (link, pickle.loads(pickle.dumps(link)), copy.deepcopy(link), link.translated([1, 0, 0]), Link.of([link.array] * 2)[0]):
+        assert type(again) is Link
+    assert link.doubled().mass == 2.0
 
 
 def test_bodies_are_added_and_are_something() -> None:

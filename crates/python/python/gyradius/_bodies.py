@@ -255,10 +255,13 @@ class MassProperties:
     def __getitem__(self, place: Any) -> MassProperties:
         if self.shape == ():
             raise TypeError("one body has no parts to pick from")
-        picked = self._array[place]
-        if picked.ndim == 0 or picked.shape[-1] != 10:
-            raise IndexError("pick bodies, and their numbers from `array`")
-        return self._of(picked.copy())
+        # A body is one cell, so that no index reaches the ten numbers.
+        cells = self._array.view(np.dtype((np.void, self._array.itemsize * 10)))[..., 0]
+        try:
+            picked = np.asarray(cells[place])
+        except IndexError as error:
+            raise IndexError(f"{error}; pick bodies, and their numbers from `array`") from None
+        return self._of(picked[..., None].copy().view(np.float64))
 
     def __len__(self) -> int:
         if self.shape == ():
@@ -288,7 +291,7 @@ class MassProperties:
         raise AttributeError(f"{name}: mass properties do not change")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return MassProperties.of, (self._array,)
+        return type(self).of, (self._array,)
 
     def _repr_html_(self) -> str:
         from gyradius._figure import triangle

@@ -101,7 +101,7 @@ def shape_of(size: int | tuple[int, ...] | None) -> tuple[int, ...]:
     """What NumPy takes a size for."""
     if size is None:
         return ()
-    sizes = tuple(size) if isinstance(size, (tuple, list)) else (size,)
+    sizes = tuple(size) if isinstance(size, (tuple, list)) or isinstance(size, np.ndarray) and size.ndim == 1 else (size,)
     for one in sizes:
         if isinstance(one, (bool, np.bool_)) or not isinstance(one, (int, np.integer)) or one < 0:
             raise ValueError(f"size = {size!r}: it must be a whole number that is not negative, or a tuple of such")

@@ -118,7 +118,7 @@ class StatedLaw(MassPropertiesLaw):
         --------
         >>> import numpy as np, gyradius
         >>> plate = gyradius.MassProperties(1.0, [0.0, 0.0, 0.0], np.diag([0.1, 0.2, 0.3]))
-        >>> law = gyradius.law(plate, moments="5%")
+        >>> law = gyradius.law(plate, axes="2deg")
         >>> [bool(gyradius.margin(law.rvs(rng=7, inset=inset).inertia) > 1e-10) for inset in (False, True)]
         [False, True]
         """
