@@ -36,6 +36,12 @@ def locked(array: np.ndarray) -> np.ndarray:
     return array
 
 
+def endless() -> dict[str, Any]:
+    itself: dict[str, Any] = {}
+    itself["itself"] = itself
+    return itself
+
+
 class Mine(np.ndarray):
     """A subclass."""
 
@@ -191,6 +197,15 @@ def test_indices_pick_bodies_and_never_their_numbers(shape: list[int], data: st.
     assert not found.array.flags.writeable
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_pictures_leave_out_what_has_no_moments(bad: float) -> None:
+    array = np.array(SOME.array)
+    array[1, 5] = bad
+    page, whole = MassProperties.of(array)._repr_html_(), SOME._repr_html_()
+    assert page.count("<circle") <= whole.count("<circle") and "svg" in page
+    assert "svg" in MassProperties.of(array[1:2])._repr_html_()
+
+
 def test_subclasses_stay_what_they_are() -> None:
     class Link(MassProperties):
         """With a method of its own."""
@@ -233,6 +248,10 @@ def test_bodies_are_added_and_are_something() -> None:
         (lambda: gyradius.nearest(np.eye(3), 3), "method = 3"),  # type: ignore[arg-type]
         (lambda: gyradius.bingham(np.eye(4), order="zyx"), "order = 'zyx'"),
         (lambda: gyradius.uniform_attitude().rvs(dtype="x"), "dtype = 'x'"),
+        (lambda: SOME.with_mass([1.0, 2.0]), "broadcast: mass .* bodies"),
+        (lambda: MassProperties.about_point([1, 2, 3], np.zeros((2, 3)), np.eye(3)), "broadcast: mass .* centre"),
+        (lambda: MassProperties.about_point(1, [0, 0], np.eye(3)), "^centre: its shape"),
+        (lambda: gyradius.InertiaLaw.of(endless()), "less deep"),
     ],
 )
 def test_what_is_wrong_is_said_in_the_words_of_python(call: Any, message: str) -> None:

@@ -163,7 +163,10 @@ def three(name: str, value: Any) -> list[Any]:
 
 def form(name: str, value: Any) -> str:
     """What is said in words and numbers, as the compiled part takes it."""
-    return json.dumps(_plain(name, value))
+    try:
+        return json.dumps(_plain(name, value))
+    except RecursionError:
+        raise ValueError(f"{name or 'form'}: it must be nested less deep") from None
 
 
 def _plain(name: str, value: Any) -> Any:

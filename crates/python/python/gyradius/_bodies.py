@@ -96,10 +96,12 @@ class MassProperties:
         cls, mass: ArrayLike, centre: ArrayLike, inertia: ArrayLike, point: ArrayLike = (0.0, 0.0, 0.0)
     ) -> MassProperties:
         """The bodies of which the inertia is known about another point than the mass centre, such as the origin."""
-        at = numbers("centre", centre) - numbers("point", point)
-        square = (at * at).sum(axis=-1)[..., None, None] * np.eye(3)
-        moved = numbers("mass", mass)[..., None, None] * (square - at[..., :, None] * at[..., None, :])
-        return cls(mass, centre, numbers("inertia", inertia) - moved)
+        known = ("mass", mass, ()), ("centre", centre, (3,)), ("inertia", inertia, (3, 3)), ("point", point, (3,))
+        (m, c, i, p), lead = together(*known)
+        at = c - p
+        square = (at * at).sum(axis=-1)[:, None, None] * np.eye(3)
+        moved = m[:, :, None] * (square - at[:, :, None] * at[:, None, :])
+        return cls(m.reshape(lead), c.reshape(*lead, 3), (i.reshape(-1, 3, 3) - moved).reshape(*lead, 3, 3))
 
     @classmethod
     def from_pseudo_inertia(cls, pseudo_inertia: ArrayLike) -> MassProperties:
@@ -227,15 +229,14 @@ class MassProperties:
 
     def with_mass(self, mass: ArrayLike) -> MassProperties:
         """The same bodies of another density: the inertia follows the mass."""
-        mass = numbers("mass", mass)
-        if not np.all((mass > 0) & np.isfinite(mass)):
-            raise ValueError(f"mass = {mass}: it must be positive and finite")
-        if not np.all(self.mass > 0):
+        (new, old), lead = together(("mass", mass, ()), ("bodies", self._array, (10,)))
+        wrong = new[~((new > 0) & np.isfinite(new))]
+        if wrong.size:
+            raise ValueError(f"mass = {wrong[0]}: it must be positive and finite")
+        if not np.all(old[:, :1] > 0):
             raise ValueError("mass: a body of no mass has no density that could change")
-        factor = (mass / self.mass)[..., None]
-        lead = np.broadcast_shapes(mass.shape, self.shape)
-        parts = [np.broadcast_to(mass[..., None], (*lead, 1)), np.broadcast_to(self.centre, (*lead, 3))]
-        return self._of(np.concatenate([*parts, self._array[..., 4:] * factor], axis=-1))
+        changed = np.concatenate([new, old[:, 1:4], old[:, 4:] * (new / old[:, :1])], axis=1)
+        return self._of(changed.reshape(*lead, 10))
 
     def to_mujoco(self, dtype: DTypeLike | None = None) -> MujocoBodies:
         """As MuJoCo holds them: mass, place, principal moments, and quaternion with the scalar first."""
@@ -298,7 +299,9 @@ class MassProperties:
 
         if self.shape == ():
             return f"<pre>{html.escape(repr(self))}</pre>"
-        return triangle([(repr(self).strip("<>"), self.inertia.reshape(-1, 3, 3))], "Mass properties")
+        # What has no moments has no place in the picture.
+        finite = np.isfinite(self._flat()).all(axis=1)
+        return triangle([(repr(self).strip("<>"), self.inertia.reshape(-1, 3, 3)[finite])], "Mass properties")
 
     def __repr__(self) -> str:
         if self.shape != ():

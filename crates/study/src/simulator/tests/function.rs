@@ -315,3 +315,22 @@ fn kept_columns_are_those_of_the_tables() {
     }
     assert!(KeptRuns::read(folder.path(), "proposed").is_err());
 }
+
+/// What a rule ended is read without the function once it is complete. More of it needs the function.
+#[test]
+fn a_study_that_a_rule_ended_is_read_without_the_function() {
+    let folder = folder();
+    let text = uniform().replace(COMMAND, FUNCTION);
+    let until = |rule: &str| {
+        let scenario = SimulatorScenario::from_toml(&text, folder.path()).unwrap();
+        scenario.with_runs(3000).unwrap().with_until(rule.parse().unwrap(), None).unwrap()
+    };
+    let options = Options { out: Some(folder.path().join("out")), ..Options::default() };
+    let scenario = until("mean(y) within 0.5");
+    let given = scenario.clone().with_function(answer()).unwrap();
+    let done = given.study(&options, &|_| {}, &|_| {}).unwrap();
+    let again = scenario.study(&options, &|_| {}, &|_| {}).unwrap();
+    assert_eq!(again.runs()[0].end(), done.runs()[0].end());
+    let more = until("mean(y) within 0.0001").study(&options, &|_| {}, &|_| {}).unwrap_err();
+    assert!(more.to_string().contains("simulation.function"), "{more}");
+}

@@ -25,6 +25,8 @@ fn refusals_name_their_key() {
         shell | a/b | name
         [[correlations]] | [payload]\nmass_kg = 1.0\n[[correlations]] | payload
         name = "x" | name = "1x" | quantities[1].name
+        name = "z" | name = "x" | quantities[2].name
+        name = "z" | name = "run" | quantities[2].name
         low = 0.1 | low = 1.1 | quantities[1].law
         sigma = 0.1 | sigma = -0.1 | quantities[2].law.sigma
         "x", | | correlations[1].between
