@@ -242,7 +242,7 @@ impl StudyCore {
 
     /// The columns of the runs of a model that were kept: name, unit, meaning, and what stands in them.
     fn columns<'py>(&self, py: Python<'py>, model: &str) -> PyResult<Vec<kept::Column<'py>>> {
-        kept::columns(py, self.outcome.folder(), model)
+        kept::columns(py, self.present()?, model)
     }
 
     /// One run again, held against its row: model, run, what stands in the columns of its row, what was sent as JSON if something was, and
@@ -265,7 +265,7 @@ impl StudyCore {
                 ));
             }
         };
-        let folder = self.outcome.folder();
+        let folder = self.present()?;
         let done: PyResult<_> = py.detach(|| match &self.scenario {
             AnyScenario::Simulator(scenario) => {
                 let mut replay = SimulatorReplay::new(scenario, model, which).map_err(refused)?;
@@ -285,6 +285,18 @@ impl StudyCore {
         }
         let (row, request, text) = done?;
         Ok((kept::row(py, row)?, request, text))
+    }
+}
+
+impl StudyCore {
+    /// The folder, which somebody may have removed.
+    fn present(&self) -> PyResult<&Path> {
+        let folder = self.outcome.folder();
+        if folder.is_dir() {
+            return Ok(folder);
+        }
+        let path = folder.display();
+        Err(refused(format_args!("{path}: the folder of the study is not there any more")))
     }
 }
 

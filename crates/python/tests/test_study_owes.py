@@ -6,6 +6,7 @@ import copy
 import math
 import multiprocessing
 import pickle
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -136,6 +137,16 @@ def test_studies_are_copied_and_pickled(make: Callable[[Path | None], gyradius.S
     shutil.rmtree(kept.folder)
     with pytest.raises(ValueError, match="holds no study"):
         pickle.loads(text)
+
+
+@pytest.mark.parametrize("make", [study, lambda out: gyradius.study(PECK, runs=20, out=out)])
+def test_a_folder_that_is_gone_is_told(make: Callable[[Path], gyradius.Study], tmp_path: Path) -> None:
+    one = make(tmp_path / "out")
+    shutil.rmtree(one.folder)
+    for call in (lambda: one.replay(3), one.to_numpy):
+        with pytest.raises(ValueError, match=re.escape(str(one.folder))) as told:
+            call()
+        assert "`gyradius " not in str(told.value)
 
 
 def mean(one: gyradius.Study) -> float:
