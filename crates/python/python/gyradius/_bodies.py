@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 COLUMNS: tuple[str, ...] = tuple(_core.COLUMNS)
 """What the ten numbers of a body are called, in their order; the last six are in kg·m²."""
 
+CELL = np.dtype((np.void, 80))
+"""The ten numbers of a body as one."""
+
 ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
@@ -256,8 +259,10 @@ class MassProperties:
     def __getitem__(self, place: Any) -> MassProperties:
         if self.shape == ():
             raise TypeError("one body has no parts to pick from")
+        if type(place) is int:
+            return self._of(self._array[place].copy())
         # A body is one cell, so that no index reaches the ten numbers.
-        cells = self._array.view(np.dtype((np.void, self._array.itemsize * 10)))[..., 0]
+        cells = self._array.view(CELL)[..., 0]
         try:
             picked = np.asarray(cells[place])
         except IndexError as error:
