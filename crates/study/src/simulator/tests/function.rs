@@ -235,8 +235,11 @@ fn refusals_name_their_key() {
     assert!(refused(|_| Ok(Vec::new())).starts_with("simulation.outputs: "));
     assert!(refused(|_| Ok(vec![("a b".into(), 1.0)])).starts_with("simulation.outputs[1].name: "));
     assert!(refused(|_| Ok(vec![("x".into(), 1.0)])).starts_with("simulation.outputs"));
+    let infinite = refused(|_| Ok(vec![("y".into(), f64::INFINITY)]));
+    assert!(infinite.contains("the output `y` is not a finite number: inf"), "{infinite}");
     let late = tells(|run| match run.run() {
-        9 => Ok(vec![("b".into(), 1.0), ("a".into(), f64::NAN)]),
+        8 => Ok(vec![("c".into(), 1.0), ("a".into(), f64::NAN)]),
+        9 => Ok(vec![("b".into(), 1.0), ("a".into(), 2.0)]),
         _ => Err("not yet".into()),
     });
     let named: Vec<_> = late.unwrap().outputs().iter().map(|c| c.name().to_owned()).collect();
