@@ -22,10 +22,13 @@ use rand_distr::{Distribution, StandardNormal};
 /// let q = law.sample(&mut ChaCha8Rng::seed_from_u64(1));
 /// assert!((q * Vector3::z() - Vector3::z()).norm() < 1e-15);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[getset(get_copy = "pub")]
 pub struct AboutAxis {
+    /// The attitude at the angle zero.
     attitude: UnitQuaternion<f64>,
+    /// The axis, in body components.
     axis: Unit<Vector3<f64>>,
 }
 
@@ -34,18 +37,6 @@ impl AboutAxis {
     #[must_use]
     pub fn new(attitude: UnitQuaternion<f64>, axis: Unit<Vector3<f64>>) -> Self {
         Self { attitude, axis }
-    }
-
-    /// The attitude at the angle zero.
-    #[must_use]
-    pub fn attitude(&self) -> UnitQuaternion<f64> {
-        self.attitude
-    }
-
-    /// The axis, in body components.
-    #[must_use]
-    pub fn axis(&self) -> Unit<Vector3<f64>> {
-        self.axis
     }
 
     /// The attitude at an angle in rad.

@@ -85,7 +85,7 @@ pub enum Method {
 ///
 /// # Limits
 /// Entries up to 1e14.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, getset::CopyGetters)]
 pub struct FisherBingham {
     /// x = V y.
     axes: Matrix4<f64>,
@@ -96,6 +96,8 @@ pub struct FisherBingham {
     /// ln of exp(−½xᵀPx + bᵀx) over exp(−½ Σ λ(y − c)²).
     ln_offset: f64,
     mean: Vector4<f64>,
+    /// The second moment E xxᵀ, of trace one.
+    #[getset(get_copy = "pub")]
     second_moment: Matrix4<f64>,
     /// Of y about its mean.
     covariance: Matrix4<f64>,
@@ -251,12 +253,6 @@ impl FisherBingham {
     #[must_use]
     pub fn mean_vector(&self) -> Vector4<f64> {
         self.mean
-    }
-
-    /// The second moment E xxᵀ, of trace one.
-    #[must_use]
-    pub fn second_moment(&self) -> Matrix4<f64> {
-        self.second_moment
     }
 
     /// The mean attitude: the quaternion m̄ for which E (x·m̄)² is largest, the eigenvector of E xxᵀ with

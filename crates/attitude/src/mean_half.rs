@@ -27,13 +27,15 @@ use crate::{RadiallyConstrainedGaussian, fisher_bingham::LN_PI_SQUARED};
 /// assert!((half.share() - 0.700_619_948_837).abs() < 1e-12);
 /// # Ok::<(), gyradius_attitude::RcgError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, getset::Getters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(from = "RadiallyConstrainedGaussian", into = "RadiallyConstrainedGaussian")
 )]
 pub struct MeanHalf {
+    /// The law on the whole sphere.
+    #[getset(get = "pub")]
     whole: RadiallyConstrainedGaussian,
     /// Takes a thousand times as long as the rest: computed when it is asked for.
     far_share: OnceLock<f64>,
@@ -50,12 +52,6 @@ impl MeanHalf {
     #[must_use]
     pub fn new(law: RadiallyConstrainedGaussian) -> Self {
         Self { whole: law, far_share: OnceLock::new() }
-    }
-
-    /// The law on the whole sphere.
-    #[must_use]
-    pub fn whole(&self) -> &RadiallyConstrainedGaussian {
-        &self.whole
     }
 
     /// The share of the whole law that is kept: one less

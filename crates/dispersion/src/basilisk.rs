@@ -70,16 +70,24 @@ pub enum BasiliskError {
 /// # Source
 /// `InertiaTensorDispersion.generate` in `src/utilities/MonteCarlo/Dispersions.py` and `euler3212C` in
 /// `RigidBodyKinematics.py` of AVSLab/basilisk. Here as a baseline.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "Parameters", into = "Parameters")
 )]
 pub struct BasiliskDispersion {
+    /// The nominal matrix.
+    #[getset(get = "pub")]
     nominal: InertiaMatrix,
+    /// σ_d, kg·m².
+    #[getset(get_copy = "pub")]
     diagonal_deviation: f64,
+    /// Bounds of what is added to the diagonal, kg·m².
+    #[getset(get_copy = "pub")]
     bounds: [f64; 2],
+    /// σ_a, rad.
+    #[getset(get_copy = "pub")]
     angle_deviation: f64,
 }
 
@@ -116,30 +124,6 @@ impl BasiliskDispersion {
         }
         let bounds = bounds.map(|b| b.clamp(-MAX_DEVIATION, MAX_DEVIATION));
         Ok(Self { nominal: nominal.into(), diagonal_deviation, bounds, angle_deviation })
-    }
-
-    /// The nominal matrix.
-    #[must_use]
-    pub fn nominal(&self) -> &InertiaMatrix {
-        &self.nominal
-    }
-
-    /// σ_d, kg·m².
-    #[must_use]
-    pub fn diagonal_deviation(&self) -> f64 {
-        self.diagonal_deviation
-    }
-
-    /// Bounds of what is added to the diagonal, kg·m².
-    #[must_use]
-    pub fn bounds(&self) -> [f64; 2] {
-        self.bounds
-    }
-
-    /// σ_a, rad.
-    #[must_use]
-    pub fn angle_deviation(&self) -> f64 {
-        self.angle_deviation
     }
 
     /// Mean and variance of what is added to the diagonal.

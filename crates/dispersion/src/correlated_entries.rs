@@ -28,13 +28,15 @@ const MAX_VARIANCE: f64 = 1e300;
 /// # Realizability
 /// None: the mean and the covariance may be those of real bodies, yet Gaussian tails know no
 /// boundary. Draws are [`InertiaMatrix`]: ask [`InertiaMatrix::is_realizable`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "Parameters", into = "Parameters")
 )]
 pub struct CorrelatedEntries {
+    /// Means of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃, kg·m².
+    #[getset(get_copy = "pub")]
     mean: [f64; 6],
     covariance: Covariance<6>,
 }
@@ -50,12 +52,6 @@ impl CorrelatedEntries {
     ) -> Result<Self, CovarianceError> {
         let covariance = Covariance::new(covariance, MAX_VARIANCE)?;
         Ok(Self { mean: mean.into().entries(), covariance })
-    }
-
-    /// Means of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃, kg·m².
-    #[must_use]
-    pub fn mean(&self) -> [f64; 6] {
-        self.mean
     }
 
     /// Their covariance, (kg·m²)².

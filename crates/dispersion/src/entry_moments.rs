@@ -54,10 +54,14 @@ impl<I: IntoIterator<Item = (f64, UnitQuaternion<f64>)> + Clone> Expectation for
 /// An entry is I_ab = Σ_k K_k (δ_ab − r_ka r_kb) with r_k the k-th row of R(q). K and q being
 /// independent, its moments need no more than the mean and covariance of K and, of the law of q,
 /// expectations of degree 4 and 8 in the quaternion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EntryMoments {
+    /// E I₁₁, E I₂₂, E I₃₃, E I₁₂, E I₁₃, E I₂₃, kg·m².
+    #[getset(get_copy = "pub")]
     mean: [f64; 6],
+    /// Covariance of the six entries, (kg·m²)².
+    #[getset(get = "pub")]
     covariance: SMatrix<f64, 6, 6>,
 }
 
@@ -167,18 +171,6 @@ impl EntryMoments {
         let mean = SVector::<f64, 6>::from(self.mean);
         let covariance = self.covariance * (1.0 + variance) + mean * mean.transpose() * variance;
         Self { mean: self.mean, covariance }
-    }
-
-    /// E I₁₁, E I₂₂, E I₃₃, E I₁₂, E I₁₃, E I₂₃, kg·m².
-    #[must_use]
-    pub fn mean(&self) -> [f64; 6] {
-        self.mean
-    }
-
-    /// Covariance of the six entries, (kg·m²)².
-    #[must_use]
-    pub fn covariance(&self) -> &SMatrix<f64, 6, 6> {
-        &self.covariance
     }
 
     /// Standard deviations of the six entries, kg·m².

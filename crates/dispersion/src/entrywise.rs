@@ -42,14 +42,17 @@ pub enum EntrywiseError {
 /// # Realizability
 /// None: draws are whatever comes out, which is why they are [`InertiaMatrix`] and not
 /// [`Inertia`](gyradius_inertia::Inertia). Ask [`InertiaMatrix::is_realizable`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "Parameters", into = "Parameters")
 )]
+#[getset(get_copy = "pub")]
 pub struct EntrywiseGaussian {
+    /// Means of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃, kg·m².
     mean: [f64; 6],
+    /// Deviations of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃, kg·m².
     deviations: [f64; 6],
 }
 
@@ -69,18 +72,6 @@ impl EntrywiseGaussian {
             }
         }
         Ok(Self { mean: mean.into().entries(), deviations })
-    }
-
-    /// Means of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃, kg·m².
-    #[must_use]
-    pub fn mean(&self) -> [f64; 6] {
-        self.mean
-    }
-
-    /// Deviations of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃, kg·m².
-    #[must_use]
-    pub fn deviations(&self) -> [f64; 6] {
-        self.deviations
     }
 }
 

@@ -19,29 +19,21 @@ pub struct MatchError {
 }
 
 /// A model made to have given moments, as far as its kind can.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 pub struct Matched {
+    /// The model.
+    #[getset(get = "pub")]
     model: DispersionModel,
+    /// What of the moments it has, in words.
+    #[getset(get_copy = "pub")]
     what: &'static str,
 }
 
 impl Matched {
     /// The model.
     #[must_use]
-    pub fn model(&self) -> &DispersionModel {
-        &self.model
-    }
-
-    /// The model.
-    #[must_use]
     pub fn into_model(self) -> DispersionModel {
         self.model
-    }
-
-    /// What of the moments it has, in words.
-    #[must_use]
-    pub fn what(&self) -> &'static str {
-        self.what
     }
 }
 

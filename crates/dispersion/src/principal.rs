@@ -21,14 +21,17 @@ pub(crate) const NAME: &str = "principal";
 ///
 /// # Realizability
 /// By construction, for any laws: squares are not negative.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(deny_unknown_fields)
 )]
+#[getset(get = "pub")]
 pub struct PrincipalDispersion<K, A> {
+    /// The law of the roots.
     roots: K,
+    /// The law of the axes.
     axes: A,
 }
 
@@ -52,16 +55,6 @@ impl<K, A> PrincipalDispersion<K, A> {
     /// The law of the roots and the law of the axes.
     pub fn into_parts(self) -> (K, A) {
         (self.roots, self.axes)
-    }
-
-    /// The law of the roots.
-    pub fn roots(&self) -> &K {
-        &self.roots
-    }
-
-    /// The law of the axes.
-    pub fn axes(&self) -> &A {
-        &self.axes
     }
 }
 

@@ -52,8 +52,10 @@ pub enum RealizableOnlyError {
 /// assert!(law.acceptance() > 0.6 && law.acceptance() < 0.7);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
 pub struct RealizableOnly<L> {
+    /// The law before conditioning.
+    #[getset(get = "pub")]
     law: L,
     realizable: u32,
 }
@@ -74,11 +76,6 @@ impl<L: Distribution<InertiaMatrix>> RealizableOnly<L> {
 }
 
 impl<L> RealizableOnly<L> {
-    /// The law before conditioning.
-    pub fn law(&self) -> &L {
-        &self.law
-    }
-
     /// The estimated share of draws that are kept.
     #[must_use]
     pub fn acceptance(&self) -> f64 {

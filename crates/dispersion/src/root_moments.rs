@@ -31,10 +31,14 @@ pub enum SecondMomentStatisticsError {
 ///
 /// All that the mean and covariance of the entries of an inertia matrix depend on, as far as the law
 /// of the roots goes: see [`EntryMoments`](crate::EntryMoments).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SecondMomentStatistics {
+    /// E K₁, E K₂, E K₃, kg·m².
+    #[getset(get_copy = "pub")]
     mean: [f64; 3],
+    /// Cov K, (kg·m²)².
+    #[getset(get = "pub")]
     covariance: Matrix3<f64>,
 }
 
@@ -75,18 +79,6 @@ impl SecondMomentStatistics {
             std::array::from_fn(|i| k[i] * k[i] + c[(i, i)]),
             c.map_with_location(|i, j, c| 2.0 * c * (2.0 * k[i] * k[j] + c)),
         )
-    }
-
-    /// E K₁, E K₂, E K₃, kg·m².
-    #[must_use]
-    pub fn mean(&self) -> [f64; 3] {
-        self.mean
-    }
-
-    /// Cov K, (kg·m²)².
-    #[must_use]
-    pub fn covariance(&self) -> &Matrix3<f64> {
-        &self.covariance
     }
 
     /// Var K₁, Var K₂, Var K₃, (kg·m²)².
@@ -170,8 +162,10 @@ impl<T: RootMoments + ?Sized> RootMoments for &T {
 /// assert_eq!(EntryMoments::of(&law).mean()[0], 4.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
 pub struct WithMoments<L> {
+    /// The law.
+    #[getset(get = "pub")]
     law: L,
     statistics: SecondMomentStatistics,
 }
@@ -181,11 +175,6 @@ impl<L> WithMoments<L> {
     /// against each other.
     pub fn new(law: L, statistics: SecondMomentStatistics) -> Self {
         Self { law, statistics }
-    }
-
-    /// The law.
-    pub fn law(&self) -> &L {
-        &self.law
     }
 }
 

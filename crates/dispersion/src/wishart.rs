@@ -78,14 +78,18 @@ pub enum WishartError {
 /// assert!((law.entry_moments().mean()[5] + 50.0).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "Parameters", into = "Parameters")
 )]
 pub struct Wishart {
+    /// The mean body.
+    #[getset(get = "pub")]
     mean: Inertia,
+    /// δ.
+    #[getset(get_copy = "pub")]
     delta: f64,
     /// M/√p, its rows √(K_k/p) r_k.
     root: Matrix3<f64>,
@@ -121,18 +125,6 @@ impl Wishart {
             density = Density::new(freedom, roots, turn.matrix());
         }
         Ok(Self { mean, delta, root, squares, density })
-    }
-
-    /// The mean body.
-    #[must_use]
-    pub fn mean(&self) -> &Inertia {
-        &self.mean
-    }
-
-    /// δ.
-    #[must_use]
-    pub fn delta(&self) -> f64 {
-        self.delta
     }
 
     /// Degrees of freedom p = 4/δ², infinite where nothing varies.

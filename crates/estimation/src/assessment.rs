@@ -4,11 +4,15 @@
 const SIZE: f64 = 0.05;
 
 /// One test of a model that was fitted to samples, of what `A` names.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[getset(get_copy = "pub")]
 pub struct Test<A> {
+    #[getset(skip)]
     aspect: A,
+    /// How often samples of the model itself would look worse.
     p_value: f64,
+    /// The smallest p-value that the test can give, zero if it is not by simulation.
     resolution: f64,
 }
 
@@ -21,18 +25,6 @@ impl<A: Copy> Test<A> {
     #[must_use]
     pub fn aspect(&self) -> A {
         self.aspect
-    }
-
-    /// How often samples of the model itself would look worse.
-    #[must_use]
-    pub fn p_value(&self) -> f64 {
-        self.p_value
-    }
-
-    /// The smallest p-value that the test can give, zero if it is not by simulation.
-    #[must_use]
-    pub fn resolution(&self) -> f64 {
-        self.resolution
     }
 }
 

@@ -42,11 +42,15 @@ const NARROW: f64 = 0.125;
 /// assert!((moments - ratio).abs() < 1e-12, "the inertia follows the mass");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::Getters)]
+#[getset(get = "pub")]
 pub struct StatedBody {
+    /// The nominal body.
     nominal: MassProperties,
+    /// The joint law.
     law: MassPropertiesLaw,
     /// Nothing where the inertia does no more than follow the mass.
+    #[getset(skip)]
     model: Option<StatedModel>,
 }
 
@@ -128,18 +132,6 @@ impl StatedBody {
         let law = self.law.inside(region);
         let law = law.map_err(|error| StatementError::Law { problem: error.to_string() })?;
         Ok(Self { law, ..self })
-    }
-
-    /// The nominal body.
-    #[must_use]
-    pub fn nominal(&self) -> &MassProperties {
-        &self.nominal
-    }
-
-    /// The joint law.
-    #[must_use]
-    pub fn law(&self) -> &MassPropertiesLaw {
-        &self.law
     }
 
     /// The law of the inertia, where more is stated of it than that it follows the mass.

@@ -7,11 +7,16 @@ use crate::{MassProperties, Shape, ShapeError};
 /// The solid of uniform density that has given mass properties: how large a body looks.
 ///
 /// Sizes are along the principal axes, in the order of [`PrincipalAxes`](crate::PrincipalAxes).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 pub struct EquivalentSolid {
+    /// The solid in its own frame, which is principal.
+    #[getset(get_copy = "pub")]
     shape: Shape,
     sizes: [f64; 3],
     centre: Vector3<f64>,
+    /// The attitude q that takes body components to components along the solid's axes:
+    /// I_B = R(q)ᵀ I_P R(q).
+    #[getset(get_copy = "pub")]
     attitude: UnitQuaternion<f64>,
 }
 
@@ -33,19 +38,6 @@ impl EquivalentSolid {
     #[must_use]
     pub fn sizes_m(&self) -> [f64; 3] {
         self.sizes
-    }
-
-    /// The solid in its own frame, which is principal.
-    #[must_use]
-    pub fn shape(&self) -> Shape {
-        self.shape
-    }
-
-    /// The attitude q that takes body components to components along the solid's axes:
-    /// I_B = R(q)ᵀ I_P R(q).
-    #[must_use]
-    pub fn attitude(&self) -> UnitQuaternion<f64> {
-        self.attitude
     }
 
     /// Where the solid lies: takes points of its own frame to the reference frame of the body.

@@ -93,7 +93,7 @@ impl From<InertiaMatrixError> for MassPropertiesError {
 /// assert!((craft.without(&tank)?.inertia().matrix() - bus.inertia().matrix()).amax() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -102,6 +102,8 @@ impl From<InertiaMatrixError> for MassPropertiesError {
 pub struct MassProperties {
     mass: f64,
     centre: Vector3<f64>,
+    /// Inertia about the mass centre, axes parallel to the reference frame, kg·m².
+    #[getset(get = "pub")]
     inertia: Inertia,
 }
 
@@ -166,12 +168,6 @@ impl MassProperties {
     #[must_use]
     pub fn mass_centre_m(&self) -> Vector3<f64> {
         self.centre
-    }
-
-    /// Inertia about the mass centre, axes parallel to the reference frame, kg·m².
-    #[must_use]
-    pub fn inertia(&self) -> &Inertia {
-        &self.inertia
     }
 
     /// Inertia about `point_m`, kg·m²: I_p = I_c + m (|d|²·1 − d dᵀ) with d = c − p, axes parallel

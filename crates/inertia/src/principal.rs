@@ -19,9 +19,12 @@ const TIE: f64 = 1e-12;
 /// largest |q₄|. A tie (within 1e-12 in tr A) goes to the larger first moment, then to the larger
 /// second, then to the larger q₃, q₂, q₁. Where moments are equal to rounding, the axes are free to
 /// turn, and the turn nearest to the body axes is taken: a ball has the identity. q₄ is positive.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
+#[getset(get_copy = "pub")]
 pub struct PrincipalAxes {
+    /// Principal moments of inertia I₁, I₂, I₃, in kg·m².
     moments: [f64; 3],
+    /// The attitude q that takes body components to principal components.
     attitude: UnitQuaternion<f64>,
 }
 
@@ -54,18 +57,6 @@ impl PrincipalAxes {
         };
         let attitude = quaternion(&axes);
         Self { moments, attitude }
-    }
-
-    /// Principal moments of inertia I₁, I₂, I₃, in kg·m².
-    #[must_use]
-    pub fn moments(&self) -> [f64; 3] {
-        self.moments
-    }
-
-    /// The attitude q that takes body components to principal components.
-    #[must_use]
-    pub fn attitude(&self) -> UnitQuaternion<f64> {
-        self.attitude
     }
 
     /// The principal axes in body components, as columns of a rotation: A = R(q)ᵀ.

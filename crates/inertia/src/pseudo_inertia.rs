@@ -63,13 +63,16 @@ pub enum PseudoInertiaError {
 /// assert!((back.inertia().matrix() - body.inertia().matrix()).amax() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "[[f64; 4]; 4]", into = "[[f64; 4]; 4]")
 )]
 pub struct PseudoInertia {
+    /// The full matrix: kg·m² in the first three rows and columns, kg·m in the last, kg in the
+    /// corner.
+    #[getset(get = "pub")]
     matrix: Matrix4<f64>,
     body: MassProperties,
 }
@@ -129,13 +132,6 @@ impl PseudoInertia {
         }
         matrix[(3, 3)] = mass;
         Self::new(matrix)
-    }
-
-    /// The full matrix: kg·m² in the first three rows and columns, kg·m in the last, kg in the
-    /// corner.
-    #[must_use]
-    pub fn matrix(&self) -> &Matrix4<f64> {
-        &self.matrix
     }
 
     /// Mass, mass centre and the inertia about it: Σ_c = Σ − m c cᵀ, I = tr(Σ_c)·1 − Σ_c.

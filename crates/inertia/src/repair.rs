@@ -39,9 +39,13 @@ pub enum RepairMethod {
 /// assert!(nearest.distance() < shifted.distance());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 pub struct Repair {
+    /// The realizable inertia.
+    #[getset(get = "pub")]
     inertia: Inertia,
+    /// ‖I′ − I‖, Frobenius, kg·m²: 0 if nothing had to be moved.
+    #[getset(get_copy = "pub")]
     distance: f64,
     relative: f64,
 }
@@ -83,18 +87,6 @@ impl Repair {
         let relative_to_size = (scaled(inertia.matrix()) - scaled(matrix.matrix())).norm();
         let norm = scaled(matrix.matrix()).norm();
         Ok(Self { inertia, distance: relative_to_size * size, relative: relative_to_size / norm })
-    }
-
-    /// The realizable inertia.
-    #[must_use]
-    pub fn inertia(&self) -> &Inertia {
-        &self.inertia
-    }
-
-    /// ‖I′ − I‖, Frobenius, kg·m²: 0 if nothing had to be moved.
-    #[must_use]
-    pub fn distance(&self) -> f64 {
-        self.distance
     }
 
     /// The distance over ‖I‖.

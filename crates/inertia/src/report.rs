@@ -101,12 +101,20 @@ pub enum Fault {
 ///      99.339 + 196.24 kg·m², by 2.99 %"
 /// );
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[getset(get_copy = "pub")]
 pub struct RealizabilityReport {
+    /// The second mass moments K_k about the principal axes, with their signs, kg·m²; none where an
+    /// entry is not finite.
     second_moments: Option<[f64; 3]>,
+    /// The principal moments, kg·m², in the order of [`PrincipalAxes`](crate::PrincipalAxes).
     principal_moments: Option<[f64; 3]>,
+    /// min K_k / Σ|I_k| with the principal moments I_k, whose sum is the trace of every body: ⅙ for a
+    /// ball, 0 for a plate, a rod and a point, negative beyond, and never below −½. None where an
+    /// entry is not finite.
     margin: Option<f64>,
+    #[getset(skip)]
     faults: Vec<Fault>,
 }
 
@@ -181,27 +189,6 @@ impl RealizabilityReport {
     #[must_use]
     pub fn is_strict(&self) -> bool {
         self.is_realizable() && self.margin.is_some_and(|m| m > RELATIVE_TOLERANCE)
-    }
-
-    /// The second mass moments K_k about the principal axes, with their signs, kg·m²; none where an
-    /// entry is not finite.
-    #[must_use]
-    pub fn second_moments(&self) -> Option<[f64; 3]> {
-        self.second_moments
-    }
-
-    /// The principal moments, kg·m², in the order of [`PrincipalAxes`](crate::PrincipalAxes).
-    #[must_use]
-    pub fn principal_moments(&self) -> Option<[f64; 3]> {
-        self.principal_moments
-    }
-
-    /// min K_k / Σ|I_k| with the principal moments I_k, whose sum is the trace of every body: ⅙ for a
-    /// ball, 0 for a plate, a rod and a point, negative beyond, and never below −½. None where an
-    /// entry is not finite.
-    #[must_use]
-    pub fn margin(&self) -> Option<f64> {
-        self.margin
     }
 
     /// How far the largest principal moment exceeds the sum of the other two, in percent of that sum: 0

@@ -38,11 +38,14 @@ use crate::{Confidence, StatisticsError, law};
 /// assert!((rule.success_to_pass(2000, 0.9)?.unwrap() - 0.99945).abs() < 5e-6);
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
+#[getset(get_copy = "pub")]
 pub struct Acceptance {
+    /// The share of flights that must succeed, p.
     probability: f64,
+    /// The confidence, c.
     confidence: Confidence,
 }
 
@@ -60,16 +63,6 @@ impl Acceptance {
             return Err(StatisticsError::DecidingConfidence { value: confidence.level() });
         }
         Ok(Self { probability, confidence })
-    }
-
-    /// The share of flights that must succeed, p.
-    pub fn probability(&self) -> f64 {
-        self.probability
-    }
-
-    /// The confidence, c.
-    pub fn confidence(&self) -> Confidence {
-        self.confidence
     }
 
     /// The share of flights that may fail, 1 − p.

@@ -34,11 +34,13 @@ use crate::{Confidence, Interval, StatisticsError, error, law};
 /// assert!(interval.lower() < one_look.lower() && one_look.upper() < interval.upper());
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct ConfidenceSequence {
     about: f64,
+    /// The confidence with which all intervals hold together.
+    #[getset(get_copy = "pub")]
     confidence: Confidence,
 }
 
@@ -55,11 +57,6 @@ impl ConfidenceSequence {
     /// [`StatisticsError::Share`] unless it is between 1e-9 and 1 − 1e-9.
     pub fn about(share: f64, confidence: Confidence) -> Result<Self, StatisticsError> {
         Ok(Self { about: error::share(share)?, confidence })
-    }
-
-    /// The confidence with which all intervals hold together.
-    pub fn confidence(&self) -> Confidence {
-        self.confidence
     }
 
     /// Where the share lies after so many events in so many runs; from 0 to 1 before the first.

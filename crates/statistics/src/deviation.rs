@@ -64,11 +64,15 @@ impl Moments {
 /// assert!(interval.contains(deviation.standard_deviation()));
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[getset(get_copy = "pub")]
 pub struct Deviation {
+    /// Number of values.
     n: usize,
+    /// Standard deviation with divisor `n − 1`.
     standard_deviation: f64,
+    /// The estimate κ̂ of the kurtosis about the trimmed mean; 3 for a normal law.
     kurtosis: f64,
 }
 
@@ -135,21 +139,6 @@ impl Deviation {
     #[cfg(test)]
     pub(crate) fn of(n: usize, standard_deviation: f64, kurtosis: f64) -> Self {
         Self { n, standard_deviation, kurtosis }
-    }
-
-    /// Number of values.
-    pub fn n(&self) -> usize {
-        self.n
-    }
-
-    /// Standard deviation with divisor `n − 1`.
-    pub fn standard_deviation(&self) -> f64 {
-        self.standard_deviation
-    }
-
-    /// The estimate κ̂ of the kurtosis about the trimmed mean; 3 for a normal law.
-    pub fn kurtosis(&self) -> f64 {
-        self.kurtosis
     }
 
     /// Bonett's interval for the standard deviation of a law of unknown shape,

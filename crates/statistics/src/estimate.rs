@@ -5,10 +5,13 @@ use crate::Interval;
 /// A number estimated from a sample, and the interval for what it estimates.
 ///
 /// Nothing is clipped here: the estimate of an index that is 0 may be negative.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[getset(get_copy = "pub")]
 pub struct Estimate {
+    /// The estimate.
     value: f64,
+    /// The interval.
     interval: Interval,
 }
 
@@ -16,16 +19,6 @@ impl Estimate {
     /// Of a value and an interval that holds it.
     pub(crate) fn new(value: f64, interval: Interval) -> Self {
         Self { value, interval }
-    }
-
-    /// The estimate.
-    pub fn value(&self) -> f64 {
-        self.value
-    }
-
-    /// The interval.
-    pub fn interval(&self) -> Interval {
-        self.interval
     }
 
     /// The same with value and bounds moved into `lower` to `upper`, for figures and tables. If `lower` is not below

@@ -6,10 +6,13 @@ use crate::{SortedSample, StatisticsError, tail};
 
 /// The outcome of a test that a sample was drawn from a given law: the statistic, and the
 /// probability of one at least as large if it was.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[getset(get_copy = "pub")]
 pub struct GoodnessOfFit {
+    /// The statistic: `D` of Kolmogorov–Smirnov or `X²` of Pearson.
     statistic: f64,
+    /// The probability, under the law, of a statistic at least as large.
     p_value: f64,
 }
 
@@ -88,16 +91,6 @@ impl GoodnessOfFit {
         let statistic = observed.iter().zip(expected).map(|(&o, &e)| (o as f64 - e).powi(2) / e);
         let statistic: f64 = statistic.sum();
         Ok(Self { statistic, p_value: tail::chi_squared(statistic, freedom as f64) })
-    }
-
-    /// The statistic: `D` of Kolmogorov–Smirnov or `X²` of Pearson.
-    pub fn statistic(&self) -> f64 {
-        self.statistic
-    }
-
-    /// The probability, under the law, of a statistic at least as large.
-    pub fn p_value(&self) -> f64 {
-        self.p_value
     }
 }
 

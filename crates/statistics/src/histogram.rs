@@ -16,12 +16,18 @@ use crate::{BinEdges, SortedSample, StatisticsError};
 /// }
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Histogram {
+    /// The edges of the bins.
+    #[getset(get = "pub")]
     edges: BinEdges,
     counts: Vec<u64>,
+    /// Number of values below the first edge.
+    #[getset(get_copy = "pub")]
     underflow: u64,
+    /// Number of values above the last edge.
+    #[getset(get_copy = "pub")]
     overflow: u64,
 }
 
@@ -40,24 +46,9 @@ impl Histogram {
         }
     }
 
-    /// The edges of the bins.
-    pub fn edges(&self) -> &BinEdges {
-        &self.edges
-    }
-
     /// Number of values in each bin.
     pub fn counts(&self) -> &[u64] {
         &self.counts
-    }
-
-    /// Number of values below the first edge.
-    pub fn underflow(&self) -> u64 {
-        self.underflow
-    }
-
-    /// Number of values above the last edge.
-    pub fn overflow(&self) -> u64 {
-        self.overflow
     }
 
     /// Number of values in all, in bins and outside.

@@ -161,18 +161,29 @@ impl WeightSums {
 }
 
 /// A probability by importance sampling, and how far to trust it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[getset(get_copy = "pub")]
 pub struct ImportanceEstimate {
+    /// Number of runs.
     runs: u64,
+    /// Number of runs that are the event.
     hits: u64,
+    /// The estimate of the probability. Not clipped: with bad weights it may exceed 1.
     probability: f64,
+    /// Its standard error over the estimate; none without a hit.
     coefficient_of_variation: Option<f64>,
+    /// The interval; from 0 to 1 without a hit.
     interval: Interval,
+    /// How many hits of equal weight would be worth as much, `(Σ w)²/Σ w²` over hits.
     effective_hits: f64,
+    /// The same over all runs: it says how well other things than this event are known from these runs.
     effective_runs: f64,
+    /// The part of the estimate that its largest weight makes up.
     largest_share: f64,
+    /// The mean of all weights, 1 in the long run.
     mean_weight: f64,
+    #[getset(skip)]
     warnings: Vec<WeightWarning>,
 }
 
@@ -201,51 +212,6 @@ pub enum WeightWarning {
 }
 
 impl ImportanceEstimate {
-    /// Number of runs.
-    pub fn runs(&self) -> u64 {
-        self.runs
-    }
-
-    /// Number of runs that are the event.
-    pub fn hits(&self) -> u64 {
-        self.hits
-    }
-
-    /// The estimate of the probability. Not clipped: with bad weights it may exceed 1.
-    pub fn probability(&self) -> f64 {
-        self.probability
-    }
-
-    /// Its standard error over the estimate; none without a hit.
-    pub fn coefficient_of_variation(&self) -> Option<f64> {
-        self.coefficient_of_variation
-    }
-
-    /// The interval; from 0 to 1 without a hit.
-    pub fn interval(&self) -> Interval {
-        self.interval
-    }
-
-    /// How many hits of equal weight would be worth as much, `(Σ w)²/Σ w²` over hits.
-    pub fn effective_hits(&self) -> f64 {
-        self.effective_hits
-    }
-
-    /// The same over all runs: it says how well other things than this event are known from these runs.
-    pub fn effective_runs(&self) -> f64 {
-        self.effective_runs
-    }
-
-    /// The part of the estimate that its largest weight makes up.
-    pub fn largest_share(&self) -> f64 {
-        self.largest_share
-    }
-
-    /// The mean of all weights, 1 in the long run.
-    pub fn mean_weight(&self) -> f64 {
-        self.mean_weight
-    }
-
     /// Why not to trust the estimate, as far as the runs can show it.
     pub fn warnings(&self) -> &[WeightWarning] {
         &self.warnings

@@ -62,12 +62,16 @@ impl From<Confidence> for f64 {
 ///
 /// A bound is infinite where the sample is too small to give one, or where the bound is beyond
 /// `f64`. JSON knows no infinity: `serde_json` writes `null`, which is read as no bound.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
+#[getset(get_copy = "pub")]
 pub struct Interval {
+    /// The lower bound.
     lower: f64,
+    /// The upper bound.
     upper: f64,
+    /// The nominal confidence level.
     confidence: Confidence,
 }
 
@@ -107,24 +111,9 @@ impl Interval {
         Self { lower: centre / factor, upper: centre * factor, confidence }
     }
 
-    /// The lower bound.
-    pub fn lower(&self) -> f64 {
-        self.lower
-    }
-
-    /// The upper bound.
-    pub fn upper(&self) -> f64 {
-        self.upper
-    }
-
     /// The upper bound less the lower.
     pub fn width(&self) -> f64 {
         self.upper - self.lower
-    }
-
-    /// The nominal confidence level.
-    pub fn confidence(&self) -> Confidence {
-        self.confidence
     }
 
     /// Whether `value` lies between the bounds or on one.

@@ -25,15 +25,24 @@ use crate::{ExactSum, StatisticsError};
 /// assert!((moments.variance() - 32.0 / 7.0).abs() < 1e-14);
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[getset(get_copy = "pub")]
 pub struct Moments {
+    /// Number of values.
     n: usize,
+    /// Arithmetic mean.
     mean: f64,
+    /// Standard deviation with divisor `n − 1`: exactly 0 if, and short of underflow only if, all
+    /// values are equal.
     standard_deviation: f64,
+    /// Skewness `m₃/m₂^1.5`; none if all values are equal.
     skewness: Option<f64>,
+    /// Kurtosis `m₄/m₂²`, 3 for a normal law; none if all values are equal.
     kurtosis: Option<f64>,
+    /// Smallest value.
     minimum: f64,
+    /// Largest value.
     maximum: f64,
 }
 
@@ -99,45 +108,9 @@ impl Moments {
         }
     }
 
-    /// Number of values.
-    pub fn n(&self) -> usize {
-        self.n
-    }
-
-    /// Arithmetic mean.
-    pub fn mean(&self) -> f64 {
-        self.mean
-    }
-
-    /// Standard deviation with divisor `n − 1`: exactly 0 if, and short of underflow only if, all
-    /// values are equal.
-    pub fn standard_deviation(&self) -> f64 {
-        self.standard_deviation
-    }
-
     /// Variance with divisor `n − 1`: infinite or 0 where the square is beyond the range of `f64`.
     pub fn variance(&self) -> f64 {
         self.standard_deviation * self.standard_deviation
-    }
-
-    /// Skewness `m₃/m₂^1.5`; none if all values are equal.
-    pub fn skewness(&self) -> Option<f64> {
-        self.skewness
-    }
-
-    /// Kurtosis `m₄/m₂²`, 3 for a normal law; none if all values are equal.
-    pub fn kurtosis(&self) -> Option<f64> {
-        self.kurtosis
-    }
-
-    /// Smallest value.
-    pub fn minimum(&self) -> f64 {
-        self.minimum
-    }
-
-    /// Largest value.
-    pub fn maximum(&self) -> f64 {
-        self.maximum
     }
 }
 

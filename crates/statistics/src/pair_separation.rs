@@ -33,10 +33,13 @@ use crate::{QuantileCells, StatisticsError};
 /// assert_eq!(PairSeparation::new(&of_x, &of_x, &failed)?.p_value(), 1.0);
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[getset(get_copy = "pub")]
 pub struct PairSeparation {
+    /// The deviance of the pair less the larger deviance of the two: 0 or more.
     gain: f64,
+    /// The probability of so much by chance, if one of the inputs added nothing to the other.
     p_value: f64,
 }
 
@@ -64,16 +67,6 @@ impl PairSeparation {
         let gain = (deviance(by_x.iter().flatten().copied()) - better).max(0.0);
         let p_value = ShareTest::new(&by_x).p_value().max(ShareTest::new(&by_y).p_value());
         Ok(Self { gain, p_value })
-    }
-
-    /// The deviance of the pair less the larger deviance of the two: 0 or more.
-    pub fn gain(&self) -> f64 {
-        self.gain
-    }
-
-    /// The probability of so much by chance, if one of the inputs added nothing to the other.
-    pub fn p_value(&self) -> f64 {
-        self.p_value
     }
 }
 

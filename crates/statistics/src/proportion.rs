@@ -13,10 +13,13 @@ use crate::{Confidence, Interval, StatisticsError, error::MAX_TRIALS, law};
 /// assert!((interval.upper() - 0.00368).abs() < 1e-5);
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[getset(get_copy = "pub")]
 pub struct Proportion {
+    /// Number of successes.
     successes: u64,
+    /// Number of trials.
     trials: u64,
 }
 
@@ -35,16 +38,6 @@ impl Proportion {
             return Err(StatisticsError::Proportion { successes, trials });
         }
         Ok(Self { successes, trials })
-    }
-
-    /// Number of successes.
-    pub fn successes(&self) -> u64 {
-        self.successes
-    }
-
-    /// Number of trials.
-    pub fn trials(&self) -> u64 {
-        self.trials
     }
 
     /// The observed proportion.

@@ -15,8 +15,10 @@ use crate::error::{MAX_BINS, validate};
 /// assert_eq!(cells.of_values(), [2, 0, 1, 1, 1, 2]);
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, getset::CopyGetters)]
 pub struct QuantileCells {
+    /// Number of cells, those without a value too.
+    #[getset(get_copy = "pub")]
     cells: usize,
     of_values: Vec<u16>,
 }
@@ -42,11 +44,6 @@ impl QuantileCells {
             tie.iter().for_each(|&i| of_values[i] = cell);
         });
         Ok(Self { cells, of_values })
-    }
-
-    /// Number of cells, those without a value too.
-    pub fn cells(&self) -> usize {
-        self.cells
     }
 
     /// The cell of each value, from 0.

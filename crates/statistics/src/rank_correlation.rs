@@ -17,10 +17,13 @@ use crate::{Confidence, Estimate, Interval, StatisticsError, law};
 /// assert_eq!(RankCorrelation::new(&x, &y)?.value(), 1.0);
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[getset(get_copy = "pub")]
 pub struct RankCorrelation {
+    /// Number of pairs.
     n: usize,
+    /// The correlation.
     value: f64,
 }
 
@@ -49,16 +52,6 @@ impl RankCorrelation {
         }
         let value = product(&x, &y) / squares.sqrt();
         Ok(Self { n, value: value.clamp(-1.0, 1.0) })
-    }
-
-    /// Number of pairs.
-    pub fn n(&self) -> usize {
-        self.n
-    }
-
-    /// The correlation.
-    pub fn value(&self) -> f64 {
-        self.value
     }
 
     /// With the interval of Bonett & Wright (2000, doi:10.1007/BF02294183),

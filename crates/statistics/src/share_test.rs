@@ -21,25 +21,18 @@ const ALL_STEPS: f64 = 1600.0;
 /// doi:10.1093/biomet/38.1-2.141, with X² in the place of the probability). X² is rounded to 1/16, or to 1/1600 of
 /// what was found if that is larger, which moves ties and leaves the test exact. Above, it is the tail of χ², after neighbouring cells
 /// have been put together until each expects five failures and five successes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[getset(get_copy = "pub")]
 pub struct ShareTest {
+    /// The probability of cells at least as different, if all have the same share: 1 without a failure, without a success,
+    /// and with one cell.
     p_value: f64,
+    /// Whether it is exact, and not of χ².
     exact: bool,
 }
 
 impl ShareTest {
-    /// The probability of cells at least as different, if all have the same share: 1 without a failure, without a success,
-    /// and with one cell.
-    pub fn p_value(&self) -> f64 {
-        self.p_value
-    }
-
-    /// Whether it is exact, and not of χ².
-    pub fn exact(&self) -> bool {
-        self.exact
-    }
-
     /// Of cells in strata: within each stratum the failures are dealt at random.
     pub(crate) fn new(strata: &[Vec<Cell>]) -> Self {
         let strata: Vec<Stratum> = strata.iter().filter_map(|cells| Stratum::new(cells)).collect();

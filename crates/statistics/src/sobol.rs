@@ -79,8 +79,10 @@ const MAX_GROUPS: usize = 100_000;
 /// assert!((second.total().unwrap().value() - 0.8).abs() < 0.02);
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, getset::CopyGetters)]
 pub struct SobolSums {
+    /// Number of base runs that were pushed.
+    #[getset(get_copy = "pub")]
     runs: u64,
     /// The first output.
     shift: Option<f64>,
@@ -172,11 +174,6 @@ impl SobolSums {
         self.scale = Some(scale);
     }
 
-    /// Number of base runs that were pushed.
-    pub fn runs(&self) -> u64 {
-        self.runs
-    }
-
     /// The indices, with intervals of this confidence each.
     ///
     /// # Errors
@@ -207,31 +204,21 @@ impl SobolSums {
 }
 
 /// The indices of all groups.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[getset(get_copy = "pub")]
 pub struct SobolIndices {
+    /// Number of base runs, those with missing outputs too.
     runs: u64,
+    /// Mean of the outputs with all inputs from A, or all from B.
     mean: f64,
+    /// Standard deviation of the same.
     standard_deviation: f64,
+    #[getset(skip)]
     groups: Vec<SobolIndex>,
 }
 
 impl SobolIndices {
-    /// Number of base runs, those with missing outputs too.
-    pub fn runs(&self) -> u64 {
-        self.runs
-    }
-
-    /// Mean of the outputs with all inputs from A, or all from B.
-    pub fn mean(&self) -> f64 {
-        self.mean
-    }
-
-    /// Standard deviation of the same.
-    pub fn standard_deviation(&self) -> f64 {
-        self.standard_deviation
-    }
-
     /// Variance of the same, in the unit of the output squared; infinite beyond `f64`.
     pub fn variance(&self) -> f64 {
         self.standard_deviation * self.standard_deviation
@@ -244,26 +231,20 @@ impl SobolIndices {
 }
 
 /// The indices of one group of inputs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SobolIndex {
+    /// Number of base runs that count.
+    #[getset(get_copy = "pub")]
     runs: u64,
+    /// Number of base runs that were left out because one of their three outputs is missing.
+    #[getset(get_copy = "pub")]
     left_out: u64,
     first: Option<Estimate>,
     total: Option<Estimate>,
 }
 
 impl SobolIndex {
-    /// Number of base runs that count.
-    pub fn runs(&self) -> u64 {
-        self.runs
-    }
-
-    /// Number of base runs that were left out because one of their three outputs is missing.
-    pub fn left_out(&self) -> u64 {
-        self.left_out
-    }
-
     /// The first-order index: what the group explains alone. None below two runs, and where the outputs that it is made
     /// of are constant.
     pub fn first(&self) -> Option<&Estimate> {

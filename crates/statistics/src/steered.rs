@@ -71,8 +71,10 @@ const ALIKE: f64 = 1.25;
 /// assert!(estimate.warnings().is_empty());
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, getset::Getters)]
 pub struct SteeredSampling {
+    /// The law that scores are to be drawn from.
+    #[getset(get = "pub")]
     law: ScoreLaw,
     /// The law of those draws that are of what a search found, or of the own law.
     of_search: Vec<ScoreLaw>,
@@ -117,11 +119,6 @@ impl SteeredSampling {
             law,
             searches: of_part,
         })
-    }
-
-    /// The law that scores are to be drawn from.
-    pub fn law(&self) -> &ScoreLaw {
-        &self.law
     }
 
     /// Adds a run: the number between 0 and 1 by which the part of the law was chosen, its scores, and how far it is beyond the limit. The
@@ -206,14 +203,24 @@ impl SteeredSampling {
 }
 
 /// A probability by importance sampling in scores, and how far to trust it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SteeredEstimate {
+    /// The estimate of the probability.
+    #[getset(get_copy = "pub")]
     probability: f64,
+    /// The interval. Without a hit, from 0 to a bound that holds whatever the event is, for no weight is above 10; it is not small.
+    #[getset(get_copy = "pub")]
     interval: Interval,
+    /// Number of runs that were done, those of the searches and those that failed too.
+    #[getset(get_copy = "pub")]
     evaluations: u64,
+    /// How many of them failed.
+    #[getset(get_copy = "pub")]
     failed: u64,
     warnings: Vec<SteeredWarning>,
+    /// The weighted runs of the sample.
+    #[getset(get = "pub")]
     weighted: ImportanceEstimate,
 }
 
@@ -241,31 +248,6 @@ pub enum SteeredWarning {
 }
 
 impl SteeredEstimate {
-    /// The estimate of the probability.
-    pub fn probability(&self) -> f64 {
-        self.probability
-    }
-
-    /// The interval. Without a hit, from 0 to a bound that holds whatever the event is, for no weight is above 10; it is not small.
-    pub fn interval(&self) -> Interval {
-        self.interval
-    }
-
-    /// The weighted runs of the sample.
-    pub fn weighted(&self) -> &ImportanceEstimate {
-        &self.weighted
-    }
-
-    /// Number of runs that were done, those of the searches and those that failed too.
-    pub fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
-    /// How many of them failed.
-    pub fn failed(&self) -> u64 {
-        self.failed
-    }
-
     /// Why not to trust the estimate, as far as the runs can show it.
     pub fn warnings(&self) -> &[SteeredWarning] {
         &self.warnings

@@ -246,16 +246,25 @@ fn log_normal(estimates: &[f64], mean: f64, coefficient: f64, confidence: Confid
 }
 
 /// A probability by subset simulation, and how far to trust it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[getset(get_copy = "pub")]
 pub struct SubsetEstimate {
+    /// The estimate of the probability: the mean of the replicas.
     probability: f64,
+    /// Its standard error over the estimate, from the spread between replicas; none if no replica found an event.
     coefficient_of_variation: Option<f64>,
+    /// The interval. If no replica found an event, from 0 to a bound.
     interval: Interval,
+    /// Number of runs that were done, those of the pilot and those that failed too.
     evaluations: u64,
+    /// How many of them failed.
     failed: u64,
+    #[getset(skip)]
     replicas: Vec<f64>,
+    #[getset(skip)]
     events: Vec<Vec<u64>>,
+    #[getset(skip)]
     warnings: Vec<SubsetWarning>,
 }
 
@@ -282,31 +291,6 @@ pub enum SubsetWarning {
 }
 
 impl SubsetEstimate {
-    /// The estimate of the probability: the mean of the replicas.
-    pub fn probability(&self) -> f64 {
-        self.probability
-    }
-
-    /// Its standard error over the estimate, from the spread between replicas; none if no replica found an event.
-    pub fn coefficient_of_variation(&self) -> Option<f64> {
-        self.coefficient_of_variation
-    }
-
-    /// The interval. If no replica found an event, from 0 to a bound.
-    pub fn interval(&self) -> Interval {
-        self.interval
-    }
-
-    /// Number of runs that were done, those of the pilot and those that failed too.
-    pub fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
-    /// How many of them failed.
-    pub fn failed(&self) -> u64 {
-        self.failed
-    }
-
     /// The estimate of each replica, 0 for one that found no event.
     pub fn replicas(&self) -> &[f64] {
         &self.replicas

@@ -21,10 +21,13 @@ use crate::{Confidence, Interval, Proportion, QuantileCells, StatisticsError};
 /// assert!(shares.test().exact() && shares.test().p_value() < 1e-4);
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SuccessByDecile {
     tenths: Vec<Tenth>,
+    /// Whether the share of failures differs between tenths at all. With many inputs, adjust the p-values by
+    /// [`holm`](crate::holm).
+    #[getset(get_copy = "pub")]
     test: ShareTest,
 }
 
@@ -63,50 +66,23 @@ impl SuccessByDecile {
     pub fn tenths(&self) -> &[Tenth] {
         &self.tenths
     }
-
-    /// Whether the share of failures differs between tenths at all. With many inputs, adjust the p-values by
-    /// [`holm`](crate::holm).
-    pub fn test(&self) -> ShareTest {
-        self.test
-    }
 }
 
 /// Runs whose input stands in one tenth of its values.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[getset(get_copy = "pub")]
 pub struct Tenth {
-    least: f64,
-    greatest: f64,
-    runs: u64,
-    failures: u64,
-    interval: Interval,
-}
-
-impl Tenth {
     /// The least value of the input.
-    pub fn least(&self) -> f64 {
-        self.least
-    }
-
+    least: f64,
     /// The greatest value of the input.
-    pub fn greatest(&self) -> f64 {
-        self.greatest
-    }
-
+    greatest: f64,
     /// Number of runs.
-    pub fn runs(&self) -> u64 {
-        self.runs
-    }
-
+    runs: u64,
     /// Number of runs that failed.
-    pub fn failures(&self) -> u64 {
-        self.failures
-    }
-
+    failures: u64,
     /// The share of failures, with the [interval of Clopper and Pearson](Proportion::interval).
-    pub fn interval(&self) -> Interval {
-        self.interval
-    }
+    interval: Interval,
 }
 
 #[cfg(test)]

@@ -37,9 +37,11 @@ const SAMPLE: u64 = 1 << 15;
 /// assert!((survey.quantile(0.5).unwrap() - 1e5).abs() < 100.0);
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, getset::CopyGetters)]
 pub struct Survey {
     runs: u64,
+    /// The values of every so manieth run are kept.
+    #[getset(get_copy = "pub")]
     stride: u64,
     quantiles: Vec<f64>,
     intervals: Vec<(f64, Confidence)>,
@@ -313,12 +315,6 @@ impl Survey {
     #[must_use]
     pub fn order_statistic(&self, rank: u64) -> Option<f64> {
         self.at(rank)
-    }
-
-    /// The values of every so manieth run are kept.
-    #[must_use]
-    pub fn stride(&self) -> u64 {
-        self.stride
     }
 
     fn finite(&self) -> Option<&Finite> {

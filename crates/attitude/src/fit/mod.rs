@@ -163,17 +163,32 @@ pub struct Convergence {
 }
 
 /// A law fitted to attitudes: see [`RadiallyConstrainedGaussian::fit`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fit {
+    /// The fitted law.
+    #[getset(get = "pub")]
     law: RadiallyConstrainedGaussian,
+    /// The family of the law: the one asked for, or the one chosen.
+    #[getset(get_copy = "pub")]
     family: Family,
+    /// What the attitudes say of the radial variance.
+    #[getset(get_copy = "pub")]
     radial: RadialVariance,
+    /// ln-likelihood of the attitudes with respect to Haar measure of total one: that of the
+    /// uniform law is 0.
+    #[getset(get_copy = "pub")]
     ln_likelihood: f64,
     bingham_ln_likelihood: f64,
+    /// Covariance of small turns of the body about the mean, in rad², in body axes: four times the
+    /// inverse of the tangent block of Σ⁻¹. It is the P of
+    /// [`from_rotation_covariance`](RadiallyConstrainedGaussian::from_rotation_covariance).
     #[cfg_attr(feature = "serde", serde(rename = "turn_covariance_rad2"))]
+    #[getset(get_copy = "pub")]
     turn_covariance: Matrix3<f64>,
     errors: Result<Errors, NoIntervals>,
+    /// How the search has ended.
+    #[getset(get_copy = "pub")]
     convergence: Convergence,
 }
 
@@ -397,31 +412,6 @@ impl Fit {
         })
     }
 
-    /// The fitted law.
-    #[must_use]
-    pub fn law(&self) -> &RadiallyConstrainedGaussian {
-        &self.law
-    }
-
-    /// The family of the law: the one asked for, or the one chosen.
-    #[must_use]
-    pub fn family(&self) -> Family {
-        self.family
-    }
-
-    /// What the attitudes say of the radial variance.
-    #[must_use]
-    pub fn radial(&self) -> RadialVariance {
-        self.radial
-    }
-
-    /// ln-likelihood of the attitudes with respect to Haar measure of total one: that of the
-    /// uniform law is 0.
-    #[must_use]
-    pub fn ln_likelihood(&self) -> f64 {
-        self.ln_likelihood
-    }
-
     /// How probable it is that uniform attitudes seem as far from uniform as these do: the
     /// likelihood ratio of Bingham's law and the uniform, which is χ² with 9 degrees of freedom for
     /// many attitudes (Wilks 1938).
@@ -438,14 +428,6 @@ impl Fit {
             }
         }
         sum.min(1.0)
-    }
-
-    /// Covariance of small turns of the body about the mean, in rad², in body axes: four times the
-    /// inverse of the tangent block of Σ⁻¹. It is the P of
-    /// [`from_rotation_covariance`](RadiallyConstrainedGaussian::from_rotation_covariance).
-    #[must_use]
-    pub fn turn_covariance(&self) -> Matrix3<f64> {
-        self.turn_covariance
     }
 
     /// Standard errors of the entries of [`turn_covariance`](Self::turn_covariance), in rad²; none
@@ -467,12 +449,6 @@ impl Fit {
     #[must_use]
     pub fn no_intervals(&self) -> Option<NoIntervals> {
         self.errors.err()
-    }
-
-    /// How the search has ended.
-    #[must_use]
-    pub fn convergence(&self) -> Convergence {
-        self.convergence
     }
 }
 

@@ -44,14 +44,20 @@ const INTEGRALS: usize = 15;
 /// Agrees with the contour integral to 1e-12 for eigenvalues of Σ between 1e-8 and 1e8, whatever
 /// their ratios. For smaller ones rounding takes over: an error of at most about ε/√s for the
 /// smallest eigenvalue s, 2e-9 for 1e-14, which [`estimated_error`](Self::estimated_error) includes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, getset::CopyGetters)]
 pub struct AngularQuadrature {
     plane: Planes,
     arcs: Vec<[f64; 2]>,
+    /// ln C, as the law itself defines it.
+    #[getset(get_copy = "pub")]
     ln_normaliser: f64,
     mean: Vector4<f64>,
+    /// The second moment E xxᵀ.
+    #[getset(get_copy = "pub")]
     second_moment: Matrix4<f64>,
     error: f64,
+    /// How often the density of one circle was evaluated.
+    #[getset(get_copy = "pub")]
     evaluations: usize,
 }
 
@@ -148,22 +154,10 @@ impl AngularQuadrature {
         }
     }
 
-    /// ln C, as the law itself defines it.
-    #[must_use]
-    pub fn ln_normaliser(&self) -> f64 {
-        self.ln_normaliser
-    }
-
     /// The mean E x of the four coordinates.
     #[must_use]
     pub fn mean_vector(&self) -> Vector4<f64> {
         self.mean
-    }
-
-    /// The second moment E xxᵀ.
-    #[must_use]
-    pub fn second_moment(&self) -> Matrix4<f64> {
-        self.second_moment
     }
 
     /// The estimated relative error of C, which is also the estimated absolute error of the moments:
@@ -171,12 +165,6 @@ impl AngularQuadrature {
     #[must_use]
     pub fn estimated_error(&self) -> f64 {
         self.error
-    }
-
-    /// How often the density of one circle was evaluated.
-    #[must_use]
-    pub fn evaluations(&self) -> usize {
-        self.evaluations
     }
 
     /// Expectations of `N` real functions of the attitude, on the points that served the normaliser.

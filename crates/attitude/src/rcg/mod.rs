@@ -110,19 +110,27 @@ pub enum RcgError {
 ///
 /// # Limits
 /// Eigenvalues of Σ between 1e-14 and 1e14, any ratio.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, getset::CopyGetters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "Parameters", into = "Parameters")
 )]
+#[getset(get_copy = "pub")]
 pub struct RadiallyConstrainedGaussian {
+    /// The mean attitude m, about which the Gaussian in ℝ⁴ is centred.
     mean: UnitQuaternion<f64>,
+    /// The covariance Σ of the Gaussian in ℝ⁴. Of a law that was not made by [`new`](Self::new) it is
+    /// rounded: next to a variance of 1e14, those of a narrow law are lost off the coordinate axes, and
+    /// Σ may be indefinite. The law itself keeps its principal axes and variances.
     covariance: Matrix4<f64>,
+    /// Σ⁻¹.
     precision: Matrix4<f64>,
     /// Axes and variances, if the law was made of them.
     #[cfg(feature = "serde")]
+    #[getset(skip)]
     principal: Option<Box<Principal>>,
+    #[getset(skip)]
     law: FisherBingham,
 }
 
@@ -220,26 +228,6 @@ impl RadiallyConstrainedGaussian {
             principal: Some(Box::new(Principal { axes, variances })),
             ..Self::from_eigenform(mean, covariance, variances, axes)
         })
-    }
-
-    /// The mean attitude m, about which the Gaussian in ℝ⁴ is centred.
-    #[must_use]
-    pub fn mean(&self) -> UnitQuaternion<f64> {
-        self.mean
-    }
-
-    /// The covariance Σ of the Gaussian in ℝ⁴. Of a law that was not made by [`new`](Self::new) it is
-    /// rounded: next to a variance of 1e14, those of a narrow law are lost off the coordinate axes, and
-    /// Σ may be indefinite. The law itself keeps its principal axes and variances.
-    #[must_use]
-    pub fn covariance(&self) -> Matrix4<f64> {
-        self.covariance
-    }
-
-    /// Σ⁻¹.
-    #[must_use]
-    pub fn precision(&self) -> Matrix4<f64> {
-        self.precision
     }
 
     /// ln C = ln ∫ exp(−½ (x − m)ᵀ Σ⁻¹ (x − m)) dS over S³; the c of Peck (2003, Eq. 21) is 1/C, and

@@ -50,21 +50,29 @@ const TRIALS: usize = 64;
 /// assert!(body.mass_kg() > 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::Getters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "Fields", into = "Fields")
 )]
+#[getset(get = "pub")]
 pub struct MassPropertiesLaw {
+    /// The law of the mass, kg.
     mass: ScalarLaw,
+    /// The laws of the mass centre, m.
     centre: [ScalarLaw; 3],
+    /// The law of the inertia about the mass centre.
     tensor: TensorLaw,
+    /// How the scalars are correlated.
     correlation: Correlation,
     /// Among those that vary, of which there is a density.
+    #[getset(skip)]
     copula: Correlation,
     /// As given, for files.
+    #[getset(skip)]
     pairs: Vec<(JointScalar, JointScalar, f64)>,
+    #[getset(skip)]
     inside: Option<Inside>,
 }
 
@@ -175,30 +183,6 @@ impl MassPropertiesLaw {
     #[must_use]
     pub fn acceptance(&self) -> (f64, f64) {
         self.inside.as_ref().map_or((1.0, 0.0), Inside::acceptance)
-    }
-
-    /// The law of the mass, kg.
-    #[must_use]
-    pub fn mass(&self) -> &ScalarLaw {
-        &self.mass
-    }
-
-    /// The laws of the mass centre, m.
-    #[must_use]
-    pub fn centre(&self) -> &[ScalarLaw; 3] {
-        &self.centre
-    }
-
-    /// The law of the inertia about the mass centre.
-    #[must_use]
-    pub fn tensor(&self) -> &TensorLaw {
-        &self.tensor
-    }
-
-    /// How the scalars are correlated.
-    #[must_use]
-    pub fn correlation(&self) -> &Correlation {
-        &self.correlation
     }
 
     /// Mass, mass centre, and lengths or roots where there are such.

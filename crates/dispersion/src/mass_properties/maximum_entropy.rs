@@ -43,8 +43,10 @@ const SEED: u64 = 0;
 /// assert!(law.draw(&mut ChaCha8Rng::seed_from_u64(1)).is_realizable());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::Getters)]
 pub struct MaximumEntropy {
+    /// The mean body before draws are rejected.
+    #[getset(get = "pub")]
     mean: MassProperties,
     mass_delta: f64,
     mass: Gamma<f64>,
@@ -99,12 +101,6 @@ impl MaximumEntropy {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
         let inside = Inside::new(region, || open.sample(&mut rng))?;
         Ok(Self { inside: Some(inside), ..open })
-    }
-
-    /// The mean body before draws are rejected.
-    #[must_use]
-    pub fn mean(&self) -> &MassProperties {
-        &self.mean
     }
 
     /// The logarithm of the density with respect to dm d³c dI₁₁ dI₂₂ dI₃₃ dI₁₂ dI₁₃ dI₂₃. None where the mass centre or

@@ -70,9 +70,13 @@ impl NaiveRule {
 /// assert!(share > 0.9, "nearly no draw is a body");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 pub struct NaiveBody {
+    /// What is randomized.
+    #[getset(get = "pub")]
     nominal: MassProperties,
+    /// How.
+    #[getset(get_copy = "pub")]
     rule: NaiveRule,
     law: ScalarLaw,
     mass_factor: Option<ScalarLaw>,
@@ -107,18 +111,6 @@ impl NaiveBody {
     /// The numbers could be too large.
     pub fn with_centre_offset_m(self, law: ScalarLaw) -> Result<Self, NaiveBodyError> {
         Ok(Self { centre_offset_m: Some(checked(law)?), ..self })
-    }
-
-    /// What is randomized.
-    #[must_use]
-    pub fn nominal(&self) -> &MassProperties {
-        &self.nominal
-    }
-
-    /// How.
-    #[must_use]
-    pub fn rule(&self) -> NaiveRule {
-        self.rule
     }
 
     fn inertia(&self, rng: &mut dyn Rng) -> Option<InertiaMatrix> {

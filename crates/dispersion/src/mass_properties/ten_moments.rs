@@ -3,27 +3,18 @@
 use nalgebra::{SMatrix, SVector};
 
 /// Mean and covariance of ten parameters.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::Getters)]
+#[getset(get = "pub")]
 pub struct TenMoments {
+    /// The means, in kg, m (or kg·m) and kg·m².
     mean: SVector<f64, 10>,
+    /// The covariance.
     covariance: SMatrix<f64, 10, 10>,
 }
 
 impl TenMoments {
     pub(crate) fn unchecked(mean: SVector<f64, 10>, covariance: SMatrix<f64, 10, 10>) -> Self {
         Self { mean, covariance }
-    }
-
-    /// The means, in kg, m (or kg·m) and kg·m².
-    #[must_use]
-    pub fn mean(&self) -> &SVector<f64, 10> {
-        &self.mean
-    }
-
-    /// The covariance.
-    #[must_use]
-    pub fn covariance(&self) -> &SMatrix<f64, 10, 10> {
-        &self.covariance
     }
 
     /// The standard deviations.

@@ -7,10 +7,12 @@ type Square = SMatrix<f64, 10, 10>;
 
 /// Sums over draws of ten numbers, in their order: of the differences from an origin in scales, which should be near the mean and
 /// about a deviation, so that rounding is small.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
 pub struct TenSums {
     origin: Ten,
     scale: Ten,
+    /// How many draws there are.
+    #[getset(get_copy = "pub")]
     count: u64,
     first: Ten,
     second: Square,
@@ -55,12 +57,6 @@ impl TenSums {
         self.second += x * x.transpose();
         self.third += square.component_mul(&x);
         self.fourth += square.component_mul(&square);
-    }
-
-    /// How many draws there are.
-    #[must_use]
-    pub fn count(&self) -> u64 {
-        self.count
     }
 
     /// Their means; none without a draw.

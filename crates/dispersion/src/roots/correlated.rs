@@ -49,13 +49,15 @@ pub enum CorrelatedRootsError {
 /// assert!((k.covariance()[(0, 1)] / (k.variances()[0] * k.variances()[1]).sqrt() - 1.0).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "Parameters", into = "Parameters")
 )]
 pub struct CorrelatedRoots {
+    /// k̄, √kg·m.
+    #[getset(get_copy = "pub")]
     mean: RootSecondMoments,
     covariance: Covariance<3>,
 }
@@ -77,12 +79,6 @@ impl CorrelatedRoots {
             }
         }
         Ok(Self { mean, covariance })
-    }
-
-    /// k̄, √kg·m.
-    #[must_use]
-    pub fn mean(&self) -> RootSecondMoments {
-        self.mean
     }
 
     /// Covariance of the roots, kg·m².

@@ -51,8 +51,10 @@ const TRIALS: usize = 64;
 /// assert!(body.second_moments().values()[0] <= 144.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
+#[getset(get = "pub")]
 pub struct IndependentRoots<L> {
+    /// The three laws.
     laws: [L; 3],
 }
 
@@ -75,11 +77,6 @@ impl<L: Distribution<f64>> IndependentRoots<L> {
             }
         }
         Ok(Self { laws })
-    }
-
-    /// The three laws.
-    pub fn laws(&self) -> &[L; 3] {
-        &self.laws
     }
 }
 

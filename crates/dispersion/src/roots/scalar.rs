@@ -39,13 +39,15 @@ use crate::{RootMoments, ScalarLaw, ScalarLawError, SecondMomentStatistics};
 /// assert!(EntryMoments::of(&law).mean()[0] > 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::Getters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "Parameters", into = "Parameters")
 )]
+#[getset(get = "pub")]
 pub struct ScalarRoots {
+    /// The laws of k₁, k₂ and k₃, √kg·m.
     laws: [ScalarLaw; 3],
 }
 
@@ -141,12 +143,6 @@ impl ScalarRoots {
             }
             other => other,
         })
-    }
-
-    /// The laws of k₁, k₂ and k₃, √kg·m.
-    #[must_use]
-    pub fn laws(&self) -> &[ScalarLaw; 3] {
-        &self.laws
     }
 
     /// Mean in √kg·m and variance in kg·m² of each, if all three are normal.

@@ -71,7 +71,8 @@ impl Declaration {
 }
 
 /// What the numbers of a law about a nominal value are in.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
+#[getset(get_copy = "pub")]
 pub struct LawUnit {
     /// In the unit of the quantity itself.
     size: f64,
@@ -93,18 +94,6 @@ impl LawUnit {
     #[must_use]
     pub fn of(size: f64) -> Self {
         Self { size, ..Self::OWN }
-    }
-
-    /// In the unit of the quantity itself.
-    #[must_use]
-    pub fn size(self) -> f64 {
-        self.size
-    }
-
-    /// The largest number that is taken.
-    #[must_use]
-    pub fn most(self) -> f64 {
-        self.most
     }
 }
 

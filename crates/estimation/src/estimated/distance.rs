@@ -9,12 +9,19 @@ use super::ten_estimate::{Matrix10, Ten, TenEstimate};
 const EXACT: f64 = 1e-5;
 
 /// How far the mean and covariance of a law are from those of the estimate that it was made of, in the ten numbers of the estimate.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EstimateDistance {
+    /// The mean of each of the ten less that of the estimate, in its standard deviations; none of what does not vary.
+    #[getset(get = "pub")]
     means: [Option<f64>; 10],
     deviations: [Option<f64>; 10],
+    /// The Mahalanobis distance of the means: √(dᵀ C⁻¹ d) with the covariance of the estimate, in which what does not vary counts as
+    /// varying by 1e-6 of its size.
+    #[getset(get_copy = "pub")]
     mahalanobis: f64,
+    /// The largest difference of a correlation.
+    #[getset(get_copy = "pub")]
     correlation: f64,
     #[cfg_attr(feature = "serde", serde(skip))]
     off: f64,
@@ -53,29 +60,10 @@ impl EstimateDistance {
         })
     }
 
-    /// The mean of each of the ten less that of the estimate, in its standard deviations; none of what does not vary.
-    #[must_use]
-    pub fn means(&self) -> &[Option<f64>; 10] {
-        &self.means
-    }
-
     /// By how many percent the standard deviation of each of the ten is larger than that of the estimate; none of what does not vary.
     #[must_use]
     pub fn deviation_percents(&self) -> &[Option<f64>; 10] {
         &self.deviations
-    }
-
-    /// The Mahalanobis distance of the means: √(dᵀ C⁻¹ d) with the covariance of the estimate, in which what does not vary counts as
-    /// varying by 1e-6 of its size.
-    #[must_use]
-    pub fn mahalanobis(&self) -> f64 {
-        self.mahalanobis
-    }
-
-    /// The largest difference of a correlation.
-    #[must_use]
-    pub fn correlation(&self) -> f64 {
-        self.correlation
     }
 
     /// Whether mean and covariance are those of the estimate, to 1e-5 of the deviations.

@@ -60,9 +60,14 @@ const INSIDE: f64 = 0.3;
 /// assert!(body.joint().is_some());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, getset::CopyGetters, getset::Getters)]
 pub struct EstimatedBody {
+    /// The body of the mean, or the one nearest to it in the metric of the covariance.
+    #[getset(get = "pub")]
     nearest: MassProperties,
+    /// How far the mean is from it: √(dᵀ C⁻¹ d), in standard deviations; 0 if the mean is that of a body. What does not vary counts as
+    /// varying by 1e-6 of its size.
+    #[getset(get_copy = "pub")]
     moved: f64,
     joint: Option<(MassPropertiesLaw, EstimateDistance)>,
     log_cholesky: Option<(LogCholeskyTen, EstimateDistance)>,
@@ -118,19 +123,6 @@ impl EstimatedBody {
             unitless.form().body(&ten.component_mul(&scales)).or_else(|| scaled(&body, units));
         let nearest = nearest.ok_or(EstimatedBodyError::Range)?;
         Ok(Self { nearest, moved, joint, log_cholesky })
-    }
-
-    /// The body of the mean, or the one nearest to it in the metric of the covariance.
-    #[must_use]
-    pub fn nearest(&self) -> &MassProperties {
-        &self.nearest
-    }
-
-    /// How far the mean is from it: √(dᵀ C⁻¹ d), in standard deviations; 0 if the mean is that of a body. What does not vary counts as
-    /// varying by 1e-6 of its size.
-    #[must_use]
-    pub fn moved(&self) -> f64 {
-        self.moved
     }
 
     /// The law of mass, mass centre, gyration lengths and axes, and how far its moments are from those of the estimate.

@@ -100,8 +100,10 @@ impl TenForm {
 
 /// Ten parameters and their covariance: of an identification, of a Bayesian posterior. They may be those of no body, and the
 /// covariance may be singular.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
 pub struct TenEstimate {
+    /// Which ten numbers it has.
+    #[getset(get_copy = "pub")]
     form: TenForm,
     mean: Ten,
     covariance: Matrix10,
@@ -168,12 +170,6 @@ impl TenEstimate {
             deviations[i] * deviations[j] * if i == j { 1.0 } else { own }
         });
         Ok(Self { form, mean, covariance })
-    }
-
-    /// Which ten numbers it has.
-    #[must_use]
-    pub fn form(&self) -> TenForm {
-        self.form
     }
 
     /// The mean.

@@ -42,20 +42,41 @@ pub enum AxesFinding {
 }
 
 /// The law of the principal axes, fitted to attitudes of matched axes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct AxesFit {
+    /// The law of the axes, q and −q alike.
+    #[getset(get = "pub")]
     law: RadiallyConstrainedGaussian,
+    /// What the samples say of the axes.
+    #[getset(get_copy = "pub")]
     finding: AxesFinding,
+    /// Covariance of small turns about the mean, in rad², in body axes; without the free turns.
     #[cfg_attr(feature = "serde", serde(rename = "turn_covariance_rad2"))]
+    #[getset(get_copy = "pub")]
     turn_covariance: Matrix3<f64>,
+    /// Standard errors of the entries of [`turn_covariance`](Self::turn_covariance), rad².
     #[cfg_attr(feature = "serde", serde(rename = "turn_errors_rad2"))]
+    #[getset(get_copy = "pub")]
     turn_errors: Option<Matrix3<f64>>,
+    /// Covariance of the error of the mean attitude, as a rotation vector in body axes, rad²; without
+    /// the free turns.
     #[cfg_attr(feature = "serde", serde(rename = "mean_covariance_rad2"))]
+    #[getset(get_copy = "pub")]
     mean_covariance: Option<Matrix3<f64>>,
+    /// What the samples say of the radial variance, where the axes are determined. Where it is not
+    /// determined the law has a small one, with the same attitudes and no second lobe.
+    #[getset(get_copy = "pub")]
     radial: Option<RadialVariance>,
+    /// Whether the search for the maximum of the likelihood has reached it.
+    #[getset(get_copy = "pub")]
     converged: bool,
     isotropy: Option<f64>,
+    /// The share of the law beyond a right angle of the mean quaternion, where the attitudes determine
+    /// the radial variance: narrow axes that fall into two groups or have outliers are held by a
+    /// second lobe, about the inverse of the mean. None if that would hold less than one sample, to
+    /// rounding.
+    #[getset(get_copy = "pub")]
     second_lobe: Option<f64>,
 }
 
@@ -219,59 +240,6 @@ impl AxesFit {
             local.map(|v| if v > FIXED * FIXED { v } else { 0.0 }),
             AxesFinding::Still,
         )
-    }
-
-    /// The law of the axes, q and −q alike.
-    #[must_use]
-    pub fn law(&self) -> &RadiallyConstrainedGaussian {
-        &self.law
-    }
-
-    /// What the samples say of the axes.
-    #[must_use]
-    pub fn finding(&self) -> AxesFinding {
-        self.finding
-    }
-
-    /// Covariance of small turns about the mean, in rad², in body axes; without the free turns.
-    #[must_use]
-    pub fn turn_covariance(&self) -> Matrix3<f64> {
-        self.turn_covariance
-    }
-
-    /// Standard errors of the entries of [`turn_covariance`](Self::turn_covariance), rad².
-    #[must_use]
-    pub fn turn_errors(&self) -> Option<Matrix3<f64>> {
-        self.turn_errors
-    }
-
-    /// Covariance of the error of the mean attitude, as a rotation vector in body axes, rad²; without
-    /// the free turns.
-    #[must_use]
-    pub fn mean_covariance(&self) -> Option<Matrix3<f64>> {
-        self.mean_covariance
-    }
-
-    /// What the samples say of the radial variance, where the axes are determined. Where it is not
-    /// determined the law has a small one, with the same attitudes and no second lobe.
-    #[must_use]
-    pub fn radial(&self) -> Option<RadialVariance> {
-        self.radial
-    }
-
-    /// Whether the search for the maximum of the likelihood has reached it.
-    #[must_use]
-    pub fn converged(&self) -> bool {
-        self.converged
-    }
-
-    /// The share of the law beyond a right angle of the mean quaternion, where the attitudes determine
-    /// the radial variance: narrow axes that fall into two groups or have outliers are held by a
-    /// second lobe, about the inverse of the mean. None if that would hold less than one sample, to
-    /// rounding.
-    #[must_use]
-    pub fn second_lobe(&self) -> Option<f64> {
-        self.second_lobe
     }
 
     /// p-value of equal tilt in all directions, which is all that the law can hold where one turn

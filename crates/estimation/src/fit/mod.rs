@@ -114,18 +114,30 @@ pub struct Matching {
 /// assert!(fit.assess(&mut rng).fits());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PrincipalFit {
     #[cfg_attr(feature = "serde", serde(skip))]
     samples: Vec<Sample>,
+    /// The inertia of the mean roots about the mean axes. It is not the mean of the samples, which
+    /// scatter moves: see [`EntryMoments`](gyradius_dispersion::EntryMoments).
     #[cfg_attr(feature = "serde", serde(rename = "nominal_kg_m2"))]
+    #[getset(get = "pub")]
     nominal: Inertia,
+    /// The roots of the second moments, in the order of the principal axes of
+    /// [`nominal`](Self::nominal).
+    #[getset(get = "pub")]
     roots: [RootFit; 3],
+    /// The axes.
+    #[getset(get = "pub")]
     axes: AxesFit,
+    /// How axes were matched.
+    #[getset(get_copy = "pub")]
     matching: Matching,
     #[cfg_attr(feature = "serde", serde(rename = "entry_deviation_kg_m2"))]
     deviations: [f64; 6],
+    /// The fitted law.
+    #[getset(get = "pub")]
     law: PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian>,
 }
 
@@ -190,38 +202,6 @@ impl PrincipalFit {
     #[must_use]
     pub fn count(&self) -> usize {
         self.samples.len()
-    }
-
-    /// The inertia of the mean roots about the mean axes. It is not the mean of the samples, which
-    /// scatter moves: see [`EntryMoments`](gyradius_dispersion::EntryMoments).
-    #[must_use]
-    pub fn nominal(&self) -> &Inertia {
-        &self.nominal
-    }
-
-    /// The roots of the second moments, in the order of the principal axes of
-    /// [`nominal`](Self::nominal).
-    #[must_use]
-    pub fn roots(&self) -> &[RootFit; 3] {
-        &self.roots
-    }
-
-    /// The axes.
-    #[must_use]
-    pub fn axes(&self) -> &AxesFit {
-        &self.axes
-    }
-
-    /// How axes were matched.
-    #[must_use]
-    pub fn matching(&self) -> Matching {
-        self.matching
-    }
-
-    /// The fitted law.
-    #[must_use]
-    pub fn law(&self) -> &PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian> {
-        &self.law
     }
 
     /// Standard deviations of the six entries of the samples, kg·m², in the order 11, 22, 33, 12, 13,

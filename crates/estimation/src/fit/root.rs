@@ -28,15 +28,21 @@ pub enum RootEstimate {
 }
 
 /// The maximum likelihood law N(k̄, σ²) of one root k = √K, from samples of |k|.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[getset(get_copy = "pub")]
 pub struct RootFit {
+    /// k̄ ≥ 0, √kg·m.
     #[cfg_attr(feature = "serde", serde(rename = "mean_sqrt_kg_m"))]
     mean: f64,
+    /// σ, √kg·m; maximum likelihood, so the sum of squares is divided by n.
     #[cfg_attr(feature = "serde", serde(rename = "deviation_sqrt_kg_m"))]
     deviation: f64,
+    /// Standard errors of mean and deviation, √kg·m; none where the likelihood is too flat to have
+    /// them (k̄ = 0) or nothing scatters.
     #[cfg_attr(feature = "serde", serde(rename = "errors_sqrt_kg_m"))]
     errors: Option<[f64; 2]>,
+    /// Which law was fitted.
     law: RootEstimate,
 }
 
@@ -93,31 +99,6 @@ impl RootFit {
             errors: folded_errors(samples, mean, variance),
             law: RootEstimate::Folded,
         }
-    }
-
-    /// k̄ ≥ 0, √kg·m.
-    #[must_use]
-    pub fn mean(&self) -> f64 {
-        self.mean
-    }
-
-    /// σ, √kg·m; maximum likelihood, so the sum of squares is divided by n.
-    #[must_use]
-    pub fn deviation(&self) -> f64 {
-        self.deviation
-    }
-
-    /// Standard errors of mean and deviation, √kg·m; none where the likelihood is too flat to have
-    /// them (k̄ = 0) or nothing scatters.
-    #[must_use]
-    pub fn errors(&self) -> Option<[f64; 2]> {
-        self.errors
-    }
-
-    /// Which law was fitted.
-    #[must_use]
-    pub fn law(&self) -> RootEstimate {
-        self.law
     }
 
     /// Whether the samples tell mean and deviation apart: below k̄ = σ the folded normal law hardly

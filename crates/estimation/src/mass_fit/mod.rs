@@ -64,16 +64,23 @@ const MOST: f64 = 1.0 - 1e-9;
 /// assert!(power.low() < 1.0 && 1.0 < power.high());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[getset(get = "pub")]
 pub struct MassPropertiesFit {
+    /// The mass, kg.
     mass: ScalarFit,
+    /// The mass centre, m.
     centre: [ScalarFit; 3],
+    /// The inertia of one kilogram: its roots are gyration lengths in m.
     lengths: PrincipalFit,
+    #[getset(skip)]
     ties: Option<MassTies>,
+    /// The fitted law.
     law: MassPropertiesLaw,
     /// Of the seven scalars that vary, in the coordinates in which their laws are normal.
     #[cfg_attr(feature = "serde", serde(skip))]
+    #[getset(skip)]
     scores: [Option<Vec<f64>>; SCALARS],
 }
 
@@ -134,34 +141,10 @@ impl MassPropertiesFit {
         self.lengths.count()
     }
 
-    /// The mass, kg.
-    #[must_use]
-    pub fn mass(&self) -> &ScalarFit {
-        &self.mass
-    }
-
-    /// The mass centre, m.
-    #[must_use]
-    pub fn centre(&self) -> &[ScalarFit; 3] {
-        &self.centre
-    }
-
-    /// The inertia of one kilogram: its roots are gyration lengths in m.
-    #[must_use]
-    pub fn lengths(&self) -> &PrincipalFit {
-        &self.lengths
-    }
-
     /// How the inertia goes with the mass; none if the mass does not vary, or the lengths.
     #[must_use]
     pub fn ties(&self) -> Option<&MassTies> {
         self.ties.as_ref()
-    }
-
-    /// The fitted law.
-    #[must_use]
-    pub fn law(&self) -> &MassPropertiesLaw {
-        &self.law
     }
 
     /// What was fitted of the axes.

@@ -28,14 +28,20 @@ pub enum ScalarEstimate {
 }
 
 /// The maximum likelihood law of a mass in kg or of a coordinate of the mass centre in m.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[getset(get_copy = "pub")]
 pub struct ScalarFit {
+    /// The mean.
     mean: f64,
+    /// The standard deviation; maximum likelihood, so the sum of squares is divided by n.
     deviation: f64,
+    /// Standard errors of mean and deviation; none where nothing scatters.
     errors: Option<[f64; 2]>,
+    #[getset(skip)]
     law: ScalarEstimate,
     #[cfg_attr(feature = "serde", serde(skip))]
+    #[getset(skip)]
     p_value: Option<f64>,
 }
 
@@ -96,24 +102,6 @@ impl ScalarFit {
     fn constant(mean: f64) -> Self {
         let law = ScalarEstimate::Constant;
         Self { mean, deviation: 0.0, errors: None, law, p_value: None }
-    }
-
-    /// The mean.
-    #[must_use]
-    pub fn mean(&self) -> f64 {
-        self.mean
-    }
-
-    /// The standard deviation; maximum likelihood, so the sum of squares is divided by n.
-    #[must_use]
-    pub fn deviation(&self) -> f64 {
-        self.deviation
-    }
-
-    /// Standard errors of mean and deviation; none where nothing scatters.
-    #[must_use]
-    pub fn errors(&self) -> Option<[f64; 2]> {
-        self.errors
     }
 
     /// Which law was fitted.

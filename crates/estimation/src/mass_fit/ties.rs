@@ -10,42 +10,31 @@ const NORMAL_95: f64 = 1.959_963_984_540_054;
 const STILL: f64 = 1e-9;
 
 /// An estimate with its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[getset(get_copy = "pub")]
 pub struct Interval {
-    estimate: f64,
-    low: f64,
-    high: f64,
-}
-
-impl Interval {
     /// The estimate.
-    #[must_use]
-    pub fn estimate(&self) -> f64 {
-        self.estimate
-    }
-
+    estimate: f64,
     /// The lower end.
-    #[must_use]
-    pub fn low(&self) -> f64 {
-        self.low
-    }
-
+    low: f64,
     /// The upper end.
-    #[must_use]
-    pub fn high(&self) -> f64 {
-        self.high
-    }
+    high: f64,
 }
 
 /// Whether the inertia follows the mass.
 ///
 /// The inertia of a body whose shape does not depend on its mass is proportional to it, and its gyration lengths are not correlated with
 /// it. An inertia that does not depend on the mass has lengths that go with m^(−½).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MassTies {
+    /// The power of the mass with which the trace of the inertia goes, by regression of the logarithms: 1 where the
+    /// inertia follows the mass, 0 where it does not depend on it.
+    #[getset(get_copy = "pub")]
     power: Interval,
+    /// The correlations of ln m with the logarithms of the gyration lengths; none of a length that does not vary or is zero.
+    #[getset(get = "pub")]
     correlations: [Option<Interval>; 3],
 }
 
@@ -79,19 +68,6 @@ impl MassTies {
             Some(Interval { estimate, low: libm::tanh(z - reach), high: libm::tanh(z + reach) })
         });
         Some(Self { power, correlations })
-    }
-
-    /// The power of the mass with which the trace of the inertia goes, by regression of the logarithms: 1 where the
-    /// inertia follows the mass, 0 where it does not depend on it.
-    #[must_use]
-    pub fn power(&self) -> Interval {
-        self.power
-    }
-
-    /// The correlations of ln m with the logarithms of the gyration lengths; none of a length that does not vary or is zero.
-    #[must_use]
-    pub fn correlations(&self) -> &[Option<Interval>; 3] {
-        &self.correlations
     }
 }
 

@@ -12,9 +12,12 @@ pub const TEN_UNITS: [&str; 10] =
 
 /// Nominal mass properties and the covariance of the ten numbers: mass (kg), mass centre (m), I₁₁, I₂₂, I₃₃, I₁₂, I₁₃,
 /// I₂₃ (kg·m², tensor entries about the mass centre).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::Getters)]
+#[getset(get = "pub")]
 pub struct FirstOrder {
+    /// The nominal body.
     nominal: MassProperties,
+    /// Covariance of the ten, in products of their units.
     covariance: SMatrix<f64, 10, 10>,
 }
 
@@ -52,22 +55,10 @@ impl FirstOrder {
         Ok(Self::new(whole, (covariance + covariance.transpose()) * 0.5))
     }
 
-    /// The nominal body.
-    #[must_use]
-    pub fn nominal(&self) -> &MassProperties {
-        &self.nominal
-    }
-
     /// The ten nominal numbers, as [`TenParameters::COLUMNS`].
     #[must_use]
     pub fn values(&self) -> [f64; 10] {
         TenParameters::from(self.nominal).values()
-    }
-
-    /// Covariance of the ten, in products of their units.
-    #[must_use]
-    pub fn covariance(&self) -> &SMatrix<f64, 10, 10> {
-        &self.covariance
     }
 
     /// Standard deviations of the ten.

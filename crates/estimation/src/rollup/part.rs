@@ -51,9 +51,13 @@ pub struct PartStatement {
 /// log-Cholesky coordinates of its second moments, relative to the nominal ones. All three have the stated means exactly; mass
 /// and mass centre have the stated deviations exactly, and the inertia has them where a law of this kind does
 /// ([`findings`](Self::findings) says where not).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::Getters)]
 pub struct AssemblyPart {
+    /// What was stated.
+    #[getset(get = "pub")]
     statement: PartStatement,
+    /// The nominal body in the frame of the whole, and the covariance of its ten numbers as stated.
+    #[getset(get = "pub")]
     first_order: FirstOrder,
     inertia: SecondMomentLaw,
     /// Mean and deviation of the logarithm of the mass in nominal masses.
@@ -83,18 +87,6 @@ impl AssemblyPart {
         let variance = libm::log1p(relative * relative);
         let logarithm = [-0.5 * variance, variance.sqrt()];
         Ok(Self { statement, first_order, inertia, logarithm, findings })
-    }
-
-    /// What was stated.
-    #[must_use]
-    pub fn statement(&self) -> &PartStatement {
-        &self.statement
-    }
-
-    /// The nominal body in the frame of the whole, and the covariance of its ten numbers as stated.
-    #[must_use]
-    pub fn first_order(&self) -> &FirstOrder {
-        &self.first_order
     }
 
     /// What of the stated deviations no body can have, or the law of the draws has not.

@@ -14,23 +14,36 @@ use super::{
 /// The inertia at the nominal mass has the law [`law_at_nominal_mass`](Self::law_at_nominal_mass); a
 /// stated mass multiplies it by [`StatedMass::factor`]. [`law`](Self::law) is the law of the inertia alone, the
 /// mass's part included.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StatedModel {
+    /// The nominal inertia.
     #[cfg_attr(feature = "serde", serde(rename = "nominal_kg_m2"))]
+    #[getset(get = "pub")]
     nominal: Inertia,
     scatter: Scatter,
     at_nominal_mass: Law,
+    /// The law of the inertia, with all that a stated mass does to it.
+    #[getset(get = "pub")]
     law: Law,
+    /// The mass, if it is stated.
+    #[getset(get_copy = "pub")]
     mass: Option<StatedMass>,
     #[cfg_attr(feature = "serde", serde(rename = "mass_centre_m"))]
     centre: Option<[f64; 3]>,
+    /// Standard deviations of the roots of the second moments, √kg·m. Their means are those of the nominal
+    /// inertia.
     #[cfg_attr(feature = "serde", serde(rename = "root_deviation_sqrt_kg_m"))]
+    #[getset(get_copy = "pub")]
     root_deviations: [f64; 3],
     #[cfg_attr(feature = "serde", serde(rename = "rotation_rad"))]
     rotations: [f64; 3],
+    /// Standard deviations of the six entries as stated, kg·m², in the order 11, 22, 33, 12, 13, 23.
     #[cfg_attr(feature = "serde", serde(rename = "stated_kg_m2"))]
+    #[getset(get_copy = "pub")]
     stated: [Option<f64>; 6],
+    /// Mean and covariance of the six entries under the law, by quadrature.
+    #[getset(get = "pub")]
     implied: EntryMoments,
     warnings: Vec<StatementWarning>,
 }
@@ -125,29 +138,11 @@ impl StatedModel {
         &self.scatter
     }
 
-    /// The nominal inertia.
-    #[must_use]
-    pub fn nominal(&self) -> &Inertia {
-        &self.nominal
-    }
-
-    /// The law of the inertia, with all that a stated mass does to it.
-    #[must_use]
-    pub fn law(&self) -> &Law {
-        &self.law
-    }
-
     /// The law of the inertia at the nominal mass. Where no mass is stated it is that of
     /// [`law`](Self::law).
     #[must_use]
     pub fn law_at_nominal_mass(&self) -> &Law {
         &self.at_nominal_mass
-    }
-
-    /// The mass, if it is stated.
-    #[must_use]
-    pub fn mass(&self) -> Option<StatedMass> {
-        self.mass
     }
 
     /// Standard deviations of the mass centre along body axes 1, 2, 3, m, if they are stated. The mass centre is
@@ -157,30 +152,11 @@ impl StatedModel {
         self.centre
     }
 
-    /// Standard deviations of the roots of the second moments, √kg·m. Their means are those of the nominal
-    /// inertia.
-    #[must_use]
-    pub fn root_deviations(&self) -> [f64; 3] {
-        self.root_deviations
-    }
-
     /// Standard deviations of the rotations about principal axes 1, 2, 3, rad; infinite where nothing
     /// is known of one.
     #[must_use]
     pub fn turns(&self) -> [f64; 3] {
         self.rotations.map(f64::sqrt)
-    }
-
-    /// Standard deviations of the six entries as stated, kg·m², in the order 11, 22, 33, 12, 13, 23.
-    #[must_use]
-    pub fn stated(&self) -> [Option<f64>; 6] {
-        self.stated
-    }
-
-    /// Mean and covariance of the six entries under the law, by quadrature.
-    #[must_use]
-    pub fn implied(&self) -> &EntryMoments {
-        &self.implied
     }
 
     /// Contradictions, and what has been left open.

@@ -8,8 +8,10 @@ pub(super) const OWN: f64 = 0.1;
 
 /// A law of scores: a mixture of the standard normal law, their own, and of others, in each of which the scores are independent. A score
 /// has another mean and standard deviation there; one that decides an event has it more often.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
 pub struct ScoreLaw {
+    /// How many scores it is of.
+    #[getset(get_copy = "pub")]
     scores: usize,
     /// The first is the own law.
     parts: Vec<Part>,
@@ -135,11 +137,6 @@ impl ScoreLaw {
         let all: f64 = parts.iter().map(|part| part.share).sum();
         parts.iter_mut().for_each(|part| part.share /= all);
         Self { scores: self.scores, parts }
-    }
-
-    /// How many scores it is of.
-    pub fn scores(&self) -> usize {
-        self.scores
     }
 
     /// Whether it is nothing but the own law.

@@ -35,18 +35,28 @@ const FEWEST: usize = 100;
 /// What is fitted is one normal law or a mixture of two, with independent scores: two, where the likelihood says that there
 /// are two ways, as to both limits of an absolute value. Standard deviations are kept between 0.3 and 3, and stay 1 unless they are surely
 /// another; means are shrunk by what they owe to chance (James & Stein 1961).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, getset::CopyGetters, getset::Getters)]
 pub struct ScoreSearch {
     per_level: usize,
     least: f64,
     /// The law of each score from which the search starts.
     start: Vec<Single>,
+    /// The law that their scores are to be drawn from; in the end, the law that was found.
+    #[getset(get = "pub")]
     law: ScoreLaw,
     stage: Stage,
+    /// The largest excess that a tenth of the runs of some level had, 0 at most; minus infinity before the first.
+    #[getset(get_copy = "pub")]
     level: f64,
+    /// Number of levels that were done.
+    #[getset(get_copy = "pub")]
     levels: usize,
     stalled: usize,
+    /// Number of runs that were done.
+    #[getset(get_copy = "pub")]
     evaluations: u64,
+    /// How many of them failed.
+    #[getset(get_copy = "pub")]
     failed: u64,
 }
 
@@ -128,11 +138,6 @@ impl ScoreSearch {
         if self.is_done() { 0 } else { self.per_level }
     }
 
-    /// The law that their scores are to be drawn from; in the end, the law that was found.
-    pub fn law(&self) -> &ScoreLaw {
-        &self.law
-    }
-
     /// Takes the runs that were asked for: the scores of each, and how far it is beyond the limit. The event is an excess of 0 or
     /// more; NaN is a run that failed.
     ///
@@ -204,26 +209,6 @@ impl ScoreSearch {
     /// Whether it came to the event.
     pub fn reached(&self) -> bool {
         matches!(self.stage, Stage::Done { reached: true })
-    }
-
-    /// The largest excess that a tenth of the runs of some level had, 0 at most; minus infinity before the first.
-    pub fn level(&self) -> f64 {
-        self.level
-    }
-
-    /// Number of levels that were done.
-    pub fn levels(&self) -> usize {
-        self.levels
-    }
-
-    /// Number of runs that were done.
-    pub fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
-    /// How many of them failed.
-    pub fn failed(&self) -> u64 {
-        self.failed
     }
 
     /// The excess that a tenth of the runs have, or the least that not all have; 0 at most, and none if all runs are alike. No less

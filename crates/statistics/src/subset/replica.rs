@@ -57,7 +57,7 @@ struct Level {
 /// assert!(estimate.interval().contains(0.0052));
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, getset::CopyGetters)]
 pub struct SubsetReplica {
     groups: usize,
     per_level: usize,
@@ -70,9 +70,14 @@ pub struct SubsetReplica {
     next_draw: u64,
     /// Those passed, without the event.
     levels: Vec<Level>,
+    /// Number of runs that were done.
+    #[getset(get_copy = "pub")]
     evaluations: u64,
+    /// How many of them failed.
+    #[getset(get_copy = "pub")]
     failed: u64,
-    /// Of the last level that was passed, or of the event.
+    /// The probability of the last level that was passed: of the event, if it was reached.
+    #[getset(get_copy = "pub")]
     probability: f64,
     /// Proposals and those accepted in the level at hand.
     moves: (u64, u64),
@@ -248,24 +253,9 @@ impl SubsetReplica {
         matches!(self.stage, Stage::Done { reached: true })
     }
 
-    /// The probability of the last level that was passed: of the event, if it was reached.
-    pub fn probability(&self) -> f64 {
-        self.probability
-    }
-
     /// Number of levels that were passed on the way to the event.
     pub fn levels(&self) -> usize {
         self.levels.len()
-    }
-
-    /// Number of runs that were done.
-    pub fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
-    /// How many of them failed.
-    pub fn failed(&self) -> u64 {
-        self.failed
     }
 
     /// The share of redrawn runs of the last level that stayed above it; none if there was no such level.

@@ -68,13 +68,15 @@ impl MomentsStatement {
 
 /// “Products within ± 50 kg·m² (3σ)”: deviations of I₁₂, I₁₃, I₂₃ from their nominal values, in
 /// body axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "file::Products", into = "file::Products")
 )]
+#[getset(get_copy = "pub")]
 pub struct ProductsStatement {
+    /// Standard deviations, kg·m².
     deviations: [f64; 3],
 }
 
@@ -91,23 +93,18 @@ impl ProductsStatement {
         let written = Written { part: Part::Products, unit: Unit::KG_M2, values, each, sigmas };
         Ok(Self { deviations: written.deviations()? })
     }
-
-    /// Standard deviations, kg·m².
-    #[must_use]
-    pub fn deviations(&self) -> [f64; 3] {
-        self.deviations
-    }
 }
 
 /// “Axes within 2°”: deviations of small turns about the principal axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "file::Axes", into = "file::Axes")
 )]
+#[getset(get_copy = "pub")]
 pub struct AxesStatement {
-    /// rad.
+    /// Standard deviations of the turns about principal axes 1, 2, 3, rad.
     deviations: [f64; 3],
 }
 
@@ -135,12 +132,6 @@ impl AxesStatement {
     fn written(values: [f64; 3], each: bool, sigmas: f64) -> Result<Self, StatementError> {
         let written = Written { part: Part::Axes, unit: Unit::DEG, values, each, sigmas };
         Ok(Self { deviations: written.deviations()?.map(f64::to_radians) })
-    }
-
-    /// Standard deviations of the turns about principal axes 1, 2, 3, rad.
-    #[must_use]
-    pub fn deviations(&self) -> [f64; 3] {
-        self.deviations
     }
 }
 
@@ -192,13 +183,15 @@ impl MassStatement {
 }
 
 /// “Centre of mass ± 10 mm”: the inertia was taken about a point that is off by that.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(try_from = "file::Centre", into = "file::Centre")
 )]
 pub struct CentreStatement {
+    /// Standard deviations along body axes 1, 2, 3, m.
+    #[getset(get_copy = "pub")]
     deviations: [f64; 3],
     arm: [f64; 3],
 }
@@ -222,12 +215,6 @@ impl CentreStatement {
             Some(index) => Err(StatementError::Arm { index, value: arm[index], most: LONGEST_ARM }),
             None => Ok(Self { deviations, arm }),
         }
-    }
-
-    /// Standard deviations along body axes 1, 2, 3, m.
-    #[must_use]
-    pub fn deviations(&self) -> [f64; 3] {
-        self.deviations
     }
 
     /// Variances of the six entries, (kg·m²)², in the order 11, 22, 33, 12, 13, 23.
