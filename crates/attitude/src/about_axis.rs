@@ -24,11 +24,14 @@ use rand_distr::{Distribution, StandardNormal};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[getset(get_copy = "pub")]
 pub struct AboutAxis {
     /// The attitude at the angle zero.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::unit"))]
     attitude: UnitQuaternion<f64>,
     /// The axis, in body components.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::unit"))]
     axis: Unit<Vector3<f64>>,
 }
 

@@ -58,7 +58,7 @@ pub enum FisherBinghamError {
 
 /// How a law is sampled; chosen at construction by the known shares of accepted proposals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Method {
     /// Gaussian proposals in a chart of the sphere, three coordinates at a time.
@@ -86,7 +86,14 @@ pub enum Method {
 /// # Limits
 /// Entries up to 1e14.
 #[derive(Clone, Debug, getset::CopyGetters)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Parameters", into = "Parameters")
+)]
 pub struct FisherBingham {
+    /// P and b, if the law was made of them.
+    given: Option<Box<(Matrix4<f64>, Vector4<f64>)>>,
     /// x = V y.
     axes: Matrix4<f64>,
     /// The density in y is ∝ exp(−½ Σ λ(y − c)²), |c| ≤ 1, λ > 0.
@@ -159,7 +166,8 @@ impl FisherBingham {
         let centre: [f64; 4] = std::array::from_fn(|j| b[j] / lambda[j]);
         let square: f64 = (0..4).map(|j| b[j] * centre[j]).sum();
         let slack = 1.0 - centre.iter().map(|c| c * c).sum::<f64>();
-        Ok(Self::centred(axes, lambda, centre, slack, 0.5 * (square + shift)))
+        let law = Self::centred(axes, lambda, centre, slack, 0.5 * (square + shift));
+        Ok(Self { given: Some(Box::new((precision, linear))), ..law })
     }
 
     /// From x = V y and the density ∝ exp(−½ Σ λ(y − c)²), with λ > 0, |c| ≤ 1 and `slack` = 1 − |c|².
@@ -174,6 +182,7 @@ impl FisherBingham {
         let contour = Box::new(Contour::new(lambda, centre, slack));
         let (mean, covariance) = contour.moments();
         Self {
+            given: None,
             axes,
             lambda,
             centre,
@@ -236,6 +245,9 @@ impl FisherBingham {
     /// given.
     #[must_use]
     pub fn precision(&self) -> Matrix4<f64> {
+        if let Some(given) = &self.given {
+            return given.0;
+        }
         let square: f64 = (0..4).map(|j| self.lambda[j] * self.centre[j].powi(2)).sum();
         let shift = 2.0 * self.ln_offset - square;
         let own = Vector4::from(self.lambda.map(|lambda| lambda - shift));
@@ -245,6 +257,9 @@ impl FisherBingham {
     /// The vector b of the law.
     #[must_use]
     pub fn linear(&self) -> Vector4<f64> {
+        if let Some(given) = &self.given {
+            return given.1;
+        }
         let own: [f64; 4] = std::array::from_fn(|j| self.lambda[j] * self.centre[j]);
         self.axes * Vector4::from(own)
     }
@@ -470,6 +485,31 @@ pub(crate) fn centring_shift<const N: usize>(eigenvalues: [f64; N], b: [f64; N])
         if square(middle) > 1.0 { low = middle } else { high = middle }
     }
     high - floor
+}
+
+/// The serialized form: P by rows, and b.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parameters {
+    precision: [[f64; 4]; 4],
+    linear: [f64; 4],
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Parameters> for FisherBingham {
+    type Error = FisherBinghamError;
+
+    fn try_from(p: Parameters) -> Result<Self, FisherBinghamError> {
+        Self::new(Matrix4::from(p.precision).transpose(), p.linear.into())
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<FisherBingham> for Parameters {
+    fn from(law: FisherBingham) -> Self {
+        Self { precision: law.precision().transpose().into(), linear: law.linear().into() }
+    }
 }
 
 #[cfg(test)]

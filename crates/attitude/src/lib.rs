@@ -47,6 +47,8 @@ mod jacobi;
 mod mean_half;
 mod quadrature;
 mod rcg;
+#[cfg(feature = "serde")]
+mod read;
 mod uniform;
 mod vector;
 mod ways_in;

@@ -71,11 +71,6 @@ pub enum BasiliskError {
 /// `InertiaTensorDispersion.generate` in `src/utilities/MonteCarlo/Dispersions.py` and `euler3212C` in
 /// `RigidBodyKinematics.py` of AVSLab/basilisk. Here as a baseline.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parameters", into = "Parameters")
-)]
 pub struct BasiliskDispersion {
     /// The nominal matrix.
     #[getset(get = "pub")]
@@ -297,42 +292,21 @@ impl NamedModel for BasiliskDispersion {
     }
 }
 
-/// The serialized form.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Parameters {
-    nominal_kg_m2: InertiaMatrix,
-    diagonal_deviation_kg_m2: f64,
-    diagonal_bounds_kg_m2: [f64; 2],
-    angle_deviation_rad: f64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Parameters> for BasiliskDispersion {
-    type Error = BasiliskError;
-
-    fn try_from(p: Parameters) -> Result<Self, Self::Error> {
-        Self::new(
-            p.nominal_kg_m2,
-            p.diagonal_deviation_kg_m2,
-            p.diagonal_bounds_kg_m2,
-            p.angle_deviation_rad,
-        )
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<BasiliskDispersion> for Parameters {
-    fn from(law: BasiliskDispersion) -> Self {
-        Self {
-            nominal_kg_m2: law.nominal,
-            diagonal_deviation_kg_m2: law.diagonal_deviation,
-            diagonal_bounds_kg_m2: law.bounds,
-            angle_deviation_rad: law.angle_deviation,
-        }
-    }
-}
+crate::written!(
+    BasiliskDispersion,
+    |law| {
+        nominal_kg_m2: InertiaMatrix = law.nominal,
+        diagonal_deviation_kg_m2: f64 = law.diagonal_deviation,
+        diagonal_bounds_kg_m2: [f64; 2] = law.bounds,
+        angle_deviation_rad: f64 = law.angle_deviation,
+    },
+    BasiliskDispersion::new(
+        nominal_kg_m2,
+        diagonal_deviation_kg_m2,
+        diagonal_bounds_kg_m2,
+        angle_deviation_rad,
+    )?
+);
 
 #[cfg(test)]
 mod tests {
@@ -426,14 +400,5 @@ mod tests {
         assert!(with(1.0, NONE, 10.0).contains("rad"));
         assert!(with(1.0, [1.0, -1.0], 0.1).contains("bounds"));
         assert!(with(1.0, [f64::NAN, 1.0], 0.1).contains("bounds"));
-    }
-
-    #[cfg(feature = "serde")]
-    #[test]
-    fn serde_goes_through_the_constructor() {
-        let law = BasiliskDispersion::new(payload(), 0.25, NONE, 0.1).unwrap();
-        let json = serde_json::to_string(&law).unwrap();
-        assert_eq!(serde_json::from_str::<BasiliskDispersion>(&json).unwrap(), law);
-        assert!(serde_json::from_str::<BasiliskDispersion>(&json.replace("0.25", "-1")).is_err());
     }
 }

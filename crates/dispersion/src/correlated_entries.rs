@@ -5,11 +5,9 @@ use nalgebra::{SMatrix, SVector};
 use rand::Rng;
 use rand_distr::Distribution;
 
-#[cfg(feature = "serde")]
-use crate::entry_moments::rows;
 use crate::named_model::{NamedModel, NoMatch, inertia_law};
 use crate::realizable_only::Conditionable;
-use crate::semidefinite::{Covariance, CovarianceError};
+use crate::semidefinite::{Covariance, CovarianceError, of_rows};
 use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
 
 /// What files call the covariance.
@@ -29,11 +27,6 @@ const MAX_VARIANCE: f64 = 1e300;
 /// None: the mean and the covariance may be those of real bodies, yet Gaussian tails know no
 /// boundary. Draws are [`InertiaMatrix`]: ask [`InertiaMatrix::is_realizable`].
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parameters", into = "Parameters")
-)]
 pub struct CorrelatedEntries {
     /// Means of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃, kg·m².
     #[getset(get_copy = "pub")]
@@ -101,8 +94,7 @@ impl NamedModel for CorrelatedEntries {
 
     fn about(nominal: &Inertia, given: &ModelParameters) -> Result<Self, ModelParameterError> {
         let rows = given.covariance_kg2_m4.ok_or(ModelParameterError::missing(KEY))?;
-        Self::new(*nominal, SMatrix::from_fn(|i, j| rows[i][j]))
-            .map_err(|e| ModelParameterError::new(KEY, &e))
+        Self::new(*nominal, of_rows(rows)).map_err(|e| ModelParameterError::new(KEY, &e))
     }
 
     fn matched(
@@ -122,35 +114,14 @@ impl Conditionable for CorrelatedEntries {
         "mean and covariance of the six entries before rejection";
 }
 
-/// The serialized form.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Parameters {
-    mean_kg_m2: [[f64; 3]; 3],
-    covariance_kg2_m4: [[f64; 6]; 6],
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Parameters> for CorrelatedEntries {
-    type Error = Box<dyn std::error::Error>;
-
-    fn try_from(p: Parameters) -> Result<Self, Self::Error> {
-        let mean = InertiaMatrix::try_from(p.mean_kg_m2)?;
-        Ok(Self::new(mean, SMatrix::from_fn(|i, j| p.covariance_kg2_m4[i][j]))?)
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<CorrelatedEntries> for Parameters {
-    fn from(law: CorrelatedEntries) -> Self {
-        let c = law.covariance.matrix();
-        Self {
-            mean_kg_m2: rows(law.mean),
-            covariance_kg2_m4: std::array::from_fn(|i| std::array::from_fn(|j| c[(i, j)])),
-        }
-    }
-}
+crate::written!(
+    CorrelatedEntries,
+    |law| {
+        mean_kg_m2: [[f64; 3]; 3] = crate::entry_moments::rows(law.mean),
+        covariance_kg2_m4: [[f64; 6]; 6] = law.covariance.rows(),
+    },
+    CorrelatedEntries::new(InertiaMatrix::try_from(mean_kg_m2)?, of_rows(covariance_kg2_m4))?
+);
 
 #[cfg(test)]
 mod tests {
@@ -189,14 +160,5 @@ mod tests {
         assert!(error.contains("(1, 1)"), "{error}");
         let huge = SMatrix::<f64, 6, 6>::identity() * (MAX_ENTRY * 0.5);
         assert!(CorrelatedEntries::new(mean(), huge).is_err());
-    }
-
-    #[cfg(feature = "serde")]
-    #[test]
-    fn serde_goes_through_the_constructor() {
-        let law = CorrelatedEntries::new(mean(), SMatrix::identity()).unwrap();
-        let json = serde_json::to_string(&law).unwrap();
-        assert_eq!(serde_json::from_str::<CorrelatedEntries>(&json).unwrap(), law);
-        assert!(serde_json::from_str::<CorrelatedEntries>(&json.replace("[[1", "[[-1")).is_err());
     }
 }

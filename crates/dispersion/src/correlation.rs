@@ -63,6 +63,22 @@ pub struct Correlation {
     rows: Vec<Vec<f64>>,
 }
 
+crate::written!(
+    Correlation,
+    |own| { members: Vec<usize> = own.members.clone(), factor: Vec<Vec<f64>> = own.rows.clone(), },
+    {
+        let is_row = |(i, row): (usize, &Vec<f64>)| {
+            let square = row.iter().map(|x| x * x).sum::<f64>();
+            row.len() == i + 1 && row[i] >= 0.0 && (square - 1.0).abs() < 1e-6
+        };
+        let fit = factor.len() == members.len() && factor.iter().enumerate().all(is_row);
+        if !(fit && members.is_sorted_by(|a, b| a < b)) {
+            return Err("factor: it must be lower triangular, with a row of length one for each member".into());
+        }
+        Correlation { members, rows: factor }
+    }
+);
+
 impl Correlation {
     /// Coefficients of pairs of quantities, which are numbered from 0; others are not correlated.
     ///

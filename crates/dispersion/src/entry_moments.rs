@@ -55,7 +55,6 @@ impl<I: IntoIterator<Item = (f64, UnitQuaternion<f64>)> + Clone> Expectation for
 /// independent, its moments need no more than the mean and covariance of K and, of the law of q,
 /// expectations of degree 4 and 8 in the quaternion.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EntryMoments {
     /// E I₁₁, E I₂₂, E I₃₃, E I₁₂, E I₁₃, E I₂₃, kg·m².
     #[getset(get_copy = "pub")]
@@ -181,6 +180,12 @@ impl EntryMoments {
         std::array::from_fn(|e| variances[e].max(0.0).sqrt())
     }
 }
+
+crate::written!(
+    EntryMoments,
+    |moments| { mean: [f64; 6] = moments.mean, covariance: SMatrix<f64, 6, 6> = moments.covariance, },
+    EntryMoments { mean, covariance: crate::semidefinite::computed(covariance)? }
+);
 
 /// The rows of a symmetric matrix of entries.
 pub(crate) fn rows([i11, i22, i33, i12, i13, i23]: [f64; 6]) -> [[f64; 3]; 3] {

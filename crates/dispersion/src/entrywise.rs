@@ -6,8 +6,6 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::fmt::Display;
 
-#[cfg(feature = "serde")]
-use crate::entry_moments::rows;
 use crate::ln_sum::ln_product;
 use crate::named_model::{NamedModel, NoMatch, inertia_law};
 use crate::normal::LN_ROOT_TAU;
@@ -43,11 +41,6 @@ pub enum EntrywiseError {
 /// None: draws are whatever comes out, which is why they are [`InertiaMatrix`] and not
 /// [`Inertia`](gyradius_inertia::Inertia). Ask [`InertiaMatrix::is_realizable`].
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parameters", into = "Parameters")
-)]
 #[getset(get_copy = "pub")]
 pub struct EntrywiseGaussian {
     /// Means of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃, kg·m².
@@ -168,31 +161,14 @@ fn symmetric(m: &[[f64; 3]; 3]) -> Result<[f64; 6], String> {
     }
 }
 
-/// The serialized form.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Parameters {
-    mean_kg_m2: [[f64; 3]; 3],
-    deviation_kg_m2: [[f64; 3]; 3],
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Parameters> for EntrywiseGaussian {
-    type Error = Box<dyn std::error::Error>;
-
-    fn try_from(p: Parameters) -> Result<Self, Self::Error> {
-        let mean = InertiaMatrix::try_from(p.mean_kg_m2)?;
-        Ok(Self::new(mean, symmetric(&p.deviation_kg_m2)?)?)
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<EntrywiseGaussian> for Parameters {
-    fn from(law: EntrywiseGaussian) -> Self {
-        Self { mean_kg_m2: rows(law.mean), deviation_kg_m2: rows(law.deviations) }
-    }
-}
+crate::written!(
+    EntrywiseGaussian,
+    |law| {
+        mean_kg_m2: [[f64; 3]; 3] = crate::entry_moments::rows(law.mean),
+        deviation_kg_m2: [[f64; 3]; 3] = crate::entry_moments::rows(law.deviations),
+    },
+    EntrywiseGaussian::new(InertiaMatrix::try_from(mean_kg_m2)?, symmetric(&deviation_kg_m2)?)?
+);
 
 #[cfg(test)]
 mod tests {
@@ -209,17 +185,6 @@ mod tests {
             let error = EntrywiseGaussian::new(mean(), [1.0, 1.0, 1.0, 1.0, bad, 1.0]).unwrap_err();
             assert!(error.to_string().contains("I13"), "{error}");
         }
-    }
-
-    #[cfg(feature = "serde")]
-    #[test]
-    fn serde_goes_through_the_constructor() {
-        let law = EntrywiseGaussian::new(mean(), [0.5; 6]).unwrap();
-        let json = serde_json::to_string(&law).unwrap();
-        assert_eq!(serde_json::from_str::<EntrywiseGaussian>(&json).unwrap(), law);
-        let bad = json.replacen("0.5,0.5", "-0.5,0.5", 1);
-        assert_ne!(bad, json);
-        assert!(serde_json::from_str::<EntrywiseGaussian>(&bad).is_err());
     }
 
     #[test]

@@ -103,6 +103,15 @@ pub struct ModelDraw {
     pub axes: Option<UnitQuaternion<f64>>,
 }
 
+crate::written!(
+    ModelDraw,
+    |draw| {
+        inertia: InertiaMatrix = draw.inertia,
+        axes: Option<[f64; 4]> = draw.axes.map(|axes| axes.coords.into()),
+    },
+    ModelDraw { inertia, axes: axes.map(crate::axes::unit).transpose()? }
+);
+
 impl ModelDraw {
     /// The principal moments of this draw about the axes of another; itself if one of them has no axes.
     #[must_use]

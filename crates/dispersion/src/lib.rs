@@ -81,6 +81,7 @@ mod semidefinite;
 mod truncated_draw;
 mod truncated_normal;
 mod wishart;
+mod written;
 
 pub use any_body::{AnyBody, AnyBodyError};
 pub use axes::{AttitudeMoments, AxesLaw, FixedAttitude, JacobianTwice, JacobianTwiceError};

@@ -8,7 +8,7 @@ use rand_distr::Distribution;
 use crate::gaussian_monomials::{log_cholesky_entries, moments};
 use crate::named_model::{NamedModel, NoMatch, inertia_law};
 use crate::second_moment_matrix::{body, inertia_covariance, inertia_map};
-use crate::semidefinite::{Covariance, CovarianceError};
+use crate::semidefinite::{Covariance, CovarianceError, of_rows};
 use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
 
 /// Draws farther out than this many deviations have probability 1e-349.
@@ -87,11 +87,6 @@ pub enum LogCholeskyGaussianError {
 /// infinity. Covariances of the entries are differences of products: deviations below 1e-7 of the
 /// moments are rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parameters", into = "Parameters")
-)]
 pub struct LogCholeskyGaussian {
     mean: SVector<f64, 6>,
     covariance: Covariance<6>,
@@ -273,8 +268,7 @@ impl NamedModel for LogCholeskyGaussian {
     fn about(nominal: &Inertia, given: &ModelParameters) -> Result<Self, ModelParameterError> {
         const KEY: &str = "log_cholesky_covariance";
         let rows = given.log_cholesky_covariance.ok_or(ModelParameterError::missing(KEY))?;
-        Self::about(nominal, SMatrix::from_fn(|i, j| rows[i][j]))
-            .map_err(|e| ModelParameterError::new(KEY, &e))
+        Self::about(nominal, of_rows(rows)).map_err(|e| ModelParameterError::new(KEY, &e))
     }
 
     fn matched(
@@ -290,34 +284,14 @@ impl NamedModel for LogCholeskyGaussian {
     }
 }
 
-/// The serialized form.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Parameters {
-    log_cholesky_mean: [f64; 6],
-    log_cholesky_covariance: [[f64; 6]; 6],
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Parameters> for LogCholeskyGaussian {
-    type Error = LogCholeskyGaussianError;
-
-    fn try_from(p: Parameters) -> Result<Self, Self::Error> {
-        Self::new(p.log_cholesky_mean, SMatrix::from_fn(|i, j| p.log_cholesky_covariance[i][j]))
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<LogCholeskyGaussian> for Parameters {
-    fn from(law: LogCholeskyGaussian) -> Self {
-        let c = law.covariance.matrix();
-        Self {
-            log_cholesky_mean: law.mean.into(),
-            log_cholesky_covariance: std::array::from_fn(|i| std::array::from_fn(|j| c[(i, j)])),
-        }
-    }
-}
+crate::written!(
+    LogCholeskyGaussian,
+    |law| {
+        log_cholesky_mean: [f64; 6] = law.mean.into(),
+        log_cholesky_covariance: [[f64; 6]; 6] = law.covariance.rows(),
+    },
+    LogCholeskyGaussian::new(log_cholesky_mean, of_rows(log_cholesky_covariance))?
+);
 
 #[cfg(test)]
 mod tests;

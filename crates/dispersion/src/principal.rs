@@ -46,6 +46,16 @@ pub struct PrincipalDraw {
     pub axes: UnitQuaternion<f64>,
 }
 
+crate::written!(
+    PrincipalDraw,
+    |draw| {
+        inertia: Inertia = draw.inertia,
+        roots: RootSecondMoments = draw.roots,
+        axes: [f64; 4] = draw.axes.coords.into(),
+    },
+    PrincipalDraw { inertia, roots, axes: crate::axes::unit(axes)? }
+);
+
 impl<K, A> PrincipalDispersion<K, A> {
     /// From a law of the roots and a law of the axes.
     pub fn new(roots: K, axes: A) -> Self {

@@ -32,7 +32,6 @@ pub enum SecondMomentStatisticsError {
 /// All that the mean and covariance of the entries of an inertia matrix depend on, as far as the law
 /// of the roots goes: see [`EntryMoments`](crate::EntryMoments).
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SecondMomentStatistics {
     /// E K₁, E K₂, E K₃, kg·m².
     #[getset(get_copy = "pub")]
@@ -102,6 +101,15 @@ impl SecondMomentStatistics {
     }
 }
 
+crate::written!(
+    SecondMomentStatistics,
+    |k| { mean: [f64; 3] = k.mean, covariance: Matrix3<f64> = k.covariance, },
+    {
+        SecondMomentStatistics::new(mean, Matrix3::zeros())?;
+        SecondMomentStatistics { mean, covariance: crate::semidefinite::computed(covariance)? }
+    }
+);
+
 /// A law of the roots k of which the mean and covariance of K = k² are known, and where it has one, the density of K.
 ///
 /// Implemented by every law of roots here but [`IndependentRoots`](crate::IndependentRoots) of laws
@@ -163,6 +171,7 @@ impl<T: RootMoments + ?Sized> RootMoments for &T {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WithMoments<L> {
     /// The law.
     #[getset(get = "pub")]

@@ -122,6 +122,12 @@ impl<const N: usize> Covariance<N> {
         &self.matrix
     }
 
+    /// Its rows, as they are written.
+    #[cfg(feature = "serde")]
+    pub(crate) fn rows(&self) -> [[f64; N]; N] {
+        self.matrix.transpose().into()
+    }
+
     /// The logarithm of the density of N(0, A); none where A is singular.
     pub(crate) fn ln_density(&self, x: &SVector<f64, N>) -> Option<f64> {
         let Density { rows, ln_peak } = self.density.as_ref()?;
@@ -156,6 +162,36 @@ impl<const N: usize> Density<N> {
         }
         Self { rows, ln_peak }
     }
+}
+
+/// The matrix of rows that were read.
+pub(crate) fn of_rows<const N: usize>(rows: [[f64; N]; N]) -> SMatrix<f64, N, N> {
+    SMatrix::<f64, N, N>::from(rows).transpose()
+}
+
+/// A covariance that was computed and is read back: unlike one that a user states, it may be off one by rounding.
+#[cfg(feature = "serde")]
+pub(crate) fn computed<const N: usize>(
+    matrix: SMatrix<f64, N, N>,
+) -> Result<SMatrix<f64, N, N>, CovarianceError> {
+    let rounding = ROUNDING * matrix.amax();
+    for row in 0..N {
+        for column in 0..=row {
+            let (lower, upper) = (matrix[(row, column)], matrix[(column, row)]);
+            let most =
+                matrix[(row, row)].max(0.0).sqrt() * matrix[(column, column)].max(0.0).sqrt();
+            let max = most + rounding + ROUNDING * most;
+            if !(lower.abs() <= max && lower.is_finite()) {
+                let (row, column) = (row + 1, column + 1);
+                return Err(CovarianceError::Entry { row, column, value: lower, max });
+            }
+            if !((lower - upper).abs() <= rounding) {
+                let (row, column) = (column + 1, row + 1);
+                return Err(CovarianceError::NotSymmetric { row, column, upper, lower });
+            }
+        }
+    }
+    Ok(matrix)
 }
 
 /// A root, and the order of its rows.

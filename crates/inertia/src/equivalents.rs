@@ -8,6 +8,11 @@ use crate::{MassProperties, Shape, ShapeError};
 ///
 /// Sizes are along the principal axes, in the order of [`PrincipalAxes`](crate::PrincipalAxes).
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct EquivalentSolid {
     /// The solid in its own frame, which is principal.
     #[getset(get_copy = "pub")]
@@ -17,6 +22,7 @@ pub struct EquivalentSolid {
     /// The attitude q that takes body components to components along the solid's axes:
     /// I_B = R(q)ᵀ I_P R(q).
     #[getset(get_copy = "pub")]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::unit"))]
     attitude: UnitQuaternion<f64>,
 }
 

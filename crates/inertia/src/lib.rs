@@ -42,6 +42,8 @@ mod mesh;
 mod polyhedron;
 mod principal;
 mod pseudo_inertia;
+#[cfg(feature = "serde")]
+mod read;
 mod region;
 mod repair;
 mod report;

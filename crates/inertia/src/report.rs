@@ -7,7 +7,7 @@ use crate::{InertiaMatrix, MAX_ENTRY, RELATIVE_TOLERANCE};
 
 /// Which axes moments of inertia belong to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Axes {
     /// The axes the matrix is given in.
     Given,
@@ -17,7 +17,7 @@ pub enum Axes {
 
 /// One reason why a matrix is not the inertia of any body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Fault {
     /// An entry is NaN, infinite or too large.
@@ -27,6 +27,7 @@ pub enum Fault {
         /// Column, from 1.
         column: usize,
         /// The entry, kg·m².
+        #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::or_nan"))]
         value: f64,
     },
     /// Entries across the diagonal differ.
@@ -102,7 +103,7 @@ pub enum Fault {
 /// );
 /// ```
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[getset(get_copy = "pub")]
 pub struct RealizabilityReport {
     /// The second mass moments K_k about the principal axes, with their signs, kg·m²; none where an

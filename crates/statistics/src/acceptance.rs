@@ -39,8 +39,7 @@ use crate::{Confidence, StatisticsError, law};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[getset(get_copy = "pub")]
 pub struct Acceptance {
     /// The share of flights that must succeed, p.
@@ -48,6 +47,12 @@ pub struct Acceptance {
     /// The confidence, c.
     confidence: Confidence,
 }
+
+crate::checked::checked!(
+    #[serde(deny_unknown_fields)]
+    Acceptance { probability: f64, confidence: Confidence },
+    |read| Acceptance::new(read.probability, read.confidence).map(drop)
+);
 
 impl Acceptance {
     /// At least a share `probability` of the flights succeeds, with this confidence.
@@ -162,24 +167,6 @@ impl Rule for Acceptance {
 
     fn not_met(&self, failures: u64, runs: u64) -> bool {
         law::at_least(failures, runs, self.failure_share(), self.probability) <= self.risk()
-    }
-}
-
-/// What is read before it is checked.
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Unchecked {
-    probability: f64,
-    confidence: Confidence,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Unchecked> for Acceptance {
-    type Error = StatisticsError;
-
-    fn try_from(read: Unchecked) -> Result<Self, StatisticsError> {
-        Self::new(read.probability, read.confidence)
     }
 }
 

@@ -35,14 +35,19 @@ use crate::{Confidence, Interval, StatisticsError, error, law};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ConfidenceSequence {
     about: f64,
     /// The confidence with which all intervals hold together.
     #[getset(get_copy = "pub")]
     confidence: Confidence,
 }
+
+crate::checked::checked!(
+    #[serde(deny_unknown_fields)]
+    ConfidenceSequence { about: f64, confidence: Confidence },
+    |read| ConfidenceSequence::about(read.about, read.confidence).map(drop)
+);
 
 impl ConfidenceSequence {
     /// Of a share of which nothing is known.
@@ -95,24 +100,6 @@ impl ConfidenceSequence {
             if events > 0.0 { law::bisect(0.0, seen, refuted) } else { 0.0 },
             if events < runs { law::bisect(seen, 1.0, |share| !refuted(share)) } else { 1.0 },
         ]
-    }
-}
-
-/// What is read before it is checked.
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Unchecked {
-    about: f64,
-    confidence: Confidence,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Unchecked> for ConfidenceSequence {
-    type Error = StatisticsError;
-
-    fn try_from(read: Unchecked) -> Result<Self, StatisticsError> {
-        Self::about(read.about, read.confidence)
     }
 }
 

@@ -76,6 +76,13 @@ pub struct Deviation {
     kurtosis: f64,
 }
 
+crate::checked::checked!(Deviation { n: usize, standard_deviation: f64, kurtosis: f64 }, |read| {
+    crate::error::belong(
+        read.n >= FEWEST && read.standard_deviation > 0.0 && read.kurtosis > 0.0,
+        "sample",
+    )
+});
+
 impl Deviation {
     /// The deviation of a sample of five values or more that are not all equal.
     ///

@@ -213,6 +213,12 @@ pub enum StatisticsError {
         /// The replicas given.
         replicas: usize,
     },
+    /// Numbers that were read are not those of a result.
+    #[error("the numbers do not belong together: no {of} has them")]
+    Apart {
+        /// What they should be of.
+        of: &'static str,
+    },
     /// The number of groups of inputs is out of range.
     #[error("{groups} groups of inputs; there must be 1 to {most}")]
     GroupCount {
@@ -237,6 +243,12 @@ pub enum StatisticsError {
 fn plain(value: f64) -> String {
     let text = format!("{value:?}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// Refuses numbers that were read unless they belong together.
+#[cfg(feature = "serde")]
+pub(crate) fn belong(together: bool, of: &'static str) -> Result<(), StatisticsError> {
+    if together { Ok(()) } else { Err(StatisticsError::Apart { of }) }
 }
 
 /// The number, if it is between 0 and 1.

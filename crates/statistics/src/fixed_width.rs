@@ -24,10 +24,15 @@ use crate::{Confidence, StatisticsError, law};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FixedWidth {
     within: f64,
     confidence: Confidence,
 }
+
+crate::checked::checked!(FixedWidth { within: f64, confidence: Confidence }, |read| {
+    FixedWidth::new(read.within, read.confidence).map(drop)
+});
 
 impl FixedWidth {
     /// Fewer runs are never enough.

@@ -16,6 +16,10 @@ pub struct GoodnessOfFit {
     p_value: f64,
 }
 
+crate::checked::checked!(GoodnessOfFit { statistic: f64, p_value: f64 }, |read| {
+    crate::error::belong(read.statistic >= 0.0 && (0.0..=1.0).contains(&read.p_value), "test")
+});
+
 impl GoodnessOfFit {
     /// Kolmogorov–Smirnov test against a distribution function: `D = sup|F_n − F|`, and the
     /// p-value of the limiting law at `D·(√n + 0.12 + 0.11/√n)` (Stephens 1970,

@@ -31,6 +31,11 @@ pub struct Histogram {
     overflow: u64,
 }
 
+crate::checked::checked!(
+    Histogram { edges: BinEdges, counts: Vec<u64>, underflow: u64, overflow: u64 },
+    |read| crate::error::belong(read.counts.len() == read.edges.bins(), "histogram")
+);
+
 impl Histogram {
     /// The counts of the sample between the edges.
     pub fn new(sample: &SortedSample, edges: &BinEdges) -> Self {

@@ -4,6 +4,7 @@ mod acceptance;
 #[cfg(test)]
 mod binomial_sums;
 mod centred;
+mod checked;
 mod confidence_sequence;
 mod deviation;
 mod edges;

@@ -34,7 +34,7 @@ use crate::{QuantileCells, StatisticsError};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[getset(get_copy = "pub")]
 pub struct PairSeparation {
     /// The deviance of the pair less the larger deviance of the two: 0 or more.
@@ -42,6 +42,11 @@ pub struct PairSeparation {
     /// The probability of so much by chance, if one of the inputs added nothing to the other.
     p_value: f64,
 }
+
+crate::checked::checked!(PairSeparation { gain: f64, p_value: f64 }, |read| crate::error::belong(
+    read.gain >= 0.0 && (0.0..=1.0).contains(&read.p_value),
+    "test"
+));
 
 impl PairSeparation {
     /// Of the cells of two inputs and whether each run failed: as many runs of each.

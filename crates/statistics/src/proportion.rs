@@ -23,6 +23,12 @@ pub struct Proportion {
     trials: u64,
 }
 
+crate::checked::checked!(Proportion { successes: u64, trials: u64 }, |read| Proportion::new(
+    read.successes,
+    read.trials
+)
+.map(drop));
+
 impl Proportion {
     /// The most trials, up to which the quantiles of the beta law are tested.
     pub const MAX_TRIALS: u64 = MAX_TRIALS;

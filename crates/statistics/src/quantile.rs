@@ -15,8 +15,8 @@ use crate::{Confidence, Interval, StatisticsError, law};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(transparent))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Vec<f64>", into = "Vec<f64>"))]
 pub struct SortedSample(Vec<f64>);
 
 impl SortedSample {
@@ -146,6 +146,20 @@ pub(crate) fn between(a: f64, b: f64, t: f64) -> f64 {
     let value =
         if span.is_finite() { a + t * span } else { 2.0 * (a / 2.0 + t * (b / 2.0 - a / 2.0)) };
     value.clamp(a, b)
+}
+
+impl TryFrom<Vec<f64>> for SortedSample {
+    type Error = StatisticsError;
+
+    fn try_from(values: Vec<f64>) -> Result<Self, StatisticsError> {
+        Self::new(&values)
+    }
+}
+
+impl From<SortedSample> for Vec<f64> {
+    fn from(sample: SortedSample) -> Self {
+        sample.0
+    }
 }
 
 #[cfg(test)]

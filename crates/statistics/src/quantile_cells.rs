@@ -16,12 +16,20 @@ use crate::error::{MAX_BINS, validate};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, getset::CopyGetters)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct QuantileCells {
     /// Number of cells, those without a value too.
     #[getset(get_copy = "pub")]
     cells: usize,
     of_values: Vec<u16>,
 }
+
+crate::checked::checked!(
+    QuantileCells { cells: usize, of_values: Vec<u16> },
+    |read| crate::error::belong((1..=MAX_BINS).contains(&read.cells)
+            && !read.of_values.is_empty()
+            && read.of_values.iter().all(|cell| usize::from(*cell) < read.cells), "sample")
+);
 
 impl QuantileCells {
     /// So many cells of a sample.

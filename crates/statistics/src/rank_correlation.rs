@@ -18,7 +18,7 @@ use crate::{Confidence, Estimate, Interval, StatisticsError, law};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[getset(get_copy = "pub")]
 pub struct RankCorrelation {
     /// Number of pairs.
@@ -26,6 +26,11 @@ pub struct RankCorrelation {
     /// The correlation.
     value: f64,
 }
+
+crate::checked::checked!(RankCorrelation { n: usize, value: f64 }, |read| crate::error::belong(
+    read.n >= 4 && read.value.abs() <= 1.0,
+    "correlation"
+));
 
 impl RankCorrelation {
     /// Of the pairs of two columns.

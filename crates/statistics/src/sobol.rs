@@ -205,7 +205,7 @@ impl SobolSums {
 
 /// The indices of all groups.
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[getset(get_copy = "pub")]
 pub struct SobolIndices {
     /// Number of base runs, those with missing outputs too.
@@ -217,6 +217,12 @@ pub struct SobolIndices {
     #[getset(skip)]
     groups: Vec<SobolIndex>,
 }
+
+crate::checked::checked!(
+    SobolIndices { runs: u64, mean: f64, standard_deviation: f64, groups: Vec<SobolIndex> },
+    |read| crate::error::belong(read.standard_deviation >= 0.0
+            && read.groups.iter().all(|group| group.left_out.checked_add(group.runs) == Some(read.runs)), "study")
+);
 
 impl SobolIndices {
     /// Variance of the same, in the unit of the output squared; infinite beyond `f64`.

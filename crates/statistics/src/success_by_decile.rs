@@ -70,7 +70,7 @@ impl SuccessByDecile {
 
 /// Runs whose input stands in one tenth of its values.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[getset(get_copy = "pub")]
 pub struct Tenth {
     /// The least value of the input.
@@ -84,6 +84,14 @@ pub struct Tenth {
     /// The share of failures, with the [interval of Clopper and Pearson](Proportion::interval).
     interval: Interval,
 }
+
+crate::checked::checked!(
+    Tenth { least: f64, greatest: f64, runs: u64, failures: u64, interval: Interval },
+    |read| crate::error::belong(
+        read.least <= read.greatest && read.runs > 0 && read.failures <= read.runs,
+        "tenth"
+    )
+);
 
 #[cfg(test)]
 mod tests {

@@ -15,6 +15,8 @@ mod tests;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 use std::fmt;
 
+#[cfg(feature = "serde")]
+use crate::read::{covariance, or_infinite};
 use crate::{RadiallyConstrainedGaussian, fisher_bingham::left_multiplication};
 use centered::Centered;
 use climb::Climb;
@@ -74,7 +76,11 @@ pub enum FitError {
 
 /// Which laws a fit chooses among. Each contains those before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum Family {
     /// The smallest of [`Bingham`](Self::Bingham), [`Aligned`](Self::Aligned) and
@@ -89,6 +95,7 @@ pub enum Family {
     /// 9 parameters.
     AlignedWith {
         /// The radial variance, from 1e-14 to 1e14, or infinite, which is Bingham's law.
+        #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
         radial_variance: f64,
     },
     /// The mean is a principal axis of the covariance, 10 parameters.
@@ -100,30 +107,39 @@ pub enum Family {
 /// What the attitudes say of the radial variance s = mᵀΣm, the variance of the Gaussian in ℝ⁴ along
 /// its mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum RadialVariance {
     /// It has an estimate, and a finite interval of values that the attitudes allow.
     Determined {
         /// The most likely value.
+        #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
         value: f64,
         /// Lower end of the 95 % interval.
+        #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
         low: f64,
         /// Upper end of the 95 % interval.
+        #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
         high: f64,
     },
     /// Every value from `low` on fits the attitudes, infinity included.
     Undetermined {
         /// Lower end of the 95 % interval.
+        #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
         low: f64,
     },
     /// It has an estimate, infinite perhaps, but no interval: [`Fit::no_intervals`] says why.
     Estimated {
         /// The most likely value.
+        #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
         value: f64,
     },
     /// It was given.
-    Given(f64),
+    Given(#[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))] f64),
 }
 
 impl fmt::Display for RadialVariance {
@@ -152,7 +168,7 @@ impl fmt::Display for RadialVariance {
 
 /// How the search for the maximum has ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Convergence {
     /// Whether a maximum was reached.
     pub converged: bool,
@@ -164,7 +180,7 @@ pub struct Convergence {
 
 /// A law fitted to attitudes: see [`RadiallyConstrainedGaussian::fit`].
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fit {
     /// The fitted law.
     #[getset(get = "pub")]
@@ -183,7 +199,10 @@ pub struct Fit {
     /// Covariance of small turns of the body about the mean, in rad², in body axes: four times the
     /// inverse of the tangent block of Σ⁻¹. It is the P of
     /// [`from_rotation_covariance`](RadiallyConstrainedGaussian::from_rotation_covariance).
-    #[cfg_attr(feature = "serde", serde(rename = "turn_covariance_rad2"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(rename = "turn_covariance_rad2", deserialize_with = "covariance")
+    )]
     #[getset(get_copy = "pub")]
     turn_covariance: Matrix3<f64>,
     errors: Result<Errors, NoIntervals>,
@@ -193,9 +212,12 @@ pub struct Fit {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Errors {
-    #[cfg_attr(feature = "serde", serde(rename = "mean_covariance_rad2"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(rename = "mean_covariance_rad2", deserialize_with = "covariance")
+    )]
     mean: Matrix3<f64>,
     #[cfg_attr(feature = "serde", serde(rename = "turn_errors_rad2"))]
     turns: Matrix3<f64>,

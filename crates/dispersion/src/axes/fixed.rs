@@ -1,6 +1,8 @@
 //! Principal axes that are known.
 
 use nalgebra::UnitQuaternion;
+#[cfg(feature = "serde")]
+use nalgebra::{Quaternion, Vector4};
 use rand::Rng;
 use rand_distr::Distribution;
 
@@ -46,37 +48,21 @@ impl Distribution<UnitQuaternion<f64>> for FixedAttitude {
     }
 }
 
-/// The serialized form: scalar last.
+/// The attitude that was read, scalar last.
 #[cfg(feature = "serde")]
-mod form {
-    use super::FixedAttitude;
-    use nalgebra::{Quaternion, UnitQuaternion, Vector4};
-    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
-
-    #[derive(Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
-    struct Parameters {
-        attitude: [f64; 4],
+pub(crate) fn unit(attitude: [f64; 4]) -> Result<UnitQuaternion<f64>, &'static str> {
+    let x = Vector4::from(attitude);
+    if !((x.norm() - 1.0).abs() < 1e-9) {
+        return Err("attitude: it must be a unit quaternion, scalar last");
     }
-
-    impl Serialize for FixedAttitude {
-        fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-            Parameters { attitude: self.0.coords.into() }.serialize(to)
-        }
-    }
-
-    impl<'de> Deserialize<'de> for FixedAttitude {
-        fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-            let x = Vector4::from(Parameters::deserialize(from)?.attitude);
-            if !((x.norm() - 1.0).abs() < 1e-9) {
-                return Err(D::Error::custom(
-                    "attitude: it must be a unit quaternion, scalar last",
-                ));
-            }
-            Ok(Self::new(UnitQuaternion::new_unchecked(Quaternion::from(x))))
-        }
-    }
+    Ok(UnitQuaternion::new_unchecked(Quaternion::from(x)))
 }
+
+crate::written!(
+    FixedAttitude,
+    |law| { attitude: [f64; 4] = law.0.coords.into(), },
+    FixedAttitude::new(unit(attitude)?)
+);
 
 #[cfg(test)]
 mod tests {

@@ -10,6 +10,8 @@ use gyradius_attitude::UniformAttitude;
 use std::f64::consts::LN_2;
 
 pub use fixed::FixedAttitude;
+#[cfg(feature = "serde")]
+pub(crate) use fixed::unit;
 pub use jacobian_twice::{JacobianTwice, JacobianTwiceError};
 pub use law::AxesLaw;
 pub use moments::AttitudeMoments;

@@ -51,11 +51,6 @@ const TRIALS: usize = 64;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, getset::Getters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Fields", into = "Fields")
-)]
 #[getset(get = "pub")]
 pub struct MassPropertiesLaw {
     /// The law of the mass, kg.
@@ -384,46 +379,26 @@ impl MassPropertiesModel for MassPropertiesLaw {
     }
 }
 
-/// The serialized form.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Fields {
-    mass_kg: ScalarLaw,
-    mass_centre_m: [ScalarLaw; 3],
-    inertia: TensorLaw,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    correlations: Vec<(JointScalar, JointScalar, f64)>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    inside: Option<Region>,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Fields> for MassPropertiesLaw {
-    type Error = MassPropertiesLawError;
-
-    fn try_from(fields: Fields) -> Result<Self, Self::Error> {
-        let law = Self::new(fields.mass_kg, fields.mass_centre_m, fields.inertia)?;
-        let law = law.with_correlation(&fields.correlations)?;
-        match fields.inside {
-            Some(region) => law.inside(region),
-            None => Ok(law),
+crate::written!(
+    MassPropertiesLaw,
+    |law| {
+        mass_kg: ScalarLaw = law.mass.clone(),
+        mass_centre_m: [ScalarLaw; 3] = law.centre.clone(),
+        inertia: TensorLaw = law.tensor.clone(),
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        correlations: Vec<(JointScalar, JointScalar, f64)> = law.pairs.clone(),
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        inside: Option<Region> = law.inside.clone().map(Inside::into_region),
+    },
+    {
+        let law = MassPropertiesLaw::new(mass_kg, mass_centre_m, inertia)?;
+        let law = law.with_correlation(&correlations)?;
+        match inside {
+            Some(region) => law.inside(region)?,
+            None => law,
         }
     }
-}
-
-#[cfg(feature = "serde")]
-impl From<MassPropertiesLaw> for Fields {
-    fn from(law: MassPropertiesLaw) -> Self {
-        Self {
-            mass_kg: law.mass,
-            mass_centre_m: law.centre,
-            inertia: law.tensor,
-            correlations: law.pairs,
-            inside: law.inside.map(Inside::into_region),
-        }
-    }
-}
+);
 
 /// Why laws do not make a joint one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -111,6 +111,15 @@ impl LogCholeskyTen {
     }
 }
 
+crate::written!(
+    LogCholeskyTen,
+    |law| {
+        mean: [f64; 10] = law.mean.into(),
+        covariance: [[f64; 10]; 10] = law.covariance.rows(),
+    },
+    LogCholeskyTen::new(LogCholesky::new(mean)?, crate::semidefinite::of_rows(covariance))?
+);
+
 impl Distribution<MassProperties> for LogCholeskyTen {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> MassProperties {
         loop {

@@ -140,6 +140,25 @@ impl MaximumEntropy {
     }
 }
 
+crate::written!(
+    MaximumEntropy,
+    |law| {
+        mean: MassProperties = law.mean,
+        mass_delta: f64 = law.mass_delta,
+        centre_deviations_m: [f64; 3] = law.centre_deviations.into(),
+        delta: f64 = law.unit.delta(),
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        inside: Option<Region> = law.inside.clone().map(Inside::into_region),
+    },
+    {
+        let law = MaximumEntropy::new(&mean, mass_delta, centre_deviations_m, delta)?;
+        match inside {
+            Some(region) => law.inside(region)?,
+            None => law,
+        }
+    }
+);
+
 impl Distribution<MassProperties> for MaximumEntropy {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> MassProperties {
         loop {

@@ -16,6 +16,11 @@ const MAX_NUMBER: f64 = 1e30;
 
 /// How the inertia is changed. Each random number is drawn anew from the law of the rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum NaiveRule {
     /// Each diagonal entry times a number of its own; products of inertia stay.
     DiagonalFactors,
@@ -143,6 +148,24 @@ impl NaiveBody {
         InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23]).ok()
     }
 }
+
+crate::written!(
+    NaiveBody,
+    |body| {
+        nominal: MassProperties = body.nominal,
+        rule: NaiveRule = body.rule,
+        law: ScalarLaw = body.law.clone(),
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        mass_factor: Option<ScalarLaw> = body.mass_factor.clone(),
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        centre_offset_m: Option<ScalarLaw> = body.centre_offset_m.clone(),
+    },
+    NaiveBody {
+        mass_factor: mass_factor.map(checked).transpose()?,
+        centre_offset_m: centre_offset_m.map(checked).transpose()?,
+        ..NaiveBody::new(nominal, rule, law)?
+    }
+);
 
 fn checked(law: ScalarLaw) -> Result<ScalarLaw, NaiveBodyError> {
     let value = law.reach(FAR);

@@ -49,11 +49,14 @@ impl PseudoInertiaWishart {
     /// # Errors
     /// p is not in [4, 1e14], or the body is a rod, a plate, a point, or too large.
     pub fn new(mean: &MassProperties, freedom: f64) -> Result<Self, PseudoInertiaWishartError> {
+        Self::about(PseudoInertia::of(mean)?, freedom)
+    }
+
+    fn about(mean: PseudoInertia, freedom: f64) -> Result<Self, PseudoInertiaWishartError> {
         let refused = PseudoInertiaWishartError::Freedom { value: freedom };
         if !(FREEDOM[0]..=FREEDOM[1]).contains(&freedom) {
             return Err(refused);
         }
-        let mean = PseudoInertia::of(mean)?;
         let matrix = mean.matrix();
         let largest = matrix.amax();
         let singular = PseudoInertiaWishartError::Singular;
@@ -139,6 +142,12 @@ impl PseudoInertiaWishart {
         of_j + 3.0 * libm::log(body.mass_kg()) - LN_2
     }
 }
+
+crate::written!(
+    PseudoInertiaWishart,
+    |law| { mean: PseudoInertia = law.mean, degrees_of_freedom: f64 = law.freedom, },
+    PseudoInertiaWishart::about(mean, degrees_of_freedom)?
+);
 
 impl Distribution<MassProperties> for PseudoInertiaWishart {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> MassProperties {

@@ -2,6 +2,9 @@
 
 use nalgebra::{SMatrix, SVector};
 
+#[cfg(feature = "serde")]
+use crate::semidefinite::{computed, of_rows};
+
 /// Mean and covariance of ten parameters.
 #[derive(Clone, Debug, PartialEq, getset::Getters)]
 #[getset(get = "pub")]
@@ -24,3 +27,12 @@ impl TenMoments {
         std::array::from_fn(|i| self.covariance[(i, i)].max(0.0).sqrt())
     }
 }
+
+crate::written!(
+    TenMoments,
+    |moments| {
+        mean: [f64; 10] = moments.mean.into(),
+        covariance: [[f64; 10]; 10] = moments.covariance.transpose().into(),
+    },
+    TenMoments { mean: mean.into(), covariance: computed(of_rows(covariance))? }
+);

@@ -50,11 +50,6 @@ pub enum CorrelatedRootsError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parameters", into = "Parameters")
-)]
 pub struct CorrelatedRoots {
     /// k̄, √kg·m.
     #[getset(get_copy = "pub")]
@@ -122,34 +117,14 @@ impl Distribution<RootSecondMoments> for CorrelatedRoots {
     }
 }
 
-/// The serialized form.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Parameters {
-    mean_sqrt_kg_m: RootSecondMoments,
-    covariance_kg_m2: [[f64; 3]; 3],
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Parameters> for CorrelatedRoots {
-    type Error = CorrelatedRootsError;
-
-    fn try_from(p: Parameters) -> Result<Self, Self::Error> {
-        Self::new(p.mean_sqrt_kg_m, Matrix3::from_fn(|i, j| p.covariance_kg_m2[i][j]))
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<CorrelatedRoots> for Parameters {
-    fn from(law: CorrelatedRoots) -> Self {
-        let c = law.covariance.matrix();
-        Self {
-            mean_sqrt_kg_m: law.mean,
-            covariance_kg_m2: std::array::from_fn(|i| std::array::from_fn(|j| c[(i, j)])),
-        }
-    }
-}
+crate::written!(
+    CorrelatedRoots,
+    |law| {
+        mean_sqrt_kg_m: RootSecondMoments = law.mean,
+        covariance_kg_m2: [[f64; 3]; 3] = law.covariance.rows(),
+    },
+    CorrelatedRoots::new(mean_sqrt_kg_m, crate::semidefinite::of_rows(covariance_kg_m2))?
+);
 
 #[cfg(test)]
 mod tests {
@@ -176,15 +151,5 @@ mod tests {
         assert!(law(Matrix3::from_diagonal_element(1e146)).is_ok(), "{error}");
         let error = law(Matrix3::from_diagonal_element(9e149)).unwrap_err();
         assert!(error.to_string().contains("k_1"), "{error}");
-    }
-
-    #[cfg(feature = "serde")]
-    #[test]
-    fn serde_goes_through_the_constructor() {
-        let full = Matrix3::new(0.4, 0.3, -0.1, 0.3, 2.0, 0.5, -0.1, 0.5, 1.0);
-        let law = law(full).unwrap();
-        let json = serde_json::to_string(&law).unwrap();
-        assert_eq!(serde_json::from_str::<CorrelatedRoots>(&json).unwrap(), law);
-        assert!(serde_json::from_str::<CorrelatedRoots>(&json.replace("2.0", "-2.0")).is_err());
     }
 }

@@ -38,11 +38,6 @@ pub enum EmpiricalRootsError {
 /// # Limits
 /// Nothing is drawn that was not observed: no tails, no value in between. Copies share the samples.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parameters", into = "Parameters")
-)]
 pub struct EmpiricalRoots {
     samples: Arc<[RootSecondMoments]>,
 }
@@ -104,29 +99,11 @@ impl Distribution<RootSecondMoments> for EmpiricalRoots {
     }
 }
 
-/// The serialized form.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Parameters {
-    samples_sqrt_kg_m: Vec<[f64; 3]>,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Parameters> for EmpiricalRoots {
-    type Error = EmpiricalRootsError;
-
-    fn try_from(p: Parameters) -> Result<Self, Self::Error> {
-        Self::from_values(&p.samples_sqrt_kg_m)
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<EmpiricalRoots> for Parameters {
-    fn from(law: EmpiricalRoots) -> Self {
-        Self { samples_sqrt_kg_m: law.samples.iter().map(RootSecondMoments::values).collect() }
-    }
-}
+crate::written!(
+    EmpiricalRoots,
+    |law| { samples_sqrt_kg_m: Vec<[f64; 3]> = law.samples.iter().map(RootSecondMoments::values).collect(), },
+    EmpiricalRoots::from_values(&samples_sqrt_kg_m)?
+);
 
 #[cfg(test)]
 mod tests {
@@ -161,14 +138,5 @@ mod tests {
             let error = EmpiricalRoots::from_values(&[[1.0; 3], [1.0, 1.0, bad]]).unwrap_err();
             assert!(error.to_string().contains("sample 2, k_3"), "{error}");
         }
-    }
-
-    #[cfg(feature = "serde")]
-    #[test]
-    fn serde_goes_through_the_constructor() {
-        let law = EmpiricalRoots::from_values(&[[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]).unwrap();
-        let json = serde_json::to_string(&law).unwrap();
-        assert_eq!(serde_json::from_str::<EmpiricalRoots>(&json).unwrap(), law);
-        assert!(serde_json::from_str::<EmpiricalRoots>(r#"{"samples_sqrt_kg_m":[]}"#).is_err());
     }
 }

@@ -52,6 +52,13 @@ const TRIALS: usize = 64;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "[L; 3]", into = "[L; 3]"),
+    serde(bound(serialize = "L: Clone + serde::Serialize")),
+    serde(bound(deserialize = "L: Distribution<f64> + serde::Deserialize<'de>"))
+)]
 #[getset(get = "pub")]
 pub struct IndependentRoots<L> {
     /// The three laws.
@@ -77,6 +84,20 @@ impl<L: Distribution<f64>> IndependentRoots<L> {
             }
         }
         Ok(Self { laws })
+    }
+}
+
+impl<L: Distribution<f64>> TryFrom<[L; 3]> for IndependentRoots<L> {
+    type Error = IndependentRootsError;
+
+    fn try_from(laws: [L; 3]) -> Result<Self, Self::Error> {
+        Self::new(laws)
+    }
+}
+
+impl<L> From<IndependentRoots<L>> for [L; 3] {
+    fn from(roots: IndependentRoots<L>) -> Self {
+        roots.laws
     }
 }
 

@@ -40,11 +40,6 @@ use crate::{RootMoments, ScalarLaw, ScalarLawError, SecondMomentStatistics};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, getset::Getters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parameters", into = "Parameters")
-)]
 #[getset(get = "pub")]
 pub struct ScalarRoots {
     /// The laws of k₁, k₂ and k₃, √kg·m.
@@ -227,29 +222,11 @@ pub enum ScalarRootsError {
     },
 }
 
-/// The serialized form.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Parameters {
-    laws_sqrt_kg_m: [ScalarLaw; 3],
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Parameters> for ScalarRoots {
-    type Error = ScalarRootsError;
-
-    fn try_from(p: Parameters) -> Result<Self, Self::Error> {
-        Self::new(p.laws_sqrt_kg_m)
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<ScalarRoots> for Parameters {
-    fn from(law: ScalarRoots) -> Self {
-        Self { laws_sqrt_kg_m: law.laws }
-    }
-}
+crate::written!(
+    ScalarRoots,
+    |law| { laws_sqrt_kg_m: [ScalarLaw; 3] = law.laws.clone(), },
+    ScalarRoots::new(laws_sqrt_kg_m)?
+);
 
 #[cfg(test)]
 mod tests {
@@ -351,22 +328,5 @@ mod tests {
         assert!(ScalarRoots::lognormal(roots([1e-150; 3]), [1e-304; 3]).is_ok());
         let far = [(); 3].map(|()| ScalarLaw::normal(0.0, 1e74).unwrap());
         assert_eq!(ScalarRoots::new(far), Err(ScalarRootsError::Reach { axis: 1 }));
-    }
-
-    #[cfg(feature = "serde")]
-    #[test]
-    fn serde_goes_through_the_constructor() {
-        let (mean, variances) = (roots([1.0, 2.0, 3.0]), [0.1, 0.2, 0.3]);
-        // The square of a root of 0.3 is not 0.3: a variance keeps its bits.
-        for law in [ScalarRoots::normal(mean, variances), ScalarRoots::lognormal(mean, variances)] {
-            let json = serde_json::to_string(&law.clone().unwrap()).unwrap();
-            assert_eq!(serde_json::from_str::<ScalarRoots>(&json).unwrap(), law.unwrap());
-        }
-        let law = ScalarRoots::uniform(mean, variances).unwrap();
-        let json = serde_json::to_string(&law).unwrap();
-        assert!(
-            serde_json::from_str::<ScalarRoots>(&json.replace("\"high\":", "\"high\":1e9"))
-                .is_err()
-        );
     }
 }

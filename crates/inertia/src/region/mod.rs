@@ -74,6 +74,11 @@ enum Kind {
 
 /// Whether matter inside a region can have given mass properties.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Containment {
     /// Some distribution of matter in the region has them.
     Possible,

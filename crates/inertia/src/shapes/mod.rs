@@ -57,6 +57,11 @@ pub enum ShapeError {
 
 /// How much there is of a shape, of the dimension that its density refers to.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Measure {
     /// Of a solid, m³; density in kg/m³.
     Volume(f64),

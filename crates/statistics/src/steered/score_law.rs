@@ -9,6 +9,7 @@ pub(super) const OWN: f64 = 0.1;
 /// A law of scores: a mixture of the standard normal law, their own, and of others, in each of which the scores are independent. A score
 /// has another mean and standard deviation there; one that decides an event has it more often.
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ScoreLaw {
     /// How many scores it is of.
     #[getset(get_copy = "pub")]
@@ -17,8 +18,18 @@ pub struct ScoreLaw {
     parts: Vec<Part>,
 }
 
+crate::checked::checked!(
+    ScoreLaw { scores: usize, parts: Vec<Part> },
+    |read| crate::error::belong(read.parts.first().is_some_and(|own| own.singles.is_empty())
+            && read.parts.iter().all(|part| (0.0..=1.0).contains(&part.share))
+            && read.parts.iter().skip(1).all(|part| {
+                part.singles.len() == read.scores && part.singles.iter().all(|single| single.is_sound())
+            }), "law of scores")
+);
+
 /// A part of a mixture: its share, and the law of each score, which are none for the own law.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Part {
     share: f64,
     singles: Vec<Single>,
@@ -26,6 +37,7 @@ struct Part {
 
 /// The law of one score.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Single {
     /// A normal law.
     Normal { mean: f64, deviation: f64 },
@@ -35,6 +47,7 @@ pub(super) enum Single {
 
 /// An upper tail of a score.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Tail {
     /// Where it begins.
     pub(super) from: f64,
@@ -59,6 +72,18 @@ impl Tail {
 impl Single {
     /// The own law of a score.
     pub(super) const OWN: Self = Self::Normal { mean: 0.0, deviation: 1.0 };
+
+    /// Whether it is a law.
+    #[cfg(feature = "serde")]
+    fn is_sound(&self) -> bool {
+        let is_chance = |p: f64| p > 0.0 && p < 1.0;
+        match *self {
+            Self::Normal { mean, deviation } => mean.is_finite() && deviation > 0.0,
+            Self::Tail(Tail { from, own, chance }) => {
+                from.is_finite() && is_chance(own) && is_chance(chance)
+            }
+        }
+    }
 
     /// Makes a standard normal score one of this law.
     fn draw(self, z: f64) -> f64 {
