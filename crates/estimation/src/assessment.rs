@@ -5,14 +5,16 @@ const SIZE: f64 = 0.05;
 
 /// One test of a model that was fitted to samples, of what `A` names.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[getset(get_copy = "pub")]
 pub struct Test<A> {
     #[getset(skip)]
     aspect: A,
     /// How often samples of the model itself would look worse.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::probability"))]
     p_value: f64,
     /// The smallest p-value that the test can give, zero if it is not by simulation.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::read::probability"))]
     resolution: f64,
 }
 
@@ -30,7 +32,7 @@ impl<A: Copy> Test<A> {
 
 /// Whether samples look like draws of the model that was fitted to them: tests of what `A` names.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Verdict<A> {
     tests: Vec<Test<A>>,
 }

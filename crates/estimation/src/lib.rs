@@ -38,6 +38,8 @@ mod assessment;
 mod estimated;
 mod fit;
 mod mass_fit;
+#[cfg(feature = "serde")]
+mod read;
 mod rollup;
 mod stated_body;
 mod statements;

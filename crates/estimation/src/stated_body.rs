@@ -153,6 +153,16 @@ impl Distribution<MassProperties> for StatedBody {
     }
 }
 
+gyradius_dispersion::written!(
+    StatedBody,
+    |body| {
+        nominal: MassProperties = body.nominal,
+        law: MassPropertiesLaw = body.law.clone(),
+        model: Option<StatedModel> = body.model.clone(),
+    },
+    StatedBody { nominal, law, model }
+);
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Deserializer, de::Error};
 
 /// A quaternion of length one to 1e-9, as it is.
 pub(crate) fn unit<'de, D: Deserializer<'de>>(from: D) -> Result<UnitQuaternion<f64>, D::Error> {
-    let read = Quaternion::deserialize(from)?;
+    let read = Quaternion::<f64>::deserialize(from)?;
     let norm = read.norm();
     if !((norm - 1.0).abs() < 1e-9) {
         return Err(D::Error::custom(format!(

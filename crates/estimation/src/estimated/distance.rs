@@ -10,7 +10,6 @@ const EXACT: f64 = 1e-5;
 
 /// How far the mean and covariance of a law are from those of the estimate that it was made of, in the ten numbers of the estimate.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EstimateDistance {
     /// The mean of each of the ten less that of the estimate, in its standard deviations; none of what does not vary.
     #[getset(get = "pub")]
@@ -23,9 +22,23 @@ pub struct EstimateDistance {
     /// The largest difference of a correlation.
     #[getset(get_copy = "pub")]
     correlation: f64,
-    #[cfg_attr(feature = "serde", serde(skip))]
     off: f64,
 }
+
+gyradius_dispersion::written!(
+    EstimateDistance,
+    |distance| {
+        means: [Option<f64>; 10] = distance.means,
+        deviations: [Option<f64>; 10] = distance.deviations,
+        mahalanobis: f64 = distance.mahalanobis,
+        correlation: f64 = distance.correlation,
+        total: f64 = distance.off,
+    },
+    {
+        crate::read::belong(mahalanobis >= 0.0 && correlation >= 0.0 && total >= 0.0, "distance")?;
+        EstimateDistance { means, deviations, mahalanobis, correlation, off: total }
+    }
+);
 
 impl EstimateDistance {
     /// Of moments in the units of the estimate.

@@ -60,7 +60,7 @@ const INSIDE: f64 = 0.3;
 /// assert!(body.joint().is_some());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, getset::CopyGetters, getset::Getters)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 pub struct EstimatedBody {
     /// The body of the mean, or the one nearest to it in the metric of the covariance.
     #[getset(get = "pub")]
@@ -138,6 +138,20 @@ impl EstimatedBody {
         self.log_cholesky.as_ref()
     }
 }
+
+gyradius_dispersion::written!(
+    EstimatedBody,
+    |body| {
+        nearest: MassProperties = body.nearest,
+        moved: f64 = body.moved,
+        joint: Option<(MassPropertiesLaw, EstimateDistance)> = body.joint.clone(),
+        log_cholesky: Option<(LogCholeskyTen, EstimateDistance)> = body.log_cholesky.clone(),
+    },
+    {
+        crate::read::belong(moved >= 0.0 && (joint.is_some() || log_cholesky.is_some()), "body")?;
+        EstimatedBody { nearest, moved, joint, log_cholesky }
+    }
+);
 
 fn distance_of(estimate: &TenEstimate, law: &dyn MassPropertiesModel) -> Option<EstimateDistance> {
     EstimateDistance::of(estimate, &moments(law, estimate.form())?)

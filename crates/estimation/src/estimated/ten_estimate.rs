@@ -257,6 +257,21 @@ impl TenEstimate {
     }
 }
 
+gyradius_dispersion::written!(
+    TenEstimate,
+    |estimate| {
+        form: TenForm = estimate.form,
+        mean: [f64; 10] = estimate.mean.into(),
+        covariance: [[f64; 10]; 10] = estimate.covariance.transpose().into(),
+    },
+    {
+        let covariance = Matrix10::from(covariance).transpose();
+        TenEstimate::new(form, mean.into(), covariance)?;
+        // As it was written: to be checked again would round it again.
+        TenEstimate { form, mean: mean.into(), covariance }
+    }
+);
+
 /// Why numbers are no [`TenEstimate`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

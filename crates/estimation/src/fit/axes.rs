@@ -24,7 +24,11 @@ const LEAST_LOBE: f64 = 0.5;
 
 /// What the samples say of the principal axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum AxesFinding {
     /// All three angles have a mean and a scatter.
@@ -43,7 +47,7 @@ pub enum AxesFinding {
 
 /// The law of the principal axes, fitted to attitudes of matched axes.
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AxesFit {
     /// The law of the axes, q and −q alike.
     #[getset(get = "pub")]

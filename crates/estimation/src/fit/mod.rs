@@ -14,6 +14,8 @@ use gyradius_dispersion::{PrincipalDispersion, ScalarRoots, ScalarRootsError};
 use gyradius_inertia::{Inertia, RootSecondMoments, SecondMoments};
 use nalgebra::{Matrix3, UnitQuaternion};
 
+#[cfg(feature = "serde")]
+use crate::read::belong;
 use matching::{Centre, matched};
 use relabel::{Relabeling, Sample};
 
@@ -56,7 +58,7 @@ pub enum PrincipalFitError {
 
 /// How the principal axes of the samples were matched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Matching {
     /// Samples whose axes got another order than the nearest to the body axes.
     pub swapped: usize,
@@ -115,13 +117,10 @@ pub struct Matching {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PrincipalFit {
-    #[cfg_attr(feature = "serde", serde(skip))]
     samples: Vec<Sample>,
     /// The inertia of the mean roots about the mean axes. It is not the mean of the samples, which
     /// scatter moves: see [`EntryMoments`](gyradius_dispersion::EntryMoments).
-    #[cfg_attr(feature = "serde", serde(rename = "nominal_kg_m2"))]
     #[getset(get = "pub")]
     nominal: Inertia,
     /// The roots of the second moments, in the order of the principal axes of
@@ -134,7 +133,6 @@ pub struct PrincipalFit {
     /// How axes were matched.
     #[getset(get_copy = "pub")]
     matching: Matching,
-    #[cfg_attr(feature = "serde", serde(rename = "entry_deviation_kg_m2"))]
     deviations: [f64; 6],
     /// The fitted law.
     #[getset(get = "pub")]
@@ -220,6 +218,38 @@ impl PrincipalFit {
         Centre::of(&self.samples)
     }
 }
+
+gyradius_dispersion::written!(
+    PrincipalFit,
+    |fit| {
+        nominal_kg_m2: Inertia = fit.nominal,
+        roots: [RootFit; 3] = fit.roots,
+        axes: AxesFit = fit.axes.clone(),
+        matching: Matching = fit.matching,
+        entry_deviation_kg_m2: [f64; 6] = fit.deviations,
+        law: PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian> = fit.law.clone(),
+        samples: Vec<Sample> = fit.samples.clone(),
+    },
+    {
+        let fit = PrincipalFit {
+            samples,
+            nominal: nominal_kg_m2,
+            roots,
+            axes,
+            matching,
+            deviations: entry_deviation_kg_m2,
+            law,
+        };
+        belong(
+            fit.count() >= NEEDED
+                && fit.matching.swapped <= fit.count()
+                && fit.law.axes() == fit.axes.law()
+                && fit.deviations.iter().all(|deviation| *deviation >= 0.0),
+            "fit of inertias",
+        )?;
+        fit
+    }
+);
 
 fn deviations(samples: &[Inertia]) -> [f64; 6] {
     let rows: Vec<[f64; 6]> = samples.iter().map(Inertia::entries).collect();

@@ -46,6 +46,15 @@ pub(super) struct Sample {
     pub(super) attitude: UnitQuaternion<f64>,
 }
 
+gyradius_dispersion::written!(
+    Sample,
+    |sample| {
+        roots_sqrt_kg_m: [f64; 3] = sample.roots,
+        axes: gyradius_dispersion::FixedAttitude = sample.attitude.into(),
+    },
+    Sample { roots: roots_sqrt_kg_m, attitude: axes.attitude() }
+);
+
 impl Sample {
     pub(super) fn relabeled(&self, g: &Relabeling) -> Self {
         Self { roots: g.order.map(|i| self.roots[i]), attitude: g.turn * self.attitude }

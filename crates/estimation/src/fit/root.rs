@@ -3,6 +3,9 @@
 use gyradius_statistics::tail;
 use std::fmt;
 
+#[cfg(feature = "serde")]
+use crate::read::belong;
+
 /// From this many deviations on, a mean is so far from zero that no sign is ever lost: e^(−2·36)
 /// is below rounding.
 const FAR: f64 = 6.0;
@@ -14,7 +17,11 @@ const FLAT: f64 = 1e-6;
 
 /// How a root of a second moment was fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum RootEstimate {
     /// The mean is many deviations from zero: the plain Gaussian of Peck (2003, Eq. 10).
@@ -29,18 +36,14 @@ pub enum RootEstimate {
 
 /// The maximum likelihood law N(k̄, σ²) of one root k = √K, from samples of |k|.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[getset(get_copy = "pub")]
 pub struct RootFit {
     /// k̄ ≥ 0, √kg·m.
-    #[cfg_attr(feature = "serde", serde(rename = "mean_sqrt_kg_m"))]
     mean: f64,
     /// σ, √kg·m; maximum likelihood, so the sum of squares is divided by n.
-    #[cfg_attr(feature = "serde", serde(rename = "deviation_sqrt_kg_m"))]
     deviation: f64,
     /// Standard errors of mean and deviation, √kg·m; none where the likelihood is too flat to have
     /// them (k̄ = 0) or nothing scatters.
-    #[cfg_attr(feature = "serde", serde(rename = "errors_sqrt_kg_m"))]
     errors: Option<[f64; 2]>,
     /// Which law was fitted.
     law: RootEstimate,
@@ -114,6 +117,22 @@ impl RootFit {
         below(k) - below(-k)
     }
 }
+
+gyradius_dispersion::written!(
+    RootFit,
+    |fit| {
+        mean_sqrt_kg_m: f64 = fit.mean,
+        deviation_sqrt_kg_m: f64 = fit.deviation,
+        errors_sqrt_kg_m: Option<[f64; 2]> = fit.errors,
+        law: RootEstimate = fit.law,
+    },
+    {
+        let (mean, deviation, errors) = (mean_sqrt_kg_m, deviation_sqrt_kg_m, errors_sqrt_kg_m);
+        let is_still = law == RootEstimate::Constant;
+        belong(mean >= 0.0 && (deviation > 0.0) != is_still, "fit of a root")?;
+        RootFit { mean, deviation, errors, law }
+    }
+);
 
 impl fmt::Display for RootEstimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

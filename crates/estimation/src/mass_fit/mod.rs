@@ -65,7 +65,6 @@ const MOST: f64 = 1.0 - 1e-9;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, getset::Getters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[getset(get = "pub")]
 pub struct MassPropertiesFit {
     /// The mass, kg.
@@ -79,13 +78,17 @@ pub struct MassPropertiesFit {
     /// The fitted law.
     law: MassPropertiesLaw,
     /// Of the seven scalars that vary, in the coordinates in which their laws are normal.
-    #[cfg_attr(feature = "serde", serde(skip))]
     #[getset(skip)]
     scores: [Option<Vec<f64>>; SCALARS],
 }
 
 /// Which law the mass has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum MassChoice {
     /// Normal, unless the deviation is more than an eighth of the mean, where a normal law would reach zero, or the
     /// lognormal law is likelier at odds of 20 : 1.
@@ -157,6 +160,24 @@ impl MassPropertiesFit {
         self.scores[..4].iter().flatten().cloned().collect()
     }
 }
+
+gyradius_dispersion::written!(
+    MassPropertiesFit,
+    |fit| {
+        mass: ScalarFit = fit.mass,
+        centre: [ScalarFit; 3] = fit.centre,
+        lengths: PrincipalFit = fit.lengths.clone(),
+        ties: Option<MassTies> = fit.ties,
+        law: MassPropertiesLaw = fit.law.clone(),
+        scores: [Option<Vec<f64>>; SCALARS] = fit.scores.clone(),
+    },
+    {
+        let count = lengths.count();
+        let of_all = scores.iter().flatten().all(|scores| scores.len() == count);
+        crate::read::belong(of_all && scores[0].is_some() == mass.errors().is_some(), "fit of bodies")?;
+        MassPropertiesFit { mass, centre, lengths, ties, law, scores }
+    }
+);
 
 /// Correlations of scores; zero where there are none.
 fn correlations(scores: &[Option<Vec<f64>>; SCALARS]) -> SMatrix<f64, SCALARS, SCALARS> {

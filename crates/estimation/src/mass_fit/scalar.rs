@@ -6,6 +6,8 @@ use std::fmt;
 
 use super::MassChoice;
 use crate::fit::anderson_darling;
+#[cfg(feature = "serde")]
+use crate::read::belong;
 
 /// What scatters by less than this share of its size does not.
 const STILL: f64 = 1e-9;
@@ -16,7 +18,11 @@ const ODDS: f64 = 20.0;
 
 /// How a scalar was fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum ScalarEstimate {
     /// Mean and deviation of the samples.
@@ -29,7 +35,6 @@ pub enum ScalarEstimate {
 
 /// The maximum likelihood law of a mass in kg or of a coordinate of the mass centre in m.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[getset(get_copy = "pub")]
 pub struct ScalarFit {
     /// The mean.
@@ -40,7 +45,6 @@ pub struct ScalarFit {
     errors: Option<[f64; 2]>,
     #[getset(skip)]
     law: ScalarEstimate,
-    #[cfg_attr(feature = "serde", serde(skip))]
     #[getset(skip)]
     p_value: Option<f64>,
 }
@@ -148,6 +152,24 @@ impl ScalarFit {
         libm::log1p((self.deviation / self.mean).powi(2)).sqrt()
     }
 }
+
+gyradius_dispersion::written!(
+    ScalarFit,
+    |fit| {
+        mean: f64 = fit.mean,
+        deviation: f64 = fit.deviation,
+        errors: Option<[f64; 2]> = fit.errors,
+        law: ScalarEstimate = fit.law,
+        p_value: Option<f64> = fit.p_value,
+    },
+    {
+        let is_still = law == ScalarEstimate::Constant;
+        let fit = ScalarFit { mean, deviation, errors, law, p_value };
+        belong((deviation > 0.0) != is_still && p_value.is_some() != is_still, "fit of a scalar")?;
+        fit.law()?;
+        fit
+    }
+);
 
 impl fmt::Display for ScalarEstimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -11,7 +11,7 @@ const STILL: f64 = 1e-9;
 
 /// An estimate with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[getset(get_copy = "pub")]
 pub struct Interval {
     /// The estimate.
@@ -27,7 +27,7 @@ pub struct Interval {
 /// The inertia of a body whose shape does not depend on its mass is proportional to it, and its gyration lengths are not correlated with
 /// it. An inertia that does not depend on the mass has lengths that go with m^(−½).
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MassTies {
     /// The power of the mass with which the trace of the inertia goes, by regression of the logarithms: 1 where the
     /// inertia follows the mass, 0 where it does not depend on it.

@@ -82,6 +82,20 @@ impl FirstOrder {
     }
 }
 
+gyradius_dispersion::written!(
+    FirstOrder,
+    |body| {
+        nominal: MassProperties = body.nominal,
+        covariance: [[f64; 10]; 10] = body.covariance.transpose().into(),
+    },
+    {
+        let covariance = SMatrix::<f64, 10, 10>::from(covariance).transpose();
+        let sound = covariance.iter().all(|x| x.is_finite()) && covariance.diagonal().min() >= 0.0;
+        crate::read::belong(sound && covariance == covariance.transpose(), "covariance")?;
+        FirstOrder { nominal, covariance }
+    }
+);
+
 /// The ten numbers of a whole by those of one of its bodies.
 fn derivative(whole: &MassProperties, body: &MassProperties) -> SMatrix<f64, 10, 10> {
     let (mass, total) = (body.mass_kg(), whole.mass_kg());

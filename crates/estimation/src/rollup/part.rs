@@ -1,5 +1,7 @@
 //! A part: what is stated of its mass, mass centre and inertia, and the law that draws come from.
 
+#[cfg(feature = "serde")]
+use gyradius_dispersion::FixedAttitude;
 use gyradius_dispersion::{MassPropertiesModel, TenParameters};
 use gyradius_inertia::{
     Inertia, InertiaMatrix, MassProperties, MassPropertiesError, RealizabilityError, Repair,
@@ -129,6 +131,37 @@ impl AssemblyPart {
         MassProperties::new(mass, centre, inertia).ok()
     }
 }
+
+gyradius_dispersion::written!(
+    PartStatement,
+    |part| {
+        mass_kg: f64 = part.mass_kg,
+        mass_centre_m: [f64; 3] = part.mass_centre_m,
+        inertia_kg_m2: InertiaMatrix = part.inertia,
+        axes: FixedAttitude = part.attitude.into(),
+        deviations: [f64; 10] = part.deviations,
+        inertia_follows_mass: bool = part.inertia_follows_mass,
+    },
+    {
+        let (inertia, attitude) = (inertia_kg_m2, axes.attitude());
+        let part = PartStatement {
+            mass_kg,
+            mass_centre_m,
+            inertia,
+            attitude,
+            deviations,
+            inertia_follows_mass,
+        };
+        check(&part)?;
+        part
+    }
+);
+
+gyradius_dispersion::written!(
+    AssemblyPart,
+    |part| { statement: PartStatement = part.statement, },
+    AssemblyPart::new(statement)?
+);
 
 impl Distribution<MassProperties> for AssemblyPart {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> MassProperties {

@@ -10,6 +10,11 @@ use super::part::AssemblyPart;
 
 /// A row of a list of parts.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct AssemblyRow {
     /// Its name, unlike all others.
     pub name: String,
@@ -148,6 +153,12 @@ impl Assembly {
         Self::whole(&drawn)
     }
 }
+
+gyradius_dispersion::written!(
+    Assembly,
+    |whole| { rows: Vec<AssemblyRow> = whole.nodes.iter().map(|node| node.row.clone()).collect(), },
+    Assembly::new(rows)?
+);
 
 /// The names of what each assembly is made of.
 fn children(

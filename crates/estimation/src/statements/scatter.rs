@@ -34,7 +34,7 @@ pub(super) struct Body {
 
 /// Covariances of Gaussian roots in kg·m², and of rotations about the principal axes in rad².
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Scatter {
     #[cfg_attr(feature = "serde", serde(rename = "root_covariance_kg_m2"))]
     pub(super) roots: Matrix3<f64>,

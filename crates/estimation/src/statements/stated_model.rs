@@ -15,10 +15,8 @@ use super::{
 /// stated mass multiplies it by [`StatedMass::factor`]. [`law`](Self::law) is the law of the inertia alone, the
 /// mass's part included.
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StatedModel {
     /// The nominal inertia.
-    #[cfg_attr(feature = "serde", serde(rename = "nominal_kg_m2"))]
     #[getset(get = "pub")]
     nominal: Inertia,
     scatter: Scatter,
@@ -29,17 +27,13 @@ pub struct StatedModel {
     /// The mass, if it is stated.
     #[getset(get_copy = "pub")]
     mass: Option<StatedMass>,
-    #[cfg_attr(feature = "serde", serde(rename = "mass_centre_m"))]
     centre: Option<[f64; 3]>,
     /// Standard deviations of the roots of the second moments, √kg·m. Their means are those of the nominal
     /// inertia.
-    #[cfg_attr(feature = "serde", serde(rename = "root_deviation_sqrt_kg_m"))]
     #[getset(get_copy = "pub")]
     root_deviations: [f64; 3],
-    #[cfg_attr(feature = "serde", serde(rename = "rotation_rad"))]
     rotations: [f64; 3],
     /// Standard deviations of the six entries as stated, kg·m², in the order 11, 22, 33, 12, 13, 23.
-    #[cfg_attr(feature = "serde", serde(rename = "stated_kg_m2"))]
     #[getset(get_copy = "pub")]
     stated: [Option<f64>; 6],
     /// Mean and covariance of the six entries under the law, by quadrature.
@@ -50,11 +44,8 @@ pub struct StatedModel {
 
 /// A normal mass, and how the inertia goes with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StatedMass {
-    #[cfg_attr(feature = "serde", serde(rename = "relative_deviation"))]
     relative: f64,
-    #[cfg_attr(feature = "serde", serde(rename = "inertia_follows_mass"))]
     follows: f64,
 }
 
@@ -165,3 +156,49 @@ impl StatedModel {
         &self.warnings
     }
 }
+
+gyradius_dispersion::written!(
+    StatedMass,
+    |mass| { relative_deviation: f64 = mass.relative, inertia_follows_mass: f64 = mass.follows, },
+    {
+        let is_share = (0.0..=1.0).contains(&inertia_follows_mass);
+        crate::read::belong(is_share && relative_deviation >= 0.0, "stated mass")?;
+        StatedMass::new(relative_deviation, inertia_follows_mass)
+    }
+);
+
+gyradius_dispersion::written!(
+    StatedModel,
+    |model| {
+        nominal_kg_m2: Inertia = model.nominal,
+        scatter: Scatter = model.scatter,
+        at_nominal_mass: Law = model.at_nominal_mass.clone(),
+        law: Law = model.law.clone(),
+        mass: Option<StatedMass> = model.mass,
+        mass_centre_m: Option<[f64; 3]> = model.centre,
+        root_deviation_sqrt_kg_m: [f64; 3] = model.root_deviations,
+        #[serde(deserialize_with = "crate::read::or_infinite")]
+        rotation_variance_rad2: [f64; 3] = model.rotations,
+        stated_kg_m2: [Option<f64>; 6] = model.stated,
+        implied: EntryMoments = model.implied,
+        warnings: Vec<StatementWarning> = model.warnings.clone(),
+    },
+    {
+        let deviations = root_deviation_sqrt_kg_m.iter().chain(&rotation_variance_rad2);
+        let mut deviations = deviations.chain(mass_centre_m.iter().flatten());
+        crate::read::belong(deviations.all(|deviation| *deviation >= 0.0), "stated model")?;
+        StatedModel {
+            nominal: nominal_kg_m2,
+            scatter,
+            at_nominal_mass,
+            law,
+            mass,
+            centre: mass_centre_m,
+            root_deviations: root_deviation_sqrt_kg_m,
+            rotations: rotation_variance_rad2,
+            stated: stated_kg_m2,
+            implied,
+            warnings,
+        }
+    }
+);

@@ -10,7 +10,11 @@ const NAMES: [&str; 6] = InertiaMatrix::ENTRY_NAMES;
 /// Contradictions among statements, and what they leave open. Written out by `Display`; deviations
 /// are standard deviations, entries in the order 11, 22, 33, 12, 13, 23 from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum StatementWarning {
     /// The model cannot give an entry the deviation that is stated.
@@ -90,7 +94,10 @@ pub enum StatementWarning {
         #[cfg_attr(feature = "serde", serde(rename = "axes_rad"))]
         axes: [f64; 3],
         /// By the other, rad; infinite where products say nothing.
-        #[cfg_attr(feature = "serde", serde(rename = "products_rad"))]
+        #[cfg_attr(
+            feature = "serde",
+            serde(rename = "products_rad", deserialize_with = "crate::read::or_infinite")
+        )]
         products: [f64; 3],
     },
     /// Two principal moments that differ by less than they scatter.
@@ -111,7 +118,11 @@ pub enum StatementWarning {
 
 /// Why an entry does not have the deviation that is stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 #[non_exhaustive]
 pub enum MissedBecause {
     /// The scatter of the axes moves it more.
