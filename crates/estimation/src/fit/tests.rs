@@ -466,7 +466,7 @@ fn fits_are_compared_and_written() {
             assert_eq!(root["law"], "gaussian");
         }
         assert_eq!(json["axes"]["finding"], "determined");
-        assert!(json["axes"]["turn_covariance_rad2"].is_array() && json.get("samples").is_none());
+        assert!(json["axes"]["turn_covariance_rad2"].is_array());
         // The law reads back.
         let law: Law = serde_json::from_value(json["law"].clone()).unwrap();
         assert_eq!(law.roots(), fit(60).law().roots());

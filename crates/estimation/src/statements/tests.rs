@@ -444,6 +444,6 @@ fn models_are_compared_and_written() {
         let json = serde_json::to_value(model(1.0)).unwrap();
         assert_eq!(json["nominal_kg_m2"][0][1], 300.0);
         assert!((json["stated_kg_m2"][3].as_f64().unwrap() - 20.0).abs() < 1e-9, "{json}");
-        assert!(json["warnings"].is_array() && json["rotation_rad"].is_array());
+        assert!(json["warnings"].is_array() && json["rotation_variance_rad2"].is_array());
     }
 }
