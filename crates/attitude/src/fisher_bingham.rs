@@ -86,11 +86,8 @@ pub enum Method {
 /// # Limits
 /// Entries up to 1e14.
 #[derive(Clone, Debug, getset::CopyGetters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parameters", into = "Parameters")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Parameters", into = "Parameters"))]
 pub struct FisherBingham {
     /// P and b, if the law was made of them.
     given: Option<Box<(Matrix4<f64>, Vector4<f64>)>>,

@@ -31,11 +31,8 @@ pub enum HypersphericalError {
 /// with θ₁, θ₂ ∈ [0, π] and θ₃ ∈ [0, 2π). Surface measure on S³ is sin²θ₁ sin θ₂ dθ₁ dθ₂ dθ₃
 /// (Eq. 25 at r = 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "[f64; 3]", into = "[f64; 3]")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "[f64; 3]", into = "[f64; 3]"))]
 pub struct HypersphericalAngles([f64; 3]);
 
 impl HypersphericalAngles {

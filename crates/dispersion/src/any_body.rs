@@ -52,11 +52,8 @@ pub enum AnyBodyError {
 /// # Ok::<(), gyradius_dispersion::AnyBodyError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "[f64; 2]", into = "[f64; 2]")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "[f64; 2]", into = "[f64; 2]"))]
 pub struct AnyBody {
     low: f64,
     high: f64,

@@ -14,11 +14,8 @@ use crate::{
 
 /// The kinds of models of inertia uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "String", into = "&'static str")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "String", into = "&'static str"))]
 pub enum ModelKind {
     /// Second moments and axes (Peck 2003).
     Principal,
@@ -58,11 +55,8 @@ macro_rules! models {
         /// Draws are those of the law inside, bit for bit. Built by its constructor and `into()`, or by name: with
         /// given parameters, [`about`](Self::about), or matched to given moments, [`matched`](Self::matched).
         #[derive(Clone, Debug, PartialEq)]
-        #[cfg_attr(
-            feature = "serde",
-            derive(serde::Serialize, serde::Deserialize),
-            serde(tag = "model", rename_all = "kebab-case")
-        )]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[cfg_attr(feature = "serde", serde(tag = "model", rename_all = "kebab-case"))]
         pub enum DispersionModel {
             $($(#[$doc])* $variant(Box<$law>),)*
         }

@@ -22,11 +22,8 @@ pub(crate) const NAME: &str = "principal";
 /// # Realizability
 /// By construction, for any laws: squares are not negative.
 #[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[getset(get = "pub")]
 pub struct PrincipalDispersion<K, A> {
     /// The law of the roots.

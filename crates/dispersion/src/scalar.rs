@@ -113,11 +113,8 @@ const END: f64 = 38.0;
 /// # Limits
 /// The mean of a truncated normal law may be at most 6σ outside of its bounds.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "ScalarLawForm", into = "ScalarLawForm")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "ScalarLawForm", into = "ScalarLawForm"))]
 pub struct ScalarLaw(Kind);
 
 impl ScalarLaw {

@@ -8,11 +8,8 @@ use crate::{MassProperties, Shape, ShapeError};
 ///
 /// Sizes are along the principal axes, in the order of [`PrincipalAxes`](crate::PrincipalAxes).
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct EquivalentSolid {
     /// The solid in its own frame, which is principal.
     #[getset(get_copy = "pub")]

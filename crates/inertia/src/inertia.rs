@@ -47,11 +47,8 @@ pub enum RealizabilityError {
 /// Boundary bodies are realizable: rods (two K_k zero), plates (one), points (all three). Whether
 /// an inertia can be inverted is a separate question: [`Inertia::is_invertible`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "[[f64; 3]; 3]", into = "[[f64; 3]; 3]")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "[[f64; 3]; 3]", into = "[[f64; 3]; 3]"))]
 pub struct Inertia(InertiaMatrix);
 
 impl Inertia {

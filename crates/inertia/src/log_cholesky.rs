@@ -63,11 +63,8 @@ pub enum LogCholeskyError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "[f64; 10]", into = "[f64; 10]")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "[f64; 10]", into = "[f64; 10]"))]
 pub struct LogCholesky([f64; 10]);
 
 impl LogCholesky {

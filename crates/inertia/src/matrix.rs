@@ -79,11 +79,8 @@ pub(crate) fn rotation_matrix(
 /// where matrices come from elsewhere and are yet to be judged, or where unphysical ones are kept
 /// on purpose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "[[f64; 3]; 3]", into = "[[f64; 3]; 3]")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "[[f64; 3]; 3]", into = "[[f64; 3]; 3]"))]
 pub struct InertiaMatrix(Matrix3<f64>);
 
 impl InertiaMatrix {

@@ -20,11 +20,8 @@ const TIE: f64 = 1e-12;
 /// second, then to the larger q₃, q₂, q₁. Where moments are equal to rounding, the axes are free to
 /// turn, and the turn nearest to the body axes is taken: a ball has the identity. q₄ is positive.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[getset(get_copy = "pub")]
 pub struct PrincipalAxes {
     /// Principal moments of inertia I₁, I₂, I₃, in kg·m².

@@ -64,11 +64,8 @@ pub enum PseudoInertiaError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "[[f64; 4]; 4]", into = "[[f64; 4]; 4]")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "[[f64; 4]; 4]", into = "[[f64; 4]; 4]"))]
 pub struct PseudoInertia {
     /// The full matrix: kg·m² in the first three rows and columns, kg·m in the last, kg in the
     /// corner.

@@ -6,11 +6,8 @@ use crate::{Inertia, InertiaMatrix, RealizabilityError, SecondMoments};
 
 /// How an unrealizable matrix becomes the inertia of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum RepairMethod {
     /// The realizable inertia with the smallest Frobenius distance ‖I′ − I‖: as little change of the
@@ -45,11 +42,8 @@ pub enum RepairMethod {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Repair {
     /// The realizable inertia.
     #[getset(get = "pub")]

@@ -60,11 +60,8 @@ pub enum SecondMomentsError {
 /// The natural coordinates of a principal inertia: any three non-negative numbers are second
 /// moments of some body, and I₁ = K₂ + K₃ and so on (Eq. 7) obeys the triangle inequality.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "[f64; 3]", into = "[f64; 3]")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "[f64; 3]", into = "[f64; 3]"))]
 pub struct SecondMoments([f64; 3]);
 
 impl SecondMoments {
@@ -121,11 +118,8 @@ impl SecondMoments {
 /// Either sign is allowed, because a Gaussian k̄ + w may come out negative; only the square
 /// matters.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "[f64; 3]", into = "[f64; 3]")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "[f64; 3]", into = "[f64; 3]"))]
 pub struct RootSecondMoments([f64; 3]);
 
 impl RootSecondMoments {
@@ -158,11 +152,8 @@ impl RootSecondMoments {
 /// Radii of gyration √(K_k / m), in m: the distance at which all the mass would have the same
 /// second moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "[f64; 3]", into = "[f64; 3]")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "[f64; 3]", into = "[f64; 3]"))]
 pub struct RadiiOfGyration([f64; 3]);
 
 impl RadiiOfGyration {

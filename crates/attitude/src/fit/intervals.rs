@@ -24,11 +24,8 @@ const REGION: f64 = 4.0 * 22.362_032_494_826_934;
 /// radial variance either. Errors from the information suppose that the likelihood is nearly
 /// Gaussian about the estimates: on all of a region twice as wide as the joint 95 % region.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum NoIntervals {
     /// The search has not reached a maximum.

@@ -76,11 +76,8 @@ pub enum FitError {
 
 /// Which laws a fit chooses among. Each contains those before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Family {
     /// The smallest of [`Bingham`](Self::Bingham), [`Aligned`](Self::Aligned) and
@@ -107,11 +104,8 @@ pub enum Family {
 /// What the attitudes say of the radial variance s = mᵀΣm, the variance of the Gaussian in ℝ⁴ along
 /// its mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum RadialVariance {
     /// It has an estimate, and a finite interval of values that the attitudes allow.

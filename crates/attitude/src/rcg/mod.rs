@@ -111,11 +111,8 @@ pub enum RcgError {
 /// # Limits
 /// Eigenvalues of Σ between 1e-14 and 1e14, any ratio.
 #[derive(Clone, Debug, getset::CopyGetters)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Parameters", into = "Parameters")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Parameters", into = "Parameters"))]
 #[getset(get_copy = "pub")]
 pub struct RadiallyConstrainedGaussian {
     /// The mean attitude m, about which the Gaussian in ℝ⁴ is centred.

@@ -11,11 +11,8 @@ use crate::{AttitudeMoments, EntryMoments, FixedAttitude, JacobianTwice, SecondM
 ///
 /// Draws are those of the law inside, bit for bit.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(tag = "law", rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "law", rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum AxesLaw {
     /// A radially constrained Gaussian on the whole sphere, both lobes.

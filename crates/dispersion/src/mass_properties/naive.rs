@@ -16,11 +16,8 @@ const MAX_NUMBER: f64 = 1e30;
 
 /// How the inertia is changed. Each random number is drawn anew from the law of the rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum NaiveRule {
     /// Each diagonal entry times a number of its own; products of inertia stay.
     DiagonalFactors,

@@ -17,11 +17,8 @@ use nalgebra::{SVector, Vector3};
 /// # Ok::<(), gyradius_inertia::MassPropertiesError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct TenParameters {
     /// Mass, kg.
     pub mass_kg: f64,

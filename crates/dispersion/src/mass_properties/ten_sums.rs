@@ -22,11 +22,8 @@ pub struct TenSums {
 
 /// How draws of ten numbers scatter.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct TenSpread {
     /// Standard errors of the means, σ/√n.
     pub mean_error: [f64; 10],

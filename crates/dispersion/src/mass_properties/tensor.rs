@@ -24,11 +24,8 @@ use crate::{AxesLaw, DispersionModel, InertiaLaw, ScalarLaw};
 /// # Ok::<(), gyradius_dispersion::ScalarLawError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct TensorLaw {
     pub(super) of: Of,
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
@@ -58,11 +55,8 @@ pub enum TensorParts<'a> {
 
 /// What it is a law of.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub(super) enum Of {
     /// Radii of gyration, m.
     GyrationLengths(Principal),
@@ -74,11 +68,8 @@ pub(super) enum Of {
 
 /// Three numbers about axes.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub(super) struct Principal {
     pub(super) laws: [ScalarLaw; 3],
     pub(super) axes: AxesLaw,
@@ -86,11 +77,8 @@ pub(super) struct Principal {
 
 /// The inertia drawn, times 1 + share · (m/m₀ − 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub(super) struct Follows {
     pub(super) share: f64,
     pub(super) nominal_mass_kg: f64,

@@ -12,11 +12,8 @@ use crate::{
 ///
 /// Draws are those of the law inside, bit for bit.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(tag = "law", rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "law", rename_all = "kebab-case"))]
 pub enum RootLaw {
     /// Independent, each with a scalar law.
     Independent(ScalarRoots),

@@ -16,11 +16,8 @@ const MOST: f64 = 1e40;
 
 /// Which ten numbers an estimate has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum TenForm {
     /// m, m c₁, m c₂, m c₃, I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ about the origin, in which the equations of motion are linear.
     Linear,

@@ -13,11 +13,8 @@ const WIDE: f64 = 0.35;
 
 /// What a reader of a fit should know before using it. Written out by `Display`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum FitNote {
     /// Two principal moments are equal within their scatter, and what the axes do about it.

@@ -17,11 +17,8 @@ const FLAT: f64 = 1e-6;
 
 /// How a root of a second moment was fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum RootEstimate {
     /// The mean is many deviations from zero: the plain Gaussian of Peck (2003, Eq. 10).

@@ -84,11 +84,8 @@ pub struct MassPropertiesFit {
 
 /// Which law the mass has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum MassChoice {
     /// Normal, unless the deviation is more than an eighth of the mean, where a normal law would reach zero, or the
     /// lognormal law is likelier at odds of 20 : 1.

@@ -10,11 +10,8 @@ use super::part::AssemblyPart;
 
 /// A row of a list of parts.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct AssemblyRow {
     /// Its name, unlike all others.
     pub name: String,

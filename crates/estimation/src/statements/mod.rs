@@ -48,11 +48,8 @@ const TRACES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 /// * *Products* and *axes* both limit the axes: about each axis the tighter one holds.
 /// * *Moments* come before *products*: where both cannot be had, the moments are as stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Statements {
     /// “Moments ± 10 % (1σ)”.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]

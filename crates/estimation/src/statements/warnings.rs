@@ -10,11 +10,8 @@ const NAMES: [&str; 6] = InertiaMatrix::ENTRY_NAMES;
 /// Contradictions among statements, and what they leave open. Written out by `Display`; deviations
 /// are standard deviations, entries in the order 11, 22, 33, 12, 13, 23 from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum StatementWarning {
     /// The model cannot give an entry the deviation that is stated.
@@ -118,11 +115,8 @@ pub enum StatementWarning {
 
 /// Why an entry does not have the deviation that is stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum MissedBecause {
     /// The scatter of the axes moves it more.

@@ -49,11 +49,8 @@ const FRACTIONS: [f64; 4] = [1.0, 0.8, 0.6, 0.3];
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "file::RegionForm", into = "file::RegionForm")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "file::RegionForm", into = "file::RegionForm"))]
 pub struct Region(Kind);
 
 #[derive(Clone, Debug, PartialEq)]
@@ -74,11 +71,8 @@ enum Kind {
 
 /// Whether matter inside a region can have given mass properties.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Containment {
     /// Some distribution of matter in the region has them.
     Possible,

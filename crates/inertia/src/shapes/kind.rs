@@ -7,11 +7,8 @@ use crate::MAX_LENGTH;
 
 /// The shapes and their sizes, which is also their serialized form.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(tag = "shape", rename_all = "snake_case", deny_unknown_fields)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "shape", rename_all = "snake_case", deny_unknown_fields))]
 pub(super) enum Kind {
     SolidBox { sides_m: [f64; 3] },
     BoxShell { sides_m: [f64; 3] },

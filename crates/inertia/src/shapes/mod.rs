@@ -57,11 +57,8 @@ pub enum ShapeError {
 
 /// How much there is of a shape, of the dimension that its density refers to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Measure {
     /// Of a solid, m³; density in kg/m³.
     Volume(f64),
@@ -122,11 +119,8 @@ impl Measure {
 /// # Ok::<(), gyradius_inertia::ShapeError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(try_from = "Kind", into = "Kind")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Kind", into = "Kind"))]
 pub struct Shape(Kind);
 
 macro_rules! constructors {
