@@ -99,7 +99,9 @@ pub struct FisherBingham {
     contour: Box<Contour>,
     /// ln of exp(−½xᵀPx + bᵀx) over exp(−½ Σ λ(y − c)²).
     ln_offset: f64,
-    mean: Vector4<f64>,
+    /// The mean E x of the four coordinates, a vector inside the unit ball.
+    #[getset(get_copy = "pub")]
+    mean_vector: Vector4<f64>,
     /// The second moment E xxᵀ, of trace one.
     #[getset(get_copy = "pub")]
     second_moment: Matrix4<f64>,
@@ -184,7 +186,7 @@ impl FisherBingham {
             lambda,
             centre,
             ln_offset,
-            mean: axes * mean,
+            mean_vector: axes * mean,
             second_moment: axes * (covariance + mean * mean.transpose()) * axes.transpose(),
             covariance,
             contour,
@@ -261,12 +263,6 @@ impl FisherBingham {
         self.axes * Vector4::from(own)
     }
 
-    /// The mean E x of the four coordinates, a vector inside the unit ball.
-    #[must_use]
-    pub fn mean_vector(&self) -> Vector4<f64> {
-        self.mean
-    }
-
     /// The mean attitude: the quaternion m̄ for which E (x·m̄)² is largest, the eigenvector of E xxᵀ with
     /// the largest eigenvalue (Markley et al. 2007, doi:10.2514/1.28949). q and −q count alike. Of its
     /// two signs the one nearer to E x, or where that is zero the one with a positive scalar part.
@@ -277,7 +273,7 @@ impl FisherBingham {
         let (values, vectors) = jacobi::eigen(&self.second_moment);
         let largest = (0..4).fold(0, |best, j| if values[j] > values[best] { j } else { best });
         let axis: Vector4<f64> = vectors.column(largest).normalize();
-        let side = axis.dot(&self.mean);
+        let side = axis.dot(&self.mean_vector);
         let negative = if side.abs() > 1e-12 { side < 0.0 } else { axis.w < 0.0 };
         UnitQuaternion::new_unchecked(Quaternion::from(if negative { -axis } else { axis }))
     }
@@ -302,7 +298,7 @@ impl FisherBingham {
     #[must_use]
     pub fn rotation_covariance(&self) -> Matrix3<f64> {
         let across = left_multiplication(&self.mean_attitude()).fixed_columns::<3>(0).into_owned();
-        let offset = across.tr_mul(&self.mean);
+        let offset = across.tr_mul(&self.mean_vector);
         let local = self.axes.tr_mul(&across);
         (local.tr_mul(&self.covariance) * local + offset * offset.transpose()) * 4.0
     }

@@ -14,7 +14,9 @@ pub struct EquivalentSolid {
     /// The solid in its own frame, which is principal.
     #[getset(get_copy = "pub")]
     shape: Shape,
-    sizes: [f64; 3],
+    /// Sides of the box, or semi-axes of the ellipsoid, m.
+    #[getset(get_copy = "pub")]
+    sizes_m: [f64; 3],
     centre: Vector3<f64>,
     /// The attitude q that takes body components to components along the solid's axes:
     /// I_B = R(q)ᵀ I_P R(q).
@@ -34,13 +36,7 @@ impl EquivalentSolid {
         let root = square.sqrt() / body.mass_kg().sqrt();
         let sizes = axes.second_moments().map(|k| root * k.max(0.0).sqrt());
         let (centre, attitude) = (body.mass_centre_m(), axes.attitude());
-        Ok(Self { shape: shape(sizes)?, sizes, centre, attitude })
-    }
-
-    /// Sides of the box, or semi-axes of the ellipsoid, m.
-    #[must_use]
-    pub fn sizes_m(&self) -> [f64; 3] {
-        self.sizes
+        Ok(Self { shape: shape(sizes)?, sizes_m: sizes, centre, attitude })
     }
 
     /// Where the solid lies: takes points of its own frame to the reference frame of the body.

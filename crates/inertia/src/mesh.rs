@@ -106,9 +106,11 @@ pub enum MeshError {
 /// assert!((body.mass_kg() - 450.0).abs() < 1e-12 && (body.mass_centre_m().x - 0.25).abs() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 pub struct TriangleMesh {
-    volume: f64,
+    /// The enclosed volume, m³.
+    #[getset(get_copy = "pub")]
+    volume_m3: f64,
     /// At unit mass.
     body: MassProperties,
 }
@@ -138,7 +140,7 @@ impl TriangleMesh {
         if volume < 0.0 {
             return Err(MeshError::InsideOut { volume });
         }
-        Ok(Self { volume, body: polyhedron.of_unit_mass()? })
+        Ok(Self { volume_m3: volume, body: polyhedron.of_unit_mass()? })
     }
 
     /// Takes the corners of each triangle (m, reference frame), as STL files list them. Corners
@@ -150,12 +152,6 @@ impl TriangleMesh {
     pub fn from_corners(triangles: &[[[f64; 3]; 3]]) -> Result<Self, MeshError> {
         let (vertices, triangles) = welded(triangles);
         Self::new(&vertices, &triangles)
-    }
-
-    /// The enclosed volume, m³.
-    #[must_use]
-    pub fn volume_m3(&self) -> f64 {
-        self.volume
     }
 
     /// Mass properties for a mass in kg, in the frame of the vertices.
@@ -171,7 +167,7 @@ impl TriangleMesh {
     /// # Errors
     /// The density is not positive and finite, or mass or inertia are too large.
     pub fn of_density(&self, density_kg_per_m3: f64) -> Result<MassProperties, ShapeError> {
-        Ok(self.of_mass(Measure::Volume(self.volume).mass_kg(density_kg_per_m3)?)?)
+        Ok(self.of_mass(Measure::Volume(self.volume_m3).mass_kg(density_kg_per_m3)?)?)
     }
 }
 

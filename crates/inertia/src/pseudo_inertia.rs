@@ -63,7 +63,7 @@ pub enum PseudoInertiaError {
 /// assert!((back.inertia().matrix() - body.inertia().matrix()).amax() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::Getters, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "[[f64; 4]; 4]", into = "[[f64; 4]; 4]"))]
 pub struct PseudoInertia {
@@ -71,7 +71,9 @@ pub struct PseudoInertia {
     /// corner.
     #[getset(get = "pub")]
     matrix: Matrix4<f64>,
-    body: MassProperties,
+    /// Mass, mass centre and the inertia about it: Σ_c = Σ − m c cᵀ, I = tr(Σ_c)·1 − Σ_c.
+    #[getset(get_copy = "pub")]
+    mass_properties: MassProperties,
 }
 
 impl PseudoInertia {
@@ -111,7 +113,7 @@ impl PseudoInertia {
         let inertia = remainder(inertia_of(&(sigma - outer(mass, &centre))), sigma.amax())
             .map_err(MassPropertiesError::AboutMassCentre)?;
         let body = MassProperties::new(mass, point.mass_centre_m(), inertia)?;
-        Ok(Self { matrix: symmetric, body })
+        Ok(Self { matrix: symmetric, mass_properties: body })
     }
 
     /// The pseudo-inertia of a body about the origin of its reference frame.
@@ -129,12 +131,6 @@ impl PseudoInertia {
         }
         matrix[(3, 3)] = mass;
         Self::new(matrix)
-    }
-
-    /// Mass, mass centre and the inertia about it: Σ_c = Σ − m c cᵀ, I = tr(Σ_c)·1 − Σ_c.
-    #[must_use]
-    pub fn mass_properties(&self) -> MassProperties {
-        self.body
     }
 }
 

@@ -51,7 +51,9 @@ pub struct Repair {
     /// ‖I′ − I‖, Frobenius, kg·m²: 0 if nothing had to be moved.
     #[getset(get_copy = "pub")]
     distance: f64,
-    relative: f64,
+    /// The distance over ‖I‖.
+    #[getset(get_copy = "pub")]
+    relative_distance: f64,
 }
 
 impl Repair {
@@ -62,7 +64,7 @@ impl Repair {
     /// or a result too large to hold.
     pub fn new(matrix: &InertiaMatrix, method: RepairMethod) -> Result<Self, RealizabilityError> {
         if let Ok(inertia) = Inertia::try_from(*matrix) {
-            return Ok(Self { inertia, distance: 0.0, relative: 0.0 });
+            return Ok(Self { inertia, distance: 0.0, relative_distance: 0.0 });
         }
         let size = matrix.matrix().amax();
         let axes = matrix.principal_axes();
@@ -90,13 +92,11 @@ impl Repair {
         let scaled = |m: &Matrix3<f64>| m.map(|x| x / size);
         let relative_to_size = (scaled(inertia.matrix()) - scaled(matrix.matrix())).norm();
         let norm = scaled(matrix.matrix()).norm();
-        Ok(Self { inertia, distance: relative_to_size * size, relative: relative_to_size / norm })
-    }
-
-    /// The distance over ‖I‖.
-    #[must_use]
-    pub fn relative_distance(&self) -> f64 {
-        self.relative
+        Ok(Self {
+            inertia,
+            distance: relative_to_size * size,
+            relative_distance: relative_to_size / norm,
+        })
     }
 }
 

@@ -51,11 +51,16 @@ pub struct AngularQuadrature {
     /// ln C, as the law itself defines it.
     #[getset(get_copy = "pub")]
     ln_normaliser: f64,
-    mean: Vector4<f64>,
+    /// The mean E x of the four coordinates.
+    #[getset(get_copy = "pub")]
+    mean_vector: Vector4<f64>,
     /// The second moment E xxᵀ.
     #[getset(get_copy = "pub")]
     second_moment: Matrix4<f64>,
-    error: f64,
+    /// The estimated relative error of C, which is also the estimated absolute error of the moments:
+    /// that of the rule over η, plus a bound of what rounding does to the exponents.
+    #[getset(get_copy = "pub")]
+    estimated_error: f64,
     /// How often the density of one circle was evaluated.
     #[getset(get_copy = "pub")]
     evaluations: usize,
@@ -145,26 +150,13 @@ impl AngularQuadrature {
         let truncation: f64 = arcs.iter().map(|arc| arc.error).sum::<f64>() / total;
         Self {
             ln_normaliser: libm::log(total) + ln_offset,
-            mean: plane.axes * mean,
+            mean_vector: plane.axes * mean,
             second_moment: plane.axes * second * plane.axes.transpose(),
-            error: truncation + plane.rounding(),
+            estimated_error: truncation + plane.rounding(),
             evaluations: scratch.evaluations,
             arcs: arcs.iter().map(|arc| [arc.low, arc.high]).collect(),
             plane,
         }
-    }
-
-    /// The mean E x of the four coordinates.
-    #[must_use]
-    pub fn mean_vector(&self) -> Vector4<f64> {
-        self.mean
-    }
-
-    /// The estimated relative error of C, which is also the estimated absolute error of the moments:
-    /// that of the rule over η, plus a bound of what rounding does to the exponents.
-    #[must_use]
-    pub fn estimated_error(&self) -> f64 {
-        self.error
     }
 
     /// Expectations of `N` real functions of the attitude, on the points that served the normaliser.

@@ -34,10 +34,12 @@ const MAX_ENTRY: f64 = 1e150;
 /// assert!((mass - 0.05 * 5.0).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
 pub struct PseudoInertiaWishart {
     mean: PseudoInertia,
-    freedom: f64,
+    /// The degrees of freedom.
+    #[getset(get_copy = "pub")]
+    degrees_of_freedom: f64,
     /// L, lower triangular.
     root: Matrix4<f64>,
     squares: [ChiSquared<f64>; 4],
@@ -73,19 +75,13 @@ impl PseudoInertiaWishart {
         let root = Matrix4::from_diagonal(&sizes) * root;
         let square = |k: f64| ChiSquared::new(freedom - k).map_err(|_| refused);
         let squares = [square(0.0)?, square(1.0)?, square(2.0)?, square(3.0)?];
-        Ok(Self { mean, freedom, root, squares })
+        Ok(Self { mean, degrees_of_freedom: freedom, root, squares })
     }
 
     /// The mean body.
     #[must_use]
     pub fn mean(&self) -> MassProperties {
         self.mean.mass_properties()
-    }
-
-    /// The degrees of freedom.
-    #[must_use]
-    pub fn degrees_of_freedom(&self) -> f64 {
-        self.freedom
     }
 
     /// Mean and covariance of the ten in which the equations of motion are linear, in closed form.
@@ -111,7 +107,9 @@ impl PseudoInertiaWishart {
         };
         let mean = SVector::from_fn(|a, _| TRACES[a].iter().map(|(i, k, s)| s * j[(*i, *k)]).sum());
         let covariance = SMatrix::from_fn(|a, b| {
-            let own = |i, k, l, m| (j[(i, l)] * j[(k, m)] + j[(i, m)] * j[(k, l)]) / self.freedom;
+            let own = |i, k, l, m| {
+                (j[(i, l)] * j[(k, m)] + j[(i, m)] * j[(k, l)]) / self.degrees_of_freedom
+            };
             sum(&own, a, b)
         });
         TenMoments::unchecked(mean, covariance)
@@ -121,7 +119,7 @@ impl PseudoInertiaWishart {
     /// times m³ for the mass centre in place of the first moments, over 2 for I in place of Σ.
     #[must_use]
     pub fn ln_density(&self, body: &MassProperties) -> f64 {
-        let p = self.freedom;
+        let p = self.degrees_of_freedom;
         let Ok(pseudo) = PseudoInertia::of(body) else { return f64::NEG_INFINITY };
         let Some(whitened) = self.root.solve_lower_triangular(pseudo.matrix()) else {
             return f64::NEG_INFINITY;
@@ -145,13 +143,13 @@ impl PseudoInertiaWishart {
 
 crate::written!(
     PseudoInertiaWishart,
-    |law| { mean: PseudoInertia = law.mean, degrees_of_freedom: f64 = law.freedom, },
+    |law| { mean: PseudoInertia = law.mean, degrees_of_freedom: f64 = law.degrees_of_freedom, },
     PseudoInertiaWishart::about(mean, degrees_of_freedom)?
 );
 
 impl Distribution<MassProperties> for PseudoInertiaWishart {
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> MassProperties {
-        let share = self.freedom.sqrt();
+        let share = self.degrees_of_freedom.sqrt();
         loop {
             // Bartlett's decomposition.
             let mut lower = Matrix4::zeros();

@@ -14,7 +14,9 @@ pub struct EstimateDistance {
     /// The mean of each of the ten less that of the estimate, in its standard deviations; none of what does not vary.
     #[getset(get = "pub")]
     means: [Option<f64>; 10],
-    deviations: [Option<f64>; 10],
+    /// By how many percent the standard deviation of each of the ten is larger than that of the estimate; none of what does not vary.
+    #[getset(get = "pub")]
+    deviation_percents: [Option<f64>; 10],
     /// The Mahalanobis distance of the means: √(dᵀ C⁻¹ d) with the covariance of the estimate, in which what does not vary counts as
     /// varying by 1e-6 of its size.
     #[getset(get_copy = "pub")]
@@ -22,21 +24,24 @@ pub struct EstimateDistance {
     /// The largest difference of a correlation.
     #[getset(get_copy = "pub")]
     correlation: f64,
-    off: f64,
+    /// What laws are made to have as small as they can: the root of the sum of the squares of the differences of means in deviations,
+    /// of relative differences of deviations (to first order), and of correlations (of each pair once).
+    #[getset(get_copy = "pub")]
+    total: f64,
 }
 
 gyradius_dispersion::written!(
     EstimateDistance,
     |distance| {
         means: [Option<f64>; 10] = distance.means,
-        deviations: [Option<f64>; 10] = distance.deviations,
+        deviations: [Option<f64>; 10] = distance.deviation_percents,
         mahalanobis: f64 = distance.mahalanobis,
         correlation: f64 = distance.correlation,
-        total: f64 = distance.off,
+        total: f64 = distance.total,
     },
     {
         crate::read::belong(mahalanobis >= 0.0 && correlation >= 0.0 && total >= 0.0, "distance")?;
-        EstimateDistance { means, deviations, mahalanobis, correlation, off: total }
+        EstimateDistance { means, deviation_percents: deviations, mahalanobis, correlation, total }
     }
 );
 
@@ -64,32 +69,19 @@ impl EstimateDistance {
         let square = gap.dot(&(metric(estimate)? * gap));
         Some(Self {
             means: std::array::from_fn(|i| varies(i).then(|| gap[i] / stated[i])),
-            deviations: std::array::from_fn(|i| {
+            deviation_percents: std::array::from_fn(|i| {
                 varies(i).then(|| 100.0 * (found[i] / stated[i] - 1.0))
             }),
             mahalanobis: square.max(0.0).sqrt(),
             correlation: largest,
-            off: Gaps::of(estimate, moments).off(),
+            total: Gaps::of(estimate, moments).off(),
         })
-    }
-
-    /// By how many percent the standard deviation of each of the ten is larger than that of the estimate; none of what does not vary.
-    #[must_use]
-    pub fn deviation_percents(&self) -> &[Option<f64>; 10] {
-        &self.deviations
     }
 
     /// Whether mean and covariance are those of the estimate, to 1e-5 of the deviations.
     #[must_use]
     pub fn is_exact(&self) -> bool {
-        self.off < EXACT
-    }
-
-    /// What laws are made to have as small as they can: the root of the sum of the squares of the differences of means in deviations,
-    /// of relative differences of deviations (to first order), and of correlations (of each pair once).
-    #[must_use]
-    pub fn total(&self) -> f64 {
-        self.off
+        self.total < EXACT
     }
 }
 

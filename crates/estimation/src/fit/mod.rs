@@ -133,7 +133,10 @@ pub struct PrincipalFit {
     /// How axes were matched.
     #[getset(get_copy = "pub")]
     matching: Matching,
-    deviations: [f64; 6],
+    /// Standard deviations of the six entries of the samples, kg·m², in the order 11, 22, 33, 12, 13,
+    /// 23: to be compared with those of the law, [`EntryMoments`](gyradius_dispersion::EntryMoments).
+    #[getset(get_copy = "pub")]
+    sample_deviations: [f64; 6],
     /// The fitted law.
     #[getset(get = "pub")]
     law: PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian>,
@@ -191,7 +194,7 @@ impl PrincipalFit {
             roots,
             axes,
             matching,
-            deviations: deviations(samples),
+            sample_deviations: deviations(samples),
             law,
         })
     }
@@ -200,13 +203,6 @@ impl PrincipalFit {
     #[must_use]
     pub fn count(&self) -> usize {
         self.samples.len()
-    }
-
-    /// Standard deviations of the six entries of the samples, kg·m², in the order 11, 22, 33, 12, 13,
-    /// 23: to be compared with those of the law, [`EntryMoments`](gyradius_dispersion::EntryMoments).
-    #[must_use]
-    pub fn sample_deviations(&self) -> [f64; 6] {
-        self.deviations
     }
 
     /// The root about principal axis `k` of each sample, as its axes were named.
@@ -226,7 +222,7 @@ gyradius_dispersion::written!(
         roots: [RootFit; 3] = fit.roots,
         axes: AxesFit = fit.axes.clone(),
         matching: Matching = fit.matching,
-        entry_deviation_kg_m2: [f64; 6] = fit.deviations,
+        entry_deviation_kg_m2: [f64; 6] = fit.sample_deviations,
         law: PrincipalDispersion<ScalarRoots, RadiallyConstrainedGaussian> = fit.law.clone(),
         samples: Vec<Sample> = fit.samples.clone(),
     },
@@ -237,14 +233,14 @@ gyradius_dispersion::written!(
             roots,
             axes,
             matching,
-            deviations: entry_deviation_kg_m2,
+            sample_deviations: entry_deviation_kg_m2,
             law,
         };
         belong(
             fit.count() >= NEEDED
                 && fit.matching.swapped <= fit.count()
                 && fit.law.axes() == fit.axes.law()
-                && fit.deviations.iter().all(|deviation| *deviation >= 0.0),
+                && fit.sample_deviations.iter().all(|deviation| *deviation >= 0.0),
             "fit of inertias",
         )?;
         fit

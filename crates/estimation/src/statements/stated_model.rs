@@ -20,14 +20,20 @@ pub struct StatedModel {
     #[getset(get = "pub")]
     nominal: Inertia,
     scatter: Scatter,
-    at_nominal_mass: Law,
+    /// The law of the inertia at the nominal mass. Where no mass is stated it is that of
+    /// [`law`](Self::law).
+    #[getset(get = "pub")]
+    law_at_nominal_mass: Law,
     /// The law of the inertia, with all that a stated mass does to it.
     #[getset(get = "pub")]
     law: Law,
     /// The mass, if it is stated.
     #[getset(get_copy = "pub")]
     mass: Option<StatedMass>,
-    centre: Option<[f64; 3]>,
+    /// Standard deviations of the mass centre along body axes 1, 2, 3, m, if they are stated. The mass centre is
+    /// independent of the inertia about it.
+    #[getset(get_copy = "pub")]
+    centre_deviations: Option<[f64; 3]>,
     /// Standard deviations of the roots of the second moments, √kg·m. Their means are those of the nominal
     /// inertia.
     #[getset(get_copy = "pub")]
@@ -43,40 +49,31 @@ pub struct StatedModel {
 }
 
 /// A normal mass, and how the inertia goes with it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
+#[getset(get_copy = "pub")]
 pub struct StatedMass {
-    relative: f64,
-    follows: f64,
+    /// The standard deviation of the mass over the nominal mass.
+    relative_deviation: f64,
+    /// The share α of the mass's relative change that the inertia takes, from 0 to 1: one, unless the moments are
+    /// stated to vary by less than the mass makes them vary.
+    inertia_follows: f64,
 }
 
 impl StatedMass {
-    pub(super) fn new(relative: f64, follows: f64) -> Self {
-        Self { relative, follows }
-    }
-
-    /// The standard deviation of the mass over the nominal mass.
-    #[must_use]
-    pub fn relative_deviation(&self) -> f64 {
-        self.relative
-    }
-
-    /// The share α of the mass's relative change that the inertia takes, from 0 to 1: one, unless the moments are
-    /// stated to vary by less than the mass makes them vary.
-    #[must_use]
-    pub fn inertia_follows(&self) -> f64 {
-        self.follows
+    pub(super) fn new(relative_deviation: f64, inertia_follows: f64) -> Self {
+        Self { relative_deviation, inertia_follows }
     }
 
     /// What the inertia is multiplied by where the mass is `ratio` times the nominal one:
     /// 1 + α(ratio − 1).
     #[must_use]
     pub fn factor(&self, ratio: f64) -> f64 {
-        following_factor(ratio, self.follows)
+        following_factor(ratio, self.inertia_follows)
     }
 
     /// The standard deviation of that factor.
     pub(super) fn factor_deviation(&self) -> f64 {
-        self.follows * self.relative
+        self.inertia_follows * self.relative_deviation
     }
 }
 
@@ -105,10 +102,10 @@ impl StatedModel {
         Ok(Self {
             nominal: *nominal,
             scatter,
-            at_nominal_mass,
+            law_at_nominal_mass: at_nominal_mass,
             law,
             mass,
-            centre,
+            centre_deviations: centre,
             root_deviations: roots.diagonal().map(f64::sqrt).into(),
             rotations: scatter.rotation_variances(),
             stated: std::array::from_fn(|e| match e {
@@ -129,20 +126,6 @@ impl StatedModel {
         &self.scatter
     }
 
-    /// The law of the inertia at the nominal mass. Where no mass is stated it is that of
-    /// [`law`](Self::law).
-    #[must_use]
-    pub fn law_at_nominal_mass(&self) -> &Law {
-        &self.at_nominal_mass
-    }
-
-    /// Standard deviations of the mass centre along body axes 1, 2, 3, m, if they are stated. The mass centre is
-    /// independent of the inertia about it.
-    #[must_use]
-    pub fn centre_deviations(&self) -> Option<[f64; 3]> {
-        self.centre
-    }
-
     /// Standard deviations of the rotations about principal axes 1, 2, 3, rad; infinite where nothing
     /// is known of one.
     #[must_use]
@@ -159,7 +142,7 @@ impl StatedModel {
 
 gyradius_dispersion::written!(
     StatedMass,
-    |mass| { relative_deviation: f64 = mass.relative, inertia_follows_mass: f64 = mass.follows, },
+    |mass| { relative_deviation: f64 = mass.relative_deviation, inertia_follows_mass: f64 = mass.inertia_follows, },
     {
         let is_share = (0.0..=1.0).contains(&inertia_follows_mass);
         crate::read::belong(is_share && relative_deviation >= 0.0, "stated mass")?;
@@ -172,10 +155,10 @@ gyradius_dispersion::written!(
     |model| {
         nominal_kg_m2: Inertia = model.nominal,
         scatter: Scatter = model.scatter,
-        at_nominal_mass: Law = model.at_nominal_mass.clone(),
+        at_nominal_mass: Law = model.law_at_nominal_mass.clone(),
         law: Law = model.law.clone(),
         mass: Option<StatedMass> = model.mass,
-        mass_centre_m: Option<[f64; 3]> = model.centre,
+        mass_centre_m: Option<[f64; 3]> = model.centre_deviations,
         root_deviation_sqrt_kg_m: [f64; 3] = model.root_deviations,
         #[serde(deserialize_with = "crate::read::or_infinite")]
         rotation_variance_rad2: [f64; 3] = model.rotations,
@@ -190,10 +173,10 @@ gyradius_dispersion::written!(
         StatedModel {
             nominal: nominal_kg_m2,
             scatter,
-            at_nominal_mass,
+            law_at_nominal_mass: at_nominal_mass,
             law,
             mass,
-            centre: mass_centre_m,
+            centre_deviations: mass_centre_m,
             root_deviations: root_deviation_sqrt_kg_m,
             rotations: rotation_variance_rad2,
             stated: stated_kg_m2,
