@@ -1,6 +1,6 @@
 //! Gaussian log-Cholesky coordinates.
 
-use gyradius_inertia::{Inertia, InertiaMatrix, LogCholesky, MassProperties};
+use gyradius_inertia::{Inertia, InertiaMatrix, LogCholesky, LogCholeskyError, MassProperties};
 use nalgebra::{Matrix3, SMatrix, SVector};
 use rand::Rng;
 use rand_distr::Distribution;
@@ -39,16 +39,9 @@ pub enum LogCholeskyGaussianError {
         /// Its deviation.
         deviation: f64,
     },
-    /// The mean body is a rod, a plate or a point.
-    #[error(
-        "second moments {:?}, {:?} and {:?} kg·m²: all must be positive, because a rod, a plate or a \
-         point has no log-Cholesky coordinates", .second_moments[0], .second_moments[1],
-        .second_moments[2]
-    )]
-    Singular {
-        /// K_k about the principal axes, kg·m².
-        second_moments: [f64; 3],
-    },
+    /// The mean body has no coordinates: it is a rod, a plate or a point.
+    #[error(transparent)]
+    Coordinates(#[from] LogCholeskyError),
     /// No law of this family was found with the moments that were asked for.
     #[error(
         "no Gaussian in log-Cholesky coordinates found with these moments of the entries: the spread \
@@ -225,12 +218,10 @@ impl Start {
 }
 
 /// d₁, d₂, d₃, s₁₂, s₂₃, s₁₃ of a body.
-fn coordinates(body: &Inertia) -> Result<[f64; 6], LogCholeskyGaussianError> {
-    let singular =
-        LogCholeskyGaussianError::Singular { second_moments: body.second_moments().values() };
+fn coordinates(body: &Inertia) -> Result<[f64; 6], LogCholeskyError> {
     // Of one kilogram at the origin, α and t are zero and lengths are in √kg·m.
-    let unit = MassProperties::new(1.0, nalgebra::Vector3::zeros(), *body).map_err(|_| singular)?;
-    let [_, d1, d2, d3, s12, s23, s13, ..] = LogCholesky::of(&unit).map_err(|_| singular)?.values();
+    let unit = MassProperties::new(1.0, nalgebra::Vector3::zeros(), *body)?;
+    let [_, d1, d2, d3, s12, s23, s13, ..] = LogCholesky::of(&unit)?.values();
     Ok([d1, d2, d3, s12, s23, s13])
 }
 

@@ -241,13 +241,4 @@ mod tests {
         let error = RealizableOnly::new(law).unwrap_err();
         assert!(error.to_string().contains("0 of 20000"), "{error}");
     }
-
-    #[cfg(feature = "serde")]
-    #[test]
-    fn serde_goes_through_the_constructor() {
-        let law = RealizableOnly::new(slender(0.1)).unwrap();
-        let json = serde_json::to_string(&law).unwrap();
-        let back: RealizableOnly<EntrywiseGaussian> = serde_json::from_str(&json).unwrap();
-        assert_eq!(back, law);
-    }
 }

@@ -9,11 +9,11 @@ macro_rules! written {
         const _: () = {
             #[derive(serde::Serialize, serde::Deserialize)]
             #[serde(deny_unknown_fields)]
-            struct Written {
+            struct Keys {
                 $($(#[$key_meta])* $key: $type,)+
             }
 
-            impl Written {
+            impl Keys {
                 fn read(self) -> Result<$of, Box<dyn std::error::Error>> {
                     let Self { $($key,)+ } = self;
                     Ok($read)
@@ -23,14 +23,14 @@ macro_rules! written {
             impl serde::Serialize for $of {
                 fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
                     let $value = self;
-                    serde::Serialize::serialize(&Written { $($key: $write,)+ }, to)
+                    serde::Serialize::serialize(&Keys { $($key: $write,)+ }, to)
                 }
             }
 
             impl<'de> serde::Deserialize<'de> for $of {
                 fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-                    let written: Written = serde::Deserialize::deserialize(from)?;
-                    written.read().map_err(serde::de::Error::custom)
+                    let keys: Keys = serde::Deserialize::deserialize(from)?;
+                    keys.read().map_err(serde::de::Error::custom)
                 }
             }
         };

@@ -16,6 +16,12 @@ pub(crate) fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 3]
     Ok(<[Option<f64>; 3]>::deserialize(from)?.map(|x| x.unwrap_or(f64::INFINITY)))
 }
 
+/// Refuses deviations and standard errors that no fit has: none scatter, or all are positive.
+pub(crate) fn scatter(deviation: f64, errors: Option<[f64; 2]>, still: bool) -> Result<(), String> {
+    let positive = errors.iter().flatten().all(|error| *error > 0.0);
+    belong(positive && (deviation > 0.0) != still && !(still && errors.is_some()), "fit")
+}
+
 /// Refuses what does not belong together.
 pub(crate) fn belong(together: bool, what: &str) -> Result<(), String> {
     if together { Ok(()) } else { Err(format!("{what}: the numbers do not belong together")) }

@@ -56,7 +56,7 @@ where
     let mut places = Vec::new();
     leaves(&whole, String::new(), &mut places);
     // Of long lists, some places.
-    let step = places.len().div_ceil(60);
+    let step = places.len().div_ceil(60).max(1);
     for place in places.iter().step_by(step) {
         let with = |bad: Value| {
             let mut spoilt = whole.clone();

@@ -186,23 +186,15 @@ impl RealizabilityError {
     }
 }
 
-impl TryFrom<[[f64; 3]; 3]> for Inertia {
-    type Error = RealizabilityError;
-
-    fn try_from(rows: [[f64; 3]; 3]) -> Result<Self, Self::Error> {
-        InertiaMatrix::try_from(rows)?.try_into()
-    }
-}
+crate::array_form::array_form!(
+    Inertia as [[f64; 3]; 3], refused by RealizabilityError,
+    |rows| InertiaMatrix::try_from(rows)?.try_into(),
+    |inertia| inertia.0.into()
+);
 
 impl From<Inertia> for InertiaMatrix {
     fn from(inertia: Inertia) -> Self {
         inertia.0
-    }
-}
-
-impl From<Inertia> for [[f64; 3]; 3] {
-    fn from(inertia: Inertia) -> Self {
-        inertia.0.into()
     }
 }
 

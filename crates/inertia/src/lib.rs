@@ -30,6 +30,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod array_form;
 mod assembly;
 mod double;
 mod eigen;

@@ -150,19 +150,11 @@ impl LogCholesky {
     }
 }
 
-impl TryFrom<[f64; 10]> for LogCholesky {
-    type Error = LogCholeskyError;
-
-    fn try_from(values: [f64; 10]) -> Result<Self, Self::Error> {
-        Self::new(values)
-    }
-}
-
-impl From<LogCholesky> for [f64; 10] {
-    fn from(coordinates: LogCholesky) -> Self {
-        coordinates.0
-    }
-}
+crate::array_form::array_form!(
+    LogCholesky as [f64; 10], refused by LogCholeskyError,
+    |values| Self::new(values),
+    |coordinates| coordinates.0
+);
 
 #[cfg(test)]
 mod tests {

@@ -233,19 +233,11 @@ fn is_positive_semidefinite(s: &Matrix3<f64>, shift: f64) -> bool {
     b >= 0.0 && c >= 0.0 && bc * bc <= b * c
 }
 
-impl TryFrom<[[f64; 3]; 3]> for InertiaMatrix {
-    type Error = InertiaMatrixError;
-
-    fn try_from(rows: [[f64; 3]; 3]) -> Result<Self, Self::Error> {
-        Self::new(Matrix3::from_fn(|i, j| rows[i][j]))
-    }
-}
-
-impl From<InertiaMatrix> for [[f64; 3]; 3] {
-    fn from(inertia: InertiaMatrix) -> Self {
-        std::array::from_fn(|i| std::array::from_fn(|j| inertia.0[(i, j)]))
-    }
-}
+crate::array_form::array_form!(
+    InertiaMatrix as [[f64; 3]; 3], refused by InertiaMatrixError,
+    |rows| Self::new(Matrix3::from(rows).transpose()),
+    |inertia| inertia.0.transpose().into()
+);
 
 #[cfg(test)]
 pub(crate) mod tests {

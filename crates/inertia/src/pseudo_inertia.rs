@@ -134,19 +134,11 @@ impl PseudoInertia {
     }
 }
 
-impl TryFrom<[[f64; 4]; 4]> for PseudoInertia {
-    type Error = PseudoInertiaError;
-
-    fn try_from(rows: [[f64; 4]; 4]) -> Result<Self, Self::Error> {
-        Self::new(Matrix4::from_fn(|i, j| rows[i][j]))
-    }
-}
-
-impl From<PseudoInertia> for [[f64; 4]; 4] {
-    fn from(pseudo: PseudoInertia) -> Self {
-        std::array::from_fn(|i| std::array::from_fn(|j| pseudo.matrix[(i, j)]))
-    }
-}
+crate::array_form::array_form!(
+    PseudoInertia as [[f64; 4]; 4], refused by PseudoInertiaError,
+    |rows| Self::new(Matrix4::from(rows).transpose()),
+    |pseudo| pseudo.matrix.transpose().into()
+);
 
 #[cfg(test)]
 mod tests {

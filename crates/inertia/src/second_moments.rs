@@ -194,24 +194,21 @@ fn check_mass(value: f64) -> Result<(), SecondMomentsError> {
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(SecondMomentsError::Mass { value }) }
 }
 
-macro_rules! conversions {
-    ($($type:ident),*) => {$(
-        impl TryFrom<[f64; 3]> for $type {
-            type Error = SecondMomentsError;
-
-            fn try_from(values: [f64; 3]) -> Result<Self, Self::Error> {
-                Self::new(values)
-            }
-        }
-
-        impl From<$type> for [f64; 3] {
-            fn from(value: $type) -> Self {
-                value.0
-            }
-        }
-    )*};
-}
-conversions!(SecondMoments, RootSecondMoments, RadiiOfGyration);
+crate::array_form::array_form!(
+    SecondMoments as [f64; 3], refused by SecondMomentsError,
+    |values| Self::new(values),
+    |own| own.0
+);
+crate::array_form::array_form!(
+    RootSecondMoments as [f64; 3], refused by SecondMomentsError,
+    |values| Self::new(values),
+    |own| own.0
+);
+crate::array_form::array_form!(
+    RadiiOfGyration as [f64; 3], refused by SecondMomentsError,
+    |values| Self::new(values),
+    |own| own.0
+);
 
 #[cfg(test)]
 mod tests {

@@ -1,7 +1,7 @@
 //! How many failures a number of runs allows, and what that means for whom.
 
 use crate::error::{probability, share};
-use crate::verdict::{Rule, Verdict};
+use crate::verdict::{Rule, judged};
 use crate::{Confidence, StatisticsError, law};
 
 /// A requirement that at least a share p of the flights succeed, with confidence c, which a number of runs that was
@@ -75,34 +75,6 @@ impl Acceptance {
         1.0 - self.probability
     }
 
-    /// The most failures with which the requirement is met after `runs` runs; none if there are too few runs.
-    ///
-    /// More than 10¹⁵ runs are taken for 10¹⁵.
-    pub fn allowed_failures(&self, runs: u64) -> Option<u64> {
-        self.allowed(runs)
-    }
-
-    /// The least failures with which the requirement is not met after `runs` runs; none if there are too few runs.
-    ///
-    /// More than 10¹⁵ runs are taken for 10¹⁵.
-    pub fn refused_failures(&self, runs: u64) -> Option<u64> {
-        self.refused(runs)
-    }
-
-    /// The least runs that allow so many failures; none if they are more than 10¹⁵.
-    pub fn least_runs(&self, failures: u64) -> Option<u64> {
-        Rule::least_runs(self, failures)
-    }
-
-    /// What so many failures in so many runs decide.
-    ///
-    /// # Errors
-    ///
-    /// [`StatisticsError::Failures`] if there are more failures than runs, or more than 10⁹ runs.
-    pub fn verdict(&self, failures: u64, runs: u64) -> Result<Verdict, StatisticsError> {
-        self.judge(failures, runs)
-    }
-
     /// The probability that a vehicle which succeeds in a share `success` of its flights fails to pass `runs` runs:
     /// that it sees more failures than allowed. 1 if there are too few runs.
     ///
@@ -155,6 +127,8 @@ impl Acceptance {
         (1.0 - self.confidence.level()) * (1.0 + 1e-12)
     }
 }
+
+judged!(Acceptance);
 
 impl Rule for Acceptance {
     fn failure_share(&self) -> f64 {

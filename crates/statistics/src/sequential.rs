@@ -1,7 +1,7 @@
 //! When to stop: a verdict that may be asked for after every run.
 
 use crate::mixture::Mixture;
-use crate::verdict::{Rule, Verdict};
+use crate::verdict::{Rule, judged};
 use crate::{Acceptance, ConfidenceSequence, Interval, StatisticsError};
 
 /// A requirement that at least a share p of the flights succeed, with confidence c, decided by as many looks as one
@@ -66,35 +66,6 @@ impl SequentialAcceptance {
         self.0
     }
 
-    /// The most failures with which the requirement is met if looked at after `runs` runs; none if there are too few runs.
-    ///
-    /// More than 10¹⁵ runs are taken for 10¹⁵.
-    pub fn allowed_failures(&self, runs: u64) -> Option<u64> {
-        self.allowed(runs)
-    }
-
-    /// The least failures with which the requirement is not met if looked at after `runs` runs; none if there are too few
-    /// runs.
-    ///
-    /// More than 10¹⁵ runs are taken for 10¹⁵.
-    pub fn refused_failures(&self, runs: u64) -> Option<u64> {
-        self.refused(runs)
-    }
-
-    /// The least runs that allow so many failures; none if they are more than 10¹⁵.
-    pub fn least_runs(&self, failures: u64) -> Option<u64> {
-        Rule::least_runs(self, failures)
-    }
-
-    /// What so many failures in so many runs decide: stop, or go on.
-    ///
-    /// # Errors
-    ///
-    /// [`StatisticsError::Failures`] if there are more failures than runs, or more than 10⁹ runs.
-    pub fn verdict(&self, failures: u64, runs: u64) -> Result<Verdict, StatisticsError> {
-        self.judge(failures, runs)
-    }
-
     /// Where the share of failures lies after so many runs: an interval of the [`ConfidenceSequence`] about 1 − p.
     ///
     /// # Errors
@@ -110,6 +81,8 @@ impl SequentialAcceptance {
         -libm::log(self.0.risk())
     }
 }
+
+judged!(SequentialAcceptance);
 
 impl Rule for SequentialAcceptance {
     fn failure_share(&self) -> f64 {

@@ -108,3 +108,43 @@ pub(crate) trait Rule {
         self.least_runs(law::first(failures + step / 2, failures + step, enough))
     }
 }
+
+/// What a rule is asked for, with the name of the rule.
+macro_rules! judged {
+    ($rule:ident) => {
+        impl $rule {
+            /// The most failures with which the requirement is met after `runs` runs; none if there are too few runs.
+            ///
+            /// More than 10¹⁵ runs are taken for 10¹⁵.
+            pub fn allowed_failures(&self, runs: u64) -> Option<u64> {
+                self.allowed(runs)
+            }
+
+            /// The least failures with which the requirement is not met after `runs` runs; none if there are too few runs.
+            ///
+            /// More than 10¹⁵ runs are taken for 10¹⁵.
+            pub fn refused_failures(&self, runs: u64) -> Option<u64> {
+                self.refused(runs)
+            }
+
+            /// The least runs that allow so many failures; none if they are more than 10¹⁵.
+            pub fn least_runs(&self, failures: u64) -> Option<u64> {
+                Rule::least_runs(self, failures)
+            }
+
+            /// What so many failures in so many runs decide.
+            ///
+            /// # Errors
+            ///
+            /// [`StatisticsError::Failures`] if there are more failures than runs, or more than 10⁹ runs.
+            pub fn verdict(
+                &self,
+                failures: u64,
+                runs: u64,
+            ) -> Result<$crate::Verdict, StatisticsError> {
+                self.judge(failures, runs)
+            }
+        }
+    };
+}
+pub(crate) use judged;

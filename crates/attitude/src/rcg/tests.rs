@@ -342,24 +342,6 @@ fn covariances_symmetric_to_rounding_are_accepted() {
     }
 }
 
-#[cfg(feature = "serde")]
-#[test]
-fn serde_goes_through_the_constructor() {
-    let law = paper();
-    let json = serde_json::to_string(&law).unwrap();
-    let back: RadiallyConstrainedGaussian = serde_json::from_str(&json).unwrap();
-    assert_eq!(back.covariance(), law.covariance());
-    assert_eq!(back.mean(), law.mean());
-    assert_eq!(back, law);
-    let read = |json: &str| serde_json::from_str::<RadiallyConstrainedGaussian>(json);
-    assert!(read(&json.replace("0.6]", "-0.6]")).is_err());
-    assert!(
-        read(&json.replace("\"principal_variances\":null", "\"principal_variances\":[1,1,1,1]"))
-            .is_err()
-    );
-    assert!(read(r#"{"mean":[0,0,0,1]}"#).is_err());
-}
-
 /// Σ cannot hold these: 20 decades of variances, off the coordinate axes.
 #[cfg(feature = "serde")]
 #[test]

@@ -1,6 +1,6 @@
 //! An estimate of the ten parameters with its covariance, as an identification or a posterior gives it.
 
-use gyradius_dispersion::TenParameters;
+use gyradius_dispersion::{CovarianceError, TenParameters};
 use gyradius_inertia::MassProperties;
 use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3};
 
@@ -124,8 +124,8 @@ impl TenEstimate {
             for column in 0..10 {
                 let value = covariance[(row, column)];
                 if !(value.abs() <= MOST * MOST) || (row == column && value < 0.0) {
-                    let (row, column) = (row + 1, column + 1);
-                    return Err(TenEstimateError::Covariance { row, column, value });
+                    let (row, column, max) = (row + 1, column + 1, MOST * MOST);
+                    return Err(CovarianceError::Entry { row, column, value, max }.into());
                 }
             }
         }
@@ -137,7 +137,7 @@ impl TenEstimate {
                 let size = deviations[row] * deviations[column];
                 if !((lower - upper).abs() <= ROUNDING * size) {
                     let (row, column) = (column + 1, row + 1);
-                    return Err(TenEstimateError::NotSymmetric { row, column, upper, lower });
+                    return Err(CovarianceError::NotSymmetric { row, column, upper, lower }.into());
                 }
                 if size > 0.0 {
                     let value = 0.5 * (lower / deviations[row] + upper / deviations[row])
@@ -281,32 +281,9 @@ pub enum TenEstimateError {
         /// The value.
         value: f64,
     },
-    /// An entry of the covariance.
-    #[error(
-        "covariance entry ({row}, {column}) = {value:?}: it must be finite, and not negative on the diagonal"
-    )]
-    Covariance {
-        /// Row, from 1.
-        row: usize,
-        /// Column, from 1.
-        column: usize,
-        /// The value.
-        value: f64,
-    },
-    /// The covariance is not symmetric.
-    #[error(
-        "covariance entries ({row}, {column}) = {upper:?} and ({column}, {row}) = {lower:?}: the matrix must be symmetric"
-    )]
-    NotSymmetric {
-        /// Row of the upper entry, from 1.
-        row: usize,
-        /// Column of the upper entry, from 1.
-        column: usize,
-        /// Above the diagonal.
-        upper: f64,
-        /// Below it.
-        lower: f64,
-    },
+    /// An entry of the covariance, or two that are not the same.
+    #[error(transparent)]
+    Covariance(#[from] CovarianceError),
     /// Some combination would have a negative variance.
     #[error("the correlations have an eigenvalue of {eigenvalue:.3e}: none may be negative")]
     Indefinite {

@@ -4,7 +4,7 @@ use gyradius_statistics::tail;
 use std::fmt;
 
 #[cfg(feature = "serde")]
-use crate::read::belong;
+use crate::read::{belong, scatter};
 
 /// From this many deviations on, a mean is so far from zero that no sign is ever lost: e^(−2·36)
 /// is below rounding.
@@ -125,8 +125,8 @@ gyradius_dispersion::written!(
     },
     {
         let (mean, deviation, errors) = (mean_sqrt_kg_m, deviation_sqrt_kg_m, errors_sqrt_kg_m);
-        let is_still = law == RootEstimate::Constant;
-        belong(mean >= 0.0 && (deviation > 0.0) != is_still, "fit of a root")?;
+        scatter(deviation, errors, law == RootEstimate::Constant)?;
+        belong(mean >= 0.0, "fit of a root")?;
         RootFit { mean, deviation, errors, law }
     }
 );

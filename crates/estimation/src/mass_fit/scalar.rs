@@ -7,7 +7,7 @@ use std::fmt;
 use super::MassChoice;
 use crate::fit::anderson_darling;
 #[cfg(feature = "serde")]
-use crate::read::belong;
+use crate::read::{belong, scatter};
 
 /// What scatters by less than this share of its size does not.
 const STILL: f64 = 1e-9;
@@ -162,7 +162,8 @@ gyradius_dispersion::written!(
     {
         let is_still = law == ScalarEstimate::Constant;
         let fit = ScalarFit { mean, deviation, errors, law, p_value };
-        belong((deviation > 0.0) != is_still && p_value.is_some() != is_still, "fit of a scalar")?;
+        scatter(deviation, errors, is_still)?;
+        belong(p_value.is_some() != is_still, "fit of a scalar")?;
         fit.law()?;
         fit
     }

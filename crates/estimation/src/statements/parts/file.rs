@@ -74,60 +74,13 @@ impl<'de> Visitor<'de> for ThreeVisitor {
     }
 }
 
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Moments {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    percent: Option<Three>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    kg_m2: Option<Three>,
-    sigmas: f64,
-}
-
-impl TryFrom<Moments> for MomentsStatement {
-    type Error = StatementError;
-
-    fn try_from(file: Moments) -> Result<Self, StatementError> {
-        let (amount, each) = match (file.percent, file.kg_m2) {
-            (Some(x), None) => (Amount::Percent(x.values()), x.each()),
-            (None, Some(x)) => (Amount::Absolute(x.values()), x.each()),
-            (Some(_), Some(_)) | (None, None) => {
-                let allowed = "percent, kg_m2";
-                return Err(StatementError::Units { part: Part::Moments, allowed });
-            }
-        };
-        Self::written(amount, each, file.sigmas)
+impl Amount {
+    fn percent(self) -> Option<[f64; 3]> {
+        if let Self::Percent(x) = self { Some(x) } else { None }
     }
-}
 
-impl From<MomentsStatement> for Moments {
-    fn from(statement: MomentsStatement) -> Self {
-        let (percent, kg_m2) = match statement.amount {
-            Amount::Percent(x) => (Some(Three::Each(x)), None),
-            Amount::Absolute(x) => (None, Some(Three::Each(x))),
-        };
-        Self { percent, kg_m2, sigmas: 1.0 }
-    }
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Products {
-    kg_m2: Three,
-    sigmas: f64,
-}
-
-impl TryFrom<Products> for ProductsStatement {
-    type Error = StatementError;
-
-    fn try_from(file: Products) -> Result<Self, StatementError> {
-        Self::written(file.kg_m2.values(), file.kg_m2.each(), file.sigmas)
-    }
-}
-
-impl From<ProductsStatement> for Products {
-    fn from(statement: ProductsStatement) -> Self {
-        Self { kg_m2: Three::Each(statement.deviations), sigmas: 1.0 }
+    fn absolute(self) -> Option<[f64; 3]> {
+        if let Self::Absolute(x) = self { Some(x) } else { None }
     }
 }
 
@@ -152,91 +105,79 @@ impl TryFrom<String> for Of {
     }
 }
 
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Axes {
-    deg: Three,
-    sigmas: f64,
-    #[serde(default)]
-    of: Of,
-}
-
-impl TryFrom<Axes> for AxesStatement {
-    type Error = StatementError;
-
-    fn try_from(file: Axes) -> Result<Self, StatementError> {
-        match (file.of, file.deg) {
-            (Of::EachAxis, deg) => Self::written(deg.values(), deg.each(), file.sigmas),
-            (Of::Total, Three::One(deg)) => Self::total(deg, file.sigmas),
-            (Of::Total, Three::Each(_)) => Err(StatementError::ThreeOfTotal),
-        }
-    }
-}
-
-impl From<AxesStatement> for Axes {
-    fn from(statement: AxesStatement) -> Self {
-        let deg = Three::Each(statement.deviations.map(f64::to_degrees));
-        Self { deg, sigmas: 1.0, of: Of::EachAxis }
-    }
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Mass {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    percent: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    kg: Option<f64>,
-    sigmas: f64,
-}
-
-impl TryFrom<Mass> for MassStatement {
-    type Error = StatementError;
-
-    fn try_from(file: Mass) -> Result<Self, StatementError> {
-        match (file.percent, file.kg) {
-            (Some(x), None) => Self::percent(x, file.sigmas),
-            (None, Some(x)) => Self::kg(x, file.sigmas),
+gyradius_dispersion::written!(
+    MomentsStatement,
+    |statement| {
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        percent: Option<Three> = statement.amount.percent().map(Three::Each),
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        kg_m2: Option<Three> = statement.amount.absolute().map(Three::Each),
+        sigmas: f64 = 1.0,
+    },
+    {
+        let (amount, each) = match (percent, kg_m2) {
+            (Some(x), None) => (Amount::Percent(x.values()), x.each()),
+            (None, Some(x)) => (Amount::Absolute(x.values()), x.each()),
             (Some(_), Some(_)) | (None, None) => {
-                Err(StatementError::Units { part: Part::Mass, allowed: "percent, kg" })
+                let allowed = "percent, kg_m2";
+                return Err(StatementError::Units { part: Part::Moments, allowed }.into());
             }
+        };
+        MomentsStatement::written(amount, each, sigmas)?
+    }
+);
+
+gyradius_dispersion::written!(
+    ProductsStatement,
+    |statement| { kg_m2: Three = Three::Each(statement.deviations), sigmas: f64 = 1.0, },
+    ProductsStatement::written(kg_m2.values(), kg_m2.each(), sigmas)?
+);
+
+gyradius_dispersion::written!(
+    AxesStatement,
+    |statement| {
+        deg: Three = Three::Each(statement.deviations.map(f64::to_degrees)),
+        sigmas: f64 = 1.0,
+        #[serde(default)]
+        of: Of = Of::EachAxis,
+    },
+    match (of, deg) {
+        (Of::EachAxis, deg) => AxesStatement::written(deg.values(), deg.each(), sigmas)?,
+        (Of::Total, Three::One(deg)) => AxesStatement::total(deg, sigmas)?,
+        (Of::Total, Three::Each(_)) => return Err(StatementError::ThreeOfTotal.into()),
+    }
+);
+
+gyradius_dispersion::written!(
+    MassStatement,
+    |statement| {
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        percent: Option<f64> = statement.amount.percent().map(|[x, ..]| x),
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        kg: Option<f64> = statement.amount.absolute().map(|[x, ..]| x),
+        sigmas: f64 = 1.0,
+    },
+    match (percent, kg) {
+        (Some(x), None) => MassStatement::percent(x, sigmas)?,
+        (None, Some(x)) => MassStatement::kg(x, sigmas)?,
+        (Some(_), Some(_)) | (None, None) => {
+            let allowed = "percent, kg";
+            return Err(StatementError::Units { part: Part::Mass, allowed }.into());
         }
     }
-}
+);
 
-impl From<MassStatement> for Mass {
-    fn from(statement: MassStatement) -> Self {
-        let (percent, kg) = match statement.amount {
-            Amount::Percent([x, ..]) => (Some(x), None),
-            Amount::Absolute([x, ..]) => (None, Some(x)),
-        };
-        Self { percent, kg, sigmas: 1.0 }
-    }
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Centre {
-    mm: Three,
-    sigmas: f64,
-    #[serde(default)]
-    arm_m: [f64; 3],
-}
-
-impl TryFrom<Centre> for CentreStatement {
-    type Error = StatementError;
-
-    fn try_from(file: Centre) -> Result<Self, StatementError> {
-        let Centre { mm, sigmas, arm_m } = file;
+gyradius_dispersion::written!(
+    CentreStatement,
+    |statement| {
+        mm: Three = Three::Each(statement.deviations.map(|x| 1e3 * x)),
+        sigmas: f64 = 1.0,
+        #[serde(default)]
+        arm_m: [f64; 3] = statement.arm,
+    },
+    {
         let (unit, values, each) = (Unit::MM, mm.values(), mm.each());
         let written = Written { part: Part::Centre, unit, values, each, sigmas };
-        Self::with_arm(written.scaled(1e-3)?, arm_m)
+        CentreStatement::with_arm(written.scaled(1e-3)?, arm_m)?
     }
-}
-
-impl From<CentreStatement> for Centre {
-    fn from(statement: CentreStatement) -> Self {
-        let mm = Three::Each(statement.deviations.map(|x| 1e3 * x));
-        Self { mm, sigmas: 1.0, arm_m: statement.arm }
-    }
-}
+);

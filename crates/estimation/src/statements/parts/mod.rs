@@ -28,8 +28,6 @@ pub enum Amount {
 
 /// “Moments ± 10 % (1σ)”: deviations of the diagonal entries I₁₁, I₂₂, I₃₃, about body axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "file::Moments", into = "file::Moments"))]
 pub struct MomentsStatement {
     amount: Amount,
 }
@@ -66,8 +64,6 @@ impl MomentsStatement {
 /// “Products within ± 50 kg·m² (3σ)”: deviations of I₁₂, I₁₃, I₂₃ from their nominal values, in
 /// body axes.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "file::Products", into = "file::Products"))]
 #[getset(get_copy = "pub")]
 pub struct ProductsStatement {
     /// Standard deviations, kg·m².
@@ -91,8 +87,6 @@ impl ProductsStatement {
 
 /// “Axes within 2°”: deviations of small turns about the principal axes.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "file::Axes", into = "file::Axes"))]
 #[getset(get_copy = "pub")]
 pub struct AxesStatement {
     /// Standard deviations of the turns about principal axes 1, 2, 3, rad.
@@ -128,8 +122,6 @@ impl AxesStatement {
 
 /// “Mass ± 1 %”: the whole inertia grows and shrinks with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "file::Mass", into = "file::Mass"))]
 pub struct MassStatement {
     amount: Amount,
 }
@@ -172,8 +164,6 @@ impl MassStatement {
 
 /// “Centre of mass ± 10 mm”: the inertia was taken about a point that is off by that.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "file::Centre", into = "file::Centre"))]
 pub struct CentreStatement {
     /// Standard deviations along body axes 1, 2, 3, m.
     #[getset(get_copy = "pub")]
