@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::Verdict;
 use crate::binomial_sums::masses;
 
 fn rule(probability: f64, level: f64) -> Acceptance {

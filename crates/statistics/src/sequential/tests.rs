@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::Confidence;
 use crate::binomial_sums::{masses, one_more};
+use crate::{Confidence, Verdict};
 
 fn rule(probability: f64, level: f64) -> SequentialAcceptance {
     let confidence = Confidence::new(level).unwrap();
