@@ -82,9 +82,7 @@ impl MeanHalf {
         let opposite = UnitQuaternion::new_unchecked(-q.into_inner());
         self.ln_density(q).max(self.ln_density(&opposite)) + LN_PI_SQUARED
     }
-}
 
-impl MeanHalf {
     /// Fills a slice with independent draws: see
     /// [`FisherBingham::sample_into`](crate::FisherBingham::sample_into).
     pub fn sample_into<R: Rng + ?Sized>(&self, rng: &mut R, out: &mut [UnitQuaternion<f64>]) {

@@ -52,9 +52,7 @@ impl CorrelatedEntries {
     pub fn covariance(&self) -> &SMatrix<f64, 6, 6> {
         self.covariance.matrix()
     }
-}
 
-impl CorrelatedEntries {
     /// The logarithm of the density of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ in kg·m², of matrices that no body has too. None where
     /// the covariance is singular.
     #[must_use]

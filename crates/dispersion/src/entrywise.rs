@@ -66,9 +66,7 @@ impl EntrywiseGaussian {
         }
         Ok(Self { mean: mean.into().entries(), deviations })
     }
-}
 
-impl EntrywiseGaussian {
     /// The logarithm of the density of I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃ in kg·m², of matrices that no body has too. None where
     /// a deviation is zero.
     #[must_use]

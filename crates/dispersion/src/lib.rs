@@ -45,6 +45,7 @@
 //! [`InertiaMatrix`]: gyradius_inertia::InertiaMatrix
 
 mod any_body;
+mod any_of;
 mod axes;
 mod basilisk;
 mod batch;

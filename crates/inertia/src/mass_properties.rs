@@ -93,12 +93,16 @@ impl From<InertiaMatrixError> for MassPropertiesError {
 /// assert!((craft.without(&tank)?.inertia().matrix() - bus.inertia().matrix()).amax() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, getset::Getters)]
+#[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Fields", into = "Fields"))]
 pub struct MassProperties {
-    mass: f64,
-    centre: Vector3<f64>,
+    /// Mass m, kg.
+    #[getset(get_copy = "pub")]
+    mass_kg: f64,
+    /// Mass centre c in the reference frame, m.
+    #[getset(get_copy = "pub")]
+    mass_centre_m: Vector3<f64>,
     /// Inertia about the mass centre, axes parallel to the reference frame, kg·m².
     #[getset(get = "pub")]
     inertia: Inertia,
@@ -117,7 +121,7 @@ impl MassProperties {
         let centre = mass_centre_m.into();
         check_mass(mass_kg)?;
         check_vector("mass centre", &centre)?;
-        Ok(Self { mass: mass_kg, centre, inertia })
+        Ok(Self { mass_kg, mass_centre_m: centre, inertia })
     }
 
     /// A point mass (kg) at `position_m`.
@@ -155,18 +159,6 @@ impl MassProperties {
         Self::new(mass_kg, centre, inertia)
     }
 
-    /// Mass m, kg.
-    #[must_use]
-    pub fn mass_kg(&self) -> f64 {
-        self.mass
-    }
-
-    /// Mass centre c in the reference frame, m.
-    #[must_use]
-    pub fn mass_centre_m(&self) -> Vector3<f64> {
-        self.centre
-    }
-
     /// Inertia about `point_m`, kg·m²: I_p = I_c + m (|d|²·1 − d dᵀ) with d = c − p, axes parallel
     /// to the reference frame.
     ///
@@ -178,7 +170,7 @@ impl MassProperties {
     ) -> Result<InertiaMatrix, MassPropertiesError> {
         let point = point_m.into();
         check_vector("point", &point)?;
-        let moved = point_inertia(self.mass, &(self.centre - point));
+        let moved = point_inertia(self.mass_kg, &(self.mass_centre_m - point));
         Ok(InertiaMatrix::new(self.inertia.matrix() + moved)?)
     }
 
@@ -188,7 +180,7 @@ impl MassProperties {
     /// # Errors
     /// A radius overflows.
     pub fn radii_of_gyration(&self) -> Result<RadiiOfGyration, SecondMomentsError> {
-        self.inertia.second_moments().radii_of_gyration(self.mass)
+        self.inertia.second_moments().radii_of_gyration(self.mass_kg)
     }
 
     /// The same body in another frame, or after a motion: x becomes R x + t, where `pose` is
@@ -201,7 +193,7 @@ impl MassProperties {
         // First, because it judges the quaternion.
         let inertia = self.inertia.rotated(&pose.rotation)?;
         let rotation = UnitQuaternion::new_normalize(pose.rotation.into_inner());
-        Self::new(self.mass, rotation * self.centre + pose.translation.vector, inertia)
+        Self::new(self.mass_kg, rotation * self.mass_centre_m + pose.translation.vector, inertia)
     }
 
     /// The same body turned about the origin: x becomes R x.
@@ -220,7 +212,7 @@ impl MassProperties {
         &self,
         translation_m: impl Into<Vector3<f64>>,
     ) -> Result<Self, MassPropertiesError> {
-        Self::new(self.mass, self.centre + translation_m.into(), self.inertia)
+        Self::new(self.mass_kg, self.mass_centre_m + translation_m.into(), self.inertia)
     }
 
     /// The same shape, everywhere `factor` times as dense.
@@ -231,10 +223,10 @@ impl MassProperties {
         if !(factor > 0.0 && factor.is_finite()) {
             return Err(MassPropertiesError::Factor { value: factor });
         }
-        let mass = self.mass * factor;
+        let mass = self.mass_kg * factor;
         check_mass(mass).and_then(|()| check_lost("mass, kg", mass))?;
         let inertia = nearest(self.inertia.matrix() * factor)?;
-        Self::new(mass, self.centre, self.kept(inertia)?)
+        Self::new(mass, self.mass_centre_m, self.kept(inertia)?)
     }
 
     /// The same shape of another mass (kg).
@@ -243,14 +235,14 @@ impl MassProperties {
     /// The mass is not positive and finite, or the inertia leaves its range.
     pub fn with_mass(&self, mass_kg: f64) -> Result<Self, MassPropertiesError> {
         check_mass(mass_kg)?;
-        let (factor, own) = (mass_kg / self.mass, self.inertia.matrix());
+        let (factor, own) = (mass_kg / self.mass_kg, self.inertia.matrix());
         let scaled = if factor.is_normal() {
             own * factor
         } else {
             // Masses at opposite ends of the range: I/m is not, being squares of lengths.
-            own.map(|x| x / self.mass * mass_kg)
+            own.map(|x| x / self.mass_kg * mass_kg)
         };
-        Self::new(mass_kg, self.centre, self.kept(nearest(scaled)?)?)
+        Self::new(mass_kg, self.mass_centre_m, self.kept(nearest(scaled)?)?)
     }
 
     /// A scaled inertia, unless one that was not zero has lost its digits.
@@ -309,7 +301,11 @@ impl TryFrom<Fields> for MassProperties {
 #[cfg(feature = "serde")]
 impl From<MassProperties> for Fields {
     fn from(body: MassProperties) -> Self {
-        Self { mass_kg: body.mass, mass_centre_m: body.centre.into(), inertia_kg_m2: body.inertia }
+        Self {
+            mass_kg: body.mass_kg,
+            mass_centre_m: body.mass_centre_m.into(),
+            inertia_kg_m2: body.inertia,
+        }
     }
 }
 
@@ -337,7 +333,7 @@ pub(crate) mod tests {
     /// Largest difference of mass (kg), mass centre (m) and inertia (kg·m²).
     pub(crate) fn distance(a: &MassProperties, b: &MassProperties) -> f64 {
         let inertia = (a.inertia.matrix() - b.inertia.matrix()).amax();
-        (a.mass - b.mass).abs().max((a.centre - b.centre).amax()).max(inertia)
+        (a.mass_kg - b.mass_kg).abs().max((a.mass_centre_m - b.mass_centre_m).amax()).max(inertia)
     }
 
     /// Meriam & Kraige, *Engineering Mechanics: Dynamics*, App. D: a slender rod, m l²/12 about
@@ -396,7 +392,7 @@ pub(crate) mod tests {
         ) {
             let about = body.inertia_about(point).unwrap();
             let back =
-                MassProperties::from_inertia_about(point, body.mass, body.centre, about).unwrap();
+                MassProperties::from_inertia_about(point, body.mass_kg, body.mass_centre_m, about).unwrap();
             prop_assert!(distance(&body, &back) < 1e-13 * about.matrix().amax());
             // About no point is a moment of inertia smaller than about the mass centre.
             let rise = about.matrix().diagonal() - body.inertia.matrix().diagonal();
@@ -443,7 +439,7 @@ pub(crate) mod tests {
             let a = body.radii_of_gyration().unwrap().values();
             let b = dense.radii_of_gyration().unwrap().values();
             prop_assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6));
-            prop_assert!(distance(&dense.with_mass(body.mass).unwrap(), &body) < 1e-12);
+            prop_assert!(distance(&dense.with_mass(body.mass_kg).unwrap(), &body) < 1e-12);
         }
 
         /// Powers of two in place of mass and size: every result is right to the bit, or refused.

@@ -5,6 +5,7 @@ use nalgebra::UnitQuaternion;
 use rand::Rng;
 use rand_distr::Distribution;
 
+use crate::any_of::any_of;
 use crate::{AttitudeMoments, EntryMoments, FixedAttitude, JacobianTwice, SecondMomentStatistics};
 
 /// Any of the laws of principal axes with known moments, chosen at run time.
@@ -60,32 +61,11 @@ impl Distribution<UnitQuaternion<f64>> for AxesLaw {
     }
 }
 
-impl From<RadiallyConstrainedGaussian> for AxesLaw {
-    fn from(law: RadiallyConstrainedGaussian) -> Self {
-        Self::WholeSphere(law)
-    }
-}
-
-impl From<MeanHalf> for AxesLaw {
-    fn from(law: MeanHalf) -> Self {
-        Self::MeanHalf(law)
-    }
-}
-
-impl From<JacobianTwice> for AxesLaw {
-    fn from(law: JacobianTwice) -> Self {
-        Self::JacobianTwice(Box::new(law))
-    }
-}
-
-impl From<UniformAttitude> for AxesLaw {
-    fn from(law: UniformAttitude) -> Self {
-        Self::Uniform(law)
-    }
-}
-
-impl From<FixedAttitude> for AxesLaw {
-    fn from(law: FixedAttitude) -> Self {
-        Self::Fixed(law)
-    }
-}
+any_of!(
+    AxesLaw:
+    WholeSphere(RadiallyConstrainedGaussian),
+    MeanHalf(MeanHalf),
+    JacobianTwice(JacobianTwice),
+    Uniform(UniformAttitude),
+    Fixed(FixedAttitude),
+);

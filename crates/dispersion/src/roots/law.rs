@@ -4,6 +4,7 @@ use gyradius_inertia::RootSecondMoments;
 use rand::Rng;
 use rand_distr::Distribution;
 
+use crate::any_of::any_of;
 use crate::{
     CorrelatedRoots, EmpiricalRoots, RootMoments, ScalarLaw, ScalarRoots, SecondMomentStatistics,
 };
@@ -87,16 +88,12 @@ impl Distribution<RootSecondMoments> for RootLaw {
     }
 }
 
-macro_rules! from {
-    ($($variant:ident($law:ty)),*) => {$(
-        impl From<$law> for RootLaw {
-            fn from(law: $law) -> Self {
-                Self::$variant(law)
-            }
-        }
-    )*};
-}
-from!(Independent(ScalarRoots), CorrelatedGaussian(CorrelatedRoots), Empirical(EmpiricalRoots));
+any_of!(
+    RootLaw:
+    Independent(ScalarRoots),
+    CorrelatedGaussian(CorrelatedRoots),
+    Empirical(EmpiricalRoots),
+);
 
 #[cfg(test)]
 mod tests {
