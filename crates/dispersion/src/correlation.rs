@@ -73,7 +73,7 @@ crate::written!(
         };
         let fit = factor.len() == members.len() && factor.iter().enumerate().all(is_row);
         if !(fit && members.is_sorted_by(|a, b| a < b)) {
-            return Err("factor: it must be lower triangular, with a row of length one for each member".into());
+            return Err("factor: it must be lower triangular, a row of length one a member".into());
         }
         Correlation { members, rows: factor }
     }

@@ -183,7 +183,10 @@ impl EntryMoments {
 
 crate::written!(
     EntryMoments,
-    |moments| { mean: [f64; 6] = moments.mean, covariance: SMatrix<f64, 6, 6> = moments.covariance, },
+    |moments| {
+        mean: [f64; 6] = moments.mean,
+        covariance: SMatrix<f64, 6, 6> = moments.covariance,
+    },
     {
         let [i11, i22, i33, i12, i13, i23] = mean;
         InertiaMatrix::from_entries([i11, i22, i33], [i12, i13, i23])?;

@@ -188,11 +188,30 @@ pub struct ImportanceEstimate {
 }
 
 crate::checked::checked!(
-    ImportanceEstimate { runs: u64, hits: u64, probability: f64, coefficient_of_variation: Option<f64>, interval: Interval, effective_hits: f64, effective_runs: f64, largest_share: f64, mean_weight: f64, warnings: Vec<WeightWarning> },
-    |read| crate::error::belong(read.hits <= read.runs
-            && read.coefficient_of_variation.is_none_or(|x| x >= 0.0)
-            && (0.0..=1.0).contains(&read.largest_share)
-            && [read.probability, read.effective_hits, read.effective_runs, read.mean_weight].iter().all(|x| *x >= 0.0), "estimate")
+    ImportanceEstimate {
+        runs: u64,
+        hits: u64,
+        probability: f64,
+        coefficient_of_variation: Option<f64>,
+        interval: Interval,
+        effective_hits: f64,
+        effective_runs: f64,
+        largest_share: f64,
+        mean_weight: f64,
+        warnings: Vec<WeightWarning>,
+    },
+    |read| {
+        crate::error::belong(
+            read.hits <= read.runs
+                && read.coefficient_of_variation.is_none_or(|x| x >= 0.0)
+                && (0.0..=1.0).contains(&read.largest_share)
+                && read.probability >= 0.0
+                && read.effective_hits >= 0.0
+                && read.effective_runs >= 0.0
+                && read.mean_weight >= 0.0,
+            "estimate",
+        )
+    }
 );
 
 /// Why weighted runs should not be trusted.

@@ -47,11 +47,24 @@ pub struct Moments {
 }
 
 crate::checked::checked!(
-    Moments { n: usize, mean: f64, standard_deviation: f64, skewness: Option<f64>, kurtosis: Option<f64>, minimum: f64, maximum: f64 },
-    |read| crate::error::belong(read.n > 0
-            && read.minimum <= read.mean
-            && read.mean <= read.maximum
-            && (0.0..=f64::MAX).contains(&read.standard_deviation), "sample")
+    Moments {
+        n: usize,
+        mean: f64,
+        standard_deviation: f64,
+        skewness: Option<f64>,
+        kurtosis: Option<f64>,
+        minimum: f64,
+        maximum: f64,
+    },
+    |read| {
+        crate::error::belong(
+            read.n > 0
+                && read.minimum <= read.mean
+                && read.mean <= read.maximum
+                && (0.0..=f64::MAX).contains(&read.standard_deviation),
+            "sample",
+        )
+    }
 );
 
 impl Moments {

@@ -26,9 +26,14 @@ pub struct QuantileCells {
 
 crate::checked::checked!(
     QuantileCells { cells: usize, of_values: Vec<u16> },
-    |read| crate::error::belong((1..=MAX_BINS).contains(&read.cells)
-            && !read.of_values.is_empty()
-            && read.of_values.iter().all(|cell| usize::from(*cell) < read.cells), "sample")
+    |read| {
+        crate::error::belong(
+            (1..=MAX_BINS).contains(&read.cells)
+                && !read.of_values.is_empty()
+                && read.of_values.iter().all(|cell| usize::from(*cell) < read.cells),
+            "sample",
+        )
+    }
 );
 
 impl QuantileCells {

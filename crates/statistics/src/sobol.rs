@@ -220,8 +220,11 @@ pub struct SobolIndices {
 
 crate::checked::checked!(
     SobolIndices { runs: u64, mean: f64, standard_deviation: f64, groups: Vec<SobolIndex> },
-    |read| crate::error::belong(read.standard_deviation >= 0.0
-            && read.groups.iter().all(|group| group.left_out.checked_add(group.runs) == Some(read.runs)), "study")
+    |read| {
+        let runs = |group: &SobolIndex| group.left_out.checked_add(group.runs);
+        let whole = read.groups.iter().all(|group| runs(group) == Some(read.runs));
+        crate::error::belong(whole && read.standard_deviation >= 0.0, "study")
+    }
 );
 
 impl SobolIndices {

@@ -225,8 +225,21 @@ pub struct SteeredEstimate {
 }
 
 crate::checked::checked!(
-    SteeredEstimate { probability: f64, interval: Interval, evaluations: u64, failed: u64, warnings: Vec<SteeredWarning>, weighted: ImportanceEstimate },
-    |read| crate::error::belong(read.probability == read.weighted.probability() && read.failed <= read.evaluations, "estimate")
+    SteeredEstimate {
+        probability: f64,
+        interval: Interval,
+        evaluations: u64,
+        failed: u64,
+        warnings: Vec<SteeredWarning>,
+        weighted: ImportanceEstimate,
+    },
+    |read| {
+        crate::error::belong(
+            read.probability == read.weighted.probability()
+                && read.failed <= read.evaluations,
+            "estimate",
+        )
+    }
 );
 
 /// Why importance sampling in scores should not be trusted.

@@ -269,11 +269,25 @@ pub struct SubsetEstimate {
 }
 
 crate::checked::checked!(
-    SubsetEstimate { probability: f64, coefficient_of_variation: Option<f64>, interval: Interval, evaluations: u64, failed: u64, replicas: Vec<f64>, events: Vec<Vec<u64>>, warnings: Vec<SubsetWarning> },
-    |read| crate::error::belong((0.0..=1.0).contains(&read.probability)
-            && read.coefficient_of_variation.is_none_or(|x| x >= 0.0)
-            && read.failed <= read.evaluations
-            && read.replicas.iter().all(|x| (0.0..=1.0).contains(x)), "estimate")
+    SubsetEstimate {
+        probability: f64,
+        coefficient_of_variation: Option<f64>,
+        interval: Interval,
+        evaluations: u64,
+        failed: u64,
+        replicas: Vec<f64>,
+        events: Vec<Vec<u64>>,
+        warnings: Vec<SubsetWarning>,
+    },
+    |read| {
+        crate::error::belong(
+            (0.0..=1.0).contains(&read.probability)
+                && read.coefficient_of_variation.is_none_or(|x| x >= 0.0)
+                && read.failed <= read.evaluations
+                && read.replicas.iter().all(|x| (0.0..=1.0).contains(x)),
+            "estimate",
+        )
+    }
 );
 
 /// Why a subset simulation should not be trusted.

@@ -101,7 +101,10 @@ impl Distribution<RootSecondMoments> for EmpiricalRoots {
 
 crate::written!(
     EmpiricalRoots,
-    |law| { samples_sqrt_kg_m: Vec<[f64; 3]> = law.samples.iter().map(RootSecondMoments::values).collect(), },
+    |law| {
+        samples_sqrt_kg_m: Vec<[f64; 3]> =
+            law.samples.iter().map(RootSecondMoments::values).collect(),
+    },
     EmpiricalRoots::from_values(&samples_sqrt_kg_m)?
 );
 

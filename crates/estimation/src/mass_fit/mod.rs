@@ -171,7 +171,8 @@ gyradius_dispersion::written!(
     {
         let count = lengths.count();
         let of_all = scores.iter().flatten().all(|scores| scores.len() == count);
-        crate::read::belong(of_all && scores[0].is_some() == mass.errors().is_some(), "fit of bodies")?;
+        let varies = mass.errors().is_some();
+        crate::read::belong(of_all && scores[0].is_some() == varies, "fit of bodies")?;
         MassPropertiesFit { mass, centre, lengths, ties, law, scores }
     }
 );

@@ -142,7 +142,10 @@ impl StatedModel {
 
 gyradius_dispersion::written!(
     StatedMass,
-    |mass| { relative_deviation: f64 = mass.relative_deviation, inertia_follows_mass: f64 = mass.inertia_follows, },
+    |mass| {
+        relative_deviation: f64 = mass.relative_deviation,
+        inertia_follows_mass: f64 = mass.inertia_follows,
+    },
     {
         let is_share = (0.0..=1.0).contains(&inertia_follows_mass);
         crate::read::belong(is_share && relative_deviation >= 0.0, "stated mass")?;

@@ -20,11 +20,17 @@ pub struct ScoreLaw {
 
 crate::checked::checked!(
     ScoreLaw { scores: usize, parts: Vec<Part> },
-    |read| crate::error::belong(read.parts.first().is_some_and(|own| own.singles.is_empty())
-            && read.parts.iter().all(|part| (0.0..=1.0).contains(&part.share))
-            && read.parts.iter().skip(1).all(|part| {
-                part.singles.len() == read.scores && part.singles.iter().all(|single| single.is_sound())
-            }), "law of scores")
+    |read| {
+        let is_sound = |part: &Part| {
+            part.singles.len() == read.scores && part.singles.iter().all(Single::is_sound)
+        };
+        crate::error::belong(
+            read.parts.first().is_some_and(|own| own.singles.is_empty())
+                && read.parts.iter().all(|part| (0.0..=1.0).contains(&part.share))
+                && read.parts.iter().skip(1).all(is_sound),
+            "law of scores",
+        )
+    }
 );
 
 /// A part of a mixture: its share, and the law of each score, which are none for the own law.
