@@ -1,7 +1,7 @@
 //! Tables of numbers that other programs wrote, a row for each run: Parquet, a folder of Parquet files, or CSV.
 
 use parquet::{
-    basic::{LogicalType, Type as Physical},
+    basic::{Compression, LogicalType, Type as Physical},
     column::reader::ColumnReader,
     data_type::ByteArray,
     errors::ParquetError,
@@ -77,6 +77,9 @@ impl ForeignTable {
         if is_parquet.is_ok() && start == *b"PAR1" {
             let columns = parquet_columns(path)?;
             return Ok(Self { path: path.to_owned(), files, form: Form::Parquet, columns });
+        }
+        if path.extension().is_some_and(|end| end == "parquet" || end == "pq") {
+            return Err(failed("it does not begin as a Parquet file does".to_owned()));
         }
         let (separator, columns) = csv_columns(path)?;
         Ok(Self { path: path.to_owned(), files, form: Form::Csv(separator), columns })
@@ -189,6 +192,15 @@ fn scan_parquet(
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(failed)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+        for place in places.iter().chain(&status) {
+            if let Some(codec) = unread_codec(group.metadata().column(*place).compression()) {
+                let problem = format!(
+                    "the column {:?} is compressed with {codec}, which is not read: write the table with snappy, gzip, lz4 or no compression",
+                    there[*place]
+                );
+                return Err(ForeignError { path: path.to_owned(), problem });
+            }
+        }
         let column = |place: &usize| numbers(group.get_column_reader(*place)?, rows);
         let numbers = places.iter().map(column).collect::<Result<Vec<_>, ParquetError>>();
         let mut numbers = numbers.map_err(failed)?;
@@ -214,6 +226,20 @@ fn status(columns: &[String]) -> Option<usize> {
     let own = Column::first();
     let is_own = columns.len() >= own.len() && own.iter().zip(columns).all(|(a, b)| a.name() == b);
     is_own.then_some(own.len() - 1)
+}
+
+/// How a column is compressed, if that is not read: what these need is in C, or large.
+fn unread_codec(compression: Compression) -> Option<&'static str> {
+    match compression {
+        Compression::UNCOMPRESSED
+        | Compression::SNAPPY
+        | Compression::GZIP(_)
+        | Compression::LZ4
+        | Compression::LZ4_RAW => None,
+        Compression::LZO => Some("LZO"),
+        Compression::BROTLI(_) => Some("Brotli"),
+        Compression::ZSTD(_) => Some("zstd"),
+    }
 }
 
 /// Whether a number means what it is.

@@ -12,7 +12,7 @@ use parquet::{
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::{fmt::Write, fs, sync::Arc};
+use std::{fmt::Write, fs, path::Path, sync::Arc};
 
 /// Numbers of three columns, some of which are missing.
 fn rows() -> impl Strategy<Value = Vec<[Option<f64>; 3]>> {
@@ -349,6 +349,24 @@ fn parquet_of_any_writer_is_read() {
 }
 
 #[test]
+fn tables_that_other_programs_compressed_are_read_or_the_codec_is_named() {
+    // Written by polars 2.1: 200 rows of (i mod 7) / 2, every fifth empty.
+    let tables = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tables");
+    let expected: Vec<_> =
+        (0..200_u8).map(|i| (i % 5 != 0).then(|| f64::from(i % 7) / 2.0)).collect();
+    for codec in ["snappy", "gzip"] {
+        let mut found = Vec::new();
+        let table = ForeignTable::open(&tables.join(format!("polars-{codec}.parquet"))).unwrap();
+        table.scan(&["x".to_owned()], |some| found.extend(some[0].clone())).unwrap();
+        assert_eq!(found, expected, "{codec}");
+    }
+    let table = ForeignTable::open(&tables.join("polars-zstd.parquet")).unwrap();
+    let error = table.scan(&["x".to_owned()], |_| {}).unwrap_err().to_string();
+    assert!(error.contains("column \"x\" is compressed with zstd"), "{error}");
+    assert!(error.contains("write the table with snappy"), "{error}");
+}
+
+#[test]
 fn what_is_wrong_with_a_table_is_said() {
     let scratch = tempfile::tempdir().unwrap();
     let path = scratch.path().join("it.csv");
@@ -374,6 +392,9 @@ fn what_is_wrong_with_a_table_is_said() {
     for path in [scratch.path(), &scratch.path().join("none.csv")] {
         assert!(ForeignTable::open(path).is_err());
     }
+    let other = scratch.path().join("cut.parquet");
+    fs::write(&other, "x\n1\n").unwrap();
+    assert!(ForeignTable::open(&other).unwrap_err().to_string().contains("as a Parquet file does"));
     #[cfg(unix)]
     assert!(ForeignTable::open("/dev/zero".as_ref()).unwrap_err().to_string().contains("regular"));
 }

@@ -152,6 +152,7 @@ fn wrong_requirements_are_refused() {
     let said = scratch.done(&["verdict", "t.csv", "--require", "y <= 1 in 90 % at 90 %"], 2);
     assert!(said.contains("t.csv") && said.contains("its columns are x"), "{said}");
     let said = scratch.done(&["verdict", "t.csv", "--require", "x <= 1 in 90 % at 90 %"], 1);
+    scratch.done(&["verdict", "t.csv", "--require", "-1 <= x <= 1 in 90 % at 90 %"], 1);
     assert!(said.contains("NOT DECIDED") && said.contains("21 more"), "{said}");
 }
 

@@ -342,7 +342,7 @@ pub(crate) struct VerdictArgs {
     pub(crate) table: PathBuf,
 
     /// Requirement, as "abs(x) <= 1 in 99.73 % at 90 %": a column x, abs(x) or norm(x, y, z); <= or >= or both; a share of all runs; a confidence
-    #[arg(long, value_name = "REQUIREMENT", required = true)]
+    #[arg(long, value_name = "REQUIREMENT", required = true, allow_hyphen_values = true)]
     pub(crate) require: Vec<Requirement>,
 
     /// Leave out runs without a number, such as those that failed; otherwise they count against every requirement
