@@ -200,9 +200,20 @@ impl AxesFit {
             other => other?,
         };
         let radial = fit.radial();
-        if let RadialVariance::Undetermined { low } = radial {
+        let given = if let RadialVariance::Undetermined { low } = radial {
             // Any value fits: a small one keeps the covariance readable, and has no second lobe.
-            let radial_variance = (10.0 * low).clamp(CONCENTRATED, 1e4);
+            Some((10.0 * low).clamp(CONCENTRATED, 1e4))
+        } else if let RadialVariance::Determined { value, .. } | RadialVariance::Estimated { value } =
+            radial
+            && value < CONCENTRATED
+            && squared_turns(samples, &fit.law().mean()).iter().sum::<f64>() < NARROW
+        {
+            // It says how flat the top of the law is, and P would not be the covariance of the turns.
+            Some(CONCENTRATED)
+        } else {
+            None
+        };
+        if let Some(radial_variance) = given {
             let family = Family::AlignedWith { radial_variance };
             fit = RadiallyConstrainedGaussian::fit_family(&attitudes, family)?;
         }
@@ -228,14 +239,7 @@ impl AxesFit {
     /// Attitudes on a sphere of lower dimension: independent turns about the principal axes, as far
     /// as there are any.
     fn still(samples: &[Sample], mean: UnitQuaternion<f64>) -> Self {
-        let n = samples.len() as f64;
-        let mut local = [0.0; 3];
-        for s in samples {
-            let t = vector_part(&mean, &s.attitude);
-            for k in 0..3 {
-                local[k] += 4.0 * t[k] * t[k] / n;
-            }
-        }
+        let local = squared_turns(samples, &mean);
         Self::plain(
             mean,
             local.map(|v| if v > FIXED * FIXED { v } else { 0.0 }),
@@ -248,6 +252,19 @@ impl AxesFit {
     pub(super) fn isotropy(&self) -> Option<f64> {
         self.isotropy
     }
+}
+
+/// Mean squares of the turns about the principal axes of a mean, rad², where they are small.
+fn squared_turns(samples: &[Sample], mean: &UnitQuaternion<f64>) -> [f64; 3] {
+    let n = samples.len() as f64;
+    let mut squares = [0.0; 3];
+    for s in samples {
+        let t = vector_part(mean, &s.attitude);
+        for k in 0..3 {
+            squares[k] += 4.0 * t[k] * t[k] / n;
+        }
+    }
+    squares
 }
 
 /// θ/2 with θ − 1/(e^{1/θ} − 1) = `share`, the mean of an exponential law cut off at one.
@@ -357,6 +374,7 @@ fn uniform_p_value(samples: &[Sample], apart: [bool; 3]) -> f64 {
 mod tests {
     use super::*;
     use gyradius_attitude::UniformAttitude;
+    use rand::RngExt;
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     use rand_distr::Distribution;
 
@@ -378,6 +396,29 @@ mod tests {
         for count in rejected {
             // 5 % ± 4 deviations, and a little for n = 100.
             assert!((60..=145).contains(&count), "{rejected:?}");
+        }
+    }
+
+    /// Turns with an upper limit, as of a tolerance, have lighter tails than the law of the axes. The deviations told are
+    /// those of the samples all the same.
+    #[test]
+    fn deviations_of_bounded_turns_are_those_of_the_samples() {
+        for seed in 0..20 {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let limits: [f64; 3] =
+                std::array::from_fn(|_| 10_f64.powf(rng.random_range(-3.0..-1.0)));
+            let turns: Vec<_> = (0..500)
+                .map(|_| Vector3::from(limits.map(|limit| rng.random_range(-limit..limit))))
+                .collect();
+            let attitude = |turn: &Vector3<f64>| UnitQuaternion::from_scaled_axis(*turn);
+            let samples: Vec<_> =
+                turns.iter().map(|t| Sample { roots: [1.0; 3], attitude: attitude(t) }).collect();
+            let fit = AxesFit::determined(&samples, UnitQuaternion::identity()).unwrap();
+            for k in 0..3 {
+                let own = turns.iter().map(|turn| turn[k] * turn[k]).sum::<f64>() / 500.0;
+                let ratio = (fit.turn_covariance()[(k, k)] / own).sqrt();
+                assert!((ratio - 1.0).abs() < 0.05, "{seed}: {limits:?}, axis {k}: {ratio}");
+            }
         }
     }
 
