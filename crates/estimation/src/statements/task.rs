@@ -95,8 +95,17 @@ impl Task {
         let k = self.body.second_moments(&at.scatter);
         let (means, found) = (at.forms.means(&k), at.forms.variances(&k));
         let still = Scatter { roots: Matrix3::zeros(), ..at.scatter };
-        let by_axes = at.forms.variances(&self.body.second_moments(&still));
-        let by_roots = Forms::still(&self.body.attitude).variances(&k);
+        // Axes and roots that scatter for nothing but the mass centre are what it adds, and no ground to add it on.
+        let by_axes = match (self.axes, self.products) {
+            (None, Asked::Added(_)) => [0.0; 6],
+            (None, Asked::Nothing | Asked::Stated(_)) | (Some(_), _) => {
+                at.forms.variances(&self.body.second_moments(&still))
+            }
+        };
+        let by_roots = match self.moments {
+            Asked::Added(_) => [0.0; 6],
+            Asked::Nothing | Asked::Stated(_) => Forms::still(&self.body.attitude).variances(&k),
+        };
         let by_mass = self.mass.map_or(0.0, |(relative, _)| (relative * at.follows).powi(2));
         let both = self.moments.is_stated() && self.products.is_stated();
         let any = self.moments.is_stated() || self.products.is_stated();

@@ -1,9 +1,11 @@
 //! What is said of statements, by example.
 
 use super::*;
-use gyradius_inertia::InertiaMatrix;
+use gyradius_attitude::UniformAttitude;
+use gyradius_inertia::{InertiaMatrix, SecondMoments};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use proptest::{prelude::*, test_runner::TestCaseResult};
+use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::Distribution;
 
@@ -304,6 +306,33 @@ fn the_mass_centre_moves_entries_as_claimed() {
     }
 }
 
+/// With an arm, the entries have what the rule adds, and no more because the axes scatter for other entries; or a warning says so.
+#[test]
+fn the_mass_centre_alone_is_added_once() {
+    let mut rng = ChaCha8Rng::seed_from_u64(4);
+    let mut had = 0;
+    for case in 0..20 {
+        let k = SecondMoments::new(std::array::from_fn(|_| rng.random_range(0.1..1.0))).unwrap();
+        let axes = UniformAttitude.sample(&mut rng);
+        let nominal = Inertia::from_second_moments(k, &axes).unwrap();
+        let m = nominal.matrix().trace() * 10_f64.powf(rng.random_range(-1.0..1.0));
+        let arm = std::array::from_fn(|_| rng.random_range(-0.5..0.5));
+        let centre = CentreStatement::new([0.002; 3], 1.0, arm).unwrap();
+        let added = centre.entry_variances(m).map(f64::sqrt);
+        let statements = Statements { centre: Some(centre), ..Statements::default() };
+        let model = statements.model(&nominal, Some(m)).unwrap();
+        let said: String = model.warnings().iter().map(ToString::to_string).collect();
+        for (e, (implied, added)) in model.implied().deviations().into_iter().zip(added).enumerate()
+        {
+            let off = (implied / added - 1.0).abs();
+            had += usize::from(off < 0.03);
+            let name = InertiaMatrix::ENTRY_NAMES[e];
+            assert!(off < 0.04 || said.contains(name), "{case}, {name}: {implied} {added}: {said}");
+        }
+    }
+    assert!(had > 100, "{had} of 120");
+}
+
 #[test]
 fn what_is_stated_includes_mass_and_centre() {
     let nominal = body([5000.0, 4000.0, 3000.0], [0.0; 3]);
@@ -393,7 +422,7 @@ fn anything() -> impl Strategy<Value = ([f64; 3], [f64; 3], Statements)> {
 
 /// A law that draws bodies, or an error; no panic.
 fn a_law_or_an_error(k: [f64; 3], turn: [f64; 3], statements: &Statements) -> TestCaseResult {
-    let k = gyradius_inertia::SecondMoments::new(k).unwrap();
+    let k = SecondMoments::new(k).unwrap();
     let q = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
     let nominal = Inertia::from_second_moments(k, &q).unwrap();
     if let Ok(model) = statements.model(&nominal, Some(100.0)) {
