@@ -20,7 +20,7 @@ use crate::{
     scenario::{parse_toml, read_file, scenario_file},
     shards,
     study::{self},
-    subject::Summarized,
+    subject::{Subject, Summarized},
 };
 
 /// A scenario of separations, or of a simulator of the user's own, which has a table `[simulation]`.
