@@ -50,8 +50,9 @@ impl<F: Fn(&[u64]) -> f64> RareEvent for F {
 /// that between replicas over √R, which takes account of all correlation without a model of it, where the formula of Au & Beck
 /// takes chains for independent. The interval is that for the mean of a log-normal law, with the mean m and the variance s²
 /// of the replicas' logarithms: `exp(m + s²/2 ± t √(s²/R + s⁴/(2 (R − 1))))` with t of R − 1 degrees of freedom (Olsson 2005,
-/// doi:10.1080/10691898.2005.11910638). If some replica found no event, it is `p exp(± t σ)` with `σ² = ln(1 + c²)`. Let n be 500 or
-/// more, and R some ten.
+/// doi:10.1080/10691898.2005.11910638). If some replica found no event, it is `p exp(± t σ)` with `σ² = ln(1 + c²)`, and reaches at
+/// least to the mean of what the replicas cannot exclude: of those without an event, the bound below their last level. Let n be
+/// 500 or more, and R some ten.
 ///
 /// **Where it works, and where not.** An event that several groups bring about together is reached in as many levels as its probability
 /// has digits. If one group alone has to be as rare as the event (its step to the limit is then as rare too), chains
@@ -186,18 +187,21 @@ impl SubsetSimulation {
         let probability = estimates.iter().sum::<f64>() / count;
         let squares: f64 = estimates.iter().map(|p| (p / probability - 1.0).powi(2)).sum();
         let coefficient = (probability > 0.0).then(|| (squares / (count - 1.0) / count).sqrt());
-        let interval = match coefficient {
-            Some(c) => log_normal(&estimates, probability, c, confidence),
-            None => {
-                // The event is rarer than the last level by what its runs allow, relatives counted once.
-                let bounds = done.iter().map(|replica| {
-                    let none = Proportion::new(0, replica.families().max(1) as u64)?;
-                    Ok(replica.probability() * none.interval(confidence).upper())
-                });
-                let sum = bounds.sum::<Result<f64, StatisticsError>>()?;
-                Interval::ordered(0.0, sum / count, confidence)
+        // What the runs cannot exclude: an event that was not reached is rarer than the last level by what its runs
+        // allow, relatives counted once.
+        let bounds = done.iter().zip(&estimates).map(|(replica, estimate)| {
+            if replica.reached() {
+                return Ok(*estimate);
             }
+            let none = Proportion::new(0, replica.families().max(1) as u64)?;
+            Ok(replica.probability() * none.interval(confidence).upper())
+        });
+        let bound = bounds.sum::<Result<f64, StatisticsError>>()? / count;
+        let (lower, upper) = match coefficient {
+            Some(c) => log_normal(&estimates, probability, c, confidence),
+            None => (0.0, bound),
         };
+        let interval = Interval::ordered(lower, upper.max(bound).min(1.0), confidence);
         let reached: Vec<_> = done.iter().filter(|replica| replica.reached()).collect();
         let mut warnings = Vec::new();
         if reached.len() < done.len() {
@@ -228,8 +232,13 @@ impl SubsetSimulation {
     }
 }
 
-/// The interval for the mean of estimates whose mean and coefficient of variation are these.
-fn log_normal(estimates: &[f64], mean: f64, coefficient: f64, confidence: Confidence) -> Interval {
+/// The ends of the interval for the mean of estimates whose mean and coefficient of variation are these.
+fn log_normal(
+    estimates: &[f64],
+    mean: f64,
+    coefficient: f64,
+    confidence: Confidence,
+) -> (f64, f64) {
     let n = estimates.len() as f64;
     let t = law::students_t(confidence.tail(), n - 1.0);
     let (centre, sigma) = if estimates.iter().all(|p| *p > 0.0) {
@@ -242,7 +251,7 @@ fn log_normal(estimates: &[f64], mean: f64, coefficient: f64, confidence: Confid
         (mean, libm::log1p(coefficient * coefficient).sqrt())
     };
     let interval = Interval::around_log(centre, t * sigma, confidence);
-    Interval::ordered(interval.lower().min(mean), interval.upper().clamp(mean, 1.0), confidence)
+    (interval.lower().min(mean), interval.upper().max(mean))
 }
 
 /// A probability by subset simulation, and how far to trust it.

@@ -78,6 +78,9 @@ fn told(reason: &str) -> String {
     if let Some(reason) = message.strip_suffix("expected f64") {
         message = format!("{reason}expected a number");
     }
+    if message == "u64 value was too large" || message.contains("` as i128") {
+        message = format!("a whole number must be from {} to {}", i64::MIN, i64::MAX);
+    }
     let mut message = short_numbers(&message);
     if let Some((end, _)) = message.char_indices().nth(MOST_CHARACTERS) {
         message.truncate(end);

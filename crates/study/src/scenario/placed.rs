@@ -264,3 +264,120 @@ impl<'de> VariantAccess<'de> for Keys {
         self.value(|value| Placed(value).deserialize_any(visitor))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::parse_toml;
+    use proptest::prelude::*;
+    use serde::Deserialize;
+
+    #[derive(Debug, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    #[allow(dead_code, reason = "what is read is not looked at")]
+    struct Whole {
+        x: f64,
+        part: Option<Part>,
+        #[serde(default)]
+        list: Vec<Part>,
+        vector: Option<[f64; 3]>,
+        kind: Option<Kind>,
+    }
+
+    #[derive(Debug, Deserialize)]
+    #[serde(deny_unknown_fields)]
+    #[allow(dead_code, reason = "what is read is not looked at")]
+    struct Part {
+        y: f64,
+    }
+
+    #[derive(Debug, Deserialize)]
+    #[serde(rename_all = "snake_case", deny_unknown_fields)]
+    #[allow(dead_code, reason = "what is read is not looked at")]
+    enum Kind {
+        Word,
+        Of(Part),
+        With { m: f64 },
+    }
+
+    #[test]
+    fn what_is_wrong_has_its_path_and_its_line() {
+        for (text, expected) in [
+            ("", "missing field `x` (line 1, column 1)"),
+            ("x = 'a'", "x: invalid type: string \"a\", expected a number (line 1, column 5)"),
+            ("x = 1\nz = 2", "z: unknown field `z`, expected one of"),
+            ("x = 1\nz = 2", "(line 2, column 1)"),
+            ("x = 1\n[part]\nq = 1", "part.q: unknown field `q`, expected `y` (line 3, column 1)"),
+            ("x = 1\nlist = [{ y = 1 }, {}]", "list[2].y: missing field `y` (line 2, column 19)"),
+            ("x = 1\n[[list]]\ny = 1\n[[list]]\ny = true", "list[2].y: invalid type: boolean"),
+            ("x = 1\n[[list]]\ny = 1\n[[list]]\ny = true", "(line 5, column 5)"),
+            (
+                "x = 1\nlist = 3",
+                "list: invalid type: integer `3`, expected a sequence (line 2, column 8)",
+            ),
+            ("x = 1\nvector = [1, 2]", "vector: invalid length 2"),
+            (
+                "x = 1\nvector = [1, 2, 3, 4]",
+                "vector: invalid length 4, expected fewer entries in this list",
+            ),
+            (
+                "x = 1\nvector = [1, 'b', 3]",
+                "vector[2]: invalid type: string \"b\", expected a number (line 2, column 14)",
+            ),
+            ("x = 1\nkind = 'other'", "kind: unknown variant `other`, expected one of"),
+            (
+                "x = 1\nkind = 3",
+                "kind: invalid type, expected one of the texts that are allowed (line 2, column 8)",
+            ),
+            (
+                "x = 1\nkind = { of = { y = 'c' } }",
+                "kind.of.y: invalid type: string \"c\", expected a number (line 2, column 21)",
+            ),
+            (
+                "x = 1\nkind = { with = { m = 1, n = 2 } }",
+                "kind.with.n: unknown field `n`, expected `m` (line 2, column 26)",
+            ),
+            ("x = 1\nkind = { none = 1 }", "kind: unknown variant `none`"),
+            ("x = 1\nkind = { word = 1 }", "kind.word: invalid type: integer"),
+            (
+                "x = 18446744073709551615",
+                "a whole number must be from -9223372036854775808 to 9223372036854775807 (line 1, column 5)",
+            ),
+            (
+                "x = 1979-05-27",
+                "x: invalid type: string \"1979-05-27\", expected a number (line 1, column 5)",
+            ),
+        ] {
+            let message = parse_toml::<Whole>(text).unwrap_err();
+            assert!(message.contains(expected), "{text}\n{message}\n{expected}");
+        }
+        for text in
+            ["x = 1\nkind = 'word'", "x = 1.5\nkind = { with = { m = 1 } }\nvector = [1, 2, 3]"]
+        {
+            parse_toml::<Whole>(text).unwrap();
+        }
+    }
+
+    fn values() -> impl Strategy<Value = Value> {
+        let one = prop_oneof![
+            ".*".prop_map(Value::String),
+            any::<i64>().prop_map(Value::Integer),
+            any::<f64>().prop_filter("NaN is not itself", |x| !x.is_nan()).prop_map(Value::Float),
+            any::<bool>().prop_map(Value::Boolean),
+        ];
+        one.prop_recursive(4, 30, 5, |below| {
+            prop_oneof![
+                prop::collection::vec(below.clone(), 0..5).prop_map(Value::Array),
+                prop::collection::btree_map(".*", below, 0..5)
+                    .prop_map(|map| Value::Table(map.into_iter().collect())),
+            ]
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn every_value_is_read_as_it_is(value in values()) {
+            prop_assert_eq!(Value::deserialize(Placed(value.clone())).unwrap(), value);
+        }
+    }
+}
