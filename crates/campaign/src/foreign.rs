@@ -201,7 +201,10 @@ fn scan_parquet(
                 return Err(ForeignError { path: path.to_owned(), problem });
             }
         }
-        let column = |place: &usize| numbers(group.get_column_reader(*place)?, rows);
+        let column = |place: &usize| {
+            let unsigned = schema.column(*place).logical_type_ref().is_some_and(is_unsigned);
+            numbers(group.get_column_reader(*place)?, rows, unsigned)
+        };
         let numbers = places.iter().map(column).collect::<Result<Vec<_>, ParquetError>>();
         let mut numbers = numbers.map_err(failed)?;
         if let Some(place) = status
@@ -244,10 +247,19 @@ fn unread_codec(compression: Compression) -> Option<&'static str> {
 
 /// Whether a number means what it is.
 fn is_plain(logical: &LogicalType) -> bool {
-    matches!(logical, LogicalType::Integer(whole) if whole.is_signed)
+    matches!(logical, LogicalType::Integer(_))
 }
 
-fn numbers(reader: ColumnReader, rows: usize) -> Result<Vec<Option<f64>>, ParquetError> {
+/// Whether the highest bit of a whole number is no sign.
+fn is_unsigned(logical: &LogicalType) -> bool {
+    matches!(logical, LogicalType::Integer(whole) if !whole.is_signed)
+}
+
+fn numbers(
+    reader: ColumnReader,
+    rows: usize,
+    unsigned: bool,
+) -> Result<Vec<Option<f64>>, ParquetError> {
     macro_rules! all {
         ($reader:expr, $number:expr) => {
             read($reader, rows)?.into_iter().map(|cell| cell.map($number)).collect()
@@ -255,6 +267,12 @@ fn numbers(reader: ColumnReader, rows: usize) -> Result<Vec<Option<f64>>, Parque
     }
     Ok(match reader {
         ColumnReader::BoolColumnReader(r) => all!(r, |flag| f64::from(u8::from(flag))),
+        ColumnReader::Int32ColumnReader(r) if unsigned => {
+            all!(r, |whole| f64::from(whole.cast_unsigned()))
+        }
+        ColumnReader::Int64ColumnReader(r) if unsigned => {
+            all!(r, |whole| whole.cast_unsigned() as f64)
+        }
         ColumnReader::Int32ColumnReader(r) => all!(r, f64::from),
         ColumnReader::Int64ColumnReader(r) => all!(r, |whole| whole as f64),
         ColumnReader::FloatColumnReader(r) => all!(r, f64::from),

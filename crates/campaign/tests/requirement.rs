@@ -287,6 +287,7 @@ fn parquet_of_any_writer_is_read() {
         required boolean flag; optional int32 short; required int64 long (INTEGER(64, true)); optional float single;
         optional double number; required int32 day (DATE); required binary text (UTF8);
         optional group list { repeated double item; }
+        required int32 byte (INTEGER(8, false)); required int64 most (INTEGER(64, false));
     }";
     let write = |name: &str, first: i64| {
         let file = fs::File::create(scratch.path().join(name)).unwrap();
@@ -316,6 +317,8 @@ fn parquet_of_any_writer_is_read() {
                 ["a", "b", "c"].map(Into::into).to_vec();
             column!(parquet::data_type::ByteArrayType, &texts, None, None);
             column!(DoubleType, &[1.0, 2.0], Some(&[2, 2, 0, 1]), Some(&[0, 1, 0, 0]));
+            column!(Int32Type, &[0, 255, 1], None, None);
+            column!(Int64Type, &[0, -1, 1], None, None);
             rows.close().unwrap();
         }
         writer.close().unwrap();
@@ -324,8 +327,8 @@ fn parquet_of_any_writer_is_read() {
     write("a.parquet", 0);
     fs::write(scratch.path().join("notes.txt"), "mine").unwrap();
     let table = ForeignTable::open(scratch.path()).unwrap();
-    let columns = ["flag", "short", "long", "single", "number"].map(str::to_owned);
-    let mut found = vec![Vec::new(); 5];
+    let columns = ["flag", "short", "long", "single", "number", "byte", "most"].map(str::to_owned);
+    let mut found = vec![Vec::new(); 7];
     table
         .scan(&columns, |some| {
             found.iter_mut().zip(some).for_each(|(all, some)| all.extend(some.clone()));
@@ -337,6 +340,8 @@ fn parquet_of_any_writer_is_read() {
     assert_eq!(found[2], (0..12).map(|i| Some(f64::from(i))).collect::<Vec<_>>());
     assert_eq!(found[3], four([Some(0.5), None, Some(-0.25)]));
     assert_eq!(found[4].iter().map(|x| x.map(f64::to_bits)).collect::<Vec<_>>().len(), 12);
+    assert_eq!(found[5], four([Some(0.0), Some(255.0), Some(1.0)]));
+    assert_eq!(found[6], four([Some(0.0), Some(u64::MAX as f64), Some(1.0)]));
     for (column, expected) in [
         ("day", "texts, dates or decimals"),
         ("text", "texts, dates or decimals"),
