@@ -85,11 +85,12 @@ impl fmt::Display for Assessment {
                 Aspect::Root { axis } => write!(f, "k{axis} is not Gaussian")?,
                 Aspect::Roots => f.write_str("the roots depend on each other")?,
                 Aspect::Axes => f.write_str(
-                    "the axes do not scatter as the law says (several groups, or outliers)",
+                    "the axes do not scatter as the law says (several groups, outliers, or turns that have a \
+                     limit, for example)",
                 )?,
                 Aspect::Turn => f.write_str(
-                    "the axes do not turn as far as the law says (tails heavier than its own, for \
-                     example)",
+                    "the axes do not turn as far as the law says (tails heavier or lighter than its own, \
+                     for example)",
                 )?,
                 Aspect::Tilt => f.write_str("the axis tilts more one way than another")?,
                 Aspect::RootsAndAxes => f.write_str("the axes depend on the roots")?,
