@@ -308,7 +308,7 @@ mod tests {
             ("x = 1\nz = 2", "z: unknown field `z`, expected one of"),
             ("x = 1\nz = 2", "(line 2, column 1)"),
             ("x = 1\n[part]\nq = 1", "part.q: unknown field `q`, expected `y` (line 3, column 1)"),
-            ("x = 1\nlist = [{ y = 1 }, {}]", "list[2].y: missing field `y` (line 2, column 19)"),
+            ("x = 1\nlist = [{ y = 1 }, {}]", "list[2].y: missing field `y` (line 2, column 20)"),
             ("x = 1\n[[list]]\ny = 1\n[[list]]\ny = true", "list[2].y: invalid type: boolean"),
             ("x = 1\n[[list]]\ny = 1\n[[list]]\ny = true", "(line 5, column 5)"),
             (

@@ -1,6 +1,8 @@
 //! Scenarios of simulators that are refused, and at which key.
 
-use super::{BODY, HEAD, MODELS, SimulatorScenario, correlated, folder, scenario, uniform};
+use super::{
+    BODY, HEAD, MODELS, SimulatorScenario, correlated, folder, quantity, scenario, uniform,
+};
 use crate::{Options, scenario::tests::cases};
 
 /// What cannot be, at its key.
@@ -25,8 +27,6 @@ fn refusals_name_their_key() {
         shell | a/b | name
         [[correlations]] | [payload]\nmass_kg = 1.0\n[[correlations]] | payload
         name = "x" | name = "1x" | quantities[1].name
-        name = "z" | name = "x" | quantities[2].name
-        name = "z" | name = "run" | quantities[2].name
         low = 0.1 | low = 1.1 | quantities[1].law
         sigma = 0.1 | sigma = -0.1 | quantities[2].law.sigma
         "x", | | correlations[1].between
@@ -36,6 +36,10 @@ fn refusals_name_their_key() {
     ) {
         assert!(tied.contains(&from), "{from}");
         refused(&tied.replace(&from, &to), &key);
+    }
+    for name in ["x", "run"] {
+        let normal = "{ law = \"normal\", mean = 1.0, sigma = 1.0 }";
+        refused(&(uniform() + &quantity(name, normal)), "quantities[2].name");
     }
     for [dispersion, key] in cases(
         r#"
