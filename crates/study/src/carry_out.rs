@@ -48,8 +48,9 @@ fn run_to_the_end<C: Subject>(
         let own = scenario.model_names().map(|model| requirements_of(scenario, model)).collect();
         Evidence::new(until.rule().clone(), own, group(scenario))
     };
+    let again = options.retry_failed && blocks.any_failed();
     let done = (|| {
-        if options.retry_failed && blocks.any_failed() {
+        if again {
             scenario.begin(&models)?;
             // Before the rule is asked, which these runs may change.
             let stop = options.stop.as_deref();
@@ -57,7 +58,7 @@ fn run_to_the_end<C: Subject>(
             say(Notice::Again(done));
         }
         // Nobody knows how many runs there will be: nothing is foretold, and nothing refused for want of room.
-        let begin = || Ok(scenario.begin(&models)?);
+        let begin = || if again { Ok(()) } else { Ok(scenario.begin(&models)?) };
         threads.install(|| run_until(&simulations, &blocks, plan, progress, until, evidence, begin))
     })();
     ended(done.inspect_err(|_: &StudyError| blocks.abandon())?)
