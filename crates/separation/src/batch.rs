@@ -3,7 +3,10 @@
 use std::borrow::Borrow;
 
 use crate::{
-    Outcome, RunError, Separation, Settings, integrator::Integrator, track::Track, vector::Machine,
+    Outcome, RunError, Separation, Settings,
+    integrator::{Integrate, Integrator},
+    track::Track,
+    vector::Machine,
 };
 
 /// Many separations, several at a time in vector lanes: eight where the machine has AVX-512, else four.
@@ -38,24 +41,21 @@ use crate::{
 #[derive(Debug)]
 pub struct Batch {
     settings: Settings,
-    integrator: Wide,
+    integrator: Box<dyn Integrate>,
 }
 
-/// As wide as the machine's registers.
-#[derive(Debug)]
-enum Wide {
-    Four(Box<Integrator<4>>),
-    Eight(Box<Integrator<8>>),
-}
+/// The most lanes that an integrator has.
+const MOST: usize = 8;
 
 impl Batch {
     /// For runs with the given settings.
     #[must_use]
     pub fn new(settings: Settings) -> Self {
-        let integrator = if Machine::new().has_eight() {
-            Wide::Eight(Box::new(Integrator::new(settings)))
+        // As wide as the machine's registers.
+        let integrator: Box<dyn Integrate> = if Machine::new().has_eight() {
+            Box::new(Integrator::<MOST>::new(settings))
         } else {
-            Wide::Four(Box::new(Integrator::new(settings)))
+            Box::new(Integrator::<4>::new(settings))
         };
         Self { settings, integrator }
     }
@@ -68,44 +68,37 @@ impl Batch {
     pub fn run<S: Borrow<Separation>>(
         &mut self,
         queue: impl IntoIterator<Item = S>,
-        result: impl FnMut(usize, Result<Outcome, RunError>),
+        mut result: impl FnMut(usize, Result<Outcome, RunError>),
     ) {
-        match &mut self.integrator {
-            Wide::Four(integrator) => run(integrator, &self.settings, queue, result),
-            Wide::Eight(integrator) => run(integrator, &self.settings, queue, result),
-        }
-    }
-}
-
-/// In as many lanes as an integrator has.
-fn run<const W: usize, S: Borrow<Separation>>(
-    integrator: &mut Integrator<W>,
-    settings: &Settings,
-    queue: impl IntoIterator<Item = S>,
-    mut result: impl FnMut(usize, Result<Outcome, RunError>),
-) {
-    let mut queue = queue.into_iter().enumerate();
-    let mut lanes: [Option<(usize, Track<S>)>; W] = [const { None }; W];
-    loop {
-        for (lane, slot) in lanes.iter_mut().enumerate() {
-            if slot.is_none() {
-                *slot = queue.next().map(|(i, run)| (i, integrator.load(lane, run)));
+        let integrator = &mut *self.integrator;
+        let mut queue = queue.into_iter().enumerate();
+        let mut slots: [Option<(usize, S, Track)>; MOST] = [const { None }; MOST];
+        let lanes = &mut slots[..integrator.width()];
+        loop {
+            for (lane, slot) in lanes.iter_mut().enumerate() {
+                if slot.is_none() {
+                    *slot = queue.next().map(|(i, run)| {
+                        let track = integrator.load(lane, run.borrow());
+                        (i, run, track)
+                    });
+                }
+                if slot.is_none() {
+                    integrator.rest(lane);
+                }
             }
-            if slot.is_none() {
-                integrator.rest(lane);
+            if lanes.iter().all(Option::is_none) {
+                return;
             }
-        }
-        if lanes.iter().all(Option::is_none) {
-            return;
-        }
-        integrator.expand();
-        for (lane, slot) in lanes.iter_mut().enumerate() {
-            let Some((_, track)) = slot else { continue };
-            let stepped = integrator.step(lane, track);
-            let over = stepped.is_err() || track.all_released();
-            if over && let Some((i, track)) = slot.take() {
-                let state = integrator.state(lane);
-                result(i, stepped.map(|()| Outcome::new(track, &state, settings)));
+            integrator.expand();
+            for (lane, slot) in lanes.iter_mut().enumerate() {
+                let Some((_, run, track)) = slot else { continue };
+                let stepped = integrator.step(lane, (*run).borrow(), track);
+                let over = stepped.is_err() || track.all_released();
+                if over && let Some((i, run, track)) = slot.take() {
+                    let state = integrator.state(lane);
+                    let outcome = || Outcome::new(run.borrow(), track, &state, &self.settings);
+                    result(i, stepped.map(|()| outcome()));
+                }
             }
         }
     }
@@ -179,9 +172,10 @@ mod tests {
     fn outcomes_are_the_same_to_the_bit_in_any_number_of_lanes() {
         fn all<const W: usize>(machine: Machine) -> Vec<String> {
             let (settings, all) = (Settings::new(1e-13, 10.0).unwrap(), separations());
-            let mut integrator = Integrator::<W>::on(machine, settings);
+            let integrator = Box::new(Integrator::<W>::on(machine, settings));
             let mut outcomes = vec![String::new(); all.len()];
-            run(&mut integrator, &settings, &all, |i, result| outcomes[i] = format!("{result:?}"));
+            let mut batch = Batch { settings, integrator };
+            batch.run(&all, |i, result| outcomes[i] = format!("{result:?}"));
             outcomes
         }
         let four = all::<4>(Machine::new());

@@ -1,6 +1,6 @@
 //! Steps of several runs: how far the series are good, which load ends, and when.
 
-use std::borrow::Borrow;
+use std::fmt::Debug;
 
 use crate::{
     RunError, Separation, Settings, bodies,
@@ -18,6 +18,29 @@ const MAX_STEPS: u32 = 100_000;
 const UNDERFLOW: f64 = 1e-13;
 /// The square of a time that is this share of a step does not tell in the state.
 const TINY: f64 = 1e-9;
+
+/// What a batch asks of an integrator, with any number of lanes. As an object, it is compiled in this crate, once,
+/// and not in every crate that runs a batch.
+pub(crate) trait Integrate: Debug + Send + Sync {
+    /// How many lanes it has.
+    fn width(&self) -> usize;
+
+    /// Puts a run at its start into a lane.
+    fn load(&mut self, lane: usize, run: &Separation) -> Track;
+
+    /// Leaves a lane without a run.
+    fn rest(&mut self, lane: usize);
+
+    /// Expands the motion in all lanes.
+    fn expand(&mut self);
+
+    /// Takes the run in a lane on, to the last release or the horizon at most.
+    fn step(&mut self, lane: usize, run: &Separation, track: &mut Track) -> Result<(), RunError>;
+
+    /// The state that a lane is in.
+    fn state(&self, lane: usize) -> State;
+}
+
 /// Several runs, one in each lane.
 #[derive(Debug)]
 pub(crate) struct Integrator<const W: usize> {
@@ -54,61 +77,11 @@ impl<const W: usize> Integrator<W> {
         Self { expansion: Expansion::new(stretch), settings, machine }
     }
 
-    /// Puts a run at its start into a lane.
-    pub(crate) fn load<S: Borrow<Separation>>(&mut self, lane: usize, separation: S) -> Track<S> {
-        let run: &Separation = separation.borrow();
-        let expansion = &mut self.expansion;
-        expansion.busy[lane] = true;
-        let set = |to: &mut [Lanes<W>], from: &[f64]| {
-            for (to, from) in to.iter_mut().zip(from) {
-                to.0[lane] = *from;
-            }
-        };
-        let matrix = |to: &mut M3<W>, from: &nalgebra::Matrix3<f64>| {
-            for (row, from) in to.iter_mut().zip(from.row_iter()) {
-                for (to, from) in row.iter_mut().zip(from.iter()) {
-                    to.0[lane] = *from;
-                }
-            }
-        };
-        let rotor = |to: &mut Rotor<W>, body: &crate::Body| {
-            matrix(&mut to.inertia, body.inertia().matrix());
-            matrix(&mut to.inverse, body.inverse_inertia());
-        };
-        rotor(&mut expansion.payload, run.payload().body());
-        rotor(&mut expansion.stage, run.stage().body());
-        expansion.radius.0[lane] = 0.0;
-        expansion.inverse_mass.0[lane] = run.inverse_reduced_mass();
-        let scales = bodies::scales(run);
-        set(&mut expansion.inverse_scale, &scales.map(|s| 1.0 / s));
-        let loads: Fates = run.seated().iter().map(Fate::of).collect();
-        expansion.loads.set(lane, run.seated());
-        for (i, fate) in loads.iter().enumerate() {
-            expansion.loads.act(run.seated().slot(i), lane, *fate == Fate::Acting);
-        }
-        self.set_state(lane, &bodies::initial(run));
-        Track { time: 0.0, steps: 0, loads, time_scale: bodies::time_scale(&scales), separation }
-    }
-
-    /// Leaves a lane without a run.
-    pub(crate) fn rest(&mut self, lane: usize) {
-        self.expansion.busy[lane] = false;
-    }
-
-    /// Expands the motion in all lanes.
-    pub(crate) fn expand(&mut self) {
-        self.machine.run::<W>(Expand(&mut self.expansion));
-    }
-
     /// The series about the state that a lane is in.
     pub(crate) fn series(&self, lane: usize) -> [State; TERMS] {
         let mut series = self.expansion.terms.map(|term| term.state.map(|x| x.0[lane]));
         series[self.expansion.order[lane] + 1..].fill([0.0; STATE]);
         series
-    }
-
-    pub(crate) fn state(&self, lane: usize) -> State {
-        std::array::from_fn(|i| self.expansion.terms[0].state[i].0[lane])
     }
 
     fn set_state(&mut self, lane: usize, state: &State) {
@@ -117,22 +90,13 @@ impl<const W: usize> Integrator<W> {
         }
     }
 
-    /// Takes the run in a lane on, to the last release or the horizon at most.
-    pub(crate) fn step<S: Borrow<Separation>>(
-        &mut self,
-        lane: usize,
-        track: &mut Track<S>,
-    ) -> Result<(), RunError> {
-        self.advance(lane, track, self.settings.horizon_s())?;
-        track.check(&self.state(lane), &self.settings)
-    }
-
     /// Takes the run in a lane as far as its expansion is good, to the next end or start of a
     /// load, or to a time, whichever comes first. Returns the length of the step.
-    pub(crate) fn advance<S: Borrow<Separation>>(
+    pub(crate) fn advance(
         &mut self,
         lane: usize,
-        track: &mut Track<S>,
+        run: &Separation,
+        track: &mut Track,
         until: f64,
     ) -> Result<f64, RunError> {
         let reach = self.expansion.reach.0[lane];
@@ -148,11 +112,10 @@ impl<const W: usize> Integrator<W> {
                 relative_tolerance: self.settings.relative_tolerance(),
             });
         }
-        let start = track.next_start();
+        let loads = run.seated();
+        let start = track.next_start(loads);
         let h = reach.min(until.min(start) - track.time);
         let order = self.expansion.order[lane];
-        let run = track.separation.borrow();
-        let loads = run.seated();
         let mut first: Option<(f64, usize)> = None;
         for i in track.open() {
             let events = self.expansion.loads.get(loads.slot(i));
@@ -276,7 +239,7 @@ impl<const W: usize> Integrator<W> {
         RunError::PadsMeet { load: loads.id(load), time, speed }
     }
 
-    fn failure<S: Borrow<Separation>>(&self, lane: usize, track: &Track<S>, step: f64) -> RunError {
+    fn failure(&self, lane: usize, track: &Track, step: f64) -> RunError {
         let time = track.time;
         let finite = self.series(lane).iter().flatten().all(|x| x.is_finite());
         if finite && step.is_finite() {
@@ -284,6 +247,63 @@ impl<const W: usize> Integrator<W> {
         } else {
             RunError::NotFinite { time }
         }
+    }
+}
+
+impl<const W: usize> Integrate for Integrator<W> {
+    fn width(&self) -> usize {
+        W
+    }
+
+    fn load(&mut self, lane: usize, run: &Separation) -> Track {
+        let expansion = &mut self.expansion;
+        expansion.busy[lane] = true;
+        let set = |to: &mut [Lanes<W>], from: &[f64]| {
+            for (to, from) in to.iter_mut().zip(from) {
+                to.0[lane] = *from;
+            }
+        };
+        let matrix = |to: &mut M3<W>, from: &nalgebra::Matrix3<f64>| {
+            for (row, from) in to.iter_mut().zip(from.row_iter()) {
+                for (to, from) in row.iter_mut().zip(from.iter()) {
+                    to.0[lane] = *from;
+                }
+            }
+        };
+        let rotor = |to: &mut Rotor<W>, body: &crate::Body| {
+            matrix(&mut to.inertia, body.inertia().matrix());
+            matrix(&mut to.inverse, body.inverse_inertia());
+        };
+        rotor(&mut expansion.payload, run.payload().body());
+        rotor(&mut expansion.stage, run.stage().body());
+        expansion.radius.0[lane] = 0.0;
+        expansion.inverse_mass.0[lane] = run.inverse_reduced_mass();
+        let scales = bodies::scales(run);
+        set(&mut expansion.inverse_scale, &scales.map(|s| 1.0 / s));
+        let loads: Fates = run.seated().iter().map(Fate::of).collect();
+        expansion.loads.set(lane, run.seated());
+        for (i, fate) in loads.iter().enumerate() {
+            expansion.loads.act(run.seated().slot(i), lane, *fate == Fate::Acting);
+        }
+        self.set_state(lane, &bodies::initial(run));
+        Track { time: 0.0, steps: 0, loads, time_scale: bodies::time_scale(&scales) }
+    }
+
+    fn rest(&mut self, lane: usize) {
+        self.expansion.busy[lane] = false;
+    }
+
+    fn expand(&mut self) {
+        self.machine.run::<W>(Expand(&mut self.expansion));
+    }
+
+    fn step(&mut self, lane: usize, run: &Separation, track: &mut Track) -> Result<(), RunError> {
+        self.advance(lane, run, track, self.settings.horizon_s())?;
+        track.check(run, &self.state(lane), &self.settings)
+    }
+
+    fn state(&self, lane: usize) -> State {
+        std::array::from_fn(|i| self.expansion.terms[0].state[i].0[lane])
     }
 }
 
@@ -324,7 +344,7 @@ mod tests {
         while !track.all_released() {
             integrator.expand();
             degrees.push(integrator.expansion.order[0]);
-            integrator.step(0, &mut track).unwrap();
+            integrator.step(0, &separation, &mut track).unwrap();
         }
         assert_eq!(degrees, [14, 14, 14, 14, 9, 5, 14, 14, 5]);
     }

@@ -1,7 +1,7 @@
 //! What a separation leaves: the bodies after the last release, and what is told of them.
 
 use nalgebra::{Unit, Vector3};
-use std::{borrow::Borrow, fmt};
+use std::fmt;
 
 use crate::{
     BodyState, EnergySplit, MovingBody, Separation, Settings, SpinMetrics, bodies,
@@ -49,12 +49,12 @@ pub struct Outcome {
 
 impl Outcome {
     /// Of a run that is over, in the state that it came to.
-    pub(crate) fn new<S: Borrow<Separation>>(
-        track: Track<S>,
+    pub(crate) fn new(
+        separation: &Separation,
+        track: Track,
         state: &State,
         settings: &Settings,
     ) -> Self {
-        let separation = track.separation.borrow();
         let (payload, stage) = bodies::bodies(separation, state, track.time);
         let rounding = Rounding::new(separation, &track.loads, settings, track.steps);
         let start = [*separation.payload().state(), *separation.stage().state()];

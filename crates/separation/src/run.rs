@@ -1,6 +1,9 @@
 //! A run alone: a batch with one lane filled.
 
-use crate::{Outcome, RunError, Separation, Settings, integrator::Integrator};
+use crate::{
+    Outcome, RunError, Separation, Settings,
+    integrator::{Integrate, Integrator},
+};
 
 impl Separation {
     /// Integrates to the release of the last spring. Does not allocate for up to eight springs.
@@ -12,8 +15,8 @@ impl Separation {
         let mut track = integrator.load(0, self);
         while !track.all_released() {
             integrator.expand();
-            integrator.step(0, &mut track)?;
+            integrator.step(0, self, &mut track)?;
         }
-        Ok(Outcome::new(track, &integrator.state(0), settings))
+        Ok(Outcome::new(self, track, &integrator.state(0), settings))
     }
 }

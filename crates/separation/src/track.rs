@@ -1,9 +1,10 @@
 //! A run under way, and what becomes of its loads.
 
 use smallvec::SmallVec;
-use std::borrow::Borrow;
 
-use crate::{RunError, Separation, Settings, layout::INLINE_LOADS, load::Seated, state::State};
+use crate::{
+    RunError, Separation, Settings, layout::INLINE_LOADS, load::Seated, loads::Loads, state::State,
+};
 
 /// What has become of one load; times in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,8 +67,7 @@ pub(crate) type Fates = SmallVec<[Fate; INLINE_LOADS]>;
 
 /// A run under way in one lane.
 #[derive(Clone, Debug)]
-pub(crate) struct Track<S> {
-    pub(crate) separation: S,
+pub(crate) struct Track {
     pub(crate) time: f64,
     pub(crate) steps: u32,
     pub(crate) loads: Fates,
@@ -75,7 +75,7 @@ pub(crate) struct Track<S> {
     pub(crate) time_scale: f64,
 }
 
-impl<S: Borrow<Separation>> Track<S> {
+impl Track {
     /// The loads that act or will.
     pub(crate) fn open(&self) -> impl Iterator<Item = usize> {
         let loads = self.loads.iter().enumerate();
@@ -83,8 +83,7 @@ impl<S: Borrow<Separation>> Track<S> {
     }
 
     /// When the next load starts.
-    pub(crate) fn next_start(&self) -> f64 {
-        let loads = self.separation.borrow().seated();
+    pub(crate) fn next_start(&self, loads: &Loads) -> f64 {
         let waiting = self.loads.iter().enumerate().filter(|(_, fate)| **fate == Fate::Waiting);
         let starts = waiting.filter_map(|(i, _)| loads.get(i).start_s());
         starts.fold(f64::INFINITY, f64::min)
@@ -95,10 +94,15 @@ impl<S: Borrow<Separation>> Track<S> {
     }
 
     /// That the loads have come to their ends by the horizon.
-    pub(crate) fn check(&self, state: &State, settings: &Settings) -> Result<(), RunError> {
+    pub(crate) fn check(
+        &self,
+        run: &Separation,
+        state: &State,
+        settings: &Settings,
+    ) -> Result<(), RunError> {
         match self.open().next() {
             Some(load) if self.time >= settings.horizon_s() => {
-                let loads = self.separation.borrow().seated();
+                let loads = run.seated();
                 let gap = loads.get(load).gap(state);
                 Err(RunError::NotReleased {
                     loads: self.open().map(|load| loads.id(load)).collect(),

@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use crate::{
     Outcome, RunError, Separation, Settings, Snapshot,
-    integrator::Integrator,
+    integrator::{Integrate, Integrator},
     layout::{INLINE_LOADS, ORDER, TERMS},
     state::{self, State},
     track::Fate,
@@ -148,6 +148,16 @@ impl Separation {
         coast_s: f64,
         mut observer: impl FnMut(&Step),
     ) -> Result<Outcome, RunError> {
+        self.show(settings, coast_s, &mut observer)
+    }
+
+    /// The same with an observer of any type, so that the integrator is compiled in this crate alone.
+    fn show(
+        &self,
+        settings: &Settings,
+        coast_s: f64,
+        observer: &mut dyn FnMut(&Step),
+    ) -> Result<Outcome, RunError> {
         if !(coast_s >= 0.0 && coast_s.is_finite()) {
             return Err(RunError::Coast { value: coast_s });
         }
@@ -160,16 +170,16 @@ impl Separation {
             let (start, series) = (track.time, integrator.series(0));
             let pushing: SmallVec<_> = track.loads.iter().map(|f| *f == Fate::Acting).collect();
             let before = track.loads.clone();
-            let duration = integrator.advance(0, &mut track, end)?;
+            let duration = integrator.advance(0, self, &mut track, end)?;
             let released = track.loads.iter().zip(&before).enumerate();
             let released = released.filter(|(_, (fate, was))| fate.let_go() != was.let_go());
             let released = released.map(|(i, _)| i).collect();
             let separation = self.clone();
             observer(&Step { separation, start, duration, series, pushing, released });
             let state = integrator.state(0);
-            track.check(&state, settings)?;
+            track.check(self, &state, settings)?;
             if outcome.is_none() && track.all_released() {
-                outcome = Some(Outcome::new(track.clone(), &state, settings));
+                outcome = Some(Outcome::new(self, track.clone(), &state, settings));
                 end = track.time + coast_s;
             }
         }

@@ -40,7 +40,7 @@ fn fixed_steps(separation: &Separation, h: f64, until: f64, located: bool) -> St
         }
         let end = f64::min((n + 1.0) * h, until);
         if located {
-            integrator.advance(0, &mut track, end).unwrap();
+            integrator.advance(0, separation, &mut track, end).unwrap();
             continue;
         }
         let mut next = integrator.at(0, end - track.time);
