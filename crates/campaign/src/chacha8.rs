@@ -123,27 +123,54 @@ impl WithSimd for Mixing<'_> {
 #[inline(always)]
 fn mixed<S: Simd>(simd: S, state: [S::u32s; WORDS]) -> [S::u32s; WORDS] {
     let mut x = state;
+    // Each quarter is written out: where code is to be small, loops are not unrolled, and the words then do not stay in
+    // registers.
     for _ in 0..4 {
-        for i in 0..4 {
-            quarter_round(simd, &mut x, [i, 4 + i, 8 + i, 12 + i]);
-        }
-        for i in 0..4 {
-            let diagonal = [i, 4 + (i + 1) % 4, 8 + (i + 2) % 4, 12 + (i + 3) % 4];
-            quarter_round(simd, &mut x, diagonal);
-        }
+        quarter_round(simd, &mut x, 0, 4, 8, 12);
+        quarter_round(simd, &mut x, 1, 5, 9, 13);
+        quarter_round(simd, &mut x, 2, 6, 10, 14);
+        quarter_round(simd, &mut x, 3, 7, 11, 15);
+        quarter_round(simd, &mut x, 0, 5, 10, 15);
+        quarter_round(simd, &mut x, 1, 6, 11, 12);
+        quarter_round(simd, &mut x, 2, 7, 8, 13);
+        quarter_round(simd, &mut x, 3, 4, 9, 14);
     }
-    std::array::from_fn(|i| simd.add_u32s(x[i], state[i]))
+    for (x, state) in x.iter_mut().zip(state) {
+        *x = simd.add_u32s(*x, state);
+    }
+    x
 }
 
 #[inline(always)]
-fn quarter_round<S: Simd>(simd: S, x: &mut [S::u32s; WORDS], [a, b, c, d]: [usize; 4]) {
-    for (to, with, from, left) in [(a, b, d, 16), (c, d, b, 12), (a, b, d, 8), (c, d, b, 7)] {
-        x[to] = simd.add_u32s(x[to], x[with]);
-        let bits = simd.xor_u32s(x[from], x[to]);
-        let upper = simd.wrapping_dyn_shl_u32s(bits, simd.splat_u32s(left));
-        let lower = simd.wrapping_dyn_shr_u32s(bits, simd.splat_u32s(32 - left));
-        x[from] = simd.or_u32s(upper, lower);
-    }
+fn quarter_round<S: Simd>(
+    simd: S,
+    x: &mut [S::u32s; WORDS],
+    a: usize,
+    b: usize,
+    c: usize,
+    d: usize,
+) {
+    add_and_turn(simd, x, a, b, d, 16);
+    add_and_turn(simd, x, c, d, b, 12);
+    add_and_turn(simd, x, a, b, d, 8);
+    add_and_turn(simd, x, c, d, b, 7);
+}
+
+/// x[to] += x[with], x[turned] = (x[turned] ⊕ x[to]) turned left by some bits.
+#[inline(always)]
+fn add_and_turn<S: Simd>(
+    simd: S,
+    x: &mut [S::u32s; WORDS],
+    to: usize,
+    with: usize,
+    turned: usize,
+    left: u32,
+) {
+    x[to] = simd.add_u32s(x[to], x[with]);
+    let bits = simd.xor_u32s(x[turned], x[to]);
+    let upper = simd.wrapping_dyn_shl_u32s(bits, simd.splat_u32s(left));
+    let lower = simd.wrapping_dyn_shr_u32s(bits, simd.splat_u32s(32 - left));
+    x[turned] = simd.or_u32s(upper, lower);
 }
 
 #[cfg(test)]
