@@ -1,6 +1,7 @@
-"""How long the package takes, beside what people write with NumPy.
+"""How long the package takes and how large it is, beside what people write with NumPy.
 
-`python marks.py` prints the table of `docs/python.md`; `--write PAGE` puts it there.
+`python marks.py` prints the table of `docs/python.md`; `--write PAGE` puts it there, and `--wheel FILE`
+adds how large that wheel is.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ def imports() -> float:
     return 1e3 * min(found)
 
 
-def table() -> str:
+def table(wheel: Path | None) -> str:
     """The table, a row for each mark."""
     link = gyradius.MassProperties(2.4, [0.15, 0.01, -0.02], np.diag([0.004, 0.021, 0.022]))
     normal = gyradius.normal
@@ -100,6 +101,8 @@ def table() -> str:
     lines = ["| | gyradius | rival | which |", "|---|---|---|---|"]
     for what, own, rival, which in rows:
         lines.append(f"| {what} | {own:.3g} ms | {'' if rival is None else f'{rival:.3g} ms'} | {which} |")
+    if wheel:
+        lines.append(f"| the wheel, with the program in it | {wheel.stat().st_size / 1e6:.3g} MB |  |  |")
     return "\n".join(lines) + "\n"
 
 
@@ -107,8 +110,9 @@ def main() -> None:
     """Prints the table, or writes it into a page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", type=Path, metavar="PAGE")
+    parser.add_argument("--wheel", type=Path, metavar="FILE", help="the wheel, whose size is told")
     arguments = parser.parse_args()
-    made = table()
+    made = table(arguments.wheel)
     print(f"{os.cpu_count()} cores\n{made}", end="")
     if arguments.write:
         page = arguments.write.read_text()

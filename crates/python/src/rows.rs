@@ -37,7 +37,7 @@ pub(crate) fn rows<'a, const N: usize>(
 ///
 /// # Errors
 /// The first row, in the order of their places, that cannot be made; or an interrupt.
-pub(crate) fn made<'py, const N: usize, E: Display + Send>(
+pub(crate) fn made<'py, const N: usize, E: Display>(
     py: Python<'py>,
     count: usize,
     make: impl Fn(usize) -> Result<[f64; N], E> + Sync,
@@ -47,7 +47,7 @@ pub(crate) fn made<'py, const N: usize, E: Display + Send>(
 }
 
 /// The same of rows of one number.
-fn made_one<'py, T: numpy::Element + Copy + Default, E: Display + Send>(
+fn made_one<'py, T: numpy::Element + Copy + Default, E: Display>(
     py: Python<'py>,
     count: usize,
     make: impl Fn(usize) -> Result<T, E> + Sync,
@@ -109,7 +109,7 @@ fn try_draw<T: Copy + Send + Sync>(
     words: usize,
     draw: impl Fn(&mut StreamRng) -> T + Sync,
 ) -> PyResult<Vec<T>> {
-    fill(py, draws.count(), zero, |first, out| {
+    fill(py, draws.count(), zero, &|first, out| {
         let each = (first..first + out.len()).map(|row| draws.stream(row));
         let mut out = out.iter_mut();
         Streams::each(each, words, |rng| {
@@ -117,30 +117,34 @@ fn try_draw<T: Copy + Send + Sync>(
                 *out = draw(rng);
             }
         });
-        Ok::<_, (usize, Infallible)>(())
+        Ok(())
     })
 }
 
-fn try_make<T: Copy + Send + Sync, E: Display + Send>(
+fn try_make<T: Copy + Send + Sync, E: Display>(
     py: Python<'_>,
     count: usize,
     zero: T,
     make: impl Fn(usize) -> Result<T, E> + Sync,
 ) -> PyResult<Vec<T>> {
-    fill(py, count, zero, |first, out| {
+    fill(py, count, zero, &|first, out| {
         for (row, out) in (first..).zip(out) {
-            *out = make(row).map_err(|error| (row, error))?;
+            *out = make(row).map_err(|error| (row, error.to_string()))?;
         }
         Ok(())
     })
 }
 
-/// Fills rows, some at a time from the first of them on, with an error at the row that cannot be made.
-fn fill<T: Copy + Send + Sync, E: Display + Send>(
+/// Fills some rows, from one of them on, or says which one cannot be made and why.
+type Fill<'a, T> = dyn Fn(usize, &mut [T]) -> Result<(), (usize, String)> + Sync + 'a;
+
+/// Fills rows, some at a time. What fills them is an object, so that the work of several cores is compiled once for a
+/// type of rows, and not for each law.
+fn fill<T: Copy + Send + Sync>(
     py: Python<'_>,
     count: usize,
     zero: T,
-    some: impl Fn(usize, &mut [T]) -> Result<(), (usize, E)> + Sync,
+    some: &Fill<'_, T>,
 ) -> PyResult<Vec<T>> {
     let mut out = Vec::new();
     out.try_reserve_exact(count).map_err(|_| no_memory(count))?;
