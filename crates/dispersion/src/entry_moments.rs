@@ -246,6 +246,12 @@ fn forms(q: &[C64; 4]) -> [C64; FORMS] {
     })
 }
 
+/// Their expectations, for each k.
+pub(crate) fn expected_forms(law: &impl Polynomials) -> [[f64; 6]; 3] {
+    let expected: [f64; FORMS] = law.expect(forms);
+    std::array::from_fn(|k| std::array::from_fn(|e| expected[6 * k + e]))
+}
+
 /// The same at a unit quaternion.
 pub(crate) fn real_forms(q: &UnitQuaternion<f64>) -> [[f64; 6]; 3] {
     let r = q.to_rotation_matrix();

@@ -45,6 +45,10 @@ impl AttitudeMoments for AxesLaw {
         each!(self, law => law.entry_moments(k))
     }
 
+    fn expected_forms(&self) -> [[f64; 6]; 3] {
+        each!(self, law => law.expected_forms())
+    }
+
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
         each!(self, law => law.ln_density_of_attitude(attitude))
     }

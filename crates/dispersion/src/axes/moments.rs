@@ -4,13 +4,13 @@ use gyradius_attitude::{
     AboutAxis, AngularQuadrature, FisherBingham, MeanHalf, RadiallyConstrainedGaussian,
     UniformAttitude,
 };
-use nalgebra::{Complex, SMatrix, UnitQuaternion};
+use nalgebra::{Complex, Matrix3, SMatrix, UnitQuaternion};
 use std::f64::consts::LN_2;
 
 use super::LN_PI_SQUARED;
 use super::half_sphere::HalfSphere;
 use super::jacobian_twice::second_jacobian;
-use crate::entry_moments::{ENTRIES, Expectation, Polynomials};
+use crate::entry_moments::{ENTRIES, Expectation, Polynomials, expected_forms};
 use crate::{EntryMoments, FixedAttitude, JacobianTwice, SecondMomentStatistics};
 
 /// A law of attitudes under which the mean and covariance of the entries of an inertia matrix can be
@@ -21,6 +21,16 @@ pub trait AttitudeMoments {
     /// Mean and covariance of the entries of R(q)ᵀ I_P R(q), I_P = tr(K)·1 − diag(K), q from this law and
     /// K of the given mean and covariance, independent of q.
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments;
+
+    /// What the mean of each second moment is multiplied with in the mean of the entries I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃: the
+    /// expectation of δ_ab − r_ka r_kb, r_k the k-th row of R(q).
+    fn expected_forms(&self) -> [[f64; 6]; 3] {
+        std::array::from_fn(|k| {
+            let mut one = [0.0; 3];
+            one[k] = 1.0;
+            self.entry_moments(&SecondMomentStatistics::joint(one, Matrix3::zeros())).mean()
+        })
+    }
 
     /// The logarithm of the density of the attitude, whichever of q and −q it is given as, with respect to Haar
     /// measure normalised to one: 0 everywhere for the uniform law. Less ln 8π² it is the density with respect to a small
@@ -40,6 +50,10 @@ pub trait AttitudeMoments {
 impl<T: AttitudeMoments + ?Sized> AttitudeMoments for &T {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
         (**self).entry_moments(k)
+    }
+
+    fn expected_forms(&self) -> [[f64; 6]; 3] {
+        (**self).expected_forms()
     }
 
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
@@ -75,6 +89,10 @@ impl AttitudeMoments for RadiallyConstrainedGaussian {
         EntryMoments::by_polynomials(self, k)
     }
 
+    fn expected_forms(&self) -> [[f64; 6]; 3] {
+        expected_forms(self)
+    }
+
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
         Some(self.ln_haar_density(attitude))
     }
@@ -89,6 +107,10 @@ impl AttitudeMoments for RadiallyConstrainedGaussian {
 impl AttitudeMoments for FisherBingham {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
         EntryMoments::by_polynomials(self, k)
+    }
+
+    fn expected_forms(&self) -> [[f64; 6]; 3] {
+        expected_forms(self)
     }
 
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
@@ -337,6 +359,45 @@ mod tests {
         for e in 0..6 {
             assert!((free.mean()[e] - fixed.mean()[e]).abs() < 1e-12);
             assert!(free.deviations()[e] < 1e-6);
+        }
+    }
+    /// A law that says no more than it must.
+    struct Terse<'a>(&'a dyn AttitudeMoments);
+
+    impl AttitudeMoments for Terse<'_> {
+        fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
+            self.0.entry_moments(k)
+        }
+    }
+
+    /// To the bit, whether a law takes them at once or one after the other.
+    #[test]
+    fn forms_are_what_second_moments_are_multiplied_with() {
+        let mean = UnitQuaternion::from_euler_angles(0.3, -0.8, 1.1);
+        let rcg = |variance| {
+            let covariance = Matrix4::from_diagonal(&Vector4::new(0.5, 1.0, 0.2, 3.0)) * variance;
+            RadiallyConstrainedGaussian::new(mean, covariance).unwrap()
+        };
+        let laws: [&dyn AttitudeMoments; 6] = [
+            &rcg(1e-6),
+            &rcg(0.1),
+            &FisherBingham::new(
+                -Matrix4::from_diagonal(&Vector4::new(5.0, 1.0, 2.0, 0.0)),
+                Vector4::new(1.0, 0.0, 2.0, 0.5),
+            )
+            .unwrap(),
+            &AxesLaw::from(rcg(0.3)),
+            &UniformAttitude,
+            &FixedAttitude::new(mean),
+        ];
+        let k = SecondMomentStatistics::joint([2.0, 3.0, 5.0], Matrix3::identity() * 0.1);
+        for (i, law) in laws.into_iter().enumerate() {
+            let forms = law.expected_forms();
+            assert_eq!(forms, Terse(law).expected_forms(), "law {i}");
+            for (e, expected) in law.entry_moments(&k).mean().iter().enumerate() {
+                let sum: f64 = (0..3).map(|j| k.mean()[j] * forms[j][e]).sum();
+                assert!((sum - expected).abs() < 1e-12, "law {i}: {sum} {expected}");
+            }
         }
     }
 }

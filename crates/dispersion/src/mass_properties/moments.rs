@@ -13,7 +13,7 @@ use crate::{AttitudeMoments, EntryMoments, InertiaLaw, SecondMomentStatistics};
 
 /// What the entries of the inertia are linear in: the second moments, or a factor of them all.
 enum Size {
-    Second([Monomial; 3], Vec<[f64; 6]>),
+    Second([Monomial; 3], [[f64; 6]; 3]),
     Factor(Monomial, [f64; 6]),
 }
 
@@ -138,14 +138,7 @@ impl MassPropertiesLaw {
                 nalgebra::Matrix3::from_fn(|i, j| scores.covariance(&moments[i], &moments[j]).1);
             let statistics = SecondMomentStatistics::joint(mean, covariance);
             let axes = principal.axes.entry_moments(&statistics);
-            // The expectation of the form that each second moment is multiplied with.
-            let forms = (0..3).map(|k| {
-                let mut one = [0.0; 3];
-                one[k] = 1.0;
-                let alone = SecondMomentStatistics::joint(one, nalgebra::Matrix3::zeros());
-                principal.axes.entry_moments(&alone).mean()
-            });
-            (Size::Second(moments, forms.collect()), axes)
+            (Size::Second(moments, principal.axes.expected_forms()), axes)
         };
         Some(match &self.tensor().of {
             Of::GyrationLengths(principal) => second(principal, Monomial::default().times(MASS, 1)),

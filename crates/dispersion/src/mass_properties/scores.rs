@@ -1,7 +1,7 @@
 //! Expectations over scalar laws that are drawn jointly, by quadrature over their scores.
 
 use nalgebra::DMatrix;
-use std::{cell::RefCell, collections::HashMap, rc::Rc};
+use std::{cell::RefCell, collections::HashMap, rc::Rc, sync::LazyLock};
 
 use crate::{Correlation, ScalarLaw};
 
@@ -129,8 +129,16 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
         known.unwrap_or_else(|| {
             let each = nodes.values.chunks_exact(block.len()).map(|x| {
                 block.iter().zip(x).fold(1.0, |product, (&scalar, &x)| {
-                    let own = product * x.powi(monomial.powers[scalar]);
-                    if scalar == 0 { own * (self.factor)(x).powi(monomial.factor) } else { own }
+                    // Most powers are of degree zero.
+                    let own = match monomial.powers[scalar] {
+                        0 => product,
+                        power => product * x.powi(power),
+                    };
+                    if scalar == 0 && monomial.factor != 0 {
+                        own * (self.factor)(x).powi(monomial.factor)
+                    } else {
+                        own
+                    }
                 })
             });
             let values: Rc<[f64]> = each.collect();
@@ -141,13 +149,7 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
 
     /// Weights and values of the scalars of a block.
     fn nodes(&self, block: &[usize]) -> Nodes {
-        let rule = match block.len() {
-            // Laws with corners want many nodes, and those with steps, too.
-            1 => panels(),
-            2 => hermite(48),
-            3 => hermite(24),
-            _ => hermite(14),
-        };
+        let rule = &*RULES[block.len().min(RULES.len()) - 1];
         let pairs: Vec<(usize, usize, f64)> = (0..block.len())
             .flat_map(|i| (0..i).map(move |j| (i, j)))
             .map(|(i, j)| (i, j, self.correlation.coefficient(block[i], block[j])))
@@ -177,6 +179,15 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
         nodes
     }
 }
+
+/// The rules for each of one scalar, of two, of three and of more.
+static RULES: [LazyLock<Vec<(f64, f64)>>; 4] = [
+    // Laws with corners want many nodes, and those with steps, too.
+    LazyLock::new(panels),
+    LazyLock::new(|| hermite(48)),
+    LazyLock::new(|| hermite(24)),
+    LazyLock::new(|| hermite(14)),
+];
 
 /// The rule of Gauss and Hermite for the standard normal law, weights and nodes, from the eigenvectors of the matrix of
 /// the recursion (Golub & Welsch 1969, doi:10.1090/S0025-5718-69-99647-1).
