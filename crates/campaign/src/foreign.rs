@@ -9,8 +9,9 @@ use parquet::{
 };
 use std::{
     fs::{self, File},
-    io,
+    io::{self, Read},
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use crate::{
@@ -21,6 +22,10 @@ use crate::{
 
 /// Rows of a CSV file that are looked at together.
 const TOGETHER: usize = 1 << 14;
+/// Bytes of a table that is held in memory, at most.
+const MOST_HELD: u64 = 1 << 30;
+/// What a Parquet file begins with.
+const PARQUET: &[u8] = b"PAR1";
 /// What stands in a cell that has no number, in small letters.
 const MISSING: [&str; 7] = ["", "nan", "na", "n/a", "null", "none", "-"];
 
@@ -33,11 +38,22 @@ pub struct ForeignTable {
     columns: Vec<String>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 enum Form {
     Parquet,
-    /// With this between the cells.
-    Csv(u8),
+    Csv {
+        /// What stands between the cells.
+        separator: u8,
+        text: CsvText,
+    },
+}
+
+/// Where the text of a CSV table is.
+#[derive(Clone, Debug)]
+enum CsvText {
+    InFile,
+    /// In memory, for it could be read from its source once only.
+    Held(Arc<[u8]>),
 }
 
 /// The numbers of some consecutive rows: of each column, one for each row, none where a cell is empty.
@@ -72,17 +88,42 @@ impl ForeignTable {
             return Err(failed("it is not a regular file".to_owned()));
         }
         let files = vec![path.to_owned()];
-        let mut start = [0; 4];
-        let is_parquet = io::Read::read_exact(&mut File::open(path).map_err(unread)?, &mut start);
-        if is_parquet.is_ok() && start == *b"PAR1" {
+        let mut start = [0; PARQUET.len()];
+        let is_parquet = File::open(path).map_err(unread)?.read_exact(&mut start);
+        if is_parquet.is_ok() && start == PARQUET {
             let columns = parquet_columns(path)?;
             return Ok(Self { path: path.to_owned(), files, form: Form::Parquet, columns });
         }
         if path.extension().is_some_and(|end| end == "parquet" || end == "pq") {
             return Err(failed("it does not begin as a Parquet file does".to_owned()));
         }
-        let (separator, columns) = csv_columns(path)?;
-        Ok(Self { path: path.to_owned(), files, form: Form::Csv(separator), columns })
+        let text = CsvText::InFile;
+        let (separator, columns) = csv_columns(path, &text)?;
+        Ok(Self { path: path.to_owned(), files, form: Form::Csv { separator, text }, columns })
+    }
+
+    /// Reads a CSV table that a source hands out once, such as standard input, and holds it in memory: up to 1 GiB. `name` is what it is
+    /// called in messages.
+    ///
+    /// # Errors
+    /// The source cannot be read, hands out more, or a Parquet file, or its first line cannot be read.
+    pub fn read_csv(name: &Path, source: impl Read) -> Result<Self, ForeignError> {
+        let failed = |problem: String| ForeignError { path: name.to_owned(), problem };
+        let mut bytes = Vec::new();
+        let read = source.take(MOST_HELD + 1).read_to_end(&mut bytes);
+        read.map_err(|error| failed(error.to_string()))?;
+        if bytes.len() as u64 > MOST_HELD {
+            let problem = "it has more than 1 GiB, which is the most that is held in memory: write the table to a file, and name the file";
+            return Err(failed(problem.to_owned()));
+        }
+        if bytes.starts_with(PARQUET) {
+            let problem = "it is a Parquet file, and a table without a name must be CSV: write it to a file, and name the file";
+            return Err(failed(problem.to_owned()));
+        }
+        let text = CsvText::Held(bytes.into());
+        let (separator, columns) = csv_columns(name, &text)?;
+        let (path, files) = (name.to_owned(), vec![name.to_owned()]);
+        Ok(Self { path, files, form: Form::Csv { separator, text }, columns })
     }
 
     /// Why nothing can be said of a table without rows.
@@ -108,9 +149,11 @@ impl ForeignTable {
         mut look: impl FnMut(&Columns),
     ) -> Result<(), ForeignError> {
         for file in &self.files {
-            match self.form {
+            match &self.form {
                 Form::Parquet => scan_parquet(file, columns, &mut look)?,
-                Form::Csv(separator) => scan_csv(file, separator, columns, &mut look)?,
+                Form::Csv { separator, text } => {
+                    scan_csv(file, text, *separator, columns, &mut look)?;
+                }
             }
         }
         Ok(())
@@ -195,7 +238,8 @@ fn scan_parquet(
         for place in places.iter().chain(&status) {
             if let Some(codec) = unread_codec(group.metadata().column(*place).compression()) {
                 let problem = format!(
-                    "the column {:?} is compressed with {codec}, which is not read: write the table with snappy, gzip, lz4 or no compression",
+                    "the column {:?} is compressed with {codec}, which is not read: write the table with snappy, gzip, lz4 or no \
+                     compression, in polars by df.write_parquet(path, compression=\"snappy\")",
                     there[*place]
                 );
                 return Err(ForeignError { path: path.to_owned(), problem });
@@ -285,9 +329,9 @@ fn numbers(
     })
 }
 
-fn csv_columns(path: &Path) -> Result<(u8, Vec<String>), ForeignError> {
+fn csv_columns(path: &Path, text: &CsvText) -> Result<(u8, Vec<String>), ForeignError> {
     let head = |separator: u8| {
-        let names = reader(path, separator)?.headers().map_err(|e| broken(path, &e))?.clone();
+        let names = reader(path, text, separator)?.headers().map_err(|e| broken(path, &e))?.clone();
         Ok::<_, ForeignError>(names.iter().map(str::to_owned).collect::<Vec<_>>())
     };
     let mut best = (b',', head(b',')?);
@@ -304,10 +348,18 @@ fn csv_columns(path: &Path) -> Result<(u8, Vec<String>), ForeignError> {
     Ok(best)
 }
 
-fn reader(path: &Path, separator: u8) -> Result<csv::Reader<File>, ForeignError> {
+fn reader<'a>(
+    path: &Path,
+    text: &'a CsvText,
+    separator: u8,
+) -> Result<csv::Reader<Box<dyn Read + 'a>>, ForeignError> {
+    let text: Box<dyn Read> = match text {
+        CsvText::InFile => Box::new(File::open(path).map_err(|error| broken(path, &error.into()))?),
+        CsvText::Held(bytes) => Box::new(&**bytes),
+    };
     let mut builder = csv::ReaderBuilder::new();
     builder.delimiter(separator).comment(Some(b'#')).trim(csv::Trim::All);
-    builder.from_path(path).map_err(|error| broken(path, &error))
+    Ok(builder.from_reader(text))
 }
 
 fn broken(path: &Path, error: &csv::Error) -> ForeignError {
@@ -316,11 +368,12 @@ fn broken(path: &Path, error: &csv::Error) -> ForeignError {
 
 fn scan_csv(
     path: &Path,
+    text: &CsvText,
     separator: u8,
     columns: &[String],
     look: &mut impl FnMut(&Columns),
 ) -> Result<(), ForeignError> {
-    let mut reader = reader(path, separator)?;
+    let mut reader = reader(path, text, separator)?;
     let names = reader.headers().map_err(|error| broken(path, &error))?;
     let there: Vec<String> = names.iter().map(str::to_owned).collect();
     let places = places(path, &there, columns)?;

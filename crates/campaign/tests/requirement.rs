@@ -122,13 +122,17 @@ proptest! {
     ) {
         let scratch = tempfile::tempdir().unwrap();
         let path = scratch.path().join("runs.csv");
-        fs::write(&path, csv(&rows, separator, missing)).unwrap();
+        let text = csv(&rows, separator, missing);
+        fs::write(&path, &text).unwrap();
         let table = ForeignTable::open(&path).unwrap();
+        let handed = ForeignTable::read_csv(&path, text.as_bytes()).unwrap();
         let failed = if left_out { FailedRuns::LeftOut } else { FailedRuns::Against };
         let quantity: Measured = name.parse().unwrap();
         let requirement = Requirement::new("it", quantity, bound, probability, confidence).unwrap();
         let requirement = requirement.with_failed_runs(failed);
-        let judged = Judgement::of_table(&[requirement], &table).unwrap();
+        let requirement = [requirement];
+        let judged = Judgement::of_table(&requirement, &table).unwrap();
+        prop_assert_eq!(&Judgement::of_table(&requirement, &handed).unwrap(), &judged);
         let told = serde_json::to_value(&judged[0]).unwrap();
 
         let values: Vec<(u64, f64)> =
@@ -369,6 +373,33 @@ fn tables_that_other_programs_compressed_are_read_or_the_codec_is_named() {
     let error = table.scan(&["x".to_owned()], |_| {}).unwrap_err().to_string();
     assert!(error.contains("column \"x\" is compressed with zstd"), "{error}");
     assert!(error.contains("write the table with snappy"), "{error}");
+    assert!(error.contains("df.write_parquet(path, compression=\"snappy\")"), "{error}");
+}
+
+#[test]
+fn of_one_run_everything_is_said_that_is_known() {
+    let requirement = ["x <= 2 in 90 % at 90 %".parse::<Requirement>().unwrap()];
+    let told = |text: &str| {
+        let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
+        let judged = Judgement::of_table(&requirement, &table).unwrap();
+        serde_json::to_value(&judged[0]).unwrap()
+    };
+    let one = told("x\n1.25\n");
+    assert_eq!(one["mean"].as_f64(), Some(1.25));
+    assert_eq!(one["share"].as_f64(), Some(1.0));
+    // Clopper and Pearson's interval of one success in one, at 90 %.
+    let lower = one["share_interval"]["lower"].as_f64().unwrap();
+    assert!((lower - 0.05).abs() < 1e-12, "{lower}");
+    assert_eq!(one["share_interval"]["upper"].as_f64(), Some(1.0));
+    // One run has no standard deviation, and shows no bound.
+    for unknown in ["standard_deviation", "margin", "margin_deviations", "tolerance"] {
+        assert!(one[unknown].is_null(), "{unknown}");
+    }
+    // Beside a run without a number it is one number still.
+    assert_eq!(told("x,y\n1.25,1\n,1\n")["mean"].as_f64(), Some(1.25));
+    // The deviation of these is beyond all numbers, and their mean is not.
+    assert_eq!(told("x\n1.7e308\n-1.7e308\n")["mean"].as_f64(), Some(0.0));
+    assert!(told("x,y\n,1\n")["mean"].is_null());
 }
 
 #[test]
@@ -393,6 +424,11 @@ fn what_is_wrong_with_a_table_is_said() {
             .and_then(|table| Judgement::of_table(&requirement, &table).map_err(|e| e.to_string()));
         let error = judged.unwrap_err();
         assert!(error.contains(expected) && error.contains("it.csv"), "{text:?}: {error}");
+        let handed = ForeignTable::read_csv("handed".as_ref(), text.as_bytes())
+            .map_err(|e| e.to_string())
+            .and_then(|table| Judgement::of_table(&requirement, &table).map_err(|e| e.to_string()));
+        let error = handed.unwrap_err();
+        assert!(error.contains(expected) && error.starts_with("handed: "), "{text:?}: {error}");
     }
     for path in [scratch.path(), &scratch.path().join("none.csv")] {
         assert!(ForeignTable::open(path).is_err());

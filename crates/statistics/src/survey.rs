@@ -263,6 +263,16 @@ impl Survey {
         known.finite.as_ref().and(known.range).map(|[_, maximum]| maximum)
     }
 
+    /// The mean, of one value too; none if there is no value, or one that is not finite.
+    #[must_use]
+    pub fn mean(&self) -> Option<f64> {
+        let [(minimum, _), (maximum, _)] = self.known.as_ref()?.range?;
+        // Of equal values it is the value itself, whatever their sum is rounded to.
+        let is_same = minimum == maximum;
+        let of_sum = |finite: &Finite| if is_same { minimum } else { finite.sum.mean(self.n()) };
+        self.finite().map(of_sum)
+    }
+
     /// The moments, where [`Moments::new`] has them.
     #[must_use]
     pub fn moments(&self) -> Option<&Moments> {

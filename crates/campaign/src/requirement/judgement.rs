@@ -47,6 +47,7 @@ pub struct Judgement {
     margin: Option<f64>,
     /// The same in standard deviations of the numbers.
     margin_deviations: Option<f64>,
+    /// Of the numbers; none without a number, and of one number there is no standard deviation.
     mean: Option<f64>,
     standard_deviation: Option<f64>,
     verdict: Verdict,
@@ -160,7 +161,7 @@ impl Judgement {
             margin_deviations: margin
                 .zip(standard_deviation.filter(|s| *s > 0.0))
                 .map(|(m, s)| m / s),
-            mean: moments.map(Moments::mean),
+            mean: numbers.mean(),
             standard_deviation,
             verdict: deciding.verdict(failures, counted)?,
             success_to_pass: deciding.success_to_pass(counted)?,

@@ -337,7 +337,7 @@ pub(crate) enum RareMethodArg {
 
 #[derive(Args, Debug)]
 pub(crate) struct VerdictArgs {
-    /// Table: a Parquet or CSV file, or a folder of Parquet files
+    /// Table: a Parquet or CSV file, or a folder of Parquet files; - for CSV on standard input
     #[arg(value_name = "TABLE")]
     pub(crate) table: PathBuf,
 

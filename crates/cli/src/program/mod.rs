@@ -33,6 +33,8 @@ use std::{error::Error, ffi::OsString, io, process::ExitCode};
 
 /// What the program returns when it was asked for something that cannot be done.
 const REFUSED: u8 = 2;
+/// The path that stands for standard input.
+const STANDARD_INPUT: &str = "-";
 
 /// Runs the program with the given arguments, the first of which is its name.
 ///

@@ -2,9 +2,10 @@
 
 use gyradius_study::{FailedRuns, ForeignTable, Judgement, Requirement, Verdict};
 use serde_json::json;
-use std::{error::Error, fmt::Write, path::Path, process::ExitCode};
+use std::{error::Error, fmt::Write, io, path::Path, process::ExitCode};
 
 use crate::program::{
+    STANDARD_INPUT,
     args::VerdictArgs,
     output::{print, print_json},
 };
@@ -14,7 +15,12 @@ const NOT_MET: u8 = 1;
 
 /// Runs the verb.
 pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error>> {
-    let table = ForeignTable::open(&arguments.table)?;
+    let (name, table) = if arguments.table.as_os_str() == STANDARD_INPUT {
+        let name = Path::new("standard input");
+        (name, ForeignTable::read_csv(name, io::stdin().lock())?)
+    } else {
+        (arguments.table.as_path(), ForeignTable::open(&arguments.table)?)
+    };
     let failed = if arguments.leave_out_failed { FailedRuns::LeftOut } else { FailedRuns::Against };
     let requirements: Vec<Requirement> =
         arguments.require.iter().map(|r| r.clone().with_failed_runs(failed)).collect();
@@ -23,7 +29,7 @@ pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error
         let judged = json!({ "table": arguments.table, "requirements": judgements });
         print_json(&serde_json::to_string_pretty(&judged)?)?;
     } else {
-        print(&text(&arguments.table, &judgements))?;
+        print(&text(name, &judgements))?;
     }
     let met = judgements.iter().all(|judgement| judgement.verdict() == Verdict::Met);
     Ok(if met { ExitCode::SUCCESS } else { ExitCode::from(NOT_MET) })

@@ -37,6 +37,12 @@ fn assert_same(survey: &Survey, runs: &[Option<f64>]) {
     let values: Vec<f64> = runs.iter().flatten().copied().collect();
     assert_eq!(survey.n(), values.len() as u64);
     assert_eq!(survey.moments(), Moments::new(&values).ok().as_ref());
+    let mean = match values.as_slice() {
+        [one] if one.is_finite() => Some(*one),
+        all if all.iter().any(|x| !x.is_finite()) => None,
+        all => Moments::new(all).ok().map(|moments| moments.mean()).or(survey.mean()),
+    };
+    assert_eq!(survey.mean(), mean);
     assert_eq!(survey.deviation(), Deviation::new(&values).ok().as_ref());
     let sorted = SortedSample::new(&values).ok();
     for p in [0.05, 0.5, 0.95, 0.0, 1.0] {

@@ -13,15 +13,12 @@ use std::{
 };
 
 use crate::program::{
-    REFUSED,
+    REFUSED, STANDARD_INPUT,
     args::{CheckArgs, Form},
     output::{complain, print, print_json},
     progress,
 };
 use report::{Finding, Report, Status};
-
-/// The path that stands for standard input.
-const STANDARD_INPUT: &str = "-";
 
 /// Runs the verb.
 pub(crate) fn check(arguments: &CheckArgs) -> ExitCode {
