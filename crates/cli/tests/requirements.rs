@@ -1,9 +1,12 @@
 //! Requirements of scenarios and of tables: judged twice, by studies and by the verb that reads their tables.
 
 use serde_json::Value;
-use std::fs;
+use std::{
+    fs::{self, File},
+    process::Stdio,
+};
 
-use crate::scratch::{Scratch, content, files, one_model, summary};
+use crate::scratch::{Scratch, content, done, files, one_model, summary};
 
 /// The built-in study under one model, of which some runs fail, with these requirements.
 fn scenario(head: &str, requirements: &str) -> String {
@@ -154,6 +157,90 @@ fn wrong_requirements_are_refused() {
     let said = scratch.done(&["verdict", "t.csv", "--require", "x <= 1 in 90 % at 90 %"], 1);
     scratch.done(&["verdict", "t.csv", "--require", "-1 <= x <= 1 in 90 % at 90 %"], 1);
     assert!(said.contains("NOT DECIDED") && said.contains("21 more"), "{said}");
+}
+
+/// A mistake in a requirement has the file in front of it, in a study and where the runs are only drawn, before anything is written.
+#[test]
+fn mistakes_in_requirements_begin_with_their_file() {
+    let scratch = Scratch::new();
+    let one = |keys: &str| {
+        format!("[[requirements]]\n{keys}\nat_most = 1\nprobability = 0.9\nconfidence = 0.9\n")
+    };
+    let simulator = "[simulation]\ncommand = [\"true\"]\noutputs = [{ name = \"range_m\", unit = \"m\" }]\n[[quantities]]\nname = \"speed\"\n\
+                     unit = \"m/s\"\nlaw = { law = \"normal\", mean = 10.0, sigma = 3.0 }\n";
+    let of_simulator =
+        |head: &str, tail: &str| format!("name = \"it\"\nruns = 10\n{head}\n{simulator}{tail}");
+    for (text, expected) in [
+        (
+            scenario("runs = 10", &one("quantity = \"nutation\"")),
+            "requirements[1].quantity: \"nutation\": the run table has no such column",
+        ),
+        (
+            scenario("runs = 10", &one("quantity = \"status\"")),
+            "requirements[1].quantity: \"status\": the run table",
+        ),
+        (
+            scenario("runs = 10", &one("quantity = \"nutation_deg\"\nmodel = \"naive\"")),
+            "requirements[1].model: \"naive\": ",
+        ),
+        (
+            scenario("runs = 10", "[until]\nrule = \"mean(nutation) within 1\"\n"),
+            "until.rule: \"nutation\": ",
+        ),
+        (scenario("runs = 10\ncolumns = [\"nutation\"]", ""), "columns: \"nutation\": "),
+        (
+            of_simulator("", &one("quantity = \"range\"")),
+            "requirements[1].quantity: \"range\": the run table has no such column of numbers; it has speed, range_m",
+        ),
+        (of_simulator("columns = [\"range\"]", ""), "columns: \"range\": "),
+    ] {
+        fs::write(scratch.path("it.toml"), text).unwrap();
+        let expected = format!("error: it.toml: {expected}");
+        let studied = scratch.done(&["study", "--scenario", "it.toml", "--out", "it"], 2);
+        assert!(studied.starts_with(&expected), "{expected}\n{studied}");
+        assert_eq!(scratch.done(&["draw", "it.toml", "-n", "1", "-o", "it.csv"], 2), studied);
+        assert!(!scratch.path("it").exists() && !scratch.path("it.csv").exists());
+    }
+    // What is asked for on the command line stands in no file.
+    fs::write(scratch.path("it.toml"), scenario("runs = 10", "")).unwrap();
+    let until = ["study", "--scenario", "it.toml", "--until", "mean(nutation) within 1"];
+    let said = scratch.done(&until, 2);
+    assert!(said.starts_with("error: until.rule: \"nutation\": "), "{said}");
+}
+
+/// A table that is piped in is judged as the file is, and must be CSV.
+#[test]
+fn a_table_is_read_from_standard_input() {
+    let scratch = Scratch::new();
+    let mut text = "x;y\n".to_owned();
+    (0..300).for_each(|i| text.push_str(&format!("{};{i}\n", i % 7)));
+    fs::write(scratch.path("t.csv"), text).unwrap();
+    let requires =
+        ["--require", "x <= 3 in 50 % at 90 %", "--require", "1 <= y <= 400 in 90 % at 90 %"];
+    let piped = |from: &str, more: &[&str], code: i32| {
+        let mut command = scratch.command(&[&["verdict", "-"], more].concat());
+        command.stdin(Stdio::from(File::open(scratch.path(from)).unwrap()));
+        done(command, code)
+    };
+    let of_file = scratch.done(&[&["verdict", "t.csv"], &requires[..]].concat(), 0);
+    let said = piped("t.csv", &requires, 0);
+    assert_eq!(said.strip_prefix("standard input: "), of_file.strip_prefix("t.csv: "));
+    let json = |text: &str| serde_json::from_str::<Value>(text).unwrap();
+    let requires = [&requires[..], &["--json"]].concat();
+    let of_file = json(&scratch.done(&[&["verdict", "t.csv"], &requires[..]].concat(), 0));
+    let said = json(&piped("t.csv", &requires, 0));
+    assert_eq!(
+        (&said["requirements"], said["table"].as_str()),
+        (&of_file["requirements"], Some("-"))
+    );
+
+    let said = piped("t.csv", &["--require", "z <= 3 in 50 % at 90 %"], 2);
+    assert!(said.starts_with("error: standard input: it has no column \"z\""), "{said}");
+    fs::write(scratch.path("t.parquet"), "PAR1 and so on").unwrap();
+    let said = piped("t.parquet", &requires, 2);
+    assert!(said.starts_with("error: standard input: it is a Parquet file"), "{said}");
+    fs::write(scratch.path("empty"), "").unwrap();
+    assert!(piped("empty", &requires, 2).starts_with("error: standard input: it is empty"));
 }
 
 /// What the page shows is what the program says.

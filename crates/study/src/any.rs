@@ -14,7 +14,7 @@ use crate::{
     Fleet, FoldedRoot, Notice, Options, Rare, RareOptions, ResultsError, Scenario, ScenarioError,
     SimulatorScenario, Status, Study, StudyError,
     carry_out::carry_out,
-    drivers,
+    decisions, drivers,
     head::{Head, Judged, Missing},
     rare, results,
     scenario::{parse_toml, read_file, scenario_file},
@@ -53,12 +53,22 @@ macro_rules! either_again {
 }
 
 impl AnyScenario {
-    /// Reads a scenario file.
+    /// Reads a scenario file. What it keeps of the run tables and what it requires must be columns of them; of a function that
+    /// tells its outputs by its first answers, a study asks that before its first run.
     ///
     /// # Errors
     /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        Self::from_toml(&read_file(path)?, folder_of(path)).map_err(|error| error.in_file(path))
+        let scenario = Self::from_toml(&read_file(path)?, folder_of(path));
+        let checked = scenario.and_then(|scenario| {
+            match &scenario {
+                Self::Separation(separations) => decisions::check_columns(&**separations)?,
+                Self::Simulator(simulator) if simulator.outputs().is_empty() => {}
+                Self::Simulator(simulator) => decisions::check_columns(&**simulator)?,
+            }
+            Ok(scenario)
+        });
+        checked.map_err(|error| error.in_file(path))
     }
 
     /// Reads a scenario from the text of a file that is in a folder.

@@ -5,9 +5,9 @@ use gyradius_campaign::{Doing, End, Evidence, Folder, Progress, run_again, run_u
 use crate::{
     Notice, Options, Scenario, Study, StudyError,
     contents::{contents, identity},
-    decisions::{group, requirements_of},
+    decisions::{check_columns, group, requirements_of},
     ended::Ended,
-    study::{check_columns, do_what_is_left, plan, to_be_done},
+    study::{do_what_is_left, plan, to_be_done},
     subject::Subject,
 };
 
@@ -27,7 +27,7 @@ fn run_to_the_end<C: Subject>(
     let simulations = scenario.simulations(&models)?;
     let contents = contents(scenario);
     let folder = Folder::prepare(&options.place(scenario.name()), &contents, options.force)?;
-    check_columns(scenario, &simulations)?;
+    check_columns(scenario)?;
     let ended = |End { runs, enough, first_look }: End| {
         let until = until.clone().with_first_look(first_look);
         let ended = Ended::new(&until, runs, enough);

@@ -1,7 +1,7 @@
 //! Requirements of a scenario: checked, judged by the runs, and told first in the report.
 
 use gyradius_campaign::{
-    Bound, Column, Judgement, Judging, Looks, Measured, Requirement, RunBeyond, Runs,
+    Bound, Column, Judgement, Judging, Looks, Measured, Requirement, RunBeyond, Runs, Table,
     share_in_percent,
 };
 use gyradius_report::{
@@ -25,8 +25,17 @@ const CONVERGENCE: &str = "convergence";
 /// Requirements of a scenario, at most.
 const MOST: usize = 100;
 
+/// That what is to be kept, and what is required, are columns of the run tables, and requirements about models of the scenario.
+pub(crate) fn check_columns<C: Subject>(scenario: &C) -> Result<(), ScenarioError> {
+    let table = Table::new("", 0, scenario.run_columns())
+        .map_err(|error| ScenarioError::field("columns", error))?;
+    let known = scenario.kept().check(table.columns());
+    known.map_err(|error| ScenarioError::field("columns", error))?;
+    check(scenario, table.columns())
+}
+
 /// That requirements are about columns of numbers that the run tables have, and about models of the scenario.
-pub(crate) fn check<C: Subject>(scenario: &C, columns: &[Column]) -> Result<(), ScenarioError> {
+fn check<C: Subject>(scenario: &C, columns: &[Column]) -> Result<(), ScenarioError> {
     let count = scenario.requirements().len();
     if count > MOST {
         let problem = format!("{count} of them: there must be at most {MOST}");

@@ -75,6 +75,11 @@ impl Subject for Scenario {
         Ok(Separations::new(self, &models[place]).drawing(drawing))
     }
 
+    fn run_columns(&self) -> Vec<Column> {
+        let names = self.dispersions().columns();
+        Declared::of(self).into_iter().map(|column| column.declaration(&names)).collect()
+    }
+
     fn is_outcome(&self, column: &Column) -> bool {
         Quantity::ALL.iter().any(|q| !q.is_drawn() && q.column() == column.name())
     }

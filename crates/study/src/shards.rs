@@ -10,9 +10,10 @@ use std::{ops::Range, path::Path};
 use crate::{
     Notice, Options, ScenarioError, StudyError,
     contents::{contents, identity},
+    decisions::check_columns,
     head::Missing,
     scenario::read_file,
-    study::{check_columns, count, foretell, plan},
+    study::{count, foretell, plan},
     subject::Subject,
 };
 
@@ -71,7 +72,7 @@ pub(crate) fn run_shard<C: Subject>(
     let simulations = scenario.simulations(&models)?;
     let contents = contents(scenario);
     let folder = Shared::open(&options.place(scenario.name()), &contents)?;
-    check_columns(scenario, &simulations)?;
+    check_columns(scenario)?;
     let begun = (&identity(scenario), scenario.to_toml());
     agree(scenario, &options.place(scenario.name()))?;
     if let Some(there) = folder.reduced(begun.0)? {

@@ -21,7 +21,7 @@ use std::{
 };
 
 use crate::{
-    Fleet, Notice, Options, ScenarioError, StudyError, Summary,
+    Fleet, Notice, Options, StudyError, Summary,
     contents::{contents, identity},
     decisions,
     drivers::Finding,
@@ -85,7 +85,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
         contents(scenario).keeping(|name| in_place.get().is_some_and(|all| all.contains(name)));
     let folder = Folder::prepare(&place, &contents, options.force)?;
     let text = scenario.to_toml();
-    check_columns(scenario, &simulations)?;
+    decisions::check_columns(scenario)?;
     let begun = (&identity(scenario), text.as_str());
     if let Some(there) = folder.reduced(begun.0)?
         && !options.force
@@ -217,19 +217,6 @@ fn write<C: Subject>(
         return Err(CampaignError::Stopped.into());
     }
     Ok((folder.publish()?, summary))
-}
-
-/// That what is to be kept, and what is required, are columns of the run tables.
-pub(crate) fn check_columns<C: Subject>(
-    scenario: &C,
-    simulations: &[(&str, C::Simulation<'_>)],
-) -> Result<(), StudyError> {
-    let tables = empty_tables(simulations)?;
-    let columns = tables.first().map_or(&[][..], Table::columns);
-    let known = scenario.kept().check(columns);
-    known.map_err(|error| ScenarioError::field("columns", error))?;
-    decisions::check(scenario, columns)?;
-    Ok(())
 }
 
 /// A table of each model, without runs.

@@ -60,6 +60,8 @@ pub(crate) trait Subject: Framed + Sync {
         place: usize,
         drawing: Drawing,
     ) -> Result<Self::Simulation<'a>, ScenarioError>;
+    /// The columns of the run tables after model, run and status, as far as they are known before the first run.
+    fn run_columns(&self) -> Vec<Column>;
     /// Whether a column is a number that comes of a run, and is not drawn for it.
     fn is_outcome(&self, column: &Column) -> bool;
     /// The columns of numbers that are drawn for a run.

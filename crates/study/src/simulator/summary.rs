@@ -195,6 +195,10 @@ impl Subject for SimulatorScenario {
         self.simulation(simulator, place, drawing)
     }
 
+    fn run_columns(&self) -> Vec<Column> {
+        self.columns().collect()
+    }
+
     fn is_outcome(&self, column: &Column) -> bool {
         self.outputs().iter().any(|output| output.name() == column.name())
     }
