@@ -15,6 +15,8 @@ use super::{
 const AGREE: f64 = 0.03;
 /// And by no more than this share of the largest one stated.
 const SMALL: f64 = 1e-4;
+/// A moment that is stated not to scatter is still up to this share of the trace.
+const STILL: f64 = 1e-6;
 /// A share of impossible bodies that is worth a word.
 const IMPOSSIBLE: f64 = 1e-3;
 /// Roots nearer to zero than this many deviations.
@@ -109,6 +111,8 @@ impl Context {
             let small = SMALL * three.into_iter().fold(0.0, f64::max) + 1e-8 * trace;
             for (entry, stated) in (first..).zip(three) {
                 let implied = deviations[entry];
+                let still = if entry < 3 && stated == 0.0 { STILL * trace } else { 0.0 };
+                let small = small.max(still);
                 if (implied - stated).abs() > AGREE * stated + small {
                     let because = if implied > stated {
                         self.why_more(model, entry, stated)

@@ -18,6 +18,10 @@ const ADDED_LAST: f64 = 1.0 / 30.0;
 const SMALL: f64 = 3e-4;
 /// The same of what a mass centre adds, where the smaller ones are without interest.
 const SMALL_BESIDE: f64 = 0.3;
+/// A moment that is stated not to scatter: deviations below this share of the largest stated moment hardly count. No Gaussian roots
+/// hold one moment wholly while another scatters, for second moments are their squares, and logarithms of what is left beside zero
+/// would outweigh the other moments.
+const STILL: f64 = 0.1;
 /// A deviation of zero counts as this share of the trace.
 const ZERO: f64 = 1e-9;
 
@@ -113,6 +117,7 @@ impl Task {
         for (first_entry, asked, rest) in [(0, self.moments, by_axes), (3, self.products, by_roots)]
         {
             let least = asked.least().max(self.zero());
+            let still = asked.variances().into_iter().fold(least, f64::max) * (STILL * STILL);
             let with_mass = |e: usize, v: f64| v * (1.0 + by_mass) + by_mass * means[e] * means[e];
             for e in first_entry..first_entry + 3 {
                 let (wanted, counts) = match asked {
@@ -127,6 +132,8 @@ impl Task {
                     }
                 };
                 let found = with_mass(e, found[e]);
+                let is_still = e < 3 && wanted == 0.0 && asked.is_stated();
+                let least = if is_still { still.max(least) } else { least };
                 compared.push(Compared { entry: e, wanted, found, least, counts });
             }
         }

@@ -9,6 +9,8 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::Distribution;
 
+mod still;
+
 fn body(moments: [f64; 3], products: [f64; 3]) -> Inertia {
     Inertia::try_from(InertiaMatrix::from_entries(moments, products).unwrap()).unwrap()
 }

@@ -153,6 +153,13 @@ pub enum MissedBecause {
 impl fmt::Display for StatementWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
+            Self::Missed { entry, stated: 0.0, implied, because: MissedBecause::Tied } => write!(
+                f,
+                "{}: no deviation is stated, and {} kg·m² comes out: the moments of a body are tied together, each being the sum of \
+                 two second moments, and the roots of these cannot hold it wholly while the other moments scatter",
+                NAMES[entry],
+                Short(implied)
+            ),
             Self::Missed { entry, stated, implied, because } => {
                 let (name, stated, implied) = (NAMES[entry], Short(stated), Short(implied));
                 write!(
