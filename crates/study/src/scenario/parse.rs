@@ -4,12 +4,20 @@ use serde::{
     Deserializer,
     de::{self, DeserializeOwned},
 };
-use toml::de::{DeTable, DeValue};
+use std::ops::Range;
+use toml::{
+    Spanned,
+    de::{DeTable, DeValue},
+};
 
-use super::placed::{Placed, Step};
+use super::placed::{Placed, Step, said};
 
 /// Longest reason that is told.
 const MOST_CHARACTERS: usize = 400;
+/// What is said of a number that is too large begins so.
+const WHOLE_NUMBER: &str = "a whole number must be";
+/// Longest word of the file that is told.
+const MOST_OF_A_WORD: usize = 40;
 
 /// What stands in the text of a TOML file, or what is wrong with it: key, reason and line.
 ///
@@ -18,7 +26,10 @@ const MOST_CHARACTERS: usize = 400;
 pub fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     // From values, which know no lines: the line is looked up where something is wrong.
     let values: toml::Table = toml::from_str(text).map_err(|error| {
-        located(told(error.message()), error.span().map(|span| span.start), text)
+        let span = error.span();
+        let reason = told(error.message());
+        let reason = span.clone().and_then(|at| of_value(&reason, &at, text)).unwrap_or(reason);
+        located(reason, span.map(|span| span.start), text)
     })?;
     T::deserialize(Placed(values.into())).map_err(|error| {
         let reason = told(&error.reason);
@@ -38,6 +49,58 @@ pub fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
             format!("{path}: {message}")
         }
     })
+}
+
+/// What is wrong where the text is no TOML, if that is a value: with its key, and in our words if the value is a bare word.
+fn of_value(reason: &str, at: &Range<usize>, text: &str) -> Option<String> {
+    // What could be read of the text all the same has the keys.
+    let (table, _) = DeTable::parse_recoverable(text);
+    let (span, outwards) = value_at(&DeValue::Table(table.into_inner()), 0..text.len(), at)?;
+    let key = said(outwards.iter().rev());
+    let word = text.get(span.clone())?;
+    if word.is_empty() {
+        return Some(format!("{key}: there is no value after the sign `=`"));
+    }
+    let is_too_large = reason.starts_with(WHOLE_NUMBER);
+    if span != *at || is_too_large || word.starts_with(['"', '\'']) {
+        return Some(format!("{key}: {reason}"));
+    }
+    let mut short: String = word.chars().take(MOST_OF_A_WORD).collect();
+    if short.len() < word.len() {
+        short.push('…');
+    }
+    Some(format!(
+        "{key}: `{short}` is neither a number, a date, `true` nor `false`, and text must be in quotation marks"
+    ))
+}
+
+/// A value that is neither a list nor a table: its span, and the steps to it, the last first.
+type Found = (Range<usize>, Vec<Step>);
+
+/// The value below this one in which something is wrong.
+fn value_at(value: &DeValue<'_>, span: Range<usize>, at: &Range<usize>) -> Option<Found> {
+    let below = |value: &Spanned<DeValue<'_>>, step: &dyn Fn() -> Step| {
+        let (span, mut outwards) = value_at(value.get_ref(), value.span(), at)?;
+        outwards.push(step());
+        Some((span, outwards))
+    };
+    match value {
+        DeValue::Table(table) => table
+            .iter()
+            .find_map(|(key, value)| below(value, &|| Step::Key(key.get_ref().to_string()))),
+        DeValue::Array(list) => {
+            list.iter().enumerate().find_map(|(i, value)| below(value, &|| Step::Entry(i)))
+        }
+        DeValue::String(_)
+        | DeValue::Integer(_)
+        | DeValue::Float(_)
+        | DeValue::Boolean(_)
+        | DeValue::Datetime(_) => {
+            let is_in = span.start <= at.start && at.start <= span.end;
+            // One that could not be read at all stands at the beginning of the text.
+            (is_in && span.end > 0).then_some((span, Vec::new()))
+        }
+    }
 }
 
 /// Where the value at the end of some steps begins in a text, in bytes, or the last key.
@@ -79,7 +142,7 @@ fn told(reason: &str) -> String {
         message = format!("{reason}expected a number");
     }
     if message == "u64 value was too large" || message.contains("` as i128") {
-        message = format!("a whole number must be from {} to {}", i64::MIN, i64::MAX);
+        message = format!("{WHOLE_NUMBER} from {} to {}", i64::MIN, i64::MAX);
     }
     let mut message = short_numbers(&message);
     if let Some((end, _)) = message.char_indices().nth(MOST_CHARACTERS) {

@@ -24,6 +24,19 @@ pub(super) enum Step {
     Entry(usize),
 }
 
+/// The way to a value as all messages write it: entries of lists are counted from 1.
+pub(super) fn said<'a>(steps: impl Iterator<Item = &'a Step>) -> String {
+    let mut out = String::new();
+    for step in steps {
+        match step {
+            Step::Entry(index) => out.push_str(&format!("[{}]", index + 1)),
+            Step::Key(key) if out.is_empty() => out.push_str(key),
+            Step::Key(key) => out.push_str(&format!(".{key}")),
+        }
+    }
+    out
+}
+
 /// What is wrong with a value, and the way to it.
 #[derive(Clone, Debug)]
 pub(super) struct Misplaced {
@@ -43,17 +56,9 @@ impl Misplaced {
         self.outwards.iter().rev()
     }
 
-    /// The path as all messages write it: entries of lists are counted from 1.
+    /// The path as all messages write it.
     pub(super) fn said(&self) -> String {
-        let mut out = String::new();
-        for step in self.path() {
-            match step {
-                Step::Entry(index) => out.push_str(&format!("[{}]", index + 1)),
-                Step::Key(key) if out.is_empty() => out.push_str(key),
-                Step::Key(key) => out.push_str(&format!(".{key}")),
-            }
-        }
-        out
+        said(self.path())
     }
 }
 
@@ -358,6 +363,47 @@ mod tests {
         }
     }
 
+    #[test]
+    fn bare_words_and_faulty_values_have_their_key() {
+        let no_value = |word: &str| {
+            format!(
+                "`{word}` is neither a number, a date, `true` nor `false`, and text must be in quotation marks"
+            )
+        };
+        for (text, key, reason, place) in [
+            ("x = ten", "x", no_value("ten"), "line 1, column 5"),
+            ("x = many words", "x", no_value("many words"), "line 1, column 5"),
+            ("x = 10kg # as weighed", "x", no_value("10kg"), "line 1, column 5"),
+            ("x = True", "x", no_value("True"), "line 1, column 5"),
+            ("x = infinite", "x", no_value("infinite"), "line 1, column 5"),
+            ("x = 1\n[part]\ny = trés", "part.y", no_value("trés"), "line 3, column 5"),
+            ("x = 1\npart.y = -a", "part.y", no_value("-a"), "line 2, column 10"),
+            ("[[list]]\ny = 1\n[[list]]\ny = no", "list[2].y", no_value("no"), "line 4, column 5"),
+            ("vector = [1,\n  two, 3]", "vector[2]", no_value("two"), "line 2, column 3"),
+            ("kind = { with = { m = n } }", "kind.with.m", no_value("n"), "line 1, column 23"),
+            (
+                "x =\npart = 1",
+                "x",
+                "there is no value after the sign `=`".to_owned(),
+                "line 1, column 4",
+            ),
+            ("x = 1,5", "x", "unexpected key or value".to_owned(), "line 1, column 6"),
+            ("kind = 'word", "kind", "invalid literal string".to_owned(), "line 1, column 13"),
+        ] {
+            let message = parse_toml::<Whole>(text).unwrap_err();
+            assert!(message.starts_with(&format!("{key}: {reason}")), "{text}\n{message}");
+            assert!(message.ends_with(&format!("({place})")), "{text}\n{message}");
+        }
+        // Nothing that is no value is taken for one.
+        for text in ["x", "= 1", "ten", "[part\ny = 1", "x = 1\nx = 2", "]", ""] {
+            let message = parse_toml::<Whole>(text).unwrap_err();
+            assert!(!message.contains("quotation"), "{text}\n{message}");
+        }
+        let long = parse_toml::<Whole>(&format!("x = {}", "é".repeat(5000))).unwrap_err();
+        assert!(long.contains("é… ") || long.contains("é…`"), "{long}");
+        assert!(long.len() < 300, "{long}");
+    }
+
     fn values() -> impl Strategy<Value = Value> {
         let one = prop_oneof![
             ".*".prop_map(Value::String),
@@ -375,6 +421,13 @@ mod tests {
     }
 
     proptest! {
+        /// Whatever is written, no message takes long or is long, and nothing panics.
+        #[test]
+        fn anything_is_read_or_refused(text in "[a-c=\\[\\]{}.,\"'#\n 1\u{e9}-]{0,40}") {
+            let message = parse_toml::<Table>(&text).err().unwrap_or_default();
+            prop_assert!(message.chars().count() < 1000);
+        }
+
         #[test]
         fn every_value_is_read_as_it_is(value in values()) {
             prop_assert_eq!(Value::deserialize(Placed(value.clone())).unwrap(), value);
