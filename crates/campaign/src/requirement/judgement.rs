@@ -364,9 +364,10 @@ impl fmt::Display for Judgement {
             )?;
         }
         if let Some(good) = self.success_to_pass {
+            let s = if counted == 1 { "" } else { "s" };
             writeln!(
                 f,
-                "  to pass      a vehicle that keeps it in {} of all runs passes {counted} runs nine times in ten",
+                "  to pass      a vehicle that keeps it in {} of all runs passes {counted} run{s} nine times in ten",
                 share_in_percent(good)
             )?;
         }

@@ -37,7 +37,8 @@ pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error
 
 fn text(table: &Path, judgements: &[Judgement]) -> String {
     let runs = judgements.first().map_or(0, Judgement::runs);
-    let mut text = format!("{}: {runs} runs\n", table.display());
+    let s = if runs == 1 { "" } else { "s" };
+    let mut text = format!("{}: {runs} run{s}\n", table.display());
     for judgement in judgements {
         // Writing to a string does not fail.
         let _ = write!(text, "\n{}\n{judgement}", judgement.requirement().name());
