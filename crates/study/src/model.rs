@@ -13,6 +13,7 @@ use crate::{
     run::{Case, Run},
     scenario::{KeptShares, Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
     steering::Steered,
+    subject::Subject,
 };
 
 /// A model ready to draw: a law and its random streams for either body.
@@ -166,8 +167,7 @@ impl Simulation for Separations<'_> {
     type Worker = Batch;
 
     fn columns(&self) -> Vec<RunColumn> {
-        let drawn = self.scenario.dispersions().columns();
-        self.columns.iter().map(|column| column.declaration(&drawn)).collect()
+        self.scenario.run_columns()
     }
 
     fn worker(&self) -> Batch {
