@@ -53,7 +53,7 @@ enum Form {
 enum CsvText {
     InFile,
     /// In memory, for it could be read from its source once only.
-    Held(Arc<[u8]>),
+    Held(Arc<Vec<u8>>),
 }
 
 /// The numbers of some consecutive rows: of each column, one for each row, none where a cell is empty.
@@ -120,7 +120,7 @@ impl ForeignTable {
             let problem = "it is a Parquet file, and a table without a name must be CSV: write it to a file, and name the file";
             return Err(failed(problem.to_owned()));
         }
-        let text = CsvText::Held(bytes.into());
+        let text = CsvText::Held(Arc::new(bytes));
         let (separator, columns) = csv_columns(name, &text)?;
         let (path, files) = (name.to_owned(), vec![name.to_owned()]);
         Ok(Self { path, files, form: Form::Csv { separator, text }, columns })
@@ -355,7 +355,7 @@ fn reader<'a>(
 ) -> Result<csv::Reader<Box<dyn Read + 'a>>, ForeignError> {
     let text: Box<dyn Read> = match text {
         CsvText::InFile => Box::new(File::open(path).map_err(|error| broken(path, &error.into()))?),
-        CsvText::Held(bytes) => Box::new(&**bytes),
+        CsvText::Held(bytes) => Box::new(bytes.as_slice()),
     };
     let mut builder = csv::ReaderBuilder::new();
     builder.delimiter(separator).comment(Some(b'#')).trim(csv::Trim::All);
