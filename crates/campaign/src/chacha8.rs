@@ -126,14 +126,14 @@ fn mixed<S: Simd>(simd: S, state: [S::u32s; WORDS]) -> [S::u32s; WORDS] {
     // Each quarter is written out: where code is to be small, loops are not unrolled, and the words then do not stay in
     // registers.
     for _ in 0..4 {
-        quarter_round(simd, &mut x, 0, 4, 8, 12);
-        quarter_round(simd, &mut x, 1, 5, 9, 13);
-        quarter_round(simd, &mut x, 2, 6, 10, 14);
-        quarter_round(simd, &mut x, 3, 7, 11, 15);
-        quarter_round(simd, &mut x, 0, 5, 10, 15);
-        quarter_round(simd, &mut x, 1, 6, 11, 12);
-        quarter_round(simd, &mut x, 2, 7, 8, 13);
-        quarter_round(simd, &mut x, 3, 4, 9, 14);
+        quarter_round(simd, &mut x, [0, 4, 8, 12]);
+        quarter_round(simd, &mut x, [1, 5, 9, 13]);
+        quarter_round(simd, &mut x, [2, 6, 10, 14]);
+        quarter_round(simd, &mut x, [3, 7, 11, 15]);
+        quarter_round(simd, &mut x, [0, 5, 10, 15]);
+        quarter_round(simd, &mut x, [1, 6, 11, 12]);
+        quarter_round(simd, &mut x, [2, 7, 8, 13]);
+        quarter_round(simd, &mut x, [3, 4, 9, 14]);
     }
     for (x, state) in x.iter_mut().zip(state) {
         *x = simd.add_u32s(*x, state);
@@ -142,18 +142,11 @@ fn mixed<S: Simd>(simd: S, state: [S::u32s; WORDS]) -> [S::u32s; WORDS] {
 }
 
 #[inline(always)]
-fn quarter_round<S: Simd>(
-    simd: S,
-    x: &mut [S::u32s; WORDS],
-    a: usize,
-    b: usize,
-    c: usize,
-    d: usize,
-) {
-    add_and_turn(simd, x, a, b, d, 16);
-    add_and_turn(simd, x, c, d, b, 12);
-    add_and_turn(simd, x, a, b, d, 8);
-    add_and_turn(simd, x, c, d, b, 7);
+fn quarter_round<S: Simd>(simd: S, x: &mut [S::u32s; WORDS], [a, b, c, d]: [usize; 4]) {
+    add_and_turn(simd, x, [a, b, d], 16);
+    add_and_turn(simd, x, [c, d, b], 12);
+    add_and_turn(simd, x, [a, b, d], 8);
+    add_and_turn(simd, x, [c, d, b], 7);
 }
 
 /// x[to] += x[with], x[turned] = (x[turned] ⊕ x[to]) turned left by some bits.
@@ -161,9 +154,7 @@ fn quarter_round<S: Simd>(
 fn add_and_turn<S: Simd>(
     simd: S,
     x: &mut [S::u32s; WORDS],
-    to: usize,
-    with: usize,
-    turned: usize,
+    [to, with, turned]: [usize; 3],
     left: u32,
 ) {
     x[to] = simd.add_u32s(x[to], x[with]);
