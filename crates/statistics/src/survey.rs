@@ -266,11 +266,9 @@ impl Survey {
     /// The mean, of one value too; none if there is no value, or one that is not finite.
     #[must_use]
     pub fn mean(&self) -> Option<f64> {
-        let [(minimum, _), (maximum, _)] = self.known.as_ref()?.range?;
-        // Of equal values it is the value itself, whatever their sum is rounded to.
-        let is_same = minimum == maximum;
-        let of_sum = |finite: &Finite| if is_same { minimum } else { finite.sum.mean(self.n()) };
-        self.finite().map(of_sum)
+        let finite = self.finite().filter(|_| self.n() > 0)?;
+        let of_sum = || finite.sum.mean(self.n());
+        Some(finite.moments.as_ref().map_or_else(of_sum, Moments::mean))
     }
 
     /// The moments, where [`Moments::new`] has them.
