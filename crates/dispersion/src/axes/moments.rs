@@ -361,6 +361,7 @@ mod tests {
             assert!(free.deviations()[e] < 1e-6);
         }
     }
+
     /// A law that says no more than it must.
     struct Terse<'a>(&'a dyn AttitudeMoments);
 
