@@ -56,7 +56,7 @@ pub use pair_separation::PairSeparation;
 pub use proportion::Proportion;
 pub use quantile::SortedSample;
 pub use quantile_cells::QuantileCells;
-pub use rank_correlation::RankCorrelation;
+pub use rank_correlation::{RankCorrelation, Ranks};
 pub use sequential::SequentialAcceptance;
 pub use share_test::{ShareTest, holm};
 pub use sobol::{SobolIndex, SobolIndices, SobolSums};

@@ -1,4 +1,4 @@
-//! Whether an output rises or falls with an input: correlation of ranks.
+//! Whether an output rises or falls with an input: ranks and their correlation.
 
 use crate::error::validate;
 use crate::quantile_cells::average_ranks;
@@ -44,18 +44,26 @@ impl RankCorrelation {
         same_length(x.len(), y.len())?;
         validate(x, 4)?;
         validate(y, 4)?;
-        let n = x.len();
-        // Whole multiples of one half, about the mean rank.
-        let middle = (n as f64 + 1.0) / 2.0;
-        let (x, y) = (average_ranks(x), average_ranks(y));
-        let product = |a: &[f64], b: &[f64]| -> f64 {
-            a.iter().zip(b).map(|(a, b)| (a - middle) * (b - middle)).sum()
-        };
-        let squares = product(&x, &x) * product(&y, &y);
+        Self::of_ranks(&Ranks(average_ranks(x)), &Ranks(average_ranks(y)))
+    }
+
+    /// Of two columns of which the ranks are known, as of an output that is held against many inputs.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::Columns`] for columns of unlike length, [`StatisticsError::TooFew`] below four pairs,
+    /// [`StatisticsError::Constant`] if all values of a column are the same.
+    pub fn of_ranks(x: &Ranks, y: &Ranks) -> Result<Self, StatisticsError> {
+        let n = x.0.len();
+        same_length(n, y.0.len())?;
+        if n < 4 {
+            return Err(StatisticsError::TooFew { n, required: 4 });
+        }
+        let squares = x.product(x) * y.product(y);
         if squares == 0.0 {
             return Err(StatisticsError::Constant);
         }
-        let value = product(&x, &y) / squares.sqrt();
+        let value = x.product(y) / squares.sqrt();
         Ok(Self { n, value: value.clamp(-1.0, 1.0) })
     }
 
@@ -71,6 +79,38 @@ impl RankCorrelation {
         let bound = |half: f64| libm::tanh(centre + half);
         let (lower, upper) = (bound(-half).min(self.value), bound(half).max(self.value));
         Estimate::new(self.value, Interval::ordered(lower, upper, confidence))
+    }
+}
+
+/// The ranks of a sample of finite values, of which equal ones share the mean of theirs.
+///
+/// ```
+/// use gyradius_statistics::{RankCorrelation, Ranks};
+///
+/// let output = Ranks::new(&[0.1, 0.4, 0.9, 1.6])?;
+/// let inputs = [[1.0, 2.0, 3.0, 4.0], [7.0, 5.0, 3.0, 2.0]];
+/// let rises = inputs.map(|input| RankCorrelation::of_ranks(&Ranks::new(&input)?, &output));
+/// assert_eq!(rises.map(|r| r.map(|r| r.value())), [Ok(1.0), Ok(-1.0)]);
+/// # Ok::<(), gyradius_statistics::StatisticsError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ranks(Vec<f64>);
+
+impl Ranks {
+    /// The ranks of a sample.
+    ///
+    /// # Errors
+    ///
+    /// [`StatisticsError::TooFew`] for an empty sample, [`StatisticsError::NotFinite`] for a NaN or an infinity.
+    pub fn new(sample: &[f64]) -> Result<Self, StatisticsError> {
+        validate(sample, 1)?;
+        Ok(Self(average_ranks(sample)))
+    }
+
+    /// The sum of the products of the ranks, each about the mean rank. All are whole multiples of one half.
+    fn product(&self, other: &Self) -> f64 {
+        let middle = (self.0.len() as f64 + 1.0) / 2.0;
+        self.0.iter().zip(&other.0).map(|(a, b)| (a - middle) * (b - middle)).sum()
     }
 }
 
@@ -109,11 +149,15 @@ mod tests {
         let refused = StatisticsError::Columns { first: 4, second: 3 };
         assert_eq!(RankCorrelation::new(&x, &x[..3]), Err(refused));
         assert_eq!(RankCorrelation::new(&x, &[5.0; 4]), Err(StatisticsError::Constant));
-        assert!(matches!(
-            RankCorrelation::new(&x[..3], &x[..3]),
-            Err(StatisticsError::TooFew { .. })
-        ));
+        let refused = Err(StatisticsError::TooFew { n: 3, required: 4 });
+        assert_eq!(RankCorrelation::new(&x[..3], &x[..3]), refused);
+        let [three, four] = [3, 4].map(|n| Ranks::new(&x[..n]).unwrap());
+        assert_eq!(RankCorrelation::of_ranks(&three, &three), refused);
+        let refused = Err(StatisticsError::Columns { first: 4, second: 3 });
+        assert_eq!(RankCorrelation::of_ranks(&four, &three), refused);
+        assert!(Ranks::new(&[]).is_err());
         let bad = [1.0, 2.0, f64::INFINITY, 4.0];
+        assert_eq!(Ranks::new(&bad).err(), RankCorrelation::new(&bad, &x).err());
         assert!(matches!(
             RankCorrelation::new(&x, &bad),
             Err(StatisticsError::NotFinite { index: 2, .. })

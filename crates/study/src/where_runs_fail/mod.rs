@@ -8,7 +8,7 @@ mod tests;
 
 use gyradius_campaign::{Measured, Requirement, Runs, RunsError};
 use gyradius_statistics::{
-    Confidence, PairSeparation, QuantileCells, RankCorrelation, SuccessByDecile, holm,
+    Confidence, PairSeparation, QuantileCells, RankCorrelation, Ranks, SuccessByDecile, holm,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -122,6 +122,7 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
     let judged: Vec<Counted> = fails.iter().map(|fails| Counted::new(fails)).collect();
     let outcomes = outcomes(asked);
     let of_outcomes = rows.numbers(&outcomes)?;
+    let ranked: Vec<Ranked<'_>> = of_outcomes.par_iter().map(|y| Ranked::new(y)).collect();
 
     let mut tenths: Vec<Vec<Tenths>> = vec![Vec::new(); judged.len()];
     let mut correlations: Vec<Vec<Correlation>> = vec![Vec::new(); outcomes.len()];
@@ -131,10 +132,10 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
         for (counted, all) in judged.iter().zip(&mut tenths).filter(|(c, _)| c.is_enough()) {
             all.par_extend(held.each().filter_map(|(input, x)| counted.tenths(input, x)));
         }
-        for (outcome, all) in of_outcomes.iter().zip(&mut correlations) {
-            all.par_extend(
-                held.each().filter_map(|(input, x)| Correlation::new(input, x, outcome)),
-            );
+        let of_inputs: Vec<_> = held.each().map(|(input, x)| (input, Ranked::new(x))).collect();
+        for (outcome, all) in ranked.iter().zip(&mut correlations) {
+            let of = of_inputs.par_iter();
+            all.par_extend(of.filter_map(|(input, x)| Correlation::new(input, x, outcome)));
         }
     }
 
@@ -342,12 +343,30 @@ impl Corner {
     }
 }
 
+/// The first numbers of a column, with their ranks if none is missing.
+struct Ranked<'a> {
+    numbers: &'a [f64],
+    ranks: Option<Ranks>,
+}
+
+impl<'a> Ranked<'a> {
+    fn new(column: &'a [f64]) -> Self {
+        let numbers = &column[..column.len().min(RANKED)];
+        Self { numbers, ranks: Ranks::new(numbers).ok() }
+    }
+}
+
 impl Correlation {
     /// None of too few runs that have both, and where either is the same in all of them.
-    fn new(input: &str, x: &[f64], outcome: &[f64]) -> Option<Self> {
-        let first = x.iter().zip(outcome).take(RANKED);
-        let both = first.filter(|(x, y)| x.is_finite() && y.is_finite());
-        let (x, y): (Vec<f64>, Vec<f64>) = both.unzip();
-        Some(Self { input: input.to_owned(), rank: RankCorrelation::new(&x, &y).ok()? })
+    fn new(input: &str, x: &Ranked<'_>, outcome: &Ranked<'_>) -> Option<Self> {
+        let rank = if let (Some(x), Some(y)) = (&x.ranks, &outcome.ranks) {
+            RankCorrelation::of_ranks(x, y)
+        } else {
+            let both = x.numbers.iter().zip(outcome.numbers);
+            let (x, y): (Vec<f64>, Vec<f64>) =
+                both.filter(|(x, y)| x.is_finite() && y.is_finite()).unzip();
+            RankCorrelation::new(&x, &y)
+        };
+        Some(Self { input: input.to_owned(), rank: rank.ok()? })
     }
 }
