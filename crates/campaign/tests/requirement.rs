@@ -439,3 +439,57 @@ fn what_is_wrong_with_a_table_is_said() {
     #[cfg(unix)]
     assert!(ForeignTable::open("/dev/zero".as_ref()).unwrap_err().to_string().contains("regular"));
 }
+
+/// The worst runs bear the numbers of a column `run`, in any order, if all of them are whole; else the numbers of their rows.
+#[test]
+fn the_worst_runs_have_the_numbers_of_the_table() {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = scratch.path().join("it.csv");
+    let requirement: Requirement = "x <= 0 in 90 % at 90 %".parse().unwrap();
+    // Some more than are looked at together.
+    let rows = 20_000_u64;
+    let number = |row: u64| 1_000_000 - 7 * row;
+    for (column, is_number) in [("run", true), ("other", false), ("run ", true), ("Run", false)] {
+        for broken in ["", "1.5", "-1", "no number", "1e300"] {
+            // Row 3 is the worst, and the last one the second.
+            let text: String = (0..rows)
+                .map(|row| {
+                    let x = if row == 3 { rows } else { row };
+                    let run = match row {
+                        3 if !broken.is_empty() => broken.to_owned(),
+                        _ => number(row).to_string(),
+                    };
+                    format!("{x},{run}\n")
+                })
+                .collect();
+            fs::write(&path, format!("x,{column}\n{text}")).unwrap();
+            let table = ForeignTable::open(&path).unwrap();
+            let judged = Judgement::of_table(std::slice::from_ref(&requirement), &table).unwrap();
+            let worst: Vec<u64> = judged[0].worst().iter().take(3).map(|run| run.run).collect();
+            let of_rows = [3, rows - 1, rows - 2];
+            let expected =
+                if is_number && broken.is_empty() { of_rows.map(number) } else { of_rows };
+            assert_eq!(worst, expected, "{column} {broken}");
+        }
+    }
+}
+
+#[test]
+fn one_run_is_told_as_one() {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = scratch.path().join("it.csv");
+    fs::write(&path, "x\nnan\n").unwrap();
+    let table = ForeignTable::open(&path).unwrap();
+    for (left_out, expected) in [
+        (
+            FailedRuns::Against,
+            ["1 of 1 run does not keep it", "1 run without a number counts against it"],
+        ),
+        (FailedRuns::LeftOut, ["0 of 0 runs do not keep it", "1 run without a number is left out"]),
+    ] {
+        let requirement: Requirement = "x <= 0 in 90 % at 90 %".parse().unwrap();
+        let judged = Judgement::of_table(&[requirement.with_failed_runs(left_out)], &table);
+        let text = judged.unwrap()[0].to_string();
+        assert!(expected.iter().all(|words| text.contains(words)), "{text}");
+    }
+}

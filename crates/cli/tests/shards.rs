@@ -2,7 +2,7 @@
 
 use std::{fs, process::Stdio};
 
-use crate::scratch::{Scratch, content, done};
+use crate::scratch::{Scratch, content, done, one_model};
 
 /// Three processes, one of which is killed: what is there is told at every time, a report is made of part of the runs, and
 /// the study is the same to the byte as that of one process.
@@ -106,4 +106,31 @@ fn a_report_of_part_of_an_extension_keeps_what_is_complete() {
     done(&["study", "--runs", "300", "--out", "alone"], 0);
     done(&["study", "--runs", "400", "--out", "alone"], 0);
     assert!(content(&scratch.path("here")) == content(&scratch.path("alone")));
+}
+
+/// The last shard would decide for all: what is other is told, and what it is there and here.
+#[test]
+fn shards_keep_and_require_the_same() {
+    let scratch = Scratch::new();
+    let requirement = |limit: &str| {
+        let of = "quantity = \"nutation_deg\"\nprobability = 0.9\nconfidence = 0.9";
+        format!("{}\n[[requirements]]\nname = \"it\"\nat_most = {limit}\n{of}\n", one_model())
+    };
+    let shard = |text: String, shard: &str, more: &[&str], code| {
+        fs::write(scratch.path("s.toml"), text).unwrap();
+        let own =
+            ["study", "--scenario", "s.toml", "--runs", "600", "--out", "here", "--shard", shard];
+        scratch.done(&[&own[..], more].concat(), code)
+    };
+    shard(requirement("3.0"), "1/2", &[], 0);
+    for (text, more, expected) in [
+        (requirement("2.0"), &[][..], "requirements[0].at_most is 3.0 there and 2.0 here"),
+        (one_model(), &[], "is 3.0 there and not given here"),
+        (requirement("3.0"), &["--rows", "failed"], "rows is not given there and \"failed\" here"),
+        (requirement("3.0"), &["--columns", "nutation_deg"], "columns"),
+    ] {
+        let told = shard(text, "2/2", more, 2);
+        assert!(told.contains(expected) && told.contains("all shards"), "{told}");
+    }
+    shard(requirement("3.0"), "2/2", &[], 0);
 }

@@ -9,16 +9,12 @@ use rand_distr::Distribution;
 
 use crate::{StatedModel, StatementError, StatementWarning, Statements};
 
-/// The lightest body that is drawn of a mass that scatters widely, over the nominal mass.
-const LIGHTEST: f64 = 1e-3;
-/// Up to this deviation over its mean a normal mass comes nowhere near zero.
-const NARROW: f64 = 0.125;
-
 /// The joint law of mass, mass centre and inertia that statements make about a nominal body.
 ///
 /// # Definition
 /// A [`MassPropertiesLaw`]:
-/// * The mass is normal about the nominal one; where it scatters by more than an eighth, kept above a thousandth of it.
+/// * The mass is normal about the nominal one; where it scatters by more than an eighth, lognormal with the nominal one as
+///   its mean ([`ScalarLaw::positive`]).
 /// * The mass centre is normal along each body axis, independent of all else. The inertia is that about the drawn mass
 ///   centre, so nothing is added to it for the centre.
 /// * The inertia at the nominal mass has the law of [`Statements::model`], and is multiplied by what the mass makes
@@ -101,12 +97,7 @@ impl StatedBody {
         model: Option<&StatedModel>,
     ) -> Result<MassPropertiesLaw, MassPropertiesLawError> {
         let kilograms = nominal.mass_kg();
-        let deviation = relative * kilograms;
-        let mass = if relative > NARROW {
-            ScalarLaw::truncated_normal(kilograms, deviation, LIGHTEST * kilograms, f64::INFINITY)
-        } else {
-            ScalarLaw::normal(kilograms, deviation)
-        };
+        let mass = ScalarLaw::positive(kilograms, relative * kilograms);
         let at = nominal.mass_centre_m();
         let of_axis = |i: usize| ScalarLaw::normal(at[i], centre[i]);
         let tensor = match model {
@@ -167,7 +158,7 @@ gyradius_dispersion::written!(
 mod tests {
     use super::*;
     use crate::{Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement};
-    use gyradius_inertia::{Inertia, InertiaMatrix, SecondMoments};
+    use gyradius_inertia::{Inertia, InertiaMatrix, SecondMoments, Shape};
     use nalgebra::{Quaternion, UnitQuaternion, Vector3};
     use proptest::{prelude::*, sample::select};
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -245,6 +236,40 @@ mod tests {
                 }
             }
         }
+    }
+
+    proptest! {
+        /// However wide: the law has the mean and the deviation that are stated, and so have its draws.
+        #[test]
+        fn a_wide_mass_is_as_stated(nominal in body(), percent in 0.1..100.0_f64) {
+            let mass = Some(MassStatement::percent(percent, 1.0).unwrap());
+            let law = StatedBody::new(&Statements { mass, ..Statements::default() }, &nominal).unwrap();
+            let kilograms = nominal.mass_kg();
+            let near = |x: f64, y: f64| (x - y).abs() <= 1e-12 * y;
+            prop_assert!(near(law.law().mass().mean(), kilograms));
+            prop_assert!(near(law.law().mass().deviation(), 0.01 * percent * kilograms));
+        }
+    }
+
+    #[test]
+    fn draws_of_a_wide_mass_are_as_stated() {
+        let nominal = Shape::solid_box([0.1, 0.2, 0.3]).unwrap().of_mass(2.0).unwrap();
+        let law = StatedBody::new(&statements(3, [50.0, 50.0, 0.0, 0.0]), &nominal).unwrap();
+        let n = 40_000;
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let drawn: Vec<_> = (0..n).map(|_| law.sample(&mut rng)).collect();
+        let check = |of: &dyn Fn(&MassProperties) -> f64| {
+            let ratios = drawn.iter().map(|body| of(body) / of(&nominal));
+            let mean = ratios.clone().sum::<f64>() / f64::from(n);
+            let square = ratios.map(|x| (x - mean).powi(2)).sum::<f64>() / f64::from(n);
+            // Five standard errors of a lognormal law: its kurtosis is about 9.
+            assert!(
+                (mean - 1.0).abs() < 0.0125 && (square.sqrt() - 0.5).abs() < 0.02,
+                "{mean} {square}"
+            );
+        };
+        check(&MassProperties::mass_kg);
+        (0..3).for_each(|i| check(&|body| body.inertia().entries()[i]));
     }
 
     /// What is drawn of one thing does not depend on what is stated of another, but for the inertia that follows.

@@ -5,6 +5,9 @@ use toml::{Table as Toml, Value};
 
 use crate::{about::About, scenario::parse_toml, subject::Subject};
 
+/// The keys of a scenario that all shards of a study share although its runs do not depend on them.
+const SHARED: [&str; 3] = ["rows", "columns", "requirements"];
+
 /// What a study writes, and the figures that it may write.
 pub(crate) fn contents<C: Subject>(scenario: &C) -> Contents<'_> {
     let tables = scenario.model_names().map(|model| format!("runs/{model}/"));
@@ -37,18 +40,33 @@ pub(crate) fn contents<C: Subject>(scenario: &C) -> Contents<'_> {
 
 /// What the runs of a scenario depend on.
 pub(crate) fn identity<C: Subject>(scenario: &C) -> Identity {
-    let mut fields = Vec::new();
-    if let Ok(table) = parse_toml::<Toml>(&scenario.to_toml()) {
-        flatten("", &Value::Table(table), &mut fields);
-    }
-    let is_of = |field: &str, key: &str| {
-        field.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with(['[', '.']))
-    };
+    let mut fields = fields(scenario);
     let immaterial = || C::IMMATERIAL.iter().chain(&About::KEYS);
     fields.retain(|(field, _)| !immaterial().any(|key| is_of(field, key)));
     fields.push(("gyradius_version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()));
     fields.push(("block_runs".to_owned(), C::BLOCK_RUNS.to_string()));
     Identity::new(fields)
+}
+
+/// What shards must have in common beside that: what is kept of the runs, and what they are held against.
+pub(crate) fn shared<C: Subject>(scenario: &C) -> Identity {
+    let mut fields = fields(scenario);
+    fields.retain(|(field, _)| SHARED.iter().any(|key| is_of(field, key)));
+    Identity::new(fields)
+}
+
+/// Every value of a scenario by the path to it.
+fn fields<C: Subject>(scenario: &C) -> Vec<(String, String)> {
+    let mut fields = Vec::new();
+    if let Ok(table) = parse_toml::<Toml>(&scenario.to_toml()) {
+        flatten("", &Value::Table(table), &mut fields);
+    }
+    fields
+}
+
+/// Whether a field is a key of the scenario, or below it.
+fn is_of(field: &str, key: &str) -> bool {
+    field.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with(['[', '.']))
 }
 
 /// Every value in a table by the path to it.

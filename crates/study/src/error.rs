@@ -1,7 +1,8 @@
 //! Why a study could not be done.
 
 use gyradius_campaign::{
-    CampaignError, DesignsError, FolderError, JudgementError, Kept, RunsError, rough_size,
+    CampaignError, DesignsError, Difference, FolderError, JudgementError, Kept, RunsError,
+    rough_size,
 };
 use gyradius_statistics::StatisticsError;
 use std::path::PathBuf;
@@ -68,18 +69,13 @@ pub enum StudyError {
         /// A file of it that is not as it was written.
         damaged: Option<String>,
     },
-    /// Other processes keep other rows or columns of the same study.
-    #[error(
-        "{}: rows and columns to keep, or requirements, are others there than here ({there}; {here}): all shards of a study must say the \
-         same", path.display()
-    )]
+    /// Other processes keep other rows or columns of the same study, or have other requirements.
+    #[error("{}: {difference}: all shards of a study must keep the same and require the same", path.display())]
     Shards {
         /// The folder.
         path: PathBuf,
-        /// What is kept there.
-        there: Kept,
-        /// What was to be kept here.
-        here: Kept,
+        /// What is other there than here.
+        difference: Difference,
     },
     /// The runs cannot be made on so many threads, or leave no rows.
     #[error(transparent)]

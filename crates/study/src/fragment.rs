@@ -92,7 +92,7 @@ pub struct Fragment {
     inside: Option<Region>,
 }
 
-/// A normal mass, and how far the inertia goes with it.
+/// A mass ([`ScalarLaw::positive`]), and how far the inertia goes with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mass {
     percent: f64,
@@ -154,9 +154,9 @@ impl Fragment {
         Ok(fragment)
     }
 
-    /// With a normal mass of this standard deviation, in percent of the nominal mass, of whose relative change the
-    /// inertia takes the share `follows`, from 0 to 1. The law of the fragment is then that of the
-    /// inertia at the nominal mass.
+    /// With a mass of this standard deviation ([`ScalarLaw::positive`]), in percent of the nominal mass, of whose relative
+    /// change the inertia takes the share `follows`, from 0 to 1. The law of the fragment is then that of the inertia at the
+    /// nominal mass.
     ///
     /// # Errors
     /// The percentage is negative, or one of them not finite or out of range.
@@ -261,7 +261,14 @@ impl fmt::Display for Fragment {
         }
         writeln!(f, "]")?;
         if let Some(Mass { percent, follows }) = self.mass {
-            writeln!(f, "mass_percent = {percent:?}")?;
+            let law = ScalarLaw::positive(100.0, percent).map_err(|_| fmt::Error)?;
+            match law.as_normal() {
+                Some(_) => writeln!(f, "mass_percent = {percent:?}")?,
+                None => {
+                    let name = law.name();
+                    writeln!(f, "mass_percent = {{ law = {name:?}, sigma = {percent:?} }}")?;
+                }
+            }
             if follows == 1.0 {
                 writeln!(f, "inertia_follows_mass = true")?;
             } else if follows > 0.0 {
@@ -415,6 +422,24 @@ mod tests {
             assert_eq!(*read.roots(), RootLaw::Independent(law.roots().clone()));
             let again = Scenario::from_toml(&scenario.to_toml()).unwrap();
             assert_eq!(again.to_toml(), scenario.to_toml());
+        }
+    }
+
+    /// A narrow mass is a number, a wide one a lognormal law; a study reads the mean and the deviation that are stated.
+    #[test]
+    fn a_mass_of_any_width_reads_back() {
+        let (nominal, law) = law([5000.0, 4000.0, 3000.0], UnitQuaternion::identity());
+        for percent in [0.0, 1.0, 12.5, 12.6, 33.3, 100.0, 1000.0] {
+            let fragment = Fragment::new(FragmentBody::Payload, &nominal, &law).unwrap();
+            let text = pasted(&fragment.with_mass(percent, 1.0).unwrap());
+            assert_eq!(text.contains("mass_percent = {"), percent > 12.5, "{text}");
+            let scenario = Scenario::from_toml(&text).unwrap();
+            let all = scenario.dispersions().all();
+            let mass = &all.iter().find(|one| one.column == "payload_mass_kg").unwrap().law;
+            assert!(
+                (mass.mean() - 1e4).abs() < 1e-8
+                    && (mass.deviation() - 100.0 * percent).abs() < 1e-8
+            );
         }
     }
 

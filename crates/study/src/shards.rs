@@ -9,7 +9,7 @@ use std::{ops::Range, path::Path};
 
 use crate::{
     Notice, Options, ScenarioError, StudyError,
-    contents::{contents, identity},
+    contents::{contents, identity, shared},
     decisions::check_columns,
     head::Missing,
     scenario::read_file,
@@ -103,15 +103,10 @@ pub(crate) fn run_shard<C: Subject>(
 fn agree<C: Subject>(scenario: &C, folder: &Path) -> Result<(), StudyError> {
     let done = || read_file(&folder.join("scenario.toml")).ok();
     let there = begun(folder).or_else(done).and_then(|text| C::resolved(&text).ok());
-    match there {
-        Some(there)
-            if there.kept() != scenario.kept()
-                || there.requirements() != scenario.requirements() =>
-        {
-            let (path, there, here) = (folder.to_owned(), there.kept(), scenario.kept());
-            Err(StudyError::Shards { path, there, here })
-        }
-        Some(_) | None => Ok(()),
+    let difference = there.and_then(|there| shared(scenario).difference(&shared(&there)));
+    match difference {
+        Some(difference) => Err(StudyError::Shards { path: folder.to_owned(), difference }),
+        None => Ok(()),
     }
 }
 

@@ -5,7 +5,10 @@ use gyradius_statistics::{
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::fmt;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+};
 
 use super::{
     Bound, FailedRuns, Requirement,
@@ -16,9 +19,13 @@ use super::{
     groups::Groups,
 };
 use crate::{
+    column::Column,
     foreign::{ForeignError, ForeignTable},
     runs::RunsError,
 };
+
+/// Whole numbers below this are exact as numbers with a fraction, 2⁵³.
+const MOST_EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// What runs say of a requirement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,8 +85,8 @@ pub struct VehiclesKeeping {
 }
 
 impl Judgement {
-    /// Judges requirements by the runs of a table that another program wrote, of which a row is a run. All threads of the pool that this
-    /// is called in are used.
+    /// Judges requirements by the runs of a table that another program wrote, of which a row is a run: that of the number in
+    /// the column `run`, if it has one, and else that of the number of the row, from 0. All threads of the pool that this is called in are used.
     ///
     /// # Errors
     /// The table cannot be read, has no such column, or has no or too many rows.
@@ -103,7 +110,12 @@ impl Judgement {
                 if gatherings.iter().any(|gathering| gathering.tally.runs == 0) {
                     return Err(table.without_rows().into());
                 }
-                return gatherings.iter().map(Self::of).collect();
+                let mut judged: Vec<Self> =
+                    gatherings.iter().map(Self::of).collect::<Result<_, _>>()?;
+                if table.columns().iter().any(|name| name == Column::RUN) {
+                    Self::number_runs(&mut judged, table);
+                }
+                return Ok(judged);
             }
             let mut first = 0;
             table.scan(&names, |numbers| {
@@ -132,6 +144,29 @@ impl Judgement {
                 if let Some(part) = part {
                     gathering.advance(part)?;
                 }
+            }
+        }
+    }
+
+    /// Calls the worst runs by their numbers in the table, where all of these are whole; rows they were before.
+    fn number_runs(judged: &mut [Self], table: &ForeignTable) {
+        let worst = judged.iter().flat_map(|judgement| &judgement.worst);
+        let rows: BTreeSet<u64> = worst.map(|run| run.run).collect();
+        let mut numbers = BTreeMap::new();
+        let mut first = 0;
+        let read = table.scan(&[Column::RUN.to_owned()], |columns| {
+            let column = columns.first().map_or(&[][..], Vec::as_slice);
+            let end = first + column.len() as u64;
+            for row in rows.range(first..end) {
+                let number = column[(row - first) as usize];
+                let whole = number.filter(|x| x.fract() == 0.0 && (0.0..MOST_EXACT).contains(x));
+                numbers.extend(whole.map(|number| (*row, number as u64)));
+            }
+            first = end;
+        });
+        if read.is_ok() && numbers.len() == rows.len() {
+            for run in judged.iter_mut().flat_map(|judgement| &mut judgement.worst) {
+                run.run = numbers[&run.run];
             }
         }
     }
@@ -298,12 +333,13 @@ impl Judgement {
     #[must_use]
     pub fn line(&self) -> String {
         let Self { failures, counted, .. } = self;
+        let s = if *counted == 1 { "" } else { "s" };
         let keep = if *failures == 1 { "does not keep it" } else { "do not keep it" };
         let allowed = self.allowed_failures.map_or_else(
             || "so few runs cannot show that it is met".to_owned(),
             |allowed| format!("at most {allowed} may fail"),
         );
-        format!("{}: {failures} of {counted} runs {keep}; {allowed}", words(self.verdict))
+        format!("{}: {failures} of {counted} run{s} {keep}; {allowed}", words(self.verdict))
     }
 
     /// The worst runs, the worst first.
@@ -322,7 +358,8 @@ impl fmt::Display for Judgement {
         writeln!(f, "  {}", self.line())?;
         if let Verdict::Undecided { if_no_more_fail, at_this_rate } = self.verdict {
             let met = |runs: u64, if_so: &str| {
-                format!("  more runs    {runs} more runs would show that it is met, {if_so}\n")
+                let s = if runs == 1 { "" } else { "s" };
+                format!("  more runs    {runs} more run{s} would show that it is met, {if_so}\n")
             };
             let all = if_no_more_fail.map(|runs| met(runs, "if all of them keep it"));
             let rate = at_this_rate.filter(|runs| Some(*runs) != if_no_more_fail);
@@ -330,15 +367,14 @@ impl fmt::Display for Judgement {
             f.write_str(&(all.unwrap_or_default() + &rate.unwrap_or_default()))?;
         }
         if self.runs_without_number > 0 {
-            let fate = match requirement.failed_runs() {
-                FailedRuns::Against => "count against it",
-                FailedRuns::LeftOut => "are left out",
+            let runs = self.runs_without_number;
+            let [s, fate] = match (requirement.failed_runs(), runs) {
+                (FailedRuns::Against, 1) => ["", "counts against it"],
+                (FailedRuns::Against, _) => ["s", "count against it"],
+                (FailedRuns::LeftOut, 1) => ["", "is left out"],
+                (FailedRuns::LeftOut, _) => ["s", "are left out"],
             };
-            writeln!(
-                f,
-                "  failed       {} runs without a number {fate}",
-                self.runs_without_number
-            )?;
+            writeln!(f, "  failed       {runs} run{s} without a number {fate}")?;
         }
         match self.tolerance {
             Some(bound) => writeln!(

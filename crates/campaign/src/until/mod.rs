@@ -44,7 +44,8 @@ pub struct Until {
 pub enum StoppingRule {
     /// Each requirement is met or not met, by the rule that keeps its risk however often it is asked.
     Decided,
-    /// The share of the runs that fail is known to ± this for each requirement, by intervals that hold together at all looks.
+    /// The share of the runs that fail is known to ± this for each requirement: its interval is no wider than twice this, by
+    /// intervals that hold together at all looks.
     Share(f64),
     /// The mean of a number is known to ± this, with a confidence of 95 %.
     Mean(Measured, f64),

@@ -207,7 +207,8 @@ pub(crate) struct StudyArgs {
     /// Go on until the runs show enough, and to --runs at most: “decided”, “share within 0.1 %”, “mean(wobble_deg) within 0.02”
     ///
     /// decided: each requirement is met or not met, by a rule that keeps its risk however often the runs are looked at. share within:
-    /// the share of runs that fail is known to ± this for each requirement. mean within: so is the mean of a column.
+    /// the share of runs that fail is known to ± this for each requirement, that is, its interval is no wider than twice this. mean
+    /// within: so is the mean of a column.
     #[arg(long, value_name = "RULE", conflicts_with = "shard")]
     pub(crate) until: Option<StoppingRule>,
 

@@ -11,12 +11,11 @@ use super::tensor::{Follows, Of, Principal};
 use super::{MassPropertiesModel, TenMoments, TensorLaw, TensorLawError};
 use crate::columns::ColumnsError;
 use crate::roots::FAR;
+use crate::scalar::SAFE_DEVIATION;
 use crate::{Correlation, CorrelationError, InertiaLaw, ScalarLaw, ScalarLawError};
 
 /// What mass times the square of a length may come to at most, so that squares of it do not overflow.
 const MAX_MOMENT: f64 = 1e150;
-/// Below this share of the mean the deviation of a normal mass makes a negative one less likely than 1e-15.
-const SAFE_DEVIATION: f64 = 0.125;
 /// Trial draws of a constructor.
 const TRIALS: usize = 64;
 

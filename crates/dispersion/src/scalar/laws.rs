@@ -13,6 +13,9 @@ use crate::normal::{LN_ROOT_TAU, above, below, score};
 use crate::truncated_draw::Truncated;
 use crate::truncated_normal::WindowError;
 
+/// Up to this share of the mean, the deviation of a normal law makes a negative value less likely than 1e-15.
+pub(crate) const SAFE_DEVIATION: f64 = 0.125;
+
 laws!(Normal, Uniform, TruncatedNormal, Lognormal, Triangular, Beta, Weibull, Samples, Bernoulli);
 
 /// A law of one number: everything that the rest of the crate, scenario files and JSON want to know of it.
@@ -422,6 +425,29 @@ impl ScalarLaw {
     /// The mean is not positive or too large, or the deviation negative, NaN or too large.
     pub fn lognormal(mean: f64, sigma: f64) -> Result<Self, ScalarLawError> {
         Self::lognormal_of(mean, sigma, sigma * sigma)
+    }
+
+    /// Of something positive of which mean and standard deviation are all that is known, as a mass: normal up to a
+    /// deviation of an eighth of the mean; lognormal beyond, where a normal law would come near zero. Both have the mean and
+    /// the deviation given, which a normal law that is cut off at zero has not.
+    ///
+    /// ```
+    /// use gyradius_dispersion::ScalarLaw;
+    ///
+    /// let laws = [ScalarLaw::positive(2.0, 0.1)?, ScalarLaw::positive(2.0, 1.0)?];
+    /// assert_eq!(laws.each_ref().map(ScalarLaw::name), ["normal", "lognormal"]);
+    /// assert_eq!((laws[1].mean(), laws[1].deviation()), (2.0, 1.0));
+    /// # Ok::<(), gyradius_dispersion::ScalarLawError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`lognormal`](Self::lognormal).
+    pub fn positive(mean: f64, sigma: f64) -> Result<Self, ScalarLawError> {
+        if mean > 0.0 && sigma <= SAFE_DEVIATION * mean {
+            Self::normal(mean, sigma)
+        } else {
+            Self::lognormal(mean, sigma)
+        }
     }
 
     /// The same with the variance, which would lose its last digit as a root.
