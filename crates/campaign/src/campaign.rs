@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use std::{
     ops::Range,
     sync::{
-        Arc, Mutex,
+        Arc, Mutex, PoisonError,
         atomic::{AtomicBool, AtomicU64, Ordering},
     },
 };
@@ -132,43 +132,42 @@ pub fn run_missing<S: Simulation>(
     if left > 0 {
         more(0);
     }
-    let room = AtomicU64::new(HELD);
-    let mut all = Vec::new();
-    for (place, (((_, simulation), empty), missing)) in
-        simulations.iter().zip(&tables).zip(missing).enumerate()
-    {
-        if let Some(look) = look {
+    if let Some(look) = look {
+        for (place, empty) in tables.iter().enumerate() {
             let there = blocks.runs(empty, Vec::new()).stopped_by(plan.stop.cloned());
             there.scan(|block| look(place, block))?;
         }
-        let held = Mutex::new(Vec::new());
-        missing.into_par_iter().try_for_each(|runs| {
-            go_on(plan.stop.map(Arc::as_ref))?;
-            let table = run_range(simulation, empty, runs, &|runs| {
-                more(runs);
-                go_on(plan.stop.map(Arc::as_ref))
-            })?;
-            blocks.write(&table)?;
-            if let Some(look) = look {
-                look(place, &table);
-            }
-            let numbers = (table.len() * table.columns().len()) as u64;
-            let fits = room
-                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |room| {
-                    room.checked_sub(numbers)
-                })
-                .is_ok();
-            if let Ok(mut held) = held.lock()
-                && fits
-            {
-                held.push(table);
-            }
-            Ok::<_, CampaignError>(())
-        })?;
-        let runs = blocks.runs(empty, held.into_inner().unwrap_or_default());
-        all.push(runs.stopped_by(plan.stop.cloned()));
     }
-    Ok(all)
+    let room = AtomicU64::new(HELD);
+    let held = Mutex::new(vec![Vec::new(); simulations.len()]);
+    let of_model = |(place, missing): (usize, Vec<Range<u64>>)| {
+        missing.into_par_iter().map(move |runs| (place, runs))
+    };
+    // Of all models, so that the threads that have no runs left to do in one begin with the next.
+    missing.into_par_iter().enumerate().flat_map(of_model).try_for_each(|(place, runs)| {
+        go_on(plan.stop.map(Arc::as_ref))?;
+        let table = run_range(&simulations[place].1, &tables[place], runs, &|runs| {
+            more(runs);
+            go_on(plan.stop.map(Arc::as_ref))
+        })?;
+        blocks.write(&table)?;
+        if let Some(look) = look {
+            look(place, &table);
+        }
+        let numbers = (table.len() * table.columns().len()) as u64;
+        let fits = room
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |room| room.checked_sub(numbers))
+            .is_ok();
+        if let Ok(mut held) = held.lock()
+            && fits
+        {
+            held[place].push(table);
+        }
+        Ok::<_, CampaignError>(())
+    })?;
+    let held = held.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let runs = tables.iter().zip(held).map(|(empty, held)| blocks.runs(empty, held));
+    Ok(runs.map(|runs| runs.stopped_by(plan.stop.cloned())).collect())
 }
 
 #[cfg(test)]

@@ -107,11 +107,11 @@ pub(crate) fn run_range<S: Simulation>(
     });
     let parts: Vec<Option<Table>> =
         parts.map(|part| part.map(|(_, rows)| rows)).collect::<Result<_, CampaignError>>()?;
-    let mut whole = empty.from_run(runs.start);
-    for part in parts.into_iter().flatten() {
+    let joined = parts.into_iter().flatten().reduce(|mut whole, part| {
         whole.append(part);
-    }
-    Ok(whole)
+        whole
+    });
+    Ok(joined.unwrap_or_else(|| empty.from_run(runs.start)))
 }
 
 /// Whether it goes on, or was told to stop.

@@ -190,7 +190,7 @@ impl Campaign {
         folder.write("mark", &text).map_err(|e| e.to_string())?;
         folder.publish().map_err(|e| e.to_string())?;
         blocks.settle().map_err(|e| e.to_string())?;
-        Ok(Done { runs: blocks.in_place(&done[0]), simulated, damaged })
+        Ok(Done { runs: blocks.in_place(done[0].clone()), simulated, damaged })
     }
 
     /// Every block that there is, finished or not.

@@ -165,7 +165,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
     }
     beside.map_or(Ok(()), |beside: Blocks| beside.settle())?;
     let runs = match scenario.kept().is_all() || !complete {
-        true => runs.into_iter().map(|runs| blocks.in_place(&runs)).collect(),
+        true => runs.into_iter().map(|runs| blocks.in_place(runs)).collect(),
         false => empty_tables(&simulations)?.into_iter().map(Runs::from).collect(),
     };
     Ok(Study { folder, runs, summary })

@@ -416,8 +416,8 @@ impl Blocks {
 
     /// The same runs, read from the places where their blocks are now.
     #[must_use]
-    pub fn in_place(&self, runs: &Runs) -> Runs {
-        let (empty, held) = runs.clone().into_parts();
+    pub fn in_place(&self, runs: Runs) -> Runs {
+        let (empty, held) = runs.into_parts();
         self.runs(&empty, held)
     }
 
