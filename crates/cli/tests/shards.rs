@@ -124,7 +124,7 @@ fn shards_keep_and_require_the_same() {
     };
     shard(requirement("3.0"), "1/2", &[], 0);
     for (text, more, expected) in [
-        (requirement("2.0"), &[][..], "requirements[0].at_most is 3.0 there and 2.0 here"),
+        (requirement("2.0"), &[][..], "requirements[1].at_most is 3.0 there and 2.0 here"),
         (one_model(), &[], "is 3.0 there and not given here"),
         (requirement("3.0"), &["--rows", "failed"], "rows is not given there and \"failed\" here"),
         (requirement("3.0"), &["--columns", "nutation_deg"], "columns"),

@@ -77,8 +77,14 @@ fn order(x: f64) -> i32 {
     text.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
 }
 
+/// The power of ten that is nearest: from a table where it is exact, for the values of samples pass here one by one.
 fn power(exponent: i32) -> f64 {
-    format!("1e{exponent}").parse().unwrap_or(f64::NAN)
+    const EXACT: [f64; 23] = [
+        1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+        1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+    ];
+    let exact = usize::try_from(exponent).ok().and_then(|exponent| EXACT.get(exponent));
+    exact.copied().unwrap_or_else(|| format!("1e{exponent}").parse().unwrap_or(f64::NAN))
 }
 
 /// `x·10^k`, correctly rounded for small `k` of either sign.
@@ -179,6 +185,17 @@ mod tests {
     fn labels(lower: f64, upper: f64, length: f64, whole: bool) -> Vec<String> {
         let spacing = Spacing { length, most: 6, side_by_side: Some(11.0), whole };
         ticks(lower, upper, spacing).into_iter().map(|tick| tick.label).collect()
+    }
+
+    #[test]
+    fn powers_are_the_nearest_floats() {
+        for exponent in -330..=310 {
+            assert_eq!(
+                power(exponent),
+                format!("1e{exponent}").parse::<f64>().unwrap(),
+                "{exponent}"
+            );
+        }
     }
 
     #[test]
