@@ -131,7 +131,7 @@ fn what_is_kept_is_agreed_upon() {
     scratch.done(&with(&["--shard", "1/2", "--rows", "failed"]), 0);
     for other in [&["--shard", "2/2"][..], &["--shard", "2/2", "--rows", "none"]] {
         let said = scratch.done(&with(other), 2);
-        assert!(said.contains("rows: failed") && said.contains("all shards"), "{said}");
+        assert!(said.contains("rows is \"failed\" there") && said.contains("all shards"), "{said}");
     }
     scratch.done(&with(&["--shard", "2/2", "--rows", "failed"]), 0);
     scratch.done(&["report", "it"], 0);

@@ -107,7 +107,7 @@ impl Ranks {
         Ok(Self(average_ranks(sample)))
     }
 
-    /// The sum of the products of the ranks, each about the mean rank. All are whole multiples of one half.
+    /// The sum of the products of the ranks, each about the mean rank; ranks and mean are whole multiples of one half.
     fn product(&self, other: &Self) -> f64 {
         let middle = (self.0.len() as f64 + 1.0) / 2.0;
         self.0.iter().zip(&other.0).map(|(a, b)| (a - middle) * (b - middle)).sum()
