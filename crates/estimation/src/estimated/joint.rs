@@ -15,8 +15,7 @@ use crate::turns::{FIXED, law_of_turns_about};
 
 /// Scalars come first: mass, mass centre, gyration lengths; then three rotations.
 const SCALARS: usize = JointScalar::ALL.len();
-/// Above this share of the mean, a normal mass could be negative, and a normal length zero: they are lognormal.
-const SAFE_MASS: f64 = 0.125;
+/// Above this share of the mean, a normal length could be zero: it is lognormal.
 const SAFE_LENGTH: f64 = 0.5;
 /// Singular values of the derivatives below this share of the largest belong to what cannot be seen: the rotation of a rod about itself.
 const SEEN: f64 = 1e-9;
@@ -200,13 +199,13 @@ impl Joint {
 
     /// The law, in units of a mass and a length that are so much in SI.
     pub(super) fn law(&self, [mass, length]: [f64; 2]) -> Option<MassPropertiesLaw> {
-        let unit = |i: usize| if i == 0 { mass } else { length };
         let deviation = |i: usize| self.spread[(i, i)].max(0.0).sqrt();
-        let scalar = |i: usize, safe: f64| {
-            let (mean, deviation) = (self.mean[i] * unit(i), deviation(i) * unit(i));
+        let mass = ScalarLaw::positive(self.mean[0] * mass, deviation(0) * mass).ok()?;
+        let of_length = |i: usize| {
+            let (mean, deviation) = (self.mean[i] * length, deviation(i) * length);
             if mean == 0.0 {
                 ScalarLaw::normal(0.0, 0.0)
-            } else if deviation > safe * mean {
+            } else if deviation > SAFE_LENGTH * mean {
                 ScalarLaw::lognormal(mean, deviation)
             } else {
                 ScalarLaw::normal(mean, deviation)
@@ -215,10 +214,10 @@ impl Joint {
         };
         let centre =
             |i: usize| ScalarLaw::normal(self.mean[i] * length, deviation(i) * length).ok();
-        let lengths = [scalar(4, SAFE_LENGTH)?, scalar(5, SAFE_LENGTH)?, scalar(6, SAFE_LENGTH)?];
+        let lengths = [of_length(4)?, of_length(5)?, of_length(6)?];
         let tensor = TensorLaw::gyration_lengths(lengths, self.axes_law()?);
         let centre = [centre(1)?, centre(2)?, centre(3)?];
-        let law = MassPropertiesLaw::new(scalar(0, SAFE_MASS)?, centre, tensor).ok()?;
+        let law = MassPropertiesLaw::new(mass, centre, tensor).ok()?;
         let mut pairs = Vec::new();
         for i in 0..SCALARS {
             for j in 0..i {
