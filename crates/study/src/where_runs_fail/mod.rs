@@ -132,6 +132,9 @@ pub(crate) fn found(runs: &Runs, asked: Asked<'_>) -> Result<Option<WhereRunsFai
         for (counted, all) in judged.iter().zip(&mut tenths).filter(|(c, _)| c.is_enough()) {
             all.par_extend(held.each().filter_map(|(input, x)| counted.tenths(input, x)));
         }
+        if ranked.is_empty() {
+            continue;
+        }
         let of_inputs: Vec<_> = held.each().map(|(input, x)| (input, Ranked::new(x))).collect();
         for (outcome, all) in ranked.iter().zip(&mut correlations) {
             let of = of_inputs.par_iter();
