@@ -85,8 +85,9 @@ pub struct VehiclesKeeping {
 }
 
 impl Judgement {
-    /// Judges requirements by the runs of a table that another program wrote, of which a row is a run: that of the number in
-    /// the column `run`, if it has one, and else that of the number of the row, from 0. All threads of the pool that this is called in are used.
+    /// Judges requirements by the runs of a table that another program wrote, of which a row is a run. The
+    /// worst runs have the numbers in the column `run` if it has whole numbers, and those of their rows, from 0, if there is no such column. All
+    /// threads of the pool that this is called in are used.
     ///
     /// # Errors
     /// The table cannot be read, has no such column, or has no or too many rows.
