@@ -80,7 +80,7 @@ impl Cell {
                     .into_par_iter()
                     .map(|run| nutation(draw(run), scenario))
                     .collect();
-                let known = model.expected_moments();
+                let known = target.moments_of(&model);
                 let entries = || drawn.iter().map(|d| d.entries).collect::<Vec<_>>();
                 let fit = match known {
                     Some(moments) => Some(Fit::known(&moments, target.moments())),

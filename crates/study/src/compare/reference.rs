@@ -109,7 +109,13 @@ pub(crate) struct Target {
 impl Target {
     /// The moments of a law, where they are known.
     pub(crate) fn of_law(law: Arc<dyn InertiaLaw>) -> Option<Self> {
-        Some(Self { moments: law.expected_moments()?, law: Some(law) })
+        let moments = law.expected_moments()?;
+        Some(Self::of_law_with(law, moments))
+    }
+
+    /// A law whose moments these are.
+    pub(crate) fn of_law_with(law: Arc<dyn InertiaLaw>, moments: EntryMoments) -> Self {
+        Self { moments, law: Some(law) }
     }
 
     /// Moments that come from no law of an inertia alone.
@@ -119,6 +125,14 @@ impl Target {
 
     pub(crate) fn moments(&self) -> &EntryMoments {
         &self.moments
+    }
+
+    /// The moments of a model of [`model`](Self::model), where they are known. Those of the reference are here already.
+    pub(crate) fn moments_of(&self, model: &Arc<dyn InertiaLaw>) -> Option<EntryMoments> {
+        match &self.law {
+            Some(law) if Arc::ptr_eq(law, model) => Some(self.moments.clone()),
+            _ => model.expected_moments(),
+        }
     }
 
     /// The model of a kind, and what of the moments it was given.

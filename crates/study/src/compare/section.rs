@@ -42,12 +42,13 @@ impl Section {
         let of = |name: &str, body: &UncertainBody, size| {
             let law = body.law(Axes::WholeSphere).map_err(|e| e.to_string());
             let target = law.and_then(|law| {
-                let target = if body.has_correlated_roots() {
-                    body.expected_moments(Axes::WholeSphere).map(Target::of_moments)
+                let moments = body.expected_moments(Axes::WholeSphere);
+                let moments = moments.ok_or("its moments are not known")?;
+                Ok(if body.has_correlated_roots() {
+                    Target::of_moments(moments)
                 } else {
-                    Target::of_law(Arc::new(law))
-                };
-                target.ok_or_else(|| "its moments are not known".to_owned())
+                    Target::of_law_with(Arc::new(law), moments)
+                })
             });
             let label = format!("study {name}");
             let levels = level(None, &label, target, &ModelKind::ALL, scenario, size, &|| {})?;

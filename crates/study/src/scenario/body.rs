@@ -10,6 +10,7 @@ use gyradius_dispersion::{
 use gyradius_inertia::{Inertia, Region, RootSecondMoments};
 use gyradius_separation::{Body, BodyState, MovingBody};
 use nalgebra::{Matrix3, Matrix4, Quaternion, SMatrix, UnitQuaternion};
+use std::sync::OnceLock;
 
 use super::{
     Axes, ScenarioError,
@@ -40,6 +41,8 @@ pub(crate) struct UncertainBody {
     law: Option<MassPropertiesLaw>,
     /// How the roots are correlated.
     correlated: Vec<(JointScalar, JointScalar, f64)>,
+    /// Mean and covariance of the entries as models read the axes. A contour integral, and several models ask for them.
+    moments: [OnceLock<Option<EntryMoments>>; Axes::COUNT],
 }
 
 /// How uncertain the inertia of a body is at its nominal mass.
@@ -123,7 +126,16 @@ impl UncertainBody {
         let inside = d.inside.as_ref().map(AsGiven::said);
         let region = inside.or_else(|| law.as_ref()?.region()).cloned();
         let moving = body.moving(state);
-        Ok(Self { nominal, moving, inertia, follows, region, law, correlated: Vec::new() })
+        Ok(Self {
+            nominal,
+            moving,
+            inertia,
+            follows,
+            region,
+            law,
+            correlated: Vec::new(),
+            moments: Default::default(),
+        })
     }
 
     pub(crate) fn nominal(&self) -> &Inertia {
@@ -175,6 +187,7 @@ impl UncertainBody {
         let root = |scalar: JointScalar| scalar as usize >= JointScalar::Shape1 as usize;
         let of_roots = pairs.iter().filter(|(a, b, _)| root(*a) && root(*b));
         self.correlated = of_roots.copied().collect();
+        self.moments = Default::default();
     }
 
     /// Whether roots are correlated.
@@ -210,6 +223,10 @@ impl UncertainBody {
 
     /// Mean and covariance of the entries at the nominal mass, those of correlated roots too.
     pub(crate) fn expected_moments(&self, axes: Axes) -> Option<EntryMoments> {
+        self.moments[axes as usize].get_or_init(|| self.integrated_moments(axes)).clone()
+    }
+
+    fn integrated_moments(&self, axes: Axes) -> Option<EntryMoments> {
         if self.correlated.is_empty() {
             return self.law(axes).ok()?.expected_moments();
         }

@@ -140,6 +140,11 @@ pub(crate) enum AxesFile {
     JacobianTwice,
 }
 
+impl AxesFile {
+    /// How many there are.
+    pub(crate) const COUNT: usize = Self::JacobianTwice as usize + 1;
+}
+
 /// A key of a model.
 enum Key<O> {
     Name,
