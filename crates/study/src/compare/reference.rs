@@ -130,7 +130,7 @@ impl Target {
     /// The moments of a model of [`model`](Self::model), where they are known. Those of the reference are here already.
     pub(crate) fn moments_of(&self, model: &Arc<dyn InertiaLaw>) -> Option<EntryMoments> {
         match &self.law {
-            Some(law) if Arc::ptr_eq(law, model) => Some(self.moments.clone()),
+            Some(law) if Arc::ptr_eq(law, model) => Some(self.moments),
             _ => model.expected_moments(),
         }
     }

@@ -223,7 +223,7 @@ impl UncertainBody {
 
     /// Mean and covariance of the entries at the nominal mass, those of correlated roots too.
     pub(crate) fn expected_moments(&self, axes: Axes) -> Option<EntryMoments> {
-        self.moments[axes as usize].get_or_init(|| self.integrated_moments(axes)).clone()
+        *self.moments[axes as usize].get_or_init(|| self.integrated_moments(axes))
     }
 
     fn integrated_moments(&self, axes: Axes) -> Option<EntryMoments> {
