@@ -13,7 +13,7 @@ use super::{
     fit::Fit,
     measure::{Measure, Spread},
     options::Size,
-    reference::Target,
+    reference::{Candidate, Target},
 };
 use crate::{failure::Failure, scenario::Scenario};
 
@@ -70,7 +70,7 @@ impl Cell {
         };
         match target.model(kind) {
             Err(problem) => cell.problem = Some(problem),
-            Ok((model, matched)) => {
+            Ok(Candidate { law: model, moments, matched }) => {
                 let draw = |run: u64| model.draw(&mut streams.run(run)).inertia;
                 let drawn: Vec<Drawn> = (0..size.draws)
                     .into_par_iter()
@@ -80,9 +80,8 @@ impl Cell {
                     .into_par_iter()
                     .map(|run| nutation(draw(run), scenario))
                     .collect();
-                let known = target.moments_of(&model);
                 let entries = || drawn.iter().map(|d| d.entries).collect::<Vec<_>>();
-                let fit = match known {
+                let fit = match moments {
                     Some(moments) => Some(Fit::known(&moments, target.moments())),
                     None => Fit::of_draws(&entries(), target.moments()),
                 };

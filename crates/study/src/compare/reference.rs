@@ -64,12 +64,13 @@ impl Reference {
         match self {
             Self::Principal => {
                 let law = principal(nominal, level)?;
-                Ok(Target::of_law(Arc::new(law)).ok_or("its moments are not known")?)
+                let moments = EntryMoments::of(&law);
+                Ok(Target::of_law(Arc::new(law), moments))
             }
             Self::Entries => {
                 let variance = (level * body.largest_moment()).powi(2);
                 let covariance = SMatrix::<f64, 6, 6>::from_diagonal_element(variance);
-                Ok(Target { moments: EntryMoments::new(nominal.entries(), covariance)?, law: None })
+                Ok(Target::of_moments(EntryMoments::new(nominal.entries(), covariance)?))
             }
         }
     }
@@ -106,15 +107,18 @@ pub(crate) struct Target {
     law: Option<Arc<dyn InertiaLaw>>,
 }
 
-impl Target {
-    /// The moments of a law, where they are known.
-    pub(crate) fn of_law(law: Arc<dyn InertiaLaw>) -> Option<Self> {
-        let moments = law.expected_moments()?;
-        Some(Self::of_law_with(law, moments))
-    }
+/// A model that is to have the moments of a target.
+pub(crate) struct Candidate {
+    pub(crate) law: Arc<dyn InertiaLaw>,
+    /// Its own moments, where they are known.
+    pub(crate) moments: Option<EntryMoments>,
+    /// What of the target's moments it was given.
+    pub(crate) matched: &'static str,
+}
 
-    /// A law whose moments these are.
-    pub(crate) fn of_law_with(law: Arc<dyn InertiaLaw>, moments: EntryMoments) -> Self {
+impl Target {
+    /// A law and its moments.
+    pub(crate) fn of_law(law: Arc<dyn InertiaLaw>, moments: EntryMoments) -> Self {
         Self { moments, law: Some(law) }
     }
 
@@ -127,33 +131,27 @@ impl Target {
         &self.moments
     }
 
-    /// The moments of a model of [`model`](Self::model), where they are known. Those of the reference are here already.
-    pub(crate) fn moments_of(&self, model: &Arc<dyn InertiaLaw>) -> Option<EntryMoments> {
-        match &self.law {
-            Some(law) if Arc::ptr_eq(law, model) => Some(self.moments),
-            _ => model.expected_moments(),
-        }
-    }
-
-    /// The model of a kind, and what of the moments it was given.
-    pub(crate) fn model(
-        &self,
-        kind: ModelKind,
-    ) -> Result<(Arc<dyn InertiaLaw>, &'static str), String> {
+    /// The model of a kind.
+    pub(crate) fn model(&self, kind: ModelKind) -> Result<Candidate, String> {
         if let Some(law) = self.law.as_ref().filter(|law| law.name() == kind.name()) {
-            return Ok((Arc::clone(law), "the reference itself"));
+            return Ok(Candidate {
+                law: Arc::clone(law),
+                moments: Some(self.moments),
+                matched: "the reference itself",
+            });
         }
-        let matched = DispersionModel::matched(kind, &self.moments).map_err(|e| e.problem)?;
-        let what = matched.what();
-        let model = matched.into_model();
+        let found = DispersionModel::matched(kind, &self.moments).map_err(|e| e.problem)?;
+        let matched = found.what();
+        let model = found.into_model();
+        let moments = model.entry_moments();
         // A first-order match far outside its range is none.
-        let fit = model.entry_moments().map(|found| Fit::known(&found, &self.moments));
+        let fit = moments.map(|moments| Fit::known(&moments, &self.moments));
         match fit {
             Some(fit) if !fit.is_near() => Err(format!(
                 "a match to first order misses: the covariance comes out {} times too large",
                 gyradius_report::significant(1.0 + fit.covariance_off, 2)
             )),
-            _ => Ok((Arc::new(model), what)),
+            _ => Ok(Candidate { law: Arc::new(model), moments, matched }),
         }
     }
 

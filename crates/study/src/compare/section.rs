@@ -47,7 +47,7 @@ impl Section {
                 Ok(if body.has_correlated_roots() {
                     Target::of_moments(moments)
                 } else {
-                    Target::of_law_with(Arc::new(law), moments)
+                    Target::of_law(Arc::new(law), moments)
                 })
             });
             let label = format!("study {name}");
