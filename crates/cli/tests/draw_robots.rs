@@ -324,6 +324,8 @@ fn what_cannot_be_drawn_is_said() {
     let ignored = "<mujoco><compiler inertiafromgeom='true'/><body name='b'><inertial pos='0 0 0' mass='1' \
                    diaginertia='1 1 1'/></body></mujoco>";
     fs::write(shell.path("ignored.xml"), ignored).unwrap();
+    let scaled = ignored.replace("inertiafromgeom='true'", "settotalmass='5'");
+    fs::write(shell.path("scaled.xml"), scaled).unwrap();
     fs::write(shell.path("none.urdf"), robot(&["frame"], "urdf")).unwrap();
     for (arguments, expected) in [
         (&["a.urdf", "-n", "1"][..], "nothing is stated"),
@@ -343,6 +345,7 @@ fn what_cannot_be_drawn_is_said() {
         (&["a.urdf", "-n", "1", "--mass", "5%", "--inside", "box"], "neither collision nor visual"),
         (&["bad.urdf", "-n", "1", "--mass", "5%"], "inertia of bad: `gyradius check`"),
         (&["ignored.xml", "-n", "1", "--mass", "5%"], "inertiafromgeom"),
+        (&["scaled.xml", "-n", "1", "--mass", "5%"], "settotalmass=\"5\""),
         (&["none.urdf", "-n", "1", "--mass", "5%"], "no link of this URDF file"),
         (&["gone.urdf", "-n", "1", "--mass", "5%"], "cannot be read"),
         (&["-n", "1", "--mass", "5%"], "are for robots"),

@@ -48,8 +48,8 @@ pub struct RobotFile {
     links: Vec<RobotLink>,
     without: Vec<String>,
     references: Vec<String>,
-    /// MuJoCo takes no notice of what is written.
-    from_geometry: bool,
+    /// Why MuJoCo does not use what is written.
+    overridden: Option<String>,
 }
 
 /// A link with an inertia, or why that cannot be told.
@@ -230,8 +230,7 @@ impl RobotFile {
             let defaults = if of_sdf { frame::defaults(node) } else { Vec::new() };
             links.push(RobotLink { name, line: body.line(), read, geometry, defaults });
         });
-        let from_geometry = format == Format::Mjcf
-            && tree.all("compiler").any(|node| node.attribute("inertiafromgeom") == Some("true"));
+        let overridden = (format == Format::Mjcf).then(|| overridden(&tree)).flatten();
         let element = if format == Format::Mjcf { "body" } else { "link" };
         let without = tree
             .all(element)
@@ -239,7 +238,7 @@ impl RobotFile {
             .filter_map(|link| link.attribute("name").map(str::to_owned))
             .collect();
         let references = references::relative(&tree);
-        Ok(Self { links, without, references, from_geometry, file })
+        Ok(Self { links, without, references, overridden, file })
     }
 
     /// The path that was read.
@@ -290,10 +289,11 @@ impl RobotFile {
         &self.references
     }
 
-    /// Whether the file tells MuJoCo to take no notice of the inertias that it states (`inertiafromgeom="true"`).
+    /// What of an MJCF file tells MuJoCo not to use the numbers of the links as they are written, such as
+    /// `inertiafromgeom="true"` or `settotalmass="5"`. Files that it includes are not looked at.
     #[must_use]
-    pub fn ignores_inertias(&self) -> bool {
-        self.from_geometry
+    pub fn overridden_by(&self) -> Option<&str> {
+        self.overridden.as_deref()
     }
 
     /// The bytes of a copy in which the links of these indices have other mass properties, in the links' frames, and
@@ -345,6 +345,17 @@ fn is_that(numbers: &LinkNumbers, body: &MassProperties) -> bool {
     numbers.mass == body.mass_kg()
         && numbers.centre == body.mass_centre_m()
         && (read - meant).amax() <= RELATIVE_TOLERANCE * meant.amax()
+}
+
+/// What tells MuJoCo's compiler to compute all inertias from geoms, or to scale all masses to a total. Of several that
+/// state an attribute, it believes the last.
+fn overridden(tree: &Tree<'_>) -> Option<String> {
+    let said = |name: &'static str| Some((name, tree.said("compiler", name)?.trim()));
+    let from_geometry = said("inertiafromgeom").filter(|(_, told)| *told == "true");
+    // Without a total, and with one that is not positive, the masses stay.
+    let scaled = said("settotalmass")
+        .filter(|(_, told)| told.parse().is_ok_and(|total_kg: f64| total_kg > 0.0));
+    from_geometry.or(scaled).map(|(name, told)| format!("{name}=\"{told}\""))
 }
 
 /// Whether an inertia stands in a block of a URDF file for Gazebo alone.

@@ -742,3 +742,28 @@ fn a_second_inertia_of_a_link_is_not_another_link() {
         assert_eq!(found, [None, Some(&problem), None, None], "{name}");
     }
 }
+
+#[test]
+fn what_overrides_the_inertias_is_what_mujoco_believes() {
+    const FROM_GEOMETRY: Option<&str> = Some("inertiafromgeom=\"true\"");
+    // What MuJoCo 3 made of each of these files: the last of several compilers that state an attribute counts.
+    for (before, after, told) in [
+        ("", "", None),
+        ("inertiafromgeom='true'", "", FROM_GEOMETRY),
+        ("inertiafromgeom='true'", "angle='radian'", FROM_GEOMETRY),
+        ("inertiafromgeom='false'", "inertiafromgeom='true'", FROM_GEOMETRY),
+        ("inertiafromgeom='true'", "inertiafromgeom='false'", None),
+        ("inertiafromgeom='auto'", "", None),
+        ("settotalmass='5'", "", Some("settotalmass=\"5\"")),
+        ("settotalmass='0'", "", None),
+        ("settotalmass='5'", "settotalmass='-1'", None),
+        ("boundmass='2' boundinertia='2' balanceinertia='true'", "", None),
+    ] {
+        let text = format!(
+            "<mujoco><compiler {before}/><worldbody><body name='b'><inertial pos='0 0 0' mass='1' \
+             diaginertia='1 1 1'/><geom size='.1'/></body></worldbody><compiler {after}/></mujoco>"
+        );
+        let robot = RobotFile::parse(Path::new("robot.xml"), text.into_bytes()).unwrap();
+        assert_eq!(robot.overridden_by(), told, "{before} {after}");
+    }
+}

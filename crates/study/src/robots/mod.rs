@@ -99,8 +99,8 @@ impl<'a> RobotDraw<'a> {
     /// A name matches no link, or none can be drawn; the nominal numbers of one are those of no body; or the statements
     /// are refused.
     pub fn new(robot: &'a RobotFile, options: RobotDrawOptions) -> Result<Self, RobotDrawError> {
-        if robot.ignores_inertias() {
-            return Err(RobotDrawError::Ignored);
+        if let Some(told) = robot.overridden_by() {
+            return Err(RobotDrawError::Overridden { told: told.to_owned() });
         }
         let last = options.first.checked_add(options.draws).filter(|last| *last <= MOST);
         if last.is_none() {
@@ -292,12 +292,15 @@ pub enum RobotDrawError {
         /// Why the first of them cannot.
         why: String,
     },
-    /// MuJoCo takes no notice of the numbers.
+    /// MuJoCo does not use the numbers as they are written.
     #[error(
-        "the compiler of this file has inertiafromgeom=\"true\", so that MuJoCo takes no notice of the inertias in it: \
-         \"auto\", which is its default, uses them"
+        "the compiler of this file has {told}, so that MuJoCo does not use the masses and inertias as they are written: \
+         take it out of a copy of the file, and draw that"
     )]
-    Ignored,
+    Overridden {
+        /// The attribute, as it is written.
+        told: String,
+    },
     /// Numbers of links that are none.
     #[error("{links}: --links picks others")]
     Unreadable {
