@@ -746,7 +746,8 @@ fn a_second_inertia_of_a_link_is_not_another_link() {
 #[test]
 fn what_overrides_the_inertias_is_what_mujoco_believes() {
     const FROM_GEOMETRY: Option<&str> = Some("inertiafromgeom=\"true\"");
-    // What MuJoCo 3 made of each of these files: the last of several compilers that state an attribute counts.
+    // The last of several compilers that state an attribute counts, as the masses show that MuJoCo 4.0.0 compiles from such
+    // files. What the last file states raises or balances single numbers, and does not override all of them.
     for (before, after, told) in [
         ("", "", None),
         ("inertiafromgeom='true'", "", FROM_GEOMETRY),

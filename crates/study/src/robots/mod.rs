@@ -295,7 +295,7 @@ pub enum RobotDrawError {
     /// MuJoCo does not use the numbers as they are written.
     #[error(
         "the compiler of this file has {told}, so that MuJoCo does not use the masses and inertias as they are written: \
-         take it out of a copy of the file, and draw that"
+         remove this attribute in a copy of the file, and draw the copy"
     )]
     Overridden {
         /// The attribute, as it is written.
