@@ -303,6 +303,26 @@ fn a_run_is_replayed_into_a_folder() {
         shell.refused(&["replay", "--run", "1", "--out", "target/replay/peck-2003/naive-7"]);
     assert!(taken.contains("history.csv exists: --force replaces it"), "{taken}");
 
+    // A run that never began leaves no history of another one behind, and removes it with --force only. With this
+    // deviation, half of the first moments are negative.
+    let wild = shell.scenario("42.8518", "42000.0");
+    let into = ["--model", "naive", "--out", "target/replay/peck-2003/naive-7"];
+    let replay = |run: &str, more: &[&str]| {
+        let output = shell.run(&[&["replay", &wild, "--run", run], &into[..], more].concat());
+        (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let never = (0..9).map(|run| run.to_string()).find(|run| {
+        let other = shell.run(&["replay", &wild, "--run", run, "--model", "naive", "--out", run]);
+        String::from_utf8_lossy(&other.stdout).contains("it never began")
+    });
+    let never = never.expect("a run with a negative moment");
+    assert!(!shell.path().join(&never).exists(), "nothing to write");
+    assert_eq!(replay(&never, &[]).0, Some(2));
+    assert!(folder.join("history.csv").is_file());
+    let (code, page) = replay(&never, &["--force"]);
+    assert!(code == Some(0) && page.contains("no history"), "{page}");
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+
     // A scenario file has no table.
     let file = shell.scenario("runs = 5", "runs = 9");
     let output = shell.run(&["replay", &file, "--run", "8", "--out", "again"]);

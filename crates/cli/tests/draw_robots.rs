@@ -354,6 +354,19 @@ fn what_cannot_be_drawn_is_said() {
         let message = refused(&shell, arguments);
         assert!(message.contains(expected), "{arguments:?}: {message}");
     }
+    // What is drawn all the same.
+    let raised = ignored.replace("inertiafromgeom='true'", "boundmass='5'");
+    fs::write(shell.path("raised.xml"), raised).unwrap();
+    for output in [&["-o", "raised"][..], &[]] {
+        let same = ["draw", "raised.xml", "-n", "1", "--mass", "5%"];
+        let output = shell.run(&[&same[..], output].concat());
+        let all = [output.stdout, output.stderr].concat();
+        let told = String::from_utf8(all).unwrap();
+        assert!(
+            output.status.success() && told.contains("warning: the file has boundmass"),
+            "{told}"
+        );
+    }
     // Meshes that lead nowhere from the folder.
     let mesh = robot(&["base"], "urdf")
         .replace("<link name='root'/>", "<link name='root'><mesh filename='m.stl'/></link>");

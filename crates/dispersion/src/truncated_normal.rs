@@ -181,6 +181,10 @@ impl TruncatedNormal {
         if self.deviation == 0.0 {
             return self.anchor;
         }
+        // Where the window is open, the number that ends it for the integrals is no bound of the law.
+        if z.is_infinite() {
+            return self.bounds[usize::from(z > 0.0)];
+        }
         let [from, to] = self.ends;
         let z = self.sign * z;
         let (mut low, mut high) = (from, to);

@@ -26,6 +26,7 @@
 //! ```
 
 mod body;
+mod compiler;
 mod copy;
 mod csv;
 mod data;
@@ -59,6 +60,7 @@ mod xml;
 pub use gyradius_inertia::{Fault, RELATIVE_TOLERANCE, RealizabilityReport};
 
 pub use body::{Body, Products};
+pub use compiler::CompilerDoubt;
 pub use edit::is_same_but_numbers;
 pub use error::{Bearing, BodyError, FileError, FileProblem};
 pub use file::InertiaFile;

@@ -8,7 +8,8 @@ use std::{
 };
 
 use crate::{
-    Body, BodyError, Format, Gap, InertiaFile, LinkProblem, Products, RobotError,
+    Body, BodyError, CompilerDoubt, Format, Gap, InertiaFile, LinkProblem, Products, RobotError,
+    compiler,
     copy::edits,
     edit::{Edit, edited},
     frame::{self, Frame},
@@ -50,6 +51,7 @@ pub struct RobotFile {
     references: Vec<String>,
     /// Why MuJoCo does not use what is written.
     overridden: Option<String>,
+    doubts: Vec<CompilerDoubt>,
 }
 
 /// A link with an inertia, or why that cannot be told.
@@ -230,7 +232,8 @@ impl RobotFile {
             let defaults = if of_sdf { frame::defaults(node) } else { Vec::new() };
             links.push(RobotLink { name, line: body.line(), read, geometry, defaults });
         });
-        let overridden = (format == Format::Mjcf).then(|| overridden(&tree)).flatten();
+        let overridden = (format == Format::Mjcf).then(|| compiler::overridden(&tree)).flatten();
+        let doubts = compiler::doubts(&tree, format);
         let element = if format == Format::Mjcf { "body" } else { "link" };
         let without = tree
             .all(element)
@@ -238,7 +241,7 @@ impl RobotFile {
             .filter_map(|link| link.attribute("name").map(str::to_owned))
             .collect();
         let references = references::relative(&tree);
-        Ok(Self { links, without, references, overridden, file })
+        Ok(Self { links, without, references, overridden, doubts, file })
     }
 
     /// The path that was read.
@@ -296,6 +299,12 @@ impl RobotFile {
         self.overridden.as_deref()
     }
 
+    /// Why MuJoCo may use other numbers than those of the links, though nothing is known to override all of them.
+    #[must_use]
+    pub fn compiler_doubts(&self) -> &[CompilerDoubt] {
+        &self.doubts
+    }
+
     /// The bytes of a copy in which the links of these indices have other mass properties, in the links' frames, and
     /// everything else is as it was. Only numbers change, each written with as many digits as read back bit for bit,
     /// and of those only the ones that differ. What the file leaves to its defaults is written out where it must be,
@@ -345,17 +354,6 @@ fn is_that(numbers: &LinkNumbers, body: &MassProperties) -> bool {
     numbers.mass == body.mass_kg()
         && numbers.centre == body.mass_centre_m()
         && (read - meant).amax() <= RELATIVE_TOLERANCE * meant.amax()
-}
-
-/// What tells MuJoCo's compiler to compute all inertias from geoms, or to scale all masses to a total. Of several that
-/// state an attribute, it believes the last.
-fn overridden(tree: &Tree<'_>) -> Option<String> {
-    let said = |name: &'static str| Some((name, tree.said("compiler", name)?.trim()));
-    let from_geometry = said("inertiafromgeom").filter(|(_, told)| *told == "true");
-    // Without a total, and with one that is not positive, the masses stay.
-    let scaled = said("settotalmass")
-        .filter(|(_, told)| told.parse().is_ok_and(|total_kg: f64| total_kg > 0.0));
-    from_geometry.or(scaled).map(|(name, told)| format!("{name}=\"{told}\""))
 }
 
 /// Whether an inertia stands in a block of a URDF file for Gazebo alone.

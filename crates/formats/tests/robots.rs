@@ -768,3 +768,40 @@ fn what_overrides_the_inertias_is_what_mujoco_believes() {
         assert_eq!(robot.overridden_by(), told, "{before} {after}");
     }
 }
+
+#[test]
+fn what_mujoco_may_change_is_told() {
+    // Checked with MuJoCo 4.0.0: a mass of 1 kg comes out as 2 kg with boundmass="2" of an MJCF and of a URDF file, as 5 kg
+    // with settotalmass="5" of a URDF file and of an included one, and as 1 kg where the attribute is 0.
+    let inertial = "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/><geom size='.1'/>";
+    let mjcf = |more: &str| {
+        format!("<mujoco>{more}<worldbody><body name='b'>{inertial}</body></worldbody></mujoco>")
+    };
+    let urdf = |compiler: &str| {
+        format!(
+            "<robot name='r'><mujoco><compiler {compiler}/></mujoco><link name='b'><inertial><mass value='1'/><inertia \
+             ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link></robot>"
+        )
+    };
+    for (name, text, told) in [
+        ("r.xml", mjcf(""), &[][..]),
+        ("r.xml", mjcf("<compiler boundmass='0' boundinertia='-1' balanceinertia='true'/>"), &[]),
+        ("r.xml", mjcf("<compiler boundmass=' 2 '/>"), &["boundmass=\"2\""]),
+        (
+            "r.xml",
+            mjcf("<compiler boundmass='2' boundinertia='1e-3'/><include file='c.xml'/>"),
+            &["boundmass=\"2\"", "boundinertia=\"1e-3\"", "includes are not read"],
+        ),
+        ("r.urdf", urdf("fusestatic='true'"), &[]),
+        ("r.urdf", urdf("settotalmass='5' boundmass='2'"), &["settotalmass=\"5\"", "boundmass"]),
+        ("r.urdf", urdf("inertiafromgeom='true'"), &["inertiafromgeom=\"true\""]),
+    ] {
+        let robot = RobotFile::parse(Path::new(name), text.clone().into_bytes()).unwrap();
+        let found: Vec<String> = robot.compiler_doubts().iter().map(ToString::to_string).collect();
+        assert_eq!(robot.overridden_by(), None, "{text}");
+        assert_eq!(found.len(), told.len(), "{text}: {found:?}");
+        for (found, told) in found.iter().zip(told) {
+            assert!(found.contains(told), "{text}: {found}");
+        }
+    }
+}

@@ -1,13 +1,21 @@
 //! The law of plain statements about a body.
 
+use gyradius_dispersion::TenParameters;
 use gyradius_estimation::{StatedAmount, StatedBody, Statements};
-use gyradius_inertia::Region;
+use gyradius_inertia::{MassProperties, Region};
+use gyradius_study::as_written;
 use pyo3::{PyResult, Python, pyfunction};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::fmt::Display;
 
-use crate::{bodies::body, error::refused, json, laws::BodyCore, words::in_python};
+use crate::{
+    bodies::{body, ten},
+    error::refused,
+    json,
+    laws::BodyCore,
+    words::in_python,
+};
 
 /// Reads what is said of a part: an amount with its unit, or the table of a file.
 fn said<T: DeserializeOwned, E: Display>(
@@ -33,7 +41,17 @@ fn said<T: DeserializeOwned, E: Display>(
     Ok(Some(statement))
 }
 
-/// The joint law that statements make about a body, and the warnings.
+/// The nominal body that a file means by ten numbers, which rounding may have made impossible.
+fn written(numbers: &[f64; 10]) -> Result<MassProperties, String> {
+    body(numbers).or_else(|impossible| {
+        let ten = TenParameters::from_values(*numbers).map_err(|error| error.to_string())?;
+        let inertia = as_written(&ten.inertia).ok_or(impossible)?;
+        MassProperties::new(ten.mass_kg, ten.mass_centre_m, inertia)
+            .map_err(|error| error.to_string())
+    })
+}
+
+/// The joint law that statements make about a body, the warnings, and the nominal body that it is about.
 #[pyfunction]
 #[pyo3(signature = (nominal, mass, centre, moments, products, axes, sigmas, inside))]
 #[expect(clippy::too_many_arguments, reason = "one for each thing that can be said")]
@@ -47,7 +65,7 @@ pub(crate) fn stated_law(
     axes: Option<&str>,
     sigmas: f64,
     inside: Option<&str>,
-) -> PyResult<(BodyCore, Vec<String>)> {
+) -> PyResult<(BodyCore, Vec<String>, [f64; 10])> {
     let statements = Statements {
         mass: said("mass", mass, StatedAmount::mass, |amount| amount.mass_statement(sigmas))?,
         centre: said("centre", centre, StatedAmount::centre, |amount| {
@@ -62,13 +80,13 @@ pub(crate) fn stated_law(
         axes: said("axes", axes, StatedAmount::axes, |amount| amount.axes_statement(sigmas))?,
     };
     let region = inside.map(json::read::<Region>).transpose()?;
-    let nominal = body(&nominal).map_err(refused)?;
+    let nominal = written(&nominal).map_err(refused)?;
     py.detach(|| {
         let mut stated = StatedBody::new(&statements, &nominal).map_err(refused)?;
         if let Some(region) = region {
             stated = stated.inside(region).map_err(refused)?;
         }
         let warnings = stated.warnings().iter().map(ToString::to_string).collect();
-        Ok((BodyCore::joint_law(stated.law().clone()), warnings))
+        Ok((BodyCore::joint_law(stated.law().clone()), warnings, ten(nominal)))
     })
 }

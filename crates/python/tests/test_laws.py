@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable
 
 import numpy as np
@@ -415,3 +416,18 @@ def test_sigmas_of_dicts_and_texts_are_one(link: MassProperties) -> None:
             MassPropertiesLaw.joint(1.0, [0, 0, 0], **bad)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="inside"):
         gyradius.law(link, inside="box")  # type: ignore[arg-type]
+
+
+def test_a_plate_that_is_written_with_six_digits_is_drawn() -> None:
+    for moments, taken in ([1.0, 1.0, 2.000001], True), ([1.0, 1.0, 2.0001], False):
+        plate = MassProperties(1.0, [0.0, 0.0, 0.1], np.diag(moments))
+        if not taken:
+            with pytest.raises(ValueError, match="no body has this inertia"):
+                gyradius.law(plate, mass="5%")
+            continue
+        law = gyradius.law(plate, mass="5%", axes="2deg")
+        draws = law.rvs(100, rng=1, inset=True)
+        assert draws.is_realizable.all()
+        assert np.allclose(draws.inertia.mean(axis=0), plate.inertia, atol=0.02)
+        again = pickle.loads(pickle.dumps(law))
+        assert np.array_equal(again.rvs(100, rng=1, inset=True).inertia, draws.inertia)

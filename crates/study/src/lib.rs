@@ -98,7 +98,7 @@ pub use replay::{Replay, ReplayError, Which};
 pub use results::{Results, ResultsError};
 pub use robots::{
     Inside, LeftBecause, LinkSummary, RobotDraw, RobotDrawError, RobotDrawOptions, RobotFolder,
-    inset,
+    as_written, inset,
 };
 pub use rollup::{DrawnMoments, NaiveShares, Rollup, RollupDraws, RollupError, RollupOptions};
 pub use scenario::{Scenario, ScenarioError, parse_toml, whole_number};

@@ -216,6 +216,9 @@ fn left_as_they_are(robot: &RobotFile, draw: &RobotDraw<'_>) -> String {
     for gap in robot.gaps().iter().filter(|gap| gap.kind() != GapKind::Misplaced) {
         out += &format!("not drawn: {}:{}: {gap}\n", robot.path().display(), gap.line());
     }
+    for doubt in robot.compiler_doubts() {
+        out += &format!("warning: {doubt}\n");
+    }
     out
 }
 

@@ -205,6 +205,31 @@ proptest! {
     }
 }
 
+/// The quantiles at 0 and 1 are the bounds of what can be drawn, which are infinite where a law is open.
+#[test]
+fn the_outermost_quantiles_are_the_bounds() {
+    let truncated = |mean, low, high| ScalarLaw::truncated_normal(mean, 1.0, low, high);
+    for (law, bounds) in [
+        (ScalarLaw::normal(1.0, 2.0), [-INF, INF]),
+        (truncated(0.0, -INF, INF), [-INF, INF]),
+        (truncated(0.0, -INF, 2.0), [-INF, 2.0]),
+        (truncated(0.0, 1.0, INF), [1.0, INF]),
+        (truncated(0.0, -7.0, -4.0), [-7.0, -4.0]),
+        (truncated(0.0, -INF, -4.0), [-INF, -4.0]),
+        (truncated(0.0, 5.0, INF), [5.0, INF]),
+        (ScalarLaw::lognormal(1.0, 0.5), [0.0, INF]),
+        (ScalarLaw::weibull(1.0, 2.0, 3.0), [1.0, INF]),
+        (ScalarLaw::uniform(-1.0, 4.0), [-1.0, 4.0]),
+        (ScalarLaw::triangular(-1.0, 0.0, 4.0), [-1.0, 4.0]),
+        (ScalarLaw::beta(-1.0, 4.0, 2.0, 3.0), [-1.0, 4.0]),
+        (ScalarLaw::samples(&[3.0, 1.0, 2.0]), [1.0, 3.0]),
+        (ScalarLaw::bernoulli(0.3), [0.0, 1.0]),
+    ] {
+        let law = law.unwrap();
+        assert_eq!([law.quantile(0.0), law.quantile(1.0)], bounds, "{law:?}");
+    }
+}
+
 #[test]
 fn laws_without_width_stay_put() {
     for law in [

@@ -34,7 +34,8 @@ def law(
     Parameters
     ----------
     body : MassProperties
-        One body: the nominal one.
+        One body: the nominal one. A flat plate or a thin rod that rounding to six digits has made impossible is taken as the
+        nearest that a body can be.
     mass : str
         ± ``"5%"``, ``"0.2kg"`` or ``"30g"``.
     centre : str
@@ -84,7 +85,7 @@ def law(
             return form(name, value)
         raise ValueError(f'{name} = {value!r}: it must be a text with a unit, such as "5%", or a dict as in a file')
 
-    core, warnings = _core.stated_law(
+    core, warnings, nominal = _core.stated_law(
         ten_of(body),
         said("mass", mass),
         said("centre", centre),
@@ -94,7 +95,7 @@ def law(
         real("sigmas", sigmas),
         None if inside is None else json.dumps(inside.form),
     )
-    return _stated(core, core.form(), tuple(warnings), ten_of(body))
+    return _stated(core, core.form(), tuple(warnings), tuple(nominal))
 
 
 class StatedLaw(MassPropertiesLaw):

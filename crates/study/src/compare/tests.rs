@@ -258,3 +258,29 @@ fn what_is_in_the_way_of_a_figure_is_found_before_the_draws() {
         assert!(error.to_string().contains(name), "{error}");
     }
 }
+
+/// The deviation of the rotation vectors, rad, that docs/compare.md states for the axes of the reference.
+#[test]
+fn the_axes_of_the_reference_turn_as_far_as_is_said() {
+    let body = NominalBody::known(None).unwrap().remove(0);
+    for (level, expected) in [(0.01, 0.01), (0.05, 0.05), (0.2, 0.2), (0.5, 0.41), (1.0, 0.50)] {
+        let law = reference::principal(body.inertia(), level).unwrap();
+        let nominal = body.inertia().principal_axes().attitude();
+        let mut rng = ChaCha8Rng::seed_from_u64(11);
+        const N: u32 = 40_000;
+        let mut squares = [0.0; 3];
+        for _ in 0..N {
+            let turn = (nominal.inverse() * law.axes().sample(&mut rng)).scaled_axis();
+            for (sum, angle) in squares.iter_mut().zip(turn.iter()) {
+                *sum += angle * angle;
+            }
+        }
+        for sum in squares {
+            let found = (sum / f64::from(N)).sqrt();
+            assert!(
+                (found / expected - 1.0).abs() < 0.025,
+                "{level}: {found} rad, {expected} stated"
+            );
+        }
+    }
+}

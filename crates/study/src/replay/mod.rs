@@ -192,21 +192,33 @@ impl Replay {
     }
 
     /// Writes the history as a table and as a figure, and the animation: `history.csv`, `history.svg`,
-    /// `animation.html`; returns what it wrote, nothing if the run never began. A file that is there
-    /// with the same content is left alone; a link is neither followed nor replaced.
+    /// `animation.html`; returns what it wrote. A file that is there with the same content is left alone; a
+    /// link is neither followed nor replaced. If the run never began, there is nothing to write, and what is
+    /// there of another run is removed.
     ///
     /// # Errors
-    /// A file is there with other content and `force` is not set, or cannot be written.
+    /// A file is there with other content and `force` is not set, or cannot be written or removed.
     pub fn write(&self, folder: &Path, force: bool) -> Result<Vec<PathBuf>, ReplayError> {
+        let [table, figure, animation] =
+            ["history.csv", "history.svg", "animation.html"].map(|name| folder.join(name));
         if self.history.moments.is_empty() {
+            let mut old = Vec::new();
+            for path in [table, figure, animation] {
+                if fs::symlink_metadata(&path).is_ok() {
+                    must_write(&path, &[], force)?;
+                    old.push(path);
+                }
+            }
+            for path in old {
+                fs::remove_file(&path).map_err(|error| WriteError::Io { path, error })?;
+            }
             return Ok(Vec::new());
         }
         let files = [
-            ("history.csv", self.history.csv(self.scenario.spin_axis())),
-            ("history.svg", picture::svg(self)),
-            ("animation.html", page::html(self)),
-        ]
-        .map(|(name, content)| (folder.join(name), content));
+            (table, self.history.csv(self.scenario.spin_axis())),
+            (figure, picture::svg(self)),
+            (animation, page::html(self)),
+        ];
         // All are looked at before the first is written.
         for (path, content) in &files {
             must_write(path, content.as_bytes(), force)?;

@@ -12,7 +12,7 @@ use gyradius_formats::{
     Format, LinkNumbers, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE, WriteError,
     judge,
 };
-use gyradius_inertia::{Inertia, MassProperties, Region, Repair, RepairMethod};
+use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Region, Repair, RepairMethod};
 use nalgebra::Matrix3;
 use rand_distr::Distribution;
 use std::sync::{Arc, atomic::AtomicBool};
@@ -246,15 +246,20 @@ pub fn inset(drawn: MassProperties, nominal: &MassProperties) -> MassProperties 
     moved.unwrap_or(drawn)
 }
 
-/// The nominal body of a link, or the nearest where rounding to six digits has made it impossible.
 fn nominal(numbers: &LinkNumbers) -> Option<MassProperties> {
-    let inertia = Inertia::try_from(*numbers.inertia()).ok().or_else(|| {
-        let matrix = numbers.inertia();
-        let within = judge(matrix.matrix(), None, TOLERANCE).report().is_realizable();
-        let near = within.then(|| Repair::new(matrix, RepairMethod::Nearest).ok())?;
+    let inertia = as_written(numbers.inertia())?;
+    MassProperties::new(numbers.mass_kg(), numbers.mass_centre_m(), inertia).ok()
+}
+
+/// The inertia that a file means by these numbers: themselves, or the nearest that a body can have where rounding to six digits has
+/// made them impossible, as it does with flat plates and thin rods. None where more than rounding has.
+#[must_use]
+pub fn as_written(numbers: &InertiaMatrix) -> Option<Inertia> {
+    Inertia::try_from(*numbers).ok().or_else(|| {
+        let within = judge(numbers.matrix(), None, TOLERANCE).report().is_realizable();
+        let near = within.then(|| Repair::new(numbers, RepairMethod::Nearest).ok())?;
         near.map(|near| *near.inertia())
-    });
-    MassProperties::new(numbers.mass_kg(), numbers.mass_centre_m(), inertia?).ok()
+    })
 }
 
 /// The inertia moved inside by as much as it lies nearer to the boundary than [`INSET`]; nothing if it need not move.
