@@ -102,8 +102,8 @@ pub use external::{
 };
 pub use failure::Failure;
 pub use folder::{
-    Block, Blocks, Contents, Folder, FolderError, MANIFEST, Manifest, Reduced, Shared, begun,
-    folder_of, missing_runs, restore, restore_all, told,
+    Block, Blocks, Contents, Folder, FolderError, HIDDEN, MANIFEST, Manifest, Reduced, Shared,
+    begun, folder_of, missing_runs, restore, restore_all, told,
 };
 pub use forecast::{Forecast, rough_size, rough_time};
 pub use foreign::{Columns, ForeignError, ForeignTable};

@@ -255,6 +255,7 @@ fn what_is_no_file_is_told() {
         ("touch output.json", "`output.json` is empty"),
         ("echo > output.json", "`output.json` is empty"),
         ("echo hi > output.json", "`output.json` does not hold a JSON object as agreed: "),
+        ("echo '[0, {}, null]' > output.json", "as agreed: it is a list"),
     ] {
         let simulator = simulator(&format!("{GONE}{mischief}\nexit 0"), true, 60.0);
         let outputs = simulation(&simulator, BTreeSet::from([0]), 0).replay(0).outputs;

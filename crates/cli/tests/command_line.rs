@@ -94,8 +94,20 @@ fn help_has_examples_and_is_no_error() {
 fn bad_flags_are_refused() {
     let shell = Shell::new();
     assert!(shell.refused(&["study", "--runs", "0"]).contains("runs: 0: it must be between 1"));
-    assert!(shell.refused(&["study", "--runs", "-3"]).contains("-3"));
-    assert!(shell.refused(&["study", "--runs", "many"]).contains("many"));
+    for (flag, value) in [
+        ("--runs", "-3"),
+        ("--runs", "many"),
+        ("--seed", "-1"),
+        ("--drivers", "-3"),
+        ("--threads", "x"),
+        ("--threads", "-2"),
+    ] {
+        let message = shell.refused(&["study", flag, value]);
+        let named = message.contains(flag) && message.contains(&format!("'{value}'"));
+        assert!(named && message.contains("it must be a whole number"), "{message}");
+    }
+    let message = shell.refused(&["study", "--max-failed", "-1"]);
+    assert!(message.contains("'-1' for '--max-failed <SHARE>': it must lie between"), "{message}");
     assert!(shell.refused(&["study", "--threads", "0"]).contains("threads: 0: it must be between"));
     assert!(shell.refused(&["study", "--seed", "18446744073709551615"]).contains("seed: 184467"));
     assert!(shell.refused(&["study", "--wibble"]).contains("--wibble"));
@@ -206,6 +218,26 @@ fn unwritable_places_are_refused_before_any_work() {
     let message = shell.refused(&["study", "--out", "file/below"]);
     assert!(message.contains("output folder file/below: it cannot be written"), "{message}");
     assert_eq!(fs::read_to_string(shell.path().join("file")).unwrap(), "not a folder");
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("nowhere", shell.path().join("link")).unwrap();
+        let message = shell.refused(&["study", "--out", "link"]);
+        assert!(
+            message.contains("output folder link: it is a link that leads nowhere"),
+            "{message}"
+        );
+    }
+    // A copy without what tells the files of a study from others.
+    assert!(shell.run(&["study", "--runs", "2", "--out", "whole"]).status.success());
+    fs::create_dir(shell.path().join("copy")).unwrap();
+    for name in ["campaign.json", "scenario.toml", "summary.json"] {
+        let from = shell.path().join("whole").join(name);
+        fs::copy(from, shell.path().join("copy").join(name)).unwrap();
+    }
+    for verb in [&["status", "copy"][..], &["study", "--runs", "2", "--out", "copy"]] {
+        let message = shell.refused(verb);
+        assert!(message.contains("a copy without the folder .gyradius"), "{message}");
+    }
 }
 
 /// A user's own files in a study's folder survive the same study being run again.

@@ -297,7 +297,7 @@ pub enum ScalarLawError {
         value: f64,
     },
     /// A number without unit, or a scale, is out of range.
-    #[error("{field} = {value:?}: it must be between {low:?} and {high:?}")]
+    #[error("{field} = {value:?}: it must be {}", allowed(*low, *high))]
     Shape {
         /// Which.
         field: &'static str,
@@ -386,6 +386,16 @@ impl ScalarLawError {
             Self::Probability { .. } => Some("probability"),
             Self::Missing { key: field, .. } | Self::Shape { field, .. } => Some(field),
         }
+    }
+}
+
+/// What a number must be that has to lie from one bound to another, either of which may be infinite.
+fn allowed(low: f64, high: f64) -> String {
+    match (low.is_finite(), high.is_finite()) {
+        (true, true) => format!("between {low:?} and {high:?}"),
+        (true, false) => format!("a finite number of at least {low:?}"),
+        (false, true) => format!("a finite number of at most {high:?}"),
+        (false, false) => "a finite number".to_owned(),
     }
 }
 

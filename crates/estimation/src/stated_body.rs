@@ -7,7 +7,7 @@ use gyradius_inertia::{MassProperties, Region};
 use rand::Rng;
 use rand_distr::Distribution;
 
-use crate::{StatedModel, StatementError, StatementWarning, Statements};
+use crate::{StatedModel, StatementError, StatementWarning, Statements, statements::MASSES_KG};
 
 /// The joint law of mass, mass centre and inertia that statements make about a nominal body.
 ///
@@ -57,7 +57,7 @@ impl StatedBody {
     /// The nominal body is out of range, or the statements are refused.
     pub fn new(statements: &Statements, nominal: &MassProperties) -> Result<Self, StatementError> {
         let kilograms = nominal.mass_kg();
-        if !(1e-30..=1e30).contains(&kilograms) {
+        if !MASSES_KG.contains(&kilograms) {
             return Err(StatementError::Mass { value: kilograms });
         }
         let inertia = nominal.inertia();

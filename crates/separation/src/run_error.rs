@@ -45,7 +45,7 @@ pub enum RunError {
     /// So many steps that the motion must be far faster than the springs are.
     #[error(
         "{steps} steps have led to {time:?} s only, at a relative tolerance of {relative_tolerance:e}: \
-         the bodies turn too fast for their springs"
+         the bodies turn too fast to be followed for so long"
     )]
     TooManySteps {
         /// Steps.

@@ -26,6 +26,11 @@ struct Outputs<'a>(Vec<(Cow<'a, str>, &'a RawValue)>);
 
 /// The numbers of the declared outputs, in their order, in the answer to a run.
 pub(super) fn read(answer: &[u8], run: u64, outputs: &[Column]) -> Result<Vec<f64>, Trouble> {
+    // Serde would take a list for the fields in their order.
+    if answer.trim_ascii_start().starts_with(b"[") {
+        let problem = "it is a list".to_owned();
+        return Err(Trouble::NotJson { problem, line: answer.to_vec() });
+    }
     let parsed: Answer<'_> = serde_json::from_slice(answer).map_err(|error| {
         match not_a_number(answer) {
             // Python writes these, which JSON does not know.

@@ -35,6 +35,7 @@ pub use blocks::Blocks;
 use hidden::Hidden;
 use journal::{Journal, Left, Replacement};
 pub use manifest::{Block, MANIFEST, Manifest};
+pub use name::HIDDEN;
 use name::{Found, Name, look};
 use record::Record;
 pub use shared::Shared;
@@ -130,7 +131,6 @@ impl<'a> Folder<'a> {
         force: bool,
     ) -> Result<Self, FolderError> {
         let refused = |problem: Problem| FolderError { path: place.to_owned(), problem };
-        let unwritable = |error: io::Error| refused(error.into());
         let made = !place.exists();
         if !made && !place.is_dir() {
             return Err(refused(Problem::NoFolder));
@@ -139,7 +139,7 @@ impl<'a> Folder<'a> {
             // Before the first file is made in a folder that is not this program's.
             check(place, contents, &Record::default(), force).map_err(refused)?;
         }
-        make_folder(place).map_err(unwritable)?;
+        make_folder(place).map_err(refused)?;
         let hidden = Hidden::lock(place).map_err(|problem| {
             if made {
                 // Goes only if empty.
@@ -253,9 +253,12 @@ impl Drop for Folder<'_> {
 }
 
 /// Makes a folder and those above it, and brings their names to the disk.
-fn make_folder(place: &Path) -> io::Result<()> {
+fn make_folder(place: &Path) -> Result<(), Problem> {
     let missing: Vec<_> = place.ancestors().take_while(|above| !above.exists()).collect();
-    fs::create_dir_all(place)?;
+    fs::create_dir_all(place).map_err(|error| {
+        let leads_nowhere = place.is_symlink() && !place.exists();
+        if leads_nowhere { Problem::Link } else { error.into() }
+    })?;
     for made in missing {
         disk::sync_folder(folder_of(made))?;
     }
@@ -328,7 +331,7 @@ fn check(
 ) -> Result<(), Problem> {
     let mut occupied = false;
     for entry in fs::read_dir(place)? {
-        occupied |= entry?.file_name() != name::HIDDEN;
+        occupied |= entry?.file_name() != HIDDEN;
     }
     let (folders, files): (Vec<_>, Vec<_>) =
         contents.certain.iter().partition(|name| name.ends_with('/'));
@@ -417,11 +420,15 @@ pub(crate) enum Problem {
     Stopped,
     #[error("it is not a folder")]
     NoFolder,
+    #[error("it is a link that leads nowhere")]
+    Link,
     #[error("something else is being written there")]
     Busy,
     #[error(
-        "it already holds another {what} or other files; choose another folder with --out, or pass \
-         --force to replace what a {what} wrote there"
+        "it already holds another {what} or other files, or a copy without the folder {}, which tells what files \
+         are its own; choose another folder with --out, or pass \
+         --force to replace what a {what} wrote there",
+        HIDDEN
     )]
     Occupied { what: &'static str },
     #[error(

@@ -10,8 +10,8 @@ use std::{
 
 use crate::hash::sha256_of_file;
 
-/// The folder in which this module keeps what it knows of the one above it.
-pub(super) const HIDDEN: &str = ".gyradius";
+/// The folder in a campaign's folder that tells which files are the campaign's own.
+pub const HIDDEN: &str = ".gyradius";
 
 /// A file below a folder: plain parts with `/` between them, none of which leads out of it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -36,7 +36,7 @@ impl Shared {
         }
         let failed = |problem: Problem| FolderError { path: place.to_owned(), problem };
         for _ in 0..TRIES {
-            super::make_folder(place).map_err(|error| failed(error.into()))?;
+            super::make_folder(place).map_err(failed)?;
             match Hidden::share(place) {
                 Err(Problem::Busy) => thread::sleep(WAIT),
                 Err(problem) => return Err(failed(problem)),

@@ -165,13 +165,14 @@ impl Gathering {
         })
     }
 
-    /// How far the number that is the bound of the share is beyond the limit.
-    pub(super) fn excess_allowed(&self) -> Result<Option<f64>, StatisticsError> {
+    /// The bound of the share, and how far it is beyond the limit.
+    pub(super) fn bound_of_share(&self) -> Result<Option<(Bound, f64)>, StatisticsError> {
         let Some(rank) = self.rank()? else { return Ok(None) };
         let bound = self.requirement.bound();
         Ok(match &self.excess {
-            Some(excess) => excess.order_statistic(rank),
-            None => self.numbers.order_statistic(rank).map(|x| bound.excess(x)),
+            Some(excess) => excess.order_statistic(rank).map(|by| (bound.wider(by), by)),
+            // The number itself: a limit that is far from all of them would take its digits.
+            None => self.numbers.order_statistic(rank).map(|x| (bound.at(x), bound.excess(x))),
         })
     }
 }

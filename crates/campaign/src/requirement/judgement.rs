@@ -177,10 +177,10 @@ impl Judgement {
         let Gathering { requirement, tally, numbers, .. } = gathering;
         let [failures, counted] = tally.failures_of_counted(requirement.failed_runs());
         let deciding = gathering.deciding()?;
-        let excess = gathering.excess_allowed()?;
+        let bound = gathering.bound_of_share()?;
         let moments = numbers.moments();
         let standard_deviation = moments.map(Moments::standard_deviation);
-        let margin = excess.map(|excess| 0.0 - excess);
+        let margin = bound.map(|(_, excess)| 0.0 - excess);
         Ok(Self {
             requirement: requirement.clone(),
             looks: gathering.looks(),
@@ -192,7 +192,7 @@ impl Judgement {
             allowed_failures: deciding.allowed_failures(counted),
             share: (counted > 0).then(|| (counted - failures) as f64 / counted as f64),
             share_interval: deciding.kept(failures, counted)?,
-            tolerance: excess.map(|excess| requirement.bound().wider(excess)),
+            tolerance: bound.map(|(bound, _)| bound),
             margin,
             margin_deviations: margin
                 .zip(standard_deviation.filter(|s| *s > 0.0))

@@ -246,6 +246,15 @@ impl Bound {
         }
     }
 
+    /// The same kind of bound, as near as a number can be to keep it.
+    pub(crate) fn at(self, x: f64) -> Self {
+        match self {
+            Self::AtMost(_) => Self::AtMost(x),
+            Self::AtLeast(_) => Self::AtLeast(x),
+            Self::Between(..) => self.wider(self.excess(x)),
+        }
+    }
+
     /// With its limits in five digits.
     fn short(self) -> Self {
         let short = |x: f64| format!("{x:.4e}").parse().unwrap_or(x);

@@ -170,15 +170,15 @@ pub(crate) struct StudyArgs {
     pub(crate) scenario: Option<PathBuf>,
 
     /// Runs of each model [default: as in the scenario]
-    #[arg(long, value_name = "N", value_parser = whole)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) runs: Option<u64>,
 
     /// Vehicles, in the place of runs, of a scenario with vehicles and flights [default: as in the scenario]
-    #[arg(long, value_name = "V", value_parser = whole, conflicts_with = "runs")]
+    #[arg(long, value_name = "V", allow_negative_numbers = true, value_parser = whole, conflicts_with = "runs")]
     pub(crate) vehicles: Option<u64>,
 
     /// Seed of all random numbers [default: as in the scenario]
-    #[arg(long, value_name = "S", value_parser = whole)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) seed: Option<u64>,
 
     /// Folder to write [default: target/study/<scenario name>]
@@ -186,7 +186,7 @@ pub(crate) struct StudyArgs {
     pub(crate) out: Option<PathBuf>,
 
     /// Number of threads [default: one for each core]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: Option<usize>,
 
     /// Replace another study in the folder: the files that it wrote, and nothing else
@@ -213,14 +213,14 @@ pub(crate) struct StudyArgs {
     pub(crate) until: Option<StoppingRule>,
 
     /// Runs before the first look of --until, and between the first of them [default: 1000, or 256 of a simulator]
-    #[arg(long, value_name = "N", value_parser = whole, requires = "until")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole, requires = "until")]
     pub(crate) look_every: Option<u64>,
 
     /// Find what drives the outcome, by so many base runs of each model: Sobol' indices of the groups of inputs, in the report
     ///
     /// Each base run is done once for each group of inputs that are drawn independently, and twice more. 1000 tell the large
     /// ones from the small ones.
-    #[arg(long, value_name = "N", value_parser = whole, conflicts_with = "shard")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole, conflicts_with = "shard")]
     pub(crate) drivers: Option<u64>,
 
     /// Do only a share of the runs, as 2/8, while other processes do the others: `gyradius report` puts them together
@@ -246,7 +246,7 @@ pub(crate) struct StudyArgs {
     pub(crate) quiet: bool,
 
     /// Largest share of the runs of a model that may fail, as 0.05 or 5%, for exit code 0
-    #[arg(long, value_name = "SHARE", default_value = "50%", value_parser = share)]
+    #[arg(long, allow_negative_numbers = true, value_name = "SHARE", default_value = "50%", value_parser = share)]
     pub(crate) max_failed: f64,
 }
 
@@ -291,7 +291,7 @@ pub(crate) struct RareArgs {
     pub(crate) model: Option<String>,
 
     /// Seed of all random numbers [default: as in the scenario]
-    #[arg(long, value_name = "S", value_parser = whole)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) seed: Option<u64>,
 
     /// Method
@@ -299,16 +299,16 @@ pub(crate) struct RareArgs {
     pub(crate) method: RareMethodArg,
 
     /// Runs of a level, 100 or more
-    #[arg(long, value_name = "N", value_parser = whole, default_value_t = RareOptions::default().per_level as u64)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole, default_value_t = RareOptions::default().per_level as u64)]
     pub(crate) per_level: u64,
 
-    #[arg(long, value_name = "R", value_parser = whole, help = format!(
+    #[arg(long, value_name = "R", allow_negative_numbers = true, value_parser = whole, help = format!(
         "Independent repetitions of a subset simulation, from which the interval is found, 2 or more [default: {}]",
         RareMethod::REPLICAS
     ))]
     pub(crate) replicas: Option<u64>,
 
-    #[arg(long, value_name = "N", value_parser = whole, help = format!(
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole, help = format!(
         "Runs of the sample of importance sampling, 100 or more [default: {}]",
         RareMethod::SAMPLE
     ))]
@@ -319,7 +319,7 @@ pub(crate) struct RareArgs {
     pub(crate) least: f64,
 
     /// Number of threads [default: one for each core]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: Option<usize>,
 
     /// Write JSON, for other programs
@@ -362,15 +362,15 @@ pub(crate) struct SlurmArgs {
     pub(crate) scenario: Option<PathBuf>,
 
     /// Runs of each model [default: as in the scenario]
-    #[arg(long, value_name = "N", value_parser = whole)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) runs: Option<u64>,
 
     /// Vehicles, in the place of runs, of a scenario with vehicles and flights [default: as in the scenario]
-    #[arg(long, value_name = "V", value_parser = whole, conflicts_with = "runs")]
+    #[arg(long, value_name = "V", allow_negative_numbers = true, value_parser = whole, conflicts_with = "runs")]
     pub(crate) vehicles: Option<u64>,
 
     /// Seed of all random numbers [default: as in the scenario]
-    #[arg(long, value_name = "S", value_parser = whole)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) seed: Option<u64>,
 
     /// Folder of the study, on a file system that all nodes have in common
@@ -430,11 +430,11 @@ pub(crate) struct ReplayArgs {
     pub(crate) run: Option<u64>,
 
     /// In the place of --run: which vehicle of a scenario with vehicles, from 0
-    #[arg(long, value_name = "V", value_parser = whole, requires = "flight", conflicts_with = "run")]
+    #[arg(long, value_name = "V", allow_negative_numbers = true, value_parser = whole, requires = "flight", conflicts_with = "run")]
     pub(crate) vehicle: Option<u64>,
 
     /// Which flight of the vehicle, from 0
-    #[arg(long, value_name = "F", value_parser = whole, requires = "vehicle")]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = whole, requires = "vehicle")]
     pub(crate) flight: Option<u64>,
 
     /// Which model [default: the first of the scenario]
@@ -461,11 +461,11 @@ pub(crate) struct DrawArgs {
     pub(crate) scenario: Option<PathBuf>,
 
     /// Runs of each model; 0 for the columns alone [default: as in the scenario]. Of a robot: how many
-    #[arg(short = 'n', long, value_name = "N", value_parser = whole)]
+    #[arg(short = 'n', long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) runs: Option<u64>,
 
     /// The first run, or the first robot
-    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole)]
+    #[arg(long, value_name = "K", default_value_t = 0, allow_negative_numbers = true, value_parser = whole)]
     pub(crate) first: u64,
 
     /// Which model; may be given several times [default: all of the scenario, one after the other]
@@ -473,7 +473,7 @@ pub(crate) struct DrawArgs {
     pub(crate) models: Vec<String>,
 
     /// Seed of all random numbers [default: as in the scenario; 0 of a robot]
-    #[arg(long, value_name = "S", value_parser = whole)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) seed: Option<u64>,
 
     #[command(flatten)]
@@ -500,7 +500,7 @@ pub(crate) struct DrawArgs {
     pub(crate) force: bool,
 
     /// Number of threads [default: one for each core]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: Option<usize>,
 }
 
@@ -667,19 +667,19 @@ pub(crate) struct CompareArgs {
     pub(crate) models: Vec<ModelKind>,
 
     /// Draws of each model about each body at each level
-    #[arg(long, value_name = "N", default_value_t = CompareOptions::default().draws, value_parser = whole)]
+    #[arg(long, value_name = "N", default_value_t = CompareOptions::default().draws, allow_negative_numbers = true, value_parser = whole)]
     pub(crate) draws: u64,
 
     /// How many of the draws are separated [default: 150, or all draws if they are fewer]
-    #[arg(long, value_name = "N", value_parser = whole)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) separations: Option<u64>,
 
     /// Seed of all random numbers
-    #[arg(long, value_name = "S", default_value_t = CompareOptions::default().seed, value_parser = whole)]
+    #[arg(long, value_name = "S", default_value_t = CompareOptions::default().seed, allow_negative_numbers = true, value_parser = whole)]
     pub(crate) seed: u64,
 
     /// Number of threads [default: one for each core]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: Option<usize>,
 
     /// Form of the output
@@ -728,11 +728,11 @@ pub(crate) struct RollupArgs {
     pub(crate) products: Option<Sign>,
 
     /// How many draws of the whole; 0 leaves first order alone
-    #[arg(short = 'n', long, value_name = "N", default_value = "100000", value_parser = whole)]
+    #[arg(short = 'n', long, value_name = "N", default_value = "100000", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) draws: u64,
 
     /// Seed of all random numbers
-    #[arg(long, value_name = "S", default_value_t = 2003, value_parser = whole)]
+    #[arg(long, value_name = "S", default_value_t = 2003, allow_negative_numbers = true, value_parser = whole)]
     pub(crate) seed: u64,
 
     /// Form of the report
@@ -748,7 +748,7 @@ pub(crate) struct RollupArgs {
     pub(crate) force: bool,
 
     /// Number of threads [default: one for each core]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = threads)]
     pub(crate) threads: Option<usize>,
 }
 
@@ -782,12 +782,14 @@ fn whole(text: &str) -> Result<u64, String> {
     let digits = text.replace('_', "");
     let grouped = text.split('_').all(|part| !part.is_empty());
     let float = || digits.parse().ok().and_then(gyradius_study::whole_number);
-    digits
-        .parse()
-        .ok()
-        .or_else(float)
-        .filter(|_| grouped)
-        .ok_or_else(|| "it must be a whole number, as 1000000, 1_000_000 or 1e6".to_owned())
+    digits.parse().ok().or_else(float).filter(|_| grouped).ok_or_else(|| {
+        "it must be a whole number, which is not negative, as 1000000, 1_000_000 or 1e6".to_owned()
+    })
+}
+
+/// A number of threads.
+fn threads(text: &str) -> Result<usize, String> {
+    whole(text)?.try_into().map_err(|_| "it must be at most 1024".to_owned())
 }
 
 /// A share: 0.05 or 5%.

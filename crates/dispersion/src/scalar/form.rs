@@ -1,7 +1,7 @@
 //! Scalar laws as they stand in files: in scenarios, fragments and JSON.
 
 use super::parameters::{Given, Of, Value};
-use super::{ScalarLaw, ScalarLawError};
+use super::{ScalarLaw, ScalarLawError, allowed};
 
 /// A law of one number as it stands in a file: a number, which is the standard deviation of a normal law, or a
 /// table with `law` (`"normal"` if it is not given) and the keys of the law.
@@ -151,7 +151,7 @@ impl ScalarLawForm {
             } else {
                 ""
             };
-            let problem = format!("{value:?}: it must be between {low:?} and {high:?}{more}");
+            let problem = format!("{value:?}: it must be {}{more}", allowed(low, high));
             let key = if self.bare { None } else { Some(key) };
             Err(Refused { inner: ScalarLawFormError { key, problem }, made: false })
         };

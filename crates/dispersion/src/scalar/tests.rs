@@ -293,7 +293,10 @@ fn serde_goes_through_the_constructors() {
         assert_eq!(serde_json::from_str::<ScalarLaw>(&json).unwrap(), law, "{json}");
     }
     for (text, problem) in [
-        (r#"{"law":"normal","mean":0.0,"sigma":-1.0}"#, "sigma: -1.0: it must be between"),
+        (
+            r#"{"law":"normal","mean":0.0,"sigma":-1.0}"#,
+            "sigma: -1.0: it must be a finite number of at least 0.0",
+        ),
         (
             r#"{"mean":0.0,"sigma":1.0,"variance":1.0}"#,
             "variance = 1.0: it must not be negative, and",

@@ -27,6 +27,8 @@ pub use parts::{
 pub use stated_model::{StatedMass, StatedModel};
 pub use warnings::{MissedBecause, StatementWarning};
 
+/// The masses of nominal bodies, kg.
+pub(crate) const MASSES_KG: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 /// Traces whose squares, which variances are, do not overflow.
 const TRACES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
@@ -117,7 +119,7 @@ impl Statements {
         if !TRACES.contains(&trace) {
             return Err(StatementError::Nominal { trace });
         }
-        if let Some(value) = mass_kg.filter(|m| !(*m > 0.0 && *m <= 1e30)) {
+        if let Some(value) = mass_kg.filter(|m| !MASSES_KG.contains(m)) {
             return Err(StatementError::Mass { value });
         }
         let mass = self.mass.map(|mass| mass.relative(mass_kg)).transpose()?;

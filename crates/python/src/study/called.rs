@@ -5,7 +5,7 @@ use pyo3::{
     Bound, Py, PyAny, PyErr, PyResult, Python,
     exceptions::PyException,
     types::{
-        PyAnyMethods, PyDict, PyDictMethods, PyListMethods, PyMapping, PyMappingMethods,
+        PyAnyMethods, PyDict, PyDictMethods, PyInt, PyListMethods, PyMapping, PyMappingMethods,
         PyTypeMethods,
     },
 };
@@ -87,7 +87,10 @@ fn output(item: &Bound<'_, PyAny>) -> PyResult<(String, f64)> {
         wrong(format!("the name of an output is {}: it must be a text", type_name(&name)))
     })?;
     let number = value.extract().map_err(|_| {
-        wrong(format!("the output `{name}` is {}: it must be a number", type_name(&value)))
+        // A whole number of any length is a number too.
+        let problem =
+            if value.is_instance_of::<PyInt>() { "a number below 1e308" } else { "a number" };
+        wrong(format!("the output `{name}` is {}: it must be {problem}", type_name(&value)))
     })?;
     Ok((name, number))
 }

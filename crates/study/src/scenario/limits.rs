@@ -86,6 +86,12 @@ pub(super) fn check(file: &ScenarioFile) -> Result<(), ScenarioError> {
 }
 
 /// That numbers are not beyond their limit. What is no number is refused where it is used.
+/// That the mass of a body is not too large.
+pub(crate) fn largest_mass(place: &str, mass_kg: f64) -> Result<(), ScenarioError> {
+    let mass = BodyParameter::Mass;
+    mass.given().most().map_or(Ok(()), |most| size(place, &mass.key(), &[mass_kg], most))
+}
+
 fn size(place: &str, key: &str, values: &[f64], most: f64) -> Result<(), ScenarioError> {
     if let Some(i) = values.iter().position(|x| x.abs() > most) {
         let index = if values.len() > 1 { format!("[{}]", i + 1) } else { String::new() };

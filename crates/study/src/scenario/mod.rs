@@ -43,7 +43,7 @@ pub(crate) use file::{
 pub(crate) use frame::{Framed, check_name, check_seed, default_seed, framed, framed_file};
 pub(crate) use joint::{Dispersed, Joint, Number, Target};
 pub(crate) use law::{GivenLaw, refused};
-pub(crate) use limits::base_runs;
+pub(crate) use limits::{base_runs, largest_mass};
 pub(crate) use list::List;
 pub(crate) use load::Uncertain;
 pub(crate) use model::{Comparison, Law, ModelSpec, check_models, place};

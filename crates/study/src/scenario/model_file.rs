@@ -107,7 +107,8 @@ impl TryFrom<String> for ModelLaw {
         if name == OUTSIDE {
             return Ok(Self::Outside);
         }
-        name.parse().map(Self::Kind).map_err(|error: UnknownModel| format!("{error}, {OUTSIDE}"))
+        // What only a program can give is no choice for a file that somebody writes.
+        name.parse().map(Self::Kind).map_err(|error: UnknownModel| error.to_string())
     }
 }
 

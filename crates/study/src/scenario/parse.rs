@@ -28,6 +28,9 @@ pub fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     let values: toml::Table = toml::from_str(text).map_err(|error| {
         let span = error.span();
         let reason = told(error.message());
+        let twice = span.clone().filter(|_| reason == "duplicate key").and_then(|at| text.get(at));
+        let reason =
+            twice.map_or(reason, |key| format!("{}: the key stands there twice", told(key)));
         let reason = span.clone().and_then(|at| of_value(&reason, &at, text)).unwrap_or(reason);
         located(reason, span.map(|span| span.start), text)
     })?;

@@ -121,6 +121,7 @@ fn bad_values_name_the_field_the_value_and_what_is_allowed() {
     for [from, to, expected] in cases(
         r#"
         runs = 2000 | runs = 0 | runs: 0: it must be between 1
+        mass_kg = 10000.0 | mass_kg = 1.0\nmass_kg = 2.0 | mass_kg: the key stands there twice (line
         mass_kg = 10000.0 | mass_kg = -3.0 | payload.mass_kg: mass = -3.0 kg: it must be pos
         mass_kg = 10000.0 | mass_kg = nan | payload.mass_kg: mass = NaN kg
         [[5000.0, 20.0, 2.0] | [[9000.0, 20.0, 2.0] | payload.inertia_kg_m2: no body has

@@ -6,7 +6,7 @@ use super::file::SimulatedBodyFile;
 use crate::{
     ScenarioError,
     body::Entry,
-    scenario::{Each, GivenLaw, List, Uncertain, UncertainBody, check_follows},
+    scenario::{Each, GivenLaw, List, Uncertain, UncertainBody, check_follows, largest_mass},
 };
 
 /// A body whose mass, mass centre and inertia are drawn for each run of a simulator.
@@ -60,6 +60,7 @@ impl SimulatedBody {
             let problem = format!("{centre:?}: every entry must be finite");
             return Err(ScenarioError::field(format!("{field}.mass_centre_m"), problem));
         }
+        largest_mass(&field, file.mass_kg)?;
         check_follows(&format!("{field}.dispersion"), d)?;
         if file.law.is_some() && file.mass_centre_m.is_none() {
             let problem = "it says where the mass centre is, and the body needs mass_centre_m";

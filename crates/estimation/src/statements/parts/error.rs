@@ -107,7 +107,7 @@ pub enum StatementError {
         part: Part,
     },
     /// The mass is not positive and finite.
-    #[error("nominal.mass_kg = {value:?}: it must be positive and at most 1e30")]
+    #[error("nominal.mass_kg = {value:?}: it must be between 1e-30 and 1e30")]
     Mass {
         /// The mass, kg.
         value: f64,
