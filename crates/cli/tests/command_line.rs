@@ -354,6 +354,10 @@ fn a_run_is_replayed_into_a_folder() {
     let (code, page) = replay(&never, &["--force"]);
     assert!(code == Some(0) && page.contains("no history"), "{page}");
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+    // An empty file is somebody's too.
+    fs::write(folder.join("history.csv"), "").unwrap();
+    assert_eq!(replay(&never, &[]).0, Some(2));
+    assert!(folder.join("history.csv").is_file());
 
     // A scenario file has no table.
     let file = shell.scenario("runs = 5", "runs = 9");

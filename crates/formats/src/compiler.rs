@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::{Format, xml::Tree};
+use crate::{Format, Gap, GapKind, xml::Tree};
 
 /// What tells MuJoCo's compiler to compute all inertias from geoms, or to scale all masses to a total. Of several that
 /// state an attribute, it believes the last.
@@ -50,14 +50,14 @@ impl fmt::Display for CompilerDoubt {
     }
 }
 
-/// The doubts about a file of this format.
-pub(crate) fn doubts(tree: &Tree<'_>, format: Format) -> Vec<CompilerDoubt> {
+/// The doubts about a file of this format, of which these parts were not read.
+pub(crate) fn doubts(tree: &Tree<'_>, format: Format, gaps: &[Gap]) -> Vec<CompilerDoubt> {
     let bounds = ["boundmass", "boundinertia"].into_iter().filter_map(|name| positive(tree, name));
     let raised = bounds.map(|found| CompilerDoubt::Raised { told: written(found) });
     match format {
         Format::Mjcf => {
-            let includes = tree.all("include").next().map(|_| CompilerDoubt::Included);
-            raised.chain(includes).collect()
+            let includes = gaps.iter().any(|gap| gap.kind() == GapKind::Included);
+            raised.chain(includes.then_some(CompilerDoubt::Included)).collect()
         }
         Format::Urdf => {
             let of_urdf = overridden(tree).map(|told| CompilerDoubt::OfUrdf { told });

@@ -233,7 +233,7 @@ impl RobotFile {
             links.push(RobotLink { name, line: body.line(), read, geometry, defaults });
         });
         let overridden = (format == Format::Mjcf).then(|| compiler::overridden(&tree)).flatten();
-        let doubts = compiler::doubts(&tree, format);
+        let doubts = compiler::doubts(&tree, format, file.gaps());
         let element = if format == Format::Mjcf { "body" } else { "link" };
         let without = tree
             .all(element)

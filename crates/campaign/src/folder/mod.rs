@@ -425,9 +425,8 @@ pub(crate) enum Problem {
     #[error("something else is being written there")]
     Busy,
     #[error(
-        "it already holds another {what} or other files, or a copy without the folder {}, which tells what files \
-         are its own; choose another folder with --out, or pass \
-         --force to replace what a {what} wrote there",
+        "it already holds another {what} or other files (a copy without the folder {} counts as other files); \
+         choose another folder with --out, or pass --force to replace what a {what} wrote there",
         HIDDEN
     )]
     Occupied { what: &'static str },

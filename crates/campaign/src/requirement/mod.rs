@@ -246,7 +246,7 @@ impl Bound {
         }
     }
 
-    /// The same kind of bound, as near as a number can be to keep it.
+    /// The narrowest bound of the same kind that a number keeps.
     pub(crate) fn at(self, x: f64) -> Self {
         match self {
             Self::AtMost(_) => Self::AtMost(x),

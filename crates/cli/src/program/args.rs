@@ -246,7 +246,7 @@ pub(crate) struct StudyArgs {
     pub(crate) quiet: bool,
 
     /// Largest share of the runs of a model that may fail, as 0.05 or 5%, for exit code 0
-    #[arg(long, allow_negative_numbers = true, value_name = "SHARE", default_value = "50%", value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value = "50%", allow_negative_numbers = true, value_parser = share)]
     pub(crate) max_failed: f64,
 }
 
@@ -378,15 +378,15 @@ pub(crate) struct SlurmArgs {
     pub(crate) out: PathBuf,
 
     /// Threads, and processor cores, of each task
-    #[arg(long, value_name = "T", default_value_t = 1, value_parser = value_parser!(u32).range(1..=1024))]
+    #[arg(long, value_name = "T", default_value_t = 1, allow_negative_numbers = true, value_parser = value_parser!(u32).range(1..=1024))]
     pub(crate) threads: u32,
 
     /// Number of shards, which is the size of the array [default: so that each takes about ten minutes]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u32).range(1..=1_000_000))]
     pub(crate) shards: Option<u32>,
 
     /// Tasks of the array that may run at the same time [default: all]
-    #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = value_parser!(u32).range(1..))]
     pub(crate) max_tasks: Option<u32>,
 
     /// Partition, as of sbatch [default: that of the cluster]
@@ -787,9 +787,9 @@ fn whole(text: &str) -> Result<u64, String> {
     })
 }
 
-/// A number of threads.
+/// A number of threads, as any whole number; how many there may be is asked where they are made.
 fn threads(text: &str) -> Result<usize, String> {
-    whole(text)?.try_into().map_err(|_| "it must be at most 1024".to_owned())
+    whole(text).map(|number| usize::try_from(number).unwrap_or(usize::MAX))
 }
 
 /// A share: 0.05 or 5%.

@@ -197,7 +197,7 @@ fn report(arguments: &DrawArgs, robot: &RobotFile, draw: &RobotDraw<'_>, place: 
     out + &left_as_they_are(robot, draw)
 }
 
-/// Links that are not drawn, and why.
+/// Links that are not drawn, and why, and what else makes the draws others than they seem.
 fn left_as_they_are(robot: &RobotFile, draw: &RobotDraw<'_>) -> String {
     let mut out = String::new();
     for (name, why) in draw.left().iter().take(LISTED) {

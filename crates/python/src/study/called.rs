@@ -88,8 +88,11 @@ fn output(item: &Bound<'_, PyAny>) -> PyResult<(String, f64)> {
     })?;
     let number = value.extract().map_err(|_| {
         // A whole number of any length is a number too.
-        let problem =
-            if value.is_instance_of::<PyInt>() { "a number below 1e308" } else { "a number" };
+        let problem = if value.is_instance_of::<PyInt>() {
+            "a number that a float can hold"
+        } else {
+            "a number"
+        };
         wrong(format!("the output `{name}` is {}: it must be {problem}", type_name(&value)))
     })?;
     Ok((name, number))

@@ -202,11 +202,13 @@ impl Replay {
         let [table, figure, animation] =
             ["history.csv", "history.svg", "animation.html"].map(|name| folder.join(name));
         if self.history.moments.is_empty() {
-            let mut old = Vec::new();
-            for path in [table, figure, animation] {
-                if fs::symlink_metadata(&path).is_ok() {
-                    must_write(&path, &[], force)?;
-                    old.push(path);
+            let mut old = [table, figure, animation].to_vec();
+            old.retain(|path| fs::symlink_metadata(path).is_ok());
+            // All are looked at before the first is removed; of an empty one, too, nobody knows whose it is.
+            for path in &old {
+                must_write(path, &[], force)?;
+                if !force {
+                    return Err(WriteError::Exists(path.clone()).into());
                 }
             }
             for path in old {

@@ -56,9 +56,7 @@ pub(super) fn check(file: &ScenarioFile) -> Result<(), ScenarioError> {
             (BodyParameter::AngularVelocity, &body.angular_velocity_rad_per_s),
         ];
         for (parameter, values) in numbers {
-            if let Some(most) = parameter.given().most() {
-                size(name, &parameter.key(), values, most)?;
-            }
+            within(name, parameter, values)?;
         }
     }
     for (load, given) in file.loads() {
@@ -85,13 +83,18 @@ pub(super) fn check(file: &ScenarioFile) -> Result<(), ScenarioError> {
     Ok(())
 }
 
-/// That numbers are not beyond their limit. What is no number is refused where it is used.
-/// That the mass of a body is not too large.
-pub(crate) fn largest_mass(place: &str, mass_kg: f64) -> Result<(), ScenarioError> {
-    let mass = BodyParameter::Mass;
-    mass.given().most().map_or(Ok(()), |most| size(place, &mass.key(), &[mass_kg], most))
+/// That what a file states of a body is not beyond its limit, if it has one.
+fn within(body: &str, parameter: BodyParameter, values: &[f64]) -> Result<(), ScenarioError> {
+    let most = parameter.given().most();
+    most.map_or(Ok(()), |most| size(body, &parameter.key(), values, most))
 }
 
+/// That the mass of a body, which need not be one that separates, is not beyond its limit.
+pub(crate) fn largest_mass(body: &str, mass_kg: f64) -> Result<(), ScenarioError> {
+    within(body, BodyParameter::Mass, &[mass_kg])
+}
+
+/// That numbers are not beyond their limit. What is no number is refused where it is used.
 fn size(place: &str, key: &str, values: &[f64], most: f64) -> Result<(), ScenarioError> {
     if let Some(i) = values.iter().position(|x| x.abs() > most) {
         let index = if values.len() > 1 { format!("[{}]", i + 1) } else { String::new() };

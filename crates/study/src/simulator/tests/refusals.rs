@@ -54,6 +54,7 @@ fn refusals_name_their_key() {
     for [from, to, key] in cases(
         r#"
         mass_kg = 120.0 | mass_kg = -1.0 | bodies[1].mass_kg
+        mass_kg = 120.0 | mass_kg = 1e13 | bodies[1].mass_kg: 10000000000000.0: it must be at most 1e12
         mass_kg = 120.0 | mass_kg = 120.0\nmass_centre_m = [0.0, inf, 0.0] | bodies[1].mass_centre_m
         axes = "whole-sphere" | | models[1].axes
         axes = "whole-sphere" | axes = "mean-half" | models[1].axes
