@@ -1,9 +1,10 @@
 //! How far the moments of a law are from those of an estimate.
 
-use gyradius_dispersion::TenMoments;
+use gyradius_dispersion::{MassPropertiesModel, TenMoments};
+use nalgebra::DVector;
 
 use super::nearest::metric;
-use super::ten_estimate::{Matrix10, Ten, TenEstimate};
+use super::ten_estimate::{Matrix10, Ten, TenEstimate, TenForm};
 
 /// Below this the moments are those of the estimate.
 const EXACT: f64 = 1e-5;
@@ -83,6 +84,27 @@ impl EstimateDistance {
     pub fn is_exact(&self) -> bool {
         self.total < EXACT
     }
+}
+
+/// Mean and covariance of a law in the form of an estimate.
+pub(super) fn moments(law: &dyn MassPropertiesModel, form: TenForm) -> Option<TenMoments> {
+    match form {
+        TenForm::Linear => law.linear_moments(),
+        TenForm::Natural => law.moments(),
+    }
+}
+
+/// What a search for a law makes small: the [residuals](Gaps::residuals) of its moments. What has no moments, or such as overflow, is far off.
+pub(super) fn residuals(
+    estimate: &TenEstimate,
+    law: Option<&dyn MassPropertiesModel>,
+) -> DVector<f64> {
+    const FAR: f64 = 1e100;
+    let Some(moments) = law.and_then(|law| moments(law, estimate.form())) else {
+        return DVector::from_element(65, FAR);
+    };
+    let residuals = Gaps::of(estimate, &moments).residuals();
+    DVector::from_vec(residuals).map(|x| if x.is_finite() { x } else { FAR })
 }
 
 /// Differences of means and covariances in units of the stated deviations.

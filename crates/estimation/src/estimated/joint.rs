@@ -6,8 +6,8 @@ use gyradius_dispersion::{
 use gyradius_inertia::{InertiaMatrix, MassProperties};
 use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
 
-use super::distance::{Gaps, units};
-use super::log_cholesky::moments;
+use super::distance::{Gaps, moments, units};
+use super::log_cholesky::narrower;
 use super::ten_estimate::{Matrix10, Ten, TenEstimate, TenForm};
 use crate::rollup::symmetric::with_eigenvalues;
 use crate::statements::levenberg_marquardt::{Effort, Problem, Range, least_squares};
@@ -56,12 +56,7 @@ pub(super) struct Joint {
 /// law's own moments differ from that is added to what is sought, and so on.
 pub(super) fn matched(target: &TenEstimate, start: &MassProperties) -> Option<Joint> {
     let form = target.form();
-    let (m, c) = (start.mass_kg(), start.mass_centre_m());
-    let axes = start.inertia().principal_axes().attitude();
-    let lengths = start.radii_of_gyration().ok()?.values();
-    let longest = lengths.into_iter().fold(0.0, f64::max);
-    let lengths = lengths.map(|length| if length > ROUNDING * longest { length } else { 0.0 });
-    let mean = Ten::from([m, c.x, c.y, c.z, lengths[0], lengths[1], lengths[2], 0.0, 0.0, 0.0]);
+    let Means { mean, axes } = Means::of(start)?;
     let units = units(target);
     let mut sought = *target.covariance();
     let mut joint = Joint { mean, axes, spread: nearest(form, &mean, &axes, &sought, &units)? };
@@ -92,6 +87,42 @@ pub(super) fn matched(target: &TenEstimate, start: &MassProperties) -> Option<Jo
         joint = Joint { mean, axes, spread: nearest(form, &mean, &axes, &sought, &units)? };
     }
     best.map(|best| best.1)
+}
+
+/// Of ever narrower laws about a body the one nearest to an estimate.
+pub(super) fn narrow(estimate: &TenEstimate, body: &MassProperties) -> Option<Joint> {
+    let units = units(estimate);
+    let Means { mean, axes } = Means::of(body)?;
+    let spread = nearest(estimate.form(), &mean, &axes, estimate.covariance(), &units)?;
+    let mut best: Option<(f64, Joint)> = None;
+    for share in narrower() {
+        let joint = Joint { mean, axes, spread: spread * share };
+        let off = joint.off(estimate).unwrap_or(f64::INFINITY);
+        match &best {
+            // From there on, the spread that is missing costs more than the mean gains.
+            Some((least, _)) if off.is_finite() && off > *least => break,
+            _ => best = Some((off, joint)),
+        }
+    }
+    best.map(|best| best.1)
+}
+
+/// The means of a law that is concentrated at a body.
+struct Means {
+    mean: Ten,
+    axes: UnitQuaternion<f64>,
+}
+
+impl Means {
+    fn of(body: &MassProperties) -> Option<Self> {
+        let (m, c) = (body.mass_kg(), body.mass_centre_m());
+        let lengths = body.radii_of_gyration().ok()?.values();
+        let longest = lengths.into_iter().fold(0.0, f64::max);
+        let lengths = lengths.map(|length| if length > ROUNDING * longest { length } else { 0.0 });
+        let [x, y, z] = lengths;
+        let mean = Ten::from([m, c.x, c.y, c.z, x, y, z, 0.0, 0.0, 0.0]);
+        Some(Self { mean, axes: body.inertia().principal_axes().attitude() })
+    }
 }
 
 /// The covariance S that the family has with D S Dᵀ nearest to a covariance, in units of deviations: least squares from
@@ -175,6 +206,11 @@ impl Problem for Linear {
 }
 
 impl Joint {
+    /// How far its moments are from those of an estimate.
+    pub(super) fn off(&self, estimate: &TenEstimate) -> Option<f64> {
+        Some(Gaps::of(estimate, &moments(&self.law([1.0, 1.0])?, estimate.form())?).off())
+    }
+
     /// Means and axes after a step.
     fn moved(&self, shift: &Ten) -> Option<(Ten, UnitQuaternion<f64>)> {
         let mut mean = self.mean + shift;

@@ -1,10 +1,10 @@
 //! The Gaussian in ten log-Cholesky coordinates with the moments of an estimate, or as nearly these as a search finds.
 
-use gyradius_dispersion::{LogCholeskyTen, MassPropertiesModel, TenMoments};
+use gyradius_dispersion::{LogCholeskyTen, MassPropertiesModel};
 use gyradius_inertia::{LogCholesky, MassProperties};
 use nalgebra::DVector;
 
-use super::distance::Gaps;
+use super::distance::{Gaps, moments, residuals};
 use super::ten_estimate::{Matrix10, Ten, TenEstimate, TenForm};
 use crate::rollup::symmetric::with_eigenvalues;
 use crate::statements::levenberg_marquardt::{Effort, Problem, Range, least_squares};
@@ -22,35 +22,28 @@ const MODEST: f64 = 0.2;
 /// Steps at most, and halvings of a step.
 const STEPS: usize = 200;
 const HALVINGS: usize = 8;
+/// Fourths of fourths of a variance: the last is 4e-12.
+const NARROWER: usize = 20;
 /// Where nothing is left to gain, and from where on a law counts as the one sought.
 const NOTHING: f64 = 1e-11;
 const NEAR: f64 = 1e-8;
 
-/// Mean and covariance of a law in the form of an estimate.
-pub(super) fn moments(law: &dyn MassPropertiesModel, form: TenForm) -> Option<TenMoments> {
-    match form {
-        TenForm::Linear => law.linear_moments(),
-        TenForm::Natural => law.moments(),
-    }
-}
-
-/// The law in the units of an estimate of numbers about one, from a body inside the realizable set on.
-pub(super) fn matched(estimate: &TenEstimate, start: &MassProperties) -> Option<LogCholeskyTen> {
-    let mean = Ten::from(LogCholesky::of(start).ok()?.values());
-    let linear =
-        derivative(estimate.form(), &mean).and_then(nalgebra::Matrix::try_inverse).map(|inverse| {
-            let covariance = inverse * estimate.covariance() * inverse.transpose();
-            (covariance + covariance.transpose()) * 0.5
-        });
+/// The law in the units of an estimate of numbers about one, from bodies inside the realizable set on, of which the first is the farthest
+/// inside.
+pub(super) fn matched(estimate: &TenEstimate, starts: &[MassProperties]) -> Option<LogCholeskyTen> {
+    let means: Vec<Ten> = starts
+        .iter()
+        .filter_map(|body| LogCholesky::of(body).ok())
+        .map(|coordinates| Ten::from(coordinates.values()))
+        .collect();
+    let first = means.first()?;
+    let linear = linear(estimate, first);
     // As the derivatives say, and narrower where that is wide, as of a lognormal law the variance of the logarithm.
     let narrower =
         linear.map(|linear| with_eigenvalues(&linear, |x| 0.25 * libm::log1p(4.0 * x.max(0.0))));
-    let length = mean.rows(1, 3).map(libm::exp).max();
-    let modest = Ten::from_fn(|i, _| MODEST * if i < LOGARITHMS { 1.0 } else { length });
-    let modest = Matrix10::from_diagonal(&modest.component_mul(&modest));
     let mut best: Option<Found> = None;
-    for covariance in [linear, narrower, Some(modest)].into_iter().flatten() {
-        let Some(found) = newton(estimate, mean, allowed(&covariance)) else { continue };
+    for covariance in [linear, narrower, Some(modest(first))].into_iter().flatten() {
+        let Some(found) = newton(estimate, *first, allowed(&covariance)) else { continue };
         if best.as_ref().is_none_or(|best| found.off < best.off) {
             best = Some(found);
         }
@@ -58,10 +51,57 @@ pub(super) fn matched(estimate: &TenEstimate, start: &MassProperties) -> Option<
             return best.map(|found| found.law);
         }
     }
-    let best = best?;
-    let search = Search { estimate };
-    let (point, cost) = least_squares(&search, Point::of(&best)?, Effort::FINE);
-    if cost.sqrt() < best.off { point.law() } else { Some(best.law) }
+    // No law has the moments. Two valleys: laws about as wide as the estimate, whose means their width moves, and laws that keep the mean
+    // and are narrower.
+    let narrow =
+        narrow(estimate, &means).and_then(|law| newton(estimate, law.mean, law.covariance));
+    let nearest = best.into_iter().chain(narrow).map(|found| searched(estimate, found));
+    nearest.min_by(|a, b| a.0.total_cmp(&b.0)).map(|nearest| nearest.1)
+}
+
+/// The nearest law downhill from one, and how far it is off.
+fn searched(estimate: &TenEstimate, found: Found) -> (f64, LogCholeskyTen) {
+    let own = (found.off, found.law);
+    let Some(point) = factor_of(&found.covariance).map(|factor| Point { mean: found.mean, factor })
+    else {
+        return own;
+    };
+    let (point, cost) = least_squares(&Search { estimate }, point, Effort::FINE);
+    match point.law() {
+        Some(law) if cost.sqrt() < own.0 => (cost.sqrt(), law),
+        _ => own,
+    }
+}
+
+/// The covariance of the coordinates as the derivatives at their mean say.
+fn linear(estimate: &TenEstimate, mean: &Ten) -> Option<Matrix10> {
+    let inverse = derivative(estimate.form(), mean)?.try_inverse()?;
+    let covariance = inverse * estimate.covariance() * inverse.transpose();
+    Some((covariance + covariance.transpose()) * 0.5)
+}
+
+/// A covariance that a law can have anywhere.
+fn modest(mean: &Ten) -> Matrix10 {
+    let length = mean.rows(1, 3).map(libm::exp).max();
+    let modest = Ten::from_fn(|i, _| MODEST * if i < LOGARITHMS { 1.0 } else { length });
+    Matrix10::from_diagonal(&modest.component_mul(&modest))
+}
+
+/// Of ever narrower laws about bodies the one nearest to the estimate.
+fn narrow(estimate: &TenEstimate, means: &[Ten]) -> Option<Found> {
+    let about = |mean: &Ten| {
+        let wide = [linear(estimate, mean), Some(modest(mean))];
+        let mean = *mean;
+        wide.into_iter().flatten().flat_map(move |wide| {
+            narrower().filter_map(move |share| Found::new(estimate, mean, allowed(&wide) * share))
+        })
+    };
+    means.iter().flat_map(about).min_by(|a, b| a.off.total_cmp(&b.off))
+}
+
+/// Shares of a variance, down to nothing worth mentioning.
+pub(super) fn narrower() -> impl Iterator<Item = f64> {
+    (0..NARROWER).scan(1.0, |share, _| Some(std::mem::replace(share, *share * 0.25)))
 }
 
 /// A law and how far it is off.
@@ -155,17 +195,6 @@ struct Point {
 }
 
 impl Point {
-    fn of(found: &Found) -> Option<Self> {
-        let deviations = found.covariance.diagonal().map(|v| v.max(0.0).sqrt().max(1e-9));
-        let correlation = Matrix10::from_fn(|i, j| {
-            let own = found.covariance[(i, j)] / deviations[i] / deviations[j];
-            if i == j { 1.0 + 1e-9 } else { own * (1.0 - 1e-9) }
-        });
-        let factor = correlation.cholesky()?.l();
-        let factor = Matrix10::from_fn(|i, j| factor[(i, j)] * deviations[i]);
-        Some(Self { mean: found.mean, factor })
-    }
-
     fn law(&self) -> Option<LogCholeskyTen> {
         let covariance = self.factor * self.factor.transpose();
         LogCholeskyTen::new(LogCholesky::new(self.mean.into()).ok()?, covariance).ok()
@@ -174,6 +203,17 @@ impl Point {
     fn deviation(&self, coordinate: usize) -> f64 {
         self.factor.row(coordinate).norm()
     }
+}
+
+/// The lower triangular factor of a covariance, of a hair more where it has none.
+fn factor_of(covariance: &Matrix10) -> Option<Matrix10> {
+    let deviations = covariance.diagonal().map(|v| v.max(0.0).sqrt().max(1e-9));
+    let correlation = Matrix10::from_fn(|i, j| {
+        let own = covariance[(i, j)] / deviations[i] / deviations[j];
+        if i == j { 1.0 + 1e-9 } else { own * (1.0 - 1e-9) }
+    });
+    let factor = correlation.cholesky()?.l();
+    Some(Matrix10::from_fn(|i, j| factor[(i, j)] * deviations[i]))
 }
 
 /// Row and column of an entry of the factor among the unknowns, which follow the ten means.
@@ -210,18 +250,8 @@ impl Problem for Search<'_> {
     }
 
     fn residuals(&self, point: &Point) -> DVector<f64> {
-        let moments = point.law().and_then(|law| moments(&law, self.estimate.form()));
-        match moments {
-            Some(moments) => {
-                let residuals = Gaps::of(self.estimate, &moments).residuals();
-                // What overflows is far off.
-                DVector::from_iterator(
-                    65,
-                    residuals.into_iter().map(|x| if x.is_finite() { x } else { 1e100 }),
-                )
-            }
-            None => DVector::from_element(65, 1e100),
-        }
+        let law = point.law();
+        residuals(self.estimate, law.as_ref().map(|law| law as &dyn MassPropertiesModel))
     }
 
     fn range(&self, point: &Point, unknown: usize) -> Range {

@@ -15,7 +15,7 @@ use rand_distr::Distribution;
 
 use crate::mass_fit::{MassChoice, MassPropertiesFit};
 use crate::rollup::symmetric::{second_moments_of_inertia, six};
-use log_cholesky::moments;
+use distance::moments;
 use ten_estimate::{Matrix10, Ten};
 
 pub use distance::EstimateDistance;
@@ -23,10 +23,12 @@ pub use ten_estimate::{TenEstimate, TenEstimateError, TenForm};
 
 /// Draws of which the joint law is fitted where its moments cannot be solved for.
 const DRAWS: usize = 4000;
+/// What is farther off may have a better start: a law without any spread is at most so far from a mean that it has.
+const POOR: f64 = 1.5;
 /// What is farther off, in deviations, is no law of the estimate.
 const FAR: f64 = 1e3;
-/// What a second moment and the mass are at least, as a share of their deviations, where the search for a law begins.
-const INSIDE: f64 = 0.3;
+/// What a second moment and the mass are at least, as shares of their deviations, where searches for a law begin.
+const INSIDE: [f64; 3] = [0.3, 0.03, 0.003];
 
 /// The realizable laws whose mean and covariance of the ten are as nearly those of an estimate as their families have them, and how far
 /// they had to move.
@@ -35,11 +37,12 @@ const INSIDE: f64 = 0.3;
 /// 1. The nearest body in the metric of the covariance ([`moved`](Self::moved)): a convex problem.
 /// 2. [`LogCholeskyTen`] has as many free numbers as there are moments, 10 + 55: Newton's steps on its moments, which are closed.
 ///    Where no such law has them, because the spread is too wide or the mean too near to the boundary, least squares
-///    (Levenberg and Marquardt), with deviations of ½ ln m and of the logarithms of the diagonal of at most 1.
+///    (Levenberg and Marquardt), with deviations of ½ ln m and of the logarithms of the diagonal of at most 1, from a law about as wide as
+///    the estimate and from a narrow one about the nearest body: the nearer of the two.
 /// 3. [`MassPropertiesLaw`], of mass, mass centre, gyration lengths and axes, has 44 free numbers: what it has not are the 21
 ///    covariances of mass, mass centre and lengths with rotations of the axes. Least squares on the moments of the law
 ///    of step 2; where the axes are not determined or lengths reach zero, a fit to 4,000 draws of it is taken if that
-///    is nearer.
+///    is nearer, and where all are far off, a narrow law about the nearest body.
 ///
 /// # Limits
 /// The covariances are differences of products: deviations below 1e-6 of the numbers lose digits, and so do those of bodies that are far from the
@@ -89,25 +92,31 @@ impl EstimatedBody {
         };
         let body = unitless.form().body(&ten).ok_or(EstimatedBodyError::Range)?;
         let at = unitless.at(ten);
-        let start = inside(&at, &body).unwrap_or(body);
-        let log = log_cholesky::matched(&unitless, &start);
+        let mut starts: Vec<_> =
+            INSIDE.iter().filter_map(|&share| inside(&at, &body, share)).collect();
+        starts.push(body);
+        let start = starts[0];
+        let log = log_cholesky::matched(&unitless, &starts);
         let exists = log.as_ref().and_then(|law| moments(law, unitless.form()));
-        let mut own = joint_of(&unitless, &at, &start, units);
-        let wide = own.as_ref().is_none_or(|own| own.2);
-        // Where the moments are far from those of any law of the family, those of a law that exists may be nearer.
-        if let Some(moments) = exists.filter(|_| moved > 0.0 || wide) {
+        let own = joint::matched(&at, &start);
+        let wide = own.as_ref().is_none_or(joint::Joint::is_wide);
+        let off = own.as_ref().and_then(|own| own.off(&unitless)).unwrap_or(f64::INFINITY);
+        // Where the moments are far from those of any law of the family, those of a law that exists may be nearer, or a narrow law.
+        let other = exists.filter(|_| moved > 0.0 || wide || off > POOR).and_then(|moments| {
             let target = at.with(moments.mean(), moments.covariance());
-            let begin = unitless.form().body(target.mean()).unwrap_or(start);
-            let other = joint_of(&unitless, &target, &begin, units);
-            own = own.into_iter().chain(other).min_by(|a, b| a.1.total().total_cmp(&b.1.total()));
-        }
-        let own = own.map(|(law, distance, _)| (law, distance));
+            joint::matched(&target, &unitless.form().body(target.mean()).unwrap_or(start))
+        });
+        let narrow = (off > POOR).then(|| joint::narrow(&unitless, &body)).flatten();
+        let own = [own, other, narrow].into_iter().flatten().filter_map(|joint| {
+            let distance = distance_of(&unitless, &joint.law([1.0, 1.0])?)?;
+            Some((joint.law(units)?, distance))
+        });
         let si = log.as_ref().and_then(|law| in_units(law, units));
         let fitted = if wide { si.as_ref().and_then(|law| fitted(law, estimate)) } else { None };
         let nearer = |a: &(MassPropertiesLaw, EstimateDistance), b: &(_, EstimateDistance)| {
             a.1.total().total_cmp(&b.1.total())
         };
-        let joint = own.into_iter().chain(fitted).min_by(|a, b| nearer(a, b));
+        let joint = own.chain(fitted).min_by(|a, b| nearer(a, b));
         let log_cholesky: Option<(LogCholeskyTen, EstimateDistance)> = log.and_then(|law| {
             let distance = distance_of(&unitless, &law)?;
             Some((si?, distance))
@@ -157,23 +166,11 @@ fn distance_of(estimate: &TenEstimate, law: &dyn MassPropertiesModel) -> Option<
     EstimateDistance::of(estimate, &moments(law, estimate.form())?)
 }
 
-/// The joint law with the moments of a target, its distance from the estimate, and whether it is wide.
-fn joint_of(
-    estimate: &TenEstimate,
-    target: &TenEstimate,
-    start: &MassProperties,
-    units: [f64; 2],
-) -> Option<(MassPropertiesLaw, EstimateDistance, bool)> {
-    let joint = joint::matched(target, start)?;
-    let distance = distance_of(estimate, &joint.law([1.0, 1.0])?)?;
-    Some((joint.law(units)?, distance, joint.is_wide()))
-}
-
 /// The body with second moments, and the mass, that are no smaller than a share of their deviations; none where one is zero and does
 /// not vary.
-fn inside(estimate: &TenEstimate, body: &MassProperties) -> Option<MassProperties> {
+fn inside(estimate: &TenEstimate, body: &MassProperties, share: f64) -> Option<MassProperties> {
     let natural = estimate.to_natural_with_rounding()?;
-    let mass = body.mass_kg().max(INSIDE * estimate.deviations()[0]);
+    let mass = body.mass_kg().max(share * estimate.deviations()[0]);
     let second = second_moments_of_inertia();
     let entries = natural.covariance().fixed_view::<6, 6>(4, 4).into_owned();
     let spread = second * entries * second.transpose();
@@ -187,7 +184,7 @@ fn inside(estimate: &TenEstimate, body: &MassProperties) -> Option<MassPropertie
         let mut form = six(&outer);
         form.iter_mut().skip(3).for_each(|x| *x *= 2.0);
         let deviation = form.dot(&(spread * form)).max(0.0).sqrt();
-        *moment = moment.max(INSIDE * deviation);
+        *moment = moment.max(share * deviation);
     }
     let moments = gyradius_inertia::SecondMoments::new(moments).ok()?;
     let inertia = Inertia::from_second_moments(moments, &axes).ok()?;
