@@ -1,6 +1,6 @@
 //! Shards that are done at the same time, of one campaign in one folder.
 
-use gyradius_campaign::{Shard, Shared};
+use gyradius_campaign::{Shard, Shared, threads};
 use std::{
     fs,
     sync::{Barrier, OnceLock},
@@ -65,5 +65,42 @@ fn shards_that_begin_together_share_the_folder() {
                 assert_eq!(shard.join().unwrap(), Ok(()), "round {round}");
             }
         });
+    }
+}
+
+/// Of shards of different campaigns that begin at the same moment in a new folder, those of one campaign go on, and all others are
+/// refused.
+#[test]
+fn campaigns_that_begin_together_are_not_mixed() {
+    const SHARDS: u32 = 8;
+    let scratch = tempfile::tempdir().unwrap();
+    let pool = threads(Some(1)).unwrap();
+    for round in 0..100 {
+        let place = scratch.path().join(round.to_string());
+        let begin = Barrier::new(SHARDS as usize);
+        let open = &|number: u32| {
+            let seed = u64::from(number % 2);
+            let campaign = Campaign { place: place.clone(), seed, block_runs: 16 };
+            let in_place = OnceLock::new();
+            let contents = campaign.contents(100, &in_place);
+            let shared = Shared::open(&campaign.place, &contents).unwrap();
+            let shard = Shard::new(number + 1, SHARDS).unwrap();
+            begin.wait();
+            let blocks =
+                shared.blocks((&campaign.identity(), &format!("{seed} 100")), 100, shard, &pool);
+            blocks.map(|_| seed).map_err(|error| error.to_string())
+        };
+        let opened: Vec<_> = thread::scope(|scope| {
+            let all: Vec<_> = (0..SHARDS).map(|n| scope.spawn(move || open(n))).collect();
+            all.into_iter().map(|shard| shard.join().unwrap()).collect()
+        });
+        let seeds: Vec<u64> = opened.iter().flatten().copied().collect();
+        let first = *seeds.first().expect("one of them begins");
+        let alike = (0..SHARDS).filter(|n| u64::from(n % 2) == first).count();
+        assert!(seeds.len() == alike && seeds.iter().all(|seed| *seed == first), "{opened:?}");
+        for refused in opened.into_iter().filter_map(Result::err) {
+            let expected = format!("seed is {first} there and {} here", 1 - first);
+            assert!(refused.contains(&expected), "{refused}");
+        }
     }
 }

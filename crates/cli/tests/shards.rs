@@ -118,9 +118,9 @@ fn shards_keep_and_require_the_same() {
     };
     let shard = |text: String, shard: &str, more: &[&str], code| {
         fs::write(scratch.path("s.toml"), text).unwrap();
-        let own =
-            ["study", "--scenario", "s.toml", "--runs", "600", "--out", "here", "--shard", shard];
-        scratch.done(&[&own[..], more].concat(), code)
+        let own = ["study", "--scenario", "s.toml", "--out", "here", "--shard", shard];
+        let runs = if more.contains(&"--runs") { &[][..] } else { &["--runs", "600"] };
+        scratch.done(&[&own[..], runs, more].concat(), code)
     };
     shard(requirement("3.0"), "1/2", &[], 0);
     for (text, more, expected) in [
@@ -128,9 +128,37 @@ fn shards_keep_and_require_the_same() {
         (one_model(), &[], "is 3.0 there and not given here"),
         (requirement("3.0"), &["--rows", "failed"], "rows is not given there and \"failed\" here"),
         (requirement("3.0"), &["--columns", "nutation_deg"], "columns"),
+        (requirement("3.0"), &["--runs", "700"], "runs is 600 there and 700 here"),
+        (requirement("3.0"), &["--runs", "500"], "runs is 600 there and 500 here"),
     ] {
         let told = shard(text, "2/2", more, 2);
         assert!(told.contains(expected) && told.contains("all shards"), "{told}");
     }
     shard(requirement("3.0"), "2/2", &[], 0);
+}
+
+/// Files of the user beside a study that is not complete are in nobody's way, and stay as they are.
+#[test]
+fn files_of_the_user_stay_beside_a_study_that_is_begun() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("s.toml"), one_model()).unwrap();
+    let study = |out: &str, more: &[&str], code| {
+        let own = ["study", "--scenario", "s.toml", "--runs", "600", "--out", out];
+        scratch.done(&[&own[..], more].concat(), code)
+    };
+    study("here", &["--shard", "1/2"], 0);
+    let notes = scratch.path("here/notes.txt");
+    fs::write(&notes, "mine").unwrap();
+    study("here", &["--shard", "2/2"], 0);
+    let told = study("here", &["--seed", "9"], 2);
+    assert!(told.contains("already holds another study: seed is"), "{told}");
+    study("here", &[], 0);
+    assert_eq!(fs::read_to_string(&notes).unwrap(), "mine");
+    fs::remove_file(&notes).unwrap();
+    study("alone", &[], 0);
+    assert!(content(&scratch.path("here")) == content(&scratch.path("alone")));
+    // Where no study was begun, they are.
+    fs::create_dir(scratch.path("other")).unwrap();
+    fs::write(scratch.path("other/notes.txt"), "mine").unwrap();
+    study("other", &["--shard", "1/2"], 2);
 }

@@ -69,8 +69,8 @@ pub enum StudyError {
         /// A file of it that is not as it was written.
         damaged: Option<String>,
     },
-    /// Other processes keep other rows or columns of the same study, or have other requirements.
-    #[error("{}: {difference}: all shards of a study must keep the same and require the same", path.display())]
+    /// Other processes do another number of runs of the same study, keep other rows or columns, or have other requirements.
+    #[error("{}: {difference}: all shards of a study must do the same number of runs, keep the same and require the same", path.display())]
     Shards {
         /// The folder.
         path: PathBuf,

@@ -1,8 +1,8 @@
 //! A share of a study's runs, and what of a study is there: for studies that many processes do.
 
 use gyradius_campaign::{
-    Block, Doing, Forecast, HIDDEN, MANIFEST, Plan, Progress, Shard, Shared, Until, begun,
-    missing_runs, run_missing, threads, told,
+    Block, Difference, Doing, Forecast, HIDDEN, MANIFEST, Plan, Progress, Shard, Shared, Until,
+    begun, missing_runs, run_missing, threads, told,
 };
 use serde::Serialize;
 use std::{ops::Range, path::Path};
@@ -74,10 +74,11 @@ pub(crate) fn run_shard<C: Subject>(
     let folder = Shared::open(&options.place(scenario.name()), &contents)?;
     check_columns(scenario)?;
     let begun = (&identity(scenario), scenario.to_toml());
-    agree(scenario, &options.place(scenario.name()))?;
+    let place = options.place(scenario.name());
+    agree(scenario, &place)?;
     if let Some(there) = folder.reduced(begun.0)? {
         // All is done, also what this share would have been.
-        let (path, kept, damaged) = (options.place(scenario.name()), there.kept().clone(), None);
+        let (path, kept, damaged) = (place, there.kept().clone(), None);
         return if scenario.runs() <= there.runs() {
             Ok(())
         } else {
@@ -85,6 +86,8 @@ pub(crate) fn run_shard<C: Subject>(
         };
     }
     let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), shard, &threads)?;
+    // Asked again: of shards that begin at the same time, one has told by now what holds for all.
+    agree(scenario, &place)?;
     let again = true;
     blocks.damaged().iter().for_each(|block| say(Notice::Damaged { block: block.clone(), again }));
     let plan = plan(scenario, options, Doing::Shard(shard));
@@ -99,12 +102,22 @@ pub(crate) fn run_shard<C: Subject>(
     Ok(())
 }
 
-/// That the study which was begun or done in a folder keeps and requires the same: the last shard would decide for all.
+/// That the study which was begun or done in a folder keeps and requires the same, and that one which was begun has as many runs:
+/// the last shard would decide for all.
 fn agree<C: Subject>(scenario: &C, folder: &Path) -> Result<(), StudyError> {
-    let done = || read_file(&folder.join("scenario.toml")).ok();
-    let there = begun(folder).or_else(done).and_then(|text| C::resolved(&text).ok());
-    let difference = there.and_then(|there| shared(scenario).difference(&shared(&there)));
-    match difference {
+    let there = |text: String| C::resolved(&text).ok();
+    let (begun, done) = (begun(folder).and_then(there), || {
+        read_file(&folder.join("scenario.toml")).ok().and_then(there)
+    });
+    let runs = begun.as_ref().map(C::runs).filter(|runs| *runs != scenario.runs());
+    let runs = runs.map(|there| Difference {
+        field: "runs".to_owned(),
+        there: Some(there.to_string()),
+        here: Some(scenario.runs().to_string()),
+    });
+    let there = begun.or_else(done);
+    let other = || there.and_then(|there| shared(scenario).difference(&shared(&there)));
+    match runs.or_else(other) {
         Some(difference) => Err(StudyError::Shards { path: folder.to_owned(), difference }),
         None => Ok(()),
     }

@@ -8,7 +8,8 @@ use std::{
 };
 
 use super::{
-    Problem, disk,
+    Problem,
+    disk::{self, PART},
     hidden::Hidden,
     manifest::{AGAIN, Block},
     name::{HIDDEN, said},
@@ -20,8 +21,6 @@ const IDENTITY: &str = "identity.json";
 const RECORD: &str = "record";
 /// A text that tells those who go on how the campaign was begun.
 const MARK: &str = "mark";
-/// What is being written; also of a program that was killed.
-const PART: &str = ".part";
 
 /// The folder of an unfinished campaign.
 #[derive(Clone, Debug)]
@@ -77,42 +76,48 @@ impl Area {
         }
     }
 
-    /// Makes the folder, if it is not there, and tells in it what the campaign is.
-    pub(super) fn begin(
-        &self,
-        hidden: &Hidden,
-        identity: &Identity,
-        shard: Option<Shard>,
-    ) -> Result<(), Problem> {
+    /// Makes the folder, if it is not there, and tells in it what the campaign is, unless that is told already: of several who
+    /// begin at the same time, with campaigns that may differ, one alone tells it, and the others are refused.
+    pub(super) fn begin(&self, hidden: &Hidden, identity: &Identity) -> Result<(), Problem> {
         match disk::create_folder(&self.0) {
             Ok(()) => disk::sync_folder(&hidden.join(""))?,
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error.into()),
         }
-        self.put(IDENTITY, &serde_json::to_string_pretty(identity)?, shard)
+        self.tell_first(IDENTITY, &serde_json::to_string_pretty(identity)?)?;
+        match self.identity()?.and_then(|there| identity.difference(&there)) {
+            Some(difference) => Err(Problem::Unfinished { difference }),
+            None => Ok(()),
+        }
     }
 
-    /// Tells those who go on how the campaign was begun, once it is certain that it goes on so.
+    /// Tells those who go on how the campaign was begun, once it is certain that it goes on so. What one shard tells holds for
+    /// all of them.
     pub(super) fn tell(&self, mark: &str, shard: Option<Shard>) -> Result<(), Problem> {
-        self.put(MARK, mark, shard)
-    }
-
-    fn put(&self, name: &str, text: &str, shard: Option<Shard>) -> Result<(), Problem> {
-        let path = self.0.join(name);
-        match disk::read(&path) {
-            Ok(there) if there == text.as_bytes() => return Ok(()),
+        if shard.is_some() {
+            return self.tell_first(MARK, mark);
+        }
+        match disk::read(&self.0.join(MARK)) {
+            Ok(there) if there == mark.as_bytes() => return Ok(()),
             Err(error) if error.kind() == io::ErrorKind::InvalidInput => return Err(error.into()),
             Ok(_) | Err(_) => {}
         }
-        self.replace(name, text, shard)?;
+        self.replace(MARK, mark)?;
         Ok(disk::sync_folder(&self.0)?)
     }
 
-    /// Puts a text, synced, in the place of a file.
-    fn replace(&self, name: &str, text: &str, shard: Option<Shard>) -> Result<(), Problem> {
-        // Other shards write the same at the same time.
-        let shard = shard.map_or_else(String::new, |shard| format!(".{}", shard.name()));
-        let part = self.0.join(format!("{name}{shard}{PART}"));
+    /// Makes a file with a text, unless there is one of that name.
+    fn tell_first(&self, name: &str, text: &str) -> Result<(), Problem> {
+        match disk::create_whole(&self.0.join(name), text) {
+            Ok(()) => Ok(disk::sync_folder(&self.0)?),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Puts a text, synced, in the place of a file. Who does that has the folder alone.
+    fn replace(&self, name: &str, text: &str) -> Result<(), Problem> {
+        let part = self.0.join(format!("{name}{PART}"));
         disk::remove_file(&part)?;
         disk::create_file(&part)?.write_all(text.as_bytes())?;
         disk::sync_file(&part)?;
@@ -183,7 +188,7 @@ impl Area {
     pub(super) fn rewrite(&self, blocks: &[&Block]) -> Result<File, Problem> {
         let lines = blocks.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
         let path = self.0.join(RECORD);
-        self.replace(RECORD, &(lines.join("\n") + "\n"), None)?;
+        self.replace(RECORD, &(lines.join("\n") + "\n"))?;
         for record in self.records()?.iter().filter(|record| **record != path) {
             disk::remove_file(record)?;
         }

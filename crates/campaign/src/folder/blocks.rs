@@ -159,7 +159,7 @@ impl Blocks {
             }
             area.clear()?;
         }
-        area.begin(hidden, identity, shard)?;
+        area.begin(hidden, identity)?;
         let (record, file) = area.record(shard)?;
         let state = Mutex::new(State { blocks: Vec::new(), record: file });
         let (place, identity) = (hidden.place().to_owned(), identity.clone());

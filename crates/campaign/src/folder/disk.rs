@@ -8,6 +8,9 @@ use std::{
 };
 use tempfile::TempPath;
 
+/// How the name of a file ends that is being written; also of a program that was killed.
+pub(super) const PART: &str = ".part";
+
 /// Makes a folder; fails if anything of that name is there.
 pub(super) fn create_folder(path: &Path) -> io::Result<()> {
     step("create folder", path)?;
@@ -18,6 +21,29 @@ pub(super) fn create_folder(path: &Path) -> io::Result<()> {
 pub(super) fn create_file(path: &Path) -> io::Result<File> {
     step("create file", path)?;
     OpenOptions::new().read(true).write(true).create_new(true).open(path)
+}
+
+/// Makes a file with a text, which is there whole and synced, or not at all; fails if anything of that name is there.
+pub(super) fn create_whole(path: &Path, text: &str) -> io::Result<()> {
+    use io::Write;
+    step("create file", path)?;
+    let name = path.file_name().unwrap_or_default();
+    // A name of its own: others may be making the same file at this moment.
+    let mut part = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // Those of any new file, and not of one that nobody else may read.
+        part.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let part = part.prefix(name).suffix(PART).tempfile_in(super::folder_of(path))?;
+    part.as_file().write_all(text.as_bytes())?;
+    sync_file(part.path())?;
+    let part = part.into_temp_path();
+    // If that fails, it is removed as temporary files are.
+    move_file(&part, path)?;
+    let _ = part.keep();
+    Ok(())
 }
 
 /// The content of a file, unless it is a pipe or something else that may never end.

@@ -349,8 +349,11 @@ fn check(
     let known = unobstructed(place, record, [&mark]).is_ok() && record.has(&mark);
     let text = || fs::read_to_string(mark.below(place));
     let same = known && text().is_ok_and(|text| (contents.same)(&text));
-    if occupied && !same && !force {
-        let difference = known.then(text).and_then(Result::ok);
+    // Of a campaign that is not complete, the mark is not there yet; other files may stand beside it.
+    let begun = if known { None } else { begun(place) };
+    let goes_on = begun.as_deref().is_some_and(|text| (contents.same)(text));
+    if occupied && !same && !goes_on && !force {
+        let difference = if known { text().ok() } else { begun };
         let difference = difference.and_then(|text| (contents.differs)(&text));
         return Err(match difference {
             Some(difference) => Problem::Other { what: contents.what, difference },

@@ -28,7 +28,7 @@ impl Shared {
     /// # Errors
     /// The folder holds something else, cannot be written, or somebody has it alone.
     pub fn open(place: &Path, contents: &Contents<'_>) -> Result<Self, FolderError> {
-        // Alone if nobody else is there; who is there has checked the same.
+        // Alone if nobody else is there.
         match Folder::prepare(place, contents, false) {
             Ok(folder) => folder.leave(),
             Err(FolderError { problem: Problem::Busy, .. }) => {}
@@ -41,6 +41,11 @@ impl Shared {
                 Err(Problem::Busy) => thread::sleep(WAIT),
                 Err(problem) => return Err(failed(problem)),
                 Ok(hidden) => {
+                    // Asked again: who was there meanwhile may have put something else in place.
+                    let still = hidden.record(contents.what).and_then(|(record, _)| {
+                        super::check(hidden.place(), contents, &record, false)
+                    });
+                    still.map_err(failed)?;
                     let (what, place) = (contents.what, place.to_owned());
                     return Ok(Self { what, place, hidden });
                 }
