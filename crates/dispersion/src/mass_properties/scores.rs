@@ -48,11 +48,13 @@ pub(super) struct Scores<'a, F> {
     pub(super) known: RefCell<HashMap<Vec<usize>, Rc<Nodes>>>,
 }
 
-/// Weights and values of the scalars of a block, one after the other, and what monomials come to there.
+/// Weights and values of the scalars of a block, one after the other, and what monomials and pairs of them come to there.
 pub(super) struct Nodes {
     weights: Vec<f64>,
     values: Vec<f64>,
     monomials: RefCell<HashMap<Monomial, Rc<[f64]>>>,
+    /// Of a block there are few parts of monomials, and each pair of them is asked for many times.
+    pairs: RefCell<HashMap<[Monomial; 2], Pair>>,
 }
 
 /// E f, E g, E fg and Cov(f, g).
@@ -109,7 +111,11 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
             self.known.borrow_mut().insert(block.to_vec(), Rc::clone(&nodes));
             nodes
         });
-        let [f, g] = [f, g].map(|monomial| self.at_nodes(&nodes, block, monomial.of(block)));
+        let parts = [f, g].map(|monomial| monomial.of(block));
+        if let Some(pair) = nodes.pairs.borrow().get(&parts) {
+            return *pair;
+        }
+        let [f, g] = parts.map(|monomial| self.at_nodes(&nodes, block, monomial));
         let each = || nodes.weights.iter().zip(f.iter().zip(g.iter()));
         let (mut first, mut second, mut product, mut covariance) = (0.0, 0.0, 0.0, 0.0);
         for (weight, (f, g)) in each() {
@@ -120,7 +126,9 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
         for (weight, (f, g)) in each() {
             covariance += weight * (f - first) * (g - second);
         }
-        Pair { first, second, product, covariance }
+        let pair = Pair { first, second, product, covariance };
+        nodes.pairs.borrow_mut().insert(parts, pair);
+        pair
     }
 
     /// What a monomial of the scalars of a block comes to at its nodes. It is asked for in a pair with each of the others.
@@ -162,6 +170,7 @@ impl<F: Fn(f64) -> f64> Scores<'_, F> {
             weights: Vec::with_capacity(count),
             values: Vec::with_capacity(count * block.len()),
             monomials: RefCell::default(),
+            pairs: RefCell::default(),
         };
         let mut scores = vec![0.0; block.len()];
         for node in 0..count {
