@@ -8,6 +8,7 @@ mod documents;
 mod failures;
 mod paper;
 mod python_vectors;
+mod read_back;
 mod replay;
 mod repository;
 mod reproducibility;

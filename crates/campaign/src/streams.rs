@@ -65,9 +65,17 @@ impl Streams {
     pub fn each<'a>(
         streams: impl IntoIterator<Item = (&'a Self, u64)>,
         words: usize,
-        draw: impl FnMut(&mut StreamRng),
+        mut draw: impl FnMut(&mut StreamRng),
     ) {
-        let first = streams.into_iter().map(|(streams, run)| streams.0.of_stream(run));
+        let mut first = streams.into_iter().map(|(streams, run)| streams.0.of_stream(run));
+        Self::open(&mut first, words, &mut draw);
+    }
+
+    fn open(
+        first: &mut dyn Iterator<Item = Block>,
+        words: usize,
+        draw: &mut dyn FnMut(&mut StreamRng),
+    ) {
         // A block has eight.
         if words > 8 {
             StreamRng::each::<2>(first, draw);

@@ -1,6 +1,7 @@
 //! Statements over the space of bodies and of subsets of statements, held against an independent
 //! solution: least squares with bounds over the variances of second moments and rotations that the statements
 //! open, by coordinate descent, to first order.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 

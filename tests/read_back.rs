@@ -1,5 +1,4 @@
-//! Every law, fit and result that is written reads back to the bit, and corrupted ones are refused: of this crate and of
-//! those that it is made of.
+//! Every law, fit and result of the libraries that is written reads back to the bit, and corrupted ones are refused.
 
 use gyradius_attitude::{
     AboutAxis, FisherBingham, HypersphericalAngles, MeanHalf, RadiallyConstrainedGaussian,
