@@ -1,5 +1,6 @@
 //! Regions of space, and whether matter inside one can have given mass properties.
 
+mod about;
 #[cfg(feature = "serde")]
 mod file;
 mod hull;
@@ -474,6 +475,9 @@ pub enum RegionError {
     /// There are no points.
     #[error("no points: a hull has at least one")]
     Empty,
+    /// Points in a plane have no smallest ellipsoid.
+    #[error("all points lie in a plane, or nearly so: an ellipsoid about them has no volume")]
+    Flat,
     /// The quaternion is not of unit length.
     #[error("rotation of length {norm:?}: it must be 1")]
     Rotation {

@@ -205,7 +205,7 @@ impl DrawnLink {
     /// The region of its geometry, if the law has enough draws that are possible there.
     fn confine(&self, robot: &RobotFile, inside: Inside) -> Result<Region, String> {
         let points = robot.points_m(self.index).map_err(|problem| problem.to_string())?;
-        let region = inside.about(&points).ok_or("its geometry is flat, or too large")?;
+        let region = inside.about(&points).map_err(|error| format!("its geometry: {error}"))?;
         let streams = Streams::new(0, TRIALS_MODEL, &self.name);
         let trial =
             |trial: &u64| inside::holds(&region, &self.law.sample(&mut streams.run(*trial)));

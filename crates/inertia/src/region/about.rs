@@ -1,0 +1,158 @@
+//! Regions about points: the box along the body axes, and the smallest ellipsoid.
+
+use nalgebra::{
+    Isometry3, Matrix3, Matrix4, Rotation3, SymmetricEigen, Translation3, UnitQuaternion, Vector3,
+    Vector4,
+};
+
+use super::{Region, RegionError};
+
+/// Steps towards the smallest ellipsoid.
+const STEPS: usize = 2000;
+/// How near to the smallest it is, in volume.
+const NEAR: f64 = 1e-4;
+
+impl Region {
+    /// The smallest box along the body axes that holds points, m.
+    ///
+    /// ```
+    /// use gyradius_inertia::Region;
+    ///
+    /// let corners = [[0.0, 0.0, 0.0], [1.0, 2.0, 0.5], [0.5, 0.0, 1.0]];
+    /// assert!(Region::box_about(&corners).is_ok());
+    /// assert!(Region::box_about(&corners[..2]).is_ok());
+    /// assert!(Region::box_about(&corners[..1]).is_err());
+    /// ```
+    ///
+    /// # Errors
+    /// There are no points, they lie in a plane across an axis, or one is not finite or too large.
+    pub fn box_about(points_m: &[[f64; 3]]) -> Result<Self, RegionError> {
+        // Which refuses points that are none.
+        Self::hull(points_m)?;
+        let end = |pick: fn(f64, f64) -> f64| {
+            let all = points_m.iter().map(|p| Vector3::from(*p));
+            all.reduce(|a, b| a.zip_map(&b, pick)).unwrap_or_default()
+        };
+        let (low, high) = (end(f64::min), end(f64::max));
+        Self::solid_box((low + high) * 0.5, (high - low) * 0.5)
+    }
+
+    /// The smallest ellipsoid that holds points, m, to 1e-4 of its volume (Khachiyan 1996, doi:10.1287/moor.21.2.307), grown
+    /// to hold them all.
+    ///
+    /// ```
+    /// use gyradius_inertia::{Containment, Region, Shape};
+    ///
+    /// let cube = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|x| 2.0 * f64::from(x) - 1.0));
+    /// let ball = Region::ellipsoid_about(&cube)?;
+    /// let inside = Shape::solid_box([2.0, 2.0, 2.0]).unwrap().of_mass(1.0).unwrap();
+    /// assert_eq!(ball.containment(&inside.into()), Containment::Possible);
+    /// # Ok::<(), gyradius_inertia::RegionError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// There are no points, they lie in a plane, or one is not finite or too large.
+    pub fn ellipsoid_about(points_m: &[[f64; 3]]) -> Result<Self, RegionError> {
+        let hull = Self::hull(points_m)?;
+        let outer = hull.outer_points_m().ok_or(RegionError::Flat)?;
+        let all = points_m.iter().map(|p| Vector3::from(*p));
+        smallest(outer, all).ok_or(RegionError::Flat)?
+    }
+}
+
+/// The smallest ellipsoid about the corners of a hull, which holds all of its points; nothing if they are flat.
+fn smallest(
+    outer: &[Vector3<f64>],
+    all: impl Iterator<Item = Vector3<f64>>,
+) -> Option<Result<Region, RegionError>> {
+    let n = outer.len();
+    // The ellipsoids about the origin in four dimensions cut the space of the points at height 1.
+    let lifted: Vec<Vector4<f64>> = outer.iter().map(|x| x.push(1.0)).collect();
+    let mut weights = vec![1.0 / n as f64; n];
+    for _ in 0..STEPS {
+        let spread: Matrix4<f64> =
+            lifted.iter().zip(&weights).map(|(x, w)| x * x.transpose() * *w).sum();
+        let inverse = spread.try_inverse()?;
+        let (place, most) = (0..n)
+            .map(|j| (j, lifted[j].dot(&(inverse * lifted[j]))))
+            .max_by(|a, b| a.1.total_cmp(&b.1))?;
+        if !(most > 4.0 * (1.0 + NEAR)) {
+            break;
+        }
+        let step = (most - 4.0) / (4.0 * (most - 1.0));
+        weights.iter_mut().for_each(|weight| *weight *= 1.0 - step);
+        weights[place] += step;
+    }
+    let middle: Vector3<f64> = outer.iter().zip(&weights).map(|(x, w)| x * *w).sum();
+    let about = |x: &Vector3<f64>| (x - middle) * (x - middle).transpose();
+    let spread: Matrix3<f64> = outer.iter().zip(&weights).map(|(x, w)| about(x) * *w).sum();
+    let inverse = spread.try_inverse()?;
+    let reach = all.map(|x| (x - middle).dot(&(inverse * (x - middle)))).fold(0.0, f64::max);
+    let eigen = SymmetricEigen::new(spread * reach);
+    let mut axes = eigen.eigenvectors;
+    if axes.determinant() < 0.0 {
+        axes.column_mut(0).neg_mut();
+    }
+    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
+    // What rounding takes away.
+    let semi_axes = eigen.eigenvalues.map(|x| x.max(0.0).sqrt() * (1.0 + 1e-9));
+    let pose = Isometry3::from_parts(Translation3::from(middle), turn);
+    let region = Region::ellipsoid(Vector3::zeros(), semi_axes);
+    Some(region.and_then(|region| region.transformed(&pose)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Containment, Shape};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Points all around a known ellipsoid give that, and its box; bodies in it are held, and larger ones are not.
+        #[test]
+        fn regions_are_about_their_points(
+            semi in prop::array::uniform3(0.05..2.0_f64),
+            middle in prop::array::uniform3(-1.0..1.0_f64),
+            turn in prop::array::uniform3(-1.0..1.0_f64),
+        ) {
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
+            let pose = Isometry3::from_parts(Translation3::from(Vector3::from(middle)), turn);
+            let golden = 2.399963;
+            let points: Vec<[f64; 3]> = (0..2000)
+                .map(|i| {
+                    let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 2000.0;
+                    let (x, y) = ((golden * f64::from(i)).cos(), (golden * f64::from(i)).sin());
+                    let unit = Vector3::new(x * (1.0 - z * z).sqrt(), y * (1.0 - z * z).sqrt(), z);
+                    let p = pose * nalgebra::Point3::from(unit.component_mul(&Vector3::from(semi)));
+                    p.coords.into()
+                })
+                .collect();
+            let held = |region: &Region, factor: f64| {
+                let [a, b, c] = semi.map(|x| x * factor);
+                // A third of the square of a semi-axis along each axis: on the limit of the ellipsoid.
+                let body = Shape::solid_box([2.0 * a, 2.0 * b, 2.0 * c]).unwrap();
+                let body = body.of_mass(1.0).unwrap().transformed(&pose).unwrap();
+                region.containment(&body) == Containment::Possible
+            };
+            let ellipsoid = Region::ellipsoid_about(&points).unwrap();
+            for region in [&ellipsoid, &Region::box_about(&points).unwrap(), &Region::hull(&points).unwrap()] {
+                prop_assert!(held(region, 0.9), "{region:?}");
+            }
+            prop_assert!(!held(&ellipsoid, 1.03));
+        }
+    }
+
+    #[test]
+    fn flat_points_have_no_ellipsoid_and_no_box() {
+        let flat = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        assert_eq!(Region::ellipsoid_about(&flat), Err(RegionError::Flat));
+        assert!(matches!(Region::box_about(&flat), Err(RegionError::Size { axis: 3, .. })));
+        for about in [Region::ellipsoid_about, Region::box_about] {
+            assert_eq!(about(&[]), Err(RegionError::Empty));
+            assert!(matches!(
+                about(&[[0.0, f64::NAN, 0.0]]),
+                Err(RegionError::Point { point: 0, .. })
+            ));
+        }
+    }
+}
