@@ -5,7 +5,7 @@ use gyradius_statistics::tail;
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
 use super::{
-    matching::{mean_attitude, vector_part},
+    matching::{FLOOR, mean_attitude, vector_part},
     relabel::Sample,
     root::RootFit,
 };
@@ -13,6 +13,10 @@ use crate::turns::{FIXED, law_of_turns};
 
 /// Uniform angles are taken for not uniform this often.
 const SIZE: f64 = 0.01;
+/// By how much the ln-likelihood of a law with one free turn must exceed that of uniform axes, and a law without
+/// a free turn that of uniform axes, for it to be taken: half of what χ² exceeds at 1 %, with 3 degrees of freedom
+/// and with 6 more.
+const LESS_FREE: [f64; 3] = [0.0, 5.672, 5.672 + 8.406];
 /// Moments this many deviations apart are never taken for each other.
 const APART: f64 = 3.0;
 /// Below this radial variance there is no second lobe, and narrow laws are all the same.
@@ -82,13 +86,38 @@ pub struct AxesFit {
 }
 
 impl AxesFit {
-    pub(super) fn of(samples: &[Sample], roots: &[RootFit; 3]) -> Result<Self, FitError> {
+    /// `ln_likelihood` is that of the samples under a law of the axes, whatever their axes are called.
+    pub(super) fn of(
+        samples: &[Sample],
+        roots: &[RootFit; 3],
+        ln_likelihood: impl Fn(&RadiallyConstrainedGaussian) -> f64,
+    ) -> Result<(Self, f64, RadiallyConstrainedGaussian), FitError> {
         let mean = mean_attitude(samples.iter().map(|s| &s.attitude));
-        match undetermined(samples, roots, &mean) {
-            AxesFinding::Free => Ok(Self::plain(mean, [f64::INFINITY; 3], AxesFinding::Free)),
-            AxesFinding::FreeTurn { axis } => Ok(Self::about(samples, &mean, axis - 1)),
-            _ => Self::determined(samples, mean),
+        let determined = Self::determined(samples, mean)?;
+        let told = ln_likelihood(&determined.law) - LESS_FREE[2];
+        let free = undetermined(samples, roots, &mean).into_iter().map(|finding| {
+            let (fit, less_free) = match finding {
+                AxesFinding::FreeTurn { axis } => {
+                    (Self::about(samples, &mean, axis - 1), LESS_FREE[1])
+                }
+                _ => (Self::plain(mean, [f64::INFINITY; 3], AxesFinding::Free), LESS_FREE[0]),
+            };
+            let height = ln_likelihood(&fit.law) - less_free;
+            (fit, height)
+        });
+        let Some((free, height)) = free.max_by(|(_, a), (_, b)| a.total_cmp(b)) else {
+            let widest = determined.law.clone();
+            return Ok((determined, told, widest));
+        };
+        // A turn that samples with two equal moments do not have is whatever they were taken apart with.
+        let none = (0..3).any(|axis| is_round(samples, axis));
+        if none {
+            let widest = free.law.clone();
+            return Ok((free, height, widest));
         }
+        let widest = determined.law.clone();
+        let (best, height) = if told > height { (determined, told) } else { (free, height) };
+        Ok((best, height, widest))
     }
 
     /// The same law where the nominal body has the axes `mean`, which differ from those of the fit by
@@ -284,24 +313,28 @@ fn tilt_variance(share: f64) -> f64 {
     0.5 * low
 }
 
-/// Whether the samples leave angles of the axes undetermined: by tests of uniformity that do not
+/// Which angles of the axes the samples may leave undetermined: by tests of uniformity that do not
 /// depend on how axes of equal moments are named, at 1 %.
 fn undetermined(
     samples: &[Sample],
     roots: &[RootFit; 3],
     mean: &UnitQuaternion<f64>,
-) -> AxesFinding {
+) -> Vec<AxesFinding> {
     let n = samples.len() as f64;
     // Axis k is the odd one of the pair that remains.
     let apart: [bool; 3] = std::array::from_fn(|k| {
         let (a, b) = (roots[(k + 1) % 3], roots[(k + 2) % 3]);
         (a.mean() - b.mean()).abs() > APART * a.deviation().hypot(b.deviation())
     });
+    let mut findings = Vec::new();
+    let round = [0, 1, 2].map(|axis| is_round(samples, axis));
     if uniform_p_value(samples, apart) > SIZE {
-        return AxesFinding::Free;
+        findings.push(AxesFinding::Free);
     }
-    let mut free = None;
     for (axis, apart) in apart.into_iter().enumerate() {
+        if (0..3).any(|other| other != axis && round[other]) {
+            continue;
+        }
         // Named by moment, an axis is known but for its sign; else up to quarter turns.
         let fold = if apart { 2.0 } else { 4.0 };
         let (mut c, mut s) = (0.0, 0.0);
@@ -312,22 +345,20 @@ fn undetermined(
             c += cos / n;
             s += sin / n;
         }
-        let p = tail::rayleigh(libm::hypot(c, s), n);
-        if p > SIZE {
-            // The one whose own direction scatters least.
-            let tilt: f64 = samples
-                .iter()
-                .map(|s| {
-                    let a = s.attitude.inverse() * Vector3::ith(axis, 1.0);
-                    1.0 - a.dot(&(mean.inverse() * Vector3::ith(axis, 1.0))).abs()
-                })
-                .sum();
-            if free.is_none_or(|(least, _)| tilt < least) {
-                free = Some((tilt, axis));
-            }
+        if tail::rayleigh(libm::hypot(c, s), n) > SIZE {
+            findings.push(AxesFinding::FreeTurn { axis: axis + 1 });
         }
     }
-    free.map_or(AxesFinding::Determined, |(_, axis)| AxesFinding::FreeTurn { axis: axis + 1 })
+    findings
+}
+
+/// Whether the moments about the other two axes are the same in every sample, to the digits of tables.
+fn is_round(samples: &[Sample], axis: usize) -> bool {
+    let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+    samples.iter().all(|s| {
+        let size = s.roots.into_iter().fold(0.0, f64::max);
+        (s.roots[a] - s.roots[b]).abs() <= FLOOR * size
+    })
 }
 
 /// p-value of uniform axes, from tensors that change with no naming of the axes that could be

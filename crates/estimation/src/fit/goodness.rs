@@ -161,13 +161,12 @@ impl PrincipalFit {
         }
         let turns = self.turns();
         if let Some(observed) = omnibus(&turns) {
-            let centre = self.centre();
             let mut densities = Vec::new();
             let (p_value, least) = bootstrap(observed, n, &mut tick, || {
                 let samples: Vec<Sample> = (0..n)
                     .map(|_| {
                         let roots = self.law.roots().sample(rng).values().map(f64::abs);
-                        centre.relabel(&Sample { roots, attitude: self.law.axes().sample(rng) })
+                        Sample { roots, attitude: self.law.axes().sample(rng) }
                     })
                     .collect();
                 if densities.len() < WORSE * n {

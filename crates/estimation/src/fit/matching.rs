@@ -8,15 +8,12 @@ use super::relabel::{Relabeling, Sample};
 const ROUNDS: usize = 200;
 /// Deviations are taken to be no smaller than this share of the largest root, and than this
 /// quaternion: six digits, which is what tables carry.
-const FLOOR: f64 = 1e-6;
-/// Labels whose likelihood is within this factor of another's could be the other: e³.
-const LN_DOUBT: f64 = 3.0;
+pub(super) const FLOOR: f64 = 1e-6;
 
 /// Samples whose axes are named alike.
 #[derive(Clone, Debug)]
 pub(super) struct Matched {
     pub(super) samples: Vec<Sample>,
-    pub(super) doubtful: usize,
     pub(super) converged: bool,
 }
 
@@ -28,8 +25,6 @@ pub(super) struct Centre {
     mean: [f64; 3],
     weight: [f64; 3],
     precision: Matrix3<f64>,
-    /// The smallest eigenvalue of the precision.
-    least: f64,
     ln_scale: f64,
 }
 
@@ -58,9 +53,7 @@ impl Centre {
         let ln_scale = variance.iter().map(|v| libm::log(*v)).sum::<f64>()
             + libm::log(scatter.determinant().max(f64::MIN_POSITIVE));
         let precision = scatter.try_inverse().unwrap_or_else(Matrix3::zeros);
-        // A trifle less, for rounding.
-        let least = 0.999_999 * precision.symmetric_eigenvalues().min();
-        Self { attitude, mean, weight: variance.map(|v| 1.0 / v), precision, least, ln_scale }
+        Self { attitude, mean, weight: variance.map(|v| 1.0 / v), precision, ln_scale }
     }
 
     /// Minus twice the ln-likelihood, but for what all labels share.
@@ -70,33 +63,18 @@ impl Centre {
         k + t.dot(&(self.precision * t))
     }
 
-    /// The likeliest label of a sample, its cost and that of the next.
-    fn label(&self, sample: &Sample) -> (usize, f64, f64) {
+    /// The likeliest label of a sample.
+    fn label(&self, sample: &Sample) -> usize {
         let from_mean = sample.attitude * self.attitude.inverse();
-        let (mut best, mut least, mut next) = (0, f64::INFINITY, f64::INFINITY);
+        let (mut best, mut least) = (0, f64::INFINITY);
         for (i, g) in Relabeling::all().iter().enumerate() {
             let roots = g.order.map(|i| sample.roots[i]);
             let cost = self.cost(roots, &(g.turn * from_mean));
             if cost < least {
-                (best, least, next) = (i, cost, least);
-            } else {
-                next = next.min(cost);
+                (best, least) = (i, cost);
             }
         }
-        (best, least, next)
-    }
-
-    /// The likeliest naming of the axes of a sample.
-    pub(super) fn relabel(&self, sample: &Sample) -> Sample {
-        // Other names are at least a quarter turn away: from a turn θ off the mean, at 90° − θ or more,
-        // where the vector part has a square of (1 − sin θ)/2 or more.
-        let from_mean = sample.attitude * self.attitude.inverse();
-        let sine = 2.0 * from_mean.imag().norm() * from_mean.w.abs();
-        let near = 2.0 * from_mean.w * from_mean.w > 1.0;
-        if near && self.cost(sample.roots, &from_mean) < self.least * 0.5 * (1.0 - sine) {
-            return *sample;
-        }
-        sample.relabeled(&Relabeling::all()[self.label(sample).0])
+        best
     }
 }
 
@@ -162,10 +140,9 @@ pub(super) fn matched(samples: &[Sample], mean_axes: &UnitQuaternion<f64>) -> Ma
 fn iterate(mut samples: Vec<Sample>) -> (f64, Matched) {
     let mut centre = Centre::of(&samples);
     for _ in 0..ROUNDS {
-        let (mut changed, mut doubtful) = (0, 0);
+        let mut changed = 0;
         for sample in &mut samples {
-            let (label, cost, next) = centre.label(sample);
-            doubtful += usize::from(0.5 * (next - cost) < LN_DOUBT);
+            let label = centre.label(sample);
             if label != 0 {
                 *sample = sample.relabeled(&Relabeling::all()[label]);
                 changed += 1;
@@ -174,12 +151,12 @@ fn iterate(mut samples: Vec<Sample>) -> (f64, Matched) {
         if changed == 0 {
             // The scatter is that of the samples: their squared distances add up to a constant.
             let height = -centre.ln_scale;
-            return (height, Matched { samples, doubtful, converged: true });
+            return (height, Matched { samples, converged: true });
         }
         centre = Centre::of(&samples);
     }
     let height = -centre.ln_scale;
-    (height, Matched { samples, doubtful: 0, converged: false })
+    (height, Matched { samples, converged: false })
 }
 
 #[cfg(test)]
@@ -227,29 +204,6 @@ mod tests {
     fn axes_stay_together_where_moments_cross() {
         assert_eq!(misnamed([40.0, 40.1, 60.0], 1.0, 0.02, 1000), 0);
         assert_eq!(misnamed([40.0, 40.0, 40.0], 1.0, 0.02, 1000), 0);
-    }
-
-    /// The short cut gives what looking at all 24 gives.
-    #[test]
-    fn the_short_cut_agrees_with_all_24() {
-        let mut rng = ChaCha8Rng::seed_from_u64(5);
-        let mean = UnitQuaternion::from_euler_angles(0.5, -0.3, 0.7);
-        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
-        for turn in [0.05, 0.3, 1.0] {
-            let samples: Vec<Sample> = (0..500)
-                .map(|_| Sample {
-                    roots: [40.0 + normal(), 42.0 + normal(), 60.0 + normal()],
-                    attitude: UnitQuaternion::from_scaled_axis(
-                        Vector3::new(normal(), normal(), normal()) * turn,
-                    ) * mean,
-                })
-                .collect();
-            let centre = Centre::of(&samples);
-            for s in &samples {
-                let all = s.relabeled(&Relabeling::all()[centre.label(s).0]);
-                assert!(centre.relabel(s).attitude.angle_to(&all.attitude) < 1e-12);
-            }
-        }
     }
 
     /// Axes turn past 45°, where the nearest naming is wrong; the moments say which is which.

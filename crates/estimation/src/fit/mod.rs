@@ -3,6 +3,7 @@
 mod axes;
 mod goodness;
 mod matching;
+mod names;
 mod notes;
 mod relabel;
 mod root;
@@ -16,7 +17,8 @@ use nalgebra::{Matrix3, UnitQuaternion};
 
 #[cfg(feature = "serde")]
 use crate::read::belong;
-use matching::{Centre, matched};
+use matching::matched;
+use names::Names;
 use relabel::{Relabeling, Sample};
 
 pub use axes::{AxesFinding, AxesFit};
@@ -29,6 +31,11 @@ pub use root::{RootEstimate, RootFit};
 const NEEDED: usize = 13;
 /// A second moment below this share of the trace is rounding, and the body a plate.
 const ROUNDING: f64 = 1e-13;
+/// A share of doubtful names that moves the fit and is worth a word.
+const DOUBTFUL: f64 = 0.01;
+/// How often doubtful names are drawn anew at most, and how often in vain.
+const ROUNDS: usize = 20;
+const IN_VAIN: usize = 3;
 /// Two attitudes nearer than this, rad, are the same axes.
 const SAME: f64 = 1e-3;
 
@@ -155,8 +162,8 @@ impl PrincipalFit {
             return Err(PrincipalFitError::Point { index });
         }
         let apart: Vec<Sample> = samples.iter().map(take_apart).collect();
-        let mut matched = matched(&apart, &mean_axes(samples));
-        let mut fitted = fit(&matched.samples)?;
+        let matched = matched(&apart, &mean_axes(samples));
+        let mut fitted = renamed(fit(matched.samples)?);
         // The fitted mean may be named otherwise than the first guess of it.
         for _ in 0..3 {
             let axes = fitted.nominal.principal_axes().attitude();
@@ -165,19 +172,17 @@ impl PrincipalFit {
                 break;
             }
             if g.turn.angle() > 1e-6 {
-                for sample in &mut matched.samples {
-                    *sample = sample.relabeled(g);
-                }
-                fitted = fit(&matched.samples)?;
+                fitted = fit(fitted.samples.iter().map(|sample| sample.relabeled(g)).collect())?;
             } else {
                 // Moments equal to rounding: a turn of the axes that nothing depends on.
                 fitted.axes = fitted.axes.at(axes);
                 break;
             }
         }
-        let Fitted { nominal, roots, axes } = fitted;
+        let doubtful = fitted.names().doubtful(&fitted.samples);
+        let Fitted { samples: named, nominal, roots, axes, .. } = fitted;
         let (mut swapped, mut flipped) = (0, 0);
-        for (sample, before) in matched.samples.iter().zip(&apart) {
+        for (sample, before) in named.iter().zip(&apart) {
             let g = nearest(&before.attitude, &sample.attitude);
             swapped += usize::from(g.swaps());
             flipped += usize::from(!g.swaps() && g.turn.angle() > 1e-6);
@@ -186,10 +191,9 @@ impl PrincipalFit {
             .map_err(|_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY })?;
         let gaussian = ScalarRoots::normal(mean, roots.map(|r| r.deviation() * r.deviation()))?;
         let law = PrincipalDispersion::new(gaussian, axes.law().clone());
-        let matching =
-            Matching { swapped, flipped, doubtful: matched.doubtful, converged: matched.converged };
+        let matching = Matching { swapped, flipped, doubtful, converged: matched.converged };
         Ok(Self {
-            samples: matched.samples,
+            samples: named,
             nominal,
             roots,
             axes,
@@ -208,10 +212,6 @@ impl PrincipalFit {
     /// The root about principal axis `k` of each sample, as its axes were named.
     pub(crate) fn sample_roots(&self, k: usize) -> Vec<f64> {
         self.samples.iter().map(|sample| sample.roots[k]).collect()
-    }
-
-    fn centre(&self) -> Centre {
-        Centre::of(&self.samples)
     }
 }
 
@@ -256,24 +256,66 @@ fn deviations(samples: &[Inertia]) -> [f64; 6] {
     })
 }
 
+#[derive(Clone)]
 struct Fitted {
+    samples: Vec<Sample>,
     nominal: Inertia,
     roots: [RootFit; 3],
     axes: AxesFit,
+    /// The ln-likelihood, whatever the axes are called, less what less free axes cost.
+    height: f64,
+    /// The law of the axes if no turn is free.
+    determined: RadiallyConstrainedGaussian,
 }
 
-fn fit(samples: &[Sample]) -> Result<Fitted, PrincipalFitError> {
+impl Fitted {
+    fn names(&self) -> Names<'_> {
+        Names::of(&self.roots, self.axes.law())
+    }
+}
+
+fn fit(samples: Vec<Sample>) -> Result<Fitted, PrincipalFitError> {
     let columns = [0, 1, 2].map(|k| samples.iter().map(|s| s.roots[k]).collect::<Vec<f64>>());
     let n = samples.len() as f64;
     let sizes = columns.each_ref().map(|c| (c.iter().map(|k| k * k).sum::<f64>() / n).sqrt());
     let size = sizes.into_iter().fold(0.0, f64::max);
     let roots = columns.each_ref().map(|c| RootFit::of(c, size));
-    let axes = AxesFit::of(samples, &roots)?;
+    let ln_likelihood = |axes: &_| Names::of(&roots, axes).ln_likelihood(&samples);
+    let (axes, height, determined) = AxesFit::of(&samples, &roots, ln_likelihood)?;
     let out_of_range = |_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY };
     let mean = SecondMoments::new(roots.map(|r| r.mean() * r.mean())).map_err(out_of_range)?;
     let nominal = Inertia::from_second_moments(mean, &axes.law().mean())
         .map_err(|_| ScalarRootsError::Variance { axis: 1, value: f64::INFINITY })?;
-    Ok(Fitted { nominal, roots, axes })
+    Ok(Fitted { samples, nominal, roots, axes, height, determined })
+}
+
+/// Where many names are in doubt, the likeliest are too orderly: all scatter that they allow goes out of the fit. So
+/// names are drawn as they are likely under the law so far, the law is taken anew, and the likeliest of these laws
+/// is kept, with the names of which it is made: stochastic EM (Celeux & Diebolt 1985, Computational Statistics
+/// Quarterly 2, 73).
+fn renamed(mut last: Fitted) -> Fitted {
+    let mut best: Option<Fitted> = None;
+    let mut in_vain = 0;
+    for round in 0..ROUNDS {
+        let start = 2.0_f64.sqrt() * round as f64;
+        let (samples, changed) =
+            Names::of(&last.roots, &last.determined).drawn(&last.samples, start);
+        if best.is_none() && !(changed as f64 > DOUBTFUL * samples.len() as f64) {
+            break;
+        }
+        let Ok(next) = fit(samples) else { break };
+        last = next;
+        if best.as_ref().is_none_or(|best| last.height > best.height) {
+            best = Some(last.clone());
+            in_vain = 0;
+        } else {
+            in_vain += 1;
+            if in_vain == IN_VAIN {
+                break;
+            }
+        }
+    }
+    best.unwrap_or(last)
 }
 
 fn take_apart(inertia: &Inertia) -> Sample {

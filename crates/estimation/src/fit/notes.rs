@@ -2,12 +2,10 @@
 
 use std::fmt;
 
-use super::{AxesFinding, PrincipalFit, root::RootEstimate};
+use super::{AxesFinding, DOUBTFUL, PrincipalFit, root::RootEstimate};
 
 /// Moments nearer than this, in deviations of their difference, count as equal within their scatter.
 const EQUAL: f64 = 2.0;
-/// A share of doubtful names that is worth a word.
-const DOUBTFUL: f64 = 0.01;
 /// Deviation of a turn, rad, beyond which signs and names run into each other: 20°.
 const WIDE: f64 = 0.35;
 
@@ -84,7 +82,7 @@ impl fmt::Display for FitNote {
                     write!(
                         f,
                         "the turn about axis {third} scatters by {degrees:.0}°, so wide that names run \
-                         into each other and it comes out too small"
+                         into each other"
                     )?;
                 } else {
                     write!(
@@ -134,8 +132,8 @@ impl fmt::Display for FitNote {
             ),
             Self::Doubtful { count } => write!(
                 f,
-                "{count} samples could be matched otherwise, at odds below 20 : 1: scatter is \
-                 underestimated, and errors suppose the matching is right"
+                "{count} samples could be matched otherwise, at odds below 20 : 1: how they are matched was drawn \
+                 as it is likely, and errors, which suppose it right, are too small"
             ),
             Self::NotConverged => f.write_str("the search for the best fit did not arrive"),
         }
