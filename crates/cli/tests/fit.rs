@@ -278,7 +278,22 @@ fn bad_tables_are_refused_with_their_row() {
     assert!(shell.refused(&["fit", "nowhere.csv"]).contains("nowhere.csv"));
     assert!(shell.refused(&["fit", "."]).contains("not a regular file"));
     shell.write("zero.csv", &bad(5, "v005,0,0,0,0,0,0"));
-    assert!(shell.refused(&["fit", "zero.csv"]).contains("is a point"));
+    let message = shell.refused(&["fit", "zero.csv"]);
+    assert!(message.contains("zero.csv:6: sample 5 is a point"), "{message}");
+    for power in ["10", "300"] {
+        let name = format!("large{power}.csv");
+        let row = ["5e3", "4e3", "3e3"].map(|moment| {
+            let (digit, own) = moment.split_once('e').unwrap_or_default();
+            format!("{digit}e{}", own.parse::<i32>().unwrap() + power.parse::<i32>().unwrap())
+        });
+        shell.write(&name, &bad(9, &format!("v009,{},0,0,0", row.join(","))));
+        let message = shell.refused(&["fit", &name]);
+        let place = format!("{name}:10: sample 9: the sum of its moments");
+        assert!(message.contains(&place) && message.contains("another unit"), "{message}");
+    }
+    shell.write("returns.csv", &VARIANTS.replace('\n', "\r"));
+    let message = shell.refused(&["fit", "returns.csv"]);
+    assert!(message.contains("returns.csv:1: its lines end in carriage returns"), "{message}");
     shell.write(
         "huge.csv",
         &rows(

@@ -110,6 +110,12 @@ pub enum FileProblem {
         "it is not UTF-8, and declares no other encoding that is read (ISO-8859, Windows-125x)"
     )]
     NotUtf8,
+    /// Lines of a table that no line feed ends.
+    #[error(
+        "its lines end in carriage returns (CR) alone, so that all of it is one line: save it with lines \
+         that end in LF or CR LF"
+    )]
+    CarriageReturns,
     /// A format that may hold inertias and is not read.
     #[error("{format} files are not read here: convert it to URDF, MJCF or SDF")]
     NotRead {

@@ -29,6 +29,10 @@ impl Text {
         if body.contains(&0) {
             return Err(FileProblem::Binary.into());
         }
+        // Other encodings are allowed to tables alone, whose rows are lines.
+        if latin && body.trim_ascii().contains(&b'\r') && !body.contains(&b'\n') {
+            return Err(Refusal { line: Some(1), problem: FileProblem::CarriageReturns });
+        }
         let text = match std::str::from_utf8(body) {
             Ok(text) => text.to_owned(),
             Err(_) if latin || declares_latin(body) => {

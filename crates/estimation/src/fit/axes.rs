@@ -133,7 +133,7 @@ impl AxesFit {
         }
     }
 
-    fn plain(mean: UnitQuaternion<f64>, local: [f64; 3], finding: AxesFinding) -> Self {
+    pub(super) fn plain(mean: UnitQuaternion<f64>, local: [f64; 3], finding: AxesFinding) -> Self {
         let r = *mean.to_rotation_matrix().matrix();
         // Infinite variances have no matrix: the finding tells them.
         let finite = local.map(|v| if v.is_finite() { v } else { 0.0 });

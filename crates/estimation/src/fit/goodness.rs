@@ -44,6 +44,8 @@ pub enum Aspect {
     Tilt,
     /// That roots and axes are independent.
     RootsAndAxes,
+    /// Mean and covariance of the six entries.
+    Entries,
 }
 
 impl fmt::Display for Aspect {
@@ -55,6 +57,7 @@ impl fmt::Display for Aspect {
             Self::Turn => f.write_str("axes turn as far as the law says"),
             Self::Tilt => f.write_str("the axis tilts alike in all directions"),
             Self::RootsAndAxes => f.write_str("roots and axes are independent"),
+            Self::Entries => f.write_str("entries scatter as the law says"),
         }
     }
 }
@@ -94,6 +97,9 @@ impl fmt::Display for Assessment {
                 )?,
                 Aspect::Tilt => f.write_str("the axis tilts more one way than another")?,
                 Aspect::RootsAndAxes => f.write_str("the axes depend on the roots")?,
+                Aspect::Entries => f.write_str(
+                    "the entries of the samples do not have the mean and the covariance that the law gives them",
+                )?,
             }
             let (p, least) = (test.p_value(), test.resolution());
             let below = if p <= least { "≤" } else { "=" };
@@ -119,8 +125,8 @@ impl PrincipalFit {
     /// * The roots among themselves, and the roots against the turns: Bartlett's likelihood ratio
     ///   of correlations, χ².
     /// * The turns from their mean: Mardia's (1970, doi:10.1093/biomet/57.3.519) skewness and
-    ///   kurtosis in one number, by parametric bootstrap from the fitted law, with the naming of axes
-    ///   by likelihood included, so that no normal approximation enters. Bootstraps stop as soon as
+    ///   kurtosis in one number, by parametric bootstrap from the fitted law, so that no normal
+    ///   approximation enters. Bootstraps stop as soon as
     ///   20 simulations look worse (Besag & Clifford 1991, doi:10.1093/biomet/78.2.301).
     /// * How far the axes turn: the density of the fitted law at each attitude, against the same of draws
     ///   of that law, by Anderson and Darling's A². For one narrow lobe the density tells the
@@ -128,6 +134,8 @@ impl PrincipalFit {
     ///   are those of the law. The law is taken as given, though it was fitted: p is too large
     ///   rather than too small. A light second lobe, which any outlier can have made, moves the quantiles
     ///   of the others by next to nothing.
+    /// * The six entries: their mean and covariance against those of the law, which are exact, as far as the fit has not
+    ///   made them agree (Neyman's C(α), 1959), by draws of the law.
     /// * What does not scatter is not tested, nor are turns that are free.
     ///
     /// # Limits
@@ -163,12 +171,7 @@ impl PrincipalFit {
         if let Some(observed) = omnibus(&turns) {
             let mut densities = Vec::new();
             let (p_value, least) = bootstrap(observed, n, &mut tick, || {
-                let samples: Vec<Sample> = (0..n)
-                    .map(|_| {
-                        let roots = self.law.roots().sample(rng).values().map(f64::abs);
-                        Sample { roots, attitude: self.law.axes().sample(rng) }
-                    })
-                    .collect();
+                let samples: Vec<Sample> = (0..n).map(|_| self.draw(rng)).collect();
                 if densities.len() < WORSE * n {
                     densities.extend(self.ln_densities(&samples));
                 }
@@ -188,14 +191,23 @@ impl PrincipalFit {
             let p_value = independence(&roots, &turns, n);
             tests.push(FitTest::new(Aspect::RootsAndAxes, p_value, 0.0));
         }
+        if let Some((p_value, least)) = self.entries_p_value(rng, &mut tick) {
+            tests.push(FitTest::new(Aspect::Entries, p_value, least));
+        }
         Assessment::new(tests)
+    }
+
+    /// A draw of the law, named as the law names it.
+    pub(super) fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Sample {
+        let roots = self.law.roots().sample(rng).values().map(f64::abs);
+        Sample { roots, attitude: self.law.axes().sample(rng) }
     }
 
     /// How many samples [`assess_with`](Self::assess_with) simulates at most.
     #[must_use]
     pub fn simulations(&self) -> u64 {
         let folded = self.roots.iter().filter(|r| is_folded(r)).count() as u64;
-        (folded + 1) * most(self.samples.len()) as u64
+        (folded + 2) * most(self.samples.len()) as u64
     }
 
     pub(crate) fn turns(&self) -> Vec<Vec<f64>> {
@@ -255,7 +267,7 @@ fn most(n: usize) -> usize {
 }
 
 /// Share of simulated statistics at least as large as the observed, and the least it can be.
-fn bootstrap(
+pub(super) fn bootstrap(
     observed: f64,
     n: usize,
     tick: &mut dyn FnMut(),

@@ -1,6 +1,7 @@
 //! The paper's model fitted to samples of an inertia matrix.
 
 mod axes;
+mod entries;
 mod goodness;
 mod matching;
 mod names;
@@ -31,11 +32,15 @@ pub use root::{RootEstimate, RootFit};
 const NEEDED: usize = 13;
 /// A second moment below this share of the trace is rounding, and the body a plate.
 const ROUNDING: f64 = 1e-13;
+/// A sample this many times as large as the median of all is no sample of the same body: roots a thousand times as large.
+const LARGER: f64 = 1e6;
 /// A share of doubtful names that moves the fit and is worth a word.
 const DOUBTFUL: f64 = 0.01;
-/// How often doubtful names are drawn anew at most, and how often in vain.
-const ROUNDS: usize = 20;
-const IN_VAIN: usize = 3;
+/// How often doubtful names are drawn anew at most.
+const ROUNDS: usize = 60;
+/// How often they are drawn in vain, before the search ends: at least, and more where more names are in doubt.
+const IN_VAIN: f64 = 2.0;
+const IN_VAIN_IF_ALL: f64 = 16.0;
 /// Two attitudes nearer than this, rad, are the same axes.
 const SAME: f64 = 1e-3;
 
@@ -55,12 +60,37 @@ pub enum PrincipalFitError {
         /// Its place, from 0.
         index: usize,
     },
+    /// A sample is so large beside the others that the law of all would be about nothing but this one.
+    #[error(
+        "sample {}: the sum of its moments of inertia is {sum:.3e} kg·m², {:.1e} times the median of the samples; a \
+         fit allows up to {LARGER:.0e} times: the sample has another unit, or a slip of the decimal point",
+        index + 1, sum / median
+    )]
+    Large {
+        /// Its place, from 0.
+        index: usize,
+        /// The sum of its moments of inertia, kg·m².
+        sum: f64,
+        /// The median of the sums of all samples, kg·m².
+        median: f64,
+    },
     /// The axes have no fit.
     #[error("axes: {0}")]
     Axes(#[from] FitError),
     /// The roots are out of range.
     #[error(transparent)]
     Roots(#[from] ScalarRootsError),
+}
+
+impl PrincipalFitError {
+    /// The place, from 0, of the sample that is refused, where it is one.
+    #[must_use]
+    pub fn sample(&self) -> Option<usize> {
+        match self {
+            Self::Point { index } | Self::Large { index, .. } => Some(*index),
+            Self::TooFew { .. } | Self::Axes(_) | Self::Roots(_) => None,
+        }
+    }
 }
 
 /// How the principal axes of the samples were matched.
@@ -88,14 +118,16 @@ pub struct Matching {
 ///    axes and of the moments count together, each in units of its own scatter.
 /// 2. *Roots*: [`RootFit`], each by itself.
 /// 3. *Axes*: [`AxesFit`]. First whether they have a mean at all: two moments equal within their
-///    scatter may leave a turn undetermined. Then [`RadiallyConstrainedGaussian::fit`].
-/// 4. The nominal inertia is that of the mean roots about the mean axes, and names its axes as
+///    scatter may leave a turn undetermined. Then [`RadiallyConstrainedGaussian::fit`]. Which of both is taken, the
+///    likelihood says, whatever the axes are called.
+/// 4. Where more than 1 % of the names are in doubt, they are drawn as they are likely under the law, and steps 2 and 3
+///    are done again, until the likelihood grows no more.
+/// 5. The nominal inertia is that of the mean roots about the mean axes, and names its axes as
 ///    [`Inertia::principal_axes`] does.
 ///
 /// # Limits
-/// At least 13 samples, no point among them. Where many namings are doubtful, scatter is
-/// underestimated: a sample goes to the nearer name though it came from the farther one.
-/// Standard errors suppose the names are right.
+/// At least 13 samples, no point among them and none a million times as large as the median. Standard errors are those of
+/// many samples, and suppose that the names are right.
 ///
 /// ```
 /// use gyradius_attitude::RadiallyConstrainedGaussian;
@@ -153,13 +185,20 @@ impl PrincipalFit {
     /// Fits the model.
     ///
     /// # Errors
-    /// Fewer than 13 samples, a point among them, or moments out of range.
+    /// Fewer than 13 samples, a point or a far larger one among them, or moments out of range.
     pub fn new(samples: &[Inertia]) -> Result<Self, PrincipalFitError> {
         if samples.len() < NEEDED {
             return Err(PrincipalFitError::TooFew { count: samples.len() });
         }
         if let Some(index) = samples.iter().position(|s| !(s.matrix().trace() > 0.0)) {
             return Err(PrincipalFitError::Point { index });
+        }
+        let sums: Vec<f64> = samples.iter().map(|s| s.matrix().trace()).collect();
+        let mut sorted = sums.clone();
+        sorted.sort_by(f64::total_cmp);
+        let median = sorted[sorted.len() / 2];
+        if let Some(index) = sums.iter().position(|sum| !(sum / median <= LARGER)) {
+            return Err(PrincipalFitError::Large { index, sum: sums[index], median });
         }
         let apart: Vec<Sample> = samples.iter().map(take_apart).collect();
         let matched = matched(&apart, &mean_axes(samples));
@@ -179,7 +218,7 @@ impl PrincipalFit {
                 break;
             }
         }
-        let doubtful = fitted.names().doubtful(&fitted.samples);
+        let doubtful = Names::of(&fitted.roots, fitted.axes.law()).doubtful(&fitted.samples);
         let Fitted { samples: named, nominal, roots, axes, .. } = fitted;
         let (mut swapped, mut flipped) = (0, 0);
         for (sample, before) in named.iter().zip(&apart) {
@@ -207,6 +246,10 @@ impl PrincipalFit {
     #[must_use]
     pub fn count(&self) -> usize {
         self.samples.len()
+    }
+
+    fn names(&self) -> Names<'_> {
+        Names::of(&self.roots, self.axes.law())
     }
 
     /// The root about principal axis `k` of each sample, as its axes were named.
@@ -268,12 +311,6 @@ struct Fitted {
     determined: RadiallyConstrainedGaussian,
 }
 
-impl Fitted {
-    fn names(&self) -> Names<'_> {
-        Names::of(&self.roots, self.axes.law())
-    }
-}
-
 fn fit(samples: Vec<Sample>) -> Result<Fitted, PrincipalFitError> {
     let columns = [0, 1, 2].map(|k| samples.iter().map(|s| s.roots[k]).collect::<Vec<f64>>());
     let n = samples.len() as f64;
@@ -298,9 +335,10 @@ fn renamed(mut last: Fitted) -> Fitted {
     let mut in_vain = 0;
     for round in 0..ROUNDS {
         let start = 2.0_f64.sqrt() * round as f64;
-        let (samples, changed) =
-            Names::of(&last.roots, &last.determined).drawn(&last.samples, start);
-        if best.is_none() && !(changed as f64 > DOUBTFUL * samples.len() as f64) {
+        let names = Names::of(&last.roots, &last.determined);
+        let (samples, changed) = names.drawn(&last.samples, start);
+        let share = changed as f64 / samples.len() as f64;
+        if best.is_none() && !(share > DOUBTFUL) {
             break;
         }
         let Ok(next) = fit(samples) else { break };
@@ -310,7 +348,7 @@ fn renamed(mut last: Fitted) -> Fitted {
             in_vain = 0;
         } else {
             in_vain += 1;
-            if in_vain == IN_VAIN {
+            if f64::from(in_vain) >= IN_VAIN + share * IN_VAIN_IF_ALL {
                 break;
             }
         }

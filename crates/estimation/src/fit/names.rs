@@ -44,6 +44,13 @@ impl<'a> Names<'a> {
         })
     }
 
+    /// How likely each naming is, in units of the likeliest.
+    pub(super) fn weights(&self, sample: &Sample) -> [f64; 24] {
+        let ln = self.ln_densities(sample);
+        let largest = ln.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        ln.map(|ln| libm::exp(ln - largest))
+    }
+
     /// Each sample with a naming drawn as it is likely, and how many have changed theirs. The numbers that draw are those
     /// of a sequence that fills [0, 1) evenly, from `start` on: so shares of names come out nearer to their
     /// probabilities than by chance, and the same samples have the same names.
@@ -52,9 +59,7 @@ impl<'a> Names<'a> {
         let mut u = start;
         let one = |sample: &Sample| {
             u = (u + GOLDEN).fract();
-            let ln = self.ln_densities(sample);
-            let largest = ln.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            let weights = ln.map(|ln| libm::exp(ln - largest));
+            let weights = self.weights(sample);
             let mut left = u * weights.iter().sum::<f64>();
             let Some(label) = weights.iter().position(|weight| {
                 left -= weight;

@@ -6,7 +6,7 @@ use std::fmt;
 use super::{MassPropertiesFit, ScalarEstimate};
 use crate::{
     assessment::{Test, Verdict},
-    fit::{Aspect, independence},
+    fit::{Aspect, FitTest, independence},
 };
 
 /// What of the joint law a test looks at.
@@ -83,12 +83,12 @@ impl MassPropertiesFit {
             exact(MassAspect::Axes, (!turns.is_empty()).then_some(p_value));
         }
         let own = self.lengths.assess_with(rng, progress);
-        tests.extend(own.tests().iter().filter(|test| test.aspect() != Aspect::Roots).map(
-            |test| {
-                let aspect = MassAspect::Inertia(test.aspect());
-                MassTest::new(aspect, test.p_value(), test.resolution())
-            },
-        ));
+        // Correlated lengths are a part of the joint law, and move the entries.
+        let asked = |test: &&FitTest| !matches!(test.aspect(), Aspect::Roots | Aspect::Entries);
+        tests.extend(own.tests().iter().filter(asked).map(|test| {
+            let aspect = MassAspect::Inertia(test.aspect());
+            MassTest::new(aspect, test.p_value(), test.resolution())
+        }));
         MassAssessment::new(tests)
     }
 }

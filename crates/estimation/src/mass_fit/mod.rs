@@ -212,6 +212,18 @@ fn law(
     Ok(law.with_correlation(&pairs)?)
 }
 
+impl MassPropertiesFitError {
+    /// The place, from 0, of the body that is refused, where it is one.
+    #[must_use]
+    pub fn body(&self) -> Option<usize> {
+        match self {
+            Self::Body { index, .. } => Some(*index),
+            Self::Principal(error) => error.sample(),
+            Self::Scalar(_) | Self::Law(_) => None,
+        }
+    }
+}
+
 /// Why bodies have no [`MassPropertiesFit`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -194,6 +194,7 @@ pub(super) fn text(
                     Aspect::Turn => "turn".to_owned(),
                     Aspect::Tilt => "tilt".to_owned(),
                     Aspect::RootsAndAxes => "roots-and-axes-independent".to_owned(),
+                    Aspect::Entries => "entries".to_owned(),
                     _ => "other".to_owned(),
                 },
                 p_value: test.p_value(),

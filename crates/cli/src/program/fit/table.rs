@@ -30,12 +30,25 @@ pub(super) enum TableError {
 #[derive(Debug)]
 pub(super) struct Table {
     pub(super) samples: Vec<Inertia>,
+    /// Where in the file each of them stands, from 1.
+    lines: Vec<usize>,
     /// Samples that no body has, set aside.
     pub(super) aside: usize,
     /// Samples moved onto the boundary, which they had left by the rounding of their digits.
     pub(super) rounded: usize,
     /// The same samples with mass and mass centre, if the table has them.
     pub(super) bodies: Option<Vec<MassProperties>>,
+}
+
+impl Table {
+    /// The file with the line of a sample, where an error is of one.
+    pub(super) fn place(&self, path: &Path, sample: Option<usize>) -> String {
+        let file = path.display();
+        match sample.and_then(|index| self.lines.get(index)) {
+            Some(line) => format!("{file}:{line}"),
+            None => file.to_string(),
+        }
+    }
 }
 
 /// Reads a table; with mass and mass centre where it has them, or where a form says that it has.
@@ -50,6 +63,7 @@ pub(super) fn read(
     let ten = ten(path, &place, products, form)?;
     let mut table = Table {
         samples: Vec::with_capacity(file.bodies().len()),
+        lines: Vec::with_capacity(file.bodies().len()),
         aside: 0,
         rounded: 0,
         bodies: ten.is_some().then(Vec::new),
@@ -105,6 +119,7 @@ pub(super) fn read(
             continue;
         };
         table.samples.push(inertia);
+        table.lines.push(body.line());
         table.rounded += moved;
         if let (Some(bodies), Some(whole)) = (&mut table.bodies, whole) {
             bodies.push(whole);
