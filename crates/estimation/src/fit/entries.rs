@@ -4,7 +4,10 @@ use gyradius_dispersion::{AttitudeMoments, EntryMoments};
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector3, Vector4};
 use rand::{Rng, RngExt};
 
-use super::{AxesFinding, PrincipalFit, goodness::bootstrap, relabel::Relabeling, relabel::Sample};
+use super::{
+    AxesFinding, PrincipalFit, goodness::bootstrap, names::Names, relabel::Relabeling,
+    relabel::Sample,
+};
 
 /// Draws of the law by which the covariances of what is compared are known, to a few per cent.
 const DRAWS: usize = 4000;
@@ -20,7 +23,9 @@ const COMPARED: usize = 27;
 /// What is compared, and the slopes of the ln-likelihood that the fit has made zero, each less what the law expects.
 struct Rows<'a> {
     fit: &'a PrincipalFit,
+    names: Names<'a>,
     moments: EntryMoments,
+    deviations: [f64; 6],
     /// Expectation of p pᵀ and of p, the quaternion from the mean, the scalar part last.
     second: Matrix4<f64>,
     first: Vector4<f64>,
@@ -37,9 +42,12 @@ impl<'a> Rows<'a> {
             let unit = nalgebra::Quaternion::from(Vector4::ith(i, 1.0));
             (unit * back.into_inner()).coords
         }));
+        let moments = EntryMoments::of(&fit.law);
         Self {
             fit,
-            moments: EntryMoments::of(&fit.law),
+            names: fit.names(),
+            deviations: moments.deviations(),
+            moments,
             second: turn * law.second_moment() * turn.transpose(),
             first: turn * law.mean_vector(),
             across: law.expected_forms(),
@@ -53,7 +61,7 @@ impl<'a> Rows<'a> {
         let second = r.tr_mul(&(Matrix3::from_diagonal(&Vector3::from(k)) * r));
         let matrix = Matrix3::from_diagonal_element(k.iter().sum()) - second;
         let (mean, covariance) = (self.moments.mean(), self.moments.covariance());
-        let deviations = self.moments.deviations();
+        let deviations = self.deviations;
         let over = |x: f64, y: f64| if y > 0.0 { x / y } else { 0.0 };
         let z: [f64; 6] =
             std::array::from_fn(|e| over(matrix[ENTRIES[e]] - mean[e], deviations[e]));
@@ -70,7 +78,7 @@ impl<'a> Rows<'a> {
     fn slopes(&self, sample: &Sample, row: &mut Vec<f64>) {
         let law = self.fit.axes.law();
         let back = law.mean().inverse();
-        let weights = self.fit.names().weights(sample);
+        let weights = self.names.weights(sample);
         let total: f64 = weights.iter().sum();
         let mut sums = [0.0; 6 + 13];
         for (g, weight) in Relabeling::all().iter().zip(weights) {

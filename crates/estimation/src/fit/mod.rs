@@ -40,7 +40,7 @@ const DOUBTFUL: f64 = 0.01;
 const ROUNDS: usize = 60;
 /// How often they are drawn in vain, before the search ends: at least, and more where more names are in doubt.
 const IN_VAIN: f64 = 2.0;
-const IN_VAIN_IF_ALL: f64 = 16.0;
+const IN_VAIN_IF_ALL: f64 = 10.0;
 /// Two attitudes nearer than this, rad, are the same axes.
 const SAME: f64 = 1e-3;
 

@@ -1,6 +1,7 @@
 //! How likely each of the 24 namings of the axes of a sample is under a law.
 
 use gyradius_attitude::RadiallyConstrainedGaussian;
+use gyradius_dispersion::AttitudeMoments;
 
 use super::{
     matching::FLOOR,
@@ -10,6 +11,8 @@ use super::{
 
 /// Namings whose likelihood is within this factor of another's could be the other: e³.
 const LN_DOUBT: f64 = 3.0;
+/// ln of a share that rounding loses.
+const NEGLIGIBLE: f64 = -40.0;
 /// The step of the sequence whose points are evenly spread however many there are: the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
@@ -20,16 +23,20 @@ pub(super) struct Names<'a> {
     /// No smaller than [`FLOOR`] of the largest root.
     deviations: [f64; 3],
     axes: &'a RadiallyConstrainedGaussian,
+    /// What ln of the density of the axes never exceeds.
+    at_most: f64,
 }
 
 impl<'a> Names<'a> {
     pub(super) fn of(roots: &[RootFit; 3], axes: &'a RadiallyConstrainedGaussian) -> Self {
         let means = roots.map(|root| root.mean());
         let floor = FLOOR * means.into_iter().fold(f64::MIN_POSITIVE, f64::max);
-        Self { means, deviations: roots.map(|root| root.deviation().max(floor)), axes }
+        let deviations = roots.map(|root| root.deviation().max(floor));
+        Self { means, deviations, axes, at_most: axes.ln_density_at_most() }
     }
 
-    /// ln of the densities of roots and attitude under each naming, with respect to dk₁ dk₂ dk₃ and Haar measure.
+    /// ln of the densities of roots and attitude under each naming, with respect to dk₁ dk₂ dk₃ and Haar measure; −∞
+    /// where that is nothing beside another.
     fn ln_densities(&self, sample: &Sample) -> [f64; 24] {
         // ln of the folded normal density of root `k` about axis `axis`, but for 2π.
         let folded = |axis: usize, k: f64| {
@@ -38,9 +45,15 @@ impl<'a> Names<'a> {
             -0.5 * z * z - libm::log(s) + libm::log1p(libm::exp(-2.0 * (k / s) * (m / s)))
         };
         let of: [[f64; 3]; 3] = std::array::from_fn(|axis| sample.roots.map(|k| folded(axis, k)));
+        let mut largest = f64::NEG_INFINITY;
         Relabeling::all().each_ref().map(|g| {
             let roots: f64 = (0..3).map(|axis| of[axis][g.order[axis]]).sum();
-            roots + self.axes.ln_haar_density(&(g.turn * sample.attitude))
+            if roots + self.at_most < largest + NEGLIGIBLE {
+                return f64::NEG_INFINITY;
+            }
+            let ln = roots + self.axes.ln_haar_density(&(g.turn * sample.attitude));
+            largest = largest.max(ln);
+            ln
         })
     }
 

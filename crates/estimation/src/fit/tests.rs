@@ -268,7 +268,7 @@ fn the_verdict_has_its_size_for_any_law() {
 /// never likelier than the fit by more than it tolerates for fewer parameters, and the verdict refuses few.
 #[test]
 fn wide_axes_of_overlapping_roots_are_found() {
-    const TABLES: u64 = 16;
+    const TABLES: u64 = 10;
     let (mut refused, mut doubtful) = (Vec::new(), 0);
     for seed in 0..TABLES {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
