@@ -162,3 +162,53 @@ fn files_of_the_user_stay_beside_a_study_that_is_begun() {
     fs::write(scratch.path("other/notes.txt"), "mine").unwrap();
     study("other", &["--shard", "1/2"], 2);
 }
+
+/// Runs that are in no folder `runs` yet are replayed and held against their blocks, whether nothing is put together, a part of the runs
+/// or a smaller study; other runs are replayed alone. Another study that was begun beside one that is complete is not taken for it.
+#[test]
+fn runs_of_an_unfinished_study_are_replayed() {
+    let scratch = Scratch::new();
+    let done = |arguments: &[&str], code| scratch.done(arguments, code);
+    let study = |runs: &str, more: &[&str]| {
+        done(&[&["study", "--runs", runs, "--out", "it", "-q"], more].concat(), 0);
+    };
+    let replay = |run: &str, model: &str, code| {
+        let arguments = ["replay", "it", "--run", run, "--model", model, "--out", "r", "--force"];
+        done(&arguments, code)
+    };
+    let unfinished =
+        "bit for bit, as in it/.gyradius/campaign/proposed/000000000-000000029.parquet";
+    study("30", &["--shard", "1/2"]);
+    assert!(replay("3", "proposed", 0).contains(unfinished));
+    assert!(replay("3", "published", 0).contains("has not done this run yet"));
+    assert!(replay("30", "proposed", 2).contains("from 0 to 29"));
+    // A row that is changed is found.
+    let block = scratch.path("it/.gyradius/campaign/proposed/000000000-000000029.parquet");
+    let content = fs::read(&block).unwrap();
+    let mut changed = content.clone();
+    changed[2000..3000].iter_mut().for_each(|byte| *byte ^= 1);
+    fs::write(&block, changed).unwrap();
+    assert!(replay("3", "proposed", 2).contains("000000000-000000029.parquet"));
+    fs::write(&block, content).unwrap();
+
+    study("30", &[]);
+    assert!(replay("3", "published", 0).contains("as in it/runs/published/"));
+    study("40", &["--shard", "1/2"]);
+    for _ in 0..2 {
+        assert!(replay("3", "published", 0).contains("as in it/runs/published/"));
+        let told = replay("35", "proposed", 0);
+        assert!(told.contains("campaign/proposed/000000030-000000039.parquet"), "{told}");
+        assert!(replay("35", "published", 0).contains("has not done this run yet"));
+        // The second time, those that are there are put together.
+        done(&["report", "it"], 1);
+    }
+
+    // Another study that was begun in its place, such as with --force.
+    study("40", &[]);
+    done(&["study", "--runs", "40", "--seed", "9", "--out", "other", "--shard", "1/2"], 0);
+    let campaign = |of: &str| scratch.path(&format!("{of}/.gyradius/campaign"));
+    fs::rename(campaign("other"), campaign("it")).unwrap();
+    assert!(replay("35", "proposed", 0).contains("as in it/runs/proposed/"));
+    fs::remove_file(scratch.path("it/scenario.toml")).unwrap();
+    replay("35", "proposed", 2);
+}

@@ -122,6 +122,12 @@ fn every_verb_knows_simulators() {
     assert_eq!((&json["shard"], &json["runs"]), (&Value::from("2/2"), &Value::from(256)));
     let status = scratch.run(&["status", "o"]);
     assert_eq!(status.status.code(), Some(1));
+    for (run, expected) in
+        [("300", "as in o/.gyradius/campaign/all/"), ("0", "not done this run yet")]
+    {
+        let [told, _] = said(&scratch.run(&["replay", "o", "--run", run]));
+        assert!(told.contains(expected), "{told}");
+    }
     let report = scratch.run(&["report", "o"]);
     assert_eq!(report.status.code(), Some(1));
     assert!(said(&report)[0].contains("missing: 256 of all (0 to 255)"), "{:?}", said(&report));

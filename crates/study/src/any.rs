@@ -336,10 +336,12 @@ pub fn write_report(
 }
 
 impl SimulatorScenario {
-    /// Whether the scenario in a file, or in the folder of a study, is of a simulator, right or wrong.
+    /// Whether the scenario in a file, or in the folder of a study, is of a simulator, right or wrong. A study that is not put
+    /// together yet may have it in no file.
     #[must_use]
     pub fn is_in(path: &Path) -> bool {
-        read_file(&scenario_file(path)).is_ok_and(|text| is_of_simulator(&text))
+        let text = read_file(&scenario_file(path)).ok().or_else(|| begun(path));
+        text.is_some_and(|text| is_of_simulator(&text))
     }
 }
 

@@ -67,6 +67,7 @@ mod summary;
 mod text;
 #[cfg(test)]
 mod two_loops;
+mod unfinished;
 mod unusual;
 mod where_runs_fail;
 

@@ -1,6 +1,11 @@
 //! What the files of a folder tell of a campaign, for those who only read: others may be at work there.
 
-use std::{cmp::Reverse, fs, iter, ops::Range, path::Path};
+use std::{
+    cmp::Reverse,
+    fs, iter,
+    ops::Range,
+    path::{Path, PathBuf},
+};
 
 use super::{
     Contents, FolderError, Problem,
@@ -18,6 +23,44 @@ pub fn begun(place: &Path) -> Option<String> {
     let area = Area::of(place);
     area.identity().ok()??;
     area.mark()
+}
+
+impl Identity {
+    /// That of the unfinished campaign in a folder, if there is one.
+    #[must_use]
+    pub fn begun(place: &Path) -> Option<Self> {
+        Area::of(place).identity().ok()?
+    }
+}
+
+impl Block {
+    /// The finished block of the unfinished campaign in a folder that has a run of a model, the last that was done if some of
+    /// its runs were done again, and its file, which has the length that it should.
+    ///
+    /// # Errors
+    /// The records of the blocks cannot be read.
+    pub fn begun(
+        place: &Path,
+        model: &str,
+        run: u64,
+    ) -> Result<Option<(Self, PathBuf)>, FolderError> {
+        let area = Area::of(place);
+        let recorded = area.recorded();
+        let recorded =
+            recorded.map_err(|problem| FolderError { path: place.to_owned(), problem })?;
+        let own = |block: &Self| block.model == model && block.range().contains(&run);
+        let files = recorded.into_iter().filter(own).map(|block| {
+            let (root, name) = area.place_of(&block, place);
+            let path = root.join(name);
+            (block, path)
+        });
+        Ok(files.filter(|(block, path)| is_whole(path, block)).max_by_key(|(block, _)| block.again))
+    }
+}
+
+/// Whether a file is there with the length of a block.
+fn is_whole(path: &Path, block: &Block) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| found.is_file() && found.len() == block.bytes)
 }
 
 /// The blocks in a folder, as its files tell of them: those of a complete campaign, and those of one that is not. Nothing
@@ -39,8 +82,7 @@ pub fn told(
     }
     blocks.retain(|block| {
         let (root, name) = area.place_of(block, place);
-        let found = fs::symlink_metadata(root.join(name));
-        !block.has_file() || found.is_ok_and(|f| f.is_file() && f.len() == block.bytes)
+        !block.has_file() || is_whole(&root.join(name), block)
     });
     let order = |b: &Block| (b.first_run, Reverse(b.again), !b.published);
     blocks.sort_by(|a, b| a.model.cmp(&b.model).then_with(|| order(a).cmp(&order(b))));

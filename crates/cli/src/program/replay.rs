@@ -18,7 +18,7 @@ pub(crate) fn replay(arguments: &ReplayArgs) -> Result<(), Box<dyn Error>> {
         _ => Which::Run(arguments.run.unwrap_or_default()),
     };
     if SimulatorScenario::is_in(path) {
-        let scenario = SimulatorScenario::read(path)?;
+        let scenario = SimulatorScenario::of_study(path)?;
         let mut replay = SimulatorReplay::new(&scenario, model, which)?;
         // What was said is told before that it is not what the study has.
         let held = if path.is_dir() { replay.hold_against(path) } else { Ok(()) };

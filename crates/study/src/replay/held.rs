@@ -1,14 +1,22 @@
 //! Holding the row of a run that was done again against that of the study, bit by bit.
 
-use gyradius_campaign::{Cell, Column, Kept, MANIFEST, Manifest, Row, Rows, Table, read_run};
+use gyradius_campaign::{
+    Block, Cell, Column, Identity, Kept, MANIFEST, Manifest, Row, Rows, Table, read_run,
+};
 use parquet::errors::ParquetError;
 use std::{
     collections::BTreeSet,
-    fmt,
+    fmt, io,
     path::{Path, PathBuf},
 };
 
 use super::error::ReplayError;
+use crate::ResultsError;
+
+/// Of a folder that tells of no runs.
+const NO_RUNS: &str = "there is no such file, which tells of the run tables of a study that is put together, nor a folder \
+                       .gyradius/campaign beside it, which has the runs of one that is not: the row of the study is not \
+                       there to hold the run against";
 
 /// What a run that was done again was held against.
 #[derive(Clone, Debug)]
@@ -34,21 +42,41 @@ impl Held {
         own: &Table,
         causes: &'static str,
     ) -> Result<Self, ReplayError> {
-        let manifest = Manifest::read(folder).map_err(|error| ReplayError::Manifest {
-            path: folder.join(MANIFEST),
-            problem: error.to_string(),
-        })?;
+        let manifest = Manifest::read(folder);
         let (model, run) = (own.model(), own.first());
+        // Until a study is put together, its blocks are elsewhere, also those that take the place of blocks that failed.
+        let begun = Identity::begun(folder);
+        let is_it = |there: &Identity| {
+            manifest.as_ref().map_or(true, |all| all.identity().difference(there).is_none())
+        };
+        let goes_on = begun.as_ref().is_some_and(is_it);
+        if goes_on
+            && let Some((block, path)) =
+                Block::begun(folder, model, run).map_err(ResultsError::from)?
+            && let done = manifest.as_ref().ok().and_then(|all| all.find(model, run))
+            && done.is_none_or(|done| done.again() < block.again())
+        {
+            Comparison { own, path: &path, causes }.compare_row(&Kept::default())?;
+            return Ok(Self::To(path));
+        }
+        let manifest = match manifest {
+            Ok(manifest) => manifest,
+            Err(_) if goes_on => return Ok(Self::NotDone),
+            Err(error) => {
+                let problem = match error.kind() {
+                    io::ErrorKind::NotFound => NO_RUNS.to_owned(),
+                    _ => error.to_string(),
+                };
+                return Err(ReplayError::Manifest { path: folder.join(MANIFEST), problem });
+            }
+        };
         let Some(block) = manifest.find(model, run) else { return Ok(Self::NotDone) };
         let kept = manifest.kept();
         let path = folder.join(block.name());
         let comparison = Comparison { own, path: &path, causes };
         let is_the_same = match kept.rows() {
             Rows::None => false,
-            Rows::All => match comparison.found()? {
-                Some(found) => comparison.compare(kept, found).map(|()| true)?,
-                None => return Err(comparison.unreadable("it has no such run")),
-            },
+            Rows::All => comparison.compare_row(kept).map(|()| true)?,
             Rows::Failed => {
                 // Without failures among its runs, the block has no file.
                 let found = if block.has_file() { comparison.found()? } else { None };
@@ -103,6 +131,14 @@ impl Comparison<'_> {
     fn differs(&self, column: &str, table: String, replayed: String) -> ReplayError {
         let (path, column) = (self.path.to_owned(), column.to_owned());
         ReplayError::Differs { path, column, table, replayed, causes: self.causes }
+    }
+
+    /// Compares what was kept of the row, which the table must have.
+    fn compare_row(&self, kept: &Kept) -> Result<(), ReplayError> {
+        match self.found()? {
+            Some(found) => self.compare(kept, found),
+            None => Err(self.unreadable("it has no such run")),
+        }
     }
 
     /// Compares what was kept of the row, bit by bit.

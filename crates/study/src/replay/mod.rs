@@ -23,6 +23,7 @@ use crate::{
     run::{Case, End},
     scenario::Framed,
     subject::Subject,
+    unfinished::unfinished,
 };
 use error::MOST_COAST;
 pub use error::ReplayError;
@@ -85,8 +86,8 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// Replays a run of the study in a folder, and holds it against the run table there; or of a
-    /// scenario file, which has none. The model is the first of the scenario if not given. The history
+    /// Replays a run of the study in a folder, and holds it against the run table there, also if the study is not put
+    /// together yet; or of a scenario file, which has none. The model is the first of the scenario if not given. The history
     /// goes on for `coast_s` after the last release.
     ///
     /// # Errors
@@ -112,12 +113,15 @@ impl Replay {
             }
             return Self::new(&Scenario::read(path)?, model, run, coast_s);
         }
-        let results = Results::read(path)?;
-        Self::new(results.scenario(), model, run, coast_s)?.held_against(path)
+        let scenario = match unfinished(path)? {
+            Some(scenario) => scenario,
+            None => Results::read(path)?.into_parts().0,
+        };
+        Self::new(&scenario, model, run, coast_s)?.held_against(path)
     }
 
-    /// Holds the row against that of the run table in the folder of a study, bit by bit: for a study with models of a
-    /// program's own, which [`open`](Self::open) cannot draw.
+    /// Holds the row against that of the run table in the folder of a study, bit by bit, also if it is not put together yet:
+    /// for a study with models of a program's own, which [`open`](Self::open) cannot draw.
     ///
     /// # Errors
     /// There is no such table, or it says otherwise.

@@ -5,8 +5,9 @@ use std::path::Path;
 
 use super::{draws::SimulatorDraws, scenario::SimulatorScenario};
 use crate::{
-    ScenarioError,
+    ResultsError, ScenarioError,
     scenario::{read_file, scenario_file},
+    unfinished::unfinished,
 };
 
 impl SimulatorScenario {
@@ -19,6 +20,15 @@ impl SimulatorScenario {
         let text = read_file(&file)?;
         let folder = folder_of(&file);
         Self::from_toml(&text, folder).map_err(|error| error.in_file(&file))
+    }
+
+    /// The scenario of the study in a folder, also if it is not put together yet; or of a scenario file.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read); a study that is not put together was begun by another version.
+    pub fn of_study(path: &Path) -> Result<Self, ResultsError> {
+        let begun = if path.is_dir() { unfinished(path)? } else { None };
+        Ok(begun.map_or_else(|| Self::read(path), Ok)?)
     }
 
     /// Reads a scenario from the text of a file that is in a folder.
