@@ -101,6 +101,33 @@ fn a_report_is_made_again_to_the_byte() {
     }
 }
 
+/// Whoever says where the report goes anyway gets it there, however the folder is written.
+#[cfg(unix)]
+#[test]
+fn the_folder_of_the_study_can_be_named_for_its_report() {
+    let scratch = tempfile::tempdir().unwrap();
+    let gyradius = |arguments: &[&str]| gyradius(arguments, scratch.path());
+    let study = ["study", "--runs", "20", "--out", "n"];
+    assert!(gyradius(&study).status.success());
+    std::os::unix::fs::symlink("n", scratch.path().join("link")).unwrap();
+    let whole = scratch.path().join("n").to_str().unwrap().to_owned();
+    let before = files(Path::new(&whole));
+    for out in ["n", "./n/", "n/figures/..", "link", &whole] {
+        for force in [&[][..], &["--force"]] {
+            fs::remove_file(scratch.path().join("n/report.html")).unwrap();
+            let report = gyradius(&[&["report", "n", "--out", out], force].concat());
+            assert!(report.status.success(), "{out} {force:?}: {}", said(&report));
+            assert_eq!(files(Path::new(&whole)), before, "{out} {force:?}");
+        }
+    }
+    // One whose runs are not all there.
+    let more = ["study", "--runs", "30", "--out", "n", "--shard", "1/2"];
+    assert!(gyradius(&more).status.success());
+    let report = gyradius(&["report", "n", "--out", "link"]);
+    assert_eq!(report.status.code(), Some(1), "{}", said(&report));
+    assert!(fs::read_to_string(scratch.path().join("n/report.md")).unwrap().contains("missing"));
+}
+
 #[test]
 fn what_was_changed_is_not_replaced() {
     let scratch = tempfile::tempdir().unwrap();

@@ -5,7 +5,7 @@ use gyradius_formats::read_text;
 use gyradius_report::Document;
 use serde_json::Value;
 use std::{
-    io,
+    fs, io,
     path::{Path, PathBuf},
 };
 
@@ -160,12 +160,19 @@ pub(crate) fn read<C: Subject>(folder: &Path) -> Result<Results<C, C::Summary>, 
     Ok(Results { folder: folder.to_owned(), scenario, summary })
 }
 
+/// Whether two paths lead to the same folder.
+fn is_same(a: &Path, b: &Path) -> bool {
+    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
+}
+
 /// Makes figures and report again.
 pub(crate) fn write<C: Subject>(
     results: &Results<C, C::Summary>,
     out: Option<&Path>,
     force: bool,
 ) -> Result<PathBuf, ResultsError> {
+    // The folder of the study, however it is written, is where the report goes anyway.
+    let out = out.filter(|out| !is_same(out, &results.folder));
     let report = results.scenario.report(&results.summary);
     let (page, pages) = (report.html(), Document::pages(report::NAME));
     let certain = results.scenario.report_files();
