@@ -226,6 +226,11 @@ fn what_cannot_be_submitted_is_refused() {
         (&["--out", "x", "--partition", ""], "a value is required"),
         (&["--out", "x", "--runs", "0"], "runs: 0: it must be between 1"),
         (&["--out", ".."], "--logs must say where the logs go"),
+        (
+            &["--out", "x", "--logs", "x/logs"],
+            "--logs x/logs: it is in the folder of the study, x,",
+        ),
+        (&["--out", "./x/", "--logs", "x"], "--logs x: it is in the folder"),
         (&["--out", "x", "--scenario", "nowhere.toml"], "cannot read nowhere.toml"),
         (&["--out", "x", "-o", "there"], "--force replaces it"),
         (&["--out", "x", "-o", "nowhere/go.sh"], "nowhere/go.sh"),
@@ -237,6 +242,15 @@ fn what_cannot_be_submitted_is_refused() {
     }
     assert_eq!(fs::read_to_string(scratch.path("there")).unwrap(), "mine");
     assert_eq!(files(scratch.folder()).len(), 1);
+    // Whatever the folder is called.
+    std::os::unix::fs::symlink("to", scratch.path("link")).unwrap();
+    fs::create_dir(scratch.path("to")).unwrap();
+    assert!(refused(&["--out", "to", "--logs", "link/deep/logs"]).contains("in the folder"));
+    for logs in ["link/../logs", "to-logs", "tox/to"] {
+        let beside =
+            scratch.run(&["slurm", "--out", "to", "--runs=9", "--shards=1", "--logs", logs]);
+        assert!(beside.status.success(), "{logs}: {}", text(&beside));
+    }
     // More tasks than an array has where nobody changed its size are not refused: this cluster's may be larger.
     let many = scratch.run(&["slurm", "--out=x", "--runs=1e7", "--shards=1200", "--time=9"]);
     assert!(many.status.success() && text(&many).contains("MaxArraySize"), "{}", text(&many));

@@ -8,6 +8,7 @@ use gyradius_study::{AnyScenario, Fleet, Options};
 use std::{
     env,
     error::Error,
+    fs,
     io::{self, Write},
     path::{Path, PathBuf, absolute},
     time::Duration,
@@ -86,7 +87,7 @@ fn script(arguments: &SlurmArgs, scenario: &AnyScenario) -> Result<Script, Box<d
     };
     let out: PathBuf = place(&arguments.out)?;
     let logs = match &arguments.logs {
-        Some(logs) => place(logs)?,
+        Some(logs) => outside(logs, &arguments.out)?,
         None => beside(&out)?,
     };
     Ok(Script {
@@ -114,6 +115,28 @@ fn script(arguments: &SlurmArgs, scenario: &AnyScenario) -> Result<Script, Box<d
 /// A path that means the same in every folder, without a slash at its end.
 fn place(path: &Path) -> io::Result<PathBuf> {
     Ok(absolute(path)?.components().collect())
+}
+
+/// The folder of the logs that was asked for, which is not in that of the study.
+fn outside(logs: &Path, out: &Path) -> Result<PathBuf, Box<dyn Error>> {
+    let place_of_logs = place(logs)?;
+    if real(&place_of_logs).starts_with(real(&place(out)?)) {
+        return Err(format!(
+            "--logs {}: it is in the folder of the study, {}, which holds what the study writes and not its logs; name a folder that \
+             is not in it, or leave out --logs",
+            logs.display(),
+            out.display()
+        )
+        .into());
+    }
+    Ok(place_of_logs)
+}
+
+/// A path without links, as far as its folders are there.
+fn real(path: &Path) -> PathBuf {
+    let there = path.ancestors().find_map(|above| Some((fs::canonicalize(above).ok()?, above)));
+    let below = there.and_then(|(real, above)| Some(real.join(path.strip_prefix(above).ok()?)));
+    below.unwrap_or_else(|| path.to_owned())
 }
 
 /// The folder of the logs beside that of the study, which belongs to the study.
