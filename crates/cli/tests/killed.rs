@@ -5,6 +5,8 @@ use std::{
     process::{Command, Stdio},
 };
 
+use crate::scratch::{Scratch, content, done};
+
 /// Killed as soon as its journal says that files are being replaced: the next command, of whatever kind,
 /// finds one whole study, and the user's files are as they were. (Every single step is tried in
 /// `gyradius-study`, without processes.)
@@ -156,4 +158,25 @@ fn a_study_goes_on_where_it_stopped() {
     let aside = here.join(".gyradius/damaged/proposed-000000000-000016383.parquet.1");
     assert!(fs::read(aside).unwrap() == bytes);
     assert!(here.join("runs/naive/000017000-000017099.parquet").is_file());
+}
+
+/// A file that would grow beyond `ulimit -f` is told of as one that a full disk does not take is, by every verb that writes, and the
+/// same command goes on.
+#[test]
+fn a_limit_of_the_size_of_files_is_told() {
+    let scratch = Scratch::new();
+    let limited = |arguments: &str| {
+        let mut command = Command::new("sh");
+        let line = format!("ulimit -f 60; exec \"$0\" {arguments}");
+        command.current_dir(scratch.folder()).args(["-c", &line, env!("CARGO_BIN_EXE_gyradius")]);
+        command
+    };
+    let told = done(limited("study --runs 400 --out here"), 2);
+    assert!(told.contains("runs/") && told.contains("cannot be written"), "{told}");
+    let told = done(limited("draw -n 1000 -o draws.csv"), 2);
+    assert!(told.contains("draws.csv") && !scratch.path("draws.csv").exists(), "{told}");
+    for out in ["here", "there"] {
+        scratch.done(&["study", "--runs", "400", "--out", out], 0);
+    }
+    assert!(content(&scratch.path("here")) == content(&scratch.path("there")));
 }

@@ -45,6 +45,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return not_run(&error),
     };
+    if let Err(error) = signals::survive_large_files() {
+        complain(error);
+        return ExitCode::from(REFUSED);
+    }
     let done = |()| ExitCode::SUCCESS;
     let result: Result<ExitCode, Box<dyn Error>> = match &cli.command {
         Command::Check(arguments) => return check::check(arguments),

@@ -1,5 +1,7 @@
-//! Being told to stop: what is at hand is ended in good order, and at the second time at once.
+//! Signals. Being told to stop: what is at hand is ended in good order, and at the second time at once.
 
+#[cfg(unix)]
+use signal_hook::consts::SIGXFSZ;
 use signal_hook::{
     consts::{SIGINT, SIGTERM},
     flag,
@@ -47,6 +49,19 @@ impl Signals {
         let signal = ASKING.into_iter().find(|signal| signal.unsigned_abs() as usize == which);
         ExitCode::from(code(signal.unwrap_or(SIGINT)))
     }
+}
+
+/// From now on, a file that would grow beyond the limit of its size (`ulimit -f`) is an error like a full disk, and does not end
+/// the program without a word. What the program starts is not touched: a handler is not inherited.
+#[cfg(unix)]
+pub(crate) fn survive_large_files() -> io::Result<()> {
+    flag::register(SIGXFSZ, Arc::default()).map(|_| ())
+}
+
+/// There is no such signal.
+#[cfg(not(unix))]
+pub(crate) fn survive_large_files() -> io::Result<()> {
+    Ok(())
 }
 
 /// By the convention of shells.
