@@ -38,8 +38,10 @@ impl NewFile {
             return Err(WriteError::Exists(path.to_owned()));
         }
         let permissions = permissions.or_else(|| replaced.as_ref().map(Metadata::permissions));
-        let file = temporary(folder(path), permissions)
-            .map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
+        let file = temporary(folder(path), permissions).map_err(|error| {
+            let error = without_path(error);
+            WriteError::Io { path: path.to_owned(), error }
+        })?;
         Ok(Self { path: path.to_owned(), file, replaces: replaced.is_some() })
     }
 
@@ -103,6 +105,14 @@ fn put(path: &Path, file: NamedTempFile, replaces: bool) -> io::Result<()> {
     if cfg!(unix) { File::open(folder(path))?.sync_all() } else { Ok(()) }
 }
 
+/// What the system says, without the name of the temporary file, which nobody asked for.
+fn without_path(error: io::Error) -> io::Error {
+    match error.to_string().split_once(" at path \"") {
+        Some((said, _)) => io::Error::new(error.kind(), said),
+        None => error,
+    }
+}
+
 /// A file that is removed unless it is moved, with these permissions or those of any new file.
 fn temporary(folder: &Path, permissions: Option<Permissions>) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
@@ -142,6 +152,18 @@ pub enum WriteError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The file that was asked for is named, and no other.
+    #[test]
+    fn a_folder_that_is_not_there_is_told_without_another_name() {
+        let scratch = tempfile::tempdir().unwrap();
+        let path = scratch.path().join("nowhere").join("x.csv");
+        let refused = NewFile::create(&path, false).unwrap_err();
+        let WriteError::Io { error, .. } = &refused else { panic!("{refused}") };
+        assert_eq!(error.kind(), io::ErrorKind::NotFound);
+        let told = refused.to_string();
+        assert!(told.contains("x.csv: ") && !told.contains(".gyradius-"), "{told}");
+    }
 
     /// Whatever the pieces, the file is there at the end and not before, and one that comes to its place in between is
     /// not replaced unasked.
