@@ -154,6 +154,11 @@ const MISCHIEF: [(&str, Option<&str>, Option<&str>); 31] = [
         Some("neither outputs nor an error"),
     ),
     (
+        r#"echo '{"error":" "}'"#,
+        Some("simulator: it gives no reason"),
+        Some("simulator: it gives no reason"),
+    ),
+    (
         r#"echo "{\"error\":\"diverged at $x s\"}""#,
         Some("simulator: diverged at # s"),
         Some("simulator: diverged at # s"),

@@ -209,7 +209,10 @@ impl Trouble {
                 (panicked, format!("{panicked}{}", text.unwrap_or_default()))
             }
             Self::Error { text } => {
-                let text = shown(text.as_bytes(), TOLD);
+                let text = match text.trim() {
+                    "" => "it gives no reason".to_owned(),
+                    _ => shown(text.as_bytes(), TOLD),
+                };
                 return Failure::new(
                     format!("simulator: {}", without_numbers(&text)),
                     format!("simulator: {text}"),
