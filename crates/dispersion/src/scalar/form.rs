@@ -167,7 +167,8 @@ impl ScalarLawForm {
             let place = |x: f64| checked(key, x, [-most, most]).map(|x| origin + x * unit.size);
             let value = match value {
                 Value::Matrix(_) => {
-                    let problem = "a covariance is for vectors, and for nothing beside it";
+                    let problem = "a covariance is for the three components of a vector together: it is not for a single number, nor in a list, and no \
+                                   other key stands beside it";
                     return Err(refused(key, problem.to_owned()));
                 }
                 Value::List(all) => {
@@ -206,7 +207,11 @@ impl ScalarLawForm {
         (law.read)(&given).map_err(|error| {
             let missing = matches!(error, ScalarLawError::Missing { .. });
             let vector = missing && error.key() == Some("sigma") && law.key("covariance").is_some();
-            let or = if vector { ", or, of a vector, covariance" } else { "" };
+            let or = if vector {
+                ", or, as the law of all three components of a vector, covariance"
+            } else {
+                ""
+            };
             let problem = format!("{error}{or}");
             let key = if self.bare { None } else { error.key() };
             Refused { inner: ScalarLawFormError { key, problem }, made: !missing && !self.bare }
