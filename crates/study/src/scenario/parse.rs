@@ -73,7 +73,7 @@ fn of_value(reason: &str, at: &Range<usize>, text: &str) -> Option<String> {
         short.push('…');
     }
     Some(format!(
-        "{key}: `{short}` is neither a number, a date, `true` nor `false`, and text must be in quotation marks"
+        "{key}: `{short}` is neither a number, `true` nor `false`, and text must be in quotation marks"
     ))
 }
 

@@ -3,8 +3,8 @@
 use serde::{
     Deserializer,
     de::{
-        DeserializeSeed, EnumAccess, Error, IntoDeserializer, MapAccess, SeqAccess, Unexpected,
-        VariantAccess, Visitor, value::StringDeserializer,
+        DeserializeSeed, EnumAccess, Error, Expected, IntoDeserializer, MapAccess, SeqAccess,
+        Unexpected, VariantAccess, Visitor, value::StringDeserializer,
     },
     forward_to_deserialize_any,
 };
@@ -85,7 +85,9 @@ impl<'de> Deserializer<'de> for Placed {
             Value::Integer(number) => visitor.visit_i64(number),
             Value::Float(number) => visitor.visit_f64(number),
             Value::Boolean(yes) => visitor.visit_bool(yes),
-            Value::Datetime(date) => visitor.visit_string(date.to_string()),
+            Value::Datetime(date) => Err(Error::custom(format!(
+                "{date} is a date or a time, which no key takes: as text it must be in quotation marks"
+            ))),
             Value::Array(list) => {
                 let count = list.len();
                 let mut entries = Entries { rest: list.into_iter(), next: 0 };
@@ -115,27 +117,48 @@ impl<'de> Deserializer<'de> for Placed {
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _: &'static str,
-        _: &'static [&'static str],
+        variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Misplaced> {
         match self.0 {
             Value::String(variant) => visitor.visit_enum(variant.into_deserializer()),
             Value::Table(table) if table.len() == 1 => visitor.visit_enum(Keys::of(table)),
             // A word out of several, for which serde would take a table as well.
-            Value::Integer(_)
+            other @ (Value::Integer(_)
             | Value::Float(_)
             | Value::Boolean(_)
             | Value::Datetime(_)
             | Value::Array(_)
-            | Value::Table(_) => {
-                Err(Error::custom("invalid type, expected one of the texts that are allowed"))
-            }
+            | Value::Table(_)) => Err(Error::invalid_type(unexpected(&other), &OneOf(variants))),
         }
     }
 
     forward_to_deserialize_any! {
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
         tuple_struct map struct identifier ignored_any
+    }
+}
+
+/// What stands where something else should.
+fn unexpected(value: &Value) -> Unexpected<'_> {
+    match value {
+        Value::String(text) => Unexpected::Str(text),
+        Value::Integer(number) => Unexpected::Signed(*number),
+        Value::Float(number) => Unexpected::Float(*number),
+        Value::Boolean(yes) => Unexpected::Bool(*yes),
+        Value::Datetime(_) => Unexpected::Other("date or time"),
+        Value::Array(_) => Unexpected::Seq,
+        Value::Table(_) => Unexpected::Map,
+    }
+}
+
+/// One of some words.
+struct OneOf(&'static [&'static str]);
+
+impl Expected for OneOf {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words: Vec<_> = self.0.iter().map(|word| format!("\"{word}\"")).collect();
+        write!(f, "one of {}", words.join(", "))
     }
 }
 
@@ -332,7 +355,11 @@ mod tests {
             ("x = 1\nkind = 'other'", "kind: unknown variant `other`, expected one of"),
             (
                 "x = 1\nkind = 3",
-                "kind: invalid type, expected one of the texts that are allowed (line 2, column 8)",
+                "kind: invalid type: integer `3`, expected one of \"word\", \"of\", \"with\" (line 2, column 8)",
+            ),
+            (
+                "x = 1\nkind = 12:30:00",
+                "kind: invalid type: date or time, expected one of \"word\", \"of\", \"with\" (line 2, column 8)",
             ),
             (
                 "x = 1\nkind = { of = { y = 'c' } }",
@@ -350,7 +377,11 @@ mod tests {
             ),
             (
                 "x = 1979-05-27",
-                "x: invalid type: string \"1979-05-27\", expected a number (line 1, column 5)",
+                "x: 1979-05-27 is a date or a time, which no key takes: as text it must be in quotation marks (line 1, column 5)",
+            ),
+            (
+                "x = 1\nvector = [1, 12:30:00.5, 2]",
+                "vector[2]: 12:30:00.5 is a date or a time, which no key takes: as text it must be in quotation marks (line 2, column 14)",
             ),
         ] {
             let message = parse_toml::<Whole>(text).unwrap_err();
@@ -367,7 +398,7 @@ mod tests {
     fn bare_words_and_faulty_values_have_their_key() {
         let no_value = |word: &str| {
             format!(
-                "`{word}` is neither a number, a date, `true` nor `false`, and text must be in quotation marks"
+                "`{word}` is neither a number, `true` nor `false`, and text must be in quotation marks"
             )
         };
         for (text, key, reason, place) in [
