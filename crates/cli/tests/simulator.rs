@@ -8,7 +8,7 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-use crate::scratch::{Scratch, content};
+use crate::scratch::{Scratch, content, one_model};
 
 /// Answers with the quantity, and fails while there is a file and it is below 0.2.
 const SCRIPT: &str = r#"
@@ -188,6 +188,44 @@ fn wrong_scenarios_and_endless_files_are_known() {
         let output = scratch.run(verb);
         let [_, err] = said(&output);
         assert!(output.status.code() == Some(2) && err.contains("simulation.timeout_s"), "{err}");
+    }
+    // What is found when a model is made, or the command is started, is told with the file as well.
+    for (name, from, to, expected) in [
+        (
+            "date.toml",
+            "runs = 4000",
+            "runs = 4\ndate = 2026-11-23",
+            "date: 2026-11-23 is a date or a time",
+        ),
+        (
+            "device.toml",
+            "\"shell\"",
+            "\"CON\"",
+            "name: \"CON\": it names a folder, and Windows reserves",
+        ),
+        (
+            "absent.toml",
+            "\"sh\"",
+            "\"gyradius-no-such-program\"",
+            "simulation.command: the command",
+        ),
+    ] {
+        fs::write(scratch.path(name), SCENARIO.replace(from, to)).unwrap();
+        let told = scratch.done(&["study", "--scenario", name, "--out", "x"], 2);
+        assert!(told.contains(&format!("{name}: {expected}")), "{told}");
+    }
+    let wide = one_model()
+        + "\n[[models]]\nname = \"wide\"\nlaw = \"wishart\"\nmatched_to = \"proposed\"\n";
+    let variance = "[0.125, 0.1, 0.075]";
+    assert!(wide.contains(variance));
+    fs::write(scratch.path("wide.toml"), wide.replace(variance, "[1e7, 1.0, 1.0]")).unwrap();
+    for verb in [
+        &["study", "--scenario", "wide.toml", "--out", "x"][..],
+        &["draw", "wide.toml", "--model", "wide"],
+        &["replay", "wide.toml", "--run", "1", "--model", "wide"],
+    ] {
+        let told = scratch.done(verb, 2);
+        assert!(told.contains("wide.toml: models[2].matched_to: the payload: "), "{told}");
     }
     let endless = SCENARIO.replace("\"answer.sh\"", "\"answer.sh\", \"/dev/zero\"");
     fs::write(scratch.path("endless.toml"), endless).unwrap();

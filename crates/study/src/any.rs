@@ -17,7 +17,7 @@ use crate::{
     decisions, drivers,
     head::{Head, Judged, Missing},
     rare, results,
-    scenario::{parse_toml, read_file, scenario_file},
+    scenario::{read_file, scenario_file},
     shards,
     study::{self},
     subject::{Subject, Summarized},
@@ -68,7 +68,8 @@ impl AnyScenario {
             }
             Ok(scenario)
         });
-        checked.map_err(|error| error.in_file(path))
+        let scenario = checked.map_err(|error| error.in_file(path))?;
+        Ok(either_again!(scenario, own => own.read_from(path)))
     }
 
     /// Reads a scenario from the text of a file that is in a folder.
@@ -345,9 +346,9 @@ impl SimulatorScenario {
     }
 }
 
-/// Whether the text of a scenario is of a simulator.
+/// Whether the text of a scenario is of a simulator, right or wrong.
 fn is_of_simulator(text: &str) -> bool {
-    parse_toml::<toml::Table>(text).is_ok_and(|table| table.contains_key("simulation"))
+    toml::from_str::<toml::Table>(text).is_ok_and(|table| table.contains_key("simulation"))
 }
 
 /// What became of a study: where it is, and what there is to say of it. Serialized, it is what other programs want to know;

@@ -39,7 +39,8 @@ impl Model {
             let outside = |spec: &ModelSpec| scenario.outside_law(spec, which).cloned();
             law(spec, which as usize, body, scenario.models(), &outside).map_err(|error| {
                 let problem = format!("the {}: {error}", which.name());
-                ScenarioError::field(scenario.place(spec), problem)
+                let field = scenario.place(spec) + spec.law.key();
+                scenario.located(ScenarioError::field(field, problem))
             })
         };
         let (payload, payload_given) = law(Body::Payload, scenario.payload())?;

@@ -8,7 +8,7 @@ use std::{
 };
 
 use super::patience::Patience;
-use crate::hash::{sha256, sha256_of_file};
+use crate::hash::sha256_of_file;
 
 /// Seconds that a run may take if nothing is said.
 const TIMEOUT_S: f64 = 60.0;
@@ -94,14 +94,12 @@ impl Program {
         self.timeout_s
     }
 
-    /// SHA-256 of the files that its words name, in hexadecimal: of regular files alone, for a pipe or a device has no end.
-    /// None if they name no file that is there.
-    #[must_use]
-    pub fn files_sha256(&self) -> Option<String> {
-        let files =
-            self.words.iter().map(Path::new).filter(|word| word.is_absolute() && word.is_file());
-        let hashes: Vec<_> = files.filter_map(|file| sha256_of_file(file).ok()).collect();
-        (!hashes.is_empty()).then(|| sha256(hashes.join("\n")))
+    /// The places of its words that name files which are there, with the SHA-256 of each file, in hexadecimal: of regular files
+    /// alone, for a pipe or a device has no end.
+    pub fn files_sha256(&self) -> impl Iterator<Item = (usize, String)> {
+        let words = self.words.iter().map(Path::new).enumerate();
+        let files = words.filter(|(_, word)| word.is_absolute() && word.is_file());
+        files.filter_map(|(place, file)| Some((place, sha256_of_file(file).ok()?)))
     }
 
     /// How long a run that begins now is waited for.

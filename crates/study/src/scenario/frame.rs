@@ -115,8 +115,8 @@ macro_rules! framed_file {
 }
 pub(crate) use framed_file;
 
-/// What a type of scenarios can be asked, and the methods by which something else is said; it has the fields `file`, `size`, `until`
-/// and `models`.
+/// What a type of scenarios can be asked, and the methods by which something else is said; it has the fields `file`, `size`, `until`,
+/// `models` and `path`.
 macro_rules! framed {
     ($scenario:ty, $file:ident) => {
         impl $scenario {
@@ -130,6 +130,19 @@ macro_rules! framed {
             #[must_use]
             pub fn runs(&self) -> u64 {
                 self.size.runs()
+            }
+
+            /// The same, which was read from a file: what is found wrong later is told with it.
+            pub(crate) fn read_from(self, path: &Path) -> Self {
+                Self { path: Some(path.to_owned()), ..self }
+            }
+
+            /// What is found wrong with it after it was read, with the file that it was read from.
+            pub(crate) fn located(&self, error: ScenarioError) -> ScenarioError {
+                match &self.path {
+                    Some(path) => error.in_file(path),
+                    None => error,
+                }
             }
 
             /// How many runs of each model there are, and of which vehicles.
@@ -346,8 +359,14 @@ pub(crate) fn check_name(field: &str, name: &str) -> Result<(), ScenarioError> {
     if !name.is_empty() && name.len() <= 64 && name.chars().all(allowed) && !device {
         return Ok(());
     }
-    let problem = format!(
-        "{name:?}: it must be 1 to 64 letters, digits, hyphens and underscores, for it names a folder"
-    );
+    let problem = if device {
+        format!(
+            "{name:?}: it names a folder, and Windows reserves this name for a device: choose another one"
+        )
+    } else {
+        format!(
+            "{name:?}: it must be 1 to 64 letters, digits, hyphens and underscores, for it names a folder"
+        )
+    };
     Err(ScenarioError::field(field, problem))
 }

@@ -129,6 +129,8 @@ pub struct Scenario {
     regions: Vec<(Axes, KeptShares)>,
     /// What no file holds.
     outside: OutsideLaws,
+    /// The file that it was read from.
+    path: Option<PathBuf>,
 }
 
 /// The estimated share of draws that a region keeps and its standard error, of payload and stage where they have one.
@@ -151,7 +153,7 @@ impl Scenario {
     /// The file cannot be read, is not TOML, has an unknown key, or a value that is not allowed.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let text = read_file(path)?;
-        Self::from_toml(&text).map_err(|error| error.in_file(path))
+        Ok(Self::from_toml(&text).map_err(|error| error.in_file(path))?.read_from(path))
     }
 
     /// Reads a scenario from the text of a file.
@@ -248,6 +250,7 @@ impl Scenario {
             comparisons,
             regions: kept,
             outside: OutsideLaws::default(),
+            path: None,
         })
     }
 

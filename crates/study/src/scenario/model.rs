@@ -37,6 +37,15 @@ impl Law {
         }
     }
 
+    /// The key of the model that says which law it is, beside `law`.
+    pub(crate) fn key(&self) -> &'static str {
+        match self {
+            Self::Principal(_) => ".axes",
+            Self::Matched { .. } => ".matched_to",
+            Self::Given { .. } | Self::Outside(_) => "",
+        }
+    }
+
     /// How it reads the axes of the bodies, if it draws their own laws.
     pub(crate) fn own_axes(&self) -> Option<Axes> {
         match self {

@@ -136,6 +136,11 @@ fn bad_values_name_the_field_the_value_and_what_is_allowed() {
         name = "peck-2003" | name = "../peck" | name: "../peck": it must be 1 to 64
         name = "published" | name = "proposed" | models[2].name: two are named "proposed"
         axes = "whole-sphere" |  | models[1].axes: missing: law "principal" needs axes
+        axes = "whole-sphere" | axes = 1.5 | models[1].axes: invalid type: floating point `1.5`, expected one of "whole-sphere", "mean-half"
+        seed = 2003 | seed = 2003\nrows = 2 | rows: invalid type: integer `2`, expected one of "all", "failed", "none"
+        seed = 2003 | seed = 2003\nauthor = 12:30:00 | author: 12:30:00 is a date or a time
+        seed = 2003 | seed = 12:30:00 | seed: 12:30:00 is a date or a time
+        name = "peck-2003" | name = "Nul" | name: "Nul": it names a folder, and Windows reserves this name
         matched_to = "proposed" | matched_to = "naive" | models[4].matched_to
         physical = "published" | physical = "none" | comparisons[1].physical: "none"
         physical = "published" | physical = "naive" | comparisons[1].physical: "naive"

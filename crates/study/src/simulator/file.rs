@@ -3,7 +3,7 @@
 use gyradius_campaign::{Requirement, Until};
 use gyradius_dispersion::{MassPropertiesLaw, ModelKind, ModelParameters};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::{collections::BTreeMap, path::PathBuf};
 
 use crate::{
     ScenarioError,
@@ -49,9 +49,9 @@ pub(super) struct SimulationFile {
     pub(super) timeout_s: Option<f64>,
     /// Where the command belongs; the folder of the scenario if not given.
     pub(super) folder: Option<PathBuf>,
-    /// SHA-256 of the files that the command names, so that runs of another simulator are not mixed with these; in what is
-    /// resolved.
-    pub(super) files_sha256: Option<String>,
+    /// SHA-256 of each file that the command names, by its word, so that runs of another simulator are not mixed with these; in
+    /// what is resolved.
+    pub(super) files_sha256: Option<BTreeMap<String, String>>,
     #[serde(default)]
     pub(super) outputs: Vec<OutputFile>,
 }

@@ -19,7 +19,8 @@ impl SimulatorScenario {
         let file = scenario_file(path);
         let text = read_file(&file)?;
         let folder = folder_of(&file);
-        Self::from_toml(&text, folder).map_err(|error| error.in_file(&file))
+        let scenario = Self::from_toml(&text, folder).map_err(|error| error.in_file(&file))?;
+        Ok(scenario.read_from(&file))
     }
 
     /// The scenario of the study in a folder, also if it is not put together yet; or of a scenario file.

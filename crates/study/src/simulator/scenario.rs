@@ -4,7 +4,11 @@ use gyradius_campaign::{
     Column, Kept, Program, ProgramError, Requirement, SimulatorFunction, StoppingRule, Table, Until,
 };
 use gyradius_dispersion::{InertiaLaw, ModelKind, ScalarLaw};
-use std::{path::Path, sync::Arc};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use super::{
     body::{Number, SimulatedBody, check_column},
@@ -13,16 +17,13 @@ use super::{
 use crate::{
     Fleet, FoldedRoot, ScenarioError, model,
     scenario::{
-        Axes, Joint, Law, List, ModelFile, ModelLaw, ModelSpec, Size, check_models, framed,
-        parse_toml, place, refused,
+        Axes, Joint, List, ModelFile, ModelLaw, ModelSpec, Size, check_models, framed, parse_toml,
+        place, refused,
     },
 };
 
 /// Most bodies, quantities or outputs.
 const MOST: usize = 300;
-
-/// What a resolved scenario says in the place of a SHA-256 if the command names no file that is there.
-const NO_FILES: &str = "the command names no file that is there";
 
 /// A campaign of a simulator of the user's own: its command or its function, the bodies and the quantities that are drawn for each run,
 /// the outputs that it answers with, how many runs from which seed. Everything has been checked.
@@ -37,6 +38,8 @@ pub struct SimulatorScenario {
     dispersed: Joint<usize>,
     outputs: Vec<Column>,
     models: Vec<ModelSpec>,
+    /// The file that it was read from.
+    path: Option<PathBuf>,
     /// The function that simulates, once the program gave it.
     function: Option<SimulatorFunction>,
 }
@@ -66,7 +69,7 @@ impl SimulatorScenario {
         if !is_function && file.simulation.files_sha256.is_none() {
             let given = file.simulation.folder.clone().unwrap_or_else(|| folder.to_owned());
             file.simulation.folder = Some(std::path::absolute(&given).unwrap_or(given));
-            file.simulation.files_sha256 = Some(files_sha256(&program(&file)?));
+            file.simulation.files_sha256 = Some(files_sha256(&file, &program(&file)?));
         }
         file.bodies.iter_mut().for_each(|body| body.dispersion.fill(body.law.as_ref()));
         let mut list = List::of(size.fleet());
@@ -104,9 +107,19 @@ impl SimulatorScenario {
             dispersed.correlate_roots(i, &mut body.uncertain);
         }
         let models = models(&mut file, &bodies)?;
-        let function = None;
-        let scenario =
-            Self { file, size, until, bodies, quantities, dispersed, outputs, models, function };
+        let (path, function) = (None, None);
+        let scenario = Self {
+            file,
+            size,
+            until,
+            bodies,
+            quantities,
+            dispersed,
+            outputs,
+            models,
+            path,
+            function,
+        };
         scenario.check_columns()?;
         Ok(scenario)
     }
@@ -174,7 +187,7 @@ impl SimulatorScenario {
         let mut declaring = self.clone();
         declaring.file.simulation.outputs = outputs.into_iter().map(OutputFile::named).collect();
         let scenario = Self::parse(&declaring.to_toml(), Path::new("."))?;
-        Ok(Self { function: declaring.function, ..scenario })
+        Ok(Self { function: declaring.function, path: declaring.path, ..scenario })
     }
 
     /// The command, ready to be started.
@@ -184,18 +197,20 @@ impl SimulatorScenario {
 
     /// That the files that the command names are those that runs were done with.
     pub(super) fn check_files(&self, program: &Program) -> Result<(), ScenarioError> {
-        let now = files_sha256(program);
-        if self.file.simulation.files_sha256.as_ref() == Some(&now) {
+        let now = files_sha256(&self.file, program);
+        let before = self.file.simulation.files_sha256.clone().unwrap_or_default();
+        let words = before.keys().chain(now.keys());
+        let Some(word) = words.into_iter().find(|word| before.get(*word) != now.get(*word)) else {
             return Ok(());
-        }
-        let what = if now == NO_FILES {
-            "is not there any more: it was there when"
-        } else {
-            "was changed after"
+        };
+        let what = match (before.get(word), now.get(word)) {
+            (Some(_), None) => "is not there any more: it was there when",
+            (None, _) => "is there now: it was not there when",
+            (Some(_), Some(_)) => "was changed after",
         };
         let problem = format!(
-            "a file that the command names {what} the scenario was resolved, and its runs would not go with those that \
-             are there"
+            "the file {word:?}, which the command names, {what} the scenario was resolved, and its runs would not go with those \
+             that are there"
         );
         Err(ScenarioError::field("simulation.files_sha256", problem))
     }
@@ -222,13 +237,8 @@ impl SimulatorScenario {
         let (spec, body_of) = (&self.models[model], &self.bodies[body]);
         let law = model::law(spec, body, &body_of.uncertain, &self.models, &|_| None);
         let (law, _) = law.map_err(|error| {
-            let key = match spec.law {
-                Law::Principal(_) => ".axes",
-                Law::Matched { .. } => ".matched_to",
-                Law::Given { .. } | Law::Outside(_) => "",
-            };
             let problem = format!("the body {}: {error}", body_of.name);
-            ScenarioError::field(place(model) + key, problem)
+            ScenarioError::field(place(model) + spec.law.key(), problem)
         })?;
         // That enough draws are kept.
         self.acceptance(model, body)?;
@@ -277,9 +287,11 @@ impl SimulatorScenario {
     }
 }
 
-/// The SHA-256 of the files that a command names.
-fn files_sha256(program: &Program) -> String {
-    program.files_sha256().unwrap_or_else(|| NO_FILES.to_owned())
+/// The SHA-256 of the files that a command names, by its words.
+fn files_sha256(file: &File, program: &Program) -> BTreeMap<String, String> {
+    let words = file.simulation.command.as_deref().unwrap_or_default();
+    let files = program.files_sha256();
+    files.filter_map(|(place, sha256)| Some((words.get(place)?.clone(), sha256))).collect()
 }
 
 /// The command in its folder.

@@ -168,12 +168,14 @@ impl Subject for SimulatorScenario {
 
     fn begin(&self, simulator: &Simulator) -> Result<(), ScenarioError> {
         if let Some(name) = self.function_name().filter(|_| self.function().is_none()) {
-            return Err(ScenarioError::field("simulation.function", not_given(name)));
+            let absent = ScenarioError::field("simulation.function", not_given(name));
+            return Err(self.located(absent));
         }
         if let Some(program) = simulator.program() {
-            self.check_files(program)?;
+            self.check_files(program).map_err(|error| self.located(error))?;
         }
-        simulator.check().map_err(|error| ScenarioError::field("simulation.command", error))
+        let started = simulator.check();
+        started.map_err(|error| self.located(ScenarioError::field("simulation.command", error)))
     }
 
     /// Nobody knows what a run costs, and one may take an hour.

@@ -328,7 +328,25 @@ fn campaigns_go_on() {
     fs::write(folder.path().join("answer.sh"), format!("{SCRIPT}\n# changed\n")).unwrap();
     let changed = SimulatorScenario::from_toml(&text, folder.path()).unwrap();
     let refused = run(&changed.with_runs(800).unwrap(), &options("whole", 1)).unwrap_err();
-    assert!(refused.to_string().contains("simulation.files_sha256"), "{refused}");
+    let expected = "simulation.files_sha256.answer.sh is \"";
+    assert!(refused.to_string().contains(expected), "{refused}");
+    let file = whole.folder().join("scenario.toml");
+    let begun = |text: &str| {
+        let scenario = SimulatorScenario::from_toml(text, folder.path()).unwrap();
+        SimulatorReplay::new(&scenario, None, 0).unwrap_err().to_string()
+    };
+    let resolved = fs::read_to_string(&file).unwrap();
+    let refused = begun(&resolved);
+    assert!(refused.contains("the file \"answer.sh\"") && refused.contains("changed"), "{refused}");
+    let sha = resolved.lines().find(|line| line.starts_with("\"answer.sh\" =")).unwrap();
+    let refused = begun(&resolved.replace(sha, ""));
+    assert!(refused.contains("is there now"), "{refused}");
+    fs::remove_file(folder.path().join("answer.sh")).unwrap();
+    let refused = begun(&resolved);
+    assert!(refused.contains("is not there any more"), "{refused}");
+    // A file whose scenario was read is named with what is found wrong later.
+    let refused = SimulatorReplay::new(&there, None, 0).unwrap_err().to_string();
+    assert!(refused.starts_with(&file.display().to_string()), "{refused}");
 }
 
 /// Shards with any number of threads make the bytes of one process; a folder of shards is put together where the simulator is

@@ -188,11 +188,15 @@ done
     // Without the file that the command names, it is that of which one is told, and not of the hash of nothing.
     fs::remove_file(folder.path().join("answer.sh")).unwrap();
     let gone = SimulatorReplay::new(&scenario, None, 0).unwrap_err().to_string();
-    assert!(gone.contains("a file that the command names is not there any more"), "{gone}");
+    assert!(
+        gone.contains("\"answer.sh\", which the command names, is not there any more"),
+        "{gone}"
+    );
     let without = SimulatorScenario::from_toml(&uniform(), folder.path()).unwrap();
     let options = Options::to(all);
     let refused = without.study(&options, &|_| {}, &|_| {}).unwrap_err().to_string();
-    assert!(refused.contains("the command names no file that is there"), "{refused}");
+    let expected = "simulation.files_sha256.answer.sh is \"";
+    assert!(refused.contains(expected) && refused.contains("not given here"), "{refused}");
     // Nor are vehicles counted where there are none.
     let flight = Which::Flight { vehicle: 1, flight: 2 };
     let refused = SimulatorReplay::new(&without, None, flight).unwrap_err().to_string();

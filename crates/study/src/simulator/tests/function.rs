@@ -206,7 +206,7 @@ fn refusals_name_their_key() {
         (with("per_run = false"), "simulation.per_run"),
         (with("timeout_s = 1.0"), "simulation.timeout_s"),
         (with("folder = \"/\""), "simulation.folder"),
-        (with("files_sha256 = \"\""), "simulation.files_sha256"),
+        (with("files_sha256 = {}"), "simulation.files_sha256"),
         (function.replace("as the script", " "), "simulation.function"),
         (function.replace("as the script", &"x".repeat(201)), "simulation.function"),
         (function.replace(FUNCTION, ""), "simulation.command"),
