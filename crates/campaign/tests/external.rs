@@ -109,7 +109,7 @@ fn assert_rows(table: &Table, failed: &BTreeSet<u64>, kind: &str, what: &str) {
 
 /// What a misbehaving simulator does, and the kind of the failure if it is asked line by line and if it is started for
 /// each run; none if the run is all right.
-const MISCHIEF: [(&str, Option<&str>, Option<&str>); 31] = [
+const MISCHIEF: [(&str, Option<&str>, Option<&str>); 32] = [
     ("exit 3", Some("the simulator ended"), Some("the simulator ended")),
     ("answer $run; exit 3", None, Some("the simulator ended")),
     ("answer $run; exit 0", None, None),
