@@ -10,6 +10,20 @@ pub(crate) const NAMES: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 /// Row and column of the six entries.
 pub(crate) const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
+/// Which of the six a name means.
+pub(crate) fn entry_of(name: &str) -> Option<usize> {
+    let plain = match name {
+        "i11" => "ixx",
+        "i22" => "iyy",
+        "i33" => "izz",
+        "i12" => "ixy",
+        "i13" => "ixz",
+        "i23" => "iyz",
+        other => other,
+    };
+    NAMES.iter().position(|known| *known == plain)
+}
+
 /// What the products of inertia in a file are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Products {

@@ -12,8 +12,7 @@ use toml::{
 
 use crate::{
     Body, BodyError, FileProblem, GapKind, MAX_BODIES, MAX_DEPTH, Products,
-    body::{Number, Reading, shortened},
-    csv,
+    body::{Number, Reading, entry_of, shortened},
     error::Refusal,
     gap::Gaps,
     text::Text,
@@ -350,7 +349,7 @@ fn reading(item: &Item<'_>, inertia: &Item<'_>, products: Products) -> Result<Re
     if let Value::Table(entries) = &inertia.value {
         let mut six = [None; 6];
         for (key, entry) in entries {
-            let index = csv::entry_of(&key.to_lowercase()).ok_or(SHAPE)?;
+            let index = entry_of(&key.to_lowercase()).ok_or(SHAPE)?;
             if six[index].replace(entry.number(INERTIA)?).is_some() {
                 return Err(SHAPE);
             }

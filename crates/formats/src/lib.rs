@@ -50,9 +50,13 @@ mod repair;
 mod robot;
 mod robot_error;
 mod robots;
+mod rows;
+mod spread;
+mod table_header;
 mod ten_moments;
 mod ten_table;
 mod text;
+mod units;
 mod walk;
 mod xml;
 
@@ -77,6 +81,7 @@ pub use robot::{LinkNumbers, RobotFile, RobotLink};
 pub use robot_error::{LinkProblem, RobotError};
 pub use ten_moments::{TenMomentsError, TenMomentsFile};
 pub use ten_table::{TenRow, TenTable};
+pub use units::{UnitError, UnitProblem};
 pub use walk::{Found, find};
 
 /// Tolerance that suits files: they carry about six digits, and a plate or a rod written with six

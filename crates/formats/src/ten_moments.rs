@@ -4,9 +4,9 @@ use serde::Deserialize;
 use std::{io, path::Path};
 
 use crate::{
-    MAX_TOML_BYTES,
-    csv::{Field, Rows, squeezed},
-    read_text,
+    MAX_TOML_BYTES, read_text,
+    rows::{Field, Rows},
+    units::squeezed,
 };
 
 /// Mean and covariance of ten parameters, as a file gives them.

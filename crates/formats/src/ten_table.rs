@@ -3,10 +3,11 @@
 use crate::{
     BodyError, MAX_BODIES, Products,
     body::Number,
-    csv::{Field, Rows, squeezed},
     parts::heading::{Column, Heading, VALUES},
     products_comment::stated_products,
+    rows::{Field, Rows},
     text::Text,
+    units::squeezed,
 };
 
 /// A table with columns of mass, mass centre (or first moments) and inertia.
@@ -40,9 +41,15 @@ impl TenTable {
         let text = Text::new(bytes, true).ok()?;
         let mut rows = Rows::new(text.as_str());
         let first = rows.next()?.ok()?;
-        let cell = |field: &Field| text.as_str().get(field.start..field.end).unwrap_or_default();
+        let cell = |field: &Field| field.of(text.as_str());
+        let headings: Vec<Heading> = first.iter().map(|field| Heading::of(cell(field))).collect();
+        let bad_units = headings.iter().filter_map(|heading| heading.bad_unit(&headings));
+        if bad_units.into_iter().any(|(field, _)| VALUES.contains(&field)) {
+            return None;
+        }
+        let pairs = first.iter().zip(&headings);
         let columns: Vec<Option<(usize, f64, bool)>> =
-            first.iter().map(|field| column(cell(field))).collect();
+            pairs.map(|(field, heading)| column(cell(field), heading)).collect();
         let place = |value: usize| columns.iter().position(|c| c.is_some_and(|c| c.0 == value));
         let places: [Option<usize>; 10] = std::array::from_fn(place);
         let twice =
@@ -113,12 +120,14 @@ impl TenRow {
 }
 
 /// Which of the ten, its unit in SI, and whether it is a first moment.
-fn column(heading: &str) -> Option<(usize, f64, bool)> {
-    match Heading::of(heading) {
-        Heading::Column(Column::Value(value, unit)) => Some((value, unit, false)),
-        Heading::Column(_) | Heading::Size(_) | Heading::NoDeviation | Heading::Other => {
-            first_moment(&squeezed(heading)).map(|value| (value, 1.0, true))
-        }
+fn column(text: &str, heading: &Heading) -> Option<(usize, f64, bool)> {
+    match heading {
+        Heading::Column(Column::Value(value, unit)) => Some((*value, *unit, false)),
+        Heading::Column(_)
+        | Heading::Size(_)
+        | Heading::Unit(..)
+        | Heading::NoDeviation
+        | Heading::Other => first_moment(&squeezed(text)).map(|value| (value, 1.0, true)),
     }
 }
 

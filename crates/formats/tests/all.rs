@@ -5,3 +5,4 @@ mod dressings;
 mod mjcf_geoms;
 mod robots;
 mod samples;
+mod units;

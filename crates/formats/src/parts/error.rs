@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::{BodyError, FileProblem, body::shortened, error::Refusal};
+use crate::{BodyError, FileProblem, UnitError, body::shortened, error::Refusal};
 
 /// Why a list of parts could not be read.
 #[derive(Debug)]
@@ -80,6 +80,9 @@ pub enum PartsProblem {
         /// The heading.
         heading: String,
     },
+    /// A column of a number whose unit is not read.
+    #[error(transparent)]
+    Unit(#[from] UnitError),
     /// A number is missing, none, or not finite, or the row has too many or too few.
     #[error(transparent)]
     Number(#[from] BodyError),

@@ -1,6 +1,10 @@
 //! What the columns of a list of parts hold.
 
-use crate::csv::{entry_of, inertia_unit, length_unit, mass_unit, squeezed};
+use crate::{
+    body::entry_of,
+    spread,
+    units::{BadUnit, Dimension, longest_name, squeezed},
+};
 
 /// The ten numbers, as messages call them.
 pub(crate) const VALUES: [&str; 10] =
@@ -31,23 +35,6 @@ pub(super) fn deviation(group: Group, scale: Scale) -> &'static str {
         Scale::Percent => percent,
     })
 }
-
-/// What is written of standard deviations, wherever it stands, and in words of their own beside the name of a number.
-const MARKS: [&str; 5] = ["sigma", "percent", "%", "σ", "±"];
-const WORDS: [&str; 12] = [
-    "std",
-    "stdev",
-    "stddev",
-    "dev",
-    "deviation",
-    "unc",
-    "uncertainty",
-    "tol",
-    "tolerance",
-    "pct",
-    "err",
-    "error",
-];
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,23 +73,34 @@ pub(crate) enum Heading {
     Column(Column),
     /// Perhaps a size of a shape, by its name.
     Size(String),
+    /// A number of the ten or a standard deviation, as messages call it, and what follows and is no unit that is read.
+    Unit(&'static str, BadUnit),
     /// It looks like a standard deviation, and is none.
     NoDeviation,
     Other,
 }
 
 impl Heading {
+    /// Why the unit of a column is not read, if it is a number's. Beside a column of the number, its name with other
+    /// words is another column.
+    pub(crate) fn bad_unit(&self, beside: &[Self]) -> Option<(&'static str, &BadUnit)> {
+        let Self::Unit(field, bad) = self else { return None };
+        let is_held = beside.iter().any(
+            |other| matches!(other, Self::Column(Column::Value(i, _)) if VALUES[*i] == *field),
+        );
+        (bad.is_certain || !is_held).then_some((*field, bad))
+    }
+
     pub(crate) fn of(text: &str) -> Self {
         // Longer texts are none.
         if text.len() > 200 {
             return Self::Other;
         }
-        let plain = squeezed(text);
-        if let Some(column) = column(&plain) {
-            return Self::Column(column);
+        if let Some(found) = word(&squeezed(text)).map(Self::Column).or_else(|| quantity(text)) {
+            return found;
         }
         let name = text.trim().to_lowercase();
-        if MARKS.iter().any(|mark| plain.contains(mark)) || is_spread(&name) {
+        if spread::is_marked(text) || is_spread(text) {
             Self::NoDeviation
         } else if name.ends_with("_m") && name.chars().all(|c| c.is_ascii_alphabetic() || c == '_')
         {
@@ -114,13 +112,12 @@ impl Heading {
 }
 
 /// Whether a heading speaks of how uncertain one of the ten numbers is, as `mass_std`.
-fn is_spread(name: &str) -> bool {
-    let words = || name.split(|c: char| !c.is_alphanumeric());
-    words().any(|word| WORDS.contains(&word)) && words().any(|word| group(word).is_some())
+fn is_spread(text: &str) -> bool {
+    spread::has_word(text) && spread::words(&text.to_lowercase()).any(|word| group(word).is_some())
 }
 
-fn column(plain: &str) -> Option<Column> {
-    let word = match plain {
+fn word(plain: &str) -> Option<Column> {
+    match plain {
         "name" | "id" | "part" | "body" | "link" | "component" => Some(Column::Name),
         "parent" => Some(Column::Parent),
         "products" | "poiconv" => Some(Column::Products),
@@ -132,38 +129,42 @@ fn column(plain: &str) -> Option<Column> {
         "attitudez" | "qz" => Some(Column::Attitude(2)),
         "attitudew" | "qw" => Some(Column::Attitude(3)),
         _ => None,
-    };
-    word.or_else(|| quantity(plain))
+    }
 }
 
 /// A number of the ten or its deviation: `mass_kg`, `sigma_ixx`, `mass_sigma_kg`, `moments_percent`.
-fn quantity(plain: &str) -> Option<Column> {
-    let (rest, before) = match plain.strip_prefix("sigma") {
-        Some(rest) => (rest, true),
-        None => (plain, false),
+fn quantity(text: &str) -> Option<Heading> {
+    let ((group, is_deviation), tail) = longest_name(text, number)?;
+    if ["percent", "%"].contains(&squeezed(tail.text()).as_str()) {
+        return Some(Heading::Column(Column::Deviation(group, Scale::Percent)));
+    }
+    let dimension = match group.0 {
+        0 => Dimension::Mass,
+        1..=3 => Dimension::Length,
+        _ => Dimension::Inertia,
     };
-    // The longest name first: centrex before centre.
-    let ends: Vec<usize> = rest.char_indices().map(|(at, c)| at + c.len_utf8()).collect();
-    ends.into_iter().rev().find_map(|end| {
-        let group = group(&rest[..end])?;
-        let (unit, after) = match rest[end..].strip_prefix("sigma") {
-            Some(unit) => (unit, true),
-            None => (&rest[end..], false),
-        };
-        if ["percent", "%"].contains(&unit) {
-            return Some(Column::Deviation(group, Scale::Percent));
+    match (tail.unit(dimension)?, group) {
+        (Ok(unit), _) if is_deviation => {
+            Some(Heading::Column(Column::Deviation(group, Scale::Unit(unit.si))))
         }
-        let si = match group.0 {
-            0 => mass_unit(unit),
-            1..=3 => length_unit(unit),
-            _ => inertia_unit(unit),
-        }?;
-        match (before || after, group) {
-            (true, group) => Some(Column::Deviation(group, Scale::Unit(si))),
-            (false, Group(first, 1)) => Some(Column::Value(first, si)),
-            (false, Group(..)) => None,
+        (Err(bad), _) if is_deviation => {
+            Some(Heading::Unit(deviation(group, Scale::Unit(1.0)), bad))
         }
-    })
+        (Ok(unit), Group(first, 1)) => Some(Heading::Column(Column::Value(first, unit.si))),
+        (Err(bad), Group(first, 1)) if !spread::is_marked(text) && !is_spread(text) => {
+            Some(Heading::Unit(VALUES[first], bad))
+        }
+        (Ok(_) | Err(_), Group(..)) => None,
+    }
+}
+
+/// A name of one of the ten, or of some of them, and whether it is of their deviation.
+fn number(plain: &str) -> Option<(Group, bool)> {
+    let before = plain.strip_prefix("sigma");
+    let rest = before.unwrap_or(plain);
+    let after = rest.strip_suffix("sigma");
+    let group = group(after.unwrap_or(rest))?;
+    Some((group, before.is_some() || after.is_some()))
 }
 
 fn group(name: &str) -> Option<Group> {

@@ -12,9 +12,9 @@ use std::collections::BTreeMap;
 use crate::{
     BodyError, FileProblem, MAX_BODIES, Products,
     body::shortened,
-    csv::{Field, Rows},
     error::Refusal,
     products_comment::stated_products,
+    rows::{Field, Rows},
     text::Text,
 };
 use heading::{Column, Heading};
@@ -117,25 +117,25 @@ impl PartsTable {
         };
         let line = line_of(&text, &first);
         let headings: Vec<String> = first.iter().map(|field| cell(&text, field)).collect();
-        let mut columns = Vec::with_capacity(headings.len());
+        let columns: Vec<Heading> = headings.iter().map(|heading| Heading::of(heading)).collect();
         let mut passed_over = Vec::new();
-        for heading in &headings {
-            let column = Heading::of(heading);
-            match &column {
+        for (at, (column, heading)) in columns.iter().zip(&headings).enumerate() {
+            let refuse = |problem: PartsProblem| Err(PartsError::new(line, None, problem));
+            if let Some((field, bad)) = column.bad_unit(&columns) {
+                return refuse(bad.clone().of(heading, field).into());
+            }
+            match column {
                 Heading::NoDeviation => {
-                    let problem = PartsProblem::Deviation { heading: shortened(heading) };
-                    return Err(PartsError::new(line, None, problem));
+                    return refuse(PartsProblem::Deviation { heading: shortened(heading) });
                 }
-                Heading::Other => passed_over.push(shortened(heading)),
+                Heading::Unit(..) | Heading::Other => passed_over.push(shortened(heading)),
                 Heading::Column(_) | Heading::Size(_) => {
-                    if let Some(at) = columns.iter().position(|other| *other == column) {
-                        let (first, second) = (shortened(&headings[at]), shortened(heading));
-                        let problem = PartsProblem::Columns { first, second };
-                        return Err(PartsError::new(line, None, problem));
+                    if let Some(first) = columns[..at].iter().position(|other| other == column) {
+                        let (first, second) = (shortened(&headings[first]), shortened(heading));
+                        return refuse(PartsProblem::Columns { first, second });
                     }
                 }
             }
-            columns.push(column);
         }
         let has = |wanted: Column| columns.contains(&Heading::Column(wanted));
         let has_mass = columns.iter().any(|c| matches!(c, Heading::Column(Column::Value(0, _))));
@@ -215,8 +215,7 @@ fn line_of(text: &Text, fields: &[Field]) -> usize {
 
 /// What a field holds, without blanks around it; nothing where R writes that nothing is there.
 fn cell(text: &Text, field: &Field) -> String {
-    let raw = text.as_str().get(field.start..field.end).unwrap_or_default();
-    let plain = raw.trim().replace("\"\"", "\"");
+    let plain = field.of(text.as_str()).trim().replace("\"\"", "\"");
     if plain == "NA" { String::new() } else { plain }
 }
 

@@ -148,6 +148,7 @@ impl Cells<'_> {
             )
             | Heading::Size(_) => Some(()),
             Heading::Column(Column::Name | Column::Parent | Column::Products | Column::Point)
+            | Heading::Unit(..)
             | Heading::NoDeviation
             | Heading::Other => None,
         };

@@ -1,0 +1,36 @@
+//! Words of headings that speak of how uncertain a number is.
+
+use crate::units::squeezed;
+
+/// What is written of standard deviations, wherever it stands, and in words of their own.
+const MARKS: [&str; 5] = ["sigma", "percent", "%", "σ", "±"];
+const WORDS: [&str; 12] = [
+    "std",
+    "stdev",
+    "stddev",
+    "dev",
+    "deviation",
+    "unc",
+    "uncertainty",
+    "tol",
+    "tolerance",
+    "pct",
+    "err",
+    "error",
+];
+
+/// Whether a heading has a mark of uncertainty.
+pub(crate) fn is_marked(heading: &str) -> bool {
+    let plain = squeezed(heading);
+    MARKS.iter().any(|mark| plain.contains(mark))
+}
+
+/// Whether it has a word for it.
+pub(crate) fn has_word(heading: &str) -> bool {
+    words(&heading.to_lowercase()).any(|word| WORDS.contains(&word))
+}
+
+/// The words of a heading.
+pub(crate) fn words(heading: &str) -> impl Iterator<Item = &str> {
+    heading.split(|c: char| !c.is_alphanumeric())
+}

@@ -1,0 +1,227 @@
+//! The header of a table of bodies: which columns hold the seven numbers, and in what units.
+
+use crate::{
+    FileProblem,
+    body::entry_of,
+    error::Refusal,
+    rows::{Field, Rows, is_comment},
+    spread,
+    text::Text,
+    units::{BadUnit, Dimension, Unit, UnitProblem, longest_name, squeezed},
+};
+
+/// Columns that are looked for: the six entries, the mass, the name.
+pub(crate) const MASS: usize = 6;
+pub(crate) const NAME: usize = 7;
+pub(crate) const FIELDS: [&str; 7] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz", "mass"];
+
+/// The column of a heading, and the unit that follows its name, or why that is none. What follows and is no unit
+/// may make another column of it: `ixx_sigma`.
+fn heading(text: &str) -> Option<(usize, Result<Unit, BadUnit>)> {
+    // Longer texts are none, and would be searched for names for long.
+    if text.len() > 200 {
+        return None;
+    }
+    if column_of(&squeezed(text)) == Some(NAME) {
+        return Some((NAME, Ok(Unit::none())));
+    }
+    let number = |name: &str| {
+        let column = column_of(name).filter(|column| *column != NAME)?;
+        Some((column, name.len() == 1))
+    };
+    let ((column, is_letter), tail) = longest_name(text, number)?;
+    match tail.unit(dimension(column))? {
+        // A letter that a word begins with is not the mass.
+        Ok(_) if is_letter && tail.text().starts_with(char::is_alphabetic) => None,
+        Err(bad) if is_letter && !bad.is_certain => None,
+        Err(_) if spread::is_marked(text) || spread::has_word(text) => None,
+        unit => Some((column, unit)),
+    }
+}
+
+/// What the column of one of the seven numbers is in.
+fn dimension(column: usize) -> Dimension {
+    if column == MASS { Dimension::Mass } else { Dimension::Inertia }
+}
+
+fn column_of(name: &str) -> Option<usize> {
+    match name {
+        "mass" | "m" => Some(MASS),
+        "name" | "body" | "link" | "part" | "component" => Some(NAME),
+        _ => entry_of(name),
+    }
+}
+
+/// What a header says of the rows below it.
+#[derive(Debug)]
+pub(crate) struct Header {
+    /// The column of each of the fields, and of the name.
+    pub(crate) columns: [Option<usize>; 8],
+    pub(crate) width: usize,
+    pub(crate) mass_kg: f64,
+    pub(crate) inertia_kg_m2: f64,
+}
+
+/// The units in a row below a header, none where a field is empty: nothing if one of the fields that count
+/// is no unit, or all of them are empty.
+fn units_below(
+    text: &Text,
+    columns: &[Option<usize>],
+    row: &[Field],
+) -> Option<Vec<Result<Unit, BadUnit>>> {
+    let unit = |(column, field): (&Option<usize>, &Field)| match column {
+        Some(NAME) | None => Ok(Unit::none()),
+        Some(column) => {
+            let written = field.of(text.as_str());
+            let bad = |problem| BadUnit { text: written.to_owned(), problem, is_certain: true };
+            Unit::of(written, dimension(*column)).map_err(bad)
+        }
+    };
+    let units: Vec<_> = columns.iter().zip(row).map(unit).collect();
+    let is_stated =
+        |unit: &Result<Unit, BadUnit>| !matches!(unit, Ok(unit) if unit.text.is_empty());
+    let is_known = |unit: &Result<Unit, BadUnit>| {
+        !matches!(unit, Err(BadUnit { problem: UnitProblem::Unknown { .. }, .. }))
+    };
+    let some = columns.iter().zip(&units).any(|(c, u)| c.is_some_and(|c| c < MASS) && is_stated(u));
+    (row.len() == columns.len() && some && units.iter().all(is_known)).then_some(units)
+}
+
+/// What the fields of a row are as headings.
+fn headings(text: &Text, row: &[Field]) -> Vec<Option<(usize, Result<Unit, BadUnit>)>> {
+    row.iter().map(|field| heading(field.of(text.as_str()))).collect()
+}
+
+/// Reads a row as a header, with the units in the row below it if that holds any: nothing if it has not
+/// the columns of the three moments. Returns whether the row below belongs to it.
+fn header(
+    text: &Text,
+    row: &[Field],
+    below: Option<&[Field]>,
+) -> Result<Option<(Header, bool)>, Refusal> {
+    let mut headings = headings(text, row);
+    let is_certain = |unit: &Result<Unit, BadUnit>| !matches!(unit, Err(bad) if !bad.is_certain);
+    let certain: Vec<usize> =
+        headings.iter().flatten().filter(|(_, unit)| is_certain(unit)).map(|(c, _)| *c).collect();
+    if !(0..3).all(|column| certain.contains(&column)) {
+        return Ok(None);
+    }
+    // Beside a column of a number, its name with other words is another column.
+    for found in &mut headings {
+        found.take_if(|(column, unit)| !is_certain(unit) && certain.contains(column));
+    }
+    let of_fields: Vec<_> = headings.iter().map(|h| h.as_ref().map(|(c, _)| *c)).collect();
+    let below = below.and_then(|row| units_below(text, &of_fields, row));
+    let mut columns = [None; 8];
+    let mut one: Option<(&str, Unit)> = None;
+    let (mut mass_kg, mut inertia_kg_m2) = (1.0, 1.0);
+    for (index, (field, found)) in row.iter().zip(headings).enumerate() {
+        let Some((column, in_heading)) = found else { continue };
+        let name = FIELDS.get(column).copied().unwrap_or("name");
+        let refuse = |problem: String| text.malformed(field.start, problem);
+        let bad = |bad: BadUnit| refuse(bad.of(field.of(text.as_str()), name).to_string());
+        let in_heading = in_heading.map_err(bad)?;
+        let in_row = below.as_ref().and_then(|units| units.get(index).cloned());
+        let in_row = in_row.unwrap_or(Ok(Unit::none())).map_err(bad)?;
+        let its_unit = match (in_heading, in_row) {
+            (a, b) if b.text.is_empty() => a,
+            (a, b) if a.text.is_empty() || a.si == b.si => b,
+            (a, b) => {
+                let (a, b) = (a.text, b.text);
+                return Err(refuse(format!("the header says {a}, and the row below it {b}")));
+            }
+        };
+        if columns[column].replace(index).is_some() && column != NAME {
+            return Err(refuse(format!("two columns for {name}")));
+        }
+        if column == MASS {
+            mass_kg = its_unit.si;
+        }
+        if column < MASS && !its_unit.text.is_empty() {
+            inertia_kg_m2 = its_unit.si;
+            let (first, known) = one.get_or_insert((name, its_unit.clone()));
+            if known.si != its_unit.si {
+                let (known, its_unit) = (&known.text, its_unit.text);
+                let problem =
+                    format!("{first} is in {known} but {name} in {its_unit}: one unit for all");
+                return Err(refuse(problem));
+            }
+        }
+    }
+    let products = columns[3..6].iter().flatten().count();
+    if products != 0 && products != 3 {
+        let at = row.first().map_or(0, |field| field.start);
+        return Err(text.malformed(at, "columns ixy, ixz, iyz: there must be all three or none"));
+    }
+    let header = Header { columns, width: row.len(), mass_kg, inertia_kg_m2 };
+    Ok(Some((header, below.is_some())))
+}
+
+/// Why a row is no header, where it would be one if what follows the names of the moments were units.
+fn nearly(text: &Text, row: &[Field]) -> Option<String> {
+    let headings = headings(text, row);
+    let is_there = |column: usize| headings.iter().flatten().any(|(c, _)| *c == column);
+    (0..3).all(is_there).then_some(())?;
+    let mut pairs = row.iter().zip(&headings);
+    pairs.find_map(|(field, found)| match found {
+        Some((column, Err(bad))) => {
+            let name = FIELDS.get(*column).copied()?;
+            Some(bad.clone().of(field.of(text.as_str()), name).to_string())
+        }
+        Some((_, Ok(_))) | None => None,
+    })
+}
+
+/// Most lines above a header, titles and the like, that are looked through for it.
+const TITLES: usize = 100;
+
+/// Finds the header, below any titles: where it starts, what it says, and the rows below it. Where there
+/// is none, it may be a comment, as many programs write it.
+pub(crate) fn find_header(text: &Text) -> Result<(usize, Header, Rows<'_>), Refusal> {
+    let lines = || {
+        let mut at = 0;
+        text.as_str().split_inclusive('\n').map(move |line| {
+            at += line.len();
+            (at - line.len(), line)
+        })
+    };
+    for (at, line) in lines().filter(|(_, line)| !is_comment(line)).take(TITLES) {
+        if let Some((header, rows)) = header_at(text, at, line)? {
+            return Ok((at, header, rows));
+        }
+    }
+    for (at, line) in lines().filter(|(_, line)| line.starts_with('#')).take(TITLES) {
+        let content = line.trim_start_matches(['#', ' ', '\t']);
+        let start = at + line.len() - content.len();
+        if let Some((header, rows)) = header_at(text, start, content)? {
+            return Ok((at, header, rows));
+        }
+    }
+    let near = lines()
+        .filter(|(_, line)| !is_comment(line))
+        .take(TITLES)
+        .find_map(|(at, line)| nearly(text, &Rows::at(text.as_str(), at, line).row().ok()?));
+    let mut message = "a table must have the columns ixx, iyy and izz".to_owned();
+    if let Some(near) = near {
+        message = format!("{message}: {near}");
+    }
+    Err(FileProblem::Unknown { message }.into())
+}
+
+/// The header in a line that starts at an offset, and the rows below it, if it is one.
+fn header_at<'t>(
+    text: &'t Text,
+    at: usize,
+    line: &str,
+) -> Result<Option<(Header, Rows<'t>)>, Refusal> {
+    let mut rows = Rows::at(text.as_str(), at, line);
+    // In a title, a quotation mark is no more than that.
+    let Ok(row) = rows.row() else { return Ok(None) };
+    let mut below = rows.clone();
+    let next = below.next().and_then(Result::ok);
+    Ok(match header(text, &row, next.as_deref())? {
+        Some((header, true)) => Some((header, below)),
+        Some((header, false)) => Some((header, rows)),
+        None => None,
+    })
+}
