@@ -119,7 +119,7 @@ fn edges_may_stand_apart_and_errors_name_file_and_line() {
     fs::write(shell.path("edges.csv"), "child,parent\nWidget,Combined\n").unwrap();
     let message = shell.no_rollup(&["list.csv", "--edges", "edges.csv"]);
     assert!(
-        message.contains("list.csv: ") && message.contains("2 rows belong to nothing"),
+        message.contains("edges.csv: ") && message.contains("2 rows belong to nothing"),
         "{message}"
     );
     fs::write(shell.path("parts.csv"), SAWE.replace("57.83", "heavy")).unwrap();
@@ -134,4 +134,44 @@ fn edges_may_stand_apart_and_errors_name_file_and_line() {
         shell.rollup(&["parts.csv", "-n", "0", "--products", "integrals"]).contains("-1559.359")
     );
     assert!(shell.no_rollup(&["nowhere.csv"]).contains("nowhere.csv"));
+}
+
+/// With a table of edges, what is wrong with it names it, and what is wrong with the list names that.
+#[test]
+fn errors_name_the_table_that_they_are_in() {
+    let shell = Scratch::new();
+    let write = |name: &str, text: &str| fs::write(shell.path(name), text).unwrap();
+    let list = "name,mass,cx,cy,cz,shape\na,1,0,0,0,point\nb,1,1,0,0,point\n";
+    write("list.csv", list);
+    let edges = ["list.csv", "--edges", "edges.csv"];
+    for (text, expected) in [
+        (
+            "child,parent\na,v\nb,v\nv,w\nw,v\n",
+            "edges.csv: line 4: \"v\" belongs to \"w\" belongs to \"v\": no row",
+        ),
+        ("child,parent\nv,v\na,v\nb,v\n", "edges.csv: line 2: \"v\" belongs to \"v\": no row"),
+        ("child,parent\na,v\nb,w\n", "edges.csv: line 3: 2 rows belong to nothing"),
+        ("child,parent\na,v\n", "edges.csv: line 2: 2 rows belong to nothing"),
+        ("child,parent\na,v\nb,v\nx,v\n", "edges.csv: line 4: \"x\" has neither numbers nor parts"),
+        ("child,parent\na,v,x\n", "edges.csv: line 2: the row has 3 values: there must be 2"),
+        ("kid,parent\na,v\n", "edges.csv: line 1: there is no column child"),
+        ("", "edges.csv: it is empty"),
+        ("child,parent\nb,a\n", "list.csv: line 2: \"a\" has numbers of its own"),
+    ] {
+        write("edges.csv", text);
+        let message = shell.no_rollup(&edges);
+        assert!(message.contains(expected), "{text:?}: {message}");
+    }
+    write("edges.csv", "child,parent\na,v\nb,v\n");
+    for (text, expected) in [
+        (format!("{list}a,1,0,0,0,point\n"), "list.csv: line 4: name \"a\" stands twice"),
+        (format!("{list},1,0,0,0,point\n"), "list.csv: line 4: name is missing"),
+        (format!("{list}c,-1,0,0,0,point\n"), "list.csv: line 4: c: mass = -1"),
+    ] {
+        write("list.csv", &text);
+        let message = shell.no_rollup(&edges);
+        assert!(message.contains(expected), "{text:?}: {message}");
+    }
+    write("list.csv", &format!("{list},,,,,\n,,,,,,,,\n"));
+    shell.rollup(&edges);
 }

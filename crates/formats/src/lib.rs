@@ -74,7 +74,7 @@ pub use judge::{Judgement, MassFault, Note, judge};
 pub use kind::Format;
 pub use mesh_file::MeshFileError;
 pub use new_file::{NewFile, WriteError};
-pub use parts::{PartNumbers, PartRow, PartsError, PartsProblem, PartsTable};
+pub use parts::{PartNumbers, PartRow, PartsError, PartsFile, PartsProblem, PartsTable};
 pub use plain::{must_write, read_text, write_file, write_file_as};
 pub use repair::{Change, Remedy, RepairError, copy_path, is_copy, write_copy, write_copy_of};
 pub use robot::{LinkNumbers, RobotFile, RobotLink};

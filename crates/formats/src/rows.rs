@@ -37,7 +37,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The fields of the next row that is neither blank nor a comment, or the offset of a quote
-    /// that is never closed.
+    /// that is never closed. Spreadsheets write separators alone for a blank row.
     pub(crate) fn next(&mut self) -> Option<Result<Vec<Field>, usize>> {
         loop {
             let rest = &self.text[self.at..];
@@ -45,11 +45,14 @@ impl<'a> Rows<'a> {
             if rest.is_empty() {
                 return None;
             }
-            if line.trim().is_empty() || line.starts_with('#') {
+            if line.starts_with('#') {
                 self.at = (self.at + line.len() + 1).min(self.text.len());
                 continue;
             }
-            return Some(self.row());
+            match self.row() {
+                Ok(row) if row.iter().all(|field| field.of(self.text).trim().is_empty()) => {}
+                row => return Some(row),
+            }
         }
     }
 

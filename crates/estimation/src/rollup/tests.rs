@@ -252,14 +252,17 @@ fn what_is_no_tree_is_refused_by_name() {
     assert_eq!(of(own), AssemblyError::PartWithChildren { name: text("a"), child: text("b") });
     let hollow = vec![row("a", None, None), row("b", Some("a"), None)];
     assert_eq!(of(hollow), AssemblyError::Nothing { name: text("b") });
-    assert_eq!(of(vec![row("a", Some("a"), None)]), AssemblyError::Circle { name: text("a") });
+    assert_eq!(
+        of(vec![row("a", Some("a"), None)]),
+        AssemblyError::Circle { names: vec![text("a")] }
+    );
     let circle = vec![
         row("whole", None, None),
         row("p", Some("whole"), part()),
         row("x", Some("y"), None),
         row("y", Some("x"), None),
     ];
-    assert_eq!(of(circle), AssemblyError::Circle { name: text("x") });
+    assert_eq!(of(circle), AssemblyError::Circle { names: vec![text("x"), text("y")] });
     assert!(Assembly::new([row("only", None, part())]).is_ok());
     // Deep trees take no stack.
     let name = |i: usize| format!("n{i}");
@@ -267,6 +270,54 @@ fn what_is_no_tree_is_refused_by_name() {
     let leaf = row("leaf", Some(&name(99_999)), part());
     let deep = Assembly::new(chain.chain([leaf])).unwrap();
     assert!(same(deep.first_order(), sawe(WIDGET).first_order()));
+}
+
+/// All ways in which five rows may belong to each other or to nothing: rows in a circle are named, and no others.
+#[test]
+fn circles_name_those_in_them() {
+    const NAMES: [&str; 5] = ["c", "a", "e", "b", "d"];
+    let mut circles = 0;
+    for case in 0..6_usize.pow(5) {
+        // None, or which row each belongs to.
+        let up: [Option<usize>; 5] =
+            std::array::from_fn(|i| (case / 6_usize.pow(i as u32) % 6).checked_sub(1));
+        let rows = (0..5).map(|i| {
+            let is_part = up.iter().all(|parent| *parent != Some(i));
+            row(NAMES[i], up[i].map(|parent| NAMES[parent]), is_part.then(|| sawe(WIDGET)))
+        });
+        let is_in_circle = |i: usize| {
+            let mut at = up[i];
+            for _ in 0..5 {
+                if at == Some(i) {
+                    return true;
+                }
+                at = at.and_then(|at| up[at]);
+            }
+            false
+        };
+        let roots = up.iter().filter(|parent| parent.is_none()).count();
+        match Assembly::new(rows) {
+            Ok(_) => assert!(roots == 1 && !(0..5).any(is_in_circle), "{up:?}"),
+            Err(AssemblyError::Wholes { names }) => assert!(names.len() == roots, "{up:?}"),
+            Err(error @ AssemblyError::Circle { .. }) => {
+                circles += 1;
+                let message = error.to_string();
+                let AssemblyError::Circle { names } = error else { panic!() };
+                let place = |name: &str| NAMES.iter().position(|n| *n == name).unwrap();
+                for (at, name) in names.iter().enumerate() {
+                    let next = &names[(at + 1) % names.len()];
+                    assert_eq!(up[place(name)], Some(place(next)), "{up:?} {names:?}");
+                    assert!(
+                        message.contains(&format!("{name:?} belongs to {next:?}")),
+                        "{message}"
+                    );
+                }
+                assert!(roots < 2 && names.iter().min() == names.first(), "{up:?} {names:?}");
+            }
+            Err(error) => panic!("{up:?}: {error}"),
+        }
+    }
+    assert!(circles > 1000, "{circles}");
 }
 
 #[test]

@@ -81,13 +81,9 @@ impl Assembly {
             places.insert(name, nodes.len());
             nodes.push(Node { row, children: inside, depth, first_order });
         }
-        // What the whole does not lead to belongs to a circle: as many steps up as there are rows end in it.
-        if let Some(mut name) = by_name.keys().next().cloned() {
-            for _ in 0..by_name.len() {
-                let up = by_name.get(&name).and_then(|row| row.parent.clone());
-                name = up.unwrap_or(name);
-            }
-            return Err(AssemblyError::Circle { name });
+        // What the whole does not lead to belongs to a circle.
+        if !by_name.is_empty() {
+            return Err(AssemblyError::Circle { names: circle(&by_name) });
         }
         let parts = places.into_values().filter(|i| nodes[*i].row.part.is_some()).collect();
         Ok(Self { nodes, parts })
@@ -176,17 +172,29 @@ fn children(
     Ok(children)
 }
 
+/// The names in a circle of rows that all belong to another of them, from the first of these names on: each belongs to
+/// the next, and the last to the first.
+fn circle(rows: &BTreeMap<String, AssemblyRow>) -> Vec<String> {
+    let up = |name: &str| rows.get(name).and_then(|row| row.parent.as_deref());
+    let from = |name| std::iter::successors(Some(name), |name: &&str| up(name));
+    // As many steps up as there are rows end in the circle.
+    let inside = rows.keys().next().and_then(|first| from(first.as_str()).nth(rows.len()));
+    let Some(inside) = inside else { return Vec::new() };
+    let around: Vec<&str> =
+        std::iter::once(inside).chain(from(inside).skip(1).take_while(|n| *n != inside)).collect();
+    let first = (0..around.len()).min_by_key(|i| around[*i]).unwrap_or_default();
+    around[first..].iter().chain(&around[..first]).map(|name| (*name).to_owned()).collect()
+}
+
 /// The name of the one row that belongs to no other.
 fn root(rows: &BTreeMap<String, AssemblyRow>) -> Result<String, AssemblyError> {
     let roots: Vec<&String> =
         rows.values().filter(|row| row.parent.is_none()).map(|row| &row.name).collect();
-    match (roots.as_slice(), rows.keys().next()) {
-        ([root], _) => Ok((*root).clone()),
-        ([], Some(name)) => Err(AssemblyError::Circle { name: name.clone() }),
-        ([], None) => Err(AssemblyError::Empty),
-        (roots, _) => {
-            Err(AssemblyError::Wholes { names: roots.iter().map(|s| (*s).clone()).collect() })
-        }
+    match roots.as_slice() {
+        [root] => Ok((*root).clone()),
+        [] if rows.is_empty() => Err(AssemblyError::Empty),
+        [] => Err(AssemblyError::Circle { names: circle(rows) }),
+        roots => Err(AssemblyError::Wholes { names: roots.iter().map(|s| (*s).clone()).collect() }),
     }
 }
 
@@ -242,11 +250,11 @@ pub enum AssemblyError {
         /// Their names.
         names: Vec<String>,
     },
-    /// A row that belongs to itself, by way of others or at once.
-    #[error("{name:?} belongs to itself, at once or by way of others: it must belong to the whole")]
+    /// Rows that belong to each other in a circle, or one that belongs to itself.
+    #[error("{}: no row may belong to itself, at once or by way of others", around(names))]
     Circle {
-        /// The row.
-        name: String,
+        /// Those in the circle, from the first name on: each belongs to the next, and the last to the first.
+        names: Vec<String>,
     },
     /// A sum leaves the range of floats.
     #[error("the sum of {name:?}: {error}")]
@@ -267,8 +275,8 @@ impl AssemblyError {
             | Self::Parent { name, .. }
             | Self::PartWithChildren { name, .. }
             | Self::Nothing { name }
-            | Self::Circle { name }
             | Self::Sum { name, .. } => Some(name),
+            Self::Circle { names } => names.first().map(String::as_str),
             Self::Wholes { names } => names.get(1).map(String::as_str),
             Self::Empty | Self::NoName => None,
         }
@@ -282,4 +290,14 @@ fn some(names: &[String]) -> String {
         text.push_str(", …");
     }
     text
+}
+
+/// What belongs to what in a circle of these names.
+fn around(names: &[String]) -> String {
+    let mut text: Vec<String> = names.iter().take(5).map(|n| format!("{n:?}")).collect();
+    if names.len() > 5 {
+        text.push("…".to_owned());
+    }
+    text.extend(names.first().map(|first| format!("{first:?}")));
+    text.join(" belongs to ")
 }

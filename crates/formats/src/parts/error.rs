@@ -4,9 +4,19 @@ use std::fmt;
 
 use crate::{BodyError, FileProblem, UnitError, body::shortened, error::Refusal};
 
+/// Which of the two tables of a list of parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartsFile {
+    /// The one that holds the parts.
+    Parts,
+    /// The one that says what belongs to what.
+    Edges,
+}
+
 /// Why a list of parts could not be read.
 #[derive(Debug)]
 pub struct PartsError {
+    file: PartsFile,
     line: Option<usize>,
     name: Option<String>,
     problem: PartsProblem,
@@ -14,7 +24,18 @@ pub struct PartsError {
 
 impl PartsError {
     pub(super) fn new(line: usize, name: Option<&str>, problem: PartsProblem) -> Self {
-        Self { line: Some(line), name: name.map(str::to_owned), problem }
+        let name = name.map(str::to_owned);
+        Self { file: PartsFile::Parts, line: Some(line), name, problem }
+    }
+
+    pub(super) fn in_edges(self) -> Self {
+        Self { file: PartsFile::Edges, ..self }
+    }
+
+    /// The table in which it is.
+    #[must_use]
+    pub fn file(&self) -> PartsFile {
+        self.file
     }
 
     /// Line, from 1, if the problem has one.
@@ -32,7 +53,7 @@ impl PartsError {
 
 impl From<Refusal> for PartsError {
     fn from(Refusal { line, problem }: Refusal) -> Self {
-        Self { line, name: None, problem: PartsProblem::File(problem) }
+        Self { file: PartsFile::Parts, line, name: None, problem: PartsProblem::File(problem) }
     }
 }
 
@@ -82,7 +103,7 @@ pub enum PartsProblem {
     },
     /// A column of a number whose unit is not read.
     #[error(transparent)]
-    Unit(#[from] UnitError),
+    Unit(#[from] Box<UnitError>),
     /// A number is missing, none, or not finite, or the row has too many or too few.
     #[error(transparent)]
     Number(#[from] BodyError),

@@ -4,7 +4,7 @@ mod error;
 pub(crate) mod heading;
 mod row;
 
-pub use error::{PartsError, PartsProblem};
+pub use error::{PartsError, PartsFile, PartsProblem};
 pub use row::{PartNumbers, PartRow};
 
 use std::collections::BTreeMap;
@@ -57,8 +57,8 @@ impl PartsTable {
         if !table.has_parents {
             let taken = table.rows.iter().any(|row| row.name() == WHOLE);
             let whole = if taken { format!("({WHOLE})") } else { WHOLE.to_owned() };
-            table.rows.iter_mut().for_each(|row| row.set_parent(&whole));
-            table.rows.push(PartRow::assembly(&whole, 1));
+            table.rows.iter_mut().for_each(|row| row.set_parent(&whole, row.place()));
+            table.rows.push(PartRow::assembly(&whole, (PartsFile::Parts, 1)));
         }
         Ok(table.finish())
     }
@@ -74,14 +74,15 @@ impl PartsTable {
         products: Option<Products>,
     ) -> Result<Self, PartsError> {
         let mut table = Self::rows_of(bytes, products)?;
-        let edges = edges_of(edges)?;
+        let edges = edges_of(edges).map_err(PartsError::in_edges)?;
         let mut places: BTreeMap<String, usize> =
             table.rows.iter().enumerate().map(|(i, row)| (row.name().to_owned(), i)).collect();
         for (line, child, parent) in edges {
+            let place = (PartsFile::Edges, line);
             for name in [&child, &parent] {
                 if !places.contains_key(name) {
                     places.insert(name.clone(), table.rows.len());
-                    table.rows.push(PartRow::assembly(name, line));
+                    table.rows.push(PartRow::assembly(name, place));
                 }
             }
             let Some(row) = places.get(&child).and_then(|i| table.rows.get_mut(*i)) else {
@@ -90,9 +91,9 @@ impl PartsTable {
             if let Some(first) = row.parent().filter(|first| *first != parent) {
                 let first = first.to_owned();
                 let problem = PartsProblem::Parents { child, first, second: parent };
-                return Err(PartsError::new(line, None, problem));
+                return Err(PartsError::new(line, None, problem).in_edges());
             }
-            row.set_parent(&parent);
+            row.set_parent(&parent, place);
         }
         Ok(table.finish())
     }
@@ -122,7 +123,7 @@ impl PartsTable {
         for (at, (column, heading)) in columns.iter().zip(&headings).enumerate() {
             let refuse = |problem: PartsProblem| Err(PartsError::new(line, None, problem));
             if let Some((field, bad)) = column.bad_unit(&columns) {
-                return refuse(bad.clone().of(heading, field).into());
+                return refuse(Box::new(bad.clone().of(heading, field)).into());
             }
             match column {
                 Heading::NoDeviation => {
@@ -193,6 +194,11 @@ fn edges_of(bytes: &[u8]) -> Result<Vec<(usize, String, String)>, PartsError> {
     let mut edges = Vec::new();
     while let Some(fields) = next(&text, &mut rows)? {
         let line = line_of(&text, &fields);
+        let (found, allowed) = (fields.len(), headings.len());
+        if found != allowed {
+            let problem = BodyError::Count { field: "the row", found, allowed }.into();
+            return Err(PartsError::new(line, None, problem));
+        }
         let of = |(field, place): (&'static str, usize)| {
             let found = fields.get(place).map(|field| cell(&text, field));
             let missing = BodyError::Missing { field };

@@ -4,7 +4,7 @@ use gyradius_inertia::{InertiaMatrix, Shape};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde_json::{Map, Value};
 
-use super::error::{PartsError, PartsProblem};
+use super::error::{PartsError, PartsFile, PartsProblem};
 use super::heading::{self, Column, Group, Heading, Scale, VALUES};
 use crate::{
     BodyError, Products,
@@ -19,20 +19,22 @@ const UNIT: f64 = 1e-3;
 pub struct PartRow {
     name: String,
     parent: Option<String>,
-    line: usize,
+    place: (PartsFile, usize),
+    parent_place: (PartsFile, usize),
     numbers: Option<PartNumbers>,
 }
 
 impl PartRow {
-    pub(super) fn assembly(name: &str, line: usize) -> Self {
-        Self { name: name.to_owned(), parent: None, line, numbers: None }
+    pub(super) fn assembly(name: &str, place: (PartsFile, usize)) -> Self {
+        Self { name: name.to_owned(), parent: None, place, parent_place: place, numbers: None }
     }
 
-    pub(super) fn set_parent(&mut self, parent: &str) {
+    pub(super) fn set_parent(&mut self, parent: &str, place: (PartsFile, usize)) {
         self.parent = Some(parent.to_owned());
+        self.parent_place = place;
     }
 
-    /// Its name, which may be empty or that of another.
+    /// Its name, which may be that of another.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
@@ -44,10 +46,16 @@ impl PartRow {
         self.parent.as_deref()
     }
 
-    /// Line, from 1.
+    /// Table and line, from 1, where it first stands.
     #[must_use]
-    pub fn line(&self) -> usize {
-        self.line
+    pub fn place(&self) -> (PartsFile, usize) {
+        self.place
+    }
+
+    /// Table and line, from 1, that say what it belongs to.
+    #[must_use]
+    pub fn parent_place(&self) -> (PartsFile, usize) {
+        self.parent_place
     }
 
     /// The numbers of a part; none of an assembly.
@@ -120,10 +128,14 @@ impl Cells<'_> {
             let problem = BodyError::Count { field: "the row", found, allowed }.into();
             return Err(PartsError::new(line, None, problem));
         }
-        let name = self.text(Column::Name).unwrap_or_default().to_owned();
+        let Some(name) = self.text(Column::Name).map(str::to_owned) else {
+            let problem = BodyError::Missing { field: "name" }.into();
+            return Err(PartsError::new(line, None, problem));
+        };
         let parent = self.text(Column::Parent).map(str::to_owned);
         let numbers = self.numbers().map_err(|p| PartsError::new(line, Some(&name), p))?;
-        Ok(PartRow { name, parent, line, numbers })
+        let place = (PartsFile::Parts, line);
+        Ok(PartRow { name, parent, place, parent_place: place, numbers })
     }
 
     /// Cells that are not empty, under the columns of a kind.

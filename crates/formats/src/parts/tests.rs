@@ -20,7 +20,10 @@ fn tables_of_mass_props_are_read() {
     let edges = "child\tparent\nWidget\tCombined\nCombined\tall\n";
     let read = PartsTable::with_edges(table.as_bytes(), edges.as_bytes(), None).unwrap();
     let [widget, combined, all] = read.rows() else { panic!("{read:?}") };
-    assert_eq!((widget.name(), widget.parent(), widget.line()), ("Widget", Some("Combined"), 2));
+    assert_eq!(
+        (widget.name(), widget.parent(), widget.place()),
+        ("Widget", Some("Combined"), (PartsFile::Parts, 2))
+    );
     let numbers = widget.numbers().unwrap();
     assert_eq!(
         numbers.inertia().entries(),
@@ -31,7 +34,7 @@ fn tables_of_mass_props_are_read() {
     assert_eq!((sigma[0], sigma[3], sigma[7], sigma[9]), (1.2416, 0.0669, 1440.5402, 124.6860));
     assert!(!numbers.inertia_follows_mass());
     assert_eq!((combined.parent(), combined.numbers()), (Some("all"), None));
-    assert_eq!((all.name(), all.parent(), all.line()), ("all", None, 3));
+    assert_eq!((all.name(), all.parent(), all.place()), ("all", None, (PartsFile::Edges, 3)));
     let twice = "child,parent\nWidget,a\nWidget,b\n";
     let error = PartsTable::with_edges(table.as_bytes(), twice.as_bytes(), None).unwrap_err();
     assert_eq!(
@@ -162,10 +165,89 @@ fn what_a_row_lacks_is_named() {
             "name,mass,cx,cy,cz,point\na,1,0,0,0,maybe\n",
             "line 2: a: point = \"maybe\": it must be yes or no",
         ),
+        ("name,mass,cx,cy,cz,shape\n,1,0,0,0,point\n", "line 2: name is missing"),
+        ("name,mass,cx,cy,cz\na,1,0,0,0,7\n", "line 2: the row has 6 values: there must be 5"),
         ("name,mass,cx\n\"a,1,0\n", "line 2: malformed: a quotation mark is not closed"),
     ] {
         let found = read(text).unwrap_err().to_string();
         assert!(found.starts_with(expected), "{text:?}: {found}");
+    }
+}
+
+/// Rows of which a spreadsheet leaves only the separators, anywhere and of any width, change nothing but the numbers of lines.
+#[test]
+fn blank_rows_are_passed_over() {
+    let rows = [
+        "name,parent,mass,cx,cy,cz,shape",
+        "all,,,,,,",
+        "a,all,1,2,3,4,point",
+        "b,all,1,0,0,0,point",
+    ];
+    let edges = ["child,parent", "a,all", "b,all"];
+    let with = |rows: &[&str], blank: &str, at: usize, separator: &str| {
+        let mut rows = rows.to_vec();
+        rows.insert(at, blank);
+        (rows.join("\n") + "\n").replace(',', separator)
+    };
+    let names = |table: &PartsTable| -> Vec<(String, Option<String>, (PartsFile, usize))> {
+        let rows = table.rows().iter();
+        rows.map(|r| (r.name().to_owned(), r.parent().map(str::to_owned), r.place())).collect()
+    };
+    for blank in ["", ",,,,,,", ",,", ",,,,,,,,,,", " , ,\t, ", "\"\",\"\"", ",,,,,,\r", "  "] {
+        for separator in [",", ";", "\t"] {
+            for at in 1..=4 {
+                let table = read(&with(&rows, blank, at, separator)).unwrap();
+                let found = names(&table);
+                assert_eq!(found.len(), 3, "{blank:?}");
+                for (i, (name, parent, place)) in found.iter().enumerate() {
+                    let line = i + 2 + usize::from(i + 1 >= at);
+                    assert_eq!(*place, (PartsFile::Parts, line), "{blank:?} {at}");
+                    assert_eq!(name, ["all", "a", "b"][i]);
+                    assert_eq!(parent.as_deref(), [None, Some("all"), Some("all")][i]);
+                }
+                let csv =
+                    with(&["name,ixx,iyy,izz", "a,1,1,1", "b,2,2,2"], blank, at.min(3), separator);
+                let path = std::path::Path::new("t.csv");
+                let file =
+                    crate::InertiaFile::parse(path, csv.into_bytes(), Products::TensorEntries);
+                let names: Vec<_> =
+                    file.unwrap().bodies().iter().map(|b| b.name().to_owned()).collect();
+                assert_eq!(names, ["a", "b"], "{blank:?} {at}");
+            }
+            for at in 1..=3 {
+                let list = rows.map(|row| row.replace("all,1", ",1")).join("\n");
+                let edges = with(&edges, blank, at, separator);
+                let table =
+                    PartsTable::with_edges(list.as_bytes(), edges.as_bytes(), None).unwrap();
+                let line = |i: usize| i + 1 + usize::from(i >= at);
+                let places: Vec<_> = table.rows()[1..].iter().map(PartRow::parent_place).collect();
+                assert_eq!(places, [1, 2].map(|i| (PartsFile::Edges, line(i))), "{blank:?} {at}");
+            }
+        }
+    }
+}
+
+/// Whatever is wrong with the table of edges is an error of that table.
+#[test]
+fn errors_of_edges_are_told_apart() {
+    let list = format!("{HEAD},shape\na,,1,0,0,0,point\n");
+    for (edges, expected) in [
+        ("", "it is empty"),
+        ("a\0", "it is binary"),
+        ("a,b\nc,d\n", "line 1: there is no column child"),
+        ("child\na\n", "line 1: there is no column parent"),
+        ("child,parent\na\n", "line 2: the row has 1 values: there must be 2"),
+        ("child,parent\n\na,b,c\n", "line 3: the row has 3 values: there must be 2"),
+        ("child,parent\na,\n", "line 2: parent is missing"),
+        ("child,parent\n,a\n", "line 2: child is missing"),
+        ("child,parent\na,b\na,c\n", "line 3: \"a\" belongs to \"b\" and to \"c\""),
+        ("child,parent\n\"a,b\n", "line 2: malformed: a quotation mark"),
+    ] {
+        let error = PartsTable::with_edges(list.as_bytes(), edges.as_bytes(), None).unwrap_err();
+        assert!(error.to_string().starts_with(expected), "{edges:?}: {error}");
+        assert_eq!(error.file(), PartsFile::Edges, "{edges:?}");
+        let error = PartsTable::with_edges(b"x", edges.as_bytes(), None).unwrap_err();
+        assert_eq!(error.file(), PartsFile::Parts);
     }
 }
 

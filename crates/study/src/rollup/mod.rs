@@ -9,7 +9,7 @@ use gyradius_campaign::{
 use gyradius_estimation::{
     Assembly, AssemblyError, AssemblyPart, AssemblyRow, PartError, PartStatement,
 };
-use gyradius_formats::{PartRow, PartsTable};
+use gyradius_formats::{PartRow, PartsFile, PartsTable};
 use std::{
     io::Write,
     sync::{
@@ -94,10 +94,11 @@ impl Rollup {
     pub fn new(table: &PartsTable) -> Result<Self, RollupError> {
         let rows: Result<Vec<AssemblyRow>, RollupError> = table.rows().iter().map(row).collect();
         let assembly = Assembly::new(rows?).map_err(|error| {
-            let place = |row: &&PartRow| error.row() == Some(row.name());
             // Of a name that stands twice, the second.
-            let line = table.rows().iter().rfind(place).map(PartRow::line);
-            RollupError::Tree { line, error }
+            let row = table.rows().iter().rfind(|row| error.row() == Some(row.name()));
+            let is_circle = matches!(error, AssemblyError::Circle { .. });
+            let place = row.map(|row| if is_circle { row.parent_place() } else { row.place() });
+            RollupError::Tree { place, error }
         })?;
         Ok(Self { assembly })
     }
@@ -186,7 +187,7 @@ fn each(
 
 /// A row of a list as a row of a tree.
 fn row(row: &PartRow) -> Result<AssemblyRow, RollupError> {
-    let (line, name) = (row.line(), row.name().to_owned());
+    let ((_, line), name) = (row.place(), row.name().to_owned());
     let part = row.numbers().map(|numbers| {
         AssemblyPart::new(PartStatement {
             mass_kg: numbers.mass_kg(),
@@ -217,10 +218,10 @@ pub enum RollupError {
         error: PartError,
     },
     /// The rows are no tree.
-    #[error("{}{error}", line.map(|line| format!("line {line}: ")).unwrap_or_default())]
+    #[error("{}{error}", place.map(|(_, line)| format!("line {line}: ")).unwrap_or_default())]
     Tree {
-        /// Line, from 1, if one is to blame.
-        line: Option<usize>,
+        /// Table and line, from 1, if one is to blame.
+        place: Option<(PartsFile, usize)>,
         /// Why.
         error: AssemblyError,
     },
@@ -236,6 +237,21 @@ pub enum RollupError {
     /// The output refuses.
     #[error(transparent)]
     Output(#[from] FormatError),
+}
+
+impl RollupError {
+    /// The table of the list in which it is.
+    #[must_use]
+    pub fn file(&self) -> PartsFile {
+        match self {
+            Self::Tree { place: Some((file, _)), .. } => *file,
+            Self::Tree { place: None, .. }
+            | Self::Part { .. }
+            | Self::Draws { .. }
+            | Self::Campaign(_)
+            | Self::Output(_) => PartsFile::Parts,
+        }
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 mod json;
 mod text;
 
-use gyradius_formats::{MAX_BYTES, NewFile, PartsTable, read_text};
+use gyradius_formats::{MAX_BYTES, NewFile, PartsFile, PartsTable, read_text};
 use gyradius_study::{CampaignError, Rollup, RollupDraws, RollupError, RollupOptions, TableFormat};
 use std::{error::Error, path::Path, process::ExitCode};
 
@@ -27,8 +27,7 @@ struct Shown<'a> {
 pub(crate) fn rollup(arguments: &RollupArgs) -> Result<ExitCode, Box<dyn Error>> {
     let format = arguments.output.as_deref().map(format_of).transpose()?;
     let table = read(arguments)?;
-    let named = |error: RollupError| format!("{}: {error}", arguments.parts.display());
-    let rollup = Rollup::new(&table).map_err(named)?;
+    let rollup = Rollup::new(&table).map_err(|error| named(arguments, error.file(), &error))?;
     let signals = Signals::watch()?;
     let options = RollupOptions {
         draws: arguments.draws,
@@ -68,7 +67,16 @@ fn read(arguments: &RollupArgs) -> Result<PartsTable, String> {
         None => PartsTable::read(parts.as_bytes(), products),
         Some(edges) => PartsTable::with_edges(parts.as_bytes(), text(edges)?.as_bytes(), products),
     };
-    table.map_err(|error| format!("{}: {error}", path.display()))
+    table.map_err(|error| named(arguments, error.file(), &error))
+}
+
+/// An error with the file that it is in.
+fn named(arguments: &RollupArgs, file: PartsFile, error: &dyn Error) -> String {
+    let path = match (file, &arguments.edges) {
+        (PartsFile::Edges, Some(edges)) => edges,
+        (PartsFile::Parts | PartsFile::Edges, _) => &arguments.parts,
+    };
+    format!("{}: {error}", path.display())
 }
 
 fn to_file(
