@@ -7,6 +7,7 @@ mod compare;
 #[cfg(target_os = "linux")]
 mod disk;
 mod draw;
+mod draw_again;
 mod draw_links;
 mod draw_robots;
 mod drivers;
@@ -29,6 +30,7 @@ mod shards;
 mod shell;
 #[cfg(unix)]
 mod simulator;
+mod slips;
 #[cfg(unix)]
 mod slurm;
 mod until;

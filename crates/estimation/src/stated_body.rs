@@ -1,7 +1,8 @@
 //! Mass, mass centre and inertia of a body together, from plain statements about nominal ones.
 
 use gyradius_dispersion::{
-    MassPropertiesLaw, MassPropertiesLawError, ScalarLaw, TensorLaw, Wishart,
+    FixedAttitude, MassPropertiesLaw, MassPropertiesLawError, PrincipalDispersion, RootMoments,
+    ScalarLaw, TensorLaw, Wishart,
 };
 use gyradius_inertia::{MassProperties, Region};
 use rand::Rng;
@@ -17,8 +18,8 @@ use crate::{StatedModel, StatementError, StatementWarning, Statements, statement
 ///   its mean ([`ScalarLaw::positive`]).
 /// * The mass centre is normal along each body axis, independent of all else. The inertia is that about the drawn mass
 ///   centre, so nothing is added to it for the centre.
-/// * The inertia at the nominal mass has the law of [`Statements::model`], and is multiplied by what the mass makes
-///   of it, 1 + α(m/m₀ − 1) ([`StatedMass::factor`](crate::StatedMass::factor)).
+/// * The inertia at the nominal mass has the law of [`Statements::model`], with fixed axes if none of them scatter and as it is
+///   if nothing of it scatters, and is multiplied by what the mass makes of it, 1 + α(m/m₀ − 1) ([`StatedMass::factor`](crate::StatedMass::factor)).
 ///
 /// A statement more does not change what the others draw.
 ///
@@ -100,19 +101,35 @@ impl StatedBody {
         let mass = ScalarLaw::positive(kilograms, relative * kilograms);
         let at = nominal.mass_centre_m();
         let of_axis = |i: usize| ScalarLaw::normal(at[i], centre[i]);
-        let tensor = match model {
-            Some(model) => {
-                let share = model.mass().map_or(0.0, |mass| mass.inertia_follows());
-                TensorLaw::model(model.law_at_nominal_mass().clone())?
-                    .with_follows(share, kilograms)?
-            }
-            // A law without scatter gives the inertia to the bit.
-            None => match Wishart::new(*nominal.inertia(), 0.0) {
-                Ok(still) => TensorLaw::model(still)?.with_follows(1.0, kilograms)?,
-                Err(_) => return Err(MassPropertiesLawError::NoBodies { bodies: 0 }),
-            },
+        let share = match model {
+            Some(model) => model.mass().map_or(0.0, |mass| mass.inertia_follows()),
+            None => 1.0,
         };
+        let tensor = Self::tensor_of(nominal, model)?.with_follows(share, kilograms)?;
         MassPropertiesLaw::new(mass?, [of_axis(0)?, of_axis(1)?, of_axis(2)?], tensor)
+    }
+
+    /// The law of the inertia at the nominal mass. That of a model with axes that do not scatter has them turn by 2e-6 rad,
+    /// for it must have a density; here they are fixed.
+    fn tensor_of(
+        nominal: &MassProperties,
+        model: Option<&StatedModel>,
+    ) -> Result<TensorLaw, MassPropertiesLawError> {
+        if let Some(model) = model {
+            let law = model.law_at_nominal_mass();
+            if model.turns() != [0.0; 3] {
+                return Ok(TensorLaw::model(law.clone())?);
+            }
+            let roots = law.roots().clone();
+            if roots.second_moment_statistics().covariance().amax() > 0.0 {
+                let axes = FixedAttitude::new(model.nominal().principal_axes().attitude());
+                return Ok(TensorLaw::model(PrincipalDispersion::new(roots, axes))?);
+            }
+        }
+        // A law without scatter gives the inertia to the bit.
+        let still = Wishart::new(*nominal.inertia(), 0.0);
+        let still = still.map_err(|_| MassPropertiesLawError::NoBodies { bodies: 0 })?;
+        Ok(TensorLaw::model(still)?)
     }
 
     /// The same with draws of which the matter can lie in a region.
@@ -222,6 +239,10 @@ mod tests {
             let sizes = [sizes.0, sizes.1, sizes.2, sizes.3];
             let said = statements(which, sizes);
             let law = StatedBody::new(&said, &nominal).unwrap();
+            for warning in law.warnings() {
+                let text = warning.to_string();
+                prop_assert!(!text.contains("inf") && !text.contains("NaN"), "{text}");
+            }
             let ([mass, centre @ ..], moments) = deviations(&law);
             let [percent, of_moments, _, metres] = sizes;
             let near = |x: f64, y: f64| (x - y).abs() <= 0.08 * y + 1e-12;
@@ -270,6 +291,53 @@ mod tests {
         };
         check(&MassProperties::mass_kg);
         (0..3).for_each(|i| check(&|body| body.inertia().entries()[i]));
+    }
+
+    /// Where the axes are not stated to scatter, or to scatter by nothing, every draw has those of the nominal body, and products of
+    /// zero stay zero; where the moments do not either, it has the nominal inertia, to the bit.
+    #[test]
+    fn axes_that_do_not_scatter_are_those_of_the_nominal_body() {
+        let tilted = UnitQuaternion::from_euler_angles(0.3, -0.2, 1.0);
+        let (upright, second) = (UnitQuaternion::identity(), [0.1, 0.2, 0.35]);
+        let still = AxesStatement::each([0.0; 3], 1.0).unwrap();
+        for (attitude, mass, moments, axes) in [tilted, upright].into_iter().flat_map(|attitude| {
+            [None, Some(10.0)].into_iter().flat_map(move |mass| {
+                [None, Some(0.0), Some(12.0)].into_iter().flat_map(move |moments| {
+                    [None, Some(still)].map(move |axes| (attitude, mass, moments, axes))
+                })
+            })
+        }) {
+            let inertia =
+                Inertia::from_second_moments(SecondMoments::new(second).unwrap(), &attitude)
+                    .unwrap();
+            let nominal = MassProperties::new(2.0, Vector3::zeros(), inertia).unwrap();
+            let said = Statements {
+                mass: mass.map(|percent| MassStatement::percent(percent, 1.0).unwrap()),
+                moments: moments.map(|percent| {
+                    MomentsStatement::new(Amount::Percent([percent; 3]), 1.0).unwrap()
+                }),
+                axes,
+                ..Statements::default()
+            };
+            let law = StatedBody::new(&said, &nominal).unwrap();
+            let mut turned = 0_f64;
+            for seed in 0..50 {
+                let drawn = law.sample(&mut ChaCha8Rng::seed_from_u64(seed));
+                let matrix = drawn.inertia().matrix();
+                let ratio = drawn.mass_kg() / 2.0;
+                match (moments, mass) {
+                    (Some(0.0), _) | (None, None) => assert_eq!(drawn.inertia(), &inertia),
+                    (None, Some(_)) => assert!((matrix - inertia.matrix() * ratio).amax() < 1e-15),
+                    (Some(_), _) => assert!((matrix - inertia.matrix()).amax() > 1e-6),
+                }
+                let r = attitude.to_rotation_matrix();
+                let own = r.matrix() * matrix * r.matrix().transpose();
+                let products = [own[(0, 1)], own[(0, 2)], own[(1, 2)]];
+                turned = products.into_iter().fold(turned, |most, x| most.max(x.abs()));
+            }
+            let rounding = if attitude == upright { 0.0 } else { 1e-15 };
+            assert!(turned <= rounding, "{mass:?} {moments:?} {axes:?}: {turned:e}");
+        }
     }
 
     /// What is drawn of one thing does not depend on what is stated of another, but for the inertia that follows.

@@ -183,6 +183,17 @@ pub enum BodyError {
         /// What it holds, shortened.
         value: String,
     },
+    /// A field holds more than plain text.
+    #[error(
+        "{field} = \"{value}\" is not a plain number: it must be written without comments, references \
+         or elements in it"
+    )]
+    NotPlain {
+        /// The field.
+        field: &'static str,
+        /// What it holds, shortened.
+        value: String,
+    },
     /// A field holds a xacro expression.
     #[error(
         "{field} = \"{value}\" is not a number but an expression: expand the file first, with \

@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::{
     BodyError, Format, LinkProblem,
-    body::{NAMES, Number, Place},
+    body::{NAMES, Number, Place, shortened},
     orientation::{ATTRIBUTES, Angles, of_mjcf, of_quaternion, of_roll_pitch_yaw},
     xml::{Node, Tree},
 };
@@ -91,10 +91,10 @@ pub(crate) fn angles(tree: &Tree<'_>) -> Angles {
     // A file that includes others may have its compiler there, and one that is included has it elsewhere.
     let is_whole = tree.root().name() == "mujoco" && tree.all("include").next().is_none();
     let unit = match said("angle") {
-        Some("radian") => Some(1.0),
-        Some("degree") => Some(1_f64.to_radians()),
-        Some(_) => None,
-        None => is_whole.then_some(1_f64.to_radians()),
+        Some("radian") => Ok(1.0),
+        Some("degree") => Ok(1_f64.to_radians()),
+        Some(word) => Err(LinkProblem::AngleUnit { word: shortened(word) }),
+        None => is_whole.then_some(1_f64.to_radians()).ok_or(LinkProblem::Angles),
     };
     Angles { unit, sequence: said("eulerseq").unwrap_or("xyz").to_owned() }
 }

@@ -10,8 +10,8 @@ pub(crate) const ATTRIBUTES: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes"
 /// How the angles of an MJCF file are meant.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Angles {
-    /// Radians of one unit; nothing if another file says it.
-    pub(crate) unit: Option<f64>,
+    /// Radians of one unit, or why that is not known.
+    pub(crate) unit: Result<f64, LinkProblem>,
     /// Axes of `euler`, in small letters where they turn with the body.
     pub(crate) sequence: String,
 }
@@ -51,7 +51,7 @@ pub(crate) fn of_mjcf(
         let numbers = node.numbers(name, allowed).unwrap_or(Ok(Vec::new()))?;
         Ok(numbers.iter().map(|number| number.value).collect())
     };
-    let unit = || angles.unit.ok_or(LinkProblem::Angles);
+    let unit = || angles.unit.clone();
     let axis = |x: &[f64]| direction(Vector3::from_column_slice(x));
     let turned = match name {
         "quat" => list(4)?.try_into().ok().and_then(of_quaternion),

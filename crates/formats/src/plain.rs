@@ -37,6 +37,29 @@ pub fn read_text(path: &Path, most_bytes: u64) -> io::Result<String> {
     })
 }
 
+/// Whether two paths lead to one file, by links of either kind too; not where one of them leads to none.
+#[must_use]
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    match (fs::canonicalize(one), fs::canonicalize(other)) {
+        (Ok(a), Ok(b)) => a == b || is_hard_link(&a, &b),
+        (Ok(_) | Err(_), _) => false,
+    }
+}
+
+/// Whether two names are those of one file.
+#[cfg(unix)]
+fn is_hard_link(one: &Path, other: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let of = |path| fs::metadata(path).map(|metadata| (metadata.dev(), metadata.ino()));
+    matches!((of(one), of(other)), (Ok(one), Ok(other)) if one == other)
+}
+
+/// Whether two names are those of one file, which only Unix tells.
+#[cfg(not(unix))]
+fn is_hard_link(_: &Path, _: &Path) -> bool {
+    false
+}
+
 /// Whether a file has to be written to have this content; one that has it already is left alone. What is
 /// there is replaced with `force` only, and only if it is a regular file.
 ///
@@ -88,6 +111,30 @@ mod tests {
         io::Write,
         os::unix::fs::{PermissionsExt, symlink},
     };
+
+    /// A file by itself, by links, by links to links and by other names, from another folder too; and what is another file.
+    #[test]
+    fn links_of_either_kind_lead_to_the_same_file() {
+        let scratch = tempfile::tempdir().unwrap();
+        let at = |name: &str| scratch.path().join(name);
+        fs::create_dir(at("folder")).unwrap();
+        fs::write(at("file"), "x").unwrap();
+        fs::write(at("other"), "x").unwrap();
+        fs::hard_link(at("file"), at("hard")).unwrap();
+        symlink("file", at("soft")).unwrap();
+        symlink("soft", at("twice")).unwrap();
+        symlink("hard", at("both")).unwrap();
+        symlink("..", at("folder/up")).unwrap();
+        symlink("nowhere", at("lost")).unwrap();
+        let same = ["file", "hard", "soft", "twice", "both", "folder/up/file", "folder/../hard"];
+        let others = ["other", "folder", "lost", "nowhere"];
+        for (one, other) in same.iter().flat_map(|a| same.iter().map(move |b| (a, b))) {
+            assert!(is_same_file(&at(one), &at(other)), "{one} {other}");
+        }
+        for (one, other) in same.iter().flat_map(|a| others.iter().map(move |b| (a, b))) {
+            assert!(!is_same_file(&at(one), &at(other)) && !is_same_file(&at(other), &at(one)));
+        }
+    }
 
     /// Every kind of thing that may be at a path, with and without force.
     #[test]

@@ -11,10 +11,10 @@ use std::{
 };
 
 use crate::{
-    Body, InertiaFile, WriteError,
+    Body, InertiaFile, MassFault, TOLERANCE, WriteError,
     body::Reading,
     edit::{Edit, edited},
-    judge::with_flipped_products,
+    judge::{judge, with_flipped_products},
     plain::write_file_as,
 };
 
@@ -120,6 +120,16 @@ pub enum RepairError {
         /// Its line.
         line: usize,
     },
+    /// Inertia on no mass, or on a negative one: the mass may be what is wrong.
+    #[error("line {line}: \"{name}\": {fault}, and the mass may be what is wrong")]
+    NoMass {
+        /// The body.
+        name: String,
+        /// Its line.
+        line: usize,
+        /// What is wrong with the mass.
+        fault: MassFault,
+    },
     /// The nearest inertia is that of a point.
     #[error(
         "line {line}: \"{name}\": the nearest inertia that a body can have is 0, 0, 0, which is none"
@@ -152,9 +162,31 @@ pub enum RepairError {
     },
 }
 
+impl RepairError {
+    /// Line of the body, from 1, if it is one that cannot be repaired.
+    #[must_use]
+    pub fn line(&self) -> Option<usize> {
+        match self {
+            Self::NoPlace { line, .. }
+            | Self::OutOfRange { line, .. }
+            | Self::NoMass { line, .. }
+            | Self::NothingLeft { line, .. } => Some(*line),
+            Self::Exists(_)
+            | Self::NoFile(_)
+            | Self::Original(_)
+            | Self::ReadsBackWrong
+            | Self::Io { .. } => None,
+        }
+    }
+}
+
 /// The nearest realizable inertia, a little inside the boundary and in few digits.
 fn repaired(matrix: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     let symmetric = matrix.zip_map(&matrix.transpose(), |a, b| 0.5 * a + 0.5 * b);
+    // Where only entries across the diagonal differ, nothing else need change.
+    if is_realizable(&symmetric) {
+        return Some(symmetric);
+    }
     let symmetric = InertiaMatrix::new(symmetric).ok()?;
     let near = *Repair::new(&symmetric, RepairMethod::Nearest).ok()?.inertia().matrix();
     let inset = near + Matrix3::from_diagonal_element(2.0 * INSET * near.trace());
@@ -171,7 +203,7 @@ impl InertiaFile {
     /// if that could not be read.
     ///
     /// # Errors
-    /// A number that must change is not in the file, or out of range, or nothing would be left.
+    /// A number that must change is not in the file, or out of range, or nothing would be left, or the body has no mass.
     pub fn change(&self, index: usize, remedy: Remedy) -> Result<Option<Change>, RepairError> {
         let Some(body) = self.bodies().get(index) else { return Ok(None) };
         body.reading().map(|reading| change(body, reading, remedy)).transpose()
@@ -211,6 +243,9 @@ impl InertiaFile {
 /// The numbers of a body that must change, and what they become.
 fn change(body: &Body, reading: &Reading, remedy: Remedy) -> Result<Change, RepairError> {
     let (name, line) = (body.name().to_owned(), body.line());
+    if let Some(fault) = judge(&reading.matrix, reading.mass_kg, TOLERANCE).mass_fault() {
+        return Err(RepairError::NoMass { name, line, fault });
+    }
     // In the units of the file, so that what is written has few digits.
     let old = &reading.matrix.map(|x| x / reading.unit);
     let start = match remedy {

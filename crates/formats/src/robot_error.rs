@@ -30,6 +30,15 @@ pub enum LinkProblem {
          needs no unit"
     )]
     Angles,
+    /// The compiler says of angles what is neither degrees nor radians.
+    #[error(
+        "its axes are given by angles, and the compiler has angle=\"{word}\": it must be degree or \
+         radian"
+    )]
+    AngleUnit {
+        /// What it says, shortened.
+        word: String,
+    },
     /// An orientation that is none.
     #[error("{field} is no orientation")]
     Orientation {
@@ -48,20 +57,27 @@ pub enum LinkProblem {
 }
 
 impl LinkProblem {
-    /// Whether a number is there and is none, which nobody means: what is missing, or said in another way, is no slip.
+    /// Whether something is there and is not what it must be, which nobody means: what is missing, or said in another
+    /// way, is no slip.
     #[must_use]
     pub fn is_a_slip(&self) -> bool {
         match self {
-            Self::Body(
+            Self::Body(error) => match error {
                 BodyError::NotFinite { .. }
                 | BodyError::NotANumber { .. }
-                | BodyError::Expression { .. },
-            )
-            | Self::Orientation { .. }
+                | BodyError::NotPlain { .. }
+                | BodyError::Expression { .. }
+                | BodyError::Count { .. }
+                | BodyError::Shape { .. }
+                | BodyError::Attribute { .. }
+                | BodyError::Both { .. } => true,
+                BodyError::Missing { .. } => false,
+            },
+            Self::Orientation { .. }
+            | Self::AngleUnit { .. }
             | Self::SecondOfBody
             | Self::OutOfRange => true,
-            Self::Body(_)
-            | Self::Gazebo
+            Self::Gazebo
             | Self::Second
             | Self::RelativeTo { .. }
             | Self::Angles

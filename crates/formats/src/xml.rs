@@ -38,6 +38,8 @@ pub(crate) struct Element<'a> {
     parent: Option<usize>,
     /// Index after its last descendant.
     end: usize,
+    /// Where it ends.
+    after: usize,
     attributes: Vec<Attribute<'a>>,
     text: &'a str,
     /// More text after a child, or entities in it.
@@ -91,11 +93,14 @@ impl<'a> Tree<'a> {
                     let index = tree.push(&tag, open.last().copied(), before)?;
                     let after = usize::try_from(reader.buffer_position()).ok();
                     tree.elements[index].closed = after.and_then(|after| after.checked_sub(2));
+                    tree.elements[index].after = after.unwrap_or(before);
                 }
                 Event::End(_) => {
                     // That there is one, and of this name, the reader has checked.
                     if let Some(index) = open.pop() {
+                        let after = usize::try_from(reader.buffer_position());
                         tree.elements[index].end = tree.elements.len();
+                        tree.elements[index].after = after.unwrap_or(before);
                     }
                 }
                 Event::Text(part) => tree.add_text(&part, &open, before)?,
@@ -159,6 +164,7 @@ impl<'a> Tree<'a> {
             closed: None,
             parent,
             end: index + 1,
+            after: before,
             attributes,
             text: "",
             broken: false,
@@ -263,6 +269,11 @@ impl<'t, 'a> Node<'t, 'a> {
 
     pub(crate) fn line(self) -> usize {
         self.tree.source.line(self.element().start)
+    }
+
+    /// From its beginning to its end.
+    pub(crate) fn place(self) -> Place {
+        Place { start: self.element().start, end: self.element().after }
     }
 
     pub(crate) fn parent(self) -> Option<Self> {
@@ -371,21 +382,26 @@ impl<'t, 'a> Node<'t, 'a> {
         field: &'static str,
         allowed: usize,
     ) -> Result<Vec<Number>, BodyError> {
-        let element = self.element();
-        if element.broken {
-            return Err(BodyError::NotANumber { field, value: shortened(element.text) });
-        }
-        let start = self.tree.source.offset_of(element.text);
-        Number::parse_list(field, element.text, start, allowed)
+        let text = self.plain_text(field)?;
+        Number::parse_list(field, text, self.tree.source.offset_of(text), allowed)
     }
 
     /// The number that is the text of this element.
     pub(crate) fn number_inside(self, field: &'static str) -> Result<Number, BodyError> {
+        let text = self.plain_text(field)?;
+        Number::parse(field, text, self.tree.source.offset_of(text))
+    }
+
+    /// The text of this element where there is nothing else in it; programs do not agree on what the rest means.
+    fn plain_text(self, field: &'static str) -> Result<&'a str, BodyError> {
         let element = self.element();
-        if element.broken {
-            return Err(BodyError::NotANumber { field, value: shortened(element.text) });
+        if !element.broken {
+            return Ok(element.text);
         }
-        Number::parse(field, element.text, self.tree.source.offset_of(element.text))
+        let inside = element.inside.unwrap_or(element.after)..element.after;
+        let inside = self.tree.source.as_str().get(inside).unwrap_or_default();
+        let content = inside.rsplit_once("</").map_or(inside, |(content, _)| content).trim();
+        Err(BodyError::NotPlain { field, value: shortened(content) })
     }
 }
 

@@ -5,4 +5,5 @@ mod dressings;
 mod mjcf_geoms;
 mod robots;
 mod samples;
+mod slips;
 mod units;

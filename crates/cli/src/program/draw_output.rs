@@ -1,8 +1,8 @@
 //! Where `gyradius draw` writes a table, and in which form.
 
+use gyradius_formats::is_same_file;
 use gyradius_study::TableFormat;
 use std::{
-    fs,
     io::{self, IsTerminal},
     path::Path,
 };
@@ -38,10 +38,8 @@ pub(crate) fn format_of(path: &Path) -> Result<TableFormat, String> {
 
 /// What was read is not written over, whatever is forced.
 pub(crate) fn refuse_input(path: &Path, input: &Path) -> Result<(), String> {
-    match (fs::canonicalize(path), fs::canonicalize(input)) {
-        (Ok(output), Ok(read)) if output == read => {
-            Err(format!("{} is what was read: it is not written over", path.display()))
-        }
-        _ => Ok(()),
+    if is_same_file(path, input) {
+        return Err(format!("{} is what was read: it is not written over", path.display()));
     }
+    Ok(())
 }

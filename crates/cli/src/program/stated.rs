@@ -1,7 +1,7 @@
 //! What is stated of every link of a robot on the command line, as `--mass 10% --centre 5mm`.
 
 use clap::Args;
-use gyradius_estimation::{StatedAmount, StatementError, Statements};
+use gyradius_estimation::{Part, StatedAmount, StatementError, Statements};
 
 /// What is stated of every link of a robot.
 #[derive(Args, Debug)]
@@ -37,14 +37,31 @@ impl StatedArgs {
     }
 
     /// The statements.
-    pub(crate) fn statements(&self) -> Result<Statements, StatementError> {
+    ///
+    /// # Errors
+    /// A number is refused; the message names the option.
+    pub(crate) fn statements(&self) -> Result<Statements, String> {
         let sigmas = self.sigmas;
+        let mass = self.mass.map(|amount| amount.mass_statement(sigmas)).transpose();
+        let centre = self.centre.map(|amount| amount.centre_statement(sigmas)).transpose();
+        let moments = self.moments.map(|amount| amount.moments_statement(sigmas)).transpose();
+        let axes = self.axes.map(|amount| amount.axes_statement(sigmas)).transpose();
         Ok(Statements {
-            mass: self.mass.map(|amount| amount.mass_statement(sigmas)).transpose()?,
-            centre: self.centre.map(|amount| amount.centre_statement(sigmas)).transpose()?,
-            moments: self.moments.map(|amount| amount.moments_statement(sigmas)).transpose()?,
-            axes: self.axes.map(|amount| amount.axes_statement(sigmas)).transpose()?,
+            mass: mass.map_err(|error| of_option(&error, Part::Mass))?,
+            centre: centre.map_err(|error| of_option(&error, Part::Centre))?,
+            moments: moments.map_err(|error| of_option(&error, Part::Moments))?,
+            axes: axes.map_err(|error| of_option(&error, Part::Axes))?,
             products: None,
         })
+    }
+}
+
+/// What is wrong with what an option states, with its name in the place of the key that a file has.
+fn of_option(error: &StatementError, part: Part) -> String {
+    let message = error.to_string();
+    let (_, why) = message.split_once(": ").unwrap_or(("", &message));
+    match error {
+        StatementError::Sigmas { value, .. } => format!("--sigmas {value:?}: {why}"),
+        _ => format!("--{part}: {why}"),
     }
 }

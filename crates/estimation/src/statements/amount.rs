@@ -140,13 +140,16 @@ fn amounts(text: &str, units: &[Unit], most: usize) -> Result<StatedAmount, Stri
         let (unit, factor) = unit.ok_or_else(allowed)?;
         let number = part.strip_suffix(unit).unwrap_or(part).trim_end();
         let number: f64 = number.parse().map_err(|_| allowed())?;
+        if !(number >= 0.0 && number.is_finite()) {
+            return Err("it must be finite and not negative".to_owned());
+        }
         read.push((number * factor.unwrap_or(1.0), factor.is_none()));
     }
     let is_percent = read[0].1;
     if read.iter().any(|one| one.1 != is_percent) {
         return Err("percent and another unit do not go together".to_owned());
     }
-    // The constructors of the statements check the numbers.
+    // The constructors of the statements check how large the numbers are.
     let values = std::array::from_fn(|i| read.get(i).unwrap_or(&read[0]).0);
     Ok(StatedAmount { values, is_percent })
 }
@@ -181,6 +184,10 @@ mod tests {
             (StatedAmount::axes, ""),
             (StatedAmount::products, "5%"),
             (StatedAmount::products, "5kg"),
+            (StatedAmount::mass, "nan%"),
+            (StatedAmount::mass, "-1kg"),
+            (StatedAmount::centre, "infmm"),
+            (StatedAmount::axes, "1deg,-1deg,1deg"),
         ] {
             assert!(read(text).is_err(), "{text}");
         }

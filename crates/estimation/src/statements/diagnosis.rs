@@ -15,7 +15,7 @@ use super::{
 const AGREE: f64 = 0.03;
 /// And by no more than this share of the largest one stated.
 const SMALL: f64 = 1e-4;
-/// A moment that is stated not to scatter is still up to this share of the trace.
+/// A moment that is stated not to scatter is still up to this share of the trace, and one that is not larger is none.
 const STILL: f64 = 1e-6;
 /// A share of impossible bodies that is worth a word.
 const IMPOSSIBLE: f64 = 1e-3;
@@ -249,9 +249,15 @@ fn of_outcome(model: &StatedModel) -> Vec<StatementWarning> {
         }
     }
     for entry in 0..3 {
-        let x = nominal.entries()[entry];
-        let shift = (implied.mean()[entry] - x) / x;
-        if shift.abs() > SHIFT {
+        let (x, mean) = (nominal.entries()[entry], implied.mean()[entry]);
+        let shift = (mean - x) / x;
+        let none = STILL * nominal.matrix().trace();
+        if x.abs() <= none {
+            // Of next to nothing, a share says nothing.
+            if mean - x > none {
+                warnings.push(StatementWarning::Raised { entry, mean });
+            }
+        } else if shift.abs() > SHIFT {
             warnings.push(StatementWarning::Shifted { entry, percent: 100.0 * shift });
         }
     }

@@ -63,6 +63,14 @@ pub enum StatementWarning {
         /// Mean less nominal, percent.
         percent: f64,
     },
+    /// The mean of a moment whose nominal value is zero, or as good as zero beside the others, is not.
+    Raised {
+        /// The entry.
+        entry: usize,
+        /// Its mean, kg·m².
+        #[cfg_attr(feature = "serde", serde(rename = "mean_kg_m2"))]
+        mean: f64,
+    },
     /// The mass centre alone moves an entry more than is stated of it.
     Alone {
         /// The entry.
@@ -203,6 +211,12 @@ impl fmt::Display for StatementWarning {
                 f,
                 "{}: its mean lies {percent:+.1} % from the nominal value, for scatter moves it",
                 NAMES[entry]
+            ),
+            Self::Raised { entry, mean } => write!(
+                f,
+                "{}: its nominal value is zero, and its mean {} kg·m², for scatter moves it",
+                NAMES[entry],
+                Short(mean)
             ),
             Self::Alone { entry, alone, stated } => {
                 let (name, alone, stated) = (NAMES[entry], Short(alone), Short(stated));

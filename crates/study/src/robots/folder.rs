@@ -1,7 +1,7 @@
 //! The draws of a robot as robots: a file for each.
 
 use gyradius_campaign::{CampaignError, Progress, is_stopped, threads};
-use gyradius_formats::{WriteError, is_same_but_numbers, must_write, write_file};
+use gyradius_formats::{WriteError, is_same_file, is_same_robot, must_write, write_file};
 use rayon::prelude::*;
 use std::{
     fs,
@@ -40,7 +40,7 @@ impl RobotDraw<'_> {
 
     /// Writes a file for each draw into a folder, which is made if it is not there. A file that is there already and is
     /// the same is left alone; another one is replaced with `force` only, and only if it is this robot with other
-    /// numbers. This is asked of all files before the first is written. The same bytes on any number of threads.
+    /// mass properties; the one that was read never is. This is asked of all files before the first is written. The same bytes on any number of threads.
     ///
     /// # Errors
     /// A robot cannot be made, another file is there, the system refuses, or it was told to stop: files that were
@@ -62,11 +62,14 @@ impl RobotDraw<'_> {
                 if fs::symlink_metadata(&path).is_err() {
                     return Ok(());
                 }
+                if is_same_file(&path, self.robot.path()) {
+                    return Err(RobotDrawError::Input { path: path.display().to_string() });
+                }
                 let copy = self.robot(draw)?;
                 if must_write(&path, &copy, force)? {
                     let there = fs::read(&path)
                         .map_err(|error| WriteError::Io { path: path.clone(), error })?;
-                    if !is_same_but_numbers(&there, &copy) {
+                    if !is_same_robot(&there, &copy) {
                         let path = path.display().to_string();
                         return Err(RobotDrawError::Foreign { path });
                     }

@@ -138,6 +138,12 @@ impl<'a> RobotDraw<'a> {
                 }
                 Ok(numbers) => numbers,
             };
+            // A mass that is none is no matter of the inertia, which alone is repaired.
+            if let Some(fault) = judge(&Matrix3::zeros(), Some(numbers.mass_kg()), 0.0).mass_fault()
+            {
+                unreadable.push(format!("\"{name}\": {fault}"));
+                continue;
+            }
             let Some(nominal) = nominal(numbers) else {
                 impossible.push(name);
                 continue;
@@ -314,8 +320,7 @@ pub enum RobotDrawError {
     },
     /// Nominal numbers that no body has.
     #[error(
-        "no body has the mass and inertia of {links}: `gyradius check` says why, and with --repair writes a copy that can \
-         be drawn"
+        "no body has the inertia of {links}: `gyradius check` says why, and with --repair writes a copy that can be drawn"
     )]
     Impossible {
         /// Names of the links.
@@ -351,6 +356,12 @@ pub enum RobotDrawError {
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// What is there is the robot itself, by a link perhaps.
+    #[error("{path} is what was read: it is not written over")]
+    Input {
+        /// The file.
+        path: String,
+    },
     /// What is there is no copy of this robot.
     #[error("{path} is not this robot with other numbers, and is not replaced")]
     Foreign {

@@ -163,7 +163,7 @@ pub(super) fn write(
     });
     let repairs = report.repair_errors.iter().map(|(path, error)| ErrorJson {
         file: path.display().to_string(),
-        line: None,
+        line: error.line(),
         message: format!("not repaired: {error}"),
     });
     let errors: Vec<ErrorJson> = files.chain(repairs).collect();

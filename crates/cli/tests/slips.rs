@@ -1,0 +1,154 @@
+//! What `gyradius draw` and `gyradius check --repair` say of slips: in robots, in options.
+
+use serde_json::Value;
+use std::fs;
+
+use crate::draw_robots::{draw, refused};
+use crate::scratch::Scratch;
+
+fn robot(mass: &str, izz: &str, origin: &str) -> String {
+    format!(
+        "<robot name='r'>\n<link name='a'><inertial>{origin}<mass value='{mass}'/><inertia ixx='.02' ixy='0' ixz='0' \
+         iyy='.03' iyz='0' izz='{izz}'/></inertial></link>\n<link name='b'><inertial><mass value='1'/><inertia \
+         ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link></robot>"
+    )
+}
+
+/// A mass that is none was said to be mended by a repair, which touches inertias alone.
+#[test]
+fn only_what_a_repair_mends_is_said_to_be_mended() {
+    let shell = Scratch::new();
+    let stated = ["a.urdf", "-n", "1", "--mass", "10%", "-o", "out"];
+    for (mass, izz, expected) in [
+        ("-1", ".04", "\"a\": mass = -1 kg: it must not be negative: --links picks others"),
+        ("-1", ".9", "\"a\": mass = -1 kg: it must not be negative: --links picks others"),
+        ("1", ".9", "no body has the inertia of a: `gyradius check` says why, and with --repair"),
+    ] {
+        fs::write(shell.path("a.urdf"), robot(mass, izz, "")).unwrap();
+        let message = refused(&shell, &stated);
+        assert!(message.contains(expected), "{message}");
+        // A repair mends it if and only if the message says so.
+        let code = shell.run(&["check", "--repair", "--force", "a.urdf"]).status.code();
+        let mended = expected.contains("--repair");
+        assert_eq!(code, Some(if mended || izz == ".04" { 1 } else { 2 }));
+        if mended {
+            draw(&shell, &["a.repaired.urdf", "-n", "1", "--mass", "10%", "-o", "out"]);
+            fs::remove_file(shell.path("a.repaired.urdf")).unwrap();
+        }
+        assert!(!shell.path("a.repaired.urdf").exists());
+    }
+}
+
+/// In text and in JSON, with the line; what can be repaired beside it is.
+#[test]
+fn a_body_that_is_not_repaired_is_named_with_its_line() {
+    let shell = Scratch::new();
+    fs::write(shell.path("a.urdf"), robot("0", ".9", "").replace("izz='1'", "izz='3'")).unwrap();
+    let output = shell.run(&["check", "--repair", "--format", "json", "a.urdf"]);
+    assert_eq!(output.status.code(), Some(2));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let error = &found["errors"][0];
+    assert_eq!(error["line"], 2, "{found}");
+    let message = error["message"].as_str().unwrap();
+    assert!(
+        message.contains("not repaired: line 2: \"a\": inertia on a mass of 0 kg"),
+        "{message}"
+    );
+    assert_eq!(found["repairs"][0]["changes"][0]["name"], "b", "{found}");
+    let copy = fs::read_to_string(shell.path("a.repaired.urdf")).unwrap();
+    assert!(copy.contains("izz='.9'") && !copy.contains("izz='3'"), "{copy}");
+}
+
+/// However a number of a link is malformed, the robot is refused, and --links picks others.
+#[test]
+fn malformed_numbers_are_refused_alike() {
+    let shell = Scratch::new();
+    for (xyz, why) in [
+        ("1 2", "xyz has 2 values: there must be 3"),
+        ("1 2 3 4", "xyz has 4 values: there must be 3"),
+        ("1 2 nan", "xyz = \"nan\": it must be finite"),
+        ("1 2 x", "xyz = \"x\" is not a number"),
+    ] {
+        fs::write(shell.path("a.urdf"), robot("1", ".04", &format!("<origin xyz='{xyz}'/>")))
+            .unwrap();
+        let all = ["a.urdf", "-n", "1", "--mass", "10%", "-o", "out"];
+        let message = refused(&shell, &all);
+        assert!(message.contains(&format!("\"a\": {why}")), "{message}");
+        assert!(message.contains("--links picks others"), "{message}");
+        draw(&shell, &[&all[..], &["--links", "b", "--force"]].concat());
+    }
+}
+
+/// Options are called as they are written.
+#[test]
+fn amounts_that_are_refused_are_named_by_their_option() {
+    let shell = Scratch::new();
+    fs::write(shell.path("a.urdf"), robot("1", ".04", "")).unwrap();
+    for (stated, expected) in [
+        (&["--mass", "nan%"][..], "'--mass <AMOUNT>': it must be finite and not negative"),
+        (&["--mass=-1kg"], "'--mass <AMOUNT>': it must be finite and not negative"),
+        (&["--centre", "1mm,infm,1mm"], "'--centre <AMOUNT>': it must be finite"),
+        (&["--moments", "inf%"], "'--moments <AMOUNT>': it must be finite"),
+        (&["--axes", "nandeg"], "'--axes <AMOUNT>': it must be finite"),
+        (&["--mass", "1%", "--sigmas", "0"], "error: --sigmas 0.0: it must be between 0.1 and"),
+        (&["--axes", "1deg", "--sigmas", "nan"], "error: --sigmas NaN: it must be between 0.1 and"),
+        (&["--mass", "1e9%"], "error: --mass: with sigmas = 1.0 this is a standard deviation"),
+        (&["--centre", "1e30m"], "error: --centre: with sigmas = 1.0 this is a standard deviation"),
+        (
+            &["--moments", "1e9%"],
+            "error: --moments: with sigmas = 1.0 this is a standard deviation",
+        ),
+        (&["--axes", "1e9deg"], "error: --axes: with sigmas = 1.0 this is a standard deviation"),
+    ] {
+        let output = shell.run(&[&["draw", "a.urdf", "-n", "1", "-o", "out"], stated].concat());
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{stated:?}: {message}");
+        assert!(message.contains(expected), "{stated:?}: {message}");
+        for key in [".percent", ".kg", ".sigmas", ".deg", ".m ", ".m["] {
+            assert!(!message.contains(key), "{message}");
+        }
+    }
+}
+
+/// Where nothing is said of the axes, or that they do not scatter, zero products stay as they are written, and so does what a file
+/// says of principal moments.
+#[test]
+fn axes_that_do_not_scatter_leave_products_as_they_are_written() {
+    let shell = Scratch::new();
+    fs::write(shell.path("a.urdf"), robot("1", ".04", "")).unwrap();
+    let mjcf = "<mujoco><worldbody><body name='a'><inertial pos='0 0 0' mass='1' diaginertia='.02 .03 .04'/>\
+                </body></worldbody></mujoco>";
+    fs::write(shell.path("a.xml"), mjcf).unwrap();
+    let zero = "<sdf version='1.9'><model name='m'><link name='a'><inertial><inertia><ixx>.9</ixx></inertia></inertial>\
+                </link></model></sdf>";
+    fs::write(shell.path("a.sdf"), zero).unwrap();
+    for stated in [
+        &["--moments", "15%"][..],
+        &["--moments", "15%", "--mass", "5%", "--centre", "1mm"],
+        &["--moments", "15%", "--axes", "0deg"],
+        &["--moments", "3%,5%,1%"],
+        &["--moments", "0%"],
+        &["--axes", "0rad"],
+        &["--moments", "0%", "--axes", "0deg", "--mass", "0%"],
+    ] {
+        let moves = stated.iter().any(|word| ["15%", "3%,5%,1%"].contains(word));
+        for (name, still) in [
+            ("a.urdf", "ixy='0' ixz='0'"),
+            ("a.xml", "diaginertia="),
+            ("a.sdf", "</ixx></inertia>"),
+        ] {
+            let all = [&[name, "-n", "3", "-o", "out/", "--force"], stated].concat();
+            draw(&shell, &all);
+            let original = fs::read_to_string(shell.path(name)).unwrap();
+            let (stem, extension) = name.split_once('.').unwrap();
+            for number in 0..3 {
+                let path = shell.path(&format!("out/{stem}-000{number}.{extension}"));
+                let text = fs::read_to_string(path).unwrap();
+                let is_still = text.contains(still) || (name == "a.sdf" && !text.contains("<ixy>"));
+                assert!(is_still && !text.contains("fullinertia"), "{stated:?} {text}");
+                assert_eq!(text != original, moves, "{stated:?} {text}");
+            }
+        }
+        fs::remove_dir_all(shell.path("out")).unwrap();
+    }
+}

@@ -1,0 +1,166 @@
+//! Slips in files: numbers that are broken or malformed, masses that are none, matrices that are not symmetric.
+
+use gyradius_formats::{InertiaFile, Products, Remedy, RepairError, RobotFile};
+use std::path::Path;
+
+fn parse(name: &str, text: &str) -> InertiaFile {
+    InertiaFile::parse(Path::new(name), text.as_bytes().to_vec(), Products::TensorEntries).unwrap()
+}
+
+/// All of what stands there was not quoted: `1<!-- a -->.9` was called "1", and a reference nothing.
+#[test]
+fn a_number_that_is_broken_is_quoted_as_it_is_written() {
+    for content in [
+        "1<!-- a -->.9",
+        "1.<!-- a --><!-- b -->9",
+        "&#51;",
+        "1&#46;9",
+        "&#49;.9",
+        "1<b/>.9",
+        "1<![CDATA[.9]]>",
+        "1&amp;9",
+    ] {
+        for (before, after) in [("", ""), (" ", "\n"), ("", " ")] {
+            let text = format!(
+                "<sdf version='1.9'><model name='m'><link name='a'><inertial><mass>1</mass><inertia><ixx>1</ixx>\
+                 <iyy>1</iyy><izz>{before}{content}{after}</izz ></inertia></inertial></link></model></sdf>"
+            );
+            let error = parse("a.sdf", &text).bodies()[0].inertia().unwrap_err().to_string();
+            let expected = format!("izz = \"{content}\" is not a plain number: ");
+            assert!(error.starts_with(&expected), "{error}");
+        }
+    }
+}
+
+/// A matrix that is possible but for rounding across the diagonal: the entries on it moved by 6e-9.
+#[test]
+fn a_repair_of_a_matrix_that_is_not_symmetric_moves_nothing_else() {
+    for diagonal in [[1.0, 2.0, 2.5], [0.31, 0.42, 0.55], [1e-7, 1.5e-7, 1.2e-7]] {
+        for asymmetric in 1..8_u8 {
+            let [a, b, c] = diagonal;
+            let off = |bit: u8| if asymmetric >> bit & 1 == 1 { 0.02 * a } else { 0.0 };
+            let [x, y, z] = [0.05 * a, -0.03 * a, 0.0];
+            let matrix = [[a, x, y], [x + off(0), b, z], [y + off(1), z + off(2), c]];
+            let text = format!("{{\"bodies\": [{{\"inertia_kg_m2\": {matrix:?}}}]}}");
+            let file = parse("a.json", &text);
+            let change = file.change(0, Remedy::Nearest).unwrap().unwrap();
+            let copy = file.repaired(&[(0, Remedy::Nearest)]).unwrap();
+            let copy = parse("a.json", std::str::from_utf8(&copy).unwrap());
+            let after = copy.bodies()[0].inertia().unwrap();
+            for i in 0..3 {
+                assert_eq!(after[(i, i)], diagonal[i], "{text}");
+                for j in 0..3 {
+                    let mean = 0.5 * (matrix[i][j] + matrix[j][i]);
+                    assert!((after[(i, j)] - mean).abs() <= 1e-15 * c, "{text} {after}");
+                    assert_eq!(change.after()[(i, j)], after[(i, j)]);
+                }
+            }
+        }
+    }
+}
+
+/// Whatever is wrong with the inertia on it, nothing is written of a body whose mass is none.
+#[test]
+fn inertia_on_no_mass_is_not_repaired() {
+    for (mass, why) in [
+        ("0", "inertia on a mass of 0 kg"),
+        ("-0.0", "inertia on a mass of 0 kg"),
+        ("-2", "mass = -2 kg"),
+    ] {
+        for izz in ["3", "-1"] {
+            let text = format!(
+                "<robot name='r'>\n<link name='a'><inertial><mass value='{mass}'/><inertia ixx='1' ixy='0' ixz='0' \
+                 iyy='1' iyz='0' izz='{izz}'/></inertial></link></robot>"
+            );
+            let file = parse("a.urdf", &text);
+            for remedy in [Remedy::Nearest, Remedy::FlipProducts] {
+                let error = file.change(0, remedy).unwrap_err();
+                let message = error.to_string();
+                assert!(message.starts_with(&format!("line 2: \"a\": {why}")), "{message}");
+                assert!(matches!(error, RepairError::NoMass { .. }) && error.line() == Some(2));
+                assert!(file.repaired(&[(0, remedy)]).is_err());
+            }
+            let heavy = text.replace(&format!("'{mass}'"), "'2'");
+            assert!(parse("a.urdf", &heavy).change(0, Remedy::Nearest).is_ok());
+        }
+    }
+}
+
+fn problem(name: &str, text: &str) -> (String, bool) {
+    let robot = RobotFile::parse(Path::new(name), text.into()).unwrap();
+    let problem = robot.links()[0].numbers().unwrap_err();
+    (problem.to_string(), problem.is_a_slip())
+}
+
+/// What is there and is malformed is a slip, in every format and of every field; what is not there is none.
+#[test]
+fn malformed_numbers_of_links_are_all_slips() {
+    let urdf = "<robot name='r'><link name='a'><inertial><origin xyz='0 0 0' rpy='0 0 0'/><mass value='1'/><inertia \
+                ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link></robot>";
+    let sdf = "<sdf version='1.9'><model name='m'><link name='a'><inertial><pose>0 0 0 0 0 0</pose><mass>1</mass>\
+               <inertia><ixx>1</ixx></inertia></inertial></link></model></sdf>";
+    let mjcf = "<mujoco><worldbody><body name='a'><inertial pos='0 0 0' quat='1 0 0 0' mass='1' \
+                diaginertia='1 1 1'/></body></worldbody></mujoco>";
+    let malformed = |numbers: &str| {
+        let words: Vec<&str> = numbers.split(' ').collect();
+        let fewer = words[..words.len() - 1].join(" ");
+        [
+            fewer,
+            format!("{numbers} 0"),
+            numbers.replacen(words[0], "nan", 1),
+            format!("x {numbers}"),
+        ]
+    };
+    for (name, text, fields) in [
+        (
+            "a.urdf",
+            urdf,
+            &[("xyz='", "0 0 0"), ("rpy='", "0 0 0"), ("value='", "1"), ("ixx='", "1")][..],
+        ),
+        ("a.sdf", sdf, &[("pose>", "0 0 0 0 0 0"), ("mass>", "1"), ("ixx>", "1")]),
+        (
+            "a.xml",
+            mjcf,
+            &[
+                ("pos='", "0 0 0"),
+                ("quat='", "1 0 0 0"),
+                ("mass='", "1"),
+                ("diaginertia='", "1 1 1"),
+            ],
+        ),
+    ] {
+        for (field, numbers) in fields {
+            for wrong in malformed(numbers).into_iter().filter(|wrong| !wrong.is_empty()) {
+                let text =
+                    text.replacen(&format!("{field}{numbers}"), &format!("{field}{wrong}"), 1);
+                let (message, is_slip) = problem(name, &text);
+                assert!(is_slip, "{text}: {message}");
+            }
+        }
+    }
+    let (message, is_slip) = problem("a.xml", &mjcf.replace("quat=", "euler='0 0 0' quat="));
+    assert!(is_slip && message.starts_with("both quat and euler are given"), "{message}");
+    for (without, text) in [("<mass value='1'/>", urdf), ("mass='1'", mjcf)] {
+        let name = if text == urdf { "a.urdf" } else { "a.xml" };
+        let (message, is_slip) = problem(name, &text.replace(without, ""));
+        assert!(!is_slip && message == "mass is missing", "{message}");
+    }
+}
+
+/// A compiler that says what is no unit was said to be in another file.
+#[test]
+fn a_unit_of_angles_that_is_none_is_named() {
+    let with = |compiler: &str| {
+        format!(
+            "<mujoco>{compiler}<worldbody><body name='a'><inertial pos='0 0 0' euler='0 0 1' mass='1' \
+             diaginertia='1 1 1'/></body></worldbody></mujoco>"
+        )
+    };
+    for word in ["foo", "", "Degree", "radians"] {
+        let (message, is_slip) = problem("a.xml", &with(&format!("<compiler angle='{word}'/>")));
+        let expected = format!("the compiler has angle=\"{word}\": it must be degree or radian");
+        assert!(is_slip && message.contains(&expected), "{message}");
+    }
+    let (message, is_slip) = problem("a.xml", &with("<include file='b.xml'/>"));
+    assert!(!is_slip && message.contains("is said in another file"), "{message}");
+}
