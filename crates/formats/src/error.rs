@@ -137,6 +137,16 @@ pub enum FileProblem {
     /// A folder without any file that would be read.
     #[error("no file in it has an extension that is read")]
     EmptyFolder,
+    /// A column that must be a product of inertia, of a name that does not tell its sign, where no other holds it.
+    #[error(
+        "column {heading:?} looks like a product of inertia and is not read: it must be called ixy, ixz or \
+         iyz, and a line \"# products = tensor\" or \"# products = integrals\" above the header says \
+         which sign it has"
+    )]
+    Product {
+        /// The heading, shortened.
+        heading: String,
+    },
     /// Its grammar is broken.
     #[error("malformed: {message}")]
     Malformed {

@@ -6,6 +6,7 @@ use crate::{
     BodyError, Format, LinkProblem,
     body::{NAMES, Number, Place, shortened},
     orientation::{ATTRIBUTES, Angles, of_mjcf, of_quaternion, of_roll_pitch_yaw},
+    sdf_words::{has_attributes, truth},
     xml::{Node, Tree},
 };
 
@@ -179,10 +180,18 @@ fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
             }
         }
     }
-    // SDFormat 1.0 to 1.2.
     let origin = node.child("origin").and_then(|origin| origin.numbers("pose", 6)).transpose()?;
-    let is_quaternion =
-        pose.is_some_and(|pose| pose.attribute("rotation_format") == Some("quat_xyzw"));
+    if origin.is_some() && !has_attributes(node) {
+        return Err(BodyError::Attribute { field: "pose of origin" }.into());
+    }
+    let is_quaternion = match pose.and_then(|pose| pose.attribute("rotation_format")) {
+        None | Some("euler_rpy") => false,
+        Some("quat_xyzw") => true,
+        Some(word) => {
+            let (field, allowed) = ("rotation_format", "euler_rpy or quat_xyzw");
+            return Err(LinkProblem::Word { field, value: shortened(word), allowed });
+        }
+    };
     let numbers = match pose {
         // An empty one is that of the link.
         Some(pose) if !pose.has_text() => None,
@@ -190,7 +199,13 @@ fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
         None => origin,
     };
     let values: Vec<f64> = numbers.iter().flatten().map(|number| number.value).collect();
-    let in_degrees = pose.and_then(|pose| pose.attribute("degrees")).is_some_and(is_true);
+    let in_degrees = match pose.and_then(|pose| pose.attribute("degrees")) {
+        None => false,
+        Some(word) => truth(word).ok_or_else(|| {
+            let (field, allowed) = ("degrees", "true or false");
+            LinkProblem::Word { field, value: shortened(word), allowed }
+        })?,
+    };
     let rotation = match values[..] {
         [_, _, _, roll, pitch, yaw] => {
             let unit = if in_degrees { 1_f64.to_radians() } else { 1.0 };
@@ -253,8 +268,4 @@ pub(crate) fn defaults(node: Node<'_, '_>) -> Vec<&'static str> {
         Some(inertia) => left.extend(NAMES[..3].iter().filter(|name| !says(inertia, name))),
     }
     left
-}
-
-fn is_true(word: &str) -> bool {
-    matches!(word.trim(), "true" | "1")
 }

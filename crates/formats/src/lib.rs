@@ -52,6 +52,7 @@ mod robot_error;
 mod robots;
 mod rows;
 mod same_robot;
+mod sdf_words;
 mod spread;
 mod table_header;
 mod ten_moments;

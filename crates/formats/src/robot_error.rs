@@ -39,6 +39,16 @@ pub enum LinkProblem {
         /// What it says, shortened.
         word: String,
     },
+    /// A word that is none of those that are known.
+    #[error("{field} = \"{value}\": it must be {allowed}")]
+    Word {
+        /// The attribute.
+        field: &'static str,
+        /// What it holds, shortened.
+        value: String,
+        /// What it may hold.
+        allowed: &'static str,
+    },
     /// An orientation that is none.
     #[error("{field} is no orientation")]
     Orientation {
@@ -75,6 +85,7 @@ impl LinkProblem {
             },
             Self::Orientation { .. }
             | Self::AngleUnit { .. }
+            | Self::Word { .. }
             | Self::SecondOfBody
             | Self::OutOfRange => true,
             Self::Gazebo

@@ -5,6 +5,7 @@ use crate::{
     body::{ENTRIES, NAMES, Number, Reading, shortened},
     error::Refusal,
     gap::Gaps,
+    sdf_words::{has_attributes, truth},
     xml::{MACROS, Node, Tree},
 };
 
@@ -218,11 +219,7 @@ fn mjcf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError
 fn sdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError> {
     const SHAPE: BodyError =
         BodyError::Shape { field: "inertia", allowed: "ixx, iyy, izz, ixy, ixz and iyz in it" };
-    let version = inertial.ancestors().find_map(|node| match node.name() {
-        "sdf" | "gazebo" => node.attribute("version"),
-        _ => None,
-    });
-    let allowed = version.is_none_or(|version| version.trim() == "1.0");
+    let allowed = has_attributes(inertial);
     let entry = |node: Node<'_, '_>, name| match (node.number(name, name), node.child(name)) {
         (Some(_), Some(_)) => Err(BodyError::Both { first: "an attribute", second: "an element" }),
         (Some(number), None) if allowed => number.map(Some),
@@ -254,10 +251,13 @@ fn sdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError>
 
 /// What stands there is not used where the simulator computes the inertia from the shapes.
 fn sdf_or_computed(inertial: Node<'_, '_>, products: Products) -> Result<Reading, Trouble> {
-    if inertial.attribute("auto").is_some_and(|a| a == "true" || a == "1") {
-        return Err(Trouble::Gap(GapKind::Computed));
+    match inertial.attribute("auto").map(truth) {
+        Some(Some(true)) => Err(Trouble::Gap(GapKind::Computed)),
+        Some(None) => {
+            Err(Trouble::Body(BodyError::Shape { field: "auto", allowed: "true or false in it" }))
+        }
+        Some(Some(false)) | None => sdf(inertial, products).map_err(Trouble::Body),
     }
-    sdf(inertial, products).map_err(Trouble::Body)
 }
 
 /// Names of attributes and children.

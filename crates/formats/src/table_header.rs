@@ -2,12 +2,12 @@
 
 use crate::{
     FileProblem,
-    body::entry_of,
+    body::{entry_of, shortened},
     error::Refusal,
     rows::{Field, Rows, is_comment},
     spread,
     text::Text,
-    units::{BadUnit, Dimension, Unit, UnitProblem, longest_name, squeezed},
+    units::{BadUnit, Dimension, Unit, UnitProblem, is_unread_product, longest_name, squeezed},
 };
 
 /// Columns that are looked for: the six entries, the mass, the name.
@@ -149,6 +149,13 @@ fn header(
         }
     }
     let products = columns[3..6].iter().flatten().count();
+    if products == 0 {
+        let is_like = |field: &&Field| is_unread_product(field.of(text.as_str()));
+        if let Some(field) = row.iter().find(is_like) {
+            let heading = shortened(field.of(text.as_str()));
+            return Err(text.refuse(field.start, FileProblem::Product { heading }));
+        }
+    }
     if products != 0 && products != 3 {
         let at = row.first().map_or(0, |field| field.start);
         return Err(text.malformed(at, "columns ixy, ixz, iyz: there must be all three or none"));

@@ -44,7 +44,9 @@ impl TenTable {
         let cell = |field: &Field| field.of(text.as_str());
         let headings: Vec<Heading> = first.iter().map(|field| Heading::of(cell(field))).collect();
         let bad_units = headings.iter().filter_map(|heading| heading.bad_unit(&headings));
-        if bad_units.into_iter().any(|(field, _)| VALUES.contains(&field)) {
+        if bad_units.into_iter().any(|(field, _)| VALUES.contains(&field))
+            || headings.iter().any(|heading| heading.is_lost_product(&headings))
+        {
             return None;
         }
         let pairs = first.iter().zip(&headings);
@@ -126,6 +128,7 @@ fn column(text: &str, heading: &Heading) -> Option<(usize, f64, bool)> {
         Heading::Column(_)
         | Heading::Size(_)
         | Heading::Unit(..)
+        | Heading::Product
         | Heading::NoDeviation
         | Heading::Other => first_moment(&squeezed(text)).map(|value| (value, 1.0, true)),
     }

@@ -1,6 +1,6 @@
 //! Units in tables: what stands after the name of a number in a heading, and how much it is in SI.
 
-use crate::body::shortened;
+use crate::body::{is_like_product, shortened};
 
 /// Units of mass, and what they are in kg.
 const MASSES: [(&str, f64); 7] = [
@@ -119,6 +119,12 @@ pub(crate) fn longest_name<T>(
     })
 }
 
+/// Whether a heading begins with the name of a product that does not tell its sign.
+pub(crate) fn is_unread_product(heading: &str) -> bool {
+    let like = |name: &str| is_like_product(name).then_some(());
+    longest_name(heading, like).is_some_and(|((), tail)| tail.is_apart())
+}
+
 /// What marks that a unit follows.
 const MARKS: [char; 8] = ['[', '(', '{', '/', ',', ':', ';', '='];
 
@@ -128,6 +134,11 @@ impl<'a> Tail<'a> {
         self.0
     }
 
+    /// Whether the name ends here, and is not the beginning of a longer word.
+    pub(crate) fn is_apart(self) -> bool {
+        !self.0.starts_with(char::is_alphanumeric)
+    }
+
     /// The unit, or why it is none. Nothing where the name is only the beginning of a word, as in `massive`.
     pub(crate) fn unit(self, dimension: Dimension) -> Option<Result<Unit, BadUnit>> {
         let bad = |problem| {
@@ -135,8 +146,7 @@ impl<'a> Tail<'a> {
             let is_certain =
                 rest.starts_with(MARKS) || matches!(problem, UnitProblem::Ambiguous { .. });
             let text = self.0.trim_matches(|c| is_between(c) || MARKS.contains(&c)).to_owned();
-            let is_word = !is_certain && self.0.starts_with(char::is_alphanumeric);
-            (!is_word).then_some(BadUnit { text, problem, is_certain })
+            (is_certain || self.is_apart()).then_some(BadUnit { text, problem, is_certain })
         };
         match Unit::of(self.0, dimension) {
             Ok(unit) => Some(Ok(unit)),

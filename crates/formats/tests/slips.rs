@@ -164,3 +164,103 @@ fn a_unit_of_angles_that_is_none_is_named() {
     let (message, is_slip) = problem("a.xml", &with("<include file='b.xml'/>"));
     assert!(!is_slip && message.contains("is said in another file"), "{message}");
 }
+
+fn sdf(version: &str, inertial: &str) -> String {
+    format!(
+        "<sdf{version}><model name='m'><link name='a'><inertial{inertial}<inertia><ixx>1</ixx><iyy>2</iyy><izz>2.5</izz>\
+         <ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial></link></model></sdf>"
+    )
+}
+
+/// `True` was false, and a pose in degrees one in radians.
+#[test]
+fn truth_values_of_sdf_are_read_in_letters_of_any_size_and_no_others_are() {
+    for (word, truth) in [
+        ("true", Some(true)),
+        ("True", Some(true)),
+        ("TRUE", Some(true)),
+        (" tRuE ", Some(true)),
+        ("1", Some(true)),
+        ("false", Some(false)),
+        ("False", Some(false)),
+        ("0", Some(false)),
+        ("yes", None),
+        ("t", None),
+        ("", None),
+        ("2", None),
+    ] {
+        let pose = format!("><mass>2</mass><pose degrees='{word}'>1 2 3 0 0 90</pose>");
+        let robot =
+            RobotFile::parse(Path::new("a.sdf"), sdf(" version='1.9'", &pose).into()).unwrap();
+        match (robot.links()[0].numbers(), truth) {
+            (Ok(numbers), Some(truth)) => {
+                let turned: f64 = if truth { 90_f64.to_radians() } else { 90.0 };
+                let expected = turned.cos().powi(2) + 2.0 * turned.sin().powi(2);
+                assert!((numbers.inertia().entries()[0] - expected).abs() < 1e-12, "{word}");
+            }
+            (Err(problem), None) => {
+                let expected = format!("degrees = \"{word}\": it must be true or false");
+                assert!(problem.is_a_slip() && problem.to_string() == expected, "{problem}");
+            }
+            (found, _) => panic!("{word}: {found:?}"),
+        }
+        let file =
+            parse("a.sdf", &sdf(" version='1.9'", &format!(" auto='{word}'><mass>2</mass>")));
+        match truth {
+            Some(true) => assert!(file.bodies().is_empty() && file.gaps().len() == 1, "{word}"),
+            Some(false) => assert!(file.bodies()[0].inertia().is_ok(), "{word}"),
+            None => {
+                let error = file.bodies()[0].inertia().unwrap_err().to_string();
+                assert_eq!(error, "auto: there must be true or false in it", "{word}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_form_of_rotations_that_sdf_does_not_know_is_refused() {
+    for (form, numbers) in [
+        ("euler_rpy", "0 0 1"),
+        ("quat_xyzw", "0 0 0 1"),
+        ("quat", "0 0 1"),
+        ("quat", "0 0 0 1"),
+        ("Euler_rpy", "0 0 1"),
+        ("", "0 0 1"),
+    ] {
+        let pose = format!("><pose rotation_format='{form}'>1 2 3 {numbers}</pose>");
+        let robot =
+            RobotFile::parse(Path::new("a.sdf"), sdf(" version='1.9'", &pose).into()).unwrap();
+        let found = robot.links()[0].numbers();
+        if ["euler_rpy", "quat_xyzw"].contains(&form) {
+            assert!(found.is_ok(), "{form}");
+        } else {
+            let problem = found.unwrap_err();
+            let expected =
+                format!("rotation_format = \"{form}\": it must be euler_rpy or quat_xyzw");
+            assert!(problem.is_a_slip() && problem.to_string() == expected, "{problem}");
+        }
+    }
+}
+
+/// Readers of later versions take no notice of it.
+#[test]
+fn an_origin_is_a_pose_in_the_first_version_of_sdf_alone() {
+    for version in ["", " version='1.0'", " version='1.2'", " version='1.5'", " version='1.9'"] {
+        let text = sdf(version, "><origin pose='1 2 3 0 0 0'/>");
+        let robot = RobotFile::parse(Path::new("a.sdf"), text.into()).unwrap();
+        match robot.links()[0].numbers() {
+            Ok(numbers) => {
+                assert_eq!(numbers.mass_centre_m().as_slice(), [1.0, 2.0, 3.0]);
+                assert!(["", " version='1.0'"].contains(&version), "{version}");
+            }
+            Err(problem) => {
+                let message = problem.to_string();
+                assert!(
+                    problem.is_a_slip() && message.starts_with("pose of origin is"),
+                    "{message}"
+                );
+                assert!(!["", " version='1.0'"].contains(&version), "{version}");
+            }
+        }
+    }
+}

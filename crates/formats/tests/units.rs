@@ -220,3 +220,38 @@ fn other_words_make_another_column_beside_the_number() {
     let table = "name,mass,ixx,iyy,izz,ixx_sigma,iyy (1σ),izz std [kg m2]\na,1,1,1,1,9,9,9\n";
     assert!(checked(table.as_bytes()).unwrap().bodies()[0].inertia().is_ok());
 }
+
+/// Products under a name that does not tell their sign were passed over without a word, and were zero.
+#[test]
+fn a_column_that_looks_like_a_product_is_refused_where_no_other_holds_it() {
+    for word in ["P", "p_", "POI ", "J", "L", "Product ", "products_", "I_y", "Product of inertia "]
+    {
+        for pair in ["xy", "XZ", "yz", "zy", "12", "3-2"] {
+            for unit in ["", " [kg m2]", "_kg_m2", " (lbm in2)"] {
+                let name = if word == "I_y" { "Iyx".to_owned() } else { format!("{word}{pair}") };
+                let heading = format!("{name}{unit}");
+                let said = format!("column {heading:?} looks like a product of inertia");
+                let table =
+                    format!("name,mass,cx,cy,cz,ixx,iyy,izz,{heading}\na,1,0,0,0,1,1,1,.1\n");
+                let list = PartsTable::read(table.as_bytes(), None).unwrap_err().to_string();
+                assert!(list.starts_with(&format!("line 1: {said}")), "{list}");
+                let message = checked(table.as_bytes()).unwrap_err().to_string();
+                assert!(message.starts_with(&format!("t.csv:1: {said}")), "{message}");
+                assert!(TenTable::read(table.as_bytes(), Products::TensorEntries).is_none());
+                // Where the products themselves are there, it is another column.
+                let table = format!(
+                    "name,mass,cx,cy,cz,ixx,iyy,izz,ixy,ixz,iyz,{heading}\na,1,0,0,0,1,1,1,0,0,0,.1\n"
+                );
+                let read = PartsTable::read(table.as_bytes(), None).unwrap();
+                assert_eq!(read.passed_over(), [heading.as_str()]);
+                assert!(checked(table.as_bytes()).unwrap().bodies()[0].inertia().is_ok());
+                assert!(TenTable::read(table.as_bytes(), Products::TensorEntries).is_some());
+            }
+        }
+    }
+    for other in ["xy", "part 12", "proxy", "galaxy", "Pxyz", "height_12", "pair", "i1"] {
+        let table = format!("name,mass,cx,cy,cz,ixx,iyy,izz,{other}\na,1,0,0,0,1,1,1,.1\n");
+        assert!(PartsTable::read(table.as_bytes(), None).is_ok(), "{other}");
+        assert!(checked(table.as_bytes()).is_ok(), "{other}");
+    }
+}

@@ -3,7 +3,7 @@
 use crate::{
     body::entry_of,
     spread,
-    units::{BadUnit, Dimension, longest_name, squeezed},
+    units::{BadUnit, Dimension, is_unread_product, longest_name, squeezed},
 };
 
 /// The ten numbers, as messages call them.
@@ -75,6 +75,8 @@ pub(crate) enum Heading {
     Size(String),
     /// A number of the ten or a standard deviation, as messages call it, and what follows and is no unit that is read.
     Unit(&'static str, BadUnit),
+    /// It looks like a product of inertia, and its name does not tell its sign.
+    Product,
     /// It looks like a standard deviation, and is none.
     NoDeviation,
     Other,
@@ -91,6 +93,12 @@ impl Heading {
         (bad.is_certain || !is_held).then_some((*field, bad))
     }
 
+    /// Whether it must be a product, and none of the columns holds one that is read.
+    pub(crate) fn is_lost_product(&self, beside: &[Self]) -> bool {
+        let is_product = |other: &Self| matches!(other, Self::Column(Column::Value(7.., _)));
+        *self == Self::Product && !beside.iter().any(is_product)
+    }
+
     pub(crate) fn of(text: &str) -> Self {
         // Longer texts are none.
         if text.len() > 200 {
@@ -102,6 +110,8 @@ impl Heading {
         let name = text.trim().to_lowercase();
         if spread::is_marked(text) || is_spread(text) {
             Self::NoDeviation
+        } else if is_unread_product(text) {
+            Self::Product
         } else if name.ends_with("_m") && name.chars().all(|c| c.is_ascii_alphabetic() || c == '_')
         {
             Self::Size(name)

@@ -125,11 +125,17 @@ impl PartsTable {
             if let Some((field, bad)) = column.bad_unit(&columns) {
                 return refuse(Box::new(bad.clone().of(heading, field)).into());
             }
+            if column.is_lost_product(&columns) {
+                let heading = shortened(heading);
+                return refuse(PartsProblem::File(FileProblem::Product { heading }));
+            }
             match column {
                 Heading::NoDeviation => {
                     return refuse(PartsProblem::Deviation { heading: shortened(heading) });
                 }
-                Heading::Unit(..) | Heading::Other => passed_over.push(shortened(heading)),
+                Heading::Unit(..) | Heading::Product | Heading::Other => {
+                    passed_over.push(shortened(heading))
+                }
                 Heading::Column(_) | Heading::Size(_) => {
                     if let Some(first) = columns[..at].iter().position(|other| other == column) {
                         let (first, second) = (shortened(&headings[first]), shortened(heading));

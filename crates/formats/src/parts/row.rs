@@ -161,6 +161,7 @@ impl Cells<'_> {
             | Heading::Size(_) => Some(()),
             Heading::Column(Column::Name | Column::Parent | Column::Products | Column::Point)
             | Heading::Unit(..)
+            | Heading::Product
             | Heading::NoDeviation
             | Heading::Other => None,
         };
