@@ -188,6 +188,48 @@ fn every_refusal_names_its_key() {
     assert!(unnamed.is_empty(), "{} of {refused}:\n{}", unnamed.len(), unnamed.join("\n"));
 }
 
+/// The page tells every key, its whole scenario is one, and what is left out of that is what the page says.
+#[test]
+fn the_page_tells_every_key() {
+    let page = include_str!("../../../../docs/scenario.md");
+    let mut paths = Vec::new();
+    places(&Value::Table(complete()), &[], &mut paths);
+    for path in &paths {
+        let Some(Step::Key(key)) = path.last() else { continue };
+        let of_body = key.strip_prefix("payload_").or_else(|| key.strip_prefix("stage_"));
+        let written =
+            [format!("`{key}`"), format!("{key} = "), format!("[{key}]"), format!("[{key}.")];
+        let of_model = of_body.map(|key| format!("`…_{key}`"));
+        let mut written = written.into_iter().chain(of_model);
+        assert!(written.any(|text| page.contains(&text)), "{}", said(path));
+    }
+    let section = &page[page.find("## The two bodies and the springs").unwrap()..];
+    let example = section.split("```").nth(1).unwrap().strip_prefix("toml").unwrap();
+    let whole = Scenario::from_toml(example).unwrap().to_toml();
+    for (key, row) in [
+        ("runs = 2000", "| 2000 |"),
+        ("seed = 1", "| 1 |"),
+        ("velocity_m_per_s = [0.0, 0.0, 0.0]", "| `[0, 0, 0]` |"),
+        ("body_to_inertial = [0.0, 0.0, 0.0, 1.0]", "| `[0, 0, 0, 1]`:"),
+        ("angular_velocity_rad_per_s = [0.0, 0.0, 0.0]", "| `[0, 0, 0]` |"),
+        ("horizon_s = 60.0", "| 60 |"),
+        ("relative_tolerance = 0.0000000000001", "| 1e-13 |"),
+    ] {
+        assert!(whole.contains(&format!("\n{key}\n")), "{key}\n{whole}");
+        let name = key.split(' ').next().unwrap();
+        let told = section.lines().find(|line| line.contains(&format!("`{name}`"))).unwrap();
+        assert!(told.contains(row), "{told}");
+    }
+    // What is refused if it is left out is not in the example for nothing.
+    for line in example.lines().filter(|line| line.contains(" = ") && !line.contains("dispersion"))
+    {
+        let less = example.replacen(line, "", 1);
+        let key = line.split(' ').next().unwrap();
+        let told = Scenario::from_toml(&less).unwrap_err().to_string();
+        assert!(told.contains(key), "{key}: {told}");
+    }
+}
+
 /// A key that is not known, beside those that are, in every table there is: refused by its name and
 /// that of the table.
 #[test]
