@@ -90,6 +90,35 @@ fn help_has_examples_and_is_no_error() {
     assert!(shell.run(&["--version"]).status.success());
 }
 
+/// Sentences under the options are broken where a line is full, and nowhere else.
+#[test]
+fn help_breaks_lines_where_they_are_full() {
+    let shell = Shell::new();
+    let top = String::from_utf8(shell.run(&["--help"]).stdout).unwrap();
+    let commands = top.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let commands = commands.take_while(|line| !line.is_empty());
+    let verbs = commands
+        .filter(|line| !line.starts_with("   "))
+        .filter_map(|l| l.split_whitespace().next());
+    let verbs: Vec<&str> = verbs.filter(|verb| *verb != "help").chain([""]).collect();
+    assert!(verbs.len() > 12, "{verbs:?}");
+    for verb in verbs {
+        let arguments: Vec<&str> =
+            [verb, "--help"].into_iter().filter(|word| !word.is_empty()).collect();
+        let help = String::from_utf8(shell.run(&arguments).stdout).unwrap();
+        let lines: Vec<&str> = help.lines().collect();
+        for pair in lines.windows(2) {
+            let is_prose = |line: &str| line.starts_with(char::is_alphanumeric);
+            let next = pair[1].split_whitespace().next().unwrap_or_default();
+            let would_fit = pair[0].chars().count() + 1 + next.chars().count() <= 100;
+            assert!(
+                !(is_prose(pair[0]) && pair[1].starts_with(|c| c != ' ') && would_fit),
+                "{verb}: {pair:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn bad_flags_are_refused() {
     let shell = Shell::new();
@@ -105,6 +134,11 @@ fn bad_flags_are_refused() {
         let message = shell.refused(&["study", flag, value]);
         let named = message.contains(flag) && message.contains(&format!("'{value}'"));
         assert!(named && message.contains("it must be a whole number"), "{message}");
+    }
+    for value in ["1e16", "18446744073709551616"] {
+        let message = shell.refused(&["draw", "-n", "1", "--first", value]);
+        assert!(message.contains("from 0 to 18446744073709551615"), "{message}");
+        assert!(message.contains("above 9007199254740992 it must be written with"), "{message}");
     }
     let message = shell.refused(&["study", "--max-failed", "-1"]);
     assert!(message.contains("'-1' for '--max-failed <SHARE>': it must lie between"), "{message}");

@@ -104,6 +104,15 @@ fn draws_are_written_once_and_are_the_same_on_any_number_of_threads() {
     let one: Value =
         serde_json::from_str(&shell.rollup(&["parts.csv", "-n", "1", "--format", "json"])).unwrap();
     assert!(one["drawn"]["mean"][0].is_number() && one["drawn"]["deviation"].is_null());
+    // Of two, nothing tells how far the deviation may be off.
+    let two: Value =
+        serde_json::from_str(&shell.rollup(&["parts.csv", "-n", "2", "--format", "json"])).unwrap();
+    assert!(two["drawn"]["deviation"][0].is_number() && two["drawn"]["deviation_error"].is_null());
+    let two = shell.rollup(&["parts.csv", "-n", "2"]);
+    let row = two.lines().find(|line| line.starts_with("mass_kg")).unwrap();
+    assert_eq!(row.matches('±').count(), 1, "{row}");
+    let none = shell.rollup(&["parts.csv", "-n", "0", "-o", "none.csv"]);
+    assert!(none.contains("wrote 0 draws") && !none.contains("Gaussian"), "{none}");
 }
 
 #[test]

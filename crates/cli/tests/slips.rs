@@ -152,3 +152,37 @@ fn axes_that_do_not_scatter_leave_products_as_they_are_written() {
         fs::remove_dir_all(shell.path("out")).unwrap();
     }
 }
+
+/// What is in the place of a folder is named, and so is the file that cannot be drawn, of which nothing is left behind.
+#[cfg(unix)]
+#[test]
+fn outputs_that_cannot_be_written_are_named() {
+    use std::process::Stdio;
+
+    let shell = Scratch::new();
+    fs::write(shell.path("a.urdf"), robot("1", ".04", "")).unwrap();
+    std::os::unix::fs::symlink("nowhere", shell.path("lost")).unwrap();
+    let with = |robot: &'static str, out: &'static str| {
+        ["draw", robot, "-n", "2", "--mass", "5%", "--centre", "1mm", "-o", out]
+    };
+    for out in ["a.urdf/", "/dev/null", "lost"] {
+        let output = shell.run(&with("a.urdf", out));
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.contains(&format!("{out} is there and is no folder")), "{message}");
+    }
+    let entity = robot("1", ".04", "<origin xyz='1 2 &#51;'/>");
+    fs::write(shell.path("e.urdf"), entity).unwrap();
+    let output = shell.run(&with("e.urdf", "out"));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("e.urdf: line 2: \"a\": its mass centre is not written"), "{message}");
+    assert!(!shell.path("out").exists());
+    let output = shell.run(&with("a.urdf", "nowhere/t.csv"));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("nowhere/t.csv") && !message.contains(".gyradius"), "{message}");
+    if let Ok(full) = fs::File::create("/dev/full") {
+        let mut command = shell.command(&["draw", "a.urdf", "-n", "99", "--mass", "5%"]);
+        let output = command.stdout(Stdio::from(full)).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.contains("error: standard output: "), "{message}");
+    }
+}

@@ -41,6 +41,7 @@ mod mass_fit;
 #[cfg(feature = "serde")]
 mod read;
 mod rollup;
+mod short;
 mod stated_body;
 mod statements;
 mod turns;

@@ -38,10 +38,8 @@ impl NewFile {
             return Err(WriteError::Exists(path.to_owned()));
         }
         let permissions = permissions.or_else(|| replaced.as_ref().map(Metadata::permissions));
-        let file = temporary(folder(path), permissions).map_err(|error| {
-            let error = without_path(error);
-            WriteError::Io { path: path.to_owned(), error }
-        })?;
+        let file = temporary(folder(path), permissions)
+            .map_err(|error| WriteError::Io { path: path.to_owned(), error: bare(error) })?;
         Ok(Self { path: path.to_owned(), file, replaces: replaced.is_some() })
     }
 
@@ -59,7 +57,7 @@ impl NewFile {
         let Self { path, file, replaces } = self;
         written.and_then(|()| put(&path, file, replaces)).map_err(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => WriteError::Exists(path),
-            _ => WriteError::Io { path, error },
+            _ => WriteError::Io { path, error: bare(error) },
         })
     }
 }
@@ -93,6 +91,15 @@ fn folder(path: &Path) -> &Path {
     folder.unwrap_or(Path::new("."))
 }
 
+/// What the system says, without the name of the temporary file, which nobody knows.
+fn bare(error: io::Error) -> io::Error {
+    let text = error.to_string();
+    match text.split_once(" at path \"") {
+        Some((said, _)) => io::Error::new(error.kind(), said.to_owned()),
+        None => error,
+    }
+}
+
 /// Moves a temporary file to its place, over what is to be replaced only.
 fn put(path: &Path, file: NamedTempFile, replaces: bool) -> io::Result<()> {
     file.as_file().sync_all()?;
@@ -103,14 +110,6 @@ fn put(path: &Path, file: NamedTempFile, replaces: bool) -> io::Result<()> {
     }
     // Elsewhere than on Unix, folders cannot be opened, and their changes are in the system's journal.
     if cfg!(unix) { File::open(folder(path))?.sync_all() } else { Ok(()) }
-}
-
-/// What the system says, without the name of the temporary file, which nobody asked for.
-fn without_path(error: io::Error) -> io::Error {
-    match error.to_string().split_once(" at path \"") {
-        Some((said, _)) => io::Error::new(error.kind(), said),
-        None => error,
-    }
 }
 
 /// A file that is removed unless it is moved, with these permissions or those of any new file.

@@ -783,7 +783,11 @@ fn whole(text: &str) -> Result<u64, String> {
     let grouped = text.split('_').all(|part| !part.is_empty());
     let float = || digits.parse().ok().and_then(gyradius_study::whole_number);
     digits.parse().ok().or_else(float).filter(|_| grouped).ok_or_else(|| {
-        "it must be a whole number, which is not negative, as 1000000, 1_000_000 or 1e6".to_owned()
+        let (most, certain) = (u64::MAX, 1_u64 << 53);
+        format!(
+            "it must be a whole number from 0 to {most}, as 1000000, 1_000_000 or 1e6; above {certain} it must be written \
+             with all its digits"
+        )
     })
 }
 

@@ -110,6 +110,10 @@ fn write(
             let robots = arguments.runs.unwrap_or_default();
             let written = progress::show(robots, "robots", |report| {
                 draw.write_folder(folder, arguments.force, report)
+            });
+            let written = written.map_err(|error| match error {
+                RobotDrawError::Robot(error) => format!("{}: {error}", input.display()).into(),
+                other => Box::<dyn Error>::from(other),
             })?;
             warn_of_lost_paths(folder, &written);
             Ok(Some(placed(&written)))
@@ -129,6 +133,9 @@ fn write(
                 // A reader that reads no further, as `head` does, has what it wanted.
                 Err(RobotDrawError::Output(gyradius_study::FormatError::Io(error)))
                     if error.kind() == io::ErrorKind::BrokenPipe => {}
+                Err(RobotDrawError::Output(error)) => {
+                    return Err(format!("standard output: {error}").into());
+                }
                 other => other?,
             }
             Ok(None)
@@ -261,8 +268,8 @@ fn table_of(links: &[LinkSummary]) -> String {
     if impossible > 0 {
         let share = 100.0 * impossible as f64 / tried as f64;
         out += &format!(
-            "no body has {share:.1} % of the inertias that come out if each moment is multiplied by a factor of its own; all \
-             of these are possible\n"
+            "if each moment were multiplied by a factor of its own instead, no body could have {share:.1} % of the inertias; \
+             some body can have each of those that were drawn\n"
         );
     }
     out + &warnings_of(links)

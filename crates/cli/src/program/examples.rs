@@ -1,9 +1,9 @@
 //! What the help of the program ends with: examples and exit codes.
 
 pub(crate) const EXIT_CODES: &str = "\
-Exit code: 0 if all went well, 1 if something was found or is missing (check, fit, report,
-status, study, verdict), 2 if what was asked
-cannot be done, with a message on standard error. A reader of the output that stops reading, as
+Exit code: 0 if all went well, 1 if something was found or is missing (check, fit, report, \
+status, study, verdict), 2 if what was asked \
+cannot be done, with a message on standard error. A reader of the output that stops reading, as \
 head does, is no error; a full disk behind it is.";
 
 pub(crate) const REPLAY_EXAMPLES: &str = "\
@@ -18,7 +18,7 @@ Examples:
   gyradius replay my-vehicle.toml --run 7
       A run of a scenario file, which has no run table to be held against
 
-Exit code: 0, for a run that failed as it did in the study too; 2 if there is no such run, if it is not
+Exit code: 0, for a run that failed as it did in the study too; 2 if there is no such run, if it is not \
 what the table says, or if something could not be read or written.";
 
 pub(crate) const DRAW_EXAMPLES: &str = "\
@@ -52,7 +52,7 @@ Examples:
   gyradius report big
       After `gyradius study --out big --shard 1/8` to `8/8`: the whole study
 
-Exit code: 0 if the report was made; 1 if runs are missing, and it is of those that are there; 2 if there is no study, if its files were changed after the study, or
+Exit code: 0 if the report was made; 1 if runs are missing, and it is of those that are there; 2 if there is no study, if its files were changed after the study, or \
 if something could not be read or written. What was there is then as it was.";
 
 pub(crate) const SLURM_EXAMPLES: &str = "\
@@ -147,10 +147,10 @@ Examples:
       The realizable laws with a mean and covariance of ten parameters, and how far they had to move:
       {\"parameters\": \"linear\", \"mean\": [10], \"covariance\": [[10] x 10]}
 
-Files are read as by `gyradius check`: a CSV with a header ixx,iyy,izz,ixy,ixz,iyz (or i11…), or
+Files are read as by `gyradius check`: a CSV with a header ixx,iyy,izz,ixy,ixz,iyz (or i11…), or \
 JSON or TOML; kg·m² unless the header says otherwise. At least 13 samples.
 
-Exit code: 0 if nothing speaks against the model, 1 if the samples do (the fragment is written
+Exit code: 0 if nothing speaks against the model, 1 if the samples do (the fragment is written \
 all the same) or an estimate had to be moved, 2 if something could not be read, fitted or written.";
 
 pub(crate) const COMPARE_EXAMPLES: &str = "\
@@ -183,13 +183,13 @@ Examples:
   gyradius check --format json --all robots/ > inertias.json
       Every body, for another program
 
-Folders are searched for .urdf .xacro .mjcf .sdf .world .xml .csv .toml .json. What may hold bodies and
-is not read (macros of xacro, included files, USD, .mjb) is passed over and named. Hidden files,
+Folders are searched for .urdf .xacro .mjcf .sdf .world .xml .csv .toml .json. What may hold bodies and \
+is not read (macros of xacro, included files, USD, .mjb) is passed over and named. Hidden files, \
 *.repaired.* and caches are not looked at.
 
-Exit code: 1 if some bodies are impossible, whatever else could not be read; otherwise 2 if something
-could not be read, or no body was found; 0 if all bodies that were read are possible. 2 also if a copy
-could not be written.";
+Exit code: 2 if a copy that --repair asks for could not be made or written; otherwise 1 if a body is impossible \
+or has inertia on no mass; otherwise 2 if something could not be read, or no body was found; 0 if all bodies are \
+possible.";
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -208,7 +208,7 @@ Examples:
 
 The same scenario, runs and seed give the same numbers on any number of threads.
 
-Exit code: 0; 1 if more runs of a model failed than --max-failed allows (the folder is written all the
+Exit code: 0; 1 if more runs of a model failed than --max-failed allows (the folder is written all the \
 same); 2 if something could not be read, done or written.";
 
 pub(crate) const COMPLETIONS_EXAMPLES: &str = "\

@@ -3,6 +3,8 @@
 use gyradius_inertia::InertiaMatrix;
 use std::fmt;
 
+use crate::short::Short;
+
 /// What a user should know of the law of a part's inertia.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -66,14 +68,19 @@ impl fmt::Display for PartFinding {
             }
             Self::Product { entry, stated, most } => write!(
                 f,
-                "no law of bodies gives the product {entry} a standard deviation of {stated:.4} kg·m² beside \
-                 these moments and their deviations: at most {most:.4} kg·m²"
+                "the product {entry} cannot have a standard deviation of {} kg·m² beside these moments and \
+                 their deviations, whatever bodies are drawn: it can be {} kg·m² at most",
+                Short(*stated),
+                Short(*most)
             ),
             Self::Moved { entries } => {
-                f.write_str("the draws deviate otherwise than stated, in kg·m²:")?;
+                f.write_str(
+                    "the standard deviations of the draws are not those stated, in kg·m²:",
+                )?;
                 for (i, (entry, stated, law)) in entries.iter().enumerate() {
                     let comma = if i == 0 { "" } else { "," };
-                    write!(f, "{comma} {entry} by {law:.4} in place of {stated:.4}")?;
+                    let (law, stated) = (Short(*law), Short(*stated));
+                    write!(f, "{comma} {entry} {law} in place of {stated}")?;
                 }
                 Ok(())
             }

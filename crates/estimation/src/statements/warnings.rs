@@ -4,6 +4,8 @@ use std::fmt;
 
 use gyradius_inertia::InertiaMatrix;
 
+use crate::short::Short;
+
 /// The names of the entries.
 const NAMES: [&str; 6] = InertiaMatrix::ENTRY_NAMES;
 
@@ -297,21 +299,6 @@ impl fmt::Display for MissedBecause {
                 "rotations of the principal axes cannot move this product so much: the moments that \
                  they mix are too near to each other",
             ),
-        }
-    }
-}
-
-/// A number for people: four decimals, or three digits and a power of ten where decimals would hide it or
-/// say too much.
-struct Short(f64);
-
-impl fmt::Display for Short {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = self.0.abs();
-        if size == 0.0 || (0.01..1e7).contains(&size) {
-            write!(f, "{:.4}", self.0)
-        } else {
-            write!(f, "{:.2e}", self.0)
         }
     }
 }

@@ -4,7 +4,7 @@ use gyradius_campaign::{CampaignError, Progress, is_stopped, threads};
 use gyradius_formats::{WriteError, is_same_file, is_same_robot, must_write, write_file};
 use rayon::prelude::*;
 use std::{
-    fs,
+    fs, io,
     path::{Path, PathBuf},
     sync::atomic::{AtomicU64, Ordering},
 };
@@ -51,9 +51,15 @@ impl RobotDraw<'_> {
         force: bool,
         progress: Progress<'_>,
     ) -> Result<RobotFolder, RobotDrawError> {
-        let fail = |error| RobotDrawError::Folder { path: folder.display().to_string(), error };
-        fs::create_dir_all(folder).map_err(fail)?;
         let draws = self.options.first..self.options.first + self.options.draws;
+        // What cannot be made leaves no folder behind.
+        draws.clone().next().map(|draw| self.robot(draw)).transpose()?;
+        let name = || folder.display().to_string();
+        let fail = |error: io::Error| match error.kind() {
+            io::ErrorKind::AlreadyExists => RobotDrawError::NoFolder { path: name() },
+            _ => RobotDrawError::Folder { path: name(), error },
+        };
+        fs::create_dir_all(folder).map_err(fail)?;
         let path = |draw| folder.join(self.file_name(draw));
         let (done, written) = (AtomicU64::new(0), AtomicU64::new(0));
         threads(self.options.threads)?.install(|| {

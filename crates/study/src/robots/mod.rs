@@ -368,6 +368,12 @@ pub enum RobotDrawError {
         /// The file.
         path: String,
     },
+    /// What is in the place of the folder is none.
+    #[error("{path} is there and is no folder: a folder for robots, or a table, must be named")]
+    NoFolder {
+        /// What is there.
+        path: String,
+    },
     /// A folder cannot be made or read.
     #[error("{path}: {error}")]
     Folder {

@@ -115,7 +115,8 @@ pub(super) fn text(shown: &Shown<'_>) -> serde_json::Result<String> {
             mean: m.mean,
             mean_error: spread.map(|spread| spread.mean_error),
             deviation: spread.map(|spread| spread.deviation),
-            deviation_error: spread.map(|spread| spread.deviation_error),
+            // Of two draws, nothing tells how far the deviations may be off.
+            deviation_error: spread.filter(|_| m.draws > 2).map(|spread| spread.deviation_error),
             correlation: spread.map(|spread| spread.correlation),
             naive: Naive {
                 draws: naive.draws,

@@ -1,6 +1,6 @@
 //! A rollup as text.
 
-use gyradius_dispersion::TenParameters;
+use gyradius_dispersion::{TenParameters, TenSpread};
 use std::fmt::{self, Write};
 
 use super::Shown;
@@ -35,7 +35,7 @@ fn numbers(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
     let (values, deviations) = (first.values(), first.deviations());
     write!(out, "{:<16}{:>14}{:>14}", "kg, m, kg·m²", "nominal", "first order σ")?;
     if let Some(drawn) = shown.draws {
-        let head = format!("{} draws: mean", drawn.moments.draws);
+        let head = format!("{}: mean", draws(drawn.moments.draws));
         write!(out, "{head:>28}{:>24}", "drawn σ")?;
     }
     writeln!(out)?;
@@ -46,7 +46,9 @@ fn numbers(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
             let m = &drawn.moments;
             let spread = m.spread.as_ref();
             let mean = m.mean.map(|mean| with_error(mean[i], spread.map(|s| s.mean_error[i])));
-            let deviation = spread.map(|s| with_error(s.deviation[i], Some(s.deviation_error[i])));
+            // Of two draws, nothing tells how far the deviation may be off.
+            let error = |s: &TenSpread| (m.draws > 2).then(|| s.deviation_error[i]);
+            let deviation = spread.map(|s| with_error(s.deviation[i], error(s)));
             let absent = || "-".to_owned();
             let (mean, deviation) = (mean.unwrap_or_else(absent), deviation.unwrap_or_else(absent));
             write!(out, "{mean:>28}{deviation:>24}")?;
@@ -76,7 +78,7 @@ fn correlations(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
         let gap = |(i, j): (usize, usize)| (of(i, j) - first[(i, j)]).abs();
         let pairs = (0..10).flat_map(|i| (0..i).map(move |j| (i, j)));
         let most = pairs.map(gap).fold(0.0, f64::max);
-        writeln!(out, "those by first order differ by up to {most:.2}")?;
+        writeln!(out, "the correlations by first order differ from these by up to {most:.2}")?;
     }
     Ok(())
 }
@@ -101,7 +103,7 @@ fn assemblies(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
 fn notes(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
     writeln!(out)?;
     let mut notes = Vec::new();
-    if let Some(drawn) = shown.draws {
+    if let Some(drawn) = shown.draws.filter(|drawn| drawn.moments.draws > 0) {
         notes.push(naive(drawn));
         if drawn.moments.failed > 0 {
             notes.push(format!("warning: {} sums left the range of numbers", drawn.moments.failed));
@@ -115,9 +117,14 @@ fn notes(out: &mut String, shown: &Shown<'_>) -> fmt::Result {
         notes.push(format!("columns that mean nothing here: {names}"));
     }
     if let (Some(path), Some(drawn)) = (&shown.arguments.output, shown.draws) {
-        notes.push(format!("wrote {} draws to {}", drawn.moments.draws, path.display()));
+        notes.push(format!("wrote {} to {}", draws(drawn.moments.draws), path.display()));
     }
     notes.iter().flat_map(|note| wrapped(note)).try_for_each(|line| writeln!(out, "{line}"))
+}
+
+/// So many draws, in words.
+fn draws(count: u64) -> String {
+    if count == 1 { "1 draw".to_owned() } else { format!("{count} draws") }
 }
 
 /// What ten Gaussian numbers would have been instead.
@@ -137,8 +144,9 @@ fn naive(drawn: &gyradius_study::RollupDraws) -> String {
         _ => format!(" ({})", worst.join(", ")),
     };
     format!(
-        "Of these draws, {} are impossible bodies. Of Gaussian numbers in their place, {} of the draws have \
-         an impossible part{worst}, and {} of the wholes by first order are impossible",
+        "{} of these draws are impossible bodies. If the ten numbers of each part were drawn independently from \
+         Gaussian laws instead, {} of the draws would have an impossible part{worst}; if those of the whole were \
+         drawn from the Gaussian law that first order gives, {} of them would be impossible.",
         drawn.moments.impossible,
         share(naive.any_part),
         share(naive.whole)
