@@ -1,0 +1,68 @@
+//! Fits of tables that say little: names of axes in doubt, and few samples.
+
+use super::*;
+
+/// Axes that turn widely, up to 70°, of bodies whose roots overlap, so that up to all names are in doubt: the truth is
+/// never likelier than the fit by more than it tolerates for fewer parameters, and the verdict refuses few.
+#[test]
+fn wide_axes_of_overlapping_roots_are_found() {
+    const TABLES: u64 = 10;
+    let (mut refused, mut doubtful) = (Vec::new(), 0);
+    for seed in 0..TABLES {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let (mean, frame) = (any_attitude(&mut rng), any_attitude(&mut rng).to_rotation_matrix());
+        let width = 0.6 * libm::pow(2.0, rng.random());
+        let each = [0; 3].map(|_| width * width * libm::pow(0.1, rng.random()));
+        let turns = frame.matrix()
+            * Matrix3::from_diagonal(&Vector3::from(each))
+            * frame.matrix().transpose();
+        let axes = RadiallyConstrainedGaussian::from_rotation_covariance(
+            mean,
+            (turns + turns.transpose()) * 0.5,
+            0.25 * width * width,
+        );
+        let roots = [0; 3].map(|_| rng.random_range(30.0..50.0));
+        let deviations = [0; 3].map(|_| 4.0 * libm::pow(0.05, rng.random()));
+        let roots = RootSecondMoments::new(roots).unwrap();
+        let roots = ScalarRoots::normal(roots, deviations.map(|s| s * s)).unwrap();
+        let truth = PrincipalDispersion::new(roots, axes.unwrap());
+        let samples = draws(&truth, 300, 100 + seed);
+        let fit = PrincipalFit::new(&samples).unwrap();
+        let height = |law: &Law| -> f64 {
+            samples.iter().map(|s| law.ln_density(&(*s).into()).unwrap()).sum()
+        };
+        // Uniform axes are given up for 14.1 more.
+        let gain = height(fit.law()) - height(&truth);
+        assert!(gain > -14.1, "{seed}: {gain}, {:?}", fit.axes().finding());
+        doubtful += fit.matching().doubtful;
+        if !fit.assess(&mut rng).fits() {
+            refused.push(seed);
+        }
+    }
+    assert!(refused.len() <= 3, "{refused:?}");
+    assert!(doubtful > 1000, "the test must have something to doubt: {doubtful}");
+}
+
+/// What is said of few samples: of intervals of ± 1.96 errors about nine in ten hold the truth.
+#[test]
+fn few_samples_are_said_to_have_too_small_errors() {
+    const TABLES: u64 = 60;
+    let mean = UnitQuaternion::from_euler_angles(0.1, -0.1, 0.3);
+    let truth = law([20.0, 30.0, 40.0], [0.5, 1.0, 0.3], mean, [0.03; 3]);
+    let (mut within, mut of) = (0, 0);
+    for seed in 0..TABLES {
+        let fit = PrincipalFit::new(&draws(&truth, 13, seed)).unwrap();
+        assert!(fit.notes().contains(&FitNote::Few { count: 13 }));
+        let mut roots = *fit.roots();
+        roots.sort_by(|a, b| a.mean().total_cmp(&b.mean()));
+        for (root, (mean, deviation)) in roots.iter().zip([(20.0, 0.5), (30.0, 1.0), (40.0, 0.3)]) {
+            let errors = root.errors().unwrap();
+            within += u32::from((root.mean() - mean).abs() < 1.96 * errors[0]);
+            within += u32::from((root.deviation() - deviation).abs() < 1.96 * errors[1]);
+            of += 2;
+        }
+    }
+    let share = f64::from(within) / f64::from(of);
+    assert!((0.86..0.935).contains(&share), "{share}");
+    assert!(PrincipalFit::new(&draws(&truth, 50, 1)).unwrap().notes().is_empty());
+}
