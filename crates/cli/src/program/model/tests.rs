@@ -174,8 +174,11 @@ fn every_file_gives_the_joint_law() {
             assert!((moments.mean()[1 + i] - [0.1, -0.2, 1.5][i]).abs() < 1e-12);
         }
         let implied = told.model.implied().deviations();
+        // Still axes turn by 2e-6 rad in the law of the inertia alone, which must have a density, and not in the joint law.
+        let turned = if told.model.turns() == [0.0; 3] { 2e-6 * 5000.0 } else { 0.0 };
         for e in 0..6 {
-            assert!((deviations[4 + e] - implied[e]).abs() < 1e-6 * (1.0 + implied[e]), "{text}");
+            let allowed = 1e-6 * (1.0 + implied[e]) + turned;
+            assert!((deviations[4 + e] - implied[e]).abs() < allowed, "{text}");
         }
         // In a region, and outside of every region.
         let inside =
