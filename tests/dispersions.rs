@@ -370,7 +370,8 @@ fn bad_dispersions_are_named() {
         ),
         (
             ["position_m = { covariance = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], sigma = 1 }", "", ""],
-            "payload.dispersion.position_m.covariance: a covariance is for vectors".to_owned(),
+            "payload.dispersion.position_m.covariance: a covariance is for the three components of a vector"
+                .to_owned(),
         ),
         (["", "friction_n = 5.0", ""], format!("{springs}.friction_n: at least half of the draws")),
         (["", "stroke_m = inf", ""], format!("{springs}.stroke_m: inf")),

@@ -107,7 +107,8 @@ fn errors_name_the_line() {
     );
     assert!(error(&LIST.replace("12,0,2,0", "1e31,0,2,0")).starts_with("line 7: panel: "));
     let message = error(&LIST.replace("tanks,craft", "tanks,tanks"));
-    assert!(message.starts_with("line 4: \"tanks\" belongs to itself"), "{message}");
+    let expected = "line 4: \"tanks\" belongs to \"tanks\": no row may belong to itself";
+    assert!(message.starts_with(expected), "{message}");
     assert!(
         error(&LIST.replace("tanks,craft", "tanks,"))
             .starts_with("line 4: 2 rows belong to nothing, \"craft\", \"tanks\"")
