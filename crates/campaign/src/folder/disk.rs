@@ -26,6 +26,10 @@ pub(super) fn create_file(path: &Path) -> io::Result<File> {
 /// Makes a file with a text, which is there whole and synced, or not at all; fails if anything of that name is there.
 pub(super) fn create_whole(path: &Path, text: &str) -> io::Result<()> {
     use io::Write;
+    // Most often somebody has made it before: then nothing is written.
+    if !is_free(path) {
+        return Err(io::ErrorKind::AlreadyExists.into());
+    }
     step("create file", path)?;
     let name = path.file_name().unwrap_or_default();
     // A name of its own: others may be making the same file at this moment.
