@@ -114,32 +114,6 @@ fn the_models_compare_as_the_page_says() {
     shares(&found, "`gyradius compare --reference entries`:", 8);
 }
 
-/// The whole scenario of the page is one, and every key that its resolved form has stands in the page.
-#[test]
-fn the_whole_scenario_is_one_and_its_keys_are_told() {
-    fn keys(value: &toml::Value, found: &mut Vec<String>) {
-        match value {
-            toml::Value::Table(table) => table.iter().for_each(|(key, value)| {
-                found.push(key.clone());
-                keys(value, found);
-            }),
-            toml::Value::Array(list) => list.iter().for_each(|value| keys(value, found)),
-            _ => {}
-        }
-    }
-    let page = include_str!("../docs/scenario.md");
-    let example = page.split("```toml\n").find(|example| example.starts_with("name = ")).unwrap();
-    let (example, _) = example.split_once("```").unwrap();
-    let resolved = Scenario::from_toml(example).unwrap().to_toml();
-    let mut found = Vec::new();
-    keys(&toml::from_str(&resolved).unwrap(), &mut found);
-    assert!(found.len() > 30, "{found:?}");
-    for key in found {
-        let told = ["`", "[[", "[", "."].iter().any(|mark| page.contains(&format!("{mark}{key}")));
-        assert!(told, "{key}");
-    }
-}
-
 /// Every scalar law and each of its keys stand in the documents, and a scenario takes what they say.
 #[test]
 fn scalar_laws_are_written_as_the_page_says() {
