@@ -1,6 +1,7 @@
 //! Order statistics: quantiles, their intervals and the empirical distribution function.
 
 use crate::error::{probability, validate};
+use crate::selection::{key, number};
 use crate::{Confidence, Interval, StatisticsError, law};
 
 /// A sample of finite values in increasing order; at least one.
@@ -28,9 +29,10 @@ impl SortedSample {
     /// or an infinity.
     pub fn new(sample: &[f64]) -> Result<Self, StatisticsError> {
         validate(sample, 1)?;
-        let mut values = sample.to_vec();
-        values.sort_unstable_by(f64::total_cmp);
-        Ok(Self(values))
+        // As whole numbers of the same order, which are sorted in half the time.
+        let mut keys: Vec<i64> = sample.iter().map(|x| key(*x)).collect();
+        keys.sort_unstable();
+        Ok(Self(keys.into_iter().map(number).collect()))
     }
 
     /// The values in increasing order.
