@@ -228,7 +228,25 @@ mod tests {
         assert!(sample.distribution(f64::NAN).is_nan());
     }
 
+    /// Finite numbers of any size, some of them more often than once.
+    fn finite() -> impl Strategy<Value = f64> {
+        use prop::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
+        const TIES: &[f64] = &[f64::MIN, -1.0, -5e-324, -0.0, 0.0, 5e-324, 1.0, f64::MAX];
+
+        prop_oneof![POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO, prop::sample::select(TIES)]
+    }
+
     proptest! {
+        /// In the total order of floating-point numbers, to the bit: −0 stands before 0.
+        #[test]
+        fn samples_are_in_total_order(sample in prop::collection::vec(finite(), 1..200)) {
+            let sorted = SortedSample::new(&sample).unwrap();
+            let mut expected = sample;
+            expected.sort_by(f64::total_cmp);
+            let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            prop_assert_eq!(bits(sorted.values()), bits(&expected));
+        }
+
         #[test]
         fn quantiles_are_monotone_and_within_range(
             sample in prop::collection::vec(any::<f64>(), 1..20),
