@@ -5,7 +5,9 @@ use rand::{Rng, RngExt};
 use rand_distr::Distribution;
 use std::sync::OnceLock;
 
-use crate::{UniformAttitude, cells::Cells, chart::Chart, contour::Contour, jacobi};
+use crate::{
+    CentralMoments, UniformAttitude, cells::Cells, chart::Chart, contour::Contour, jacobi,
+};
 
 /// Largest spread of the eigenvalues of P, max − min, that is served to full accuracy.
 const MAX_SPREAD: f64 = 1e14;
@@ -235,6 +237,11 @@ impl FisherBingham {
         self.contour.ln_integral()
     }
 
+    #[cfg(test)]
+    pub(crate) fn contour(&self) -> &Contour {
+        &self.contour
+    }
+
     /// V, λ, c and the logarithm that exp(−½ Σ λ(y − c)²), x = V y, is to be offset by.
     pub(crate) fn eigenform(&self) -> (&Matrix4<f64>, [f64; 4], [f64; 4], f64) {
         (&self.axes, self.lambda, self.centre, self.ln_offset)
@@ -327,6 +334,12 @@ impl FisherBingham {
             });
             polynomials(&x)
         })
+    }
+
+    /// Expectations of all monomials of x − E x of degree up to 8, to machine precision.
+    #[must_use]
+    pub fn central_moments(&self) -> CentralMoments {
+        CentralMoments::new(self.axes, self.centre, &self.contour)
     }
 
     /// The share of proposals that the sampler accepts.

@@ -37,6 +37,7 @@
 
 mod about_axis;
 mod cells;
+mod central_moments;
 mod chart;
 mod contour;
 mod far_half;
@@ -54,6 +55,7 @@ mod vector;
 mod ways_in;
 
 pub use about_axis::AboutAxis;
+pub use central_moments::CentralMoments;
 pub use fisher_bingham::{FisherBingham, FisherBinghamError, Method};
 pub use fit::{Convergence, Family, Fit, FitError, NoIntervals, RadialVariance};
 pub use hyperspherical::{HypersphericalAngles, HypersphericalError};

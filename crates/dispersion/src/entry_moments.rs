@@ -1,25 +1,15 @@
-//! Mean and covariance of the six entries of a random inertia, by quadrature or contour integrals.
+//! Mean and covariance of the six entries of a random inertia, by quadrature or from the moments of the axes.
 
+use gyradius_attitude::CentralMoments;
 use gyradius_inertia::InertiaMatrix;
-use nalgebra::{Complex, Matrix3, SMatrix, SVector, UnitQuaternion};
+use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector4};
 
 use crate::SecondMomentStatistics;
+use crate::quartic::{Quadratic, Quartic, QuarticMoments};
 use crate::semidefinite::{Covariance, CovarianceError};
-
-type C64 = Complex<f64>;
 
 /// The entries in the order I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.
 pub(crate) const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
-/// An entry is Σ_k K_k M_k with eighteen quadratic forms M of the axes.
-const FORMS: usize = 18;
-/// Entries of a symmetric 6×6 matrix, each as two sums.
-const POLYNOMIALS: usize = 2 * 21;
-
-/// A law of attitudes that knows the expectations of polynomials in the quaternion, of degree up to 8.
-pub(crate) trait Polynomials {
-    /// The polynomials are evaluated at complex points that are not of unit length.
-    fn expect<const N: usize>(&self, polynomials: impl Fn(&[C64; 4]) -> [C64; N]) -> [f64; N];
-}
 
 /// A law of attitudes that can take means of real functions.
 pub(crate) trait Expectation {
@@ -53,7 +43,7 @@ impl<I: IntoIterator<Item = (f64, UnitQuaternion<f64>)> + Clone> Expectation for
 ///
 /// An entry is I_ab = Σ_k K_k (δ_ab − r_ka r_kb) with r_k the k-th row of R(q). K and q being
 /// independent, its moments need no more than the mean and covariance of K and, of the law of q,
-/// expectations of degree 4 and 8 in the quaternion.
+/// moments of degree up to 8 of the quaternion.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 pub struct EntryMoments {
     /// E I₁₁, E I₂₂, E I₃₃, E I₁₂, E I₁₃, E I₂₃, kg·m².
@@ -123,40 +113,31 @@ impl EntryMoments {
         Self { mean, covariance }
     }
 
-    pub(crate) fn by_polynomials(law: &impl Polynomials, k: &SecondMomentStatistics) -> Self {
-        let means = k.mean();
-        let variances = k.variances();
-        let correlated = off_diagonal(k.covariance());
-        // Σ_k E[K_k] M_k for each entry.
-        let entries = |forms: &[C64; FORMS]| -> [C64; 6] {
-            std::array::from_fn(|e| (0..3).map(|k| forms[6 * k + e] * means[k]).sum())
-        };
-        let mean: [f64; 6] = law.expect(|x| entries(&forms(x)));
-        // Cov = E[ΔG ΔG] + Σ_kl Cov(K_k, K_l) E[M_k M_l], ΔG the entries above less their means. Taken
-        // before the expectation and homogeneous in x, which is not of unit length where it is
-        // evaluated: so narrow laws lose no digits.
-        let sums: [f64; POLYNOMIALS] = law.expect(|x| {
-            let forms = forms(x);
-            let entries = entries(&forms);
-            let fourth = norm_squared(x) * norm_squared(x);
-            let centred: [C64; 6] = std::array::from_fn(|e| entries[e] - fourth * mean[e]);
-            let mut sums = [C64::new(0.0, 0.0); POLYNOMIALS];
-            for (n, (e, f)) in lower_triangle().enumerate() {
-                sums[2 * n] = centred[e] * centred[f];
-                sums[2 * n + 1] =
-                    (0..3).map(|k| forms[6 * k + e] * forms[6 * k + f] * variances[k]).sum();
-                for &(k, l, c) in correlated.iter().flatten() {
-                    let (k, l) = (6 * k, 6 * l);
-                    sums[2 * n + 1] +=
-                        (forms[k + e] * forms[l + f] + forms[l + e] * forms[k + f]) * c;
+    /// About axes whose law has these moments.
+    pub(crate) fn by_moments(axes: &CentralMoments, k: &SecondMomentStatistics) -> Self {
+        let (means, spread) = (k.mean(), k.covariance());
+        let Forms { fourth, of: forms } = Forms::about(axes);
+        let moments = QuarticMoments::new(axes);
+        let mean: [f64; 6] =
+            std::array::from_fn(|e| (0..3).map(|k| means[k] * moments.mean(&forms[k][e])).sum());
+        // Cov = E[ΔG ΔG] + Σ_kl Cov(K_k, K_l) E[M_k M_l], G = Σ_k E[K_k] M_k and ΔG = G less its mean. The mean is taken from the
+        // coefficients, and times |q|⁴: so nothing is left along q itself, where the moments of narrow laws are large.
+        let centred: [Quartic; 6] = std::array::from_fn(|e| {
+            let less_mean = Quartic::ZERO.plus(-mean[e], &fourth);
+            (0..3).fold(less_mean, |sum, k| sum.plus(means[k], &forms[k][e]))
+        });
+        let against = moments.against(&centred);
+        let forms_against = forms.each_ref().map(|forms| moments.against(forms));
+        let mut covariance = SMatrix::zeros();
+        for (e, f) in lower_triangle() {
+            let mut sum = centred[e].dot(&against[f]);
+            for k in 0..3 {
+                for l in 0..3 {
+                    sum += spread[(k, l)] * forms[k][e].dot(&forms_against[l][f]);
                 }
             }
-            sums
-        });
-        let mut covariance = SMatrix::zeros();
-        for (n, (e, f)) in lower_triangle().enumerate() {
-            covariance[(e, f)] = sums[2 * n] + sums[2 * n + 1];
-            covariance[(f, e)] = covariance[(e, f)];
+            covariance[(e, f)] = sum;
+            covariance[(f, e)] = sum;
         }
         Self { mean, covariance }
     }
@@ -216,43 +197,54 @@ pub enum EntryMomentsError {
     Covariance(#[from] CovarianceError),
 }
 
-/// The covariances that are not zero.
-fn off_diagonal(c: &Matrix3<f64>) -> [Option<(usize, usize, f64)>; 3] {
-    [(0, 1), (0, 2), (1, 2)].map(|(k, l)| (c[(k, l)] != 0.0).then_some((k, l, c[(k, l)])))
-}
-
 fn lower_triangle() -> impl Iterator<Item = (usize, usize)> {
     (0..6).flat_map(|e| (0..=e).map(move |f| (e, f)))
 }
 
-fn norm_squared(q: &[C64; 4]) -> C64 {
-    q.iter().map(|x| x * x).sum()
+/// |q|⁴, and δ_ab|q|⁴ − r_ka r_kb for each k and entry ab: R(q) and δ in forms that are homogeneous in q.
+struct Forms {
+    fourth: Quartic,
+    of: [[Quartic; 6]; 3],
 }
 
-/// δ_ab − r_ka r_kb for each k and entry ab, R(q) and δ in forms that are homogeneous in q.
-fn forms(q: &[C64; 4]) -> [C64; FORMS] {
-    let [x, y, z, w] = *q;
-    let two = 2.0;
-    let fourth = norm_squared(q) * norm_squared(q);
-    let r = [
-        [x * x - y * y - z * z + w * w, (x * y - z * w) * two, (x * z + y * w) * two],
-        [(x * y + z * w) * two, -x * x + y * y - z * z + w * w, (y * z - x * w) * two],
-        [(x * z - y * w) * two, (y * z + x * w) * two, -x * x - y * y + z * z + w * w],
-    ];
-    std::array::from_fn(|i| {
-        let (k, (a, b)) = (i / 6, ENTRIES[i % 6]);
-        let delta = if a == b { fourth } else { C64::new(0.0, 0.0) };
-        delta - r[k][a] * r[k][b]
-    })
+impl Forms {
+    fn about(axes: &CentralMoments) -> Self {
+        let square = Quadratic::about(axes, Vector4::dot);
+        let fourth = square.times(&square);
+        let r: [[Quadratic; 3]; 3] = std::array::from_fn(|k| {
+            std::array::from_fn(|a| Quadratic::about(axes, |u, v| rotation(u, v)[k][a]))
+        });
+        let of = std::array::from_fn(|k| {
+            ENTRIES.map(|(a, b)| {
+                let delta = if a == b { 1.0 } else { 0.0 };
+                Quartic::ZERO.plus(delta, &fourth).plus(-1.0, &r[k][a].times(&r[k][b]))
+            })
+        });
+        Self { fourth, of }
+    }
 }
 
-/// Their expectations, for each k.
-pub(crate) fn expected_forms(law: &impl Polynomials) -> [[f64; 6]; 3] {
-    let expected: [f64; FORMS] = law.expect(forms);
-    std::array::from_fn(|k| std::array::from_fn(|e| expected[6 * k + e]))
+/// The polar form of R(q): R at u = v, bilinear and symmetric.
+fn rotation(u: &Vector4<f64>, v: &Vector4<f64>) -> [[f64; 3]; 3] {
+    let square = |i: usize| u[i] * v[i];
+    let twice = |i: usize, j: usize| u[i] * v[j] + u[j] * v[i];
+    let [xx, yy, zz, ww] = [square(0), square(1), square(2), square(3)];
+    let [xy, xz, yz] = [twice(0, 1), twice(0, 2), twice(1, 2)];
+    let [xw, yw, zw] = [twice(0, 3), twice(1, 3), twice(2, 3)];
+    [
+        [xx - yy - zz + ww, xy - zw, xz + yw],
+        [xy + zw, -xx + yy - zz + ww, yz - xw],
+        [xz - yw, yz + xw, -xx - yy + zz + ww],
+    ]
 }
 
-/// The same at a unit quaternion.
+/// The expectation of δ_ab − r_ka r_kb for each k and entry ab.
+pub(crate) fn expected_forms(axes: &CentralMoments) -> [[f64; 6]; 3] {
+    let moments = QuarticMoments::new(axes);
+    Forms::about(axes).of.map(|forms| forms.map(|form| moments.mean(&form)))
+}
+
+/// δ_ab − r_ka r_kb at a unit quaternion.
 pub(crate) fn real_forms(q: &UnitQuaternion<f64>) -> [[f64; 6]; 3] {
     let r = q.to_rotation_matrix();
     let r = r.matrix();

@@ -73,6 +73,7 @@ mod normal;
 #[cfg(test)]
 mod pinned_values;
 mod principal;
+mod quartic;
 mod realizable_only;
 mod root_moments;
 mod roots;

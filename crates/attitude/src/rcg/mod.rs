@@ -5,7 +5,8 @@ use rand::Rng;
 use rand_distr::Distribution;
 
 use crate::{
-    FisherBingham, HypersphericalAngles, Method, far_half, fisher_bingham::symmetric_part, jacobi,
+    CentralMoments, FisherBingham, HypersphericalAngles, Method, far_half,
+    fisher_bingham::symmetric_part, jacobi,
 };
 
 /// Range of the eigenvalues of Σ: beyond it the law is uniform, or a point, to rounding.
@@ -292,6 +293,12 @@ impl RadiallyConstrainedGaussian {
         polynomials: impl Fn(&[Complex<f64>; 4]) -> [Complex<f64>; N],
     ) -> [f64; N] {
         self.law.expect(polynomials)
+    }
+
+    /// Expectations of all monomials of x − E x: see [`FisherBingham::central_moments`].
+    #[must_use]
+    pub fn central_moments(&self) -> CentralMoments {
+        self.law.central_moments()
     }
 
     pub(crate) fn law(&self) -> &FisherBingham {

@@ -4,13 +4,13 @@ use gyradius_attitude::{
     AboutAxis, AngularQuadrature, FisherBingham, MeanHalf, RadiallyConstrainedGaussian,
     UniformAttitude,
 };
-use nalgebra::{Complex, Matrix3, SMatrix, UnitQuaternion};
+use nalgebra::{Matrix3, SMatrix, UnitQuaternion};
 use std::f64::consts::LN_2;
 
 use super::LN_PI_SQUARED;
 use super::half_sphere::HalfSphere;
 use super::jacobian_twice::second_jacobian;
-use crate::entry_moments::{ENTRIES, Expectation, Polynomials, expected_forms};
+use crate::entry_moments::{ENTRIES, Expectation, expected_forms};
 use crate::{EntryMoments, FixedAttitude, JacobianTwice, SecondMomentStatistics};
 
 /// A law of attitudes under which the mean and covariance of the entries of an inertia matrix can be
@@ -65,32 +65,14 @@ impl<T: AttitudeMoments + ?Sized> AttitudeMoments for &T {
     }
 }
 
-impl Polynomials for RadiallyConstrainedGaussian {
-    fn expect<const N: usize>(
-        &self,
-        polynomials: impl Fn(&[Complex<f64>; 4]) -> [Complex<f64>; N],
-    ) -> [f64; N] {
-        self.expect(polynomials)
-    }
-}
-
-impl Polynomials for FisherBingham {
-    fn expect<const N: usize>(
-        &self,
-        polynomials: impl Fn(&[Complex<f64>; 4]) -> [Complex<f64>; N],
-    ) -> [f64; N] {
-        self.expect(polynomials)
-    }
-}
-
 /// By the contour integral of the law, to machine precision.
 impl AttitudeMoments for RadiallyConstrainedGaussian {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
-        EntryMoments::by_polynomials(self, k)
+        EntryMoments::by_moments(&self.central_moments(), k)
     }
 
     fn expected_forms(&self) -> [[f64; 6]; 3] {
-        expected_forms(self)
+        expected_forms(&self.central_moments())
     }
 
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
@@ -106,11 +88,11 @@ impl AttitudeMoments for RadiallyConstrainedGaussian {
 /// By the contour integral of the law, to machine precision.
 impl AttitudeMoments for FisherBingham {
     fn entry_moments(&self, k: &SecondMomentStatistics) -> EntryMoments {
-        EntryMoments::by_polynomials(self, k)
+        EntryMoments::by_moments(&self.central_moments(), k)
     }
 
     fn expected_forms(&self) -> [[f64; 6]; 3] {
-        expected_forms(self)
+        expected_forms(&self.central_moments())
     }
 
     fn ln_density_of_attitude(&self, attitude: &UnitQuaternion<f64>) -> Option<f64> {
