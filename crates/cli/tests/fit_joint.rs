@@ -105,9 +105,20 @@ fn the_joint_law_stands_beside_the_fit_of_today() {
         let mass = |v: &Value| v["joint"]["mass_kg"]["deviation"].as_f64().unwrap();
         assert!((mass(&other) / mass(&found) - 1.0).abs() < 1e-6, "{same:?}");
     }
-    // The control: first moments taken for the mass centre are another table.
-    let wrong = run(&folder, &["fit", "linear.csv"]);
-    assert!(!wrong.1.contains("joint"), "{}", wrong.1);
+    // The one is not taken for the other, and what is not taken at all is named.
+    for (wrong, said) in [
+        (&["fit", "linear.csv"][..], "--parameters linear must say"),
+        (&["fit", "ten.csv", "--parameters", "linear"], "its columns are those of a mass centre"),
+        (&["fit", "half.csv"], "no column of centre_z"),
+    ] {
+        write("half.csv", &natural(&bodies).replacen("mass_centre_3_m", "height", 1));
+        let (code, out, message) = run(&folder, wrong);
+        assert!(code == 2 && out.is_empty() && message.contains(said), "{wrong:?}: {message}");
+    }
+    write("other.csv", &natural(&bodies).replace("mass_centre", "place"));
+    let (_, text, _) = run(&folder, &["fit", "other.csv"]);
+    let said = "# nothing was taken from the columns mass_kg, place_1_m, place_2_m, place_3_m";
+    assert!(text.contains(said) && !text.contains("joint"), "{text}");
 }
 
 #[test]
@@ -150,7 +161,7 @@ fn an_estimate_has_its_laws() {
         (0..10).map(|j| if i == j { DEVIATIONS[i] * DEVIATIONS[i] } else { 0.0 }).collect()
     };
     let rows = std::iter::once(MEAN.to_vec()).chain((0..10).map(square));
-    write("phi.csv", &table("m,first_moment_1_kg_m,h2,h3,a,b,c,d,e,f", rows));
+    write("phi.csv", &table("m,first_moment_1_kg_m,h2,h3,i11,i22,i33,i12,i13,i23", rows));
     let (code, text, messages) = run(&folder, &["fit", "--estimate", "phi.json"]);
     assert_eq!(code, 0, "{text}{messages}");
     assert!(

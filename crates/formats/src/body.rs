@@ -60,6 +60,20 @@ impl Products {
         }
     }
 
+    /// What the cell of a table says; nothing if it is blank.
+    pub(crate) fn of_cell(text: &str) -> Result<Option<Self>, BodyError> {
+        match text.trim().to_lowercase().as_str() {
+            "" => Ok(None),
+            "-" => Ok(Some(Self::TensorEntries)),
+            "+" => Ok(Some(Self::Integrals)),
+            word => Self::parse(word).map(Some).ok_or_else(|| BodyError::Word {
+                field: "products",
+                value: shortened(word),
+                allowed: "tensor, integrals, - or +",
+            }),
+        }
+    }
+
     /// What a word of a file means.
     pub(crate) fn parse(word: &str) -> Option<Self> {
         [Self::TensorEntries, Self::Integrals].into_iter().find(|one| one.name() == word)

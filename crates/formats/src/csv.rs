@@ -5,14 +5,14 @@ use crate::{
     body::{Number, Reading},
     error::Refusal,
     products_comment::stated_products,
-    table_header::{FIELDS, MASS, NAME, find_header},
+    table_header::{FIELDS, MASS, NAME, PRODUCTS, find_header},
     text::Text,
 };
 
 pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal> {
     let unclosed = |at| text.malformed(at, "a quotation mark is not closed");
-    let (start, header, mut rows) = find_header(text)?;
-    let products = stated_products(text, start)?.unwrap_or(default);
+    let (header, mut rows) = find_header(text)?;
+    let products = stated_products(text)?.unwrap_or(default);
 
     let mut bodies = Vec::new();
     while let Some(row) = rows.next() {
@@ -27,11 +27,11 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal>
         };
         let name =
             cell(NAME).map_or_else(String::new, |(name, _)| name.trim().replace("\"\"", "\""));
-        let reading = if row.len() == header.width {
+        let reading = if row.len() == header.row.len() {
             reading(cell, products)
                 .map(|reading| reading.in_units(header.mass_kg, header.inertia_kg_m2))
         } else {
-            let (found, allowed) = (row.len(), header.width);
+            let (found, allowed) = (row.len(), header.row.len());
             Err(BodyError::Count { field: "the row", found, allowed })
         };
         bodies.push(Body::new(name, line, reading));
@@ -41,8 +41,10 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal>
 
 fn reading<'a>(
     cell: impl Fn(usize) -> Option<(&'a str, usize)>,
-    products: Products,
+    default: Products,
 ) -> Result<Reading, BodyError> {
+    let stated = cell(PRODUCTS).map_or(Ok(None), |(word, _)| Products::of_cell(word))?;
+    let products = stated.unwrap_or(default);
     let number = |column: usize| {
         let (raw, start) = cell(column)?;
         Some(Number::parse(FIELDS[column], raw, Some(start)))

@@ -345,6 +345,15 @@ fn reading(item: &Item<'_>, inertia: &Item<'_>, products: Products) -> Result<Re
         field: INERTIA,
         allowed: "three rows of three numbers, or ixx, iyy, izz, ixy, ixz and iyz",
     };
+    // What the document says of all, a body may say of itself.
+    let products = match item.get("products").map(|own| &own.value) {
+        Some(Value::Text(word)) => Products::of_cell(word)?.unwrap_or(products),
+        Some(_) => {
+            let allowed = "\"tensor\" or \"integrals\"";
+            return Err(BodyError::Shape { field: "products", allowed });
+        }
+        None => products,
+    };
     let mass = item.get("mass_kg").map(|mass| mass.number("mass_kg")).transpose()?;
     if let Value::Table(entries) = &inertia.value {
         let mut six = [None; 6];
@@ -427,6 +436,21 @@ mod tests {
             format!("{{\"products\": \"integrals\", \"arm\": {{\"inertia_kg_m2\": {rows}}}}}"),
         ] {
             assert_eq!(six(&read(&text).unwrap()[0])[3..], [-0.1, -0.2, -0.3]);
+        }
+        for (word, sign) in [("integrals", -1.0), ("tensor", 1.0)] {
+            for text in [
+                format!("[[bodies]]\nproducts = \"{word}\"\ninertia_kg_m2 = {rows}"),
+                format!(
+                    "products = \"integrals\"\n[arm]\nproducts = \"{word}\"\ninertia_kg_m2 = {rows}"
+                ),
+                format!("[{{\"products\": \"{word}\", \"inertia_kg_m2\": {rows}}}]"),
+            ] {
+                assert_eq!(
+                    read(&text).unwrap()[0].inertia().unwrap()[(0, 1)],
+                    0.1 * sign,
+                    "{text}"
+                );
+            }
         }
         let bad = format!("products = \"positive\"\n[arm]\ninertia_kg_m2 = {rows}");
         assert!(read(&bad).unwrap_err().problem.to_string().contains("\"tensor\" or"));

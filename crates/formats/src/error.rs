@@ -241,6 +241,16 @@ pub enum BodyError {
         /// What there must be.
         allowed: &'static str,
     },
+    /// A word that is none of those known.
+    #[error("{field} = {value:?}: it must be {allowed}")]
+    Word {
+        /// The field.
+        field: &'static str,
+        /// What it holds, shortened.
+        value: String,
+        /// What it may hold.
+        allowed: &'static str,
+    },
     /// An attribute that stands for a number where readers look for an element.
     #[error(
         "{field} is an attribute, which SDFormat 1.0 has: readers of the version of this file take \

@@ -55,6 +55,7 @@ mod same_robot;
 mod sdf_words;
 mod spread;
 mod table_header;
+mod ten_heading;
 mod ten_moments;
 mod ten_table;
 mod text;
@@ -82,8 +83,9 @@ pub use repair::{Change, Remedy, RepairError, copy_path, is_copy, write_copy, wr
 pub use robot::{LinkNumbers, RobotFile, RobotLink};
 pub use robot_error::{LinkProblem, RobotError};
 pub use same_robot::is_same_robot;
+pub use ten_heading::TenCentre;
 pub use ten_moments::{TenMomentsError, TenMomentsFile};
-pub use ten_table::{TenRow, TenTable};
+pub use ten_table::{TenRow, TenTable, TenTableError};
 pub use units::{UnitError, UnitProblem};
 pub use walk::{Found, find};
 

@@ -1,18 +1,18 @@
-//! What comments above the header of a table say of the sign of its products.
+//! What comments in a table say of the sign of its products.
 
 use crate::{Products, body::shortened, error::Refusal, text::Text};
 
 /// What may be said of products.
 const ALLOWED: &str = "tensor (I12 = -∫xy dm) or integrals (+∫xy dm)";
 
-/// What comments above the header, which starts at `end`, say of the products: `# products = integrals`.
+/// What the comments say of the products: `# products = integrals`.
 ///
 /// # Errors
 /// The first word after `# products =` is none of those known, or two lines contradict each other.
-pub(crate) fn stated_products(text: &Text, end: usize) -> Result<Option<Products>, Refusal> {
+pub(crate) fn stated_products(text: &Text) -> Result<Option<Products>, Refusal> {
     let mut stated: Option<(Products, usize)> = None;
     let mut at = 0;
-    for line in text.as_str().get(..end).unwrap_or_default().split_inclusive('\n') {
+    for line in text.as_str().split_inclusive('\n') {
         let start = at;
         at += line.len();
         let Some(comment) = line.strip_prefix('#') else { continue };
@@ -53,14 +53,17 @@ mod tests {
 
     fn stated(source: &str) -> Result<Option<Products>, (Option<usize>, String)> {
         let text = Text::new(source.as_bytes(), true).unwrap();
-        let end = source.find("ixx").unwrap();
-        stated_products(&text, end).map_err(|refusal| (refusal.line, refusal.problem.to_string()))
+        stated_products(&text).map_err(|refusal| (refusal.line, refusal.problem.to_string()))
     }
 
     proptest! {
-        /// Any number of lines, of which each says tensor, integrals, nothing, or something that is neither.
+        /// Any number of lines above and below the header, of which each says tensor, integrals, nothing, or something that is
+        /// neither.
         #[test]
-        fn the_first_wrong_line_is_named(lines in prop::collection::vec(0..6_usize, 0..7)) {
+        fn the_first_wrong_line_is_named(
+            lines in prop::collection::vec(0..6_usize, 0..7),
+            above in 0..7_usize,
+        ) {
             const LINES: [(&str, Option<Option<Products>>); 6] = [
                 ("# products = integrals, not tensor entries\n", Some(Some(Products::Integrals))),
                 ("#Products=\"tensor\"\r\n", Some(Some(Products::TensorEntries))),
@@ -69,15 +72,17 @@ mod tests {
                 ("# products = integral\n", None),
                 ("# products = not tensor\n", None),
             ];
-            let source: String = lines.iter().map(|i| LINES[*i].0).chain(["ixx\n# products = x"]).collect();
+            let (before, after) = lines.split_at(above.min(lines.len()));
+            let text = |lines: &[usize]| lines.iter().map(|i| LINES[*i].0).collect::<String>();
+            let source = text(before) + "ixx,iyy,izz\n1,1,1\n" + &text(after);
             let mut expected = Ok(None);
             for (number, line) in lines.iter().enumerate() {
                 match (LINES[*line].1, expected) {
                     (Some(None), _) => {}
                     (Some(Some(found)), Ok(None)) => expected = Ok(Some(found)),
-                    (Some(Some(found)), Ok(Some(before))) if found == before => {}
+                    (Some(Some(found)), Ok(Some(known))) if found == known => {}
                     (Some(Some(_)) | None, _) => {
-                        expected = Err(number + 1);
+                        expected = Err(number + if number < before.len() { 1 } else { 3 });
                         break;
                     }
                 }

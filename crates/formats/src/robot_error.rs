@@ -79,6 +79,7 @@ impl LinkProblem {
                 | BodyError::Expression { .. }
                 | BodyError::Count { .. }
                 | BodyError::Shape { .. }
+                | BodyError::Word { .. }
                 | BodyError::Attribute { .. }
                 | BodyError::Both { .. } => true,
                 BodyError::Missing { .. } => false,

@@ -6,14 +6,20 @@ use crate::{
     error::Refusal,
     rows::{Field, Rows, is_comment},
     spread,
+    ten_heading::TenHeading,
     text::Text,
-    units::{BadUnit, Dimension, Unit, UnitProblem, is_unread_product, longest_name, squeezed},
+    units::{
+        BadUnit, Dimension, SharedUnit, Unit, UnitProblem, is_unread_product, longest_name,
+        squeezed,
+    },
 };
 
-/// Columns that are looked for: the six entries, the mass, the name.
+/// Columns that are looked for: the six entries, the mass, the name, and what the products are.
 pub(crate) const MASS: usize = 6;
 pub(crate) const NAME: usize = 7;
-pub(crate) const FIELDS: [&str; 7] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz", "mass"];
+pub(crate) const PRODUCTS: usize = 8;
+pub(crate) const FIELDS: [&str; 9] =
+    ["ixx", "iyy", "izz", "ixy", "ixz", "iyz", "mass", "name", "products"];
 
 /// The column of a heading, and the unit that follows its name, or why that is none. What follows and is no unit
 /// may make another column of it: `ixx_sigma`.
@@ -22,11 +28,15 @@ fn heading(text: &str) -> Option<(usize, Result<Unit, BadUnit>)> {
     if text.len() > 200 {
         return None;
     }
-    if column_of(&squeezed(text)) == Some(NAME) {
-        return Some((NAME, Ok(Unit::none())));
+    if let Some(word) = column_of(&squeezed(text)).filter(|column| *column > MASS) {
+        return Some((word, Ok(Unit::none())));
+    }
+    // A mass centre is no mass.
+    if TenHeading::of(text).is_some_and(|heading| heading.centre.is_some()) {
+        return None;
     }
     let number = |name: &str| {
-        let column = column_of(name).filter(|column| *column != NAME)?;
+        let column = column_of(name).filter(|column| *column <= MASS)?;
         Some((column, name.len() == 1))
     };
     let ((column, is_letter), tail) = longest_name(text, number)?;
@@ -48,6 +58,7 @@ fn column_of(name: &str) -> Option<usize> {
     match name {
         "mass" | "m" => Some(MASS),
         "name" | "body" | "link" | "part" | "component" => Some(NAME),
+        "products" | "poiconv" => Some(PRODUCTS),
         _ => entry_of(name),
     }
 }
@@ -55,11 +66,34 @@ fn column_of(name: &str) -> Option<usize> {
 /// What a header says of the rows below it.
 #[derive(Debug)]
 pub(crate) struct Header {
-    /// The column of each of the fields, and of the name.
-    pub(crate) columns: [Option<usize>; 8],
-    pub(crate) width: usize,
+    /// The headings.
+    pub(crate) row: Vec<Field>,
+    /// The column of each of [`FIELDS`].
+    pub(crate) columns: [Option<usize>; FIELDS.len()],
     pub(crate) mass_kg: f64,
     pub(crate) inertia_kg_m2: f64,
+    /// The row of units below it, if there is one.
+    pub(crate) units: Option<Vec<Field>>,
+}
+
+/// The unit of a column, as the heading and the row of units below say it; why there is none, if both do.
+pub(crate) fn one_unit(heading: Unit, below: Unit) -> Result<Unit, String> {
+    match (heading, below) {
+        (a, b) if b.text.is_empty() => Ok(a),
+        (a, b) if a.text.is_empty() || a.si == b.si => Ok(b),
+        (a, b) => Err(format!("the header says {}, and the row below it {}", a.text, b.text)),
+    }
+}
+
+/// The unit in a cell of a row of units.
+pub(crate) fn unit_below(
+    text: &Text,
+    field: &Field,
+    dimension: Dimension,
+) -> Result<Unit, BadUnit> {
+    let written = field.of(text.as_str());
+    let bad = |problem| BadUnit { text: written.to_owned(), problem, is_certain: true };
+    Unit::of(written, dimension).map_err(bad)
 }
 
 /// The units in a row below a header, none where a field is empty: nothing if one of the fields that count
@@ -70,12 +104,8 @@ fn units_below(
     row: &[Field],
 ) -> Option<Vec<Result<Unit, BadUnit>>> {
     let unit = |(column, field): (&Option<usize>, &Field)| match column {
-        Some(NAME) | None => Ok(Unit::none()),
-        Some(column) => {
-            let written = field.of(text.as_str());
-            let bad = |problem| BadUnit { text: written.to_owned(), problem, is_certain: true };
-            Unit::of(written, dimension(*column)).map_err(bad)
-        }
+        Some(column) if *column <= MASS => unit_below(text, field, dimension(*column)),
+        Some(_) | None => Ok(Unit::none()),
     };
     let units: Vec<_> = columns.iter().zip(row).map(unit).collect();
     let is_stated =
@@ -93,12 +123,8 @@ fn headings(text: &Text, row: &[Field]) -> Vec<Option<(usize, Result<Unit, BadUn
 }
 
 /// Reads a row as a header, with the units in the row below it if that holds any: nothing if it has not
-/// the columns of the three moments. Returns whether the row below belongs to it.
-fn header(
-    text: &Text,
-    row: &[Field],
-    below: Option<&[Field]>,
-) -> Result<Option<(Header, bool)>, Refusal> {
+/// the columns of the three moments.
+fn header(text: &Text, row: &[Field], below: Option<&[Field]>) -> Result<Option<Header>, Refusal> {
     let mut headings = headings(text, row);
     let is_certain = |unit: &Result<Unit, BadUnit>| !matches!(unit, Err(bad) if !bad.is_certain);
     let certain: Vec<usize> =
@@ -111,41 +137,28 @@ fn header(
         found.take_if(|(column, unit)| !is_certain(unit) && certain.contains(column));
     }
     let of_fields: Vec<_> = headings.iter().map(|h| h.as_ref().map(|(c, _)| *c)).collect();
+    let row_below = below;
     let below = below.and_then(|row| units_below(text, &of_fields, row));
-    let mut columns = [None; 8];
-    let mut one: Option<(&str, Unit)> = None;
-    let (mut mass_kg, mut inertia_kg_m2) = (1.0, 1.0);
+    let mut columns = [None; FIELDS.len()];
+    let mut of_inertia = SharedUnit::default();
+    let mut mass_kg = 1.0;
     for (index, (field, found)) in row.iter().zip(headings).enumerate() {
         let Some((column, in_heading)) = found else { continue };
-        let name = FIELDS.get(column).copied().unwrap_or("name");
+        let name = FIELDS[column];
         let refuse = |problem: String| text.malformed(field.start, problem);
         let bad = |bad: BadUnit| refuse(bad.of(field.of(text.as_str()), name).to_string());
         let in_heading = in_heading.map_err(bad)?;
         let in_row = below.as_ref().and_then(|units| units.get(index).cloned());
         let in_row = in_row.unwrap_or(Ok(Unit::none())).map_err(bad)?;
-        let its_unit = match (in_heading, in_row) {
-            (a, b) if b.text.is_empty() => a,
-            (a, b) if a.text.is_empty() || a.si == b.si => b,
-            (a, b) => {
-                let (a, b) = (a.text, b.text);
-                return Err(refuse(format!("the header says {a}, and the row below it {b}")));
-            }
-        };
+        let its_unit = one_unit(in_heading, in_row).map_err(refuse)?;
         if columns[column].replace(index).is_some() && column != NAME {
             return Err(refuse(format!("two columns for {name}")));
         }
         if column == MASS {
             mass_kg = its_unit.si;
         }
-        if column < MASS && !its_unit.text.is_empty() {
-            inertia_kg_m2 = its_unit.si;
-            let (first, known) = one.get_or_insert((name, its_unit.clone()));
-            if known.si != its_unit.si {
-                let (known, its_unit) = (&known.text, its_unit.text);
-                let problem =
-                    format!("{first} is in {known} but {name} in {its_unit}: one unit for all");
-                return Err(refuse(problem));
-            }
+        if column < MASS {
+            of_inertia.with(name, its_unit).map_err(refuse)?;
         }
     }
     let products = columns[3..6].iter().flatten().count();
@@ -160,8 +173,9 @@ fn header(
         let at = row.first().map_or(0, |field| field.start);
         return Err(text.malformed(at, "columns ixy, ixz, iyz: there must be all three or none"));
     }
-    let header = Header { columns, width: row.len(), mass_kg, inertia_kg_m2 };
-    Ok(Some((header, below.is_some())))
+    let units = below.and(row_below).map(<[Field]>::to_vec);
+    let inertia_kg_m2 = of_inertia.si();
+    Ok(Some(Header { row: row.to_vec(), columns, mass_kg, inertia_kg_m2, units }))
 }
 
 /// Why a row is no header, where it would be one if what follows the names of the moments were units.
@@ -172,7 +186,7 @@ fn nearly(text: &Text, row: &[Field]) -> Option<String> {
     let mut pairs = row.iter().zip(&headings);
     pairs.find_map(|(field, found)| match found {
         Some((column, Err(bad))) => {
-            let name = FIELDS.get(*column).copied()?;
+            let name = FIELDS[*column];
             Some(bad.clone().of(field.of(text.as_str()), name).to_string())
         }
         Some((_, Ok(_))) | None => None,
@@ -182,9 +196,9 @@ fn nearly(text: &Text, row: &[Field]) -> Option<String> {
 /// Most lines above a header, titles and the like, that are looked through for it.
 const TITLES: usize = 100;
 
-/// Finds the header, below any titles: where it starts, what it says, and the rows below it. Where there
-/// is none, it may be a comment, as many programs write it.
-pub(crate) fn find_header(text: &Text) -> Result<(usize, Header, Rows<'_>), Refusal> {
+/// Finds the header, below any titles: what it says, and the rows below it. Where there is none, it may be a
+/// comment, as many programs write it.
+pub(crate) fn find_header(text: &Text) -> Result<(Header, Rows<'_>), Refusal> {
     let lines = || {
         let mut at = 0;
         text.as_str().split_inclusive('\n').map(move |line| {
@@ -193,15 +207,15 @@ pub(crate) fn find_header(text: &Text) -> Result<(usize, Header, Rows<'_>), Refu
         })
     };
     for (at, line) in lines().filter(|(_, line)| !is_comment(line)).take(TITLES) {
-        if let Some((header, rows)) = header_at(text, at, line)? {
-            return Ok((at, header, rows));
+        if let Some(found) = header_at(text, at, line)? {
+            return Ok(found);
         }
     }
     for (at, line) in lines().filter(|(_, line)| line.starts_with('#')).take(TITLES) {
         let content = line.trim_start_matches(['#', ' ', '\t']);
         let start = at + line.len() - content.len();
-        if let Some((header, rows)) = header_at(text, start, content)? {
-            return Ok((at, header, rows));
+        if let Some(found) = header_at(text, start, content)? {
+            return Ok(found);
         }
     }
     let near = lines()
@@ -226,9 +240,6 @@ fn header_at<'t>(
     let Ok(row) = rows.row() else { return Ok(None) };
     let mut below = rows.clone();
     let next = below.next().and_then(Result::ok);
-    Ok(match header(text, &row, next.as_deref())? {
-        Some((header, true)) => Some((header, below)),
-        Some((header, false)) => Some((header, rows)),
-        None => None,
-    })
+    let header = header(text, &row, next.as_deref())?;
+    Ok(header.map(|header| if header.units.is_some() { (header, below) } else { (header, rows) }))
 }

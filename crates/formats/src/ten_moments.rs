@@ -4,9 +4,15 @@ use serde::Deserialize;
 use std::{io, path::Path};
 
 use crate::{
-    MAX_TOML_BYTES, read_text,
+    MAX_TOML_BYTES, Products, UnitError,
+    body::shortened,
+    error::Refusal,
+    products_comment::stated_products,
+    read_text,
     rows::{Field, Rows},
-    units::squeezed,
+    ten_heading::{TenCentre, TenHeading, field},
+    text::Text,
+    units::SharedUnit,
 };
 
 /// Mean and covariance of ten parameters, as a file gives them.
@@ -32,11 +38,11 @@ struct Fields {
 
 impl TenMomentsFile {
     /// Reads `{"parameters": "linear", "mean": [10], "covariance": [[10] × 10]}` (or `"deviations": [10]` where nothing is correlated) as
-    /// JSON, the same keys as TOML, or a CSV with the mean in its first row and the covariance in the ten below, with or without a
-    /// header.
+    /// JSON, the same keys as TOML, or a CSV with the mean in its first row and the covariance in the ten below. A header may stand above them,
+    /// which names the ten in any order and in any unit that is read, and a line `# products = integrals`.
     ///
     /// # Errors
-    /// The file cannot be read, or does not hold these numbers.
+    /// The file cannot be read, or does not hold these numbers; a heading is of none of the ten, or a deviation is negative.
     pub fn read(path: &Path) -> Result<Self, TenMomentsError> {
         let text = read_text(path, MAX_TOML_BYTES as u64)?;
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -50,9 +56,18 @@ impl TenMomentsFile {
         };
         let covariance = match (fields.covariance, fields.deviations) {
             (Some(covariance), None) => covariance,
-            (None, Some(deviations)) => std::array::from_fn(|i| {
-                std::array::from_fn(|j| if i == j { deviations[i] * deviations[i] } else { 0.0 })
-            }),
+            (None, Some(deviations)) => {
+                if let Some(i) = deviations.iter().position(|d| *d < 0.0) {
+                    let (n, value) = (i + 1, deviations[i]);
+                    let message = format!("deviation {n} = {value:?}: it must be zero or more");
+                    return Err(malformed(&message));
+                }
+                std::array::from_fn(|i| {
+                    std::array::from_fn(
+                        |j| if i == j { deviations[i] * deviations[i] } else { 0.0 },
+                    )
+                })
+            }
             (Some(_), Some(_)) | (None, None) => {
                 return Err(malformed("there must be either covariance or deviations"));
             }
@@ -61,21 +76,17 @@ impl TenMomentsFile {
     }
 
     fn from_csv(text: &str) -> Result<Self, TenMomentsError> {
-        let mut rows = Rows::new(text);
+        let text = Text::new(text.as_bytes(), true)?;
+        let products = stated_products(&text)?.unwrap_or(Products::TensorEntries);
+        let mut rows = Rows::new(text.as_str());
         let mut numbers: Vec<[f64; 10]> = Vec::new();
-        let mut parameters = None;
-        let mut first = true;
+        let mut header: Option<Columns> = None;
         while let Some(fields) = rows.next() {
             let fields = fields.map_err(|_| malformed("a quotation mark is not closed"))?;
-            let cell = |field: &Field| text.get(field.start..field.end).unwrap_or_default().trim();
+            let cell = |at: &Field| at.of(text.as_str()).trim();
             let read: Vec<Option<f64>> = fields.iter().map(|f| cell(f).parse().ok()).collect();
-            let is_header = first && read.iter().all(Option::is_none);
-            first = false;
-            if is_header {
-                let moments = |f: &Field| squeezed(cell(f)).contains("firstmoment");
-                if fields.iter().any(moments) {
-                    parameters = Some("linear".to_owned());
-                }
+            if numbers.is_empty() && header.is_none() && read.iter().all(Option::is_none) {
+                header = Some(Columns::of(&fields.iter().map(cell).collect::<Vec<_>>())?);
                 continue;
             }
             let row = read.into_iter().collect::<Option<Vec<f64>>>();
@@ -93,7 +104,19 @@ impl TenMomentsFile {
         };
         let (mean, rest) = numbers.split_first().ok_or_else(wrong)?;
         let covariance = <[[f64; 10]; 10]>::try_from(rest).map_err(|_| wrong())?;
-        Ok(Self { parameters, mean: *mean, covariance })
+        let columns = header.unwrap_or_default();
+        // In the order of the ten and in SI, products as tensor entries: the rows of the covariance as its columns.
+        let of = |i: usize| {
+            let (at, unit) = columns.places[i];
+            (at, if i < 7 { unit } else { unit * products.sign() })
+        };
+        Ok(Self {
+            parameters: columns.centre.map(|centre| centre.parameters().to_owned()),
+            mean: std::array::from_fn(|i| mean[of(i).0] * of(i).1),
+            covariance: std::array::from_fn(|i| {
+                std::array::from_fn(|j| covariance[of(i).0][of(j).0] * of(i).1 * of(j).1)
+            }),
+        })
     }
 
     /// What the file calls its ten, if it says.
@@ -115,6 +138,71 @@ impl TenMomentsFile {
     }
 }
 
+/// Where in a row each of the ten stands, and its unit in SI.
+struct Columns {
+    places: [(usize, f64); 10],
+    centre: Option<TenCentre>,
+}
+
+/// Without a header they stand in their order, in SI.
+impl Default for Columns {
+    fn default() -> Self {
+        Self { places: std::array::from_fn(|i| (i, 1.0)), centre: None }
+    }
+}
+
+impl Columns {
+    fn of(headings: &[&str]) -> Result<Self, TenMomentsError> {
+        let mut places: [Option<usize>; 10] = [None; 10];
+        // Of the mass, of the three that follow it, and of the inertia.
+        let mut units: [SharedUnit; 3] = Default::default();
+        let mut known: Option<(TenCentre, usize)> = None;
+        for (at, text) in headings.iter().enumerate() {
+            let heading = TenHeading::of(text).ok_or_else(|| {
+                let heading = shortened(text);
+                malformed(&format!(
+                    "column {heading:?} is none of the ten: they are mass; mass_centre_1_m or first_moment_1_kg_m and so on; \
+                     ixx, iyy, izz, ixy, ixz, iyz"
+                ))
+            })?;
+            if let Some(centre) = heading.centre {
+                let (other, first) = *known.get_or_insert((centre, at));
+                if other != centre {
+                    let (a, b) = (shortened(headings[first]), shortened(text));
+                    return Err(malformed(&format!(
+                        "columns {a:?} and {b:?}: the ten hold a mass centre or first moments, and not both"
+                    )));
+                }
+            }
+            let name = heading.field();
+            let unit = heading.unit.map_err(|bad| Box::new(bad.of(text, name)))?;
+            let shared = &mut units[which(heading.place)];
+            shared.with(name, unit).map_err(|message| malformed(&message))?;
+            if let Some(before) = places[heading.place].replace(at) {
+                let (a, b) = (shortened(headings[before]), shortened(text));
+                return Err(malformed(&format!("columns {a:?} and {b:?} both hold {name}")));
+            }
+        }
+        if let Some(lost) = places.iter().position(Option::is_none) {
+            let name = field(lost, known.map(|(centre, _)| centre));
+            return Err(malformed(&format!(
+                "there is no column of {name}: a header names all ten"
+            )));
+        }
+        let place = |i: usize| (places[i].unwrap_or(i), units[which(i)].si());
+        Ok(Self { places: std::array::from_fn(place), centre: known.map(|(centre, _)| centre) })
+    }
+}
+
+/// Which of the three units one of the ten is in.
+fn which(place: usize) -> usize {
+    match place {
+        0 => 0,
+        1..=3 => 1,
+        _ => 2,
+    }
+}
+
 fn malformed(message: &str) -> TenMomentsError {
     TenMomentsError::Malformed { message: message.trim_end().to_owned() }
 }
@@ -132,10 +220,19 @@ pub enum TenMomentsError {
         /// What it has.
         extension: String,
     },
+    /// A column of a number whose unit is not read.
+    #[error(transparent)]
+    Unit(#[from] Box<UnitError>),
     /// It does not hold the numbers.
     #[error("{message}")]
     Malformed {
         /// What is wrong.
         message: String,
     },
+}
+
+impl From<Refusal> for TenMomentsError {
+    fn from(refusal: Refusal) -> Self {
+        malformed(&refusal.problem.to_string())
+    }
 }

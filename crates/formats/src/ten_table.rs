@@ -1,29 +1,35 @@
 //! Tables of mass, mass centre and inertia: ten numbers a row.
 
 use crate::{
-    BodyError, MAX_BODIES, Products,
-    body::Number,
-    parts::heading::{Column, Heading, VALUES},
-    products_comment::stated_products,
-    rows::{Field, Rows},
+    BodyError, FileProblem, Products, UnitError,
+    body::{ENTRIES, Number, shortened},
+    csv,
+    error::Refusal,
+    parts::heading::VALUES,
+    rows::Field,
+    table_header::{Header, MASS, find_header, one_unit, unit_below},
+    ten_heading::{TenCentre, TenHeading},
     text::Text,
-    units::squeezed,
+    units::{BadUnit, SharedUnit, Unit},
 };
 
 /// A table with columns of mass, mass centre (or first moments) and inertia.
 ///
 /// ```
-/// use gyradius_formats::{Products, TenTable};
+/// use gyradius_formats::{Products, TenCentre, TenTable};
 ///
-/// let table = "mass_kg,cx_mm,cy_mm,cz_mm,ixx,iyy,izz\n2,0,0,100,0.1,0.1,0.1\n";
-/// let table = TenTable::read(table.as_bytes(), Products::TensorEntries).unwrap();
+/// let table = "mass_kg,cx_mm,cy_mm,cz_mm,ixx,iyy,izz,time\n2,0,0,100,0.1,0.1,0.1,7\n";
+/// let table = TenTable::read(table.as_bytes(), Products::TensorEntries)?;
+/// assert_eq!(table.centre(), Some(TenCentre::MassCentre));
 /// assert_eq!(table.rows()[0].values().unwrap()[3], 0.1);
-/// assert!(TenTable::read(b"ixx,iyy,izz\n1,1,1\n", Products::TensorEntries).is_none());
+/// assert_eq!(table.unused(), ["time"]);
+/// # Ok::<(), gyradius_formats::TenTableError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct TenTable {
     rows: Vec<TenRow>,
-    has_first_moments: bool,
+    centre: Option<TenCentre>,
+    unused: Vec<String>,
 }
 
 /// A row of such a table.
@@ -33,63 +39,105 @@ pub struct TenRow {
     values: Result<[f64; 10], BodyError>,
 }
 
+/// Why a table is not read as one of ten numbers.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TenTableError {
+    /// It is no table of inertias.
+    #[error(transparent)]
+    File(FileProblem),
+    /// A column of a number whose unit is not read.
+    #[error(transparent)]
+    Unit(#[from] Box<UnitError>),
+    /// Two columns for one number.
+    #[error("columns {first:?} and {second:?} both hold {field}: there must be one of them")]
+    Twice {
+        /// The number.
+        field: &'static str,
+        /// One heading.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// The mass centre in some columns and first moments in others.
+    #[error(
+        "column {centre:?} holds the mass centre and column {moment:?} a first moment: the three must be of one kind"
+    )]
+    Mixed {
+        /// One heading.
+        centre: String,
+        /// The other.
+        moment: String,
+    },
+    /// Some of the columns are there and others are not.
+    #[error("there is column {found:?} and no column of {missing}: the header must name both")]
+    Missing {
+        /// A column that is there.
+        found: String,
+        /// The number that is not.
+        missing: &'static str,
+    },
+}
+
+impl From<Refusal> for TenTableError {
+    fn from(refusal: Refusal) -> Self {
+        Self::File(refusal.problem)
+    }
+}
+
+/// The columns of the mass centre or of the first moments, and their unit in SI.
+struct Centre {
+    kind: TenCentre,
+    places: [usize; 3],
+    unit: f64,
+}
+
 impl TenTable {
-    /// The table, if the first row is a header with mass, the three of the mass centre or of the first moments, and the three moments of
-    /// inertia, and if it can be read as one; none of any other file.
-    #[must_use]
-    pub fn read(bytes: &[u8], products: Products) -> Option<Self> {
-        let text = Text::new(bytes, true).ok()?;
-        let mut rows = Rows::new(text.as_str());
-        let first = rows.next()?.ok()?;
-        let cell = |field: &Field| field.of(text.as_str());
-        let headings: Vec<Heading> = first.iter().map(|field| Heading::of(cell(field))).collect();
-        let bad_units = headings.iter().filter_map(|heading| heading.bad_unit(&headings));
-        if bad_units.into_iter().any(|(field, _)| VALUES.contains(&field))
-            || headings.iter().any(|heading| heading.is_lost_product(&headings))
-        {
-            return None;
-        }
-        let pairs = first.iter().zip(&headings);
-        let columns: Vec<Option<(usize, f64, bool)>> =
-            pairs.map(|(field, heading)| column(cell(field), heading)).collect();
-        let place = |value: usize| columns.iter().position(|c| c.is_some_and(|c| c.0 == value));
-        let places: [Option<usize>; 10] = std::array::from_fn(place);
-        let twice =
-            (0..10).any(|i| columns.iter().flatten().filter(|(value, ..)| *value == i).count() > 1);
-        if twice || places[..7].contains(&None) {
-            return None;
-        }
-        let has_first_moments = columns.iter().flatten().any(|(.., first_moment)| *first_moment);
-        let start = first.first().map_or(0, |field| field.start);
-        let sign = stated_products(&text, start).ok()?.unwrap_or(products).sign();
-        let mut found = Vec::new();
-        while let Some(fields) = rows.next() {
-            let fields = fields.ok()?;
-            if found.len() == MAX_BODIES {
-                return None;
-            }
-            let value = |i: usize| -> Result<f64, BodyError> {
-                let Some(place) = places[i] else { return Ok(0.0) };
-                let field = fields.get(place).ok_or(BodyError::Missing { field: VALUES[i] })?;
-                let unit = columns[place].map_or(1.0, |(_, unit, _)| unit);
-                let sign = if i < 7 { 1.0 } else { sign };
-                Ok(Number::parse(VALUES[i], cell(field), None)?.value * unit * sign)
+    /// The ten of every row, mass and inertia as [`InertiaFile`](crate::InertiaFile) reads them. A table of inertias without a mass centre, or
+    /// without a mass beside it, has no rows here.
+    ///
+    /// # Errors
+    /// It is no table of inertias; or it has some columns of a mass centre or of first moments and not all, two for one number, both kinds,
+    /// one in a unit that is not read, or first moments and no mass.
+    pub fn read(bytes: &[u8], products: Products) -> Result<Self, TenTableError> {
+        let text = Text::new(bytes, true)?;
+        let bodies = csv::read(&text, products)?;
+        let (header, mut rows) = find_header(&text)?;
+        let centre = Centre::of(&text, &header)?;
+        let unused = |(at, field): (usize, &Field)| {
+            let place = header.columns.iter().position(|column| *column == Some(at));
+            let is_used = match &centre {
+                Some(centre) => place.is_some() || centre.places.contains(&at),
+                None => place.is_some_and(|place| place != MASS),
             };
-            let mut values = [0.0; 10];
-            let read = (0..10).try_for_each(|i| {
-                values[i] = value(i)?;
-                Ok(())
-            });
-            let line = text.line(fields.first().map_or(0, |field| field.start));
-            found.push(TenRow { line, values: read.map(|()| values) });
+            let name = field.of(text.as_str()).trim();
+            (!is_used && !name.is_empty()).then(|| shortened(name))
+        };
+        let unused = header.row.iter().enumerate().filter_map(unused).collect();
+        let Some(Centre { kind, places, unit }) = centre else {
+            return Ok(Self { rows: Vec::new(), centre: None, unused });
+        };
+        let mut found = Vec::with_capacity(bodies.len());
+        for body in &bodies {
+            // The rows of the bodies, in their order.
+            let Some(Ok(row)) = rows.next() else { break };
+            let ten = || -> Result<[f64; 10], BodyError> {
+                let inertia = body.inertia()?;
+                let mut ten = [0.0; 10];
+                ten[0] = body.mass_kg().ok_or(BodyError::Missing { field: VALUES[0] })?;
+                let fields = kind.fields().into_iter().zip(places);
+                for (value, (name, at)) in ten[1..4].iter_mut().zip(fields) {
+                    let field = row.get(at).ok_or(BodyError::Missing { field: name })?;
+                    *value = Number::parse(name, field.of(text.as_str()), None)?.value * unit;
+                }
+                for (value, entry) in ten[4..].iter_mut().zip(ENTRIES) {
+                    *value = inertia[entry];
+                }
+                Ok(ten)
+            };
+            found.push(TenRow { line: body.line(), values: ten() });
         }
-        // Below a header whose units are in a row of their own nothing is read as in SI.
-        let is_unit = |row: &TenRow| matches!(row.values, Err(BodyError::NotANumber { .. }));
-        if found.len() > 1 && is_unit(&found[0]) && found[1..].iter().any(|row| row.values.is_ok())
-        {
-            return None;
-        }
-        Some(Self { rows: found, has_first_moments })
+        Ok(Self { rows: found, centre: Some(kind), unused })
     }
 
     /// The rows, in the order of the file.
@@ -98,10 +146,16 @@ impl TenTable {
         &self.rows
     }
 
-    /// Whether the header says m c in place of the mass centre.
+    /// What the rows have beside mass and inertia; nothing if the table has inertias alone.
     #[must_use]
-    pub fn has_first_moments(&self) -> bool {
-        self.has_first_moments
+    pub fn centre(&self) -> Option<TenCentre> {
+        self.centre
+    }
+
+    /// The headings of columns of which nothing was taken.
+    #[must_use]
+    pub fn unused(&self) -> &[String] {
+        &self.unused
     }
 }
 
@@ -121,27 +175,68 @@ impl TenRow {
     }
 }
 
-/// Which of the ten, its unit in SI, and whether it is a first moment.
-fn column(text: &str, heading: &Heading) -> Option<(usize, f64, bool)> {
-    match heading {
-        Heading::Column(Column::Value(value, unit)) => Some((*value, *unit, false)),
-        Heading::Column(_)
-        | Heading::Size(_)
-        | Heading::Unit(..)
-        | Heading::Product
-        | Heading::NoDeviation
-        | Heading::Other => first_moment(&squeezed(text)).map(|value| (value, 1.0, true)),
+impl Centre {
+    fn of(text: &Text, header: &Header) -> Result<Option<Self>, TenTableError> {
+        let name = |at: usize| header.row[at].of(text.as_str());
+        let of_another = |at: usize| header.columns.contains(&Some(at));
+        let mut found: Vec<(usize, TenCentre, TenHeading)> = Vec::new();
+        for at in (0..header.row.len()).filter(|at| !of_another(*at)) {
+            let heading = TenHeading::of(name(at));
+            found.extend(heading.and_then(|heading| Some((at, heading.centre?, heading))));
+        }
+        // Beside a column of a number, its name with other words is another column.
+        let whole: Vec<usize> =
+            found.iter().filter(|(.., h)| h.unit.is_ok()).map(|(.., h)| h.place).collect();
+        found.retain(|(.., heading)| match &heading.unit {
+            Err(bad) => bad.is_certain || !whole.contains(&heading.place),
+            Ok(_) => true,
+        });
+        let Some(&(first, kind, _)) = found.first() else { return Ok(None) };
+        if header.columns[MASS].is_none() {
+            return match kind {
+                // The inertia is about the mass centre, wherever that is.
+                TenCentre::MassCentre => Ok(None),
+                TenCentre::FirstMoments => Err(TenTableError::missing(name(first), VALUES[0])),
+            };
+        }
+        let mut places: [Option<usize>; 3] = [None; 3];
+        let mut shared = SharedUnit::default();
+        for (at, of, heading) in found {
+            if of != kind {
+                let (first, other) = (shortened(name(first)), shortened(name(at)));
+                let (centre, moment) = match kind {
+                    TenCentre::MassCentre => (first, other),
+                    TenCentre::FirstMoments => (other, first),
+                };
+                return Err(TenTableError::Mixed { centre, moment });
+            }
+            let field = heading.field();
+            let bad = |bad: BadUnit| Box::new(bad.of(name(at), field));
+            let below = header.units.as_ref().and_then(|units| units.get(at));
+            let below =
+                below.map_or(Ok(Unit::none()), |cell| unit_below(text, cell, kind.dimension()));
+            let unit = one_unit(heading.unit.map_err(bad)?, below.map_err(bad)?);
+            let malformed = |message| TenTableError::File(FileProblem::Malformed { message });
+            shared.with(field, unit.map_err(malformed)?).map_err(malformed)?;
+            if let Some(before) = places[heading.place - 1].replace(at) {
+                let (first, second) = (shortened(name(before)), shortened(name(at)));
+                return Err(TenTableError::Twice { field, first, second });
+            }
+        }
+        match places {
+            [Some(a), Some(b), Some(c)] => {
+                Ok(Some(Self { kind, places: [a, b, c], unit: shared.si() }))
+            }
+            _ => {
+                let lost = places.iter().position(Option::is_none).unwrap_or(0);
+                Err(TenTableError::missing(name(first), kind.fields()[lost]))
+            }
+        }
     }
 }
 
-/// m c in kg·m: `first_moment_1_kg_m`, `mcx`, `hx`.
-fn first_moment(plain: &str) -> Option<usize> {
-    let plain = plain.strip_suffix("kgm").unwrap_or(plain);
-    let axis = ["firstmoment", "mc", "h"].iter().find_map(|name| plain.strip_prefix(name))?;
-    match axis {
-        "x" | "1" => Some(1),
-        "y" | "2" => Some(2),
-        "z" | "3" => Some(3),
-        _ => None,
+impl TenTableError {
+    fn missing(found: &str, missing: &'static str) -> Self {
+        Self::Missing { found: shortened(found), missing }
     }
 }

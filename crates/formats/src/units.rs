@@ -22,6 +22,8 @@ const LENGTHS: [(&str, f64); 5] =
 pub(crate) enum Dimension {
     Mass,
     Length,
+    /// Mass times length.
+    FirstMoment,
     Inertia,
 }
 
@@ -57,24 +59,53 @@ impl Unit {
     }
 }
 
+/// The unit of some columns that are in one: of those that state none too.
+#[derive(Debug, Default)]
+pub(crate) struct SharedUnit(Option<(&'static str, Unit)>);
+
+impl SharedUnit {
+    /// With what the column of a number states; why not, if another states another.
+    pub(crate) fn with(&mut self, name: &'static str, stated: Unit) -> Result<(), String> {
+        if stated.text.is_empty() {
+            return Ok(());
+        }
+        let (first, known) = self.0.get_or_insert_with(|| (name, stated.clone()));
+        if known.si == stated.si {
+            return Ok(());
+        }
+        let (known, stated) = (&known.text, stated.text);
+        Err(format!("{first} is in {known} but {name} in {stated}: one unit for all"))
+    }
+
+    pub(crate) fn si(&self) -> f64 {
+        self.0.as_ref().map_or(1.0, |(_, unit)| unit.si)
+    }
+}
+
 impl Dimension {
     /// Every unit that a text without marks may be, and what it is in SI. A blank counts: it ends a word.
     fn readings(self, plain: &str) -> Vec<(String, f64)> {
         let masses = || MASSES.iter().map(|(name, kg)| (*name, *kg));
         let lengths = || LENGTHS.iter().map(|(name, m2)| (*name, *m2));
         let whole = |(name, _): &(&str, f64)| *name == plain;
+        let products = |power: &'static str| {
+            masses().flat_map(move |mass| lengths().map(move |length| (mass, length))).filter(
+                move |((mass, _), (length, _))| {
+                    let rest = plain.strip_prefix(mass).map(str::trim_start);
+                    let rest = rest.and_then(|rest| rest.strip_prefix(length));
+                    rest.is_some_and(|rest| rest.trim_start() == power)
+                },
+            )
+        };
         match self {
             Self::Mass => masses().filter(whole).map(|(name, kg)| (name.to_owned(), kg)).collect(),
             Self::Length => {
                 lengths().filter(whole).map(|(name, m2)| (name.to_owned(), m2.sqrt())).collect()
             }
-            Self::Inertia => masses()
-                .flat_map(|mass| lengths().map(move |length| (mass, length)))
-                .filter(|((mass, _), (length, _))| {
-                    let rest = plain.strip_prefix(mass).map(str::trim_start);
-                    let rest = rest.and_then(|rest| rest.strip_prefix(length));
-                    rest.is_some_and(|rest| rest.trim_start() == "2")
-                })
+            Self::FirstMoment => products("")
+                .map(|((mass, kg), (length, m2))| (format!("{mass}·{length}"), kg * m2.sqrt()))
+                .collect(),
+            Self::Inertia => products("2")
                 .map(|((mass, kg), (length, m2))| (format!("{mass}·{length}²"), kg * m2))
                 .collect(),
         }
@@ -88,6 +119,7 @@ impl Dimension {
         match self {
             Self::Mass => masses(),
             Self::Length => lengths(""),
+            Self::FirstMoment => format!("{}, times {}", masses(), lengths("")),
             Self::Inertia => format!("{}, times {}", masses(), lengths("²")),
         }
     }

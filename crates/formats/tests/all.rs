@@ -6,4 +6,5 @@ mod mjcf_geoms;
 mod robots;
 mod samples;
 mod slips;
+mod ten;
 mod units;

@@ -107,16 +107,6 @@ pub enum PartsProblem {
     /// A number is missing, none, or not finite, or the row has too many or too few.
     #[error(transparent)]
     Number(#[from] BodyError),
-    /// A word that is none of those that are known.
-    #[error("{field} = {value:?}: it must be {allowed}")]
-    Word {
-        /// The column.
-        field: &'static str,
-        /// What it holds, shortened.
-        value: String,
-        /// What it may hold.
-        allowed: &'static str,
-    },
     /// A shape that cannot be made.
     #[error("shape: {message}")]
     Shape {

@@ -56,7 +56,7 @@ pub(crate) enum Column {
 
 /// Some of the ten: from, and how many.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Group(pub(super) usize, pub(super) usize);
+pub(crate) struct Group(pub(crate) usize, pub(crate) usize);
 
 /// What a standard deviation is in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,7 +122,7 @@ impl Heading {
 }
 
 /// Whether a heading speaks of how uncertain one of the ten numbers is, as `mass_std`.
-fn is_spread(text: &str) -> bool {
+pub(crate) fn is_spread(text: &str) -> bool {
     spread::has_word(text) && spread::words(&text.to_lowercase()).any(|word| group(word).is_some())
 }
 
@@ -177,7 +177,7 @@ fn number(plain: &str) -> Option<(Group, bool)> {
     Some((group, before.is_some() || after.is_some()))
 }
 
-fn group(name: &str) -> Option<Group> {
+pub(crate) fn group(name: &str) -> Option<Group> {
     let of = |plain: &str| match plain {
         "x" | "1" => Some(Group(1, 1)),
         "y" | "2" => Some(Group(2, 1)),

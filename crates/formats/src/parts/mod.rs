@@ -152,8 +152,7 @@ impl PartsTable {
             }
         }
         let has_parents = has(Column::Parent);
-        let start = first.first().map_or(0, |field| field.start);
-        let products = stated_products(&text, start)?.or(products);
+        let products = stated_products(&text)?.or(products);
         let mut found = Vec::new();
         while let Some(fields) = next(&text, &mut rows)? {
             let line = line_of(&text, &fields);

@@ -266,16 +266,8 @@ impl Cells<'_> {
                 return Err(BodyError::Missing { field: VALUES[4 + e] }.into());
             }
         }
-        let sign = match self.text(Column::Products).map(str::to_lowercase).as_deref() {
-            None | Some("") => self.products,
-            Some("-") => Some(Products::TensorEntries),
-            Some("+") => Some(Products::Integrals),
-            Some(word) => Some(Products::parse(word).ok_or_else(|| PartsProblem::Word {
-                field: "products",
-                value: shortened(word),
-                allowed: "tensor, integrals, - or +",
-            })?),
-        };
+        let stated = self.text(Column::Products).map_or(Ok(None), Products::of_cell)?;
+        let sign = stated.or(self.products);
         let mut six = given.map(Option::unwrap_or_default);
         let product = (3..6).find(|e| six[*e] != 0.0);
         match (sign, product) {
@@ -366,7 +358,7 @@ fn boolean(field: &'static str, word: &str) -> Result<bool, PartsProblem> {
         "false" | "no" | "0" | "f" => Ok(false),
         _ => {
             let (value, allowed) = (shortened(word), "yes or no");
-            Err(PartsProblem::Word { field, value, allowed })
+            Err(BodyError::Word { field, value, allowed }.into())
         }
     }
 }

@@ -22,6 +22,7 @@ struct Document {
     samples: usize,
     set_aside: usize,
     rounded: usize,
+    unused_columns: Vec<String>,
     matching: MatchingJson,
     roots: Vec<RootJson>,
     axes: AxesJson,
@@ -136,6 +137,7 @@ pub(super) fn text(
         samples: fit.count(),
         set_aside: table.aside,
         rounded: table.rounded,
+        unused_columns: table.unused.clone(),
         matching: MatchingJson {
             reordered: matching.swapped,
             turned_round: matching.flipped,

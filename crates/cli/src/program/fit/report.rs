@@ -49,6 +49,13 @@ fn write_text(
     for line in wrapped(&first) {
         writeln!(out, "{line}")?;
     }
+    if !table.unused.is_empty() {
+        let columns = if table.unused.len() == 1 { "column" } else { "columns" };
+        let said = format!("nothing was taken from the {columns} {}", table.unused.join(", "));
+        for line in wrapped(&said) {
+            writeln!(out, "{line}")?;
+        }
+    }
     let matching = fit.matching();
     writeln!(
         out,

@@ -3,10 +3,11 @@
 use gyradius_dispersion::TenParameters;
 use gyradius_estimation::TenForm;
 use gyradius_formats::{
-    Body, BodyError, FileError, InertiaFile, Products, TOLERANCE, TenRow, TenTable, judge,
+    Body, BodyError, FileError, Format, InertiaFile, Products, TOLERANCE, TenCentre, TenRow,
+    TenTable, TenTableError, judge,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Repair, RepairMethod};
-use std::{collections::HashMap, fs, path::Path};
+use std::{collections::HashMap, path::Path};
 
 /// Why a table is not fitted.
 #[derive(Debug, thiserror::Error)]
@@ -20,10 +21,22 @@ pub(super) enum TableError {
          `gyradius check` lists them)"
     )]
     Impossible { place: String, index: usize, reason: String, more: String },
+    #[error("{place}: {error}")]
+    Ten { place: String, error: TenTableError },
     #[error(
         "{place}: there are no columns of mass and {centre}: a CSV with {names} in its header has them"
     )]
     NoTen { place: String, centre: &'static str, names: String },
+    #[error(
+        "{place}: its columns are those of a mass centre, and --parameters linear is of first moments m c: \
+         the option must be left out, or be natural"
+    )]
+    NotLinear { place: String },
+    #[error(
+        "{place}: it has columns of first moments m c: --parameters linear must say that the inertia is \
+         about the origin, where they are taken"
+    )]
+    FirstMoments { place: String },
 }
 
 /// The samples of a file.
@@ -38,6 +51,8 @@ pub(super) struct Table {
     pub(super) rounded: usize,
     /// The same samples with mass and mass centre, if the table has them.
     pub(super) bodies: Option<Vec<MassProperties>>,
+    /// The headings of columns of which nothing was taken.
+    pub(super) unused: Vec<String>,
 }
 
 impl Table {
@@ -60,13 +75,14 @@ pub(super) fn read(
 ) -> Result<Table, TableError> {
     let file = InertiaFile::read(path, products)?;
     let place = path.display().to_string();
-    let ten = ten(path, &place, products, form)?;
+    let (ten, unused) = ten(&file, &place, products, form)?;
     let mut table = Table {
         samples: Vec::with_capacity(file.bodies().len()),
         lines: Vec::with_capacity(file.bodies().len()),
         aside: 0,
         rounded: 0,
         bodies: ten.is_some().then(Vec::new),
+        unused,
     };
     let mut refused: Option<(usize, &Body, String)> = None;
     for (index, body) in file.bodies().iter().enumerate() {
@@ -151,34 +167,41 @@ fn row_error(place: String, error: &BodyError) -> TableError {
 /// The ten numbers of each line, and what they are.
 type Lines = (HashMap<usize, Result<[f64; 10], BodyError>>, TenForm);
 
+/// The lines of a table that has more than inertias, and the columns of it that are not used.
 fn ten(
-    path: &Path,
+    file: &InertiaFile,
     place: &str,
     products: Products,
     form: Option<TenForm>,
-) -> Result<Option<Lines>, TableError> {
-    let is_table = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
-    let bytes = if is_table { fs::read(path).unwrap_or_default() } else { Vec::new() };
-    let table = TenTable::read(&bytes, products).filter(|table| {
-        // Without a word first moments are none of the columns.
-        form.is_some() || !table.has_first_moments()
-    });
-    match (table, form) {
-        (None, None) => Ok(None),
+) -> Result<(Option<Lines>, Vec<String>), TableError> {
+    let place = place.to_owned();
+    let is_table = file.format() == Format::Csv;
+    let table = is_table.then(|| TenTable::read(file.bytes(), products)).transpose();
+    let table = table.map_err(|error| TableError::Ten { place: place.clone(), error })?;
+    let centre = table.as_ref().and_then(TenTable::centre);
+    let form = match (centre, form) {
+        (Some(TenCentre::MassCentre), Some(TenForm::Linear)) => {
+            return Err(TableError::NotLinear { place });
+        }
+        (Some(TenCentre::FirstMoments), None | Some(TenForm::Natural)) => {
+            return Err(TableError::FirstMoments { place });
+        }
+        (Some(TenCentre::MassCentre), _) => Some(TenForm::Natural),
+        (Some(TenCentre::FirstMoments), Some(TenForm::Linear)) => Some(TenForm::Linear),
+        (None, None) => None,
         (None, Some(form)) => {
             let centre = match form {
                 TenForm::Linear => "first moments",
                 TenForm::Natural => "mass centre",
             };
             let names = form.columns()[..4].join(",");
-            Err(TableError::NoTen { place: place.to_owned(), centre, names })
+            return Err(TableError::NoTen { place, centre, names });
         }
-        (Some(table), form) => {
-            let of = |row: &TenRow| (row.line(), row.values().copied().map_err(Clone::clone));
-            let lines = table.rows().iter().map(of).collect();
-            Ok(Some((lines, form.unwrap_or(TenForm::Natural))))
-        }
-    }
+    };
+    let unused = table.as_ref().map_or_else(Vec::new, |table| table.unused().to_vec());
+    let of = |row: &TenRow| (row.line(), row.values().copied().map_err(Clone::clone));
+    let lines = |table: TenTable| table.rows().iter().map(of).collect();
+    Ok((table.zip(form).map(|(table, form)| (lines(table), form)), unused))
 }
 
 /// Mass, mass centre and inertia about it; none of a mass that is not positive.
