@@ -247,8 +247,8 @@ proptest! {
         };
         for i in 0..10 {
             prop_assert!(is_near(read.mean()[i], numbers[0][i] * unit(i)), "{text}{i}");
-            for j in 0..10 {
-                let expected = numbers[1 + i][j] * unit(i) * unit(j);
+            for (j, number) in numbers[1 + i].iter().enumerate() {
+                let expected = number * unit(i) * unit(j);
                 prop_assert!(is_near(read.covariance()[i][j], expected), "{text}{i} {j}");
             }
         }
