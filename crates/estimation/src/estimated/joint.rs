@@ -38,6 +38,10 @@ const PATIENCE: usize = 2;
 const STILL: f64 = 1e-12;
 /// Rotations by more than this, and lengths with a larger share of deviation, are not of first order.
 const WIDE: f64 = 0.3;
+/// The first and the last step of the refinement, as powers of two of a deviation, and what a step must bring: so they end.
+const FIRST: f64 = 1.0;
+const LAST: f64 = 0.1;
+const BETTER: f64 = 3e-3;
 /// The largest coefficient of correlation.
 const MOST: f64 = 1.0 - 1e-9;
 
@@ -208,7 +212,67 @@ impl Problem for Linear {
 impl Joint {
     /// How far its moments are from those of an estimate.
     pub(super) fn off(&self, estimate: &TenEstimate) -> Option<f64> {
-        Some(Gaps::of(estimate, &moments(&self.law([1.0, 1.0])?, estimate.form())?).off())
+        self.off_about(self.axes_law()?, estimate)
+    }
+
+    fn off_about(&self, axes: AxesLaw, estimate: &TenEstimate) -> Option<f64> {
+        let law = self.law_about(axes, [1.0, 1.0])?;
+        Some(Gaps::of(estimate, &moments(&law, estimate.form())?).off())
+    }
+
+    /// The nearest to an estimate that steps along one mean or one deviation after the other lead to. Where first order leads nowhere, or all
+    /// deviations were made small together, each of them by itself may still be better.
+    pub(super) fn refined(mut self, estimate: &TenEstimate) -> Option<Self> {
+        // The law of the axes takes most of the time, and most steps leave it as it is.
+        let mut axes = self.axes_law()?;
+        let mut off = self.off_about(axes.clone(), estimate)?;
+        let mut step = FIRST;
+        while step > LAST {
+            let mut is_better = false;
+            for (i, is_mean) in (0..=SCALARS).flat_map(|i| [(i, true), (i, false)]) {
+                for sign in [1.0, -1.0] {
+                    let other = if is_mean {
+                        self.with_mean(i, sign * step)
+                    } else {
+                        self.with_deviation(i, libm::exp2(sign * step))
+                    };
+                    let Some(other) = other else { continue };
+                    let about = if i < SCALARS { Some(axes.clone()) } else { other.axes_law() };
+                    let Some(about) = about else { continue };
+                    match other.off_about(about.clone(), estimate) {
+                        Some(found) if found < (1.0 - BETTER) * off => {
+                            (self, axes, off, is_better) = (other, about, found, true);
+                            break;
+                        }
+                        Some(_) | None => {}
+                    }
+                }
+            }
+            if !is_better {
+                step *= 0.5;
+            }
+        }
+        Some(self)
+    }
+
+    /// With the mean of a scalar moved by so many of its deviations; none of what does not vary or is no scalar, or where it would change
+    /// its sign.
+    fn with_mean(&self, i: usize, by: f64) -> Option<Self> {
+        let mut mean = self.mean;
+        let deviation = self.spread[(i, i)].max(0.0).sqrt();
+        mean[i] += by * deviation;
+        let is_positive = i >= 1 && i < 4 || mean[i] > 0.0 && self.mean[i] > 0.0;
+        (i < SCALARS && deviation > 0.0 && is_positive).then(|| Self { mean, ..self.clone() })
+    }
+
+    /// With the deviation of a scalar multiplied by a factor, or beyond these those of the rotations together.
+    fn with_deviation(&self, i: usize, factor: f64) -> Option<Self> {
+        let mut joint = self.clone();
+        for own in i..if i < SCALARS { i + 1 } else { 10 } {
+            joint.spread.row_mut(own).scale_mut(factor);
+            joint.spread.column_mut(own).scale_mut(factor);
+        }
+        (joint.spread != self.spread).then_some(joint)
     }
 
     /// Means and axes after a step.
@@ -234,7 +298,11 @@ impl Joint {
     }
 
     /// The law, in units of a mass and a length that are so much in SI.
-    pub(super) fn law(&self, [mass, length]: [f64; 2]) -> Option<MassPropertiesLaw> {
+    pub(super) fn law(&self, units: [f64; 2]) -> Option<MassPropertiesLaw> {
+        self.law_about(self.axes_law()?, units)
+    }
+
+    fn law_about(&self, axes: AxesLaw, [mass, length]: [f64; 2]) -> Option<MassPropertiesLaw> {
         let deviation = |i: usize| self.spread[(i, i)].max(0.0).sqrt();
         let mass = ScalarLaw::positive(self.mean[0] * mass, deviation(0) * mass).ok()?;
         let of_length = |i: usize| {
@@ -251,7 +319,7 @@ impl Joint {
         let centre =
             |i: usize| ScalarLaw::normal(self.mean[i] * length, deviation(i) * length).ok();
         let lengths = [of_length(4)?, of_length(5)?, of_length(6)?];
-        let tensor = TensorLaw::gyration_lengths(lengths, self.axes_law()?);
+        let tensor = TensorLaw::gyration_lengths(lengths, axes);
         let centre = [centre(1)?, centre(2)?, centre(3)?];
         let law = MassPropertiesLaw::new(mass, centre, tensor).ok()?;
         let mut pairs = Vec::new();

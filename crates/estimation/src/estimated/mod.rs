@@ -42,7 +42,8 @@ const INSIDE: [f64; 3] = [0.3, 0.03, 0.003];
 /// 3. [`MassPropertiesLaw`], of mass, mass centre, gyration lengths and axes, has 44 free numbers: what it has not are the 21
 ///    covariances of mass, mass centre and lengths with rotations of the axes. Least squares on the moments of the law
 ///    of step 2; where the axes are not determined or lengths reach zero, a fit to 4,000 draws of it is taken if that
-///    is nearer, and where all are far off, a narrow law about the nearest body.
+///    is nearer, and where all are far off, a narrow law about the nearest body. The nearest of these is then refined along each
+///    mean and each deviation.
 ///
 /// # Limits
 /// The covariances are differences of products: deviations below 1e-6 of the numbers lose digits, and so do those of bodies that are far from the
@@ -107,7 +108,11 @@ impl EstimatedBody {
             joint::matched(&target, &unitless.form().body(target.mean()).unwrap_or(start))
         });
         let narrow = (off > POOR).then(|| joint::narrow(&unitless, &body)).flatten();
-        let own = [own, other, narrow].into_iter().flatten().filter_map(|joint| {
+        let own = [own, other, narrow].into_iter().flatten();
+        let by_off = own.filter_map(|joint| Some((joint.off(&unitless)?, joint)));
+        let own = by_off.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, joint)| joint);
+        let own = if off > POOR { own.and_then(|joint| joint.refined(&unitless)) } else { own };
+        let own = own.into_iter().filter_map(|joint| {
             let distance = distance_of(&unitless, &joint.law([1.0, 1.0])?)?;
             Some((joint.law(units)?, distance))
         });

@@ -1,5 +1,6 @@
 //! Laws of estimates.
 
+use gyradius_dispersion::{JointScalar, ScalarLaw};
 use gyradius_inertia::Shape;
 use nalgebra::{UnitQuaternion, Vector3};
 use rand::RngExt;
@@ -353,4 +354,50 @@ fn no_concentrated_law_is_nearer_than_the_one_found() {
 fn totals(known: &TenEstimate) -> [f64; 2] {
     let found = EstimatedBody::new(known).unwrap();
     [found.joint().unwrap().1.total(), found.log_cholesky().unwrap().1.total()]
+}
+
+/// Estimates of some of which the joint law had deviations that were all made small together: no other deviation of the mass or the mass
+/// centre is nearer.
+#[test]
+fn no_other_deviation_is_nearer() {
+    // Here they were half of what they should be, and the law 1.85 off.
+    let mean = [95.0, 0.745, 0.516, 1.079, 669.4, 842.7, 552.1, 94.3, 271.1, -119.6];
+    let s = [1.333, 0.1333, 0.0653, 0.0707, 1.528, 5.781, 4.567, 5.851, 6.204, 4.865];
+    let natural = |mean: Ten, s: &Ten| estimate(TenForm::Natural, mean, s, &Matrix10::identity());
+    let mut known = vec![natural(Ten::from(mean), &Ten::from(s))];
+    let mut rng = ChaCha8Rng::seed_from_u64(29);
+    for _ in 0..10 {
+        let body = random_body(&mut rng);
+        let percent = 10_f64.powf(rng.random_range(0.5..1.2));
+        let s = deviations(TenForm::Natural, &body, percent);
+        let s = s.map(|x| x * rng.random_range(0.1..1.0));
+        known.push(natural(TenForm::Natural.of(body.into()), &s));
+    }
+    for (case, known) in known.iter().enumerate() {
+        let found = EstimatedBody::new(known).unwrap();
+        let (law, distance) = found.joint().unwrap();
+        assert!(case > 0 || distance.total() < 1.6, "{distance:?}");
+        let all = JointScalar::ALL.into_iter().enumerate();
+        let pairs = all.clone().flat_map(|a| all.clone().take(a.0).map(move |b| (a, b)));
+        let coefficient = |i: usize, j: usize| law.correlation().coefficient(i, j);
+        let pairs: Vec<_> = pairs.map(|((i, a), (j, b))| (a, b, coefficient(i, j))).collect();
+        for i in 0..4 {
+            for factor in [0.5, 2.0] {
+                let by = |j: usize| if i == j { factor } else { 1.0 };
+                let [mass, x, y, z] =
+                    [law.mass(), &law.centre()[0], &law.centre()[1], &law.centre()[2]];
+                let mass = ScalarLaw::positive(mass.mean(), mass.deviation() * by(0)).unwrap();
+                let normal =
+                    |of: &ScalarLaw, j| ScalarLaw::normal(of.mean(), of.deviation() * by(j));
+                let centre = [normal(x, 1), normal(y, 2), normal(z, 3)].map(Result::unwrap);
+                let other = MassPropertiesLaw::new(mass, centre, law.tensor().clone()).unwrap();
+                let other = other.with_correlation(&pairs).unwrap();
+                let other = distance_of(known, &other).unwrap().total();
+                assert!(
+                    other > 0.99 * distance.total(),
+                    "{case} {i} {factor}: {other} {distance:?}"
+                );
+            }
+        }
+    }
 }
