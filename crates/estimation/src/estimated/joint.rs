@@ -261,7 +261,7 @@ impl Joint {
         let mut mean = self.mean;
         let deviation = self.spread[(i, i)].max(0.0).sqrt();
         mean[i] += by * deviation;
-        let is_positive = i >= 1 && i < 4 || mean[i] > 0.0 && self.mean[i] > 0.0;
+        let is_positive = (1..4).contains(&i) || (mean[i] > 0.0 && self.mean[i] > 0.0);
         (i < SCALARS && deviation > 0.0 && is_positive).then(|| Self { mean, ..self.clone() })
     }
 
