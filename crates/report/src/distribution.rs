@@ -260,10 +260,11 @@ fn failed(model: &str, judgement: &Judgement) -> Option<String> {
 /// The figure in words.
 fn description(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
     let mut text = format!(
-        "Distribution of {}, which must be {} in {} of all runs.",
+        "Distribution of {}, which must be {} in {} of {}.",
         requirement.quantity(),
         requirement.bound(),
-        share_in_percent(requirement.probability())
+        share_in_percent(requirement.probability()),
+        requirement.failed_runs().of_which()
     );
     for (model, judgement) in models {
         let points = points(judgement);

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Document, Figure, HistogramGrid, PageCell, PageTable, Panel, Picture, Section, Series, Text,
+    kinds::most_frequent,
     numbers::{interval, optional, with_unit},
     share::percent,
 };
@@ -134,9 +135,19 @@ impl Overview {
         &[FIGURE]
     }
 
-    /// The page.
+    /// The page, which says which runs failed.
     #[must_use]
     pub fn document(&self) -> Document {
+        self.warning_of(self.models.iter().filter_map(failures))
+    }
+
+    /// The page behind sections that say which runs failed.
+    #[must_use]
+    pub fn document_led_by(&self, sections: impl IntoIterator<Item = Section>) -> Document {
+        self.warning_of([]).led_by(sections)
+    }
+
+    fn warning_of(&self, warnings: impl IntoIterator<Item = Text>) -> Document {
         let mut lead = Text::default();
         for (i, model) in self.models.iter().enumerate() {
             let runs = if model.runs == 1 { "run" } else { "runs" };
@@ -153,7 +164,7 @@ impl Overview {
             table = table.numbers(model.name.as_str(), |q| spread(q.samples.get(i)));
         }
         let results = Section::new("Results")
-            .warnings(self.models.iter().filter_map(failures))
+            .warnings(warnings)
             .paragraph(
                 "Mean ± standard deviation, and the range from the 5th to the 95th percentile.",
             )
@@ -233,8 +244,7 @@ fn of_panels(panels: &[Option<Panel<'_>>]) -> Option<Figure> {
 
 fn failures(model: &Model) -> Option<Text> {
     let failed = model.failed.filter(|failed| failed.count > 0)?;
-    let kinds = model.failures.iter().take(5).map(|(kind, count)| format!("{count} × {kind}"));
-    let kinds = kinds.collect::<Vec<_>>().join("; ");
+    let kinds = most_frequent(&model.failures).join("; ");
     let share = format!("{}: {} of the runs failed", model.name, percent(&failed));
     Some(Text::default().strong(share).plain(format!(" and have no results: {kinds}.")))
 }

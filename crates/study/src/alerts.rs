@@ -1,7 +1,7 @@
 //! What a reader should know before the results: only what is so.
 
 use gyradius_campaign::{SampleSummary, Table};
-use gyradius_report::{Section, Text, significant};
+use gyradius_report::{Section, Text, most_frequent, significant};
 use gyradius_statistics::Survey;
 use serde::{Deserialize, Serialize};
 
@@ -90,12 +90,10 @@ impl Alert {
     fn text(&self) -> Text {
         match self {
             Self::Failed { model, failed, runs, kinds } => {
-                let kinds = kinds.iter().take(5);
-                let kinds: String =
-                    kinds.map(|(reason, count)| format!("{count} × {reason}; ")).collect();
+                let kinds = most_frequent(kinds).join("; ");
                 Text::default()
                     .strong(format!("{model}: {failed} of {runs} runs failed"))
-                    .plain(format!(" and are left out of means, deviations and percentiles: {kinds}see "))
+                    .plain(format!(" and are left out of means, deviations and percentiles: {kinds}; see "))
                     .code("status")
                     .plain(" in the run table.")
             }

@@ -1,8 +1,8 @@
 //! Requirements of a scenario: checked, judged by the runs, and told first in the report.
 
 use gyradius_campaign::{
-    Bound, Column, Judgement, Judging, Looks, Measured, Requirement, RunBeyond, Runs, Table,
-    share_in_percent,
+    Bound, Column, FailedRuns, Judgement, Judging, Looks, Measured, Requirement, RunBeyond, Runs,
+    Table, share_in_percent,
 };
 use gyradius_report::{
     Drawing, PageCell, PageTable, Section, Text, convergence_figure, distribution_figure,
@@ -138,10 +138,11 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
         .words("requirement", |judged| {
             let requirement = judged.judgement.requirement();
             let text = format!(
-                "{} {}, in {} of all runs, with {} confidence",
+                "{} {}, in {} of {}, with {} confidence",
                 requirement.quantity(),
                 requirement.bound(),
                 share_in_percent(requirement.probability()),
+                requirement.failed_runs().of_which(),
                 share_in_percent(requirement.confidence().level())
             );
             PageCell::from(Text::default().strong(requirement.name()))
@@ -156,7 +157,9 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
                 |allowed| format!("{allowed} allowed"),
             );
             let failures = format!("{} of {}", judgement.failures(), judgement.counted());
-            PageCell::from(Text::from(failures)).line(Text::default().quiet(may))
+            let cell = PageCell::from(Text::from(failures)).line(Text::default().quiet(may));
+            let without = without_number(judgement).into_iter();
+            without.fold(cell, |cell, words| cell.line(Text::default().quiet(words)))
         })
         .numbers("bound that the share keeps", |judged| {
             judged.judgement.tolerance().map_or_else(|| "–".to_owned(), bound)
@@ -185,6 +188,13 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
                  standard deviations σ of the quantity. The last column is the producer's side: in which share of all runs a \
                  vehicle must keep the requirement, to pass nine times in ten with as many runs.";
     let mut notes = vec![Text::from(rests)];
+    if head.requirements.iter().any(|judged| judged.judgement.runs_without_number() > 0) {
+        notes.push(Text::from(
+            "A run has no number if it failed, or if it has no value of the quantity, as there is no time of a contact that does not \
+             happen. Such runs count against a requirement, unless the scenario leaves them out of it: shares are then of the \
+             runs that have a number.",
+        ));
+    }
     if let Some(ended) = &head.ended {
         notes.push(Text::from(format!(
             "{ended} {}. Verdicts, bounds and intervals of the requirements are those of a rule that may be asked after any number of \
@@ -333,6 +343,16 @@ fn verdict(judged: &Judged) -> PageCell {
     }
 }
 
+/// What becomes of the runs without a number, if there are any.
+fn without_number(judgement: &Judgement) -> Option<String> {
+    let (without, runs) = (judgement.runs_without_number(), judgement.runs());
+    let fate = match judgement.requirement().failed_runs() {
+        FailedRuns::Against => "counted against it",
+        FailedRuns::LeftOut => "left out",
+    };
+    (without > 0).then(|| format!("{without} of {runs} have no number: {fate}"))
+}
+
 fn bound(bound: Bound) -> String {
     match bound {
         Bound::AtMost(limit) => format!("≤ {}", significant(limit, 5)),
@@ -342,3 +362,6 @@ fn bound(bound: Bound) -> String {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -356,6 +356,7 @@ impl fmt::Display for Judgement {
         let (counted, requirement) = (self.counted, &self.requirement);
         let (share, confidence) = (requirement.probability(), requirement.confidence().level());
         let (share, confidence) = (share_in_percent(share), share_in_percent(confidence));
+        let of_which = requirement.failed_runs().of_which();
         writeln!(f, "  {}", self.line())?;
         if let Verdict::Undecided { if_no_more_fail, at_this_rate } = self.verdict {
             let met = |runs: u64, if_so: &str| {
@@ -380,7 +381,7 @@ impl fmt::Display for Judgement {
         match self.tolerance {
             Some(bound) => writeln!(
                 f,
-                "  bound        {share} of all runs are {}, with {confidence} confidence",
+                "  bound        {share} of {of_which} are {}, with {confidence} confidence",
                 bound.short()
             )?,
             None => writeln!(f, "  bound        none: too few runs, or too many failed")?,
@@ -404,7 +405,7 @@ impl fmt::Display for Judgement {
             let s = if counted == 1 { "" } else { "s" };
             writeln!(
                 f,
-                "  to pass      a vehicle that keeps it in {} of all runs passes {counted} run{s} nine times in ten",
+                "  to pass      a vehicle that keeps it in {} of {of_which} passes {counted} run{s} nine times in ten",
                 share_in_percent(good)
             )?;
         }

@@ -80,6 +80,17 @@ pub enum FailedRuns {
     LeftOut,
 }
 
+impl FailedRuns {
+    /// Of which runs the shares of a requirement are, in words.
+    #[must_use]
+    pub fn of_which(self) -> &'static str {
+        match self {
+            Self::Against => "all runs",
+            Self::LeftOut => "the runs that have a number",
+        }
+    }
+}
+
 /// A requirement as it stands in a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

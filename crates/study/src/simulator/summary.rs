@@ -4,7 +4,7 @@ use gyradius_campaign::{
     Column, ExternalSimulation, FirstLook, Forecast, Progress, Runs, SampleSummary, Simulator,
     SimulatorFunction, Surveys,
 };
-use gyradius_report::{Document, Overview, file_of, optional, with_unit};
+use gyradius_report::{Document, Overview, file_of, most_frequent, optional, with_unit};
 use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
 use serde::{Deserialize, Serialize};
@@ -77,6 +77,8 @@ impl SimulatorScenario {
     /// What a reader should know first of the model in a place.
     fn alerts(&self, overview: &Overview, place: usize, surveys: &Surveys) -> Vec<Alert> {
         let name = surveys.model();
+        let kinds = overview.failures().nth(place).map_or(&[][..], |(_, kinds)| kinds);
+        let failed = Alert::failed(name, surveys.runs(), kinds).into_iter();
         let unmoved = self.dispersed().all.iter().filter_map(|dispersed| {
             let column = &dispersed.column;
             Alert::unmoved(name, column, surveys.column(column)?)
@@ -85,7 +87,7 @@ impl SimulatorScenario {
         let outputs = overview.quantities().filter(|(column, ..)| is_output(column));
         let heavy = outputs
             .filter_map(|(column, _, samples)| Some((column.to_owned(), samples.get(place)?)));
-        unmoved.chain(Alert::heavy_tails(name, heavy)).collect()
+        failed.chain(unmoved).chain(Alert::heavy_tails(name, heavy)).collect()
     }
 
     /// What of the draws of each model the regions of the bodies keep.
@@ -281,7 +283,7 @@ impl Subject for SimulatorScenario {
         let first = first.chain(alerts::section(&summary.head.alerts));
         let first = first.chain(decisions::sections(&summary.head));
         let driven = drivers::section(&summary.head, &self.main_outcomes());
-        let document = summary.overview.document().led_by(first).sections(driven);
+        let document = summary.overview.document_led_by(first).sections(driven);
         let document = document.sections(decisions::where_runs_fail(&summary.head));
         let kept = summary.regions.iter().map(|kept| (&*kept.model, &*kept.regions));
         let document = document.sections(regions::section(kept));
@@ -326,8 +328,8 @@ impl fmt::Display for SimulatorSummary {
         {
             let blank = if place > 0 { "\n" } else { "" };
             writeln!(f, "{blank}{model}: {runs} runs, {failed} failed")?;
-            for (kind, count) in kinds.iter().take(5) {
-                writeln!(f, "  {count} × {kind}")?;
+            for kind in most_frequent(kinds) {
+                writeln!(f, "  {kind}")?;
             }
             write!(f, "  {:width$}", "")?;
             for heading in ["mean", "deviation", "p05", "p95"] {

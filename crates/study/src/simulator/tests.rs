@@ -7,6 +7,7 @@ mod function;
 mod joint;
 mod models;
 mod refusals;
+mod told;
 mod vehicles;
 
 use gyradius_campaign::{Inputs, Simulation, Table};

@@ -1,0 +1,45 @@
+//! What the page says of requirements on quantities that runs may have no value of.
+
+use crate::{Options, Scenario, Study};
+use std::fs;
+
+/// Two bodies that part along one line, with or without a contact.
+fn parting(failed_runs: &str) -> Scenario {
+    let body = |name: &str, z: f64| {
+        format!(
+            "[{name}]\nmass_kg = 500.0\ninertia_kg_m2 = [[120.0, 0.0, 0.0], [0.0, 110.0, 0.0], [0.0, 0.0, 90.0]]\n\
+             position_m = [0.0, 0.0, {z:?}]\n[{name}.dispersion]\nroot_second_moment_variance_kg_m2 = [0.01, 0.01, 0.01]\naxes = \"fixed\"\n"
+        )
+    };
+    let text = format!(
+        "name = \"parting\"\nruns = 40\n{}{}\
+         [[springs]]\nstiffness_n_per_m = 2e4\nstroke_m = 0.1\npayload_point_m = [0.0, 0.0, -0.9]\nstage_point_m = [0.0, 0.0, 0.9]\n\
+         [[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n\
+         [clearance]\ncoast_s = 10.0\npayload = [{{ hull_m = [[0.5, 0.5, -0.8], [-0.5, 0.5, -0.8], [0.0, -0.5, -0.8]] }}]\n\
+         stage = [{{ ring = {{ centre_m = [0.0, 0.0, 0.9], axis = [0.0, 0.0, 1.0], radius_m = 0.6 }} }}]\n\
+         [[requirements]]\nname = \"no contact before\"\nquantity = \"recontact_s\"\nat_least = 10.0\nprobability = 0.5\nconfidence = 0.9\n\
+         failed_runs = \"{failed_runs}\"\n",
+        body("payload", 1.0),
+        body("stage", -1.0)
+    );
+    Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Bodies that never touch have no time of contact: no run failed, and none has a number.
+#[test]
+fn runs_without_a_value_are_told() {
+    for (failed_runs, of, what) in [
+        ("against", "40 of 40", "40 of 40 have no number: counted against it"),
+        ("left-out", "0 of 0", "40 of 40 have no number: left out"),
+    ] {
+        let scenario = parting(failed_runs);
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out");
+        Study::run(&scenario, &Options::to(out.clone()), &|_| {}).unwrap();
+        let page = fs::read_to_string(out.join("report.md")).unwrap();
+        let row = page.lines().find(|line| line.starts_with("| **no contact before**"));
+        let row = row.unwrap_or_else(|| panic!("{page}"));
+        assert!(row.contains(of) && row.contains(what), "{row}");
+        assert!(page.contains("if it has no value of the quantity"), "{page}");
+    }
+}

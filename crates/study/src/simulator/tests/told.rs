@@ -1,0 +1,83 @@
+//! What the page tells of runs that failed: first, by kind, and at each requirement.
+
+use gyradius_campaign::{RunInputs, SimulatorFunction};
+use proptest::prelude::*;
+use std::{collections::BTreeMap, fs};
+
+use super::{SimulatorScenario, folder};
+use crate::Options;
+
+const SCENARIO: &str = "name = \"told\"\nseed = 5\n[simulation]\nfunction = \"counts\"\n[[simulation.outputs]]\nname = \"y\"\n\
+    [[quantities]]\nname = \"x\"\nlaw = { law = \"uniform\", low = 0.0, high = 1.0 }\n";
+const KINDS: [&str; 9] = ["ice", "fog", "rain", "hail", "snow", "sand", "wind", "dust", "heat"];
+
+/// Why the run with this draw fails; none if it does not.
+fn reason(x: f64, failing: f64) -> Option<&'static str> {
+    // Kinds of very different frequency.
+    (x < failing).then(|| KINDS[((x / failing).sqrt() * KINDS.len() as f64) as usize])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// From no failed run to nothing else, left out or counted: the page says how many, why, and of which runs its shares are.
+    #[test]
+    fn no_failed_run_is_passed_over(
+        runs in 1..300_u64,
+        failing in prop_oneof![1 => Just(0.0), 4 => 0.0..1.0, 1 => Just(1.0)],
+        left_out: bool,
+    ) {
+        let folder = folder();
+        let fate = if left_out { "left-out" } else { "against" };
+        let required = format!(
+            "[[requirements]]\nname = \"low\"\nquantity = \"y\"\nat_most = 0.9\nprobability = 0.6\nconfidence = 0.9\n\
+             failed_runs = \"{fate}\"\n"
+        );
+        let text = format!("runs = {runs}\n{SCENARIO}{required}");
+        let counts = SimulatorFunction::new(move |run: &RunInputs<'_>| {
+            let x = run.input("x").ok_or("no x")?;
+            reason(x, failing).map_or_else(|| Ok(vec![("y".to_owned(), x)]), |why| Err(why.to_owned()))
+        });
+        let scenario = SimulatorScenario::from_toml(&text, folder.path()).unwrap();
+        let scenario = scenario.with_function(counts).unwrap();
+        let out = folder.path().join("out");
+        let study = scenario.study(&Options::to(out.clone()), &|_| {}, &|_| {}).unwrap();
+        let page = fs::read_to_string(out.join("report.md")).unwrap();
+
+        let table = study.tables().unwrap().remove(0);
+        let mut kinds: BTreeMap<&str, u64> = BTreeMap::new();
+        for x in table.values("x").unwrap() {
+            if let Some(why) = reason(x, failing) {
+                *kinds.entry(why).or_default() += 1;
+            }
+        }
+        let failed: u64 = kinds.values().sum();
+        let terminal = study.summary().to_string();
+        let first = format!("> **all: {failed} of {runs} runs failed** and are left out");
+        prop_assert_eq!(page.contains(&first), failed > 0, "{}", page);
+        prop_assert_eq!(page.matches("runs failed").count(), usize::from(failed > 0));
+        let mut counts: Vec<u64> = kinds.values().copied().collect();
+        counts.sort_unstable_by(|a, b| b.cmp(a));
+        for (why, count) in &kinds {
+            let told = [&page, &terminal].map(|text| text.contains(&format!("{count} × simulator: {why}")));
+            // Those as frequent as the sixth may stand behind it.
+            let sure = kinds.len() <= 6 || *count > counts[5];
+            prop_assert!(told[0] == told[1] && (told[0] || !sure), "{count} {why} {terminal}");
+        }
+        if kinds.len() > 6 {
+            let rest: u64 = counts[5..].iter().sum();
+            let last = format!("and {rest} more failed runs of {} other kinds", kinds.len() - 5);
+            prop_assert!(page.contains(&last) && terminal.contains(&last), "{last}\n{terminal}");
+        }
+        let (of, what) = if left_out {
+            ("the runs that have a number", "left out")
+        } else {
+            ("all runs", "counted against it")
+        };
+        let share_of = format!("in 60 % of {of}, with 90 % confidence");
+        prop_assert!(page.contains(&share_of), "{page}");
+        let without = format!("{failed} of {runs} have no number: {what}");
+        prop_assert_eq!(page.contains(&without), failed > 0);
+        prop_assert_eq!(page.contains("A run has no number if it failed"), failed > 0);
+    }
+}
