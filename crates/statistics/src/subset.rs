@@ -54,6 +54,9 @@ impl<F: Fn(&[u64]) -> f64> RareEvent for F {
 /// least to the mean of what the replicas cannot exclude: of those without an event, the bound below their last level. Let n be
 /// 500 or more, and R some ten.
 ///
+/// If the pilot finds no level before the event, because a tenth of its first runs or more are the event, or because no excess lies between, all runs of the
+/// replicas are plain runs. The interval is then that of [`Proportion`] for all n R of them, which is exact.
+///
 /// **Where it works, and where not.** An event that several groups bring about together is reached in as many levels as its probability
 /// has digits. If one group alone has to be as rare as the event (its step to the limit is then as rare too), chains
 /// do not move, and a replica knows no more than its n first runs: most replicas end without an event. The
@@ -183,6 +186,27 @@ impl SubsetSimulation {
         }
         let estimates: Vec<f64> =
             done.iter().map(|r| if r.reached() { r.probability() } else { 0.0 }).collect();
+        let evaluations = total(pilot, &done, SubsetReplica::evaluations);
+        let failed = total(pilot, &done, SubsetReplica::failed);
+        let reached: Vec<_> = done.iter().filter(|replica| replica.reached()).collect();
+        let events = reached.iter().flat_map(|replica| replica.events()).take(SHOWN).collect();
+        if pilot.levels() == 0 {
+            // All runs of the replicas are plain: the pilot, whose runs do not count, found no level before the event.
+            let runs = done.iter().map(|replica| replica.runs_of_level()).sum();
+            let plain = Proportion::new(done.iter().map(|replica| replica.hits()).sum(), runs)?;
+            let p = plain.value();
+            let none = SubsetWarning::NotReached { replicas: done.len() };
+            return Ok(SubsetEstimate {
+                probability: p,
+                coefficient_of_variation: (p > 0.0).then(|| ((1.0 - p) / (p * runs as f64)).sqrt()),
+                interval: plain.interval(confidence),
+                evaluations,
+                failed,
+                events,
+                replicas: estimates,
+                warnings: if p > 0.0 { Vec::new() } else { vec![none] },
+            });
+        }
         let count = done.len() as f64;
         let probability = estimates.iter().sum::<f64>() / count;
         let squares: f64 = estimates.iter().map(|p| (p / probability - 1.0).powi(2)).sum();
@@ -202,7 +226,6 @@ impl SubsetSimulation {
             None => (0.0, bound),
         };
         let interval = Interval::ordered(lower, upper.max(bound).min(1.0), confidence);
-        let reached: Vec<_> = done.iter().filter(|replica| replica.reached()).collect();
         let mut warnings = Vec::new();
         if reached.len() < done.len() {
             let not_reached = done.len() - reached.len();
@@ -216,20 +239,22 @@ impl SubsetSimulation {
         if let Some(coefficient) = spread.filter(|c| *c >= WIDE) {
             warnings.push(SubsetWarning::ReplicasDiffer { coefficient });
         }
-        let runs = |count: fn(&SubsetReplica) -> u64| {
-            count(pilot) + done.iter().map(|replica| count(replica)).sum::<u64>()
-        };
         Ok(SubsetEstimate {
             probability,
             coefficient_of_variation: coefficient,
             interval,
-            evaluations: runs(SubsetReplica::evaluations),
-            failed: runs(SubsetReplica::failed),
-            events: reached.iter().flat_map(|replica| replica.events()).take(SHOWN).collect(),
+            evaluations,
+            failed,
+            events,
             replicas: estimates,
             warnings,
         })
     }
+}
+
+/// How many runs of a kind there are in all, those of the pilot too.
+fn total(pilot: &SubsetReplica, done: &[&SubsetReplica], of: fn(&SubsetReplica) -> u64) -> u64 {
+    of(pilot) + done.iter().map(|replica| of(replica)).sum::<u64>()
 }
 
 /// The ends of the interval for the mean of estimates whose mean and coefficient of variation are these.
@@ -261,7 +286,8 @@ fn log_normal(
 pub struct SubsetEstimate {
     /// The estimate of the probability: the mean of the replicas.
     probability: f64,
-    /// Its standard error over the estimate, from the spread between replicas; none if no replica found an event.
+    /// Its standard error over the estimate, from the spread between replicas, or of plain runs from their number; none if no replica found
+    /// an event.
     coefficient_of_variation: Option<f64>,
     /// The interval. If no replica found an event, from 0 to a bound.
     interval: Interval,

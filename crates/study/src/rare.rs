@@ -148,15 +148,16 @@ impl fmt::Display for Rare {
         if p > 0.0 {
             writeln!(
                 f,
-                "  probability  {p:.3e} ({percent} % interval: {:.2e} to {:.2e})",
-                interval.lower(),
-                interval.upper()
+                "  probability  {} ({percent} % interval: {} to {})",
+                in_digits(p, 4),
+                in_digits(interval.lower(), 3),
+                in_digits(interval.upper(), 3)
             )?;
         } else {
             writeln!(
                 f,
-                "  probability  no event was found; below {:.2e}, with {percent} % confidence",
-                interval.upper()
+                "  probability  no event was found; below {}, with {percent} % confidence",
+                in_digits(interval.upper(), 3)
             )?;
         }
         write!(f, "  runs         {}", estimate.runs())?;
@@ -180,6 +181,15 @@ impl fmt::Display for Rare {
         }
         Ok(())
     }
+}
+
+/// A probability in so many digits, not counting nines with which it begins: what tells it from 0 and from 1.
+fn in_digits(p: f64, digits: usize) -> String {
+    if p < 0.1 {
+        return format!("{p:.*e}", digits - 1);
+    }
+    let nines = (1..15).find(|nines| 1.0 - p >= 10_f64.powi(-nines)).unwrap_or(1);
+    format!("{p:.*}", nines as usize + digits - 1)
 }
 
 fn of_subset(warning: &SubsetWarning) -> String {

@@ -258,6 +258,16 @@ impl SubsetReplica {
         self.levels.len()
     }
 
+    /// How many runs of the level at hand are the event.
+    pub(super) fn hits(&self) -> u64 {
+        self.members.iter().filter(|member| member.excess >= 0.0).count() as u64
+    }
+
+    /// How many runs the level at hand has.
+    pub(super) fn runs_of_level(&self) -> u64 {
+        self.members.len() as u64
+    }
+
     /// The share of redrawn runs of the last level that stayed above it; none if there was no such level.
     pub fn acceptance(&self) -> Option<f64> {
         (self.moves.0 > 0).then(|| self.moves.1 as f64 / self.moves.0 as f64)

@@ -189,3 +189,38 @@ fn what_cannot_be_found_is_told() {
         assert!(said.starts_with(expected), "{said}");
     }
 }
+
+/// Every probability is told from 0 and from 1, in as many digits as asked.
+#[test]
+fn probabilities_near_one_are_no_one() {
+    for (p, digits, text) in [
+        (1.0, 3, "1.000"),
+        (0.999_631, 3, "0.999631"),
+        (0.5, 4, "0.5000"),
+        (0.1, 3, "0.100"),
+        (0.099, 3, "9.90e-2"),
+        (1.491e-5, 4, "1.491e-5"),
+        (0.0, 3, "0.00e0"),
+    ] {
+        assert_eq!(in_digits(p, digits), text);
+    }
+    for exponent in 1..15 {
+        let missing = 10_f64.powi(-exponent) * 3.7;
+        let told: f64 = in_digits(1.0 - missing, 3).parse().unwrap();
+        assert!(((1.0 - told) / missing - 1.0).abs() < 0.02, "{told}");
+    }
+}
+
+/// An event that hardly ever fails to happen is counted in plain runs, with an exact interval that is not the whole answer in one number.
+#[test]
+fn what_nearly_always_happens_has_an_interval() {
+    let scenario = scenario(CORRELATED, SPRINGS);
+    let method = RareMethod::Subset { replicas: 10 };
+    let event = "payload_mass_centre_3_m >= -0.05".parse().unwrap();
+    let found = find(&scenario, &event, &options(method, 200), &|_| {}).unwrap();
+    let estimate = found.estimate();
+    let all = Proportion::new(2000, 2000).unwrap().interval(Confidence::default());
+    assert_eq!((estimate.probability(), estimate.interval()), (1.0, all));
+    assert!(found.to_string().contains("interval: 0.99816 to 1.000)"), "{found}");
+    assert_eq!((estimate.evaluations(), found.plain_runs()), (2200, None));
+}
