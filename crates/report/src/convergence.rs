@@ -1,6 +1,6 @@
 //! How the share of runs that fail a requirement comes to rest with the number of runs: a line a model, with its interval.
 
-use gyradius_campaign::{Estimate, Judgement, Requirement, share_in_percent};
+use gyradius_campaign::{Estimate, Judgement, Looks, Requirement, share_in_percent};
 
 use crate::Drawing;
 use crate::axis::{Spacing, Tick, Units, decades, ticks};
@@ -91,7 +91,10 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
         swatch.path(&required_pen(), "M0 0h26");
     });
     let confidence = share_in_percent(requirement.confidence().level());
-    field.entry(format!("shaded: {confidence} interval at each number of runs"), |swatch| {
+    let often = models.iter().any(|(_, judgement)| judgement.looks() == Looks::Often);
+    let intervals =
+        if often { "intervals that hold together" } else { "interval at each number of runs" };
+    field.entry(format!("shaded: {confidence} {intervals}"), |swatch| {
         let pen = format!("fill=\"{}\" fill-opacity=\"0.3\"", style::MUTED);
         swatch.path(&pen, "M0 -6h26v12h-26z");
     });

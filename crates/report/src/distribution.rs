@@ -1,7 +1,7 @@
 //! The distribution of what a requirement is about, on a probability axis: a line a model, its band, the limit, the tolerance point.
 
 use gyradius_campaign::{
-    Bound, DistributionPoint, FailedRuns, Judgement, Requirement, share_in_percent,
+    Bound, DistributionPoint, FailedRuns, Judgement, Looks, Requirement, share_in_percent,
 };
 use gyradius_statistics::tail;
 
@@ -58,13 +58,14 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
         line(&mut field.plot, place, judgement, &across, &up);
         tolerance(&mut field.plot, place, judgement, &across, &up);
     }
-    field.entry(
-        format!("shaded: holds the whole distribution with {confidence} confidence"),
-        |swatch| {
-            let pen = format!("fill=\"{}\" fill-opacity=\"0.3\"", style::MUTED);
-            swatch.path(&pen, "M0 -6h26v12h-26z");
-        },
-    );
+    let often = models.iter().any(|(_, judgement)| judgement.looks() == Looks::Often);
+    let of_looks = if often { ", if one looks once" } else { "" };
+    let holds =
+        format!("shaded: holds the whole distribution with {confidence} confidence{of_looks}");
+    field.entry(holds, |swatch| {
+        let pen = format!("fill=\"{}\" fill-opacity=\"0.3\"", style::MUTED);
+        swatch.path(&pen, "M0 -6h26v12h-26z");
+    });
     if !required.is_empty() {
         field.entry(format!("required: {probability}"), |swatch| {
             swatch.path(&required_pen(), "M0 0h26");

@@ -253,6 +253,11 @@ fn figures(
     numbered.map(|((requirement, models), number)| draw(number, requirement, models)).collect()
 }
 
+/// How often the runs were looked at; the same for all requirements of a study.
+fn looks(head: &Head) -> Looks {
+    head.requirements.first().map(|judged| judged.judgement.looks()).unwrap_or_default()
+}
+
 /// What the quantities of the requirements look like, to the extreme runs.
 fn distributions(head: &Head) -> Section {
     let reading = "Each line goes through order statistics of the runs: the value with the rank k of n runs is drawn at the share \
@@ -269,14 +274,32 @@ fn distributions(head: &Head) -> Section {
         );
         distribution_figure(&of_requirement(DISTRIBUTION, number), &caption, requirement, models)
     });
-    Section::new("Distributions").paragraph(reading).figures(drawings)
+    let section = Section::new("Distributions").paragraph(reading);
+    let section = match looks(head) {
+        Looks::Once => section,
+        Looks::Often => section.paragraph(
+            "The runs were looked at while they were done, and what was seen decided when they ended. The band takes no account of \
+             that: it is the band of one look at as many runs, and covers less often than it says. The tolerance point does take \
+             account of it.",
+        ),
+    };
+    section.figures(drawings)
 }
 
 /// How the shares that fail come to rest.
 fn convergence(head: &Head) -> Section {
-    let reading = "The share of the runs that fail each requirement among the first so many runs, in the order of their numbers. \
-                   Each interval is what these runs would tell if nobody had looked before (Clopper and Pearson, with the confidence \
-                   of the requirement): whoever looks often, and stops when it pleases, takes a greater risk.";
+    let share = "The share of the runs that fail each requirement among the first so many runs, in the order of their numbers. ";
+    let intervals = match looks(head) {
+        Looks::Once => {
+            "Each interval is what these runs would tell if nobody had looked before (Clopper and Pearson, with the confidence of the \
+             requirement): whoever looks often, and stops when it pleases, takes a greater risk."
+        }
+        Looks::Often => {
+            "The intervals are those of a confidence sequence: with the confidence of the requirement all of them hold together, \
+             however often one looks and whenever one stops. They are wider than Clopper and Pearson’s of one look."
+        }
+    };
+    let reading = format!("{share}{intervals}");
     let looks: Vec<u64> = head.ended.as_ref().map(Ended::looks).unwrap_or_default();
     let drawings = figures(head, |number, requirement, models| {
         let caption = format!("Runs that fail “{}” among the first so many", requirement.name());

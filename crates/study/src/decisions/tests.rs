@@ -3,8 +3,8 @@
 use crate::{Options, Scenario, Study};
 use std::fs;
 
-/// Two bodies that part along one line, with or without a contact.
-fn parting(failed_runs: &str) -> Scenario {
+/// Two bodies that part along one line, with requirements.
+fn parting(requirements: &str) -> Scenario {
     let body = |name: &str, z: f64| {
         format!(
             "[{name}]\nmass_kg = 500.0\ninertia_kg_m2 = [[120.0, 0.0, 0.0], [0.0, 110.0, 0.0], [0.0, 0.0, 90.0]]\n\
@@ -17,12 +17,42 @@ fn parting(failed_runs: &str) -> Scenario {
          [[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n\
          [clearance]\ncoast_s = 10.0\npayload = [{{ hull_m = [[0.5, 0.5, -0.8], [-0.5, 0.5, -0.8], [0.0, -0.5, -0.8]] }}]\n\
          stage = [{{ ring = {{ centre_m = [0.0, 0.0, 0.9], axis = [0.0, 0.0, 1.0], radius_m = 0.6 }} }}]\n\
-         [[requirements]]\nname = \"no contact before\"\nquantity = \"recontact_s\"\nat_least = 10.0\nprobability = 0.5\nconfidence = 0.9\n\
-         failed_runs = \"{failed_runs}\"\n",
+         {requirements}",
         body("payload", 1.0),
         body("stage", -1.0)
     );
     Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// The page of a study in Markdown, and the figures of its first requirement.
+fn pages(scenario: &Scenario) -> (String, [String; 2]) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    Study::run(scenario, &Options::to(out.clone()), &|_| {}).unwrap();
+    let read = |name: &str| fs::read_to_string(out.join(name)).unwrap();
+    let figures = ["distribution", "convergence"].map(|of| read(&format!("figures/{of}-1.svg")));
+    (read("report.md"), figures)
+}
+
+/// What is said of the intervals and of the band is what is shown: of one look, or of as many as a rule took.
+#[test]
+fn figures_say_for_how_many_looks_they_hold() {
+    let required = "[[requirements]]\nname = \"light\"\nquantity = \"payload_i11\"\nat_most = 130.0\nprobability = 0.5\nconfidence = 0.9\n";
+    let until = "[until]\nrule = \"decided\"\nlook_every = 10\nmost_runs = 40\n";
+    for (until, often) in [("", false), (until, true)] {
+        let (page, [distribution, convergence]) = pages(&parting(&format!("{required}{until}")));
+        let section = |heading: &str| {
+            let (_, rest) = page.split_once(heading).unwrap_or_else(|| panic!("{page}"));
+            rest.split("\n#").next().unwrap().to_owned()
+        };
+        let shares = section("### Convergence");
+        assert_eq!(shares.contains("confidence sequence"), often, "{shares}");
+        assert_eq!(shares.contains("(Clopper and Pearson"), !often, "{shares}");
+        assert_eq!(convergence.contains("intervals that hold together"), often);
+        let band = section("### Distributions");
+        assert_eq!(band.contains("takes no account"), often, "{band}");
+        assert_eq!(distribution.contains("if one looks once"), often);
+    }
 }
 
 /// Bodies that never touch have no time of contact: no run failed, and none has a number.
@@ -32,11 +62,10 @@ fn runs_without_a_value_are_told() {
         ("against", "40 of 40", "40 of 40 have no number: counted against it"),
         ("left-out", "0 of 0", "40 of 40 have no number: left out"),
     ] {
-        let scenario = parting(failed_runs);
-        let folder = tempfile::tempdir().unwrap();
-        let out = folder.path().join("out");
-        Study::run(&scenario, &Options::to(out.clone()), &|_| {}).unwrap();
-        let page = fs::read_to_string(out.join("report.md")).unwrap();
+        let (page, _) = pages(&parting(&format!(
+            "[[requirements]]\nname = \"no contact before\"\nquantity = \"recontact_s\"\nat_least = 10.0\nprobability = 0.5\n\
+             confidence = 0.9\nfailed_runs = \"{failed_runs}\"\n"
+        )));
         let row = page.lines().find(|line| line.starts_with("| **no contact before**"));
         let row = row.unwrap_or_else(|| panic!("{page}"));
         assert!(row.contains(of) && row.contains(what), "{row}");
