@@ -1,7 +1,9 @@
 //! Which groups of inputs drive an output: Sobol' indices by pick-freeze.
 
+mod frequent;
 mod joint;
 
+use frequent::Frequent;
 use joint::Joint;
 
 use crate::{Confidence, Estimate, Interval, StatisticsError, law};
@@ -22,6 +24,8 @@ const BC: usize = 7;
 const DD: usize = 8;
 /// Deviations from the first output up to this need no new scale.
 const LARGE: f64 = (1_u64 << 60) as f64;
+/// Outputs that differ from the most frequent one, with all inputs from A or all from B: of fewer no index is known.
+const FEW: u64 = 40;
 /// The most groups.
 const MAX_GROUPS: usize = 100_000;
 
@@ -52,7 +56,7 @@ const MAX_GROUPS: usize = 100_000;
 /// frequent events from 100 to 1000 base runs, indices of 0, 1e-4 and 1 included. It is weaker for outputs with heavy
 /// tails, for the fourth moment must be finite, and for indicators of rare events (0 or 1: whether a requirement
 /// was failed): with 20 failures among the runs with A it is 84 %, and with a handful none of the numbers should be
-/// trusted. An index so near 0 that few runs show any difference has an interval that is too narrow.
+/// trusted: [`is_of_few`](SobolIndices::is_of_few) says so. An index so near 0 that few runs show any difference has an interval that is too narrow.
 ///
 /// A run that failed has no output: give `None`. A group then leaves out the base runs of which a, b or c_g is missing,
 /// and says [how many](SobolIndex::left_out). The indices are then those of runs that succeed, among which the groups are no
@@ -91,6 +95,8 @@ pub struct SobolSums {
     range: (f64, f64),
     /// Of the outputs with all inputs from A, and with all from B.
     outputs: Joint<1>,
+    /// The values among the same.
+    frequent: Frequent,
     groups: Vec<Joint<STATISTICS>>,
 }
 
@@ -110,6 +116,7 @@ impl SobolSums {
             scale: None,
             range: (f64::INFINITY, f64::NEG_INFINITY),
             outputs: Joint::new(),
+            frequent: Frequent::default(),
             groups: vec![Joint::new(); groups],
         })
     }
@@ -140,6 +147,7 @@ impl SobolSums {
         for y in present() {
             self.make_room_for(y);
         }
+        [all_from_a, all_from_b].into_iter().flatten().for_each(|y| self.frequent.add(y));
         let scaled = |y: Option<f64>| Some((y? - self.shift?) * self.scale.unwrap_or(1.0));
         let (a, b) = (scaled(all_from_a), scaled(all_from_b));
         for y in [a, b].into_iter().flatten() {
@@ -199,7 +207,8 @@ impl SobolSums {
             total: total(group, confidence),
         };
         let groups = self.groups.iter().map(index).collect();
-        Ok(SobolIndices { runs: self.runs, mean, standard_deviation, groups })
+        let apart = self.frequent.others();
+        Ok(SobolIndices { runs: self.runs, mean, standard_deviation, apart, groups })
     }
 }
 
@@ -214,16 +223,25 @@ pub struct SobolIndices {
     mean: f64,
     /// Standard deviation of the same.
     standard_deviation: f64,
+    /// How many of the same differ from the most frequent of them: of whether something happens, how often the rarer of both is.
+    apart: u64,
     #[getset(skip)]
     groups: Vec<SobolIndex>,
 }
 
 crate::checked::checked!(
-    SobolIndices { runs: u64, mean: f64, standard_deviation: f64, groups: Vec<SobolIndex> },
+    SobolIndices {
+        runs: u64,
+        mean: f64,
+        standard_deviation: f64,
+        apart: u64,
+        groups: Vec<SobolIndex>,
+    },
     |read| {
         let runs = |group: &SobolIndex| group.left_out.checked_add(group.runs);
         let whole = read.groups.iter().all(|group| runs(group) == Some(read.runs));
-        crate::error::belong(whole && read.standard_deviation >= 0.0, "study")
+        let is_of_runs = read.apart <= read.runs.saturating_mul(2);
+        crate::error::belong(whole && is_of_runs && read.standard_deviation >= 0.0, "study")
     }
 );
 
@@ -231,6 +249,12 @@ impl SobolIndices {
     /// Variance of the same, in the unit of the output squared; infinite beyond `f64`.
     pub fn variance(&self) -> f64 {
         self.standard_deviation * self.standard_deviation
+    }
+
+    /// Whether fewer than 40 outputs with all inputs from A or all from B differ from the most frequent one, as of something that seldom happens: the
+    /// indices may lie far beyond 0 and 1 then, and their intervals miss the truth far more often than they say.
+    pub fn is_of_few(&self) -> bool {
+        self.apart < FEW
     }
 
     /// The index of each group, in the order in which they were pushed.

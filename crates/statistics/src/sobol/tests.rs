@@ -167,6 +167,49 @@ fn of_indicators() {
     assert_covers("seldom", &seldom.coverage(2000, 400, &truth(0.01)), 400, 0.10);
 }
 
+/// Whether something happens that is as rare as can be: whoever looks at the indices is told, and where nobody is told they cover as the documentation says.
+#[test]
+fn seldom_events_are_told() {
+    for (limit, runs, told) in [
+        (0.9, 200, true),
+        (0.9, 1000, true),
+        (0.97, 1000, true),
+        (0.9, 4000, false),
+        (0.5, 400, false),
+    ] {
+        let case = |inputs: &[f64]| f64::from(u8::from(inputs[0] > limit && inputs[1] > limit));
+        for seed in 0..20 {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let mut draw = || -> [f64; 2] { [rng.random(), rng.random()] };
+            let mut sums = SobolSums::new(2).unwrap();
+            let mut happened = 0;
+            for _ in 0..runs {
+                let (a, b) = (draw(), draw());
+                let [of_a, of_b] = [case(&a), case(&b)];
+                happened += u64::from(of_a > 0.0) + u64::from(of_b > 0.0);
+                push(&mut sums, of_a, of_b, &[case(&[b[0], a[1]]), case(&[a[0], b[1]])]);
+            }
+            match sums.finish(Confidence::default()) {
+                Ok(indices) => {
+                    assert_eq!(indices.apart(), happened.min(2 * runs - happened));
+                    assert_eq!(indices.is_of_few(), told, "{limit} {runs}: {happened}");
+                }
+                Err(error) => assert_eq!((error, happened), (StatisticsError::Constant, 0)),
+            }
+        }
+    }
+    // Numbers that all differ, whole numbers of which most are 0, and a rare one that comes first.
+    let smooth = Case::new(2, &[&[0], &[1]], |u| u[0] + u[1]).indices(100, 1);
+    assert_eq!((smooth.apart(), smooth.is_of_few()), (199, false));
+    let mut sums = SobolSums::new(1).unwrap();
+    for i in 0..1000 {
+        let count = |i: u32| f64::from(if i.is_multiple_of(300) { i / 300 + 1 } else { 0 });
+        push(&mut sums, count(i), 0.0, &[count(i)]);
+    }
+    let counts = sums.finish(Confidence::default()).unwrap();
+    assert_eq!((counts.apart(), counts.is_of_few()), (4, true));
+}
+
 /// Influence values in place of gradients and covariances: two passes over all runs.
 struct Plain {
     value: f64,

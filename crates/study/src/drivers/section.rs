@@ -15,6 +15,8 @@ use crate::{
 const DRAWN: usize = 6;
 /// Groups that are told of an output in the table.
 const TOLD: usize = 3;
+/// Outputs that are named of those that are nearly always the same.
+const NAMED: usize = 8;
 const FIGURE: &str = "drivers";
 
 /// The figures that there may be, if drivers are asked for, by the names of the models.
@@ -34,8 +36,8 @@ pub(crate) fn section(head: &Head, main: &[String]) -> Option<Section> {
          known (the total index): what a group has in all beyond what it has alone are its interactions. A total index near 0 \
          means that the group may as well be fixed. Found from {base} base runs, each done with two draws of all groups, and once \
          for each group with its second draw alone (pick and freeze), whatever the laws. Lines show intervals of 95 % each; a \
-         number is that of the total index. Of a requirement the output is whether a run fails it: with few failures the \
-         intervals are wide, and rather too narrow."
+         number is that of the total index. No index is below 0 or above 1: what an estimate or its interval has there is drawn at 0 or 1, \
+         and the table has it as it is. Of a requirement the output is whether a run fails it."
     );
     let mut section = Section::new("What drives the outcome").paragraph(reading);
     for drivers in &head.drivers {
@@ -45,6 +47,7 @@ pub(crate) fn section(head: &Head, main: &[String]) -> Option<Section> {
                 ": {failed} of the {runs} runs failed. A number of a run is missing then, and the group leaves the base run out."
             )));
         }
+        section = section.warnings(of_few(drivers));
         let shown: Vec<DrivenOutput> =
             shown(head, drivers, main).map(|driven| driven.drawn(drivers)).collect();
         if !shown.is_empty() {
@@ -57,6 +60,24 @@ pub(crate) fn section(head: &Head, main: &[String]) -> Option<Section> {
         section = section.paragraph("Nothing drives anything here: every output is the same in all of these runs, or missing.");
     }
     Some(section.sections(head.drivers.iter().filter_map(all)))
+}
+
+/// Which outputs of a model are nearly always the same, so that their indices are not known.
+fn of_few(drivers: &Drivers) -> Option<Text> {
+    let few: Vec<&Driven> = drivers.outputs.iter().filter(|d| d.indices.is_of_few()).collect();
+    let named = few.iter().take(NAMED);
+    let named = named.map(|driven| format!("{} ({})", driven.label(), driven.indices.apart()));
+    let named: Vec<String> = named.collect();
+    let others = match few.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        others => format!(" and {others} more"),
+    };
+    let (all, model) = (2 * drivers.base_runs, &drivers.model);
+    let text = Text::default().strong(format!("{model}: too few runs differ")).plain(format!(
+        " in {}{others}: in brackets is how many of the {all} runs with a single draw of everything differ from the most frequent value. The indices may lie far beyond 0 and 1, and their intervals miss the truth far more often than they say. Take more base runs.",
+        named.join(", ")
+    ));
+    (!few.is_empty()).then_some(text)
 }
 
 /// What the figure of a model shows: the requirements and what they are about, or the main outcomes.

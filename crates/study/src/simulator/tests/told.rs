@@ -81,3 +81,39 @@ proptest! {
         prop_assert_eq!(page.contains("A run has no number if it failed"), failed > 0);
     }
 }
+
+/// Outputs that are nearly always the same are named where their drivers are told, and no others.
+#[test]
+fn drivers_of_what_seldom_happens_are_warned_of() {
+    let folder = folder();
+    let flags = SimulatorFunction::new(|run: &RunInputs<'_>| {
+        let x = run.input("x").ok_or("no x")?;
+        let flag = |limit: f64| f64::from(u8::from(x > limit));
+        Ok(vec![
+            ("y".to_owned(), x),
+            ("seldom".to_owned(), flag(0.99)),
+            ("often".to_owned(), flag(0.3)),
+        ])
+    });
+    let outputs =
+        "[[simulation.outputs]]\nname = \"seldom\"\n[[simulation.outputs]]\nname = \"often\"\n";
+    let required = |limit: f64| {
+        format!(
+            "[[requirements]]\nname = \"up to {limit}\"\nquantity = \"y\"\nat_most = {limit}\nprobability = 0.5\nconfidence = 0.9\n"
+        )
+    };
+    let text = SCENARIO.replace("[[quantities]]", &format!("{outputs}[[quantities]]"));
+    let text = format!("runs = 100\ndrivers = 300\n{text}{}{}", required(0.5), required(0.98));
+    let scenario = SimulatorScenario::from_toml(&text, folder.path()).unwrap();
+    let scenario = scenario.with_function(flags).unwrap();
+    let out = folder.path().join("out");
+    scenario.study(&Options::to(out.clone()), &|_| {}, &|_| {}).unwrap();
+    let page = fs::read_to_string(out.join("report.md")).unwrap();
+    let warning = page.lines().find(|line| line.contains("too few runs differ")).unwrap();
+    assert!(
+        warning.contains("in fails: up to 0.98 (") && warning.contains("seldom ("),
+        "{warning}"
+    );
+    assert!(warning.contains("of the 600 runs") && !warning.contains("often ("), "{warning}");
+    assert!(!warning.contains("up to 0.5") && !warning.contains(" y ("), "{warning}");
+}
