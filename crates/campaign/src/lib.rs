@@ -73,6 +73,7 @@ mod identity;
 mod kept;
 mod kept_runs;
 mod memory;
+mod number;
 mod requirement;
 mod room;
 mod runs;

@@ -167,7 +167,10 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
         .numbers("margin", |judged| {
             let judgement = &judged.judgement;
             let Some(margin) = judgement.margin() else { return PageCell::from("–") };
-            let deviations = judgement.margin_deviations().map(|d| format!("{d:.1} σ"));
+            let deviations = judgement.margin_deviations().map(|d| match d {
+                common if common.abs() < 1e6 => format!("{common:.1} σ"),
+                large => format!("{} σ", significant(large, 3)),
+            });
             let cell = PageCell::from(Text::from(significant(margin, 4)));
             deviations.into_iter().fold(cell, |cell, d| cell.line(Text::default().quiet(d)))
         })

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
 use super::{Bound, Measured, RequirementError, text, words::Words};
-use crate::table::Table;
+use crate::{number::plain, table::Table};
 
 /// That a number of a run keeps a bound, which is rare.
 ///
@@ -62,9 +62,11 @@ impl fmt::Display for Event {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let quantity = &self.quantity;
         match self.bound {
-            Bound::AtMost(limit) => write!(f, "{quantity} <= {limit}"),
-            Bound::AtLeast(limit) => write!(f, "{quantity} >= {limit}"),
-            Bound::Between(lower, upper) => write!(f, "{lower} <= {quantity} <= {upper}"),
+            Bound::AtMost(limit) => write!(f, "{quantity} <= {}", plain(limit)),
+            Bound::AtLeast(limit) => write!(f, "{quantity} >= {}", plain(limit)),
+            Bound::Between(lower, upper) => {
+                write!(f, "{} <= {quantity} <= {}", plain(lower), plain(upper))
+            }
         }
     }
 }

@@ -21,6 +21,7 @@ use super::{
 use crate::{
     column::Column,
     foreign::{ForeignError, ForeignTable},
+    number::plain,
     runs::RunsError,
 };
 
@@ -389,7 +390,12 @@ impl fmt::Display for Judgement {
         if let Some(margin) = self.margin {
             write!(f, "  margin       {}", short(margin))?;
             match self.margin_deviations {
-                Some(deviations) => writeln!(f, ", which is {deviations:.1} standard deviations")?,
+                Some(deviations) if deviations.abs() < 1e6 => {
+                    writeln!(f, ", which is {deviations:.1} standard deviations")?;
+                }
+                Some(deviations) => {
+                    writeln!(f, ", which is {} standard deviations", short(deviations))?;
+                }
                 None => writeln!(f)?,
             }
         }
@@ -455,7 +461,7 @@ pub fn share_in_percent(share: f64) -> String {
 /// A number in five digits.
 fn short(x: f64) -> String {
     let text = format!("{x:.4e}");
-    text.parse::<f64>().map_or(text, |rounded| rounded.to_string())
+    text.parse::<f64>().map_or(text, plain)
 }
 
 /// Why runs cannot be judged.

@@ -16,7 +16,7 @@ use gyradius_statistics::{Acceptance, Confidence, SequentialAcceptance, Statisti
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
-use crate::table::Table;
+use crate::{number::plain, table::Table};
 
 pub use convergence::Estimate;
 pub use deciding::Looks;
@@ -291,10 +291,12 @@ impl Bound {
 /// In words, after the quantity.
 impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::AtMost(limit) => write!(f, "at most {limit}"),
-            Self::AtLeast(limit) => write!(f, "at least {limit}"),
-            Self::Between(lower, upper) => write!(f, "between {lower} and {upper}"),
+        match *self {
+            Self::AtMost(limit) => write!(f, "at most {}", plain(limit)),
+            Self::AtLeast(limit) => write!(f, "at least {}", plain(limit)),
+            Self::Between(lower, upper) => {
+                write!(f, "between {} and {}", plain(lower), plain(upper))
+            }
         }
     }
 }
@@ -381,7 +383,7 @@ pub enum RequirementError {
     #[error("there must be one of at_most, at_least and between")]
     OneBound,
     /// The limits are not finite, or in the wrong order.
-    #[error("the limits are {lower} and {upper}: they must be finite, and the lower one first")]
+    #[error("the limits are {} and {}: they must be finite, and the lower one first", plain(*lower), plain(*upper))]
     Limits {
         /// The lower one, or the one that there is.
         lower: f64,
@@ -393,7 +395,8 @@ pub enum RequirementError {
     Extreme(#[from] StatisticsError),
     /// A share is out of range.
     #[error(
-        "{field} = {value}: it must lie strictly between 0 and 1, as 0.9973, or as 99.73 % in a line"
+        "{field} = {}: it must lie strictly between 0 and 1, as 0.9973, or as 99.73 % in a line",
+        plain(*value)
     )]
     Share {
         /// Which.

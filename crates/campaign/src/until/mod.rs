@@ -7,7 +7,10 @@ use gyradius_statistics::{Confidence, FixedWidth};
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
-use crate::requirement::{Measured, Words};
+use crate::{
+    number::plain,
+    requirement::{Measured, Words},
+};
 
 pub use evidence::Evidence;
 pub use work::{End, run_until};
@@ -172,7 +175,9 @@ impl fmt::Display for StoppingRule {
                 }
                 Ok(_) | Err(_) => write!(f, "{SHARE} {WITHIN} {within}"),
             },
-            Self::Mean(quantity, within) => write!(f, "{MEAN}({quantity}) {WITHIN} {within}"),
+            Self::Mean(quantity, within) => {
+                write!(f, "{MEAN}({quantity}) {WITHIN} {}", plain(*within))
+            }
         }
     }
 }

@@ -117,3 +117,41 @@ fn drivers_of_what_seldom_happens_are_warned_of() {
     assert!(warning.contains("of the 600 runs") && !warning.contains("often ("), "{warning}");
     assert!(!warning.contains("up to 0.5") && !warning.contains(" y ("), "{warning}");
 }
+
+/// Numbers of any size are written in a few digits, on every page and figure and on the terminal.
+#[test]
+fn no_number_has_hundreds_of_digits() {
+    for size in [1e300, 1e-300, 1e17] {
+        let folder = folder();
+        let large = SimulatorFunction::new(move |run: &RunInputs<'_>| {
+            let x = run.input("x").ok_or("no x")?;
+            Ok(vec![("y".to_owned(), size * x)])
+        });
+        let limits = [0.5, 0.9999].map(|share| {
+            let limit = share * size;
+            format!("[[requirements]]\nquantity = \"y\"\nat_most = {limit:e}\nprobability = 0.6\nconfidence = 0.9\n")
+        });
+        let text = format!("runs = 200\ndrivers = 100\n{SCENARIO}{}{}", limits[0], limits[1]);
+        let scenario = SimulatorScenario::from_toml(&text, folder.path()).unwrap();
+        let scenario = scenario.with_function(large).unwrap();
+        let out = folder.path().join("out");
+        let study = scenario.study(&Options::to(out.clone()), &|_| {}, &|_| {}).unwrap();
+        let page = fs::read_to_string(out.join("report.md")).unwrap();
+        // The scenario stands last, as TOML writes it.
+        let (page, _) = page.split_once("## What went in").unwrap();
+        let mut said = vec![study.summary().to_string(), page.to_owned()];
+        said.extend(
+            study.summary().head.requirements.iter().map(|judged| judged.judgement.to_string()),
+        );
+        for figure in fs::read_dir(out.join("figures")).unwrap() {
+            said.push(fs::read_to_string(figure.unwrap().path()).unwrap());
+        }
+        for text in said {
+            // Fingerprints and paths of figures are made of letters and signs too.
+            let long = text
+                .split(|c: char| !c.is_ascii_digit() && c != '.')
+                .find(|digits| digits.len() > 25);
+            assert_eq!(long, None);
+        }
+    }
+}
