@@ -21,7 +21,7 @@ use crate::{
     regions,
     scenario::{Comparison, Each, Scenario},
     subject::Subject,
-    summary::{ClearanceSummary, ModelSummary, Summary},
+    summary::{ClearanceSummary, LateSummary, ModelSummary, Summary},
 };
 
 /// Its pages are called so.
@@ -411,13 +411,25 @@ fn dispersed(summary: &Summary) -> Option<Section> {
         .numbers("sd", |(_, d)| significant(d.law_deviation, 5));
     for model in &summary.models {
         table = table.numbers(format!("drawn by {}", model.name), |(i, _)| {
-            let drawn = model.dispersed.get(*i);
-            let (mean, deviation) = (drawn.and_then(|d| d.mean), drawn.and_then(|d| d.deviation));
-            format!("{} ± {}", optional(mean, 5), optional(deviation, 4))
+            let Some(drawn) = model.dispersed.get(*i) else { return PageCell::from("–") };
+            let told = |mean: Option<f64>, deviation: Option<f64>| {
+                PageCell::from(format!("{} ± {}", optional(mean, 5), optional(deviation, 4)))
+            };
+            match drawn.late {
+                Some(LateSummary { runs: 0, .. }) => {
+                    PageCell::from("–").line(Text::default().quiet("late in no run"))
+                }
+                Some(LateSummary { runs, mean, deviation }) => told(mean, deviation)
+                    .line(Text::default().quiet(format!("late in {runs} runs"))),
+                None => told(drawn.mean, drawn.deviation),
+            }
         });
     }
     let reading = "Mean and standard deviation of the law of each quantity, and of what each model drew, in the \
                    unit of its name. Every draw is in the run table.";
+    let may_be_late = given.iter().any(|d| d.late.is_some());
+    let of_late = " A law of when a late spring starts is that of the runs in which it is late, and is held against these alone.";
+    let reading = format!("{reading}{}", if may_be_late { of_late } else { "" });
     Some(Section::new("What else was dispersed").paragraph(reading).table(table))
 }
 

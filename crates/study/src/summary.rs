@@ -20,7 +20,7 @@ use crate::{
     quantity::Quantity,
     regions::RegionSummary,
     run::Case,
-    scenario::{Dispersed, Each, ModelLaw, Scenario},
+    scenario::{Dispersed, Each, ModelLaw, Scenario, Target},
     seen::Seen,
     subject::{Summarized, head_of},
     unusual::DrawnInput,
@@ -94,6 +94,18 @@ pub(crate) struct DispersedSummary {
     pub(crate) law_mean: f64,
     pub(crate) law_deviation: f64,
     pub(crate) mean: Option<f64>,
+    pub(crate) deviation: Option<f64>,
+    /// Of when a load that may be late starts: what was drawn in the runs in which it is late, to which alone the law applies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) late: Option<LateSummary>,
+}
+
+/// When a load starts in the runs in which it is late.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct LateSummary {
+    pub(crate) runs: u64,
+    pub(crate) mean: Option<f64>,
+    /// None below two such runs.
     pub(crate) deviation: Option<f64>,
 }
 
@@ -273,8 +285,18 @@ fn nominal(scenario: &Scenario) -> Vec<Nominal> {
 }
 
 fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {
+    let all = scenario.dispersions().all();
+    let moments = |column: &str| seen.surveys.column(column).and_then(Survey::moments);
+    let late = |start: &Dispersed| {
+        let of_start = |d: &&Dispersed| match d.target {
+            Target::Late(load, parameter) => Target::Load(load, parameter, 0) == start.target,
+            Target::Body(..) | Target::Stack(..) | Target::Load(..) | Target::Fails(_) => false,
+        };
+        let late = all.iter().find(of_start)?;
+        LateSummary::new(moments(&late.column)?, moments(&start.column)?, start.nominal)
+    };
     let summary = |d: &Dispersed| {
-        let moments = seen.surveys.column(&d.column).and_then(Survey::moments);
+        let moments = moments(&d.column);
         DispersedSummary {
             quantity: d.column.clone(),
             law: d.law.name().into(),
@@ -284,9 +306,29 @@ fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {
             law_deviation: d.law.deviation(),
             mean: moments.map(Moments::mean),
             deviation: moments.map(Moments::standard_deviation),
+            late: late(d),
         }
     };
-    scenario.dispersions().all().iter().map(summary).collect()
+    all.iter().map(summary).collect()
+}
+
+impl LateSummary {
+    /// From the moments of all runs, of whether a load is late and of when it starts: in time if it is not late.
+    fn new(late: &Moments, start: &Moments, in_time: f64) -> Option<Self> {
+        let (n, of_late) = (start.n() as f64, (late.mean() * late.n() as f64).round());
+        if late.n() != start.n() {
+            return None;
+        }
+        let after = start.mean() - in_time;
+        let mean = n * after / of_late;
+        let squares = (n - 1.0) * start.standard_deviation().powi(2) + n * after * after;
+        let variance = (squares - of_late * mean * mean).max(0.0) / (of_late - 1.0);
+        Some(Self {
+            runs: of_late as u64,
+            mean: (of_late > 0.0).then_some(in_time + mean),
+            deviation: (of_late > 1.0).then(|| variance.sqrt()),
+        })
+    }
 }
 
 impl ModelSummary {

@@ -226,7 +226,7 @@ fn level(
     size: Size,
     done: &(dyn Fn() + Sync),
 ) -> Result<LevelResult, StatisticsError> {
-    let target = match target {
+    let target = match target.and_then(Target::uncertain) {
         Ok(target) => target,
         Err(problem) => {
             models.iter().for_each(|_| done());

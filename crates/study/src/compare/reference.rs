@@ -100,6 +100,9 @@ pub(super) fn principal(
     Ok(PrincipalDispersion::new(roots, axes))
 }
 
+/// Deviations of entries up to this share of the largest entry are those of a body that is known exactly.
+const EXACT: f64 = 1e-12;
+
 /// Moments that models are to have, and the law that has them, if they come from one.
 #[derive(Clone, Debug)]
 pub(crate) struct Target {
@@ -125,6 +128,16 @@ impl Target {
     /// Moments that come from no law of an inertia alone.
     pub(crate) fn of_moments(moments: EntryMoments) -> Self {
         Self { moments, law: None }
+    }
+
+    /// The same, if it is no body that is known exactly, to rounding: of such a body there is no covariance to be matched.
+    pub(crate) fn uncertain(self) -> Result<Self, String> {
+        let largest = |entries: [f64; 6]| entries.into_iter().map(f64::abs).fold(0.0, f64::max);
+        if largest(self.moments.deviations()) > EXACT * largest(self.moments.mean()) {
+            Ok(self)
+        } else {
+            Err("the inertia is not dispersed, so that there is no covariance to match".to_owned())
+        }
     }
 
     pub(crate) fn moments(&self) -> &EntryMoments {

@@ -67,7 +67,7 @@ impl Section {
     /// Where the payload's spin lies under each model.
     pub(crate) fn figure(&self) -> Option<Figure> {
         let payload = self.bodies.first()?;
-        let level = payload.levels.first()?;
+        let level = payload.levels.first().filter(|level| !level.models.is_empty())?;
         let panel = |measure: Measure| RangePanel {
             label: with_unit(&measure.label(), measure.unit()),
             nominal: payload.nominal(measure),
@@ -115,9 +115,11 @@ impl Section {
             let level = level.clone();
             move |kind: &ModelKind| block.told(level.cell(*kind))
         };
-        let rows = kinds(payload);
+        // A body that is known exactly has no models.
+        let told = [payload, stage].into_iter().find(|body| !kinds(body).is_empty())?;
+        let rows = kinds(told);
         let mut table = PageTable::of(&rows)
-            .words("model", |kind| Text::from(kind.name()).tip(matched(payload, *kind)))
+            .words("model", |kind| Text::from(kind.name()).tip(matched(told, *kind)))
             .numbers("unrealizable: payload, %", cell(of_payload, Block::Unrealizable))
             .numbers("stage, %", cell(of_stage, Block::Unrealizable));
         for measure in SHOWN {

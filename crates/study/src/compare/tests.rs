@@ -284,3 +284,39 @@ fn the_axes_of_the_reference_turn_as_far_as_is_said() {
         }
     }
 }
+
+/// A body that is known exactly has no figures beside those of other models, but words; the other body has them as before.
+#[test]
+fn bodies_that_are_known_exactly_have_words_and_no_numbers() {
+    let paper = Scenario::peck_2003().unwrap().with_runs(20).unwrap().to_toml();
+    let (before, stage) = paper.split_once("[stage.dispersion]").unwrap();
+    let (own, after) = stage.split_once("\n\n").unwrap();
+    assert!(own.contains("axes_covariance"), "{own}");
+    let still = "\nroot_second_moment_variance_kg_m2 = [0.0, 0.0, 0.0]\naxes = \"fixed\"\n";
+    let of_payload = before.split_once("[payload.dispersion]").unwrap();
+    let (of_payload, (_, rest)) = (of_payload.0, of_payload.1.split_once("\n\n").unwrap());
+    for (payload_too, head) in [
+        (false, before.to_owned()),
+        (true, format!("{of_payload}[payload.dispersion]{still}\n{rest}")),
+    ] {
+        // The models that are matched need a covariance.
+        let (after, _) = after.split_once("[[models]]").unwrap();
+        let text = format!(
+            "{head}[stage.dispersion]{still}\n{after}[[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n"
+        );
+        let scenario = Scenario::from_toml(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let every = Section::new(&scenario).unwrap();
+        assert_eq!(every.figure().is_none(), payload_too);
+        let page =
+            every.section().map(|section| Document::new("", "", "").section(section).markdown());
+        assert_eq!(page.is_none(), payload_too);
+        let Some(page) = page else { continue };
+        assert!(!page.contains("NaN") && !page.contains(" inf "), "{page}");
+        let why = "> stage: no reference at as given: the inertia is not dispersed";
+        assert!(page.contains(why), "{page}");
+        let rows = page.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| ---"));
+        let rows: Vec<Vec<&str>> = rows.skip(1).map(|line| line.split(" | ").collect()).collect();
+        assert_eq!(rows.len(), ModelKind::ALL.len());
+        assert!(rows.iter().all(|row| row[2] == "–" && row[7] == "– |"), "{page}");
+    }
+}

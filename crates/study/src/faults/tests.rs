@@ -57,6 +57,26 @@ proptest! {
             }
             prop_assert_eq!(model.faults.len(), possible + 1);
             let table = runs.table().unwrap();
+            for dispersed in &model.dispersed {
+                let spring = dispersed.quantity.strip_suffix("_start_s");
+                let late = spring.and_then(|spring| table.numbers(&format!("{spring}_late")));
+                prop_assert_eq!(dispersed.late.is_some(), late.is_some());
+                let Some((found, late)) = dispersed.late.zip(late) else { continue };
+                let starts = table.numbers(&dispersed.quantity).unwrap();
+                let of_late: Vec<f64> = (0..table.len())
+                    .filter(|place| late.get(*place) == Some(1.0))
+                    .filter_map(|place| starts.get(place))
+                    .collect();
+                let n = of_late.len() as f64;
+                prop_assert_eq!(found.runs, of_late.len() as u64);
+                let mean = of_late.iter().sum::<f64>() / n;
+                let squares: f64 = of_late.iter().map(|x| (x - mean).powi(2)).sum();
+                prop_assert_eq!((found.mean.is_some(), found.deviation.is_some()), (n > 0.0, n > 1.0));
+                prop_assert!(found.mean.is_none_or(|x| (x - mean).abs() < 1e-12));
+                let deviation = (squares / (n - 1.0)).sqrt();
+                // Of one value after the other, rounding is all that there may be.
+                prop_assert!(found.deviation.is_none_or(|x| (x - deviation).abs() < 1e-8), "{found:?} {deviation}");
+            }
             let columns: Vec<String> = (1..=4)
                 .flat_map(|spring| ["late", "failure"].map(|what| format!("spring_{spring}_{what}")))
                 .filter(|column| table.numbers(column).is_some())
