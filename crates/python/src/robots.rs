@@ -1,14 +1,14 @@
 //! The links of robot files.
 
 use gyradius_dispersion::TenParameters;
-use gyradius_formats::{Gap, GapKind, RobotFile, RobotLink};
+use gyradius_formats::{Gap, GapKind, LinkProblem, RobotFile, RobotLink};
 use pyo3::{PyResult, Python, pyfunction};
 use std::path::PathBuf;
 
 use crate::error::refused;
 
-/// Of a link: its name, its ten numbers where it has them, and otherwise why not.
-type Link = (String, Option<[f64; 10]>, Option<String>);
+/// Of a link: its name, its ten numbers where it has them, otherwise why not, and whether it has some that cannot be read.
+type Link = (String, Option<[f64; 10]>, Option<String>, bool);
 
 /// The links of a robot, in the order of the file: name, and ten numbers or why there are none. And what of the file was not read, in which
 /// there may be more.
@@ -23,15 +23,22 @@ pub(crate) fn load_robot(py: Python<'_>, path: PathBuf) -> PyResult<(Vec<Link>, 
                     mass_centre_m: numbers.mass_centre_m(),
                     inertia: *numbers.inertia(),
                 };
-                (link.name().to_owned(), Some(ten.values()), None)
+                (link.name().to_owned(), Some(ten.values()), None, false)
             }
-            Err(problem) => (link.name().to_owned(), None, Some(problem.to_string())),
+            // A second element of a link is read by nobody.
+            Err(problem) => {
+                let is_told = !matches!(problem, LinkProblem::Second);
+                (link.name().to_owned(), None, Some(problem.to_string()), is_told)
+            }
         };
         let without = robot.links_without_inertia().iter();
-        let without =
-            without.map(|name| (name.clone(), None, Some("no inertia in the file".to_owned())));
+        let why = || Some("no inertia in the file".to_owned());
+        let without = without.map(|name| (name.clone(), None, why(), false));
         let links = robot.links().iter().map(of).chain(without).collect();
-        Ok((links, robot.gaps().iter().filter_map(unread).collect()))
+        let overridden = robot.overridden_by().map(|told| {
+            format!("its compiler says {told}: MuJoCo takes other numbers than those of its links")
+        });
+        Ok((links, overridden.into_iter().chain(robot.gaps().iter().filter_map(unread)).collect()))
     })
 }
 

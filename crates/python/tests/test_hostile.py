@@ -276,6 +276,33 @@ def test_robots_of_which_a_part_was_not_read_are_told(text: str, message: str, t
         gyradius.load(file, strict=True)
 
 
+def test_links_that_are_left_out_are_told_of(tmp_path: Path) -> None:
+    def link(name: str, mass: str, ixx: str = 'ixx="1"') -> str:
+        return (
+            f'<link name="{name}"><inertial><mass value="{mass}"/>'
+            f'<inertia {ixx} iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+        )
+
+    file = tmp_path / "a.urdf"
+    links = [link("good", "1"), link("heavy", "1kg"), link("flat", "1", ""), '<link name="world"/>']
+    file.write_text(f'<robot name="a">{"".join(links)}</robot>', encoding="utf-8")
+    with pytest.warns(RuntimeWarning) as told:
+        assert list(gyradius.load(file)) == ["good"]
+    said = [str(one.message) for one in told]
+    assert len(said) == 2 and "heavy is left out" in said[0] and "flat is left out" in said[1]
+    with pytest.raises(ValueError, match="heavy: .*flat: .*world: "):
+        gyradius.load(file, strict=True)
+
+    file = tmp_path / "a.xml"
+    body = '<body name="a"><inertial pos="0 0 0" mass="1" diaginertia="1 2 2.5"/></body>'
+    for words in ('settotalmass="5"', 'inertiafromgeom="true"'):
+        file.write_text(f"<mujoco><compiler {words}/><worldbody>{body}</worldbody></mujoco>", encoding="utf-8")
+        with pytest.warns(RuntimeWarning, match="MuJoCo takes other numbers"):
+            gyradius.load(file)
+        with pytest.raises(ValueError, match="MuJoCo takes other numbers"):
+            gyradius.load(file, strict=True)
+
+
 @given(
     st.lists(st.floats(-1, 1), min_size=4, max_size=4).filter(lambda q: np.linalg.norm(q) > 0.01),
     st.integers(-1074, 1023),

@@ -409,23 +409,24 @@ def load(path: str | os.PathLike[str], *, strict: bool = False) -> dict[str, Mas
         A URDF, MJCF or SDF file.
     strict : bool
         Whether links without mass properties that can be told, such as those that are said by shapes and a density, are an
-        error. Otherwise they are left out.
+        error. Otherwise they are left out, with a warning if the file has numbers of them that cannot be read.
 
     Returns
     -------
     dict of str to MassProperties
         In the order of the file, in the frame of each link. As they are in the file: `is_realizable` says whether they belong
         to a body. A `RuntimeWarning` tells of macros that are not expanded and of files that are not followed, in which there may be more
-        links; with `strict` it is an error.
+        links, and of words such as `settotalmass="5"` of MJCF with which a simulator takes other numbers; with `strict` it is an error.
     """
     found, unread = _core.load_robot(Path(path))
     if strict:
-        bad = [f"{name}: {why}" for name, ten, why in found if ten is None] + unread
+        bad = [f"{name}: {why}" for name, ten, why, _ in found if ten is None] + unread
         if bad:
             raise ValueError(f"{path}: {'; '.join(bad)}")
-    for what in unread:
+    left_out = [f"{name} is left out: {why}" for name, _, why, is_told in found if is_told]
+    for what in unread + left_out:
         warnings.warn(f"{path}: {what}", RuntimeWarning, stacklevel=2)
-    return {name: MassProperties.of(ten) for name, ten, _ in found if ten is not None}
+    return {name: MassProperties.of(ten) for name, ten, *_ in found if ten is not None}
 
 
 def pseudo_inertia(bodies: MassProperties | ArrayLike) -> NDArray[np.float64]:
