@@ -15,6 +15,7 @@ use std::{
 };
 
 use crate::{
+    blank_lines::BlankLines,
     column::Column,
     failure::OK,
     stored::{read, said},
@@ -152,7 +153,8 @@ impl ForeignTable {
             match &self.form {
                 Form::Parquet => scan_parquet(file, columns, &mut look)?,
                 Form::Csv { separator, text } => {
-                    scan_csv(file, text, *separator, columns, &mut look)?;
+                    let form = (*separator, self.columns.len());
+                    scan_csv(file, text, form, columns, &mut look)?;
                 }
             }
         }
@@ -331,7 +333,8 @@ fn numbers(
 
 fn csv_columns(path: &Path, text: &CsvText) -> Result<(u8, Vec<String>), ForeignError> {
     let head = |separator: u8| {
-        let names = reader(path, text, separator)?.headers().map_err(|e| broken(path, &e))?.clone();
+        let names =
+            reader(path, text, (separator, 0))?.headers().map_err(|e| broken(path, &e))?.clone();
         Ok::<_, ForeignError>(names.iter().map(str::to_owned).collect::<Vec<_>>())
     };
     let mut best = (b',', head(b',')?);
@@ -348,15 +351,21 @@ fn csv_columns(path: &Path, text: &CsvText) -> Result<(u8, Vec<String>), Foreign
     Ok(best)
 }
 
+/// What reads a table with this separator and so many columns.
 fn reader<'a>(
     path: &Path,
     text: &'a CsvText,
-    separator: u8,
+    (separator, columns): (u8, usize),
 ) -> Result<csv::Reader<Box<dyn Read + 'a>>, ForeignError> {
-    let text: Box<dyn Read> = match text {
+    let text: Box<dyn Read + 'a> = match text {
         CsvText::InFile => Box::new(File::open(path).map_err(|error| broken(path, &error.into()))?),
         CsvText::Held(bytes) => Box::new(bytes.as_slice()),
     };
+    // A blank line is skipped, and of one column it is an empty cell.
+    let text: Box<dyn Read + 'a> =
+        if columns == 1 { Box::new(BlankLines::new(text)) } else { text };
+    // A comment that nothing ends would be a row.
+    let text: Box<dyn Read + 'a> = Box::new(text.chain(&b"\n"[..]));
     let mut builder = csv::ReaderBuilder::new();
     builder.delimiter(separator).comment(Some(b'#')).trim(csv::Trim::All);
     Ok(builder.from_reader(text))
@@ -369,11 +378,11 @@ fn broken(path: &Path, error: &csv::Error) -> ForeignError {
 fn scan_csv(
     path: &Path,
     text: &CsvText,
-    separator: u8,
+    form: (u8, usize),
     columns: &[String],
     look: &mut impl FnMut(&Columns),
 ) -> Result<(), ForeignError> {
-    let mut reader = reader(path, text, separator)?;
+    let mut reader = reader(path, text, form)?;
     let names = reader.headers().map_err(|error| broken(path, &error))?;
     let there: Vec<String> = names.iter().map(str::to_owned).collect();
     let places = places(path, &there, columns)?;

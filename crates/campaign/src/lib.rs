@@ -57,6 +57,7 @@
 //! ```
 
 mod again;
+mod blank_lines;
 mod campaign;
 mod cell;
 mod chacha8;

@@ -493,3 +493,37 @@ fn one_run_is_told_as_one() {
         assert!(expected.iter().all(|words| text.contains(words)), "{text}");
     }
 }
+
+proptest! {
+    /// A column alone is judged as it is beside a second column, whatever an empty cell is written as, in a file and handed out.
+    #[test]
+    fn one_column_is_judged_as_beside_another(
+        rows in prop::collection::vec(prop::option::weighted(0.7, -3..3_i32), 1..60),
+        missing in prop::sample::select(vec!["", "\"\"", "  ", "NA"]),
+        end in prop::sample::select(vec!["\n", "\r\n"]),
+        left_out: bool,
+    ) {
+        let failed = if left_out { FailedRuns::LeftOut } else { FailedRuns::Against };
+        let requirement = "x <= 1 in 60 % at 80 %".parse::<Requirement>().unwrap().with_failed_runs(failed);
+        let table = |name: &str, more: &str| {
+            let row = |x: &Option<i32>| x.map_or(missing.to_owned(), |x| x.to_string()) + more + end;
+            format!("{name}{end}{}", rows.iter().map(row).collect::<String>())
+        };
+        let scratch = tempfile::tempdir().unwrap();
+        let path = scratch.path().join("it.csv");
+        let judged = |text: &str| {
+            fs::write(&path, text).unwrap();
+            let handed = ForeignTable::read_csv(&path, text.as_bytes()).unwrap();
+            let [of_file, of_handed] = [ForeignTable::open(&path).unwrap(), handed]
+                .map(|table| Judgement::of_table(std::slice::from_ref(&requirement), &table).unwrap());
+            assert_eq!(of_file, of_handed);
+            of_file
+        };
+        let alone = judged(&table("x", ""));
+        prop_assert_eq!(&alone, &judged(&table("x,y", ",1")));
+        prop_assert_eq!(alone[0].runs(), rows.len() as u64);
+        // Comments are no rows, and blank lines none of a table of several columns.
+        prop_assert_eq!(&alone, &judged(&format!("{}# end", table("x", ""))));
+        prop_assert_eq!(&alone, &judged(&format!("{}{end}{end}# end", table("x,y", ",1"))));
+    }
+}
