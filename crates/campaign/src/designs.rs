@@ -156,7 +156,7 @@ impl Output {
     #[must_use]
     pub fn of(&self, block: &Table) -> Vec<Option<f64>> {
         match self {
-            Self::Column(name) => Measured::column(name).numbers(block),
+            Self::Column(name) => Measured::column(name).finite_numbers(block),
             Self::Fails(requirement) => {
                 let failing = requirement.failing(block).into_iter();
                 failing.map(|fails| fails.map(|fails| f64::from(u8::from(fails)))).collect()

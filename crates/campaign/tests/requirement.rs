@@ -20,6 +20,7 @@ fn rows() -> impl Strategy<Value = Vec<[Option<f64>; 3]>> {
         6 => (-4.0..4.0).prop_map(Some),
         2 => prop::sample::select(vec![-1.0, 0.0, 1.0, 2.0]).prop_map(Some),
         1 => Just(None),
+        1 => prop::sample::select(vec![f64::INFINITY, f64::NEG_INFINITY]).prop_map(Some),
     ];
     prop::collection::vec([number.clone(), number.clone(), number], 1..400)
 }
@@ -76,9 +77,11 @@ fn csv(rows: &[[Option<f64>; 3]], separator: char, missing: &str) -> String {
 /// That distribution and estimates of a judgement are those of sorting and counting the numbers of all runs.
 fn told_of_all(judged: &Judgement, numbers: &[Option<f64>], left_out: bool) {
     let bound = judged.requirement().bound();
-    let mut sorted: Vec<f64> = numbers.iter().copied().flatten().collect();
+    let of_runs = numbers.iter().copied().flatten();
+    let mut sorted: Vec<f64> = of_runs.filter(|x| x.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
-    let without = if left_out { 0 } else { numbers.len() - sorted.len() };
+    let counted = numbers.iter().filter(|x| x.is_some() || !left_out).count();
+    let without = counted - sorted.len();
     let below = if matches!(bound, Bound::AtLeast(_)) { without } else { 0 };
     let n = (sorted.len() + without) as f64;
     let points = judged.distribution().map_or(&[][..], Distribution::points);
@@ -136,13 +139,16 @@ proptest! {
         let told = serde_json::to_value(&judged[0]).unwrap();
 
         let values: Vec<(u64, f64)> =
-            (0..).zip(&rows).filter_map(|(run, row)| Some((run, value(row)?))).collect();
-        let without = (rows.len() - values.len()) as u64;
+            (0..).zip(&rows).filter_map(|(run, row)| Some((run, value(row).filter(|x| x.is_finite())?))).collect();
+        let without = rows.iter().filter(|row| value(row).is_none()).count() as u64;
+        let infinite = rows.len() as u64 - values.len() as u64 - without;
         let beyond = values.iter().filter(|(_, x)| !bound.is_kept(*x)).count() as u64;
-        let worse = if left_out { 0 } else { without };
+        // An infinite number is a failure, of either sign, and is not left out.
+        let worse = infinite + if left_out { 0 } else { without };
         let (n, failures) = (values.len() as u64 + worse, beyond + worse);
         prop_assert_eq!(&told["runs"], rows.len());
         prop_assert_eq!(&told["runs_without_number"], without);
+        prop_assert_eq!(judged[0].runs_infinite(), infinite);
         prop_assert_eq!((judged[0].counted(), judged[0].failures()), (n, failures));
         let may = (n > 0).then(|| allowed(n, probability, confidence)).flatten();
         prop_assert_eq!(judged[0].allowed_failures(), may);
@@ -525,5 +531,29 @@ proptest! {
         // Comments are no rows, and blank lines none of a table of several columns.
         prop_assert_eq!(&alone, &judged(&format!("{}# end", table("x", ""))));
         prop_assert_eq!(&alone, &judged(&format!("{}{end}{end}# end", table("x,y", ",1"))));
+    }
+}
+
+/// An infinite number keeps no bound, of whatever sign, and is not left out: a study counts such a run as failed.
+#[test]
+fn infinite_numbers_are_failures() {
+    let bounds = ["x <= 2", "x >= -2", "-2 <= x <= 2", "abs(x) <= 2", "norm(x, y) <= 2"];
+    for (bound, cell) in
+        bounds.iter().flat_map(|bound| ["inf", "-inf", "1e999"].map(|x| (bound, x)))
+    {
+        for left_out in [FailedRuns::Against, FailedRuns::LeftOut] {
+            let text = format!("x,y\n{cell},1\n{}", "1,1\n".repeat(98));
+            let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
+            let requirement: Requirement = format!("{bound} in 95 % at 90 %").parse().unwrap();
+            let judged =
+                Judgement::of_table(&[requirement.with_failed_runs(left_out)], &table).unwrap();
+            assert_eq!((judged[0].failures(), judged[0].counted()), (1, 99), "{bound} {cell}");
+            let told = judged[0].to_string();
+            assert!(told.contains("1 run whose number is infinite counts against it"), "{told}");
+            assert!(!told.contains("without a number"), "{told}");
+            let read: Judgement =
+                serde_json::from_str(&serde_json::to_string(&judged[0]).unwrap()).unwrap();
+            assert_eq!(read, judged[0]);
+        }
     }
 }

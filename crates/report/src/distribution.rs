@@ -241,21 +241,25 @@ fn diamond(x: f64, y: f64) -> String {
     format!("M{} {}l6.5 6.5l-6.5 6.5l-6.5 -6.5z", px(x), px(y - 6.5))
 }
 
-/// What is said of runs that have no number.
-fn failed(model: &str, judgement: &Judgement) -> Option<String> {
-    let (without, runs) = (judgement.runs_without_number(), judgement.runs());
-    let fate = match (judgement.requirement().failed_runs(), judgement.requirement().bound()) {
-        (FailedRuns::LeftOut, _) => "are left out",
-        (FailedRuns::Against, Bound::AtLeast(_)) => {
-            "count against it: their share lies below all numbers"
-        }
-        (FailedRuns::Against, Bound::AtMost(_) | Bound::Between(..)) => {
-            "count against it: their share lies above all numbers"
-        }
+/// What is said of runs that have no finite number.
+fn failed(model: &str, judgement: &Judgement) -> Vec<String> {
+    let side = match judgement.requirement().bound() {
+        Bound::AtLeast(_) => "below",
+        Bound::AtMost(_) | Bound::Between(..) => "above",
     };
-    let [without, runs] = [without, runs].map(|n| count(usize::try_from(n).unwrap_or(usize::MAX)));
-    (judgement.runs_without_number() > 0)
-        .then(|| format!("{model}: {without} of {runs} runs failed or have no number, and {fate}."))
+    let against = format!("count against it: their share lies {side} all numbers");
+    let fate = match judgement.requirement().failed_runs() {
+        FailedRuns::LeftOut => "are left out",
+        FailedRuns::Against => &against,
+    };
+    let told = |(number, what, fate): (u64, &str, &str)| {
+        let [of_them, runs] =
+            [number, judgement.runs()].map(|n| count(usize::try_from(n).unwrap_or(usize::MAX)));
+        (number > 0).then(|| format!("{model}: {of_them} of {runs} runs {what}, and {fate}."))
+    };
+    let without = (judgement.runs_without_number(), "failed or have no number", fate);
+    let infinite = (judgement.runs_infinite(), "have an infinite number", against.as_str());
+    [without, infinite].into_iter().filter_map(told).collect()
 }
 
 /// The figure in words.

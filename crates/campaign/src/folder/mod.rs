@@ -34,6 +34,7 @@ pub use adopt::Reduced;
 pub use blocks::Blocks;
 use hidden::Hidden;
 use journal::{Journal, Left, Replacement};
+pub(crate) use manifest::is_zero;
 pub use manifest::{Block, MANIFEST, Manifest};
 pub use name::HIDDEN;
 use name::{Found, Name, look};

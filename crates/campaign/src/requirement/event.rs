@@ -23,11 +23,11 @@ impl Event {
         &self.quantity
     }
 
-    /// By how much the runs of a block are the event: 0 and more are. NaN of a run without a number, most often because it
-    /// failed.
+    /// By how much the runs of a block are the event: 0 and more are. NaN of a run without a finite number, most often because
+    /// it failed.
     #[must_use]
     pub fn excesses(&self, block: &Table) -> Vec<f64> {
-        let numbers = self.quantity.numbers(block).into_iter();
+        let numbers = self.quantity.finite_numbers(block).into_iter();
         numbers.map(|x| x.map_or(f64::NAN, |x| 0.0 - self.bound.excess(x))).collect()
     }
 }

@@ -47,6 +47,8 @@ pub(crate) struct Tally {
     pub(super) runs: u64,
     /// Runs that have no number, most often because they failed.
     pub(super) without: u64,
+    /// Runs whose number is infinite, which count and keep no bound.
+    pub(super) infinite: u64,
     /// Runs whose number is beyond the bound.
     pub(super) beyond: u64,
     /// The worst first.
@@ -109,7 +111,7 @@ impl Gathering {
                 let fails = self.requirement.fails(number);
                 fails.into_iter().for_each(|fails| tally.prefixes.add(run / self.group, fails));
             }
-            numbers.extend(number.map(|x| (run, x)));
+            numbers.extend(number.filter(|x| x.is_finite()).map(|x| (run, x)));
         }
         if let Some(pass) = &mut part.excess {
             pass.extend(numbers.iter().map(|(run, x)| (*run, bound.excess(*x))));
@@ -136,10 +138,10 @@ impl Gathering {
         Ok(())
     }
 
-    /// The order of the runs that count. Those without a number stand beyond the limit.
+    /// The order of the runs that count. Those without a finite number stand beyond the limit.
     pub(super) fn ranks(&self) -> Ranks {
         let [_, runs] = self.tally.failures_of_counted(self.requirement.failed_runs());
-        let values = self.tally.runs - self.tally.without;
+        let values = self.tally.finite();
         let below = match self.requirement.bound() {
             Bound::AtLeast(_) => runs - values,
             Bound::AtMost(_) | Bound::Between(..) => 0,
@@ -155,7 +157,7 @@ impl Gathering {
             Bound::AtMost(_) | Bound::Between(..) => ToleranceSide::AtMost,
             Bound::AtLeast(_) => ToleranceSide::AtLeast,
         };
-        let values = self.tally.runs - self.tally.without;
+        let values = self.tally.finite();
         let [failures, _] = self.tally.failures_of_counted(self.requirement.failed_runs());
         let failed = failures - self.tally.beyond;
         let tolerance = self.deciding()?.tolerance(side, values, failed);
@@ -194,10 +196,16 @@ impl Part {
 impl Tally {
     /// Runs that do not keep the requirement, and those that the verdict is about.
     pub(crate) fn failures_of_counted(&self, failed_runs: FailedRuns) -> [u64; 2] {
+        let failures = self.beyond + self.infinite;
         match failed_runs {
-            FailedRuns::Against => [self.beyond + self.without, self.runs],
-            FailedRuns::LeftOut => [self.beyond, self.runs - self.without],
+            FailedRuns::Against => [failures + self.without, self.runs],
+            FailedRuns::LeftOut => [failures, self.runs - self.without],
         }
+    }
+
+    /// Runs that have a finite number.
+    fn finite(&self) -> u64 {
+        self.runs - self.without - self.infinite
     }
 
     pub(crate) fn add(&mut self, run: u64, number: Option<f64>, bound: Bound) {
@@ -206,6 +214,10 @@ impl Tally {
             self.without += 1;
             return;
         };
+        if !value.is_finite() {
+            self.infinite += 1;
+            return;
+        }
         let excess = bound.excess(value);
         self.beyond += u64::from(excess > 0.0);
         let new = RunBeyond { run, value, excess };
@@ -220,6 +232,7 @@ impl Tally {
     fn merge(&mut self, other: Self) {
         self.runs += other.runs;
         self.without += other.without;
+        self.infinite += other.infinite;
         self.beyond += other.beyond;
         self.prefixes.merge(&other.prefixes);
         self.worst.extend(other.worst);

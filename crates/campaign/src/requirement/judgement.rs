@@ -20,6 +20,7 @@ use super::{
 };
 use crate::{
     column::Column,
+    folder::is_zero,
     foreign::{ForeignError, ForeignTable},
     number::plain,
     runs::RunsError,
@@ -39,6 +40,9 @@ pub struct Judgement {
     runs: u64,
     /// Runs without a number, most often because they failed.
     runs_without_number: u64,
+    /// Runs whose number is infinite, which count as failures and are never left out.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    runs_infinite: u64,
     /// Runs whose number is beyond the bound.
     runs_beyond: u64,
     /// Runs that count, and those of them that do not keep the requirement.
@@ -187,6 +191,7 @@ impl Judgement {
             looks: gathering.looks(),
             runs: tally.runs,
             runs_without_number: tally.without,
+            runs_infinite: tally.infinite,
             runs_beyond: tally.beyond,
             counted,
             failures,
@@ -288,6 +293,12 @@ impl Judgement {
         self.runs_without_number
     }
 
+    /// Runs whose number is infinite: they keep no requirement, and are never left out.
+    #[must_use]
+    pub fn runs_infinite(&self) -> u64 {
+        self.runs_infinite
+    }
+
     /// Share of the runs that count that keep it.
     #[must_use]
     pub fn share(&self) -> Option<f64> {
@@ -378,6 +389,14 @@ impl fmt::Display for Judgement {
                 (FailedRuns::LeftOut, _) => ["s", "are left out"],
             };
             writeln!(f, "  failed       {runs} run{s} without a number {fate}")?;
+        }
+        if self.runs_infinite > 0 {
+            let runs = self.runs_infinite;
+            let [numbers, count] = match runs {
+                1 => ["run whose number is infinite", "counts"],
+                _ => ["runs whose numbers are infinite", "count"],
+            };
+            writeln!(f, "  infinite     {runs} {numbers} {count} against it")?;
         }
         match self.tolerance {
             Some(bound) => writeln!(

@@ -59,8 +59,8 @@ impl Measured {
         &self.columns
     }
 
-    /// The number of a run that has these in its [`columns`](Self::columns), in their order; none if it lacks one, or if what comes of
-    /// them is not finite: no bound is kept by it.
+    /// The number of a run that has these in its [`columns`](Self::columns), in their order; none if it lacks one. It may be infinite, and
+    /// keeps no bound then.
     #[must_use]
     pub fn of(&self, numbers: &[Option<f64>]) -> Option<f64> {
         let first = || numbers.first().copied().flatten();
@@ -70,10 +70,10 @@ impl Measured {
             // Without overflow: a length of 1e300 is one.
             How::Length => numbers.iter().try_fold(0.0, |sum, x| Some(libm::hypot(sum, (*x)?))),
         };
-        number.filter(|x| x.is_finite())
+        number.filter(|x| !x.is_nan())
     }
 
-    /// What the runs of a block have of it.
+    /// What the runs of a block have of it, as [`of`](Self::of) says.
     #[must_use]
     pub fn numbers(&self, block: &Table) -> Vec<Option<f64>> {
         let columns: Vec<_> = self.columns.iter().map(|name| block.measured(name)).collect();
@@ -84,6 +84,13 @@ impl Measured {
             self.of(&of_run)
         };
         (0..block.len()).map(number).collect()
+    }
+
+    /// The same of runs whose number is finite.
+    #[must_use]
+    pub fn finite_numbers(&self, block: &Table) -> Vec<Option<f64>> {
+        let numbers = self.numbers(block).into_iter();
+        numbers.map(|number| number.filter(|x| x.is_finite())).collect()
     }
 
     pub(crate) fn parse(words: &mut Words<'_>) -> Result<Self, RequirementError> {

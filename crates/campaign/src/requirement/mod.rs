@@ -231,10 +231,10 @@ impl Requirement {
 }
 
 impl Bound {
-    /// Whether a number keeps it.
+    /// Whether a number keeps it. One that is infinite keeps none, whatever its sign: a study counts such a run as failed.
     #[must_use]
     pub fn is_kept(self, x: f64) -> bool {
-        self.excess(x) <= 0.0
+        x.is_finite() && self.excess(x) <= 0.0
     }
 
     /// How far a number is beyond it; negative if it is within.

@@ -65,7 +65,9 @@ impl Evidence {
             }
         }
         if let Some(mean) = &mut model.mean {
-            let numbers = judged(&mean.quantity).filter_map(|(_, x)| x).collect::<Vec<_>>();
+            let numbers = judged(&mean.quantity)
+                .filter_map(|(_, x)| x.filter(|x| x.is_finite()))
+                .collect::<Vec<_>>();
             numbers.into_iter().for_each(|x| mean.add(x));
         }
     }

@@ -346,7 +346,7 @@ pub(crate) struct VerdictArgs {
     #[arg(long, value_name = "REQUIREMENT", required = true, allow_hyphen_values = true)]
     pub(crate) require: Vec<Requirement>,
 
-    /// Leave out runs without a number, such as those that failed; otherwise they count against every requirement
+    /// Leave out runs without a number, such as those that failed; otherwise they count against every requirement, as infinite numbers always do
     #[arg(long)]
     pub(crate) leave_out_failed: bool,
 
