@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
+/// Whole numbers below this are exact as numbers with a fraction, 2⁵³.
+const MOST_EXACT: f64 = 9_007_199_254_740_992.0;
+
 /// A column of a [`Table`](crate::Table).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
@@ -40,6 +43,11 @@ pub enum Kind {
 }
 
 impl Column {
+    /// The run that a number in the column [`RUN`](Self::RUN) names, if it names one.
+    pub(crate) fn run_named(number: f64) -> Option<u64> {
+        (number.fract() == 0.0 && (0.0..MOST_EXACT).contains(&number)).then_some(number as u64)
+    }
+
     /// The column of the number of the run, in every table.
     pub const RUN: &str = "run";
 

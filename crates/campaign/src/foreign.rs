@@ -18,6 +18,8 @@ use crate::{
     blank_lines::BlankLines,
     column::Column,
     failure::OK,
+    origin::Origin,
+    requirement::Counting,
     stored::{read, said},
 };
 
@@ -37,6 +39,9 @@ pub struct ForeignTable {
     files: Vec<PathBuf>,
     form: Form,
     columns: Vec<String>,
+    /// What the folder of the campaign that wrote it says of it, if it is in one.
+    origin: Option<Origin>,
+    counting: Counting,
 }
 
 #[derive(Clone, Debug)]
@@ -70,6 +75,7 @@ impl ForeignTable {
         let failed = |problem: String| ForeignError { path: path.to_owned(), problem };
         let unread = |error: io::Error| failed(error.to_string());
         let found = fs::metadata(path).map_err(unread)?;
+        let origin = || Origin::of(path).map_err(unread);
         if found.is_dir() {
             let mut files = Vec::new();
             for entry in fs::read_dir(path).map_err(unread)? {
@@ -82,7 +88,7 @@ impl ForeignTable {
             let first =
                 files.first().ok_or_else(|| failed("it has no .parquet file; the run tables of a study are in runs/ below its folder, a folder for each model".to_owned()))?;
             let columns = parquet_columns(first)?;
-            return Ok(Self { path: path.to_owned(), files, form: Form::Parquet, columns });
+            return Ok(Self::new(path, files, (Form::Parquet, columns), origin()?));
         }
         if !found.is_file() {
             // A pipe has an end only once, and is scanned more often.
@@ -93,14 +99,14 @@ impl ForeignTable {
         let is_parquet = File::open(path).map_err(unread)?.read_exact(&mut start);
         if is_parquet.is_ok() && start == PARQUET {
             let columns = parquet_columns(path)?;
-            return Ok(Self { path: path.to_owned(), files, form: Form::Parquet, columns });
+            return Ok(Self::new(path, files, (Form::Parquet, columns), origin()?));
         }
         if path.extension().is_some_and(|end| end == "parquet" || end == "pq") {
             return Err(failed("it does not begin as a Parquet file does".to_owned()));
         }
         let text = CsvText::InFile;
         let (separator, columns) = csv_columns(path, &text)?;
-        Ok(Self { path: path.to_owned(), files, form: Form::Csv { separator, text }, columns })
+        Ok(Self::new(path, files, (Form::Csv { separator, text }, columns), None))
     }
 
     /// Reads a CSV table that a source hands out once, such as standard input, and holds it in memory: up to 1 GiB. `name` is what it is
@@ -123,14 +129,55 @@ impl ForeignTable {
         }
         let text = CsvText::Held(Arc::new(bytes));
         let (separator, columns) = csv_columns(name, &text)?;
-        let (path, files) = (name.to_owned(), vec![name.to_owned()]);
-        Ok(Self { path, files, form: Form::Csv { separator, text }, columns })
+        let files = vec![name.to_owned()];
+        Ok(Self::new(name, files, (Form::Csv { separator, text }, columns), None))
+    }
+
+    fn new(
+        path: &Path,
+        files: Vec<PathBuf>,
+        (form, columns): (Form, Vec<String>),
+        origin: Option<Origin>,
+    ) -> Self {
+        let counting = origin.as_ref().map(|origin| origin.counting).unwrap_or_default();
+        Self { path: path.to_owned(), files, form, columns, origin, counting }
     }
 
     /// Why nothing can be said of a table without rows.
     pub(crate) fn without_rows(&self) -> ForeignError {
         let problem = "it has no rows: a row must be a run".to_owned();
         ForeignError { path: self.path.clone(), problem }
+    }
+
+    /// How verdicts count its runs, as the folder of the campaign says that it is in; as independent runs that are looked at once, if it is in
+    /// none and nothing else was said.
+    #[must_use]
+    pub fn counting(&self) -> Counting {
+        self.counting
+    }
+
+    /// The same table, whose runs are counted so.
+    #[must_use]
+    pub fn counted(self, counting: Counting) -> Self {
+        Self { counting, ..self }
+    }
+
+    /// Whether it is a run table of a campaign, which begins with `model`, `run` and `status`.
+    #[must_use]
+    pub fn is_run_table(&self) -> bool {
+        status(&self.columns).is_some()
+    }
+
+    /// The file of the campaign's folder that it is in that says how verdicts count its runs, if it is in one.
+    #[must_use]
+    pub fn campaign(&self) -> Option<&Path> {
+        self.origin.as_ref().map(|origin| origin.manifest.as_path())
+    }
+
+    /// Why a row of which nobody knows which run it is cannot be counted.
+    pub(crate) fn without_run(&self) -> ForeignError {
+        let problem = "runs have something in common here, so that the column \"run\" must say which run each row is, with whole numbers from 0";
+        ForeignError { path: self.path.clone(), problem: problem.to_owned() }
     }
 
     /// The names of its columns.
@@ -144,11 +191,21 @@ impl ForeignTable {
     ///
     /// # Errors
     /// It has no such column, a cell in it is no number, or a file cannot be read.
-    pub fn scan(
+    pub fn scan(&self, columns: &[String], look: impl FnMut(&Columns)) -> Result<(), ForeignError> {
+        self.scan_beside(columns, &[], look)
+    }
+
+    /// The same, and behind them some columns as they are written, also of runs that failed.
+    ///
+    /// # Errors
+    /// As [`scan`](Self::scan).
+    pub fn scan_beside(
         &self,
-        columns: &[String],
+        measured: &[String],
+        written: &[String],
         mut look: impl FnMut(&Columns),
     ) -> Result<(), ForeignError> {
+        let columns = (measured, written);
         for file in &self.files {
             match &self.form {
                 Form::Parquet => scan_parquet(file, columns, &mut look)?,
@@ -163,7 +220,11 @@ impl ForeignTable {
 }
 
 /// Where columns are among those that there are.
-fn places(path: &Path, there: &[String], columns: &[String]) -> Result<Vec<usize>, ForeignError> {
+fn places<'a>(
+    path: &Path,
+    there: &[String],
+    columns: impl Iterator<Item = &'a String>,
+) -> Result<Vec<usize>, ForeignError> {
     let place = |name: &String| {
         let mut found = there.iter().enumerate().filter(|(_, other)| *other == name);
         match (found.next(), found.next()) {
@@ -174,7 +235,7 @@ fn places(path: &Path, there: &[String], columns: &[String]) -> Result<Vec<usize
             }
         }
     };
-    let places = columns.iter().map(place).collect::<Result<_, String>>();
+    let places = columns.map(place).collect::<Result<_, String>>();
     places.map_err(|problem| ForeignError { path: path.to_owned(), problem })
 }
 
@@ -197,13 +258,13 @@ fn unread(path: &Path, error: &ParquetError) -> ForeignError {
 
 fn scan_parquet(
     path: &Path,
-    columns: &[String],
+    (measured, written): (&[String], &[String]),
     look: &mut impl FnMut(&Columns),
 ) -> Result<(), ForeignError> {
     let failed = |error: ParquetError| unread(path, &error);
     let reader = open(path).map_err(failed)?;
     let there = names(&reader);
-    let places = places(path, &there, columns)?;
+    let places = places(path, &there, measured.iter().chain(written))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     for place in &places {
         let column = schema.column(*place);
@@ -262,7 +323,7 @@ fn scan_parquet(
             };
             let texts = read(texts, rows).map_err(failed)?;
             for (row, _) in texts.iter().enumerate().filter(|(_, text)| !is_ok(text)) {
-                numbers.iter_mut().for_each(|numbers| numbers[row] = None);
+                numbers[..measured.len()].iter_mut().for_each(|numbers| numbers[row] = None);
             }
         }
         look(&numbers);
@@ -379,26 +440,27 @@ fn scan_csv(
     path: &Path,
     text: &CsvText,
     form: (u8, usize),
-    columns: &[String],
+    (measured, written): (&[String], &[String]),
     look: &mut impl FnMut(&Columns),
 ) -> Result<(), ForeignError> {
     let mut reader = reader(path, text, form)?;
     let names = reader.headers().map_err(|error| broken(path, &error))?;
     let there: Vec<String> = names.iter().map(str::to_owned).collect();
-    let places = places(path, &there, columns)?;
+    let places = places(path, &there, measured.iter().chain(written))?;
     let status = status(&there);
-    let mut some: Vec<Vec<Option<f64>>> = vec![Vec::new(); columns.len()];
+    let mut some: Vec<Vec<Option<f64>>> = vec![Vec::new(); places.len()];
     let mut row = csv::StringRecord::new();
     while reader.read_record(&mut row).map_err(|error| broken(path, &error))? {
-        for ((place, name), numbers) in places.iter().zip(columns).zip(&mut some) {
+        let ended = status.is_none_or(|place| row.get(place) == Some(OK));
+        for (column, (place, numbers)) in places.iter().zip(&mut some).enumerate() {
             let cell = row.get(*place).unwrap_or_default();
             let number = number(cell).ok_or_else(|| {
                 let line = row.position().map_or(0, csv::Position::line);
-                let problem = format!("line {line}, column {name:?}: {cell:?} is not a number");
+                let problem =
+                    format!("line {line}, column {:?}: {cell:?} is not a number", there[*place]);
                 ForeignError { path: path.to_owned(), problem }
             })?;
-            let ended = status.is_none_or(|place| row.get(place) == Some(OK));
-            numbers.push(number.filter(|_| ended));
+            numbers.push(number.filter(|_| ended || column >= measured.len()));
         }
         if some.first().is_some_and(|numbers| numbers.len() == TOGETHER) {
             look(&some);

@@ -75,6 +75,7 @@ mod kept;
 mod kept_runs;
 mod memory;
 mod number;
+mod origin;
 mod requirement;
 mod room;
 mod runs;
@@ -117,9 +118,9 @@ pub use kept::{Kept, KeptError, Rows};
 pub use kept_runs::{KeptColumn, KeptRuns, KeptTexts, KeptValues};
 pub use memory::memory_left;
 pub use requirement::{
-    Bound, Distribution, DistributionPoint, Estimate, Event, FailedRuns, Judgement, JudgementError,
-    Judging, Looks, Measured, Requirement, RequirementError, RunBeyond, VehiclesKeeping,
-    share_in_percent,
+    Bound, Counting, Distribution, DistributionPoint, Estimate, Event, FailedRuns, Judgement,
+    JudgementError, Judging, Looks, Measured, Requirement, RequirementError, RunBeyond,
+    VehiclesKeeping, share_in_percent,
 };
 pub use room::disk_left;
 pub use runs::{Runs, RunsError};

@@ -1,9 +1,9 @@
 //! Campaigns that are interrupted, extended, damaged and looked at again: always what one run of all would give.
 
 use gyradius_campaign::{
-    Blocks, Cell, Column, Contents, Doing, Failure, Folder, Identity, Kept, Kind, Look, MANIFEST,
-    Manifest, Plan, Runs, SampleSummary, Shard, Shared, Simulation, Streams, Surveys, Table,
-    TableError, begun, run, run_missing, threads,
+    Blocks, Cell, Column, Contents, Counting, Doing, Failure, Folder, Identity, Kept, Kind, Look,
+    MANIFEST, Manifest, Plan, Runs, SampleSummary, Shard, Shared, Simulation, Streams, Surveys,
+    Table, TableError, begun, run, run_missing, threads,
 };
 use gyradius_statistics::Confidence;
 use proptest::prelude::*;
@@ -186,7 +186,9 @@ impl Campaign {
         let ends = |end, (first, len): (&u64, &u64)| (*first == end).then_some(first + len);
         assert_eq!(seen.into_inner().unwrap().iter().try_fold(0, ends), Some(runs));
         let empty = [whole(self.seed, 0)];
-        folder.adopt(&blocks, &empty, kept, &pool, None).map_err(|e| e.to_string())?;
+        folder
+            .adopt(&blocks, &empty, (kept, Counting::default()), &pool, None)
+            .map_err(|e| e.to_string())?;
         folder.write("mark", &text).map_err(|e| e.to_string())?;
         folder.publish().map_err(|e| e.to_string())?;
         blocks.settle().map_err(|e| e.to_string())?;

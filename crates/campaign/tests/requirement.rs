@@ -1,8 +1,8 @@
 //! Requirements judged by tables of other programs, held against counting and sorting.
 
 use gyradius_campaign::{
-    Bound, Cell, Column, Distribution, FailedRuns, ForeignTable, Judgement, Judging, Measured,
-    Requirement, Runs, Table, Verdict,
+    Bound, Cell, Column, Counting, Distribution, FailedRuns, ForeignTable, Judgement, Judging,
+    Looks, Measured, Requirement, Runs, Table, Verdict,
 };
 use parquet::{
     data_type::{BoolType, DoubleType, FloatType, Int32Type, Int64Type},
@@ -555,5 +555,57 @@ fn infinite_numbers_are_failures() {
                 serde_json::from_str(&serde_json::to_string(&judged[0]).unwrap()).unwrap();
             assert_eq!(read, judged[0]);
         }
+    }
+}
+
+proptest! {
+    /// Of runs in groups a table is judged as the campaign is, however often it is looked at and whatever the order of the rows.
+    #[test]
+    fn tables_of_groups_are_judged_as_campaigns(
+        numbers in prop::collection::vec(prop::option::weighted(0.9, -4..4_i32), 1..200),
+        group in 1..7_u64,
+        bound in bound(),
+        (left_out, often, reversed) in any::<(bool, bool, bool)>(),
+    ) {
+        let failed = if left_out { FailedRuns::LeftOut } else { FailedRuns::Against };
+        let looks = if often { Looks::Often } else { Looks::Once };
+        let requirement = Requirement::new("it", Measured::column("x"), bound, 0.6, 0.8).unwrap();
+        let requirement = requirement.with_failed_runs(failed);
+        let mut block = Table::new("model", 0, vec![Column::number("x", "1", "A number.")]).unwrap();
+        let mut rows = Vec::new();
+        for (run, x) in numbers.iter().enumerate() {
+            block.push(None, [Cell::from(x.map(f64::from))]).unwrap();
+            rows.push(format!("{run},{}\n", x.map_or_else(String::new, |x| x.to_string())));
+        }
+        let judging = Judging::new([requirement.clone()], numbers.len() as u64, group).looked_at(looks);
+        judging.look(&block);
+        let expected = judging.finish(&Runs::from(block)).unwrap();
+        if reversed && group > 1 {
+            rows.reverse();
+        }
+        let text = format!("run,x\n{}", rows.concat());
+        let table = |text: &str| {
+            let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
+            table.counted(Counting::new(looks, group))
+        };
+        prop_assert_eq!(Judgement::of_table(std::slice::from_ref(&requirement), &table(&text)).unwrap(), expected);
+        if group > 1 {
+            let error = Judgement::of_table(&[requirement], &table(&text.replacen("run", "other", 1)));
+            let error = error.unwrap_err().to_string();
+            prop_assert!(error.contains("no column \"run\""), "{}", error);
+        }
+    }
+}
+
+/// Where runs have something in common, a row of which nobody knows which run it is cannot be counted.
+#[test]
+fn rows_of_groups_need_numbers() {
+    for number in ["", "1.5", "-1", "1e300"] {
+        let text = format!("run,x\n0,1\n{number},1\n");
+        let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
+        let table = table.counted(Counting::new(Looks::Once, 2));
+        let requirement: Requirement = "x <= 1 in 90 % at 90 %".parse().unwrap();
+        let error = Judgement::of_table(&[requirement], &table).unwrap_err().to_string();
+        assert!(error.contains("\"run\" must say which run each row is"), "{error}");
     }
 }

@@ -34,3 +34,4 @@ mod slips;
 #[cfg(unix)]
 mod slurm;
 mod until;
+mod verdict;

@@ -6,7 +6,7 @@ use std::{
     process::Stdio,
 };
 
-use crate::scratch::{Scratch, content, done, files, one_model, summary};
+use crate::scratch::{Scratch, content, done, files, judged, one_model, summary};
 
 /// The built-in study under one model, of which some runs fail, with these requirements.
 fn scenario(head: &str, requirements: &str) -> String {
@@ -40,19 +40,6 @@ fn tables(failed_runs: &str) -> String {
         )
     };
     REQUIREMENTS.iter().map(table).collect()
-}
-
-/// The judgements in a JSON text, without the names that differ.
-fn judged(json: &Value) -> Vec<Value> {
-    let mut all = json["requirements"].as_array().unwrap().clone();
-    for judged in &mut all {
-        let judged = judged.as_object_mut().unwrap();
-        judged.remove("model");
-        // What a study alone knows: what was drawn.
-        judged.remove("unusual");
-        judged["requirement"].as_object_mut().unwrap().remove("name");
-    }
-    all
 }
 
 /// A study and the verb say the same of its runs, whether failed runs count or not; in shards and after another requirement is asked

@@ -98,3 +98,16 @@ pub(crate) fn one_model() -> String {
 pub(crate) fn summary(folder: &Path) -> Value {
     serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap()
 }
+
+/// The judgements in a JSON text, without the names that differ.
+pub(crate) fn judged(json: &Value) -> Vec<Value> {
+    let mut all = json["requirements"].as_array().unwrap().clone();
+    for judged in &mut all {
+        let judged = judged.as_object_mut().unwrap();
+        judged.remove("model");
+        // What a study alone knows: what was drawn.
+        judged.remove("unusual");
+        judged["requirement"].as_object_mut().unwrap().remove("name");
+    }
+    all
+}

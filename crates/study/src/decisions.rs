@@ -1,7 +1,7 @@
 //! Requirements of a scenario: checked, judged by the runs, and told first in the report.
 
 use gyradius_campaign::{
-    Bound, Column, FailedRuns, Judgement, Judging, Looks, Measured, Requirement, RunBeyond, Runs,
+    Bound, Column, Counting, FailedRuns, Judgement, Judging, Looks, Measured, Requirement, RunBeyond, Runs,
     Table, share_in_percent,
 };
 use gyradius_report::{
@@ -85,13 +85,19 @@ pub(crate) fn requirements_of<C: Subject>(scenario: &C, model: &str) -> Vec<Requ
 }
 
 /// What looks at the requirements of each model.
-pub(crate) fn judging<C: Subject>(scenario: &C) -> Vec<Judging> {
-    let group = group(scenario);
+pub(crate) fn judging<C: Subject>(scenario: &C, counting: Counting) -> Vec<Judging> {
     let of_model = |name: &str| {
-        let looks = if scenario.until().is_some() { Looks::Often } else { Looks::Once };
-        Judging::new(requirements_of(scenario, name), scenario.runs(), group).looked_at(looks)
+        let requirements = requirements_of(scenario, name);
+        Judging::new(requirements, scenario.runs(), counting.group()).looked_at(counting.looks())
     };
     scenario.model_names().map(of_model).collect()
+}
+
+/// How verdicts count the runs, of which the folder says so much before. Runs that a rule looked at are not as if nobody had, whoever asks
+/// later.
+pub(crate) fn counting<C: Subject>(scenario: &C, before: Counting) -> Counting {
+    let looks = if scenario.until().is_some() { Looks::Often } else { before.looks() };
+    Counting::new(looks, group(scenario))
 }
 
 /// Verdicts count runs that are independent of each other: the first of so many.
@@ -204,6 +210,13 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
              looks.",
             ended.until.rule().reason()
         )));
+    }
+    let is_often = |judged: &Judged| judged.judgement.looks() == Looks::Often;
+    if head.ended.is_none() && head.requirements.iter().any(is_often) {
+        notes.push(Text::from(
+            "A rule that could have ended these runs looked at them before, in this folder. Verdicts, bounds and intervals of the \
+             requirements are therefore those of a rule that may be asked after any number of looks.",
+        ));
     }
     if head.independent_runs_per_model.is_some() {
         notes.push(Text::from(

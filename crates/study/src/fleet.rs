@@ -1,6 +1,6 @@
 //! Vehicles and their flights: which of them a run is.
 
-use gyradius_campaign::{Column, Kind};
+use gyradius_campaign::{Column, Counting, ForeignError, ForeignTable, Kind};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -58,6 +58,25 @@ impl Fleet {
             ),
         ]
         .map(|(name, meaning)| Column::new(name, Kind::Integer, meaning).required())
+    }
+
+    /// The table with the first flight of each vehicle counted, if it is a run table of vehicles and flights that a study wrote and nothing says
+    /// whether the flights of a vehicle have something in common: first flights have not.
+    ///
+    /// # Errors
+    /// The table cannot be read.
+    pub fn first_flights(table: ForeignTable) -> Result<ForeignTable, ForeignError> {
+        let [vehicle, flight] = Self::columns().map(|column| column.name().to_owned());
+        let has = |name: &String| table.columns().contains(name);
+        if table.campaign().is_some() || !table.is_run_table() || !has(&vehicle) || !has(&flight) {
+            return Ok(table);
+        }
+        let mut last = 0.0;
+        table.scan_beside(&[], &[flight], |columns| {
+            last = columns.iter().flatten().flatten().copied().fold(last, f64::max);
+        })?;
+        let counting = Counting::new(table.counting().looks(), (last as u64).saturating_add(1));
+        Ok(table.counted(counting))
     }
 
     /// What a run has in them.

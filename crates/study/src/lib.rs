@@ -85,9 +85,9 @@ pub use fragment::{Fragment, FragmentBody, FragmentError};
 pub use gyradius_campaign::{
     Again, Bound, CampaignError, Cell, Column, Event, FailedRuns, Forecast, ForeignError,
     ForeignTable, FormatError, Judgement, JudgementError, Kept, KeptColumn, KeptError, KeptRuns,
-    KeptTexts, KeptValues, Outputs, Progress, Requirement, RequirementError, Row, Rows, RunInputs,
-    Runs, RunsError, Shard, ShardError, SimulatorFunction, StoppingRule, Table, TableFormat, Until,
-    UntilError, Verdict, rough_time,
+    KeptTexts, KeptValues, Looks, Outputs, Progress, Requirement, RequirementError, Row, Rows,
+    RunInputs, Runs, RunsError, Shard, ShardError, SimulatorFunction, StoppingRule, Table,
+    TableFormat, Until, UntilError, Verdict, rough_time,
 };
 pub use gyradius_dispersion::ModelKind;
 pub use gyradius_report::{visible, visible_json};

@@ -6,8 +6,9 @@ use crate::{
     model::{Model, Separations},
 };
 use gyradius_campaign::{
-    Blocks, CampaignError, Doing, Folder, MANIFEST, Plan, Progress, Reduced, Runs, RunsError,
-    Simulation, Table, disk_left, is_stopped, memory_left, run_again, run_missing, threads, told,
+    Blocks, CampaignError, Counting, Doing, Folder, MANIFEST, Plan, Progress, Reduced, Runs,
+    RunsError, Simulation, Table, disk_left, is_stopped, memory_left, run_again, run_missing,
+    threads, told,
 };
 #[cfg(test)]
 use gyradius_campaign::{Cell, Row, run};
@@ -92,6 +93,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
     {
         return reduced(scenario, &there, (&folder, &text), options, &simulations, &threads);
     }
+    let counting = decisions::counting(scenario, folder.counting(begun.0)?);
     let blocks = folder.blocks(begun, scenario.runs(), options.force, &threads)?;
     let plan = plan(scenario, options, doing);
     let left = to_be_done(&simulations, plan, (&folder, &blocks), say)?;
@@ -129,7 +131,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
     }
     let done = threads.install(|| {
         let looks = looks(scenario, &simulations)?;
-        let judging = decisions::judging(scenario);
+        let judging = decisions::judging(scenario, counting);
         let look = |place: usize, block: &Table| {
             looks[place].look(block);
             judging[place].look(block);
@@ -158,7 +160,8 @@ pub(crate) fn do_what_is_left<C: Subject>(
         let (drivers, blocks) = found.inspect_err(|_| blocks.abandon())?;
         (summary.head_mut().drivers, beside) = (drivers, blocks);
     }
-    let written = write(scenario, &simulations, &blocks, folder, &summary, options, &threads);
+    let written =
+        write(scenario, &simulations, &blocks, (folder, counting), &summary, options, &threads);
     let (folder, summary) = written.inspect_err(|_| blocks.abandon())?;
     if complete {
         blocks.settle()?;
@@ -195,14 +198,15 @@ fn write<C: Subject>(
     scenario: &C,
     simulations: &[(&str, C::Simulation<'_>)],
     blocks: &Blocks,
-    mut folder: Folder<'_>,
+    (mut folder, counting): (Folder<'_>, Counting),
     summary: &C::Summary,
     options: &Options,
     threads: &ThreadPool,
 ) -> Result<(PathBuf, C::Summary), StudyError> {
     if summary.head().missing.is_empty() {
         let empty = empty_tables(simulations)?;
-        folder.adopt(blocks, &empty, &scenario.kept(), threads, options.stop.as_deref())?;
+        let kept = (&scenario.kept(), counting);
+        folder.adopt(blocks, &empty, kept, threads, options.stop.as_deref())?;
     }
     folder.write("scenario.toml", &scenario.to_toml())?;
     let written = serde_json::to_string_pretty(summary)? + "\n";

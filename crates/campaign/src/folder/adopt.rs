@@ -14,9 +14,12 @@ use super::{
     manifest::{Block, MANIFEST, Manifest},
     name::{Found, Name, look},
     shared::Shared,
-    told::published,
+    told::{manifest, published},
 };
-use crate::{hash::sha256, identity::Identity, kept::Kept, stop::is_stopped, stored, table::Table};
+use crate::{
+    hash::sha256, identity::Identity, kept::Kept, requirement::Counting, stop::is_stopped, stored,
+    table::Table,
+};
 
 /// A complete campaign of which not all rows and columns were kept: nobody can go on with it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,8 +30,8 @@ pub struct Reduced {
 }
 
 impl Folder<'_> {
-    /// Puts the blocks that are not in their places there with the rest of the draft, and tells of all of them. `empty` is a
-    /// table of each model, by which its runs are read if not all of their rows and columns are kept.
+    /// Puts the blocks that are not in their places there with the rest of the draft, and tells of all of them, and how verdicts count
+    /// their runs. `empty` is a table of each model, by which its runs are read if not all of their rows and columns are kept.
     ///
     /// # Errors
     /// They cannot be read, linked or written, or `stop` is true: see [`FolderError::is_stopped`].
@@ -36,7 +39,7 @@ impl Folder<'_> {
         &mut self,
         blocks: &Blocks,
         empty: &[Table],
-        kept: &Kept,
+        (kept, counting): (&Kept, Counting),
         threads: &rayon::ThreadPool,
         stop: Option<&AtomicBool>,
     ) -> Result<(), FolderError> {
@@ -47,7 +50,7 @@ impl Folder<'_> {
         };
         let adopted = adopted.map_err(|problem| self.failed(problem))?;
         let columns = empty.first().map(|table| kept.kept_columns(table)).unwrap_or_default();
-        let manifest = Manifest::new(&blocks.identity, kept, columns, adopted);
+        let manifest = Manifest::new(&blocks.identity, (kept, counting), columns, adopted);
         let text =
             serde_json::to_string_pretty(&manifest).map_err(|error| self.failed(error.into()))?;
         self.write(MANIFEST, &(text + "\n"))
@@ -110,6 +113,18 @@ impl Folder<'_> {
     pub fn reduced(&self, identity: &Identity) -> Result<Option<Reduced>, FolderError> {
         let reduced = Reduced::find((&self.hidden, self.contents.what), identity);
         reduced.map_err(|problem| self.failed(problem))
+    }
+
+    /// How verdicts count the runs of the complete campaign of an identity that is in the folder; as those that nobody has looked at, if
+    /// there is none.
+    ///
+    /// # Errors
+    /// The folder cannot be read.
+    pub fn counting(&self, identity: &Identity) -> Result<Counting, FolderError> {
+        let record =
+            self.hidden.record(self.contents.what).map_err(|problem| self.failed(problem))?.0;
+        let there = manifest(self.hidden.place(), &record, identity);
+        Ok(there.map(|manifest| manifest.counting()).unwrap_or_default())
     }
 }
 

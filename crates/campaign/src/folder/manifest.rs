@@ -8,6 +8,7 @@ use crate::{
     column::{Column, ColumnSummary},
     identity::Identity,
     kept::Kept,
+    requirement::Counting,
 };
 
 /// The file that tells of the blocks of a complete campaign.
@@ -46,6 +47,9 @@ pub struct Manifest {
     /// What is kept of the run tables, if not everything is.
     #[serde(default, skip_serializing_if = "Kept::is_all")]
     kept: Kept,
+    /// How verdicts count the runs.
+    #[serde(flatten)]
+    counting: Counting,
     columns: Vec<ColumnSummary>,
     blocks: Vec<ManifestBlock>,
 }
@@ -138,10 +142,10 @@ impl Block {
 }
 
 impl Manifest {
-    /// Of a campaign with these blocks, of which so much is kept.
+    /// Of a campaign with these blocks, of which so much is kept, and whose runs are counted so.
     pub(super) fn new<'c>(
         identity: &Identity,
-        kept: &Kept,
+        (kept, counting): (&Kept, Counting),
         columns: impl IntoIterator<Item = &'c Column>,
         blocks: Vec<Block>,
     ) -> Self {
@@ -151,6 +155,7 @@ impl Manifest {
             gyradius_version: env!("CARGO_PKG_VERSION").to_owned(),
             identity: identity.clone(),
             kept: kept.clone(),
+            counting,
             columns: columns.into_iter().map(Column::summary).collect(),
             blocks: blocks.into_iter().map(block).collect(),
         }
@@ -195,6 +200,12 @@ impl Manifest {
     #[must_use]
     pub fn kept(&self) -> &Kept {
         &self.kept
+    }
+
+    /// How verdicts count the runs.
+    #[must_use]
+    pub fn counting(&self) -> Counting {
+        self.counting
     }
 
     /// What the runs depend on.

@@ -117,13 +117,18 @@ pub fn missing_runs(
 pub(super) fn published(place: &Path, record: &Record, identity: &Identity) -> (Kept, Vec<Block>) {
     let known =
         |name: &str, sha: &str| Name::new(name).is_ok_and(|name| record.hash(&name) == Some(sha));
-    let unchanged = Name::new(MANIFEST).is_ok_and(|name| {
-        matches!(look(place, &name), Ok(Found::File { hash }) if record.hash(&name) == Some(&hash))
-    });
-    let manifest = Manifest::read(place).ok().filter(|_| unchanged);
-    let manifest = manifest.filter(|manifest| manifest.identity().difference(identity).is_none());
+    let manifest = manifest(place, record, identity);
     let kept = manifest.as_ref().map(|manifest| manifest.kept().clone()).unwrap_or_default();
     let is_known = |block: &Block| !block.has_file() || known(&block.name(), &block.sha256);
     let blocks = manifest.into_iter().flat_map(Manifest::into_blocks);
     (kept, blocks.filter(|block| block.is_sound() && is_known(block)).collect())
+}
+
+/// What tells of the complete campaign of this identity, if the folder has one and it is as it was written.
+pub(super) fn manifest(place: &Path, record: &Record, identity: &Identity) -> Option<Manifest> {
+    let unchanged = Name::new(MANIFEST).is_ok_and(|name| {
+        matches!(look(place, &name), Ok(Found::File { hash }) if record.hash(&name) == Some(&hash))
+    });
+    let manifest = Manifest::read(place).ok().filter(|_| unchanged);
+    manifest.filter(|manifest| manifest.identity().difference(identity).is_none())
 }

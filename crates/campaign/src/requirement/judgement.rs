@@ -3,31 +3,18 @@
 use gyradius_statistics::{
     ConfidenceSequence, Interval, Moments, Proportion, StatisticsError, Verdict,
 };
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fmt,
-};
+use std::fmt;
 
 use super::{
     Bound, FailedRuns, Requirement,
     convergence::Estimate,
     deciding::Looks,
     distribution::Distribution,
-    gathering::{Gathering, Part, RunBeyond},
+    gathering::{Gathering, RunBeyond},
     groups::Groups,
 };
-use crate::{
-    column::Column,
-    folder::is_zero,
-    foreign::{ForeignError, ForeignTable},
-    number::plain,
-    runs::RunsError,
-};
-
-/// Whole numbers below this are exact as numbers with a fraction, 2⁵³.
-const MOST_EXACT: f64 = 9_007_199_254_740_992.0;
+use crate::{folder::is_zero, foreign::ForeignError, number::plain, runs::RunsError};
 
 /// What runs say of a requirement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -90,93 +77,6 @@ pub struct VehiclesKeeping {
 }
 
 impl Judgement {
-    /// Judges requirements by the runs of a table that another program wrote, of which a row is a run. The
-    /// worst runs have the numbers in the column `run` if it has whole numbers, and those of their rows, from 0, if there is no such column. All
-    /// threads of the pool that this is called in are used.
-    ///
-    /// # Errors
-    /// The table cannot be read, has no such column, or has no or too many rows.
-    pub fn of_table(
-        requirements: &[Requirement],
-        table: &ForeignTable,
-    ) -> Result<Vec<Self>, JudgementError> {
-        let mut names: Vec<String> = Vec::new();
-        for name in requirements.iter().flat_map(|requirement| requirement.quantity().columns()) {
-            if !names.contains(name) {
-                names.push(name.clone());
-            }
-        }
-        let mut gatherings: Vec<Gathering> = requirements
-            .iter()
-            .map(|r| Gathering::new(r.clone(), Proportion::MAX_TRIALS, 1))
-            .collect();
-        loop {
-            let mut parts: Vec<Option<Part>> = gatherings.iter().map(Gathering::part).collect();
-            if parts.iter().all(Option::is_none) {
-                if gatherings.iter().any(|gathering| gathering.tally.runs == 0) {
-                    return Err(table.without_rows().into());
-                }
-                let mut judged: Vec<Self> =
-                    gatherings.iter().map(Self::of).collect::<Result<_, _>>()?;
-                if table.columns().iter().any(|name| name == Column::RUN) {
-                    Self::number_runs(&mut judged, table);
-                }
-                return Ok(judged);
-            }
-            let mut first = 0;
-            table.scan(&names, |numbers| {
-                let runs = numbers.first().map_or(0, Vec::len);
-                gatherings.par_iter().zip(&mut parts).for_each(|(gathering, part)| {
-                    let Some(part) = part else { return };
-                    let columns = gathering.requirement.quantity().columns().iter();
-                    let columns: Vec<_> = columns
-                        .filter_map(|name| names.iter().position(|other| other == name))
-                        .map(|column| {
-                            let numbers = &numbers[column];
-                            move |place: usize| numbers.get(place).copied().flatten()
-                        })
-                        .collect();
-                    let mut of_run = Vec::with_capacity(columns.len());
-                    let number = |place: usize| {
-                        of_run.clear();
-                        of_run.extend(columns.iter().map(|column| column(place)));
-                        gathering.requirement.quantity().of(&of_run)
-                    };
-                    gathering.gather(part, (first..).zip((0..runs).map(number)));
-                });
-                first += runs as u64;
-            })?;
-            for (gathering, part) in gatherings.iter_mut().zip(parts) {
-                if let Some(part) = part {
-                    gathering.advance(part)?;
-                }
-            }
-        }
-    }
-
-    /// Calls the worst runs by their numbers in the table, where all of these are whole; rows they were before.
-    fn number_runs(judged: &mut [Self], table: &ForeignTable) {
-        let worst = judged.iter().flat_map(|judgement| &judgement.worst);
-        let rows: BTreeSet<u64> = worst.map(|run| run.run).collect();
-        let mut numbers = BTreeMap::new();
-        let mut first = 0;
-        let read = table.scan(&[Column::RUN.to_owned()], |columns| {
-            let column = columns.first().map_or(&[][..], Vec::as_slice);
-            let end = first + column.len() as u64;
-            for row in rows.range(first..end) {
-                let number = column[(row - first) as usize];
-                let whole = number.filter(|x| x.fract() == 0.0 && (0.0..MOST_EXACT).contains(x));
-                numbers.extend(whole.map(|number| (*row, number as u64)));
-            }
-            first = end;
-        });
-        if read.is_ok() && numbers.len() == rows.len() {
-            for run in judged.iter_mut().flat_map(|judgement| &mut judgement.worst) {
-                run.run = numbers[&run.run];
-            }
-        }
-    }
-
     /// What was gathered, judged.
     pub(super) fn of(gathering: &Gathering) -> Result<Self, JudgementError> {
         let Gathering { requirement, tally, numbers, .. } = gathering;
@@ -231,6 +131,11 @@ impl Judgement {
         };
         let vehicles = Some(VehiclesKeeping { vehicles: whole, keeping, share_interval });
         Ok(Self { vehicles, ..self })
+    }
+
+    /// The worst runs, to be called by other numbers.
+    pub(super) fn worst_mut(&mut self) -> &mut [RunBeyond] {
+        &mut self.worst
     }
 
     /// All runs.

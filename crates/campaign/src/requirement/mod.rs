@@ -1,6 +1,7 @@
 //! Requirements: that a number of a run keeps a bound in at least a share of all runs, at a confidence.
 
 mod convergence;
+mod counting;
 mod deciding;
 mod distribution;
 mod event;
@@ -9,6 +10,7 @@ mod groups;
 mod judgement;
 mod judging;
 mod measured;
+mod of_table;
 mod text;
 mod words;
 
@@ -19,6 +21,7 @@ use std::{fmt, str::FromStr};
 use crate::{number::plain, table::Table};
 
 pub use convergence::Estimate;
+pub use counting::Counting;
 pub use deciding::Looks;
 pub use distribution::{Distribution, DistributionPoint};
 pub use event::Event;

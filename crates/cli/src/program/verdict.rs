@@ -1,6 +1,6 @@
 //! `gyradius verdict`: whether the runs in a table of anybody's meet requirements.
 
-use gyradius_study::{FailedRuns, ForeignTable, Judgement, Requirement, Verdict};
+use gyradius_study::{FailedRuns, Fleet, ForeignTable, Judgement, Looks, Requirement, Verdict};
 use serde_json::json;
 use std::{error::Error, fmt::Write, io, path::Path, process::ExitCode};
 
@@ -21,6 +21,7 @@ pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error
     } else {
         (arguments.table.as_path(), ForeignTable::open(&arguments.table)?)
     };
+    let table = Fleet::first_flights(table)?;
     let failed = if arguments.leave_out_failed { FailedRuns::LeftOut } else { FailedRuns::Against };
     let requirements: Vec<Requirement> =
         arguments.require.iter().map(|r| r.clone().with_failed_runs(failed)).collect();
@@ -29,18 +30,32 @@ pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error
         let judged = json!({ "table": arguments.table, "requirements": judgements });
         print_json(&serde_json::to_string_pretty(&judged)?)?;
     } else {
-        print(&text(name, &judgements))?;
+        print(&text(name, &table, &judgements))?;
     }
     let met = judgements.iter().all(|judgement| judgement.verdict() == Verdict::Met);
     Ok(if met { ExitCode::SUCCESS } else { ExitCode::from(NOT_MET) })
 }
 
-fn text(table: &Path, judgements: &[Judgement]) -> String {
+fn text(name: &Path, table: &ForeignTable, judgements: &[Judgement]) -> String {
     let runs = judgements.first().map_or(0, Judgement::runs);
     let s = if runs == 1 { "" } else { "s" };
-    let mut text = format!("{}: {runs} run{s}\n", table.display());
+    let mut text = format!("{}: {runs} run{s}\n", name.display());
+    // Writing to a string does not fail.
+    if let (Looks::Often, Some(campaign)) = (table.counting().looks(), table.campaign()) {
+        let _ = writeln!(
+            text,
+            "A rule that could end the runs looked at them while they were done, says {}: the verdict holds for any number of looks.",
+            campaign.display()
+        );
+    }
+    let flights = table.counting().group();
+    if flights > 1 {
+        let _ = writeln!(
+            text,
+            "These are first flights of vehicles, one of each {flights} flights: flights of the same vehicle need not be independent."
+        );
+    }
     for judgement in judgements {
-        // Writing to a string does not fail.
         let _ = write!(text, "\n{}\n{judgement}", judgement.requirement().name());
     }
     text

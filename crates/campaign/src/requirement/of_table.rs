@@ -1,0 +1,144 @@
+//! Requirements judged by the rows of a table, pass by pass and in flat memory.
+
+use gyradius_statistics::Proportion;
+use rayon::prelude::*;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    iter,
+};
+
+use super::{
+    Judgement, JudgementError, Measured, Requirement,
+    gathering::{Gathering, Part},
+    groups::Groups,
+};
+use crate::{
+    column::Column,
+    foreign::{Columns, ForeignTable},
+};
+
+impl Judgement {
+    /// Judges requirements by the runs of a table, of which a row is a run, as [`ForeignTable::counting`] says. The
+    /// worst runs have the numbers in the column `run` if it has whole numbers, and those of their rows, from 0, if there is no such column. All
+    /// threads of the pool that this is called in are used.
+    ///
+    /// # Errors
+    /// The table cannot be read, has no such column, or has no or too many rows.
+    pub fn of_table(
+        requirements: &[Requirement],
+        table: &ForeignTable,
+    ) -> Result<Vec<Self>, JudgementError> {
+        let mut names: Vec<String> = Vec::new();
+        for name in requirements.iter().flat_map(|requirement| requirement.quantity().columns()) {
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        let counting = table.counting();
+        let group = counting.group();
+        let runs = Proportion::MAX_TRIALS.saturating_mul(group);
+        let gathering =
+            |r: &Requirement| Gathering::new(r.clone(), runs, group).looked_at(counting.looks());
+        let mut gatherings: Vec<Gathering> = requirements.iter().map(gathering).collect();
+        // Of runs that have something in common it must be known which they are.
+        let of_groups = group > 1;
+        let run_column: Vec<String> =
+            of_groups.then(|| Column::RUN.to_owned()).into_iter().collect();
+        let new_groups = |r: &Requirement| Groups::new(group, r.probability());
+        let mut groups: Vec<Groups> =
+            if of_groups { requirements.iter().map(new_groups).collect() } else { Vec::new() };
+        let mut counted = false;
+        loop {
+            let mut parts: Vec<Option<Part>> = gatherings.iter().map(Gathering::part).collect();
+            if parts.iter().all(Option::is_none) {
+                if gatherings.iter().any(|gathering| gathering.tally.runs == 0) {
+                    return Err(table.without_rows().into());
+                }
+                let groups = groups.iter().map(Some).chain(iter::repeat(None));
+                let judged = gatherings.iter().zip(groups);
+                let mut judged: Vec<Self> = judged
+                    .map(|(gathering, groups)| Self::of(gathering)?.of_groups(groups))
+                    .collect::<Result<_, _>>()?;
+                if !of_groups && table.columns().iter().any(|name| name == Column::RUN) {
+                    Self::number_runs(&mut judged, table);
+                }
+                return Ok(judged);
+            }
+            let (mut first, mut all_known) = (0, true);
+            table.scan_beside(&names, &run_column, |numbers| {
+                let rows = numbers.first().map_or(0, Vec::len);
+                let runs: Vec<u64> = match numbers.get(names.len()) {
+                    Some(runs) => {
+                        runs.iter().filter_map(|run| run.and_then(Column::run_named)).collect()
+                    }
+                    None => (first..).take(rows).collect(),
+                };
+                first += rows as u64;
+                all_known &= runs.len() == rows;
+                if !all_known {
+                    return;
+                }
+                let number = |gathering: &Gathering| {
+                    of_rows(gathering.requirement.quantity(), &names, numbers)
+                };
+                gatherings.par_iter().zip(&mut parts).for_each(|(gathering, part)| {
+                    let Some(part) = part else { return };
+                    let of_runs = runs.iter().copied().zip(number(gathering));
+                    gathering.gather(part, of_runs.filter(|(run, _)| run.is_multiple_of(group)));
+                });
+                for (gathering, groups) in gatherings.iter().zip(&mut groups).filter(|_| !counted) {
+                    let bound = gathering.requirement.bound();
+                    for (run, x) in runs.iter().zip(number(gathering)) {
+                        groups.add(*run, iter::once(x.is_some_and(|x| bound.is_kept(x))));
+                    }
+                }
+            })?;
+            if !all_known {
+                return Err(table.without_run().into());
+            }
+            counted = true;
+            for (gathering, part) in gatherings.iter_mut().zip(parts) {
+                if let Some(part) = part {
+                    gathering.advance(part)?;
+                }
+            }
+        }
+    }
+
+    /// Calls the worst runs by their numbers in the table, where all of these are whole; rows they were before.
+    fn number_runs(judged: &mut [Self], table: &ForeignTable) {
+        let worst = judged.iter().flat_map(Self::worst);
+        let rows: BTreeSet<u64> = worst.map(|run| run.run).collect();
+        let mut numbers = BTreeMap::new();
+        let mut first = 0;
+        let read = table.scan(&[Column::RUN.to_owned()], |columns| {
+            let column = columns.first().map_or(&[][..], Vec::as_slice);
+            let end = first + column.len() as u64;
+            for row in rows.range(first..end) {
+                let number = column[(row - first) as usize];
+                numbers.extend(number.and_then(Column::run_named).map(|number| (*row, number)));
+            }
+            first = end;
+        });
+        if read.is_ok() && numbers.len() == rows.len() {
+            for run in judged.iter_mut().flat_map(Self::worst_mut) {
+                run.run = numbers[&run.run];
+            }
+        }
+    }
+}
+
+/// What some rows of a table, which have the columns `names` first, have of a quantity.
+fn of_rows(quantity: &Measured, names: &[String], numbers: &Columns) -> Vec<Option<f64>> {
+    let columns = quantity.columns().iter();
+    let columns: Vec<&Vec<Option<f64>>> = columns
+        .filter_map(|name| numbers.get(names.iter().position(|other| other == name)?))
+        .collect();
+    let mut of_run = Vec::with_capacity(columns.len());
+    let number = |row: usize| {
+        of_run.clear();
+        of_run.extend(columns.iter().map(|column| column.get(row).copied().flatten()));
+        quantity.of(&of_run)
+    };
+    (0..numbers.first().map_or(0, Vec::len)).map(number).collect()
+}

@@ -1,0 +1,111 @@
+//! The verb `verdict` on run tables of studies, which it judges as the studies do.
+
+use serde_json::Value;
+use std::fs;
+
+use crate::scratch::{Scratch, judged, one_model, summary};
+
+/// The requirement of all studies, in a line.
+const REQUIRE: &str = "nutation_deg <= 10 in 97 % at 90 %";
+
+/// The built-in study under one model, with this at its head and the requirement.
+fn scenario(head: &str) -> String {
+    let text = one_model();
+    let runs = text.lines().filter(|line| !line.starts_with("runs ="));
+    let text = runs.collect::<Vec<_>>().join("\n");
+    format!(
+        "{head}\n{text}\n[[requirements]]\nquantity = \"nutation_deg\"\nat_most = 10.0\nprobability = 0.97\nconfidence = 0.9\n"
+    )
+}
+
+/// What the verb says of a table as JSON, with the same verdict as the study in a folder.
+fn same_as_study(scratch: &Scratch, table: &str, folder: &str, code: i32) -> Value {
+    let said = scratch.done(&["verdict", table, "--json", "--require", REQUIRE], code);
+    let said: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(judged(&said), judged(&summary(&scratch.path(folder))), "{table}");
+    said
+}
+
+/// Runs that a rule could end are judged as runs that were looked at, by the verb and by each later study in the folder.
+#[test]
+fn runs_that_a_rule_looked_at_stay_looked_at() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), scenario("")).unwrap();
+    let study = |out: &str, more: &[&str]| {
+        let study = ["study", "--scenario", "it.toml", "--out", out];
+        scratch.command(&[&study[..], more].concat()).output().unwrap();
+    };
+    let looks = |folder: &str| summary(&scratch.path(folder))["requirements"][0]["looks"].clone();
+    // Of a vehicle that so many runs decide, and that a rule leaves open.
+    study("once", &["--runs", "400"]);
+    study("it", &["--runs", "400", "--until", "share within 0.01 %"]);
+    assert_eq!((looks("once"), looks("it")), (Value::Null, "often".into()));
+    same_as_study(&scratch, "once/runs/proposed", "once", 0);
+    let block = "runs/proposed/000000000-000000399.parquet";
+    for table in ["it/runs/proposed", &format!("it/{block}")] {
+        same_as_study(&scratch, table, "it", 1);
+    }
+    let said = scratch.done(&["verdict", "it/runs/proposed", "--require", REQUIRE], 1);
+    let looked = "looked at them while they were done, says it/campaign.json";
+    assert!(said.contains(looked) && said.contains("NOT DECIDED"), "{said}");
+    let said = scratch.done(&["verdict", "once/runs/proposed", "--require", REQUIRE], 0);
+    assert!(!said.contains("looked at"), "{said}");
+
+    // Nobody forgets that, whether the runs are as many or more.
+    for runs in ["400", "410"] {
+        study("it", &["--runs", runs]);
+        assert_eq!((looks("it"), looks("once")), ("often".into(), Value::Null));
+        same_as_study(&scratch, "it/runs/proposed", "it", 1);
+        let report = fs::read_to_string(scratch.path("it/report.md")).unwrap();
+        assert!(report.contains("looked at them before, in this folder"), "{report}");
+    }
+    // The runs of another seed are other runs.
+    study("it", &["--runs", "400", "--seed", "7", "--force"]);
+    assert_eq!(looks("it"), Value::Null);
+
+    // A table alone tells nothing; what tells of it must be whole.
+    fs::copy(scratch.path("it").join(block), scratch.path("alone.parquet")).unwrap();
+    same_as_study(&scratch, "alone.parquet", "it", 0);
+    fs::write(scratch.path("it/campaign.json"), "{}").unwrap();
+    let said = scratch.done(&["verdict", "it/runs/proposed", "--require", REQUIRE], 2);
+    assert!(said.contains("it/campaign.json, which says how its runs are judged: "), "{said}");
+}
+
+/// Of flights of a vehicle that have something in common the verb judges the first, as the study does, whatever columns are kept; of a
+/// table alone it cannot know whether they have.
+#[test]
+fn of_vehicles_the_first_flights_are_judged() {
+    let scratch = Scratch::new();
+    let fleet = scenario("vehicles = 90\nflights = 5");
+    let mass = |law: &str| {
+        fleet
+            .replace("[payload.dispersion]", &format!("[payload.dispersion]\nmass_percent = {law}"))
+    };
+    for (name, law, counted) in
+        [("shared", "{ sigma = 3, drawn = \"vehicle\" }", 90), ("apart", "{ sigma = 3 }", 450)]
+    {
+        fs::write(scratch.path("it.toml"), mass(law)).unwrap();
+        for (out, columns) in
+            [(name.to_owned(), &[][..]), (format!("{name}-some"), &["--columns", "nutation_deg"])]
+        {
+            let study = ["study", "--scenario", "it.toml", "--out", &out];
+            let code = scratch.run(&[&study[..], columns].concat()).status.code().unwrap();
+            let table = format!("{out}/runs/proposed");
+            let said = same_as_study(&scratch, &table, &out, code);
+            assert_eq!(said["requirements"][0]["counted"], counted, "{out}");
+            let said = scratch.done(&["verdict", &table, "--require", REQUIRE], code);
+            let words = "one of each 5 flights";
+            assert_eq!(said.contains(words), counted == 90, "{said}");
+        }
+        let block = format!("{name}/runs/proposed/000000000-000000449.parquet");
+        fs::copy(scratch.path(&block), scratch.path("alone.parquet")).unwrap();
+        let said =
+            scratch.run(&["verdict", "alone.parquet", "--json", "--require", REQUIRE]).stdout;
+        let said: Value = serde_json::from_slice(&said).unwrap();
+        let judged = &said["requirements"][0];
+        assert_eq!(judged["counted"], 90, "{name}");
+        for worst in judged["worst"].as_array().unwrap() {
+            assert_eq!(worst["run"].as_u64().unwrap() % 5, 0);
+        }
+    }
+}
