@@ -7,6 +7,7 @@ use std::{
 
 use crate::{
     folder::{MANIFEST, Manifest},
+    kept::Rows,
     requirement::Counting,
 };
 
@@ -19,6 +20,8 @@ pub(crate) struct Origin {
     /// The file that says it.
     pub(crate) manifest: PathBuf,
     pub(crate) counting: Counting,
+    /// The rows that were kept of the runs.
+    pub(crate) rows: Rows,
 }
 
 impl Origin {
@@ -46,6 +49,6 @@ impl Origin {
                 manifest.display()
             ))
         })?;
-        Ok(Some(Self { manifest, counting: read.counting() }))
+        Ok(Some(Self { manifest, counting: read.counting(), rows: read.kept().rows() }))
     }
 }

@@ -109,3 +109,31 @@ fn of_vehicles_the_first_flights_are_judged() {
         }
     }
 }
+
+/// The rows of failed runs are not those of all runs; fewer columns are.
+#[test]
+fn rows_of_failed_runs_alone_are_refused() {
+    let scratch = Scratch::new();
+    let text = scenario("runs = 300");
+    let text = text.replace("[payload.dispersion]", "[payload.dispersion]\nmass_percent = 60");
+    fs::write(scratch.path("it.toml"), text).unwrap();
+    for (out, flags) in [
+        ("all", &[][..]),
+        ("failed", &["--rows", "failed"]),
+        ("some", &["--rows", "failed", "--columns", "nutation_deg"]),
+    ] {
+        scratch.run(&[&["study", "--scenario", "it.toml", "--out", out], flags].concat());
+        let folder = format!("{out}/runs/proposed");
+        for table in [folder.clone(), format!("{folder}/000000000-000000299.parquet")] {
+            if out == "all" {
+                same_as_study(&scratch, &table, out, 1);
+                continue;
+            }
+            let said = scratch.done(&["verdict", &table, "--require", REQUIRE], 2);
+            let start = format!(
+                "error: {table}: {out}/campaign.json says that the study kept rows = \"failed\""
+            );
+            assert!(said.starts_with(&start) && said.contains("summary.json"), "{said}");
+        }
+    }
+}

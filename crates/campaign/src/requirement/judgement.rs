@@ -14,7 +14,12 @@ use super::{
     gathering::{Gathering, RunBeyond},
     groups::Groups,
 };
-use crate::{folder::is_zero, foreign::ForeignError, number::plain, runs::RunsError};
+use crate::{
+    folder::is_zero,
+    foreign::{ForeignError, RowsError},
+    number::plain,
+    runs::RunsError,
+};
 
 /// What runs say of a requirement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -395,6 +400,9 @@ pub enum JudgementError {
     /// The table cannot be read.
     #[error(transparent)]
     Table(#[from] ForeignError),
+    /// The table holds the rows of some runs only.
+    #[error(transparent)]
+    Rows(#[from] RowsError),
     /// The runs cannot be read.
     #[error(transparent)]
     Runs(#[from] RunsError),

@@ -1,0 +1,113 @@
+//! Tables of numbers as CSV, with the names of the columns in the first line.
+
+use std::{fs::File, io::Read, path::Path, sync::Arc};
+
+use super::{Columns, ForeignError, places, status};
+use crate::{blank_lines::BlankLines, failure::OK};
+
+/// Rows of a CSV file that are looked at together.
+const TOGETHER: usize = 1 << 14;
+/// What stands in a cell that has no number, in small letters.
+const MISSING: [&str; 7] = ["", "nan", "na", "n/a", "null", "none", "-"];
+
+/// Where the text of a CSV table is.
+#[derive(Clone, Debug)]
+pub(super) enum CsvText {
+    InFile,
+    /// In memory, for it could be read from its source once only.
+    Held(Arc<Vec<u8>>),
+}
+
+pub(super) fn csv_columns(path: &Path, text: &CsvText) -> Result<(u8, Vec<String>), ForeignError> {
+    let head = |separator: u8| {
+        let names =
+            reader(path, text, (separator, 0))?.headers().map_err(|e| broken(path, &e))?.clone();
+        Ok::<_, ForeignError>(names.iter().map(str::to_owned).collect::<Vec<_>>())
+    };
+    let mut best = (b',', head(b',')?);
+    for separator in [b';', b'\t'] {
+        let names = head(separator)?;
+        if names.len() > best.1.len() {
+            best = (separator, names);
+        }
+    }
+    if best.1.iter().all(String::is_empty) {
+        let problem = "it is empty: the first line must have the names of the columns".to_owned();
+        return Err(ForeignError { path: path.to_owned(), problem });
+    }
+    Ok(best)
+}
+
+/// What reads a table with this separator and so many columns.
+pub(super) fn reader<'a>(
+    path: &Path,
+    text: &'a CsvText,
+    (separator, columns): (u8, usize),
+) -> Result<csv::Reader<Box<dyn Read + 'a>>, ForeignError> {
+    let text: Box<dyn Read + 'a> = match text {
+        CsvText::InFile => Box::new(File::open(path).map_err(|error| broken(path, &error.into()))?),
+        CsvText::Held(bytes) => Box::new(bytes.as_slice()),
+    };
+    // A blank line is skipped, and of one column it is an empty cell.
+    let text: Box<dyn Read + 'a> =
+        if columns == 1 { Box::new(BlankLines::new(text)) } else { text };
+    // A comment that nothing ends would be a row.
+    let text: Box<dyn Read + 'a> = Box::new(text.chain(&b"\n"[..]));
+    let mut builder = csv::ReaderBuilder::new();
+    builder.delimiter(separator).comment(Some(b'#')).trim(csv::Trim::All);
+    Ok(builder.from_reader(text))
+}
+
+pub(super) fn broken(path: &Path, error: &csv::Error) -> ForeignError {
+    ForeignError { path: path.to_owned(), problem: error.to_string() }
+}
+
+pub(super) fn scan_csv(
+    path: &Path,
+    text: &CsvText,
+    form: (u8, usize),
+    (measured, written): (&[String], &[String]),
+    look: &mut impl FnMut(&Columns),
+) -> Result<(), ForeignError> {
+    let mut reader = reader(path, text, form)?;
+    let names = reader.headers().map_err(|error| broken(path, &error))?;
+    let there: Vec<String> = names.iter().map(str::to_owned).collect();
+    let places = places(path, &there, measured.iter().chain(written))?;
+    let status = status(&there);
+    let mut some: Vec<Vec<Option<f64>>> = vec![Vec::new(); places.len()];
+    let mut row = csv::StringRecord::new();
+    while reader.read_record(&mut row).map_err(|error| broken(path, &error))? {
+        let ended = status.is_none_or(|place| row.get(place) == Some(OK));
+        for (column, (place, numbers)) in places.iter().zip(&mut some).enumerate() {
+            let cell = row.get(*place).unwrap_or_default();
+            let number = number(cell).ok_or_else(|| {
+                let line = row.position().map_or(0, csv::Position::line);
+                let problem =
+                    format!("line {line}, column {:?}: {cell:?} is not a number", there[*place]);
+                ForeignError { path: path.to_owned(), problem }
+            })?;
+            numbers.push(number.filter(|_| ended || column >= measured.len()));
+        }
+        if some.first().is_some_and(|numbers| numbers.len() == TOGETHER) {
+            look(&some);
+            some.iter_mut().for_each(Vec::clear);
+        }
+    }
+    if some.first().is_some_and(|numbers| !numbers.is_empty()) {
+        look(&some);
+    }
+    Ok(())
+}
+
+/// What stands in a cell: a number, or nothing; none if it is something else.
+pub(super) fn number(cell: &str) -> Option<Option<f64>> {
+    if let Ok(number) = cell.parse::<f64>() {
+        return Some(Some(number).filter(|x| !x.is_nan()));
+    }
+    let small = cell.to_ascii_lowercase();
+    match small.as_str() {
+        "true" => Some(Some(1.0)),
+        "false" => Some(Some(0.0)),
+        other => MISSING.contains(&other).then_some(None),
+    }
+}
