@@ -2,6 +2,7 @@
 
 mod of_csv;
 mod of_parquet;
+mod twice;
 
 use std::{
     fs::{self, File},
@@ -12,6 +13,7 @@ use std::{
 
 use of_csv::{CsvText, csv_columns, scan_csv};
 use of_parquet::{parquet_columns, scan_parquet};
+pub use twice::TwiceError;
 
 use crate::{column::Column, kept::Rows, origin::Origin, requirement::Counting};
 

@@ -109,7 +109,7 @@ pub use folder::{
     begun, folder_of, missing_runs, restore, restore_all, told,
 };
 pub use forecast::{Forecast, rough_size, rough_time};
-pub use foreign::{Columns, ForeignError, ForeignTable, RowsError};
+pub use foreign::{Columns, ForeignError, ForeignTable, RowsError, TwiceError};
 pub use format::{Extent, FormatError, TableFormat, TableWriter};
 pub use gyradius_statistics::Verdict;
 pub use hash::sha256;

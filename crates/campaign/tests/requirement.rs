@@ -609,3 +609,31 @@ fn rows_of_groups_need_numbers() {
         assert!(error.contains("\"run\" must say which run each row is"), "{error}");
     }
 }
+
+/// Rows of the same run are refused where the columns `model` and `run` say so, in any order; other rows are not.
+#[test]
+fn a_run_counts_once() {
+    let requirement = ["x <= 1 in 90 % at 90 %".parse::<Requirement>().unwrap()];
+    let twice = |text: &str| {
+        let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
+        Judgement::of_table(&requirement, &table).err().map(|error| error.to_string())
+    };
+    for text in [
+        "model,run,x\na,0,1\na,1,1\na,0,1\n",
+        "x,run,model\n1,0,a\n1,2,a\n1,1,a\n1,0,b\n1,1,b\n1,0,a\n",
+        "model,run,status,x\na,0,broken,\na,0,ok,1\n",
+    ] {
+        let error = twice(text).unwrap();
+        assert!(error.starts_with("it: two rows are of the run 0 of the model \"a\""), "{error}");
+    }
+    for text in [
+        "run,x\n0,1\n0,1\n",
+        "model,x\na,1\na,1\n",
+        "model,run,x\na,0,1\nb,0,1\na,1,1\nb,1,1\n",
+        "model,run,x\na,,1\na,,1\n",
+        "model,run,x\na,first,1\na,first,1\n",
+        "model,model,run,x\na,a,0,1\na,a,0,1\n",
+    ] {
+        assert_eq!(twice(text), None, "{text}");
+    }
+}

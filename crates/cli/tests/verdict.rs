@@ -137,3 +137,22 @@ fn rows_of_failed_runs_alone_are_refused() {
         }
     }
 }
+
+/// A run that stands twice in a folder is refused with both files, whatever the copy is called.
+#[test]
+fn copies_of_runs_are_refused() {
+    let scratch = Scratch::new();
+    fs::write(scratch.path("it.toml"), scenario("runs = 100")).unwrap();
+    scratch.run(&["study", "--scenario", "it.toml", "--out", "it"]);
+    let folder = "it/runs/proposed";
+    let block = format!("{folder}/000000000-000000099.parquet");
+    for copy in ["copy.parquet", "000000000-000000099 (1).parquet", "100-199.parquet"] {
+        let copy = format!("{folder}/{copy}");
+        fs::copy(scratch.path(&block), scratch.path(&copy)).unwrap();
+        let said = scratch.done(&["verdict", folder, "--require", REQUIRE], 2);
+        let both = "both have the run 0 of the model \"proposed\"";
+        assert!(said.contains(both) && said.contains(&block) && said.contains(&copy), "{said}");
+        fs::remove_file(scratch.path(&copy)).unwrap();
+    }
+    same_as_study(&scratch, folder, "it", 1);
+}

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     folder::is_zero,
-    foreign::{ForeignError, RowsError},
+    foreign::{ForeignError, RowsError, TwiceError},
     number::plain,
     runs::RunsError,
 };
@@ -403,6 +403,9 @@ pub enum JudgementError {
     /// The table holds the rows of some runs only.
     #[error(transparent)]
     Rows(#[from] RowsError),
+    /// A run stands twice in the table.
+    #[error(transparent)]
+    Twice(#[from] TwiceError),
     /// The runs cannot be read.
     #[error(transparent)]
     Runs(#[from] RunsError),
