@@ -7,6 +7,7 @@ mod campaign;
 #[cfg(unix)]
 mod external;
 mod formats;
+mod judged_tables;
 mod kept;
 mod requirement;
 mod together;

@@ -1,8 +1,8 @@
 //! Requirements judged by tables of other programs, held against counting and sorting.
 
 use gyradius_campaign::{
-    Bound, Cell, Column, Counting, Distribution, FailedRuns, ForeignTable, Judgement, Judging,
-    Looks, Measured, Requirement, Runs, Table, Verdict,
+    Bound, Cell, Column, Distribution, FailedRuns, ForeignTable, Judgement, Judging, Measured,
+    Requirement, Runs, Table, Verdict,
 };
 use parquet::{
     data_type::{BoolType, DoubleType, FloatType, Int32Type, Int64Type},
@@ -446,40 +446,6 @@ fn what_is_wrong_with_a_table_is_said() {
     assert!(ForeignTable::open("/dev/zero".as_ref()).unwrap_err().to_string().contains("regular"));
 }
 
-/// The worst runs bear the numbers of a column `run`, in any order, if all of them are whole; else the numbers of their rows.
-#[test]
-fn the_worst_runs_have_the_numbers_of_the_table() {
-    let scratch = tempfile::tempdir().unwrap();
-    let path = scratch.path().join("it.csv");
-    let requirement: Requirement = "x <= 0 in 90 % at 90 %".parse().unwrap();
-    // Some more than are looked at together.
-    let rows = 20_000_u64;
-    let number = |row: u64| 1_000_000 - 7 * row;
-    for (column, is_number) in [("run", true), ("other", false), ("run ", true), ("Run", false)] {
-        for broken in ["", "1.5", "-1", "no number", "1e300"] {
-            // Row 3 is the worst, and the last one the second.
-            let text: String = (0..rows)
-                .map(|row| {
-                    let x = if row == 3 { rows } else { row };
-                    let run = match row {
-                        3 if !broken.is_empty() => broken.to_owned(),
-                        _ => number(row).to_string(),
-                    };
-                    format!("{x},{run}\n")
-                })
-                .collect();
-            fs::write(&path, format!("x,{column}\n{text}")).unwrap();
-            let table = ForeignTable::open(&path).unwrap();
-            let judged = Judgement::of_table(std::slice::from_ref(&requirement), &table).unwrap();
-            let worst: Vec<u64> = judged[0].worst().iter().take(3).map(|run| run.run).collect();
-            let of_rows = [3, rows - 1, rows - 2];
-            let expected =
-                if is_number && broken.is_empty() { of_rows.map(number) } else { of_rows };
-            assert_eq!(worst, expected, "{column} {broken}");
-        }
-    }
-}
-
 #[test]
 fn one_run_is_told_as_one() {
     let scratch = tempfile::tempdir().unwrap();
@@ -497,143 +463,5 @@ fn one_run_is_told_as_one() {
         let judged = Judgement::of_table(&[requirement.with_failed_runs(left_out)], &table);
         let text = judged.unwrap()[0].to_string();
         assert!(expected.iter().all(|words| text.contains(words)), "{text}");
-    }
-}
-
-proptest! {
-    /// A column alone is judged as it is beside a second column, whatever an empty cell is written as, in a file and handed out.
-    #[test]
-    fn one_column_is_judged_as_beside_another(
-        rows in prop::collection::vec(prop::option::weighted(0.7, -3..3_i32), 1..60),
-        missing in prop::sample::select(vec!["", "\"\"", "  ", "NA"]),
-        end in prop::sample::select(vec!["\n", "\r\n"]),
-        left_out: bool,
-    ) {
-        let failed = if left_out { FailedRuns::LeftOut } else { FailedRuns::Against };
-        let requirement = "x <= 1 in 60 % at 80 %".parse::<Requirement>().unwrap().with_failed_runs(failed);
-        let table = |name: &str, more: &str| {
-            let row = |x: &Option<i32>| x.map_or(missing.to_owned(), |x| x.to_string()) + more + end;
-            format!("{name}{end}{}", rows.iter().map(row).collect::<String>())
-        };
-        let scratch = tempfile::tempdir().unwrap();
-        let path = scratch.path().join("it.csv");
-        let judged = |text: &str| {
-            fs::write(&path, text).unwrap();
-            let handed = ForeignTable::read_csv(&path, text.as_bytes()).unwrap();
-            let [of_file, of_handed] = [ForeignTable::open(&path).unwrap(), handed]
-                .map(|table| Judgement::of_table(std::slice::from_ref(&requirement), &table).unwrap());
-            assert_eq!(of_file, of_handed);
-            of_file
-        };
-        let alone = judged(&table("x", ""));
-        prop_assert_eq!(&alone, &judged(&table("x,y", ",1")));
-        prop_assert_eq!(alone[0].runs(), rows.len() as u64);
-        // Comments are no rows, and blank lines none of a table of several columns.
-        prop_assert_eq!(&alone, &judged(&format!("{}# end", table("x", ""))));
-        prop_assert_eq!(&alone, &judged(&format!("{}{end}{end}# end", table("x,y", ",1"))));
-    }
-}
-
-/// An infinite number keeps no bound, of whatever sign, and is not left out: a study counts such a run as failed.
-#[test]
-fn infinite_numbers_are_failures() {
-    let bounds = ["x <= 2", "x >= -2", "-2 <= x <= 2", "abs(x) <= 2", "norm(x, y) <= 2"];
-    for (bound, cell) in
-        bounds.iter().flat_map(|bound| ["inf", "-inf", "1e999"].map(|x| (bound, x)))
-    {
-        for left_out in [FailedRuns::Against, FailedRuns::LeftOut] {
-            let text = format!("x,y\n{cell},1\n{}", "1,1\n".repeat(98));
-            let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
-            let requirement: Requirement = format!("{bound} in 95 % at 90 %").parse().unwrap();
-            let judged =
-                Judgement::of_table(&[requirement.with_failed_runs(left_out)], &table).unwrap();
-            assert_eq!((judged[0].failures(), judged[0].counted()), (1, 99), "{bound} {cell}");
-            let told = judged[0].to_string();
-            assert!(told.contains("1 run whose number is infinite counts against it"), "{told}");
-            assert!(!told.contains("without a number"), "{told}");
-            let read: Judgement =
-                serde_json::from_str(&serde_json::to_string(&judged[0]).unwrap()).unwrap();
-            assert_eq!(read, judged[0]);
-        }
-    }
-}
-
-proptest! {
-    /// Of runs in groups a table is judged as the campaign is, however often it is looked at and whatever the order of the rows.
-    #[test]
-    fn tables_of_groups_are_judged_as_campaigns(
-        numbers in prop::collection::vec(prop::option::weighted(0.9, -4..4_i32), 1..200),
-        group in 1..7_u64,
-        bound in bound(),
-        (left_out, often, reversed) in any::<(bool, bool, bool)>(),
-    ) {
-        let failed = if left_out { FailedRuns::LeftOut } else { FailedRuns::Against };
-        let looks = if often { Looks::Often } else { Looks::Once };
-        let requirement = Requirement::new("it", Measured::column("x"), bound, 0.6, 0.8).unwrap();
-        let requirement = requirement.with_failed_runs(failed);
-        let mut block = Table::new("model", 0, vec![Column::number("x", "1", "A number.")]).unwrap();
-        let mut rows = Vec::new();
-        for (run, x) in numbers.iter().enumerate() {
-            block.push(None, [Cell::from(x.map(f64::from))]).unwrap();
-            rows.push(format!("{run},{}\n", x.map_or_else(String::new, |x| x.to_string())));
-        }
-        let judging = Judging::new([requirement.clone()], numbers.len() as u64, group).looked_at(looks);
-        judging.look(&block);
-        let expected = judging.finish(&Runs::from(block)).unwrap();
-        if reversed && group > 1 {
-            rows.reverse();
-        }
-        let text = format!("run,x\n{}", rows.concat());
-        let table = |text: &str| {
-            let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
-            table.counted(Counting::new(looks, group))
-        };
-        prop_assert_eq!(Judgement::of_table(std::slice::from_ref(&requirement), &table(&text)).unwrap(), expected);
-        if group > 1 {
-            let error = Judgement::of_table(&[requirement], &table(&text.replacen("run", "other", 1)));
-            let error = error.unwrap_err().to_string();
-            prop_assert!(error.contains("no column \"run\""), "{}", error);
-        }
-    }
-}
-
-/// Where runs have something in common, a row of which nobody knows which run it is cannot be counted.
-#[test]
-fn rows_of_groups_need_numbers() {
-    for number in ["", "1.5", "-1", "1e300"] {
-        let text = format!("run,x\n0,1\n{number},1\n");
-        let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
-        let table = table.counted(Counting::new(Looks::Once, 2));
-        let requirement: Requirement = "x <= 1 in 90 % at 90 %".parse().unwrap();
-        let error = Judgement::of_table(&[requirement], &table).unwrap_err().to_string();
-        assert!(error.contains("\"run\" must say which run each row is"), "{error}");
-    }
-}
-
-/// Rows of the same run are refused where the columns `model` and `run` say so, in any order; other rows are not.
-#[test]
-fn a_run_counts_once() {
-    let requirement = ["x <= 1 in 90 % at 90 %".parse::<Requirement>().unwrap()];
-    let twice = |text: &str| {
-        let table = ForeignTable::read_csv("it".as_ref(), text.as_bytes()).unwrap();
-        Judgement::of_table(&requirement, &table).err().map(|error| error.to_string())
-    };
-    for text in [
-        "model,run,x\na,0,1\na,1,1\na,0,1\n",
-        "x,run,model\n1,0,a\n1,2,a\n1,1,a\n1,0,b\n1,1,b\n1,0,a\n",
-        "model,run,status,x\na,0,broken,\na,0,ok,1\n",
-    ] {
-        let error = twice(text).unwrap();
-        assert!(error.starts_with("it: two rows are of the run 0 of the model \"a\""), "{error}");
-    }
-    for text in [
-        "run,x\n0,1\n0,1\n",
-        "model,x\na,1\na,1\n",
-        "model,run,x\na,0,1\nb,0,1\na,1,1\nb,1,1\n",
-        "model,run,x\na,,1\na,,1\n",
-        "model,run,x\na,first,1\na,first,1\n",
-        "model,model,run,x\na,a,0,1\na,a,0,1\n",
-    ] {
-        assert_eq!(twice(text), None, "{text}");
     }
 }
