@@ -117,7 +117,20 @@ fn wrong_requirements_are_refused() {
     let scratch = Scratch::new();
     let one =
         |keys: &str| format!("[[requirements]]\n{keys}\nprobability = 0.9\nconfidence = 0.9\n");
+    let named =
+        |name: &str| one(&format!("name = \"{name}\"\nquantity = \"nutation_deg\"\nat_most = 1"));
+    let of_model = |model: &str| named(&format!("it\"\nmodel = \"{model}"));
+    let unnamed = one("quantity = \"nutation_deg\"\nat_most = 1");
     for (requirement, expected) in [
+        (named(""), "requirements[1].name: \"\""),
+        (named(" "), "requirements[1].name: \" \""),
+        (named("tip\\noff"), "requirements[1].name: \"tip\\noff\": a name must be one line"),
+        (named("tip\\u001boff"), "requirements[1].name: \"tip\\u{1b}off\": "),
+        (named("tip\\u2028off"), "requirements[1].name: \"tip\\u{2028}off\": "),
+        (named("other") + &named("it") + &named("it"), "requirements[3].name: \"it\": requirements[2] has this name, too"),
+        (unnamed.repeat(2), "requirements[2].name: \"nutation_deg at most 1\": requirements[1] has"),
+        (of_model("proposed") + &of_model("proposed"), "requirements[2].name: \"it\""),
+        (of_model("proposed") + &named("it"), "requirements[2].name: \"it\""),
         (one("quantity = \"nutation\"\nat_most = 1"), "requirements[1].quantity: \"nutation\""),
         (one("quantity = \"status\"\nat_most = 1"), "requirements[1].quantity: \"status\""),
         (one("quantity = \"nutation_deg\""), "one of at_most"),

@@ -48,6 +48,9 @@ fn check<C: Subject>(scenario: &C, columns: &[Column]) -> Result<(), ScenarioErr
         let refused = |key: &str, problem: String| {
             ScenarioError::field(format!("requirements[{}].{key}", i + 1), problem)
         };
+        let before = &scenario.requirements()[..i];
+        name_problem(requirement, before)
+            .map_or(Ok(()), |problem| Err(refused("name", problem)))?;
         known(requirement.quantity(), columns).map_err(|problem| refused("quantity", problem))?;
         if let Some(model) = requirement.model().filter(|m| scenario.model_names().all(|n| n != *m))
         {
@@ -57,6 +60,28 @@ fn check<C: Subject>(scenario: &C, columns: &[Column]) -> Result<(), ScenarioErr
         }
     }
     Ok(())
+}
+
+/// Why the name of a requirement does not tell it from those before it, in a line of text.
+fn name_problem(requirement: &Requirement, before: &[Requirement]) -> Option<String> {
+    let name = requirement.name();
+    if name.trim().is_empty() {
+        return Some(format!(
+            "{name:?}: a name must have letters; without the key it is the quantity and the bound"
+        ));
+    }
+    if name.contains(|c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}')) {
+        return Some(format!("{name:?}: a name must be one line without control characters"));
+    }
+    let shares_model = |other: &Requirement| match (requirement.model(), other.model()) {
+        (Some(own), Some(other)) => own == other,
+        (Some(_) | None, _) => true,
+    };
+    let place = before.iter().position(|other| other.name() == name && shares_model(other))?;
+    Some(format!(
+        "{name:?}: requirements[{}] has this name, too; each must have its own",
+        place + 1
+    ))
 }
 
 /// That a quantity is of columns of numbers that the run tables have.
