@@ -120,7 +120,8 @@ pub use memory::memory_left;
 pub use requirement::{
     Bound, Counting, Distribution, DistributionPoint, Estimate, Event, FailedRuns, Judgement,
     JudgementError, Judging, Looks, Measured, Requirement, RequirementError, RunBeyond,
-    VehiclesKeeping, share_in_percent,
+    VehiclesKeeping, one_decimal, percent_beside, percent_or_less, percent_or_more,
+    share_in_percent, stated_in_percent,
 };
 pub use room::disk_left;
 pub use runs::{Runs, RunsError};

@@ -4,6 +4,7 @@ use gyradius_campaign::{
     Bound, Cell, Column, Counting, FailedRuns, ForeignTable, Judgement, Judging, Looks, Measured,
     Requirement, Runs, Table,
 };
+use gyradius_statistics::{Acceptance, Confidence};
 use proptest::prelude::*;
 use std::fs;
 
@@ -184,5 +185,47 @@ fn the_worst_runs_have_the_numbers_of_the_table() {
                 if is_number && broken.is_empty() { of_rows.map(number) } else { of_rows };
             assert_eq!(worst, expected, "{column} {broken}");
         }
+    }
+}
+
+/// What stands beside a limit does not look like it, and a share that passes does.
+#[test]
+fn what_is_said_of_a_judgement_is_true() {
+    let told = |line: &str, numbers: &str, n: usize| {
+        let table = ForeignTable::read_csv(
+            "it".as_ref(),
+            format!("x\n{}{numbers}", "1\n".repeat(n)).as_bytes(),
+        );
+        let judged = Judgement::of_table(&[line.parse().unwrap()], &table.unwrap()).unwrap();
+        judged[0].to_string()
+    };
+    let text = told("x <= 10 in 80 % at 90 %", "10.0000001\n", 0);
+    assert!(text.contains("worst runs   0 (10.0000001)"), "{text}");
+    let text = told("x <= 10 in 50 % at 50 %", "10.0000001\n", 0);
+    assert!(text.contains("50 % of all runs are at most 10.0000001"), "{text}");
+    let text = told("x <= 10 in 85.55 % at 92.5 %", "", 500);
+    assert!(text.contains("85.55 % of all runs are at most 1, with 92.5 % confidence"), "{text}");
+    // Rounded to 72.6 %, the share would be what is required.
+    let text = told("x <= 10 in 72.61 % at 90 %", &"11\n".repeat(2738), 7262);
+    assert!(text.contains("share        72.62 % of the runs keep it"), "{text}");
+}
+
+proptest! {
+    /// A vehicle that keeps it in the share that is said passes nine times in ten, and one that keeps it a little less often does not.
+    #[test]
+    fn the_share_to_pass_passes(n in 60..3000_usize, probability in 0.5..0.95_f64) {
+        let text = format!("x <= 10 in {probability} at 90 %");
+        let requirement: Requirement = text.parse().unwrap();
+        let table = format!("x\n{}", "1\n".repeat(n));
+        let table = ForeignTable::read_csv("it".as_ref(), table.as_bytes()).unwrap();
+        let judged = Judgement::of_table(&[requirement], &table).unwrap();
+        let said = judged[0].to_string();
+        let line = said.lines().find(|line| line.contains("to pass"));
+        prop_assume!(line.is_some());
+        let percent: f64 = line.unwrap().split("keeps it in ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+        let rule = Acceptance::new(probability, Confidence::new(0.9).unwrap()).unwrap();
+        let passes = |share: f64| 1.0 - rule.producers_risk(n as u64, share.min(1.0)).unwrap();
+        prop_assert!(passes(percent / 100.0) >= 0.9 - 1e-9, "{}", line.unwrap());
+        prop_assert!(passes(percent / 100.0 - 0.001_01) <= 0.9, "{}", line.unwrap());
     }
 }

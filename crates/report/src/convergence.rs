@@ -1,6 +1,6 @@
 //! How the share of runs that fail a requirement comes to rest with the number of runs: a line a model, with its interval.
 
-use gyradius_campaign::{Estimate, Judgement, Looks, Requirement, share_in_percent};
+use gyradius_campaign::{Estimate, Judgement, Looks, Requirement, stated_in_percent};
 
 use crate::Drawing;
 use crate::axis::{Spacing, Tick, Units, decades, ticks};
@@ -87,10 +87,10 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
         field.plot.path(&pen, &d);
         field.entry("looks of the rule", |swatch| swatch.path(&pen, "M13 6v-12"));
     }
-    field.entry(format!("allowed: {}", share_in_percent(allowed)), |swatch| {
+    field.entry(format!("allowed: {}", stated_in_percent(allowed)), |swatch| {
         swatch.path(&required_pen(), "M0 0h26");
     });
-    let confidence = share_in_percent(requirement.confidence().level());
+    let confidence = stated_in_percent(requirement.confidence().level());
     let often = models.iter().any(|(_, judgement)| judgement.looks() == Looks::Often);
     let intervals =
         if often { "intervals that hold together" } else { "interval at each number of runs" };

@@ -1,7 +1,7 @@
 //! The distribution of what a requirement is about, on a probability axis: a line a model, its band, the limit, the tolerance point.
 
 use gyradius_campaign::{
-    Bound, DistributionPoint, FailedRuns, Judgement, Looks, Requirement, share_in_percent,
+    Bound, DistributionPoint, FailedRuns, Judgement, Looks, Requirement, stated_in_percent,
 };
 use gyradius_statistics::tail;
 
@@ -37,8 +37,8 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
     let shares = "share of the runs that are at most this (%), on the axis of a normal law";
     let quantity = requirement.quantity().to_string();
     let mut field = Field::linear(&across, &up.ticks(), [&quantity, shares]);
-    let confidence = share_in_percent(requirement.confidence().level());
-    let probability = share_in_percent(requirement.probability());
+    let confidence = stated_in_percent(requirement.confidence().level());
+    let probability = stated_in_percent(requirement.probability());
     for (place, (model, judgement)) in models.iter().enumerate() {
         band(&mut field.plot, place, judgement, &across, &up);
         field.entry(*model, |swatch| {
@@ -47,7 +47,7 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
             swatch.path(&format!("fill=\"{}\"", style::model(place)), &marker(place, 13.0, 0.0));
         });
     }
-    let limits = limits(requirement.bound());
+    let limits: Vec<f64> = requirement.bound().limits().collect();
     for limit in limits.iter().filter(|limit| !beyond.contains(limit)) {
         field.limit(across.x(*limit), &format!("limit {}", significant(*limit, 5)));
     }
@@ -162,13 +162,6 @@ fn points(judgement: &Judgement) -> &[DistributionPoint] {
     judgement.distribution().map_or(&[], |distribution| distribution.points())
 }
 
-fn limits(bound: Bound) -> Vec<f64> {
-    match bound {
-        Bound::AtMost(limit) | Bound::AtLeast(limit) => vec![limit],
-        Bound::Between(lower, upper) => vec![lower, upper],
-    }
-}
-
 /// The horizontal axis, which shows all runs, and the limits that are too far away from them to be shown with them.
 fn across(bound: Bound, models: &[(&str, &Judgement)]) -> (Across, Vec<f64>) {
     let span = |values: &mut dyn Iterator<Item = f64>| {
@@ -176,13 +169,13 @@ fn across(bound: Bound, models: &[(&str, &Judgement)]) -> (Across, Vec<f64>) {
     };
     let of_runs = models.iter().flat_map(|(_, judgement)| points(judgement)).map(|p| p.value);
     let tolerances = models.iter().filter_map(|(_, judgement)| judgement.tolerance());
-    let (lower, upper) = span(&mut of_runs.chain(tolerances.flat_map(limits)));
+    let (lower, upper) = span(&mut of_runs.chain(tolerances.flat_map(Bound::limits)));
     let half = upper / 2.0 - lower / 2.0;
     // Nothing to show but the limits, or one number.
     let is_far = |limit: &f64| {
         half > 0.0 && (lower / 8.0 - limit / 8.0).max(limit / 8.0 - upper / 8.0) > half
     };
-    let (far, near): (Vec<f64>, Vec<f64>) = limits(bound).into_iter().partition(is_far);
+    let (far, near): (Vec<f64>, Vec<f64>) = bound.limits().partition(is_far);
     let (lower, upper) =
         span(&mut [lower, upper].into_iter().filter(|x| x.is_finite()).chain(near));
     (if lower <= upper { Across::new(lower, upper) } else { Across::new(0.0, 1.0) }, far)
@@ -228,7 +221,7 @@ fn line(svg: &mut Svg, model: usize, judgement: &Judgement, across: &Across, up:
 fn tolerance(svg: &mut Svg, model: usize, judgement: &Judgement, across: &Across, up: &Up) {
     let Some(bound) = judgement.tolerance() else { return };
     let y = up.required().unwrap_or(up.y(0.5));
-    let places: Vec<f64> = limits(bound).into_iter().map(|x| across.x(x)).collect();
+    let places: Vec<f64> = bound.limits().map(|x| across.x(x)).collect();
     if let [first, last] = places[..] {
         svg.path(&required_pen(), &format!("M{} {}H{}", px(first), px(y), px(last)));
     }
@@ -268,7 +261,7 @@ fn description(requirement: &Requirement, models: &[(&str, &Judgement)]) -> Stri
         "Distribution of {}, which must be {} in {} of {}.",
         requirement.quantity(),
         requirement.bound(),
-        share_in_percent(requirement.probability()),
+        stated_in_percent(requirement.probability()),
         requirement.failed_runs().of_which()
     );
     for (model, judgement) in models {
@@ -284,8 +277,9 @@ fn description(requirement: &Requirement, models: &[(&str, &Judgement)]) -> Stri
         let bound = judgement.tolerance().map_or_else(
             || "no tolerance bound".to_owned(),
             |bound| {
+                let digits = |x: f64| requirement.bound().digits_beside(x, 4);
                 let bound: Vec<String> =
-                    limits(bound).into_iter().map(|x| significant(x, 4)).collect();
+                    bound.limits().map(|x| significant(x, digits(x))).collect();
                 format!("tolerance bound {}", bound.join(" and "))
             },
         );

@@ -176,6 +176,19 @@ fn a_good_vehicle_needs_about_as_many_runs_as_one_look() {
     }
 }
 
+/// The same at looks that are 1,000 runs apart, as the default of a study is up to 20,000 runs: half of the campaigns are decided after 3,000.
+#[test]
+fn looks_that_are_apart_take_more_runs() {
+    let rule = SequentialAcceptance::new(requirement(0.9973, 0.9));
+    let limits = |n| [rule.allowed_failures(n), rule.refused_failures(n)];
+    let ends = Looks::new(1000, 20, limits).campaigns(0.25 * (1.0 - 0.9973));
+    let [_, median, most] = lengths(&ends);
+    assert_eq!([median, most], [3000.0, 6000.0]);
+    // Not by a hair: a quarter of them are decided before, and clearly more than half then.
+    let [before, then] = [2000, 3000].map(|runs| shares(&ends, runs)[0]);
+    assert!(before < 0.45 && then > 0.55, "{before} {then}");
+}
+
 /// Stopped when the interval is narrow, it holds the share at least as often as it says; that of one look nearly so.
 #[test]
 fn an_interval_may_stop_the_runs_by_its_width() {

@@ -1,8 +1,9 @@
 //! Requirements of a scenario: checked, judged by the runs, and told first in the report.
 
 use gyradius_campaign::{
-    Bound, Column, Counting, FailedRuns, Judgement, Judging, Looks, Measured, Requirement, RunBeyond, Runs,
-    Table, share_in_percent,
+    Bound, Column, Counting, FailedRuns, Judgement, Judging, Looks, Measured, Requirement,
+    RunBeyond, Runs, Table, one_decimal, percent_beside, percent_or_less, percent_or_more,
+    stated_in_percent,
 };
 use gyradius_report::{
     Drawing, PageCell, PageTable, Section, Text, convergence_figure, distribution_figure,
@@ -172,9 +173,9 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
                 "{} {}, in {} of {}, with {} confidence",
                 requirement.quantity(),
                 requirement.bound(),
-                share_in_percent(requirement.probability()),
+                stated_in_percent(requirement.probability()),
                 requirement.failed_runs().of_which(),
-                share_in_percent(requirement.confidence().level())
+                stated_in_percent(requirement.confidence().level())
             );
             PageCell::from(Text::default().strong(requirement.name()))
                 .line(Text::default().quiet(text))
@@ -193,27 +194,27 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
             without.fold(cell, |cell, words| cell.line(Text::default().quiet(words)))
         })
         .numbers("bound that the share keeps", |judged| {
-            judged.judgement.tolerance().map_or_else(|| "–".to_owned(), bound)
+            let limits = judged.judgement.requirement().bound();
+            judged.judgement.tolerance().map_or_else(|| "–".to_owned(), |own| bound(own, limits))
         })
         .numbers("margin", |judged| {
             let judgement = &judged.judgement;
             let Some(margin) = judgement.margin() else { return PageCell::from("–") };
-            let deviations = judgement.margin_deviations().map(|d| match d {
-                common if common.abs() < 1e6 => format!("{common:.1} σ"),
-                large => format!("{} σ", significant(large, 3)),
-            });
+            let deviations = judgement.margin_deviations().map(|d| format!("{} σ", one_decimal(d)));
             let cell = PageCell::from(Text::from(significant(margin, 4)));
             deviations.into_iter().fold(cell, |cell, d| cell.line(Text::default().quiet(d)))
         })
         .numbers("share of the runs that keep it", |judged| {
             let (share, interval) = (judged.judgement.share(), judged.judgement.share_interval());
             let Some((share, interval)) = share.zip(interval) else { return PageCell::from("–") };
-            let [lower, upper] = [interval.lower(), interval.upper()].map(share_in_percent);
-            PageCell::from(Text::from(share_in_percent(share)))
+            let required = judged.judgement.requirement().probability();
+            let (lower, upper) =
+                (percent_or_less(interval.lower()), percent_or_more(interval.upper()));
+            PageCell::from(Text::from(percent_beside(share, required)))
                 .line(Text::default().quiet(format!("{lower} … {upper}")))
         })
         .numbers("share to pass 9 times in 10", |judged| {
-            judged.judgement.success_to_pass().map_or_else(|| "–".to_owned(), share_in_percent)
+            judged.judgement.success_to_pass().map_or_else(|| "–".to_owned(), percent_or_more)
         });
     let rests = "A requirement is met if so few runs fail it that a vehicle which is just not good enough would pass with the \
                  probability 1 − confidence at most (the consumer's risk), and not met if a vehicle which is just good enough \
@@ -362,7 +363,9 @@ fn worst(head: &Head) -> Section {
             format!("{}, {}", judged.judgement.requirement().name(), judged.model)
         })
         .numbers("run", |(_, run)| run.run.to_string())
-        .numbers("value", |(_, run)| significant(run.value, 6))
+        .numbers("value", |(judged, run)| {
+            beside(run.value, 6, judged.judgement.requirement().bound())
+        })
         .numbers("beyond the limit by", |(_, run)| significant(run.excess, 4))
         .words("unusual in what it drew", |(judged, run)| told_unusual(judged, run.run))
         .words("to see it, in the folder of the study", |(judged, run)| {
@@ -417,14 +420,19 @@ fn without_number(judgement: &Judgement) -> Option<String> {
     (without > 0).then(|| format!("{without} of {runs} have no number: {fate}"))
 }
 
-fn bound(bound: Bound) -> String {
+/// The bound that a share keeps, in the digits that tell it from the limits.
+fn bound(bound: Bound, limits: Bound) -> String {
+    let told = |x: f64| beside(x, 5, limits);
     match bound {
-        Bound::AtMost(limit) => format!("≤ {}", significant(limit, 5)),
-        Bound::AtLeast(limit) => format!("≥ {}", significant(limit, 5)),
-        Bound::Between(lower, upper) => {
-            format!("{} … {}", significant(lower, 5), significant(upper, 5))
-        }
+        Bound::AtMost(limit) => format!("≤ {}", told(limit)),
+        Bound::AtLeast(limit) => format!("≥ {}", told(limit)),
+        Bound::Between(lower, upper) => format!("{} … {}", told(lower), told(upper)),
     }
+}
+
+/// A number in at least so many digits, and as many as tell it from the limits.
+fn beside(x: f64, digits: usize, limits: Bound) -> String {
+    significant(x, limits.digits_beside(x, digits))
 }
 
 #[cfg(test)]

@@ -13,6 +13,9 @@ use super::{
     distribution::Distribution,
     gathering::{Gathering, RunBeyond},
     groups::Groups,
+    rounding::{
+        one_decimal, percent_beside, percent_or_less, percent_or_more, rounded, stated_in_percent,
+    },
 };
 use crate::{
     folder::is_zero,
@@ -277,7 +280,7 @@ impl fmt::Display for Judgement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (counted, requirement) = (self.counted, &self.requirement);
         let (share, confidence) = (requirement.probability(), requirement.confidence().level());
-        let (share, confidence) = (share_in_percent(share), share_in_percent(confidence));
+        let (share, confidence) = (stated_in_percent(share), stated_in_percent(confidence));
         let of_which = requirement.failed_runs().of_which();
         writeln!(f, "  {}", self.line())?;
         if let Verdict::Undecided { if_no_more_fail, at_this_rate } = self.verdict {
@@ -312,28 +315,27 @@ impl fmt::Display for Judgement {
             Some(bound) => writeln!(
                 f,
                 "  bound        {share} of {of_which} are {}, with {confidence} confidence",
-                bound.short()
+                bound.beside(requirement.bound())
             )?,
             None => writeln!(f, "  bound        none: too few runs, or too many failed")?,
         }
         if let Some(margin) = self.margin {
-            write!(f, "  margin       {}", short(margin))?;
+            write!(f, "  margin       {}", plain(rounded(margin, 5)))?;
             match self.margin_deviations {
-                Some(deviations) if deviations.abs() < 1e6 => {
-                    writeln!(f, ", which is {deviations:.1} standard deviations")?;
-                }
                 Some(deviations) => {
-                    writeln!(f, ", which is {} standard deviations", short(deviations))?;
+                    let deviations = one_decimal(deviations);
+                    writeln!(f, ", which is {deviations} standard deviations")?;
                 }
                 None => writeln!(f)?,
             }
         }
         if let (Some(observed), Some(interval)) = (self.share, &self.share_interval) {
-            let [lower, upper] = [interval.lower(), interval.upper()].map(share_in_percent);
+            let (lower, upper) =
+                (percent_or_less(interval.lower()), percent_or_more(interval.upper()));
             writeln!(
                 f,
                 "  share        {} of the runs keep it ({confidence} interval: {lower} to {upper})",
-                share_in_percent(observed)
+                percent_beside(observed, requirement.probability())
             )?;
         }
         if let Some(good) = self.success_to_pass {
@@ -341,14 +343,17 @@ impl fmt::Display for Judgement {
             writeln!(
                 f,
                 "  to pass      a vehicle that keeps it in {} of {of_which} passes {counted} run{s} nine times in ten",
-                share_in_percent(good)
+                percent_or_more(good)
             )?;
         }
         if let Some(vehicles) = self.vehicles {
             writeln!(f, "  vehicles     {vehicles}")?;
         }
-        let worst: Vec<String> =
-            self.worst.iter().map(|run| format!("{} ({})", run.run, short(run.value))).collect();
+        let worst: Vec<String> = self
+            .worst
+            .iter()
+            .map(|run| format!("{} ({})", run.run, plain(requirement.bound().rounded(run.value))))
+            .collect();
         if worst.is_empty() { Ok(()) } else { writeln!(f, "  worst runs   {}", worst.join(", ")) }
     }
 }
@@ -359,8 +364,8 @@ impl fmt::Display for VehiclesKeeping {
         let Self { vehicles, keeping, share_interval } = self;
         write!(f, "{keeping} of {vehicles} keep it in that share of their flights")?;
         let Some(interval) = share_interval else { return Ok(()) };
-        let [lower, upper] = [interval.lower(), interval.upper()].map(share_in_percent);
-        let confidence = share_in_percent(interval.confidence().level());
+        let (lower, upper) = (percent_or_less(interval.lower()), percent_or_more(interval.upper()));
+        let confidence = stated_in_percent(interval.confidence().level());
         write!(f, " ({confidence} interval: {lower} to {upper})")
     }
 }
@@ -372,25 +377,6 @@ fn words(verdict: Verdict) -> &'static str {
         Verdict::NotMet => "NOT MET",
         Verdict::Undecided { .. } => "NOT DECIDED",
     }
-}
-
-/// A share in percent, with the digits that tell it from 0 and 100 %.
-#[must_use]
-pub fn share_in_percent(share: f64) -> String {
-    let digits = (0..12).find(|digits| {
-        let unit = 10_f64.powi(-*digits);
-        (1.0 - share).min(share) * 100.0 >= 10.0 * unit || share == 0.0 || share == 1.0
-    });
-    let text = format!("{:.*}", digits.unwrap_or(12) as usize, share * 100.0);
-    let text =
-        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    format!("{text} %")
-}
-
-/// A number in five digits.
-fn short(x: f64) -> String {
-    let text = format!("{x:.4e}");
-    text.parse::<f64>().map_or(text, plain)
 }
 
 /// Why runs cannot be judged.

@@ -11,6 +11,7 @@ mod judgement;
 mod judging;
 mod measured;
 mod of_table;
+mod rounding;
 mod text;
 mod words;
 
@@ -27,9 +28,13 @@ pub use distribution::{Distribution, DistributionPoint};
 pub use event::Event;
 pub use gathering::RunBeyond;
 pub(crate) use gathering::Tally;
-pub use judgement::{Judgement, JudgementError, VehiclesKeeping, share_in_percent};
+pub use judgement::{Judgement, JudgementError, VehiclesKeeping};
 pub use judging::Judging;
 pub use measured::Measured;
+pub use rounding::{
+    one_decimal, percent_beside, percent_or_less, percent_or_more, share_in_percent,
+    stated_in_percent,
+};
 pub(crate) use words::Words;
 
 /// That a number of a run keeps a bound in at least a share of all runs, at a confidence: a requirement.
@@ -269,13 +274,14 @@ impl Bound {
         }
     }
 
-    /// With its limits in five digits.
-    fn short(self) -> Self {
-        let short = |x: f64| format!("{x:.4e}").parse().unwrap_or(x);
+    /// With its limits in the digits that tell them from those of another.
+    fn beside(self, other: Self) -> Self {
         match self {
-            Self::AtMost(limit) => Self::AtMost(short(limit)),
-            Self::AtLeast(limit) => Self::AtLeast(short(limit)),
-            Self::Between(lower, upper) => Self::Between(short(lower), short(upper)),
+            Self::AtMost(limit) => Self::AtMost(other.rounded(limit)),
+            Self::AtLeast(limit) => Self::AtLeast(other.rounded(limit)),
+            Self::Between(lower, upper) => {
+                Self::Between(other.rounded(lower), other.rounded(upper))
+            }
         }
     }
 
