@@ -94,8 +94,22 @@ fn of_vehicles_the_first_flights_are_judged() {
             let said = same_as_study(&scratch, &table, &out, code);
             assert_eq!(said["requirements"][0]["counted"], counted, "{out}");
             let said = scratch.done(&["verdict", &table, "--require", REQUIRE], code);
-            let words = "one of each 5 flights";
-            assert_eq!(said.contains(words), counted == 90, "{said}");
+            let of_fleet = counted == 90;
+            for words in [
+                "Of each vehicle the first of 5 flights is judged",
+                "90 first flights",
+                "of the first flights keep it",
+            ] {
+                assert_eq!(said.contains(words), of_fleet, "{said}");
+            }
+            assert_eq!(said.contains("450 runs"), !of_fleet, "{said}");
+            let few = &["verdict", &table, "--require", "nutation_deg <= 90 in 99 % at 90 %"][..];
+            let said = scratch.run(few).stdout;
+            let said = String::from_utf8(said).unwrap();
+            // Of 90 vehicles 230 were enough.
+            let more = "more vehicles 140 more vehicles would show that it is met";
+            assert_eq!(said.contains(more), of_fleet, "{said}");
+            assert!(!said.contains("more runs"), "{said}");
         }
         let block = format!("{name}/runs/proposed/000000000-000000449.parquet");
         fs::copy(scratch.path(&block), scratch.path("alone.parquet")).unwrap();

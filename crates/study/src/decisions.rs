@@ -401,8 +401,9 @@ fn verdict(judged: &Judged) -> PageCell {
         Verdict::NotMet => PageCell::from(Text::default().strong("not met")),
         Verdict::Undecided { if_no_more_fail, at_this_rate } => {
             let cell = PageCell::from(Text::default().strong("not decided"));
-            let more =
-                |runs: u64, how: &str| Text::default().quiet(format!("{runs} more runs {how}"));
+            let more = |runs: u64, how: &str| {
+                Text::default().quiet(format!("{runs} more {} {how}", judgement.unit_of_more(runs)))
+            };
             let all = if_no_more_fail.map(|runs| more(runs, "if all keep it"));
             let rate = at_this_rate.map(|runs| more(runs, "if failures go on at this rate"));
             all.into_iter().chain(rate).fold(cell, PageCell::line)

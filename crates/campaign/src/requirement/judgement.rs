@@ -259,13 +259,34 @@ impl Judgement {
     #[must_use]
     pub fn line(&self) -> String {
         let Self { failures, counted, .. } = self;
-        let s = if *counted == 1 { "" } else { "s" };
         let keep = if *failures == 1 { "does not keep it" } else { "do not keep it" };
         let allowed = self.allowed_failures.map_or_else(
-            || "so few runs cannot show that it is met".to_owned(),
+            || format!("so few {} cannot show that it is met", self.unit(0)),
             |allowed| format!("at most {allowed} may fail"),
         );
-        format!("{}: {failures} of {counted} run{s} {keep}; {allowed}", words(self.verdict))
+        let (verdict, unit) = (words(self.verdict), self.unit(*counted));
+        format!("{verdict}: {failures} of {counted} {unit} {keep}; {allowed}")
+    }
+
+    /// What so many of those that are counted are called: runs, or, of vehicles whose flights have something in common, first flights.
+    #[must_use]
+    pub fn unit(&self, number: u64) -> &'static str {
+        match (self.vehicles, number) {
+            (None, 1) => "run",
+            (None, _) => "runs",
+            (Some(_), 1) => "first flight",
+            (Some(_), _) => "first flights",
+        }
+    }
+
+    /// What further runs are called, if there are to be so many: runs, or, where the first flight of each vehicle is counted, vehicles.
+    #[must_use]
+    pub fn unit_of_more(&self, number: u64) -> &'static str {
+        match (self.vehicles, number) {
+            (None, _) => self.unit(number),
+            (Some(_), 1) => "vehicle",
+            (Some(_), _) => "vehicles",
+        }
     }
 
     /// The worst runs, the worst first.
@@ -285,8 +306,9 @@ impl fmt::Display for Judgement {
         writeln!(f, "  {}", self.line())?;
         if let Verdict::Undecided { if_no_more_fail, at_this_rate } = self.verdict {
             let met = |runs: u64, if_so: &str| {
-                let s = if runs == 1 { "" } else { "s" };
-                format!("  more runs    {runs} more run{s} would show that it is met, {if_so}\n")
+                let (unit, label) = (self.unit_of_more(runs), self.unit_of_more(0));
+                let label = format!("more {label}");
+                format!("  {label:<12} {runs} more {unit} would show that it is met, {if_so}\n")
             };
             let all = if_no_more_fail.map(|runs| met(runs, "if all of them keep it"));
             let rate = at_this_rate.filter(|runs| Some(*runs) != if_no_more_fail);
@@ -295,21 +317,22 @@ impl fmt::Display for Judgement {
         }
         if self.runs_without_number > 0 {
             let runs = self.runs_without_number;
-            let [s, fate] = match (requirement.failed_runs(), runs) {
-                (FailedRuns::Against, 1) => ["", "counts against it"],
-                (FailedRuns::Against, _) => ["s", "count against it"],
-                (FailedRuns::LeftOut, 1) => ["", "is left out"],
-                (FailedRuns::LeftOut, _) => ["s", "are left out"],
+            let fate = match (requirement.failed_runs(), runs) {
+                (FailedRuns::Against, 1) => "counts against it",
+                (FailedRuns::Against, _) => "count against it",
+                (FailedRuns::LeftOut, 1) => "is left out",
+                (FailedRuns::LeftOut, _) => "are left out",
             };
-            writeln!(f, "  failed       {runs} run{s} without a number {fate}")?;
+            writeln!(f, "  failed       {runs} {} without a number {fate}", self.unit(runs))?;
         }
         if self.runs_infinite > 0 {
             let runs = self.runs_infinite;
             let [numbers, count] = match runs {
-                1 => ["run whose number is infinite", "counts"],
-                _ => ["runs whose numbers are infinite", "count"],
+                1 => ["whose number is infinite", "counts"],
+                _ => ["whose numbers are infinite", "count"],
             };
-            writeln!(f, "  infinite     {runs} {numbers} {count} against it")?;
+            let unit = self.unit(runs);
+            writeln!(f, "  infinite     {runs} {unit} {numbers} {count} against it")?;
         }
         match self.tolerance {
             Some(bound) => writeln!(
@@ -334,16 +357,17 @@ impl fmt::Display for Judgement {
                 (percent_or_less(interval.lower()), percent_or_more(interval.upper()));
             writeln!(
                 f,
-                "  share        {} of the runs keep it ({confidence} interval: {lower} to {upper})",
-                percent_beside(observed, requirement.probability())
+                "  share        {} of the {} keep it ({confidence} interval: {lower} to {upper})",
+                percent_beside(observed, requirement.probability()),
+                self.unit(0)
             )?;
         }
         if let Some(good) = self.success_to_pass {
-            let s = if counted == 1 { "" } else { "s" };
             writeln!(
                 f,
-                "  to pass      a vehicle that keeps it in {} of {of_which} passes {counted} run{s} nine times in ten",
-                percent_or_more(good)
+                "  to pass      a vehicle that keeps it in {} of {of_which} passes {counted} {} nine times in ten",
+                percent_or_more(good),
+                self.unit(counted)
             )?;
         }
         if let Some(vehicles) = self.vehicles {

@@ -38,8 +38,8 @@ pub(crate) fn verdict(arguments: &VerdictArgs) -> Result<ExitCode, Box<dyn Error
 
 fn text(name: &Path, table: &ForeignTable, judgements: &[Judgement]) -> String {
     let runs = judgements.first().map_or(0, Judgement::runs);
-    let s = if runs == 1 { "" } else { "s" };
-    let mut text = format!("{}: {runs} run{s}\n", name.display());
+    let unit = judgements.first().map_or("runs", |judgement| judgement.unit(runs));
+    let mut text = format!("{}: {runs} {unit}\n", name.display());
     // Writing to a string does not fail.
     if let (Looks::Often, Some(campaign)) = (table.counting().looks(), table.campaign()) {
         let _ = writeln!(
@@ -52,7 +52,7 @@ fn text(name: &Path, table: &ForeignTable, judgements: &[Judgement]) -> String {
     if flights > 1 {
         let _ = writeln!(
             text,
-            "These are first flights of vehicles, one of each {flights} flights: flights of the same vehicle need not be independent."
+            "Of each vehicle the first of {flights} flights is judged: flights of the same vehicle need not be independent."
         );
     }
     for judgement in judgements {
