@@ -12,11 +12,11 @@ use crate::{
 };
 
 /// Runs that are timed, of every model: one, and more while they are quick.
-const RUNS: [u64; 3] = [1, 8, 64];
+const RUNS: [u64; 3] = [1, 8, 32];
 /// Long enough to be measured.
 const ENOUGH: Duration = Duration::from_millis(20);
-/// Times that the longest timing is done: another program may have been given the processor in one of them.
-const AGAIN: u32 = 3;
+/// Times that a timing is done: another program may have been given the processor in one of them.
+const AGAIN: u32 = 2;
 /// Bytes of a number in a run table, where nothing was measured.
 const NUMBER: u64 = 8;
 /// Memory of a study besides its tables: what its columns amount to, its figures, the program itself; measured, rounded up.
