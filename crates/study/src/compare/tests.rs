@@ -312,7 +312,7 @@ fn bodies_that_are_known_exactly_have_words_and_no_numbers() {
         assert_eq!(page.is_none(), payload_too);
         let Some(page) = page else { continue };
         assert!(!page.contains("NaN") && !page.contains(" inf "), "{page}");
-        let why = "> stage: no reference at as given: the inertia is not dispersed";
+        let why = "> stage: no reference: the inertia is not dispersed";
         assert!(page.contains(why), "{page}");
         let rows = page.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| ---"));
         let rows: Vec<Vec<&str>> = rows.skip(1).map(|line| line.split(" | ").collect()).collect();

@@ -79,11 +79,14 @@ pub(crate) fn kinds(body: &BodyResult) -> Vec<ModelKind> {
 /// separations that failed.
 pub(crate) fn remarks(body: &BodyResult) -> Vec<String> {
     let mut remarks = Vec::new();
+    // A body as it is given has no level to be named.
+    let is_given = body.levels.iter().all(|level| level.level_percent.is_none());
+    let at = |levels: &str| if is_given { String::new() } else { format!(" at {levels}") };
     // The reason at the lowest of the levels stands for all: only its numbers change.
     let mut tell = |what: &str, reasons: Vec<(String, &str)>| {
         if let Some((_, reason)) = reasons.first() {
             let levels: Vec<&str> = reasons.iter().map(|(level, _)| level.as_str()).collect();
-            remarks.push(format!("{what} at {}: {reason}", levels.join(", ")));
+            remarks.push(format!("{what}{}: {reason}", at(&levels.join(", "))));
         }
     };
     let levels = || body.levels.iter();
@@ -110,7 +113,7 @@ pub(crate) fn remarks(body: &BodyResult) -> Vec<String> {
         for level in levels() {
             let Some(r) = level.cell(kind).and_then(|c| c.results.as_ref()) else { continue };
             if r.failed_separations > 0 {
-                failed.push(format!("{} at {}", r.failed_separations, heading(level)));
+                failed.push(format!("{}{}", r.failed_separations, at(&heading(level))));
                 of = r.separations;
             }
             for (kind, _) in &r.failures {
