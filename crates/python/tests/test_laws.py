@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -174,6 +175,17 @@ def test_models_of_inertia_have_their_moments(kind: str, parameters: dict[str, o
     assert (np.abs(entries.mean(axis=0) - law.mean[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]) < 5 * error + 1e-12).all()
     assert np.allclose(entries.std(axis=0), law.std, rtol=0.03)
     assert law.name == kind
+
+
+@pytest.mark.parametrize(("share", "exists"), [(0.1, True), (0.5, True), (1.0, True), (2.0, False), (3.0, False)])
+def test_moments_that_no_log_cholesky_law_has_are_told(share: float, exists: bool) -> None:
+    mean, deviations = np.array([5, 4, 3, 0, 0, 0.0]), share * np.array([0.35, 0.35, 0.35, 0.2, 0.2, 0.2])
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        law = gyradius.InertiaLaw.matched("log-cholesky", mean, np.diag(deviations**2))
+    gap = np.abs(np.diag(law.mean) - mean[:3]) / deviations[:3]
+    assert bool(gap.max() < 1e-6) == exists
+    assert [("no log-cholesky law" in str(one.message)) for one in told] == ([] if exists else [True])
 
 
 def test_every_model_can_be_matched() -> None:

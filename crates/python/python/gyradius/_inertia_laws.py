@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,10 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
     from gyradius._rng import RNG
+
+
+# A mean that is nearer, in deviations, is the one that was asked for.
+_EXACT = 1e-3
 
 
 class InertiaLaw(LawOfBodies):
@@ -71,8 +76,21 @@ class InertiaLaw(LawOfBodies):
 
     @staticmethod
     def matched(kind: str, mean: ArrayLike, cov: ArrayLike) -> InertiaLaw:
-        """The model of a kind whose six entries have this mean (6,) and covariance (6, 6), as far as the kind can."""
-        return make(InertiaLaw, "matched", text("kind", kind), vector("mean", mean, 6), Matrix.of("cov", cov, (6, 6)))
+        """The model of a kind whose six entries have this mean (6,) and covariance (6, 6), as far as the kind can.
+
+        `correlated-entries` has them, and `log-cholesky` where there is such a law: of wide spreads there is none, and a `RuntimeWarning`
+        tells of the law to first order that is taken in its place. What the other kinds have is seen in `mean` and `cov`.
+        """
+        sought = vector("mean", mean, 6)
+        law = make(InertiaLaw, "matched", text("kind", kind), sought, Matrix.of("cov", cov, (6, 6)))
+        if kind == "log-cholesky":
+            deviations = np.sqrt(np.diag(np.asarray(cov, dtype=float)))
+            gap = np.abs(law.mean[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]] - sought)
+            off = float(np.max(np.divide(gap, deviations, out=np.zeros(6), where=deviations > 0)))
+            if off > _EXACT:
+                what = f"no log-cholesky law has this mean and covariance: of the one to first order the mean is off by {off:.2g} deviations"
+                warnings.warn(what, RuntimeWarning, stacklevel=2)
+        return law
 
     @staticmethod
     def kinds() -> dict[str, dict[str, Any]]:
