@@ -243,6 +243,7 @@ def test_bodies_are_added_and_are_something() -> None:
         (lambda: gyradius.MassPropertiesLaw.joint(1, 3, roots=[1, 1, 1], axes=gyradius.uniform_attitude()), "centre = 3"),  # type: ignore[arg-type]
         (lambda: gyradius.MassPropertiesLaw.joint({}, [0, 0, 0], roots=[1, 1, 1], axes=gyradius.uniform_attitude()), "mass = {}"),
         (lambda: gyradius.InertiaLaw.principal([1, 1], gyradius.uniform_attitude()), "roots = "),
+        (lambda: gyradius.InertiaLaw.principal(np.array(5), gyradius.uniform_attitude()), "roots = "),  # type: ignore[arg-type]
         (lambda: gyradius.InertiaLaw.principal([1, 1, 1], 3), "axes = 3"),  # type: ignore[arg-type]
         (lambda: gyradius.MassPropertiesLaw.naive(SOME[0], "entry-noise", 3), "law = 3"),  # type: ignore[arg-type]
         (lambda: gyradius.nearest(np.eye(3), 3), "method = 3"),  # type: ignore[arg-type]

@@ -47,6 +47,7 @@ def test_numbers_have_the_laws_of_scipy(law: ScalarLaw, other: stats.rv_continuo
     assert law.sf(np.inf) == 0.0 and law.sf(-np.inf) == 1.0 and law.cdf(-np.inf) == 0.0
     wrong = np.array([[np.nan, -1e-9], [1 + 1e-9, np.inf]])
     assert np.isnan(law.ppf(wrong)).all() and np.isnan(law.cdf(np.nan)) and np.isnan(law.sf(np.nan))
+    assert np.isnan(law.logpdf([np.nan, law.mean])).tolist() == [True, False] and np.isnan(law.logpdf(np.nan))
     assert law.ppf(0.5).shape == () and law.ppf(np.full((2, 0, 3), 0.5)).shape == (2, 0, 3)
     inside = other.pdf(x) > 0
     assert np.allclose(law.logpdf(x)[inside], other.logpdf(x[inside]), atol=1e-8)

@@ -155,7 +155,9 @@ def text(name: str, value: Any) -> str:
 
 def three(name: str, value: Any) -> list[Any]:
     """Three of something, such as laws."""
-    found = list(value) if isinstance(value, (Sequence, np.ndarray)) and not isinstance(value, str) else None
+    # An array without a dimension is a number.
+    is_several = isinstance(value, Sequence) if not isinstance(value, np.ndarray) else value.ndim > 0
+    found = list(value) if is_several and not isinstance(value, str) else None
     if found is None or len(found) != 3:
         raise ValueError(f"{name} = {value!r}: there must be 3 laws or numbers")
     return found

@@ -67,9 +67,11 @@ class ScalarLaw(Law):
         return out(self._core.draw(draws), shape, dtype)
 
     def logpdf(self, x: ArrayLike) -> Any:
-        """ln of the density; a `ValueError` if the law has none."""
+        """ln of the density, NaN of NaN; a `ValueError` if the law has none."""
         array = numbers("x", x)
-        return out(known(self, "density", self._core.ln_density(np.ascontiguousarray(array).reshape(-1))), array.shape)
+        flat = np.ascontiguousarray(array).reshape(-1)
+        found = known(self, "density", self._core.ln_density(flat))
+        return out(np.where(np.isnan(flat), np.nan, found), array.shape)
 
     def cdf(self, x: ArrayLike) -> Any:
         """The share of draws that are at most x; NaN of NaN."""
