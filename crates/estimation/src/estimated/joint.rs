@@ -5,6 +5,8 @@ use gyradius_dispersion::{
 };
 use gyradius_inertia::{InertiaMatrix, MassProperties};
 use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
+use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
+use rand_distr::Distribution;
 
 use super::distance::{Gaps, moments, units};
 use super::log_cholesky::narrower;
@@ -223,8 +225,13 @@ impl Joint {
     /// The nearest to an estimate that steps along one mean or one deviation after the other lead to. Where first order leads nowhere, or all
     /// deviations were made small together, each of them by itself may still be better.
     pub(super) fn refined(mut self, estimate: &TenEstimate) -> Option<Self> {
-        // The law of the axes takes most of the time, and most steps leave it as it is.
-        let mut axes = self.axes_law()?;
+        // The law of the axes takes most of the time, and most steps leave it as it is. Its copies have the sampler that the first draw
+        // sets up.
+        let with_sampler = |axes: AxesLaw| {
+            let _: UnitQuaternion<f64> = axes.sample(&mut Xoshiro256PlusPlus::seed_from_u64(0));
+            axes
+        };
+        let mut axes = with_sampler(self.axes_law()?);
         let mut off = self.off_about(axes.clone(), estimate)?;
         let mut step = FIRST;
         while step > LAST {
@@ -237,7 +244,11 @@ impl Joint {
                         self.with_deviation(i, libm::exp2(sign * step))
                     };
                     let Some(other) = other else { continue };
-                    let about = if i < SCALARS { Some(axes.clone()) } else { other.axes_law() };
+                    let about = if i < SCALARS {
+                        Some(axes.clone())
+                    } else {
+                        other.axes_law().map(with_sampler)
+                    };
                     let Some(about) = about else { continue };
                     match other.off_about(about.clone(), estimate) {
                         Some(found) if found < (1.0 - BETTER) * off => {
