@@ -230,13 +230,7 @@ fn bodies(
 ) -> Result<(Vec<Body>, Gaps), Refusal> {
     let products = match root.get("products") {
         None => default,
-        Some(item) => match &item.value {
-            Value::Text(word) => Products::parse(word),
-            _ => None,
-        }
-        .ok_or_else(|| {
-            text.malformed(item.start, "products: there must be \"tensor\" or \"integrals\"")
-        })?,
+        Some(item) => products_of(item).map_err(|error| text.malformed(item.start, error))?,
     };
     let mut found: Vec<(&str, &Item<'_>)> = Vec::new();
     let lists = [Some(root), root.get("bodies"), root.get("body")];
@@ -340,20 +334,23 @@ fn body(text: &Text, key: &str, item: &Item<'_>, products: Products) -> Body {
     Body::new(name, line, reading)
 }
 
+/// What a document, or a body in it, says of the products.
+fn products_of(item: &Item<'_>) -> Result<Products, BodyError> {
+    let word = match &item.value {
+        Value::Text(word) => Products::parse(word),
+        _ => None,
+    };
+    let allowed = "\"tensor\" or \"integrals\"";
+    word.ok_or(BodyError::Shape { field: "products", allowed })
+}
+
 fn reading(item: &Item<'_>, inertia: &Item<'_>, products: Products) -> Result<Reading, BodyError> {
     const SHAPE: BodyError = BodyError::Shape {
         field: INERTIA,
         allowed: "three rows of three numbers, or ixx, iyy, izz, ixy, ixz and iyz",
     };
     // What the document says of all, a body may say of itself.
-    let products = match item.get("products").map(|own| &own.value) {
-        Some(Value::Text(word)) => Products::of_cell(word)?.unwrap_or(products),
-        Some(_) => {
-            let allowed = "\"tensor\" or \"integrals\"";
-            return Err(BodyError::Shape { field: "products", allowed });
-        }
-        None => products,
-    };
+    let products = item.get("products").map_or(Ok(products), products_of)?;
     let mass = item.get("mass_kg").map(|mass| mass.number("mass_kg")).transpose()?;
     if let Value::Table(entries) = &inertia.value {
         let mut six = [None; 6];

@@ -98,12 +98,6 @@ impl InertiaFile {
         self.format
     }
 
-    /// What the file holds.
-    #[must_use]
-    pub fn bytes(&self) -> &[u8] {
-        &self.bytes
-    }
-
     /// The bodies, in the order of the file.
     #[must_use]
     pub fn bodies(&self) -> &[Body] {

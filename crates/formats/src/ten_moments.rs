@@ -4,15 +4,16 @@ use serde::Deserialize;
 use std::{io, path::Path};
 
 use crate::{
-    MAX_TOML_BYTES, Products, UnitError,
+    MAX_TOML_BYTES, Products, TenTableError,
     body::shortened,
     error::Refusal,
     products_comment::stated_products,
     read_text,
     rows::{Field, Rows},
-    ten_heading::{TenCentre, TenHeading, field},
+    ten_heading::{TenCentre, TenHeading},
+    ten_table::TenColumns,
     text::Text,
-    units::SharedUnit,
+    units::Unit,
 };
 
 /// Mean and covariance of ten parameters, as a file gives them.
@@ -153,10 +154,7 @@ impl Default for Columns {
 
 impl Columns {
     fn of(headings: &[&str]) -> Result<Self, TenMomentsError> {
-        let mut places: [Option<usize>; 10] = [None; 10];
-        // Of the mass, of the three that follow it, and of the inertia.
-        let mut units: [SharedUnit; 3] = Default::default();
-        let mut known: Option<(TenCentre, usize)> = None;
+        let mut columns = TenColumns::default();
         for (at, text) in headings.iter().enumerate() {
             let heading = TenHeading::of(text).ok_or_else(|| {
                 let heading = shortened(text);
@@ -165,41 +163,11 @@ impl Columns {
                      ixx, iyy, izz, ixy, ixz, iyz"
                 ))
             })?;
-            if let Some(centre) = heading.centre {
-                let (other, first) = *known.get_or_insert((centre, at));
-                if other != centre {
-                    let (a, b) = (shortened(headings[first]), shortened(text));
-                    return Err(malformed(&format!(
-                        "columns {a:?} and {b:?}: the ten hold a mass centre or first moments, and not both"
-                    )));
-                }
-            }
-            let name = heading.field();
-            let unit = heading.unit.map_err(|bad| Box::new(bad.of(text, name)))?;
-            let shared = &mut units[which(heading.place)];
-            shared.with(name, unit).map_err(|message| malformed(&message))?;
-            if let Some(before) = places[heading.place].replace(at) {
-                let (a, b) = (shortened(headings[before]), shortened(text));
-                return Err(malformed(&format!("columns {a:?} and {b:?} both hold {name}")));
-            }
+            columns.add(at, text, heading, Ok(Unit::none()))?;
         }
-        if let Some(lost) = places.iter().position(Option::is_none) {
-            let name = field(lost, known.map(|(centre, _)| centre));
-            return Err(malformed(&format!(
-                "there is no column of {name}: a header names all ten"
-            )));
-        }
-        let place = |i: usize| (places[i].unwrap_or(i), units[which(i)].si());
-        Ok(Self { places: std::array::from_fn(place), centre: known.map(|(centre, _)| centre) })
-    }
-}
-
-/// Which of the three units one of the ten is in.
-fn which(place: usize) -> usize {
-    match place {
-        0 => 0,
-        1..=3 => 1,
-        _ => 2,
+        let places = columns.places(0..10)?;
+        let place = |i: usize| (places[i], columns.unit(i));
+        Ok(Self { places: std::array::from_fn(place), centre: columns.centre() })
     }
 }
 
@@ -220,9 +188,9 @@ pub enum TenMomentsError {
         /// What it has.
         extension: String,
     },
-    /// A column of a number whose unit is not read.
+    /// The columns that its header names are not those of ten numbers.
     #[error(transparent)]
-    Unit(#[from] Box<UnitError>),
+    Columns(#[from] TenTableError),
     /// It does not hold the numbers.
     #[error("{message}")]
     Malformed {

@@ -1,14 +1,15 @@
 //! Tables of mass, mass centre and inertia: ten numbers a row.
 
+use std::ops::Range;
+
 use crate::{
-    BodyError, FileProblem, Products, UnitError,
+    BodyError, FileProblem, Format, InertiaFile, UnitError,
     body::{ENTRIES, Number, shortened},
-    csv,
     error::Refusal,
     parts::heading::VALUES,
     rows::Field,
     table_header::{Header, MASS, find_header, one_unit, unit_below},
-    ten_heading::{TenCentre, TenHeading},
+    ten_heading::{TenCentre, TenHeading, field},
     text::Text,
     units::{BadUnit, SharedUnit, Unit},
 };
@@ -16,14 +17,15 @@ use crate::{
 /// A table with columns of mass, mass centre (or first moments) and inertia.
 ///
 /// ```
-/// use gyradius_formats::{Products, TenCentre, TenTable};
+/// use gyradius_formats::{InertiaFile, Products, TenCentre, TenTable};
 ///
 /// let table = "mass_kg,cx_mm,cy_mm,cz_mm,ixx,iyy,izz,time\n2,0,0,100,0.1,0.1,0.1,7\n";
-/// let table = TenTable::read(table.as_bytes(), Products::TensorEntries)?;
+/// let file = InertiaFile::parse("bodies.csv".as_ref(), table.into(), Products::TensorEntries)?;
+/// let table = TenTable::of(&file)?;
 /// assert_eq!(table.centre(), Some(TenCentre::MassCentre));
 /// assert_eq!(table.rows()[0].values().unwrap()[3], 0.1);
 /// assert_eq!(table.unused(), ["time"]);
-/// # Ok::<(), gyradius_formats::TenTableError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct TenTable {
@@ -93,15 +95,17 @@ struct Centre {
 }
 
 impl TenTable {
-    /// The ten of every row, mass and inertia as [`InertiaFile`](crate::InertiaFile) reads them. A table of inertias without a mass centre, or
-    /// without a mass beside it, has no rows here.
+    /// The ten of every row, mass and inertia as the file has them. A table of inertias without a mass centre, or without a mass beside it, and
+    /// a file of another format, has no rows here.
     ///
     /// # Errors
-    /// It is no table of inertias; or it has some columns of a mass centre or of first moments and not all, two for one number, both kinds,
-    /// one in a unit that is not read, or first moments and no mass.
-    pub fn read(bytes: &[u8], products: Products) -> Result<Self, TenTableError> {
-        let text = Text::new(bytes, true)?;
-        let bodies = csv::read(&text, products)?;
+    /// It has some columns of a mass centre or of first moments and not all, two for one number, both kinds, one in a unit that is not read, or
+    /// first moments and no mass.
+    pub fn of(file: &InertiaFile) -> Result<Self, TenTableError> {
+        if file.format() != Format::Csv {
+            return Ok(Self { rows: Vec::new(), centre: None, unused: Vec::new() });
+        }
+        let text = Text::new(&file.bytes, true)?;
         let (header, mut rows) = find_header(&text)?;
         let centre = Centre::of(&text, &header)?;
         let unused = |(at, field): (usize, &Field)| {
@@ -117,8 +121,8 @@ impl TenTable {
         let Some(Centre { kind, places, unit }) = centre else {
             return Ok(Self { rows: Vec::new(), centre: None, unused });
         };
-        let mut found = Vec::with_capacity(bodies.len());
-        for body in &bodies {
+        let mut found = Vec::with_capacity(file.bodies().len());
+        for body in file.bodies() {
             // The rows of the bodies, in their order.
             let Some(Ok(row)) = rows.next() else { break };
             let ten = || -> Result<[f64; 10], BodyError> {
@@ -196,47 +200,96 @@ impl Centre {
             return match kind {
                 // The inertia is about the mass centre, wherever that is.
                 TenCentre::MassCentre => Ok(None),
-                TenCentre::FirstMoments => Err(TenTableError::missing(name(first), VALUES[0])),
+                TenCentre::FirstMoments => {
+                    let found = shortened(name(first));
+                    Err(TenTableError::Missing { found, missing: VALUES[0] })
+                }
             };
         }
-        let mut places: [Option<usize>; 3] = [None; 3];
-        let mut shared = SharedUnit::default();
+        let mut columns = TenColumns::default();
         for (at, of, heading) in found {
-            if of != kind {
-                let (first, other) = (shortened(name(first)), shortened(name(at)));
+            let below = header.units.as_ref().and_then(|units| units.get(at));
+            let below =
+                below.map_or(Ok(Unit::none()), |cell| unit_below(text, cell, of.dimension()));
+            columns.add(at, name(at), heading, below)?;
+        }
+        let places = columns.places(1..4)?;
+        Ok(Some(Self { kind, places: [places[0], places[1], places[2]], unit: columns.unit(1) }))
+    }
+}
+
+/// Which columns of a header hold which of the ten.
+#[derive(Default)]
+pub(crate) struct TenColumns {
+    /// The column of each, with its heading.
+    found: [Option<(usize, String)>; 10],
+    /// Of the mass, of the three that follow it, and of the inertia.
+    units: [SharedUnit; 3],
+    /// What the three are, by the first of them.
+    centre: Option<(TenCentre, String)>,
+}
+
+impl TenColumns {
+    /// With a column, its heading in words and as it is read, and what the row of units below it says.
+    pub(crate) fn add(
+        &mut self,
+        at: usize,
+        name: &str,
+        heading: TenHeading,
+        below: Result<Unit, BadUnit>,
+    ) -> Result<(), TenTableError> {
+        if let Some(centre) = heading.centre {
+            let (kind, first) = self.centre.get_or_insert_with(|| (centre, shortened(name)));
+            if *kind != centre {
+                let (first, other) = (first.clone(), shortened(name));
                 let (centre, moment) = match kind {
                     TenCentre::MassCentre => (first, other),
                     TenCentre::FirstMoments => (other, first),
                 };
                 return Err(TenTableError::Mixed { centre, moment });
             }
-            let field = heading.field();
-            let bad = |bad: BadUnit| Box::new(bad.of(name(at), field));
-            let below = header.units.as_ref().and_then(|units| units.get(at));
-            let below =
-                below.map_or(Ok(Unit::none()), |cell| unit_below(text, cell, kind.dimension()));
-            let unit = one_unit(heading.unit.map_err(bad)?, below.map_err(bad)?);
-            let malformed = |message| TenTableError::File(FileProblem::Malformed { message });
-            shared.with(field, unit.map_err(malformed)?).map_err(malformed)?;
-            if let Some(before) = places[heading.place - 1].replace(at) {
-                let (first, second) = (shortened(name(before)), shortened(name(at)));
-                return Err(TenTableError::Twice { field, first, second });
-            }
         }
-        match places {
-            [Some(a), Some(b), Some(c)] => {
-                Ok(Some(Self { kind, places: [a, b, c], unit: shared.si() }))
-            }
-            _ => {
-                let lost = places.iter().position(Option::is_none).unwrap_or(0);
-                Err(TenTableError::missing(name(first), kind.fields()[lost]))
-            }
+        let (place, field) = (heading.place, heading.field());
+        let bad = |bad: BadUnit| Box::new(bad.of(name, field));
+        let unit = one_unit(heading.unit.map_err(bad)?, below.map_err(bad)?);
+        let malformed = |message| TenTableError::File(FileProblem::Malformed { message });
+        let shared = &mut self.units[which(place)];
+        shared.with(field, unit.map_err(malformed)?).map_err(malformed)?;
+        if let Some((_, first)) = self.found[place].replace((at, shortened(name))) {
+            return Err(TenTableError::Twice { field, first, second: shortened(name) });
         }
+        Ok(())
+    }
+
+    /// What the three after the mass are; nothing if none of them is there.
+    pub(crate) fn centre(&self) -> Option<TenCentre> {
+        self.centre.as_ref().map(|(centre, _)| *centre)
+    }
+
+    /// The columns of some of the ten.
+    pub(crate) fn places(&self, of: Range<usize>) -> Result<Vec<usize>, TenTableError> {
+        let place = |i: usize| match &self.found[i] {
+            Some((at, _)) => Ok(*at),
+            None => {
+                let found = self.found.iter().flatten().next();
+                let found = found.map_or_else(String::new, |(_, name)| name.clone());
+                Err(TenTableError::Missing { found, missing: field(i, self.centre()) })
+            }
+        };
+        of.map(place).collect()
+    }
+
+    /// The unit of one of the ten in SI.
+    pub(crate) fn unit(&self, place: usize) -> f64 {
+        self.units[which(place)].si()
     }
 }
 
-impl TenTableError {
-    fn missing(found: &str, missing: &'static str) -> Self {
-        Self::Missing { found: shortened(found), missing }
+/// Which of the three units one of the ten is in.
+fn which(place: usize) -> usize {
+    match place {
+        0 => 0,
+        1..=3 => 1,
+        _ => 2,
     }
 }

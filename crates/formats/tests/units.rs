@@ -1,7 +1,7 @@
 //! Units in the headings of tables: every pair of mass and area in every spelling, and what is no unit.
 
 use gyradius_formats::{FileError, InertiaFile, PartsTable, Products, TenTable};
-use std::path::Path;
+use std::{error::Error, path::Path};
 
 /// In kg, and in m.
 const MASSES: [(&str, f64); 8] = [
@@ -24,6 +24,10 @@ const AROUND: [(&str, &str); 7] =
 
 fn checked(table: &[u8]) -> Result<InertiaFile, FileError> {
     InertiaFile::parse(Path::new("t.csv"), table.to_vec(), Products::TensorEntries)
+}
+
+fn ten(table: &[u8]) -> Result<TenTable, Box<dyn Error>> {
+    Ok(TenTable::of(&checked(table)?)?)
 }
 
 fn is_near(found: f64, expected: f64) -> bool {
@@ -106,7 +110,7 @@ fn every_unit_of_inertia_is_read_as_it_is_written_in_lists_of_parts() {
             (found, _) => panic!("{table}{found:?}"),
         }
         let table = format!("mass,cx,cy,cz,Ixx{before}{unit}{after},iyy,izz\n1,0,0,0,1,1,1\n");
-        let ten = TenTable::read(table.as_bytes(), Products::TensorEntries);
+        let ten = ten(table.as_bytes());
         let found = ten.map(|ten| ten.rows()[0].values().unwrap()[4]);
         assert!(found.is_ok_and(|found| is_near(found, si)) == two.is_none(), "{table}");
     });
@@ -189,7 +193,7 @@ fn a_number_in_a_unit_that_is_not_known_is_refused_and_never_passed_over() {
                 assert!(message.contains(&format!("sigma_{} is in", FIELDS[at])), "{message}");
                 let message = checked(list.as_bytes()).unwrap_err().to_string();
                 assert!(said(&message), "{heading}: {message}");
-                assert!(TenTable::read(list.as_bytes(), Products::TensorEntries).is_err());
+                assert!(ten(list.as_bytes()).is_err());
             }
         }
     }
@@ -237,7 +241,7 @@ fn a_column_that_looks_like_a_product_is_refused_where_no_other_holds_it() {
                 assert!(list.starts_with(&format!("line 1: {said}")), "{list}");
                 let message = checked(table.as_bytes()).unwrap_err().to_string();
                 assert!(message.starts_with(&format!("t.csv:1: {said}")), "{message}");
-                assert!(TenTable::read(table.as_bytes(), Products::TensorEntries).is_err());
+                assert!(ten(table.as_bytes()).is_err());
                 // Where the products themselves are there, it is another column.
                 let table = format!(
                     "name,mass,cx,cy,cz,ixx,iyy,izz,ixy,ixz,iyz,{heading}\na,1,0,0,0,1,1,1,0,0,0,.1\n"
@@ -245,7 +249,7 @@ fn a_column_that_looks_like_a_product_is_refused_where_no_other_holds_it() {
                 let read = PartsTable::read(table.as_bytes(), None).unwrap();
                 assert_eq!(read.passed_over(), [heading.as_str()]);
                 assert!(checked(table.as_bytes()).unwrap().bodies()[0].inertia().is_ok());
-                assert!(TenTable::read(table.as_bytes(), Products::TensorEntries).is_ok());
+                assert!(ten(table.as_bytes()).is_ok());
             }
         }
     }

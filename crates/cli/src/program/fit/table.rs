@@ -3,8 +3,8 @@
 use gyradius_dispersion::TenParameters;
 use gyradius_estimation::TenForm;
 use gyradius_formats::{
-    Body, BodyError, FileError, Format, InertiaFile, Products, TOLERANCE, TenCentre, TenRow,
-    TenTable, TenTableError, judge,
+    Body, BodyError, FileError, InertiaFile, Products, TOLERANCE, TenCentre, TenRow, TenTable,
+    TenTableError, judge,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Repair, RepairMethod};
 use std::{collections::HashMap, path::Path};
@@ -75,7 +75,7 @@ pub(super) fn read(
 ) -> Result<Table, TableError> {
     let file = InertiaFile::read(path, products)?;
     let place = path.display().to_string();
-    let (ten, unused) = ten(&file, &place, products, form)?;
+    let (ten, unused) = ten(&file, &place, form)?;
     let mut table = Table {
         samples: Vec::with_capacity(file.bodies().len()),
         lines: Vec::with_capacity(file.bodies().len()),
@@ -171,15 +171,12 @@ type Lines = (HashMap<usize, Result<[f64; 10], BodyError>>, TenForm);
 fn ten(
     file: &InertiaFile,
     place: &str,
-    products: Products,
     form: Option<TenForm>,
 ) -> Result<(Option<Lines>, Vec<String>), TableError> {
     let place = place.to_owned();
-    let is_table = file.format() == Format::Csv;
-    let table = is_table.then(|| TenTable::read(file.bytes(), products)).transpose();
-    let table = table.map_err(|error| TableError::Ten { place: place.clone(), error })?;
-    let centre = table.as_ref().and_then(TenTable::centre);
-    let form = match (centre, form) {
+    let table =
+        TenTable::of(file).map_err(|error| TableError::Ten { place: place.clone(), error })?;
+    let form = match (table.centre(), form) {
         (Some(TenCentre::MassCentre), Some(TenForm::Linear)) => {
             return Err(TableError::NotLinear { place });
         }
@@ -198,10 +195,9 @@ fn ten(
             return Err(TableError::NoTen { place, centre, names });
         }
     };
-    let unused = table.as_ref().map_or_else(Vec::new, |table| table.unused().to_vec());
     let of = |row: &TenRow| (row.line(), row.values().copied().map_err(Clone::clone));
-    let lines = |table: TenTable| table.rows().iter().map(of).collect();
-    Ok((table.zip(form).map(|(table, form)| (lines(table), form)), unused))
+    let lines = form.map(|form| (table.rows().iter().map(of).collect(), form));
+    Ok((lines, table.unused().to_vec()))
 }
 
 /// Mass, mass centre and inertia about it; none of a mass that is not positive.
