@@ -5,7 +5,7 @@ use gyradius_inertia::InertiaMatrix;
 use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector4};
 
 use crate::SecondMomentStatistics;
-use crate::quartic::{Quadratic, Quartic, QuarticMoments};
+use crate::quartic::{Means, Products, Quadratic, Quartic};
 use crate::semidefinite::{Covariance, CovarianceError};
 
 /// The entries in the order I₁₁, I₂₂, I₃₃, I₁₂, I₁₃, I₂₃.
@@ -117,17 +117,18 @@ impl EntryMoments {
     pub(crate) fn by_moments(axes: &CentralMoments, k: &SecondMomentStatistics) -> Self {
         let (means, spread) = (k.mean(), k.covariance());
         let Forms { fourth, of: forms } = Forms::about(axes);
-        let moments = QuarticMoments::new(axes);
+        let expected = Means::new(axes);
         let mean: [f64; 6] =
-            std::array::from_fn(|e| (0..3).map(|k| means[k] * moments.mean(&forms[k][e])).sum());
+            std::array::from_fn(|e| (0..3).map(|k| means[k] * expected.of(&forms[k][e])).sum());
         // Cov = E[ΔG ΔG] + Σ_kl Cov(K_k, K_l) E[M_k M_l], G = Σ_k E[K_k] M_k and ΔG = G less its mean. The mean is taken from the
         // coefficients, and times |q|⁴: so nothing is left along q itself, where the moments of narrow laws are large.
         let centred: [Quartic; 6] = std::array::from_fn(|e| {
             let less_mean = Quartic::ZERO.plus(-mean[e], &fourth);
             (0..3).fold(less_mean, |sum, k| sum.plus(means[k], &forms[k][e]))
         });
-        let against = moments.against(&centred);
-        let forms_against = forms.each_ref().map(|forms| moments.against(forms));
+        let products = Products::new(axes);
+        let against = products.against(&centred);
+        let forms_against = forms.each_ref().map(|forms| products.against(forms));
         let mut covariance = SMatrix::zeros();
         for (e, f) in lower_triangle() {
             let mut sum = centred[e].dot(&against[f]);
@@ -240,8 +241,8 @@ fn rotation(u: &Vector4<f64>, v: &Vector4<f64>) -> [[f64; 3]; 3] {
 
 /// The expectation of δ_ab − r_ka r_kb for each k and entry ab.
 pub(crate) fn expected_forms(axes: &CentralMoments) -> [[f64; 6]; 3] {
-    let moments = QuarticMoments::new(axes);
-    Forms::about(axes).of.map(|forms| forms.map(|form| moments.mean(&form)))
+    let expected = Means::new(axes);
+    Forms::about(axes).of.map(|forms| forms.map(|form| expected.of(&form)))
 }
 
 /// δ_ab − r_ka r_kb at a unit quaternion.

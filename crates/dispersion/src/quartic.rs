@@ -116,28 +116,32 @@ impl Quartic {
     }
 }
 
-/// The moments of the 70 monomials that quartic polynomials are made of, and of their products.
-pub(crate) struct QuarticMoments {
-    first: Quartic,
-    second: Box<[[f64; QUARTIC]; QUARTIC]>,
-}
+/// The moments of the 70 monomials that quartic polynomials are made of.
+pub(crate) struct Means(Quartic);
 
-impl QuarticMoments {
+impl Means {
     pub(crate) fn new(moments: &CentralMoments) -> Self {
-        // The sum of two degrees of at most 4 is one of the degrees that are kept.
-        let of = |n| moments.of(n).unwrap_or(f64::NAN);
-        let mut second = Box::new([[0.0; QUARTIC]; QUARTIC]);
-        for i in 0..QUARTIC {
-            for j in 0..=i {
-                second[i][j] = of(sum(EXPONENTS[i], EXPONENTS[j]));
-                second[j][i] = second[i][j];
-            }
-        }
-        Self { first: Quartic(EXPONENTS.map(of)), second }
+        Self(Quartic(EXPONENTS.map(|n| moment(moments, n))))
     }
 
-    pub(crate) fn mean(&self, of: &Quartic) -> f64 {
-        self.first.dot(of)
+    pub(crate) fn of(&self, polynomial: &Quartic) -> f64 {
+        self.0.dot(polynomial)
+    }
+}
+
+/// The moments of the products of each two of the 70 monomials.
+pub(crate) struct Products(Box<[[f64; QUARTIC]; QUARTIC]>);
+
+impl Products {
+    pub(crate) fn new(moments: &CentralMoments) -> Self {
+        let mut all = Box::new([[0.0; QUARTIC]; QUARTIC]);
+        for i in 0..QUARTIC {
+            for j in 0..=i {
+                all[i][j] = moment(moments, sum(EXPONENTS[i], EXPONENTS[j]));
+                all[j][i] = all[i][j];
+            }
+        }
+        Self(all)
     }
 
     /// For each of these polynomials what the coefficients of another are multiplied with, and summed, in the expectation of the
@@ -145,7 +149,7 @@ impl QuarticMoments {
     pub(crate) fn against<const N: usize>(&self, all: &[Quartic; N]) -> [Quartic; N] {
         let mut products = [Quartic::ZERO; N];
         for (product, own) in products.iter_mut().zip(all) {
-            for (row, coefficient) in self.second.iter().zip(&own.0) {
+            for (row, coefficient) in self.0.iter().zip(&own.0) {
                 for (sum, moment) in product.0.iter_mut().zip(row) {
                     *sum += moment * coefficient;
                 }
@@ -153,4 +157,9 @@ impl QuarticMoments {
         }
         products
     }
+}
+
+/// Of a degree that is kept: the sum of two of at most 4.
+fn moment(moments: &CentralMoments, exponents: [usize; 4]) -> f64 {
+    moments.of(exponents).unwrap_or(f64::NAN)
 }
