@@ -279,7 +279,8 @@ impl Joint {
     /// With the deviation of a scalar multiplied by a factor, or beyond these those of the rotations together.
     fn with_deviation(&self, i: usize, factor: f64) -> Option<Self> {
         let mut joint = self.clone();
-        for own in i..if i < SCALARS { i + 1 } else { 10 } {
+        let end = if i < SCALARS { i + 1 } else { 10 };
+        for own in i..end {
             joint.spread.row_mut(own).scale_mut(factor);
             joint.spread.column_mut(own).scale_mut(factor);
         }

@@ -16,6 +16,7 @@ use rand_distr::Distribution;
 use crate::mass_fit::{MassChoice, MassPropertiesFit};
 use crate::rollup::symmetric::{second_moments_of_inertia, six};
 use distance::moments;
+use joint::Joint;
 use ten_estimate::{Matrix10, Ten};
 
 pub use distance::EstimateDistance;
@@ -100,7 +101,7 @@ impl EstimatedBody {
         let log = log_cholesky::matched(&unitless, &starts);
         let exists = log.as_ref().and_then(|law| moments(law, unitless.form()));
         let own = joint::matched(&at, &start);
-        let wide = own.as_ref().is_none_or(joint::Joint::is_wide);
+        let wide = own.as_ref().is_none_or(Joint::is_wide);
         let off = own.as_ref().and_then(|own| own.off(&unitless)).unwrap_or(f64::INFINITY);
         // Where the moments are far from those of any law of the family, those of a law that exists may be nearer, or a narrow law.
         let other = exists.filter(|_| moved > 0.0 || wide || off > POOR).and_then(|moments| {
@@ -108,10 +109,12 @@ impl EstimatedBody {
             joint::matched(&target, &unitless.form().body(target.mean()).unwrap_or(start))
         });
         let narrow = (off > POOR).then(|| joint::narrow(&unitless, &body)).flatten();
-        let own = [own, other, narrow].into_iter().flatten();
-        let by_off = own.filter_map(|joint| Some((joint.off(&unitless)?, joint)));
-        let own = by_off.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, joint)| joint);
-        let own = if off > POOR { own.and_then(|joint| joint.refined(&unitless)) } else { own };
+        let mut own: Vec<Joint> = [own, other, narrow].into_iter().flatten().collect();
+        if off > POOR {
+            let by_off = own.into_iter().filter_map(|joint| Some((joint.off(&unitless)?, joint)));
+            let nearest = by_off.min_by(|a, b| a.0.total_cmp(&b.0));
+            own = nearest.and_then(|(_, joint)| joint.refined(&unitless)).into_iter().collect();
+        }
         let own = own.into_iter().filter_map(|joint| {
             let distance = distance_of(&unitless, &joint.law([1.0, 1.0])?)?;
             Some((joint.law(units)?, distance))
