@@ -6,13 +6,10 @@ use std::{
 };
 
 use crate::{
-    folder::{MANIFEST, Manifest},
+    folder::{MANIFEST, Manifest, RUNS},
     kept::Rows,
     requirement::Counting,
 };
-
-/// The folder in a campaign's folder in which each model has a folder of run tables.
-const RUNS: &str = "runs";
 
 /// What the folder of a campaign says of a run table in it.
 #[derive(Clone, Debug)]

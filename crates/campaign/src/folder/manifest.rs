@@ -11,6 +11,8 @@ use crate::{
     requirement::Counting,
 };
 
+/// The folder in which each model has a folder of run tables.
+pub(crate) const RUNS: &str = "runs";
 /// The file that tells of the blocks of a complete campaign.
 pub const MANIFEST: &str = "campaign.json";
 
@@ -110,7 +112,7 @@ impl Block {
     /// Whether a record that nobody has meddled with can tell of it.
     pub(super) fn is_sound(&self) -> bool {
         let end = self.first_run.checked_add(self.runs);
-        let name = |end| format!("runs/{}/{:09}-{end:09}.parquet", self.model, self.first_run);
+        let name = |end| format!("{RUNS}/{}/{:09}-{end:09}.parquet", self.model, self.first_run);
         self.runs > 0 && end.is_some_and(|end| Name::new(&name(end)).is_ok())
     }
 
@@ -131,7 +133,7 @@ impl Block {
     /// Its file in the folder of a complete campaign, from the folder on, if rows of it are kept.
     #[must_use]
     pub fn name(&self) -> String {
-        format!("runs/{}/{}", self.model, self.file())
+        format!("{RUNS}/{}/{}", self.model, self.file())
     }
 
     /// Whether there is a file of it.
