@@ -3,7 +3,7 @@
 use crate::{
     body::entry_of,
     spread,
-    units::{BadUnit, Dimension, is_unread_product, longest_name, squeezed},
+    units::{BadUnit, Dimension, Unit, is_unread_product, longest_name, squeezed},
 };
 
 /// The ten numbers, as messages call them.
@@ -48,8 +48,8 @@ pub(crate) enum Column {
     Follows,
     /// A component of the quaternion, scalar last.
     Attitude(usize),
-    /// One of the ten, and its unit in SI.
-    Value(usize, f64),
+    /// One of the ten, and its unit in SI, if one is stated.
+    Value(usize, Option<f64>),
     /// The standard deviation of some of the ten.
     Deviation(Group, Scale),
 }
@@ -61,8 +61,8 @@ pub(crate) struct Group(pub(crate) usize, pub(crate) usize);
 /// What a standard deviation is in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Scale {
-    /// In a unit that is so much in SI.
-    Unit(f64),
+    /// In a unit that is so much in SI, if one is stated.
+    Unit(Option<f64>),
     /// In percent of the value.
     Percent,
 }
@@ -82,7 +82,64 @@ pub(crate) enum Heading {
     Other,
 }
 
+impl Column {
+    /// What a number is in, and its unit in SI, if one is stated. A percentage and a word have none.
+    fn unit(&mut self) -> Option<(Dimension, &mut Option<f64>)> {
+        match self {
+            Self::Value(i, unit) => Some((Group(*i, 1).dimension(), unit)),
+            Self::Deviation(group, Scale::Unit(unit)) => Some((group.dimension(), unit)),
+            Self::Deviation(_, Scale::Percent)
+            | Self::Name
+            | Self::Parent
+            | Self::Products
+            | Self::Point
+            | Self::Shape
+            | Self::Follows
+            | Self::Attitude(_) => None,
+        }
+    }
+
+    /// With the unit that a column has where it states none.
+    fn stated(mut self) -> Self {
+        if let Some((_, unit)) = self.unit() {
+            unit.get_or_insert(1.0);
+        }
+        self
+    }
+}
+
+impl Group {
+    fn dimension(self) -> Dimension {
+        match self.0 {
+            0 => Dimension::Mass,
+            1..=3 => Dimension::Length,
+            _ => Dimension::Inertia,
+        }
+    }
+}
+
 impl Heading {
+    /// Whether two columns hold the same, in the same unit.
+    pub(crate) fn says_the_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Column(one), Self::Column(other)) => one.stated() == other.stated(),
+            _ => self == other,
+        }
+    }
+
+    /// The first of the ten among some columns in a unit that is not of SI, if this one is a number of its kind that
+    /// states no unit: nobody knows then whether it is in that unit or in SI.
+    pub(crate) fn unit_it_lacks(&self, beside: &[Self]) -> Option<usize> {
+        let Self::Column(mut column) = *self else { return None };
+        let (dimension, None) = column.unit()? else { return None };
+        beside.iter().position(|other| match *other {
+            Self::Column(Column::Value(i, Some(si))) => {
+                si != 1.0 && Group(i, 1).dimension() == dimension
+            }
+            _ => false,
+        })
+    }
+
     /// Why the unit of a column is not read, if it is a number's. Beside a column of the number, its name with other
     /// words is another column.
     pub(crate) fn bad_unit(&self, beside: &[Self]) -> Option<(&'static str, &BadUnit)> {
@@ -148,19 +205,15 @@ fn quantity(text: &str) -> Option<Heading> {
     if ["percent", "%"].contains(&squeezed(tail.text()).as_str()) {
         return Some(Heading::Column(Column::Deviation(group, Scale::Percent)));
     }
-    let dimension = match group.0 {
-        0 => Dimension::Mass,
-        1..=3 => Dimension::Length,
-        _ => Dimension::Inertia,
-    };
-    match (tail.unit(dimension)?, group) {
+    let stated = |unit: Unit| (!unit.text.is_empty()).then_some(unit.si);
+    match (tail.unit(group.dimension())?, group) {
         (Ok(unit), _) if is_deviation => {
-            Some(Heading::Column(Column::Deviation(group, Scale::Unit(unit.si))))
+            Some(Heading::Column(Column::Deviation(group, Scale::Unit(stated(unit)))))
         }
         (Err(bad), _) if is_deviation => {
-            Some(Heading::Unit(deviation(group, Scale::Unit(1.0)), bad))
+            Some(Heading::Unit(deviation(group, Scale::Unit(None)), bad))
         }
-        (Ok(unit), Group(first, 1)) => Some(Heading::Column(Column::Value(first, unit.si))),
+        (Ok(unit), Group(first, 1)) => Some(Heading::Column(Column::Value(first, stated(unit)))),
         (Err(bad), Group(first, 1)) if !spread::is_marked(text) && !is_spread(text) => {
             Some(Heading::Unit(VALUES[first], bad))
         }
@@ -208,21 +261,21 @@ mod tests {
         let sigma = |i, n, si| Heading::Column(Column::Deviation(Group(i, n), Scale::Unit(si)));
         let percent = |i, n| Heading::Column(Column::Deviation(Group(i, n), Scale::Percent));
         for (text, expected) in [
-            ("mass", value(0, 1.0)),
-            ("Mass [g]", value(0, 1e-3)),
-            ("Cx", value(1, 1.0)),
-            ("centre_y_mm", value(2, 1e-3)),
-            ("Mass center Z (in)", value(3, 0.0254)),
-            ("Ixx", value(4, 1.0)),
-            ("i23_kg_m2", value(9, 1.0)),
-            ("mass_centre_2_m", value(2, 1.0)),
-            ("sigma_mass", sigma(0, 1, 1.0)),
-            ("sigma_Cz", sigma(3, 1, 1.0)),
-            ("centre_sigma_mm", sigma(1, 3, 1e-3)),
-            ("sigma_Ixy", sigma(7, 1, 1.0)),
+            ("mass", value(0, None)),
+            ("Mass [g]", value(0, Some(1e-3))),
+            ("Cx", value(1, None)),
+            ("centre_y_mm", value(2, Some(1e-3))),
+            ("Mass center Z (in)", value(3, Some(0.0254))),
+            ("Ixx", value(4, None)),
+            ("i23_kg_m2", value(9, Some(1.0))),
+            ("mass_centre_2_m", value(2, Some(1.0))),
+            ("sigma_mass", sigma(0, 1, None)),
+            ("sigma_Cz", sigma(3, 1, None)),
+            ("centre_sigma_mm", sigma(1, 3, Some(1e-3))),
+            ("sigma_Ixy", sigma(7, 1, None)),
             ("moments_percent", percent(4, 3)),
             ("mass (%)", percent(0, 1)),
-            ("sigma_products_kg_m2", sigma(7, 3, 1.0)),
+            ("sigma_products_kg_m2", sigma(7, 3, Some(1.0))),
             ("radius_m", Heading::Size("radius_m".to_owned())),
             ("sigma_mess", Heading::NoDeviation),
             ("mass_std", Heading::NoDeviation),
@@ -230,7 +283,7 @@ mod tests {
             ("Ixx uncertainty [kg m2]", Heading::NoDeviation),
             ("tolerance class", Heading::Other),
             ("function", Heading::Other),
-            ("Mass [Mg]", value(0, 1000.0)),
+            ("Mass [Mg]", value(0, Some(1000.0))),
             ("supplier", Heading::Other),
             ("centre_m", Heading::Size("centre_m".to_owned())),
             ("POIconv", Heading::Column(Column::Products)),
@@ -238,9 +291,10 @@ mod tests {
         ] {
             let found = Heading::of(text);
             let same = match (&found, &expected) {
-                (Heading::Column(Column::Value(i, a)), Heading::Column(Column::Value(j, b))) => {
-                    i == j && (a / b - 1.0).abs() < 1e-15
-                }
+                (
+                    Heading::Column(Column::Value(i, Some(a))),
+                    Heading::Column(Column::Value(j, Some(b))),
+                ) => i == j && (a / b - 1.0).abs() < 1e-15,
                 (a, b) => a == b,
             };
             assert!(same, "{text}: {found:?}");

@@ -129,6 +129,10 @@ impl PartsTable {
                 let heading = shortened(heading);
                 return refuse(PartsProblem::File(FileProblem::Product { heading }));
             }
+            if let Some(other) = column.unit_it_lacks(&columns) {
+                let (heading, other) = (shortened(heading), shortened(&headings[other]));
+                return refuse(PartsProblem::NoUnit { heading, other });
+            }
             match column {
                 Heading::NoDeviation => {
                     return refuse(PartsProblem::Deviation { heading: shortened(heading) });
@@ -137,7 +141,8 @@ impl PartsTable {
                     passed_over.push(shortened(heading))
                 }
                 Heading::Column(_) | Heading::Size(_) => {
-                    if let Some(first) = columns[..at].iter().position(|other| other == column) {
+                    if let Some(first) = columns[..at].iter().position(|c| c.says_the_same(column))
+                    {
                         let (first, second) = (shortened(&headings[first]), shortened(heading));
                         return refuse(PartsProblem::Columns { first, second });
                     }

@@ -170,7 +170,7 @@ impl Cells<'_> {
         }
         let mut values = [None; 10];
         let of = |heading: &Heading| match heading {
-            Heading::Column(Column::Value(i, si)) => Some((*i, *si)),
+            Heading::Column(Column::Value(i, unit)) => Some((*i, unit.unwrap_or(1.0))),
             _ => None,
         };
         for ((i, si), cell) in self.given(of) {
@@ -305,7 +305,7 @@ impl Cells<'_> {
                     return Err(PartsProblem::Value { field, value, allowed });
                 }
                 let sigma = match scale {
-                    Scale::Unit(si) => value * si,
+                    Scale::Unit(unit) => value * unit.unwrap_or(1.0),
                     // Of a centre, a share of its distance from the origin means nothing.
                     Scale::Percent if (1..4).contains(&i) => {
                         let allowed = "a length, for a mass centre has no percent";
@@ -314,7 +314,7 @@ impl Cells<'_> {
                     Scale::Percent => 0.01 * value * nominal[i].abs(),
                 };
                 if found[i].replace(sigma).is_some() {
-                    let field = heading::deviation(Group(i, 1), Scale::Unit(1.0));
+                    let field = heading::deviation(Group(i, 1), Scale::Unit(None));
                     return Err(PartsProblem::Twice { field });
                 }
             }
