@@ -9,6 +9,7 @@ use crate::{
     body::{Body, Entry},
     folded::FoldedRoot,
     quantity::Quantity,
+    unmatched::UnmatchedLaw,
 };
 
 /// A kurtosis above which tails are heavy: intervals of standard deviations then cover less often than they say.
@@ -44,6 +45,8 @@ pub(crate) enum Alert {
     NearBoundary { model: String, body: String, near: u64, drawn: u64, margin: f64 },
     /// A length or root of a body lies below zero in part.
     Folded(FoldedRoot),
+    /// A law has not the moments to which it was to be matched.
+    Unmatched(UnmatchedLaw),
 }
 
 impl Alert {
@@ -131,6 +134,9 @@ impl Alert {
                          uncertainty too large?",
                         100.0 * margin
                     ))
+            }
+            Self::Unmatched(law) => {
+                Text::default().strong("A model has not the moments that it is matched to").plain(format!("; {law}."))
             }
             Self::Folded(root) => Text::default().strong("A law is folded at zero").plain(format!(": {root}.")),
         }

@@ -12,7 +12,7 @@ use std::{
 
 use crate::{
     Fleet, FoldedRoot, Notice, Options, Rare, RareOptions, ResultsError, Scenario, ScenarioError,
-    SimulatorScenario, Status, Study, StudyError,
+    SimulatorScenario, Status, Study, StudyError, UnmatchedLaw,
     carry_out::carry_out,
     decisions, drivers,
     head::{Head, Judged, Missing},
@@ -132,6 +132,12 @@ impl AnyScenario {
     #[must_use]
     pub fn folded(&self) -> Vec<FoldedRoot> {
         of_either!(self, scenario => scenario.folded())
+    }
+
+    /// Laws of its bodies that have not the moments to which they were to be matched.
+    #[must_use]
+    pub fn unmatched(&self) -> Vec<UnmatchedLaw> {
+        of_either!(self, scenario => scenario.unmatched())
     }
 
     /// The same scenario from another seed.

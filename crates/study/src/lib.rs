@@ -68,6 +68,7 @@ mod text;
 #[cfg(test)]
 mod two_loops;
 mod unfinished;
+mod unmatched;
 mod unusual;
 mod where_runs_fail;
 
@@ -107,6 +108,7 @@ pub use shards::{ModelStatus, Status};
 pub use simulator::{SimulatorReplay, SimulatorScenario, SimulatorSummary};
 pub use study::{Study, restore_studies};
 pub use summary::Summary;
+pub use unmatched::UnmatchedLaw;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

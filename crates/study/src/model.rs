@@ -14,6 +14,7 @@ use crate::{
     scenario::{KeptShares, Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
     steering::Steered,
     subject::Subject,
+    unmatched::UnmatchedLaw,
 };
 
 /// A model ready to draw: a law and its random streams for either body.
@@ -223,26 +224,66 @@ pub(crate) fn law(
             DispersionModel::about(*kind, body.nominal(), &given).map_err(|error| error.problem)?
         }
         Law::Matched { kind, to } => {
-            let other = models.iter().find(|m| m.name == *to);
-            let other = other.filter(|m| matches!(m.law, Law::Principal(_) | Law::Outside(_)));
-            let other = other.ok_or_else(|| format!("matched_to {to:?}: no such model"))?;
-            let (of_other, _) = law(other, place, body, models, outside)?;
-            let moments = match other.law.own_axes() {
-                Some(axes) => body.expected_moments(axes),
-                None => of_other.expected_moments(),
-            };
-            let moments = moments.ok_or_else(|| {
-                format!(
-                    "matched_to {to:?}: the moments of its law {:?} are not known",
-                    of_other.name()
-                )
-            })?;
+            let moments = moments_of(to, place, body, models, outside)?;
             matched(*kind, body, &moments)?
         }
     };
     let given =
         if let DispersionModel::Entrywise(law) = &model { Some(law.deviations()) } else { None };
     Ok((Arc::new(model), given))
+}
+
+impl Scenario {
+    /// Laws of payload and stage that have not the moments to which they were to be matched, since no law of their kind has.
+    #[must_use]
+    pub fn unmatched(&self) -> Vec<UnmatchedLaw> {
+        let both = [(Body::Payload, self.payload()), (Body::Stage, self.stage())];
+        let pairs = self.models().iter().flat_map(|spec| both.map(|of| (spec, of)));
+        let of_pair = |(spec, (which, body)): (&ModelSpec, (Body, &UncertainBody))| {
+            let outside = |spec: &ModelSpec| self.outside_law(spec, which).cloned();
+            let place = (which as usize, which.name());
+            unmatched(spec, place, body, self.models(), &outside)
+        };
+        pairs.filter_map(of_pair).collect()
+    }
+}
+
+/// What the law of the body in a place and of a name misses under a model that is one of several and is to have the moments
+/// of another. Other kinds than log-Cholesky say in their documentation which of the moments they have, whatever these are.
+pub(crate) fn unmatched(
+    spec: &ModelSpec,
+    (place, name): (usize, &str),
+    body: &UncertainBody,
+    models: &[ModelSpec],
+    outside: &dyn Fn(&ModelSpec) -> Option<Arc<dyn InertiaLaw>>,
+) -> Option<UnmatchedLaw> {
+    let Law::Matched { kind: kind @ ModelKind::LogCholesky, to } = &spec.law else {
+        return None;
+    };
+    let asked = moments_of(to, place, body, models, outside).ok()?;
+    let found = matched(*kind, body, &asked).ok()?.entry_moments()?;
+    UnmatchedLaw::of([&spec.name, to, name], &asked, &found)
+}
+
+/// The moments of the entries of the body in a place under the model of a name.
+fn moments_of(
+    name: &str,
+    place: usize,
+    body: &UncertainBody,
+    models: &[ModelSpec],
+    outside: &dyn Fn(&ModelSpec) -> Option<Arc<dyn InertiaLaw>>,
+) -> Result<EntryMoments, Box<dyn std::error::Error>> {
+    let model = models.iter().find(|m| m.name == name);
+    let model = model.filter(|m| matches!(m.law, Law::Principal(_) | Law::Outside(_)));
+    let model = model.ok_or_else(|| format!("matched_to {name:?}: no such model"))?;
+    let (of_model, _) = law(model, place, body, models, outside)?;
+    let moments = match model.law.own_axes() {
+        Some(axes) => body.expected_moments(axes),
+        None => of_model.expected_moments(),
+    };
+    let of = of_model.name();
+    let unknown = || format!("matched_to {name:?}: the moments of its law {of:?} are not known");
+    Ok(moments.ok_or_else(unknown)?)
 }
 
 /// The model of a kind that has these moments of the entries.

@@ -231,6 +231,7 @@ impl Summary {
             .collect();
         let alerts = models.iter().zip(runs).flat_map(|(model, seen)| model.alerts(scenario, seen));
         let alerts = alerts.chain(scenario.folded().into_iter().map(Alert::Folded));
+        let alerts = alerts.chain(scenario.unmatched().into_iter().map(Alert::Unmatched));
         let head = Head { alerts: alerts.collect(), ..head_of(scenario, columns) };
         Ok(Self {
             head,

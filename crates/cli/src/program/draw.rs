@@ -35,6 +35,9 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
     for root in scenario.folded() {
         say(&format!("warning: {root}"));
     }
+    for law in scenario.unmatched() {
+        say(&format!("warning: {law}"));
+    }
     let signals = Signals::watch()?;
     let options = DrawOptions {
         models: arguments.models.clone(),

@@ -57,6 +57,60 @@ fn an_ordinary_scenario_has_no_alert() {
     assert!(!scenario.report(&summary).html().contains("Before you read the results"));
 }
 
+/// Matched to a principal law that is more and more uncertain: it is told exactly where the moments of what is drawn are not
+/// those of the principal law, and what is told of them is what the draws do.
+#[test]
+fn a_model_without_the_moments_it_is_matched_to_is_told() {
+    let mut seen = [0; 2];
+    for spread in [0.01, 0.1, 0.3, 0.5, 0.7] {
+        let text = ordinary(2, spread, NORMAL).to_toml()
+            + "\n[[models]]\nname = \"log\"\nlaw = \"log-cholesky\"\nmatched_to = \"principal\"\n";
+        let scenario = Scenario::from_toml(&text).unwrap();
+        let told = scenario.unmatched();
+        let draws = |model: &Model| -> Vec<[f64; 6]> {
+            let inertia = |run| model.draw(&scenario, run).bodies[0].inertia.entries();
+            (0..40_000).map(inertia).collect()
+        };
+        let models = Model::all(&scenario).unwrap();
+        let [principal, log] = &models[..] else { panic!("{}", models.len()) };
+        let moments = |draws: &[[f64; 6]], e: usize| {
+            let n = draws.len() as f64;
+            let mean = draws.iter().map(|d| d[e]).sum::<f64>() / n;
+            (mean, (draws.iter().map(|d| (d[e] - mean).powi(2)).sum::<f64>() / n).sqrt())
+        };
+        let (principal, log) = (draws(principal), draws(log));
+        let off = (0..3).map(|e| {
+            let ((mean, deviation), (other, its)) = (moments(&principal, e), moments(&log, e));
+            [(other - mean).abs() / deviation, its / deviation]
+        });
+        let off = off.fold([0.0, 1.0_f64], |a, b| {
+            [a[0].max(b[0]), if b[1].ln().abs() > a[1].ln().abs() { b[1] } else { a[1] }]
+        });
+        match &told[..] {
+            [] => {
+                assert!(off[0] < 0.02 && (off[1] - 1.0).abs() < 0.05, "{spread}: {off:?}");
+                seen[0] += 1;
+            }
+            [law, ..] => {
+                assert_eq!(
+                    [&law.model, &law.matched_to, &law.body],
+                    ["log", "principal", "payload"].map(str::to_owned).each_ref()
+                );
+                assert!(
+                    (law.mean_off - off[0]).abs() < 0.02 + 0.1 * law.mean_off,
+                    "{law}: {off:?}"
+                );
+                assert!((law.deviation_ratio / off[1] - 1.0).abs() < 0.1, "{law}: {off:?}");
+                seen[1] += 1;
+                let (summary, _) = study(&scenario);
+                let page = scenario.report(&summary).html();
+                assert!(page.contains("no log-cholesky law has the mean and covariance"));
+            }
+        }
+    }
+    assert!(seen.iter().all(|seen| *seen > 0), "{seen:?}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
@@ -134,6 +188,7 @@ proptest! {
             }
             Alert::NearBoundary { near, body, .. } => ("near", format!("{near} {body}")),
             Alert::Folded(root) => ("folded", format!("{} {}", root.body, root.quantity)),
+            Alert::Unmatched(law) => ("unmatched", law.to_string()),
         });
         prop_assert_eq!(told.collect::<Vec<_>>(), expected);
         let written = serde_json::to_string(&summary).unwrap();

@@ -15,7 +15,7 @@ use super::{
     file::{BodyName, File, OutputFile},
 };
 use crate::{
-    Fleet, FoldedRoot, ScenarioError, model,
+    Fleet, FoldedRoot, ScenarioError, UnmatchedLaw, model,
     scenario::{
         Axes, Joint, List, ModelFile, ModelLaw, ModelSpec, Size, check_models, framed, parse_toml,
         place, refused,
@@ -226,6 +226,19 @@ impl SimulatorScenario {
     #[must_use]
     pub fn folded(&self) -> Vec<FoldedRoot> {
         self.bodies.iter().flat_map(|body| body.uncertain.folded(&body.name)).collect()
+    }
+
+    /// Laws of the bodies that have not the moments to which they were to be matched, since no law of their kind has.
+    #[must_use]
+    pub fn unmatched(&self) -> Vec<UnmatchedLaw> {
+        let models = &self.models;
+        let bodies = || self.bodies.iter().enumerate();
+        let pairs =
+            models.iter().flat_map(|spec| bodies().map(move |(place, body)| (spec, place, body)));
+        let of = |(spec, place, body): (&ModelSpec, usize, &SimulatedBody)| {
+            model::unmatched(spec, (place, &body.name), &body.uncertain, models, &|_| None)
+        };
+        pairs.filter_map(of).collect()
     }
 
     /// The law of a body under a model, both by their places, and whether it is the body's own.

@@ -238,6 +238,7 @@ impl Subject for SimulatorScenario {
         let alerts = surveys.iter().enumerate();
         let alerts = alerts.flat_map(|(place, surveys)| self.alerts(&overview, place, surveys));
         let alerts = alerts.chain(self.folded().into_iter().map(Alert::Folded));
+        let alerts = alerts.chain(self.unmatched().into_iter().map(Alert::Unmatched));
         let head = Head { alerts: alerts.collect(), ..head_of(self, columns) };
         let (command, regions) = (self.command().to_vec(), self.kept_to_regions()?);
         let function = self.function_name().map(str::to_owned);
