@@ -141,7 +141,7 @@ def nearest(
 ) -> NDArray[np.floating[Any]]:
     """The nearest inertia matrices that some body has.
 
-    What a body has is not moved by a bit.
+    What a body has is not moved by a bit, but for an asymmetry that is rounding: both entries become their mean.
 
     Parameters
     ----------
