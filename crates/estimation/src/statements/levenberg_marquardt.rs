@@ -17,7 +17,7 @@ const MORE: f64 = 5.0;
 pub(crate) struct Effort {
     /// Steps at most.
     steps: usize,
-    /// A step that takes less than this share off the cost is the last one.
+    /// A step that takes less than this share off the cost is the last one, unless a bound cut it short.
     worth: f64,
 }
 
@@ -84,25 +84,29 @@ pub(crate) fn least_squares<P: Problem>(
             })
             .collect();
         let normal = slopes.tr_mul(&slopes);
-        let units: Vec<f64> = ranges.iter().map(|range| range.unit).collect();
         let mut next = None;
         for _ in 0..SHORTER {
-            let Some(step) = damped(&normal, &down, &held, &units, damping) else { break };
-            let values = DVector::from_fn(values.len(), |i, _| {
-                (values[i] + step[i]).clamp(ranges[i].least, ranges[i].most)
-            });
-            let there = problem.at(values, &point);
+            let Some(there) = within(&values, &ranges, &normal, &down, &held, damping) else {
+                break;
+            };
+            let arrives = |i: usize| {
+                let Range { least, most, .. } = ranges[i];
+                there[i] != values[i] && (there[i] == least || there[i] == most)
+            };
+            // A step that a bound cut short says little of what the next one gains.
+            let is_whole = !(0..values.len()).any(arrives);
+            let there = problem.at(there, &point);
             let residuals = problem.residuals(&there);
             let lower = residuals.norm_squared();
             if lower < cost {
-                next = Some((there, residuals, lower));
+                next = Some((there, residuals, lower, is_whole));
                 damping = (damping * LESS).max(LEAST_DAMPING);
                 break;
             }
             damping *= MORE;
         }
-        let Some((there, at, lower)) = next else { break };
-        let last = lower > (1.0 - effort.worth) * cost;
+        let Some((there, at, lower, is_whole)) = next else { break };
+        let last = is_whole && lower > (1.0 - effort.worth) * cost;
         (point, residuals, cost) = (there, at, lower);
         if last {
             break;
@@ -111,28 +115,57 @@ pub(crate) fn least_squares<P: Problem>(
     (point, cost)
 }
 
-/// The solution of (N + λ max(N) 1) x = g over the unknowns that are not held, the others zero, all in units of
-/// their sizes. Levenberg's damping, not Marquardt's, which lets go of the unknowns that do
-/// little: in narrow valleys, where deviations cancel, it hardly gets on.
-fn damped(
+/// Where a damped step leads. Unknowns that it would take beyond a bound go to that bound, and the others are solved for
+/// again, as often as one leaves: cut off alone, a step may lead uphill however short it is.
+fn within(
+    values: &DVector<f64>,
+    ranges: &[Range],
     normal: &DMatrix<f64>,
     down: &DVector<f64>,
     held: &[bool],
-    units: &[f64],
     damping: f64,
 ) -> Option<DVector<f64>> {
-    let open: Vec<usize> = (0..held.len()).filter(|i| !held[*i]).collect();
+    let units: Vec<f64> = ranges.iter().map(|range| range.unit).collect();
+    let mut open: Vec<usize> = (0..held.len()).filter(|i| !held[*i]).collect();
+    let mut there = values.clone();
+    loop {
+        let right = down - normal * (&there - values);
+        let step = damped(normal, &right, &open, &units, damping)?;
+        let mut inside = Vec::with_capacity(open.len());
+        for (&i, step) in open.iter().zip(&step) {
+            let reached = values[i] + step;
+            let Range { least, most, .. } = ranges[i];
+            if reached < least || reached > most {
+                there[i] = reached.clamp(least, most);
+            } else {
+                inside.push((i, reached));
+            }
+        }
+        if inside.len() == open.len() {
+            inside.into_iter().for_each(|(i, reached)| there[i] = reached);
+            return Some(there);
+        }
+        open = inside.into_iter().map(|(i, _)| i).collect();
+    }
+}
+
+/// The solution of (N + λ max(N) 1) x = g over some unknowns, in units of their sizes. Levenberg's damping, not Marquardt's,
+/// which lets go of the unknowns that do little: in narrow valleys, where deviations cancel, it hardly gets on.
+fn damped(
+    normal: &DMatrix<f64>,
+    down: &DVector<f64>,
+    open: &[usize],
+    units: &[f64],
+    damping: f64,
+) -> Option<Vec<f64>> {
     let matrix = DMatrix::from_fn(open.len(), open.len(), |a, b| {
         normal[(open[a], open[b])] * units[open[a]] * units[open[b]]
     });
-    let size = matrix.diagonal().max();
+    let size = matrix.diagonal().iter().copied().fold(0.0, f64::max);
     let matrix = matrix / size + DMatrix::from_diagonal_element(open.len(), open.len(), damping);
     let right = DVector::from_fn(open.len(), |a, _| down[open[a]] * units[open[a]] / size);
     let solution = matrix.cholesky()?.solve(&right);
-    let mut step = DVector::zeros(held.len());
-    for (a, &i) in open.iter().enumerate() {
-        step[i] = solution[a] * units[i];
-    }
+    let step: Vec<f64> = open.iter().zip(&solution).map(|(i, x)| x * units[*i]).collect();
     step.iter().all(|x| x.is_finite()).then_some(step)
 }
 
@@ -169,6 +202,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(8_000))]
+
         /// Nothing within the bounds is better, tried along every unknown and towards random points.
         #[test]
         fn nothing_allowed_is_better(
@@ -191,6 +226,15 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// The first step leads beyond both bounds, and what is left of it gains next to nothing.
+    #[test]
+    fn the_corner_beyond_a_valley_is_found() {
+        let a = DMatrix::from_row_slice(2, 2, &[-0.75, -1.0, 0.0, -0.5]);
+        let problem = Boxed { a, b: DVector::from_vec(vec![0.5, -0.25]), most: 0.5 };
+        let (x, cost) = least_squares(&problem, DVector::from_element(2, 0.25), Effort::FULL);
+        assert!(x.amax() == 0.0 && cost == 0.3125, "{x} {cost}");
     }
 
     /// The valley of Rosenbrock (1960, doi:10.1093/comjnl/3.3.175).
