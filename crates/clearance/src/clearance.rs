@@ -54,8 +54,7 @@ impl Clearance {
         let mut looks = 0;
         for (i, p) in payload.shapes().iter().enumerate() {
             for (j, s) in stage.shapes().iter().enumerate() {
-                let mut search =
-                    Search::new(motion, p, s, settings.tolerance_m(), settings.touch_m());
+                let mut search = Search::new(motion, p, s, settings);
                 let mut found = shape_clearance(&mut search, from_s, until, settings)?;
                 (found.payload_shape, found.stage_shape) = (i, j);
                 looks += search.nodes();

@@ -13,7 +13,7 @@ const DEGREE: usize = 18;
 /// Longest step: this angle turned, and this share of the series' radius of convergence.
 const TURN: f64 = 0.25;
 const SHARE: f64 = 0.14;
-/// Most steps of a body, about 7,000 rad of turning: what is computed is kept.
+/// Most steps of a body: what is computed is kept.
 const MOST_STEPS: usize = 30_000;
 
 /// Payload and stage when nothing pushes them any more: no forces, no torques.
@@ -27,7 +27,8 @@ const MOST_STEPS: usize = 30_000;
 /// accelerations through Euler's equations, ω̇ ≤ ω² max|I_j − I_k|/(√3 I_i).
 ///
 /// # Limits
-/// A body that turns by more than about 7,000 rad is not followed further.
+/// A ball that turns by more than about 7,000 rad is not followed further, and other bodies not beyond 7,000 rad ×
+/// √(I_min/I_max) at the worst: a slender one may then turn about its length as fast as the bounds allow.
 #[derive(Clone, Debug)]
 pub struct Coast {
     start: f64,

@@ -10,6 +10,7 @@ use crate::{
     motion::{Frame, Motion, MotionLimits},
     outline::OutlineShape,
     part::{Look, Part, Seen, parts},
+    settings::ClearanceSettings,
 };
 
 /// Nodes looked at before a search ends with what it has. Far above any case met.
@@ -71,6 +72,8 @@ pub(crate) struct Search<'a, M> {
     motion: &'a mut M,
     parts: Vec<Part<'a>>,
     tolerance: f64,
+    /// Of the distance.
+    relative: f64,
     touch: f64,
     heap: BinaryHeap<Node>,
     nodes: usize,
@@ -81,11 +84,17 @@ impl<'a, M: Motion> Search<'a, M> {
         motion: &'a mut M,
         payload: &'a OutlineShape,
         stage: &'a OutlineShape,
-        tolerance: f64,
-        touch: f64,
+        settings: &ClearanceSettings,
     ) -> Self {
-        let parts = parts(payload, stage);
-        Self { motion, parts, tolerance, touch, heap: BinaryHeap::new(), nodes: 0 }
+        Self {
+            motion,
+            parts: parts(payload, stage),
+            tolerance: settings.tolerance_m(),
+            relative: settings.relative_tolerance(),
+            touch: settings.touch_m(),
+            heap: BinaryHeap::new(),
+            nodes: 0,
+        }
     }
 
     /// Nodes looked at so far.
@@ -356,7 +365,7 @@ impl<'a, M: Motion> Search<'a, M> {
     fn slack(&self, part: &Part<'_>, distance: f64) -> f64 {
         // Above the touch it leaves room for a contact to be found.
         let room = 0.5 * (distance - self.touch).max(0.0);
-        self.tolerance.max(part.rounding(distance).min(room))
+        self.tolerance.max(part.rounding(distance).max(self.relative * distance).min(room))
     }
 
     /// Looks at the middle of a node: proves that it holds nothing below `target`, or splits it.

@@ -4,6 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClearanceSettings {
     tolerance: f64,
+    relative: f64,
     touch: f64,
     parted: f64,
 }
@@ -11,7 +12,7 @@ pub struct ClearanceSettings {
 impl Default for ClearanceSettings {
     /// Distances to 1e-9 m; nearer than 1e-6 m is touching; a millimetre is parted.
     fn default() -> Self {
-        Self { tolerance: 1e-9, touch: 1e-6, parted: 1e-3 }
+        Self { tolerance: 1e-9, relative: 0.0, touch: 1e-6, parted: 1e-3 }
     }
 }
 
@@ -38,7 +39,25 @@ impl ClearanceSettings {
         if !(parted_m > 2.0 * touch_m && parted_m.is_finite()) {
             return Err(ClearanceSettingsError::Parted { value: parted_m, touch: touch_m });
         }
-        Ok(Self { tolerance: tolerance_m, touch: touch_m, parted: parted_m })
+        Ok(Self { tolerance: tolerance_m, relative: 0.0, touch: touch_m, parted: parted_m })
+    }
+
+    /// With a tolerance of the smallest distance that is at least this share of the distance: who wants to know how near
+    /// bodies come only roughly, but whether they touch to the last micrometre, takes a hundredth, and half of the looks.
+    ///
+    /// # Errors
+    /// The share is not in 0 to 0.1.
+    pub fn with_relative_tolerance(self, share: f64) -> Result<Self, ClearanceSettingsError> {
+        if !(0.0..=0.1).contains(&share) {
+            return Err(ClearanceSettingsError::Relative { value: share });
+        }
+        Ok(Self { relative: share, ..self })
+    }
+
+    /// Tolerance of the smallest distance as a share of it, where that is more than [`tolerance_m`](Self::tolerance_m).
+    #[must_use]
+    pub fn relative_tolerance(&self) -> f64 {
+        self.relative
     }
 
     /// Tolerance of the smallest distance, m.
@@ -68,6 +87,12 @@ pub enum ClearanceSettingsError {
     #[error("tolerance = {value:?} m: it must be between 1e-12 and 1e-2 m")]
     Tolerance {
         /// The tolerance, m.
+        value: f64,
+    },
+    /// The relative tolerance is out of range.
+    #[error("relative tolerance = {value:?}: it must be between 0 and 0.1")]
+    Relative {
+        /// The share.
         value: f64,
     },
     /// The distance of touching is out of range.

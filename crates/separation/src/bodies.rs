@@ -23,13 +23,18 @@ pub(crate) fn initial(separation: &Separation) -> State {
     state
 }
 
-/// The two bodies in a state reached after `time`: the mass centre of the whole has moved
-/// uniformly.
+/// The two bodies in a state reached after `time`.
 pub(crate) fn bodies(
     separation: &Separation,
     state: &State,
     time: f64,
 ) -> (MovingBody, MovingBody) {
+    let [payload, stage] = states(separation, state, time);
+    (separation.payload().body().moving(payload), separation.stage().body().moving(stage))
+}
+
+/// Payload and stage in a state reached after `time`: the mass centre of the whole has moved uniformly.
+pub(crate) fn states(separation: &Separation, state: &State, time: f64) -> [BodyState; 2] {
     let (payload, stage) = (separation.payload(), separation.stage());
     let (mp, ml) = (payload.body().mass_kg(), stage.body().mass_kg());
     let (fp, fl) = (mp / (mp + ml), ml / (mp + ml));
@@ -51,7 +56,7 @@ pub(crate) fn bodies(
         ),
         angular_velocity: vector(state, STAGE_RATE),
     };
-    (payload.body().moving(payload_state), stage.body().moving(stage_state))
+    [payload_state, stage_state]
 }
 
 /// The size of each entry of the state that the loads can bring about.

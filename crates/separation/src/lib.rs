@@ -67,6 +67,7 @@ mod snapshot;
 mod spring;
 mod stack;
 mod state;
+mod step_limits;
 mod track;
 mod trajectory;
 mod vector;
@@ -87,6 +88,7 @@ pub use settings::{Settings, SettingsError};
 pub use snapshot::Snapshot;
 pub use spring::{Spring, SpringError, SpringParameter};
 pub use stack::Stack;
+pub use step_limits::StepLimits;
 pub use trajectory::{Step, Trajectory};
 
 // Part of the interface, in the version that it takes and gives.

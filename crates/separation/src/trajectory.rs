@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::{
-    Outcome, RunError, Separation, Settings, Snapshot,
+    BodyState, Outcome, RunError, Separation, Settings, Snapshot, bodies,
     integrator::{Integrate, Integrator},
     layout::{INLINE_LOADS, ORDER, TERMS},
     state::{self, State},
@@ -65,10 +65,27 @@ impl Step {
         &self.released
     }
 
+    pub(crate) fn series(&self) -> &[State; TERMS] {
+        &self.series
+    }
+
     /// Bodies and springs at a time within the step, s; times outside count as its ends. At the end,
     /// springs that let go there still push, with a force of zero to rounding.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Snapshot {
+        let (time, state) = self.state_at(time_s);
+        Snapshot::new(&self.separation, &state, time, &self.pushing)
+    }
+
+    /// Payload and stage at a time within the step, s, as [`at`](Self::at) tells them, and no more.
+    #[must_use]
+    pub fn states_at(&self, time_s: f64) -> [BodyState; 2] {
+        let (time, state) = self.state_at(time_s);
+        bodies::states(&self.separation, &state, time)
+    }
+
+    /// The time of the step that is nearest to one, s, and the state then.
+    fn state_at(&self, time_s: f64) -> (f64, State) {
         let time = if time_s > self.start { (time_s - self.start).min(self.duration) } else { 0.0 };
         let mut state = self.series[ORDER];
         for row in self.series[..ORDER].iter().rev() {
@@ -77,7 +94,7 @@ impl Step {
             }
         }
         state::normalize(&mut state);
-        Snapshot::new(&self.separation, &state, self.start + time, &self.pushing)
+        (self.start + time, state)
     }
 }
 

@@ -97,7 +97,8 @@ impl Column {
                 CLEARANCE_NOTE,
                 Text,
                 "Why there is no clearance (all outlines are mated; the search failed), or not one of the \
-                 whole coast (a body turns too far to be followed); none if there is nothing to say.",
+                 whole coast (a body turns too far to be followed), or that the outlines come nearer before the \
+                 last release; none if there is nothing to say.",
             )
             .with_kinds(),
         }

@@ -186,11 +186,11 @@ quantities! {
     StageTranslation: "stage_translation_j", "stage translation", "J", Table, |r| Some(r.end()?.energy.stage_translation_j());
     /// Energy of the springs that went into the stage's rotation.
     StageRotation: "stage_rotation_j", "stage rotation", "J", Table, |r| Some(r.end()?.energy.stage_rotation_j());
-    /// Smallest distance of the outlines over the coast after the last release, 0 if any two touch; none without outlines, and where `clearance_note` says so.
+    /// Smallest distance of the outlines over the coast after the last release, 0 if any two touch, before it too; none without outlines, and where `clearance_note` says so.
     Clearance: "clearance_m", "clearance", "m", Parting(11), |r| Some(r.end()?.closest()?.distance_m());
     /// When the outlines are nearest, from the opening of the clamp on; at the first contact if any two touch.
     ClearanceTime: "clearance_time_s", "time of clearance", "s", Table, |r| Some(r.end()?.closest()?.time_s());
-    /// When outlines first touch, from the opening of the clamp on, those that touch at the last release after having parted; none if they do not.
+    /// When outlines first touch, from the opening of the clamp on, those that touch at the opening or at the last release after having parted; none if they do not.
     RecontactTime: "recontact_s", "recontact", "s", Table, |r| r.end()?.clearance()?.contact_s();
 }
 

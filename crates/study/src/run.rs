@@ -6,7 +6,13 @@ use gyradius_separation::{EnergySplit, Outcome as Separated, RunError, Separatio
 use nalgebra::{UnitQuaternion, Vector3};
 use std::fmt::Write;
 
-use crate::{body::Body, drawn, failure::Failure, loads::Short, scenario::Scenario};
+use crate::{
+    body::Body,
+    drawn,
+    failure::Failure,
+    loads::Short,
+    scenario::{Scenario, Watched},
+};
 
 /// What is drawn for a run.
 #[derive(Clone, Debug)]
@@ -43,7 +49,7 @@ pub(crate) struct End<'a> {
     pub(crate) momentum: Vector3<f64>,
     pub(crate) energy: EnergySplit,
     /// How near the bodies come, if that is watched.
-    watched: Option<Result<Clearance, ClearanceError>>,
+    watched: Option<Result<Watched, ClearanceError>>,
 }
 
 impl Case {
@@ -65,8 +71,8 @@ impl Case {
         result: Option<Result<Separated, RunError>>,
     ) -> Run<'a> {
         let end = match (&self.separation, result) {
-            (Ok(_), Some(Ok(separated))) => self
-                .clearance(scenario, &separated)
+            (Ok(separation), Some(Ok(separated))) => self
+                .watch(scenario, separation, &separated)
                 .map(|watched| End::new(scenario, separated, watched)),
             (Ok(_), Some(Err(error))) => Err(error.into()),
             (Err(failure), _) => Err(failure.clone()),
@@ -82,13 +88,15 @@ impl Case {
         Run { case: self, end: refused.map(|failure| Err(failure.clone())) }
     }
 
-    fn clearance(
+    fn watch(
         &self,
         scenario: &Scenario,
+        separation: &Separation,
         separated: &Separated,
-    ) -> Result<Option<Result<Clearance, ClearanceError>>, Failure> {
+    ) -> Result<Option<Result<Watched, ClearanceError>>, Failure> {
         let watched = scenario.outlines().map(|outlines| {
-            outlines.clearance(separated, &drawn::mass_centres(scenario.dispersions(), &self.drawn))
+            let centres = drawn::mass_centres(scenario.dispersions(), &self.drawn);
+            outlines.watch(separation, scenario.settings(), separated, &centres)
         });
         watched.transpose()
     }
@@ -125,7 +133,7 @@ impl<'a> End<'a> {
     fn new(
         scenario: &'a Scenario,
         separated: Separated,
-        watched: Option<Result<Clearance, ClearanceError>>,
+        watched: Option<Result<Watched, ClearanceError>>,
     ) -> Self {
         Self {
             scenario,
@@ -151,7 +159,7 @@ impl<'a> End<'a> {
 
     /// How near the bodies come, if that is watched and found.
     pub(crate) fn clearance(&self) -> Option<&Clearance> {
-        self.watched.as_ref()?.as_ref().ok()
+        self.watched.as_ref()?.as_ref().ok().map(Watched::clearance)
     }
 
     /// Where they are nearest.
@@ -205,10 +213,18 @@ pub(crate) enum ClearanceNote {
     Together,
     /// The bodies turn so far that they are not followed to the end of the coast, in which they could
     /// still come nearer.
-    #[error("followed to {until:?} s only: a body turns by more than 7,000 rad in the coast")]
+    #[error("followed to {until:?} s only: a body turns too far in the coast")]
     Partial {
         /// Until when they are followed, s.
         until: f64,
+    },
+    /// Before the last release the bodies come nearer than when the clamp opened, and than after it.
+    #[error("the outlines come nearer before the last release: to {distance:?} m at {time:?} s")]
+    NearerBefore {
+        /// How near, m.
+        distance: f64,
+        /// When, s.
+        time: f64,
     },
     /// The search has failed.
     #[error("clearance not found: {0}")]
@@ -217,13 +233,18 @@ pub(crate) enum ClearanceNote {
 
 impl ClearanceNote {
     /// What there is to say of a clearance.
-    pub(crate) fn new(found: &Result<Clearance, ClearanceError>) -> Option<Self> {
-        let clearance = match found {
-            Ok(clearance) => clearance,
+    pub(crate) fn new(found: &Result<Watched, ClearanceError>) -> Option<Self> {
+        let watched = match found {
+            Ok(watched) => watched,
             Err(error) => return Some(Self::NotFound(*error)),
         };
+        let clearance = watched.clearance();
         if let Some(until) = clearance.undecided_from_s() {
             return Some(Self::Partial { until });
+        }
+        if let Some(nearest) = watched.nearer_before() {
+            let (distance, time) = (nearest.distance_m(), nearest.time_s());
+            return Some(Self::NearerBefore { distance, time });
         }
         if clearance.closest().is_some() {
             return None;
@@ -238,6 +259,9 @@ impl ClearanceNote {
             Self::Mated => "all outlines are mated and do not touch again after parting",
             Self::Together => "all outlines are mated, and some do not part",
             Self::Partial { .. } => "a body turns too far to be followed to the end of the coast",
+            Self::NearerBefore { .. } => {
+                "the outlines come nearer before the last release than after it"
+            }
             Self::NotFound(_) => "the clearance was not found",
         }
     }

@@ -120,3 +120,88 @@ fn fast_turning_fails_no_row() {
     }
     println!("{partial} rows are followed in part");
 }
+
+/// How far a point is from a box about the mass centre of a body, m.
+fn to_box(
+    body: &gyradius_separation::BodyState,
+    point: Vector3<f64>,
+    [low, high]: [[f64; 3]; 2],
+) -> f64 {
+    let own = body.attitude.inverse() * (point - body.position);
+    let beyond = |i: usize| (low[i] - own[i]).max(own[i] - high[i]).max(0.0);
+    Vector3::new(beyond(0), beyond(1), beyond(2)).norm()
+}
+
+/// An antenna of the payload, which is thrown sideways, flies by a post of the stage or into it, while a long soft spring or one that
+/// starts late has yet to let go: held against the distance at many times of the trajectory.
+#[test]
+fn bodies_that_touch_before_the_last_release_have_no_clearance() {
+    let post = [[1.0, -0.3, 0.5], [1.1, 0.3, 3.0]];
+    let corners: Vec<String> = (0..8)
+        .map(|i: usize| {
+            format!("[{:?}, {:?}, {:?}]", post[i & 1][0], post[i >> 1 & 1][1], post[i >> 2][2])
+        })
+        .collect();
+    let soft = "[[springs]]\nstiffness_n_per_m = 50.0\nstroke_m = 6.0\npayload_point_m = [0.0, 0, -0.9]\nstage_point_m = [0.0, 0, 0.9]\n";
+    let late = "[[springs]]\nstiffness_n_per_m = 2e3\nstroke_m = 3.0\nstart_s = 1.5\npayload_point_m = [0.0, 0, -0.9]\nstage_point_m = [0.0, 0, 0.9]\n";
+    let [mut touched, mut nearer, mut neither] = [0; 3];
+    for (sideways, along, other) in
+        (0..8).flat_map(|i| (0..4).map(move |j| (i, j, (i + j) % 2 == 0)))
+    {
+        let text = format!(
+            "name = \"post\"\nruns = 1\n\
+             [payload]\nmass_kg = 500.0\ninertia_kg_m2 = [[120.0, 0, 0], [0, 110.0, 0], [0, 0, 90.0]]\nposition_m = [0.0, 0, 1.0]\n\
+             velocity_m_per_s = [{:?}, {:?}, 0.0]\nangular_velocity_rad_per_s = [0.0, 0.1, 0.3]\n\
+             [payload.dispersion]\nroot_second_moment_variance_kg_m2 = [0.0, 0, 0]\naxes = \"fixed\"\n\
+             [stage]\nmass_kg = 2000.0\ninertia_kg_m2 = [[3000.0, 0, 0], [0, 3000.0, 0], [0, 0, 900.0]]\nposition_m = [0.0, 0, -1.0]\n\
+             [stage.dispersion]\nroot_second_moment_variance_kg_m2 = [0.0, 0, 0]\naxes = \"fixed\"\n\
+             [clearance]\ncoast_s = 20.0\npayload = [{{ points_m = [[0.5, 0.0, 0.0]] }}]\nstage = [{{ hull_m = [{}] }}]\n\
+             [[springs]]\nstiffness_n_per_m = 2e4\nstroke_m = 0.1\npayload_point_m = [0.0, 0, -0.9]\nstage_point_m = [0.0, 0, 0.9]\n\
+             {}[[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n",
+            0.2 * f64::from(sideways),
+            0.15 * f64::from(along),
+            corners.join(", "),
+            if other { soft } else { late }
+        );
+        let scenario = Scenario::from_toml(&text).unwrap();
+        let table = all_runs(&scenario, &Model::all(&scenario).unwrap())[0].table().unwrap();
+        let row = table.rows().next().unwrap();
+        let Some(release) = Quantity::ReleaseTime.in_row(&row) else { continue };
+        let trajectory = scenario.separation().trajectory(scenario.settings(), 20.0).unwrap();
+        let least = |from: f64, to: f64| {
+            let times = (0..=8_000).map(|i| from + (to - from) * f64::from(i) / 8_000.0);
+            let seen = times.map(|time| {
+                let now = trajectory.at(time.min(trajectory.end_s())).unwrap();
+                let payload = now.payload().state();
+                let tip = payload.position + payload.attitude * Vector3::new(0.5, 0.0, 0.0);
+                (to_box(now.stage().state(), tip, post), time)
+            });
+            let first_or_least = |a: (f64, f64), b: (f64, f64)| if b.0 < a.0 { b } else { a };
+            seen.reduce(first_or_least).unwrap()
+        };
+        let (before, after) = (least(0.0, release), least(release, release + 20.0));
+        let (start, note) = (least(0.0, 0.0).0, row.text(CLEARANCE_NOTE));
+        let clearance = Quantity::Clearance.in_row(&row).unwrap();
+        if before.0 == 0.0 {
+            touched += 1;
+            let time = Quantity::RecontactTime.in_row(&row).unwrap();
+            assert!(
+                clearance == 0.0 && (time - before.1).abs() < 5e-4 * release,
+                "{time} {before:?}\n{text}"
+            );
+            assert_eq!(note, None);
+        } else {
+            assert!((clearance - after.0).abs() < 1e-3, "{clearance} {after:?}\n{text}");
+            if before.0 < 0.97 * start.min(after.0) {
+                nearer += 1;
+                let said = note.unwrap().split(": to ").nth(1).unwrap();
+                let said: f64 = said.split(' ').next().unwrap().parse().unwrap();
+                assert!((said / before.0 - 1.0).abs() < 0.02, "{said} {before:?}\n{text}");
+            } else if before.0 > 0.99 * start.min(after.0) {
+                neither += 1;
+                assert_eq!(note, None, "{before:?} {after:?} {start}\n{text}");
+            }
+        }
+    }
+    assert!(touched > 4 && nearer > 4 && neither > 2, "{touched} {nearer} {neither}");
+}

@@ -1,10 +1,10 @@
-//! What of the bodies may touch after the separation.
+//! What of the bodies may touch, while they are pushed and after that.
 
 use gyradius_clearance::{
     Approach, Clearance, ClearanceError, ClearanceSettings, Coast, FreeBody, Motion, MotionLimits,
     Outline, OutlineError, OutlineShape, RigidState, ShapeClearance,
 };
-use gyradius_separation::{MovingBody, Outcome};
+use gyradius_separation::{BodyState, MovingBody, Outcome, Separation, Settings, Step, StepLimits};
 use nalgebra::Vector3;
 
 use super::{
@@ -13,6 +13,10 @@ use super::{
     limits,
 };
 use crate::{body::Body, failure::Failure};
+
+/// How well the distance is known before the last release, as a share of it, where most are smallest at the start:
+/// what counts then is whether they touch.
+const ROUGH: f64 = 0.01;
 
 /// What of the bodies may touch, and how long it is watched.
 #[derive(Clone, Debug)]
@@ -67,19 +71,113 @@ impl Outlines {
         Ok([payload, about(Body::Stage, &self.stage, stage)?])
     }
 
-    /// The clearance over the coast after the last release, of outlines about mass centres that lie
-    /// so far off the nominal ones, body axes, m. That it cannot be found fails no run.
-    pub(crate) fn clearance(
+    /// How near the bodies come that part so, with outlines about mass centres that lie so far off the nominal ones, body
+    /// axes, m. That it cannot be found fails no run.
+    pub(crate) fn watch(
         &self,
+        separation: &Separation,
+        settings: &Settings,
         outcome: &Outcome,
         centres: &[Vector3<f64>; 2],
-    ) -> Result<Result<Clearance, ClearanceError>, Failure> {
-        let [payload, stage] = self.about(centres)?;
-        let from = outcome.release_time();
-        let mut coast = Coast::new(&free(outcome.payload()), &free(outcome.stage()), from);
-        let settings = ClearanceSettings::default();
-        let to = from + self.coast;
-        Ok(Clearance::new(&payload, &stage, &mut coast, from, to, &settings))
+    ) -> Result<Result<Watched, ClearanceError>, Failure> {
+        let outlines = self.about(centres)?;
+        let pushed = Pushed::new(separation, settings)?;
+        Ok(Watched::new(&outlines, pushed, outcome, self.coast))
+    }
+}
+
+/// How near the bodies come: from the opening of the clamp to the last release, and over the coast after it.
+#[derive(Clone, Debug)]
+pub(crate) struct Watched {
+    pushed: Clearance,
+    /// None if they touch before it.
+    coast: Option<Clearance>,
+    /// The distance at the opening of the clamp of the shapes that do not touch then, m.
+    at_start: Option<f64>,
+}
+
+impl Watched {
+    fn new(
+        outlines: &[Outline; 2],
+        mut pushed: Pushed,
+        outcome: &Outcome,
+        coast_s: f64,
+    ) -> Result<Self, ClearanceError> {
+        let release = outcome.release_time();
+        let rough = ClearanceSettings::default().with_relative_tolerance(ROUGH).unwrap_or_default();
+        let mut over_push = |to| over(outlines, &mut pushed, [0.0, to], &rough);
+        let (at_start, pushed) = (over_push(0.0)?, over_push(release)?);
+        let at_start = at_start.closest().map(Approach::distance_m);
+        let coast = pushed.contact_s().is_none().then(|| {
+            let mut coast = Coast::new(&free(outcome.payload()), &free(outcome.stage()), release);
+            let span = [release, release + coast_s];
+            over(outlines, &mut coast, span, &ClearanceSettings::default())
+        });
+        Ok(Self { pushed, coast: coast.transpose()?, at_start })
+    }
+
+    /// What counts: the clearance over the coast, but for bodies that touch before it, which would move otherwise from
+    /// then on.
+    pub(crate) fn clearance(&self) -> &Clearance {
+        self.coast.as_ref().unwrap_or(&self.pushed)
+    }
+
+    /// Where the bodies come nearer before the last release than they were when the clamp opened, and than they are after
+    /// it, by more than that is known to.
+    pub(crate) fn nearer_before(&self) -> Option<&Approach> {
+        let nearest = self.pushed.closest()?;
+        let later = self.clearance().closest().map(Approach::distance_m);
+        let others = self.at_start.into_iter().chain(later).fold(f64::INFINITY, f64::min);
+        (nearest.distance_m() < (1.0 - 2.0 * ROUGH) * others).then_some(nearest)
+    }
+}
+
+/// The clearance of the outlines of payload and stage over a span of time, s.
+fn over<M: Motion>(
+    [payload, stage]: &[Outline; 2],
+    motion: &mut M,
+    [from, to]: [f64; 2],
+    settings: &ClearanceSettings,
+) -> Result<Clearance, ClearanceError> {
+    Clearance::new(payload, stage, motion, from, to, settings)
+}
+
+/// The bodies while loads push them, as they were integrated.
+struct Pushed(Vec<(Step, StepLimits)>);
+
+impl Pushed {
+    fn new(separation: &Separation, settings: &Settings) -> Result<Self, Failure> {
+        let mut steps = Vec::new();
+        separation.follow(settings, 0.0, |step| steps.push((step.clone(), step.limits())))?;
+        Ok(Self(steps))
+    }
+
+    /// The place of the step at a time; of the first one before it.
+    fn place(&self, time_s: f64) -> usize {
+        self.0.partition_point(|(step, _)| step.start_s() <= time_s).saturating_sub(1)
+    }
+}
+
+impl Motion for Pushed {
+    fn states(&mut self, time_s: f64) -> Option<[RigidState; 2]> {
+        let (step, _) = self.0.get(self.place(time_s)).filter(|_| time_s >= 0.0)?;
+        Some(step.states_at(time_s).map(rigid))
+    }
+
+    fn limits(&mut self, from_s: f64, to_s: f64) -> MotionLimits {
+        let steps = self.0.get(self.place(from_s)..=self.place(to_s)).unwrap_or_default();
+        let mut most = MotionLimits::default();
+        for (_, step) in steps {
+            most.speed = most.speed.max(step.speed_m_per_s);
+            most.acceleration = most.acceleration.max(step.acceleration_m_per_s2);
+            for i in 0..2 {
+                let (speed, growth) =
+                    (&mut most.angular_speed[i], &mut most.angular_acceleration[i]);
+                *speed = speed.max(step.angular_speed_rad_per_s[i]);
+                *growth = growth.max(step.angular_acceleration_rad_per_s2[i]);
+            }
+        }
+        most
     }
 }
 
@@ -96,10 +194,9 @@ impl ShapeFile {
 
 /// The distance of the outlines of payload and stage at an instant, m: 0 where any of their shapes touch. None if it
 /// cannot be found.
-pub(crate) fn distance_m([payload, stage]: &[Outline; 2], bodies: [&MovingBody; 2]) -> Option<f64> {
-    let mut still = Still(bodies.map(rigid));
-    let settings = ClearanceSettings::default();
-    let found = Clearance::new(payload, stage, &mut still, 0.0, 0.0, &settings).ok()?;
+pub(crate) fn distance_m(outlines: &[Outline; 2], bodies: [&MovingBody; 2]) -> Option<f64> {
+    let mut still = Still(bodies.map(|body| rigid(*body.state())));
+    let found = over(outlines, &mut still, [0.0; 2], &ClearanceSettings::default()).ok()?;
     let distance = |shapes: &ShapeClearance| {
         let apart = shapes.closest().map(Approach::distance_m);
         if shapes.is_mated() { Some(0.0) } else { apart }
@@ -120,21 +217,16 @@ impl Motion for Still {
     }
 }
 
-fn rigid(moving: &MovingBody) -> RigidState {
-    let state = moving.state();
-    RigidState {
-        position: state.position,
-        velocity: state.velocity,
-        attitude: state.attitude,
-        angular_velocity: state.angular_velocity,
-    }
+fn rigid(state: BodyState) -> RigidState {
+    let BodyState { position, velocity, attitude, angular_velocity } = state;
+    RigidState { position, velocity, attitude, angular_velocity }
 }
 
 /// The body as nothing pushes it any more.
 fn free(moving: &MovingBody) -> FreeBody {
     let body = moving.body();
     FreeBody {
-        state: rigid(moving),
+        state: rigid(*moving.state()),
         inertia: *body.inertia().matrix(),
         inverse_inertia: *body.inverse_inertia(),
         principal_moments: body.inertia().principal_axes().moments(),

@@ -34,7 +34,7 @@ use std::path::{Path, PathBuf};
 pub(crate) use as_given::AsGiven;
 pub(crate) use body::UncertainBody;
 use clearance::Outlines;
-pub(crate) use clearance::distance_m;
+pub(crate) use clearance::{Watched, distance_m};
 pub(crate) use dispersions::{Dispersions, check_follows};
 use file::ScenarioFile;
 pub(crate) use file::{
