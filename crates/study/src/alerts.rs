@@ -2,7 +2,9 @@
 
 use gyradius_campaign::{SampleSummary, Table};
 use gyradius_report::{Section, Text, most_frequent, significant};
+use gyradius_separation::MovingBody;
 use gyradius_statistics::Survey;
+use nalgebra::{Unit, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -18,6 +20,8 @@ pub(crate) const HEAVY: f64 = 10.0;
 pub(crate) const NEAR: f64 = 0.01;
 /// A share of the drawn bodies: more of them must be near the boundary, that it is told.
 const MANY: f64 = 0.001;
+/// Degrees between the angular momentum at the start and the spin axis: from here on, another principal axis may be nearer.
+const OFF_AXIS_DEG: f64 = 45.0;
 /// Outcomes with heavy tails that are named.
 const NAMED: usize = 4;
 
@@ -35,6 +39,10 @@ pub(crate) enum Alert {
     },
     /// What is declared as dispersed is the same in all runs.
     Unmoved { model: String, column: String, value: f64, runs: u64 },
+    /// In runs the payload leaves by more than 90° away from where it is to go.
+    Backwards { model: String, backwards: u64, runs: u64 },
+    /// The angular momentum of the payload at the start is far from the axis that it is to spin about.
+    OffAxis { angle_deg: f64, spin_axis: [f64; 3] },
     /// The fourth moment of outcomes is large.
     HeavyTails {
         model: String,
@@ -63,6 +71,20 @@ impl Alert {
         let is_constant = runs > 1 && survey.maximum()?.0 == value;
         let (model, column) = (model.to_owned(), column.to_owned());
         is_constant.then_some(Self::Unmoved { model, column, value, runs })
+    }
+
+    /// That in so many runs, of those in which the bodies part, the payload leaves by more than 90° away from where it is to
+    /// go, if it does in any.
+    pub(crate) fn backwards(model: &str, [backwards, runs]: [u64; 2]) -> Option<Self> {
+        let model = model.to_owned();
+        (backwards > 0).then_some(Self::Backwards { model, backwards, runs })
+    }
+
+    /// That the payload without any dispersion starts with an angular momentum that is far from its spin axis.
+    pub(crate) fn off_axis(payload: &MovingBody, spin_axis: &Unit<Vector3<f64>>) -> Option<Self> {
+        let angle_deg = payload.spin_metrics(spin_axis).cone()?.to_degrees();
+        let spin_axis = (*spin_axis.as_ref()).into();
+        (angle_deg > OFF_AXIS_DEG).then_some(Self::OffAxis { angle_deg, spin_axis })
     }
 
     /// That outcomes, by their labels, have heavy tails.
@@ -108,6 +130,19 @@ impl Alert {
                     " is declared as dispersed, and is {} in all {runs} runs. The results say nothing of what it does.",
                     significant(*value, 5)
                 )),
+            Self::Backwards { model, backwards, runs } => Text::default()
+                .strong(format!("{model}: the payload leaves the wrong way in {backwards} of {runs} runs"))
+                .plain(
+                    ", more than 90° away from the direction that is intended. It may have gone through the stage, which no spring \
+                     hinders: outlines of the bodies, under ",
+                )
+                .code("[clearance]")
+                .plain(" in the scenario, would tell."),
+            Self::OffAxis { angle_deg, spin_axis: [x, y, z] } => Text::default()
+                .strong("The payload does not spin about its spin axis at the start")
+                .plain(format!(": without dispersion, its angular momentum is {}° from ", significant(*angle_deg, 3)))
+                .code(format!("spin_axis = [{x}, {y}, {z}]"))
+                .plain(", which is body axis 1 where the scenario does not state it. Nutation, cone and wobble are about that axis."),
             Self::HeavyTails { model, outcomes } => {
                 let mut heaviest: Vec<&(String, f64)> = outcomes.iter().collect();
                 heaviest.sort_by(|a, b| b.1.total_cmp(&a.1));

@@ -134,9 +134,7 @@ mod tests {
             let mut text = paper.replacen("[payload]\n", "[clearance]\npayload = [{ points_m = [[0.5, 0.0, -0.6]] }, { ring = { \
                 centre_m = [0.0, 0.0, -0.9], axis = [0.0, 0.0, 2.0], radius_m = 0.7 } }]\nstage = [{ hull_m = [[0.0, 0.0, 0.6], \
                 [1.0, 0.0, 0.6], [0.0, 1.0, 0.6]] }]\n[payload]\n", usize::from(outlines));
-            let start = text.find("separation_direction").unwrap();
-            let end = start + text[start..].find('\n').unwrap();
-            text.replace_range(start..end, &format!("separation_direction = {direction:?}"));
+            text.insert_str(0, &format!("separation_direction = {direction:?}\n"));
             let Ok(scenario) = Scenario::from_toml(&text) else { return Ok(()) };
             let away = scenario.separation_direction().unwrap().into_inner();
             let mut across = Vector3::zeros();

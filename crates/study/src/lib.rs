@@ -34,6 +34,7 @@ mod drivers;
 mod ended;
 mod error;
 mod failure;
+mod far_lobe;
 mod faults;
 mod figures_of_study;
 mod fleet;

@@ -15,7 +15,7 @@ use crate::{
     claim::Verdict,
     claims::{CONSIDERABLE, IDENTICAL, LESS, ONE_SIDED},
     configuration::sketch,
-    decisions, drivers, faults, figures_of_study,
+    decisions, drivers, far_lobe, faults, figures_of_study,
     head::Head,
     quantity::Quantity,
     regions,
@@ -58,7 +58,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         .sections(summary.head.about.section())
         .sections(alerts::section(&summary.head.alerts))
         .sections(decisions::sections(&summary.head))
-        .section(results(summary))
+        .section(results(scenario, summary))
         .section(parting(scenario, summary))
         .sections(drivers::section(&summary.head, &scenario.main_outcomes()))
         .sections(decisions::where_runs_fail(&summary.head))
@@ -66,7 +66,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         .sections(scenario.source().map(|_| claims(summary)))
         .sections(ratios(summary))
         .sections(deviations(scenario, summary))
-        .sections(far_lobe(summary))
+        .sections(far_lobe::section(summary))
         .sections(dispersed(summary))
         .sections(regions::section(summary.models.iter().map(|m| (&*m.name, &*m.regions))))
         .sections(summary.every_model.section())
@@ -79,7 +79,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         ))
 }
 
-fn results(summary: &Summary) -> Section {
+fn results(scenario: &Scenario, summary: &Summary) -> Section {
     // None for the nominal bodies.
     let rows: Vec<Option<&ModelSummary>> = summary.models.iter().map(Some).chain([None]).collect();
     let mut table = PageTable::of(&rows)
@@ -112,8 +112,11 @@ fn results(summary: &Summary) -> Section {
     let terms = Text::default()
         .strong("Wobble")
         .plain(
-            ": the angle between the axis that the payload is meant to spin about, fixed in the body, and its nearest \
-             principal axis of inertia. It follows from the inertia alone. ",
+            format!(
+                ": the angle between the axis that the payload is meant to spin about, {} in its body axes, and its nearest \
+                 principal axis of inertia. It follows from the inertia alone. ",
+                entries(scenario.spin_axis())
+            ),
         )
         .strong("Nutation")
         .plain(
@@ -145,14 +148,16 @@ fn number(x: Option<f64>, digits: usize, interval: String) -> Text {
     Text::from(optional(x, digits)).tip(interval)
 }
 
+/// A direction, to a thousandth.
+fn entries(direction: &Unit<Vector3<f64>>) -> String {
+    let entries: Vec<_> =
+        direction.iter().map(|x| format!("{}", (1e3 * x).round() / 1e3 + 0.0)).collect();
+    format!("({})", entries.join(", "))
+}
+
 /// How the bodies part, a quantity a row.
 fn parting(scenario: &Scenario, summary: &Summary) -> Section {
     let said = |direction: Option<&Unit<Vector3<f64>>>| {
-        let entries = |d: &Unit<Vector3<f64>>| {
-            let entries: Vec<_> =
-                d.iter().map(|x| format!("{}", (1e3 * x).round() / 1e3 + 0.0)).collect();
-            format!("({})", entries.join(", "))
-        };
         direction.map_or_else(|| "none, for the springs' forces cancel".to_owned(), entries)
     };
     let clearance = scenario.outlines().map_or_else(String::new, |outlines| {
@@ -194,10 +199,15 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Section {
 fn releases(model: &ModelSummary) -> Option<Text> {
     let releases = &model.releases;
     let pressed = releases.recompressed?;
-    let mut text = Text::default().strong(&model.name).plain(": let go in the order ");
+    let mut text = Text::default().strong(&model.name).plain(": ");
     for (i, order) in releases.orders.iter().take(3).enumerate() {
         let runs = format!(" in {} of the runs", percent(&order.share));
-        text = text.plain(if i > 0 { "; " } else { "" }).code(&order.order).plain(runs);
+        text = text.plain(if i > 0 { "; " } else { "" });
+        text = match &*order.order {
+            "" => text.plain("no spring pushed"),
+            order => text.plain(if i > 0 { "" } else { "let go in the order " }).code(order),
+        };
+        text = text.plain(runs);
     }
     let others = if releases.orders.len() > 3 { "; others" } else { "" };
     text = text.plain(format!("{others}. {}", energy(model)));
@@ -371,25 +381,6 @@ fn deviation_table(
         });
     }
     table.into()
-}
-
-fn far_lobe(summary: &Summary) -> Option<Section> {
-    let lobes = || summary.models.iter().filter_map(|m| Some((&m.name, m.far_half?)));
-    let reading = Text::from(
-        "A quaternion and its negative are one attitude, but the radially constrained Gaussian does not know it: \
-         where its covariance is wide along the mean, a second lobe of draws lies in the half sphere away from \
-         the mean. As attitudes these lie about the ",
-    )
-    .emphasis("inverse")
-    .plain(" of the mean attitude. Axes of “mean-half” leave them out.");
-    let items = lobes().map(|(name, [payload, stage])| {
-        let (payload, stage) = (percent(&payload), percent(&stage));
-        let shares = format!(": {payload} of the payload's draws, {stage} of the stage's.");
-        Text::default().strong(name).plain(shares)
-    });
-    lobes()
-        .any(|(_, far)| far.iter().any(|s| s.count > 0))
-        .then(|| Section::new("The second lobe").paragraph(reading).list(items))
 }
 
 /// What is uncertain besides the inertias.

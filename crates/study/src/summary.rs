@@ -69,7 +69,7 @@ pub(crate) struct ModelSummary {
     pub(crate) unrealizable: Share,
     /// Draws in the half sphere away from the mean attitude, for payload and stage, where the law
     /// draws attitudes.
-    pub(crate) far_half: Option<[Share; 2]>,
+    pub(crate) far_half: Option<[Option<Share>; 2]>,
     /// Deviations that an entrywise law was given: payload and stage, each in the order of the run
     /// table, kg·m².
     pub(crate) given_deviations_kg_m2: Option<[[f64; 6]; 2]>,
@@ -230,6 +230,8 @@ impl Summary {
             })
             .collect();
         let alerts = models.iter().zip(runs).flat_map(|(model, seen)| model.alerts(scenario, seen));
+        let alerts =
+            alerts.chain(Alert::off_axis(scenario.payload().moving(), scenario.spin_axis()));
         let alerts = alerts.chain(scenario.folded().into_iter().map(Alert::Folded));
         let alerts = alerts.chain(scenario.unmatched().into_iter().map(Alert::Unmatched));
         let head = Head { alerts: alerts.collect(), ..head_of(scenario, columns) };
@@ -352,13 +354,12 @@ impl ModelSummary {
             Share::of_dependent(count, of, once, confidence)
         };
         let failures = owned(seen.surveys.failures());
-        let far_half = match (seen.far, seen.drawn) {
-            ([Some(payload), Some(stage)], [of_payload, of_stage]) if of_payload > 0 => Some([
-                share(Body::Payload, payload, of_payload)?,
-                share(Body::Stage, stage, of_stage)?,
-            ]),
-            _ => None,
+        let far = |body: Body| {
+            let (far, of) = (seen.far[body as usize], seen.drawn[body as usize]);
+            far.filter(|_| of > 0).map(|far| share(body, far, of)).transpose()
         };
+        let far_half = [far(Body::Payload)?, far(Body::Stage)?];
+        let far_half = far_half.iter().any(Option::is_some).then_some(far_half);
         let [unrealizable, _] = seen.surveys.flags(REALIZABLE);
         // Inertias that each flight draws anew are independent, whatever else flights have in common.
         let anew = inertia.iter().all(Each::is_flight);
@@ -398,7 +399,8 @@ impl ModelSummary {
         let heavy = outcomes.map(|q| (q.quantity.label().into_owned(), &q.sample));
         let near = Body::BOTH.into_iter().zip(seen.near_boundary);
         let near = near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body, near, of));
-        let first = failed.into_iter().chain(unmoved);
+        let backwards = Alert::backwards(name, seen.backwards);
+        let first = failed.into_iter().chain(backwards).chain(unmoved);
         first.chain(Alert::heavy_tails(name, heavy)).chain(near).collect()
     }
 

@@ -57,6 +57,59 @@ fn an_ordinary_scenario_has_no_alert() {
     assert!(!scenario.report(&summary).html().contains("Before you read the results"));
 }
 
+/// Thrown at the stage, at rest and away from it, by springs that may fail: the alert counts the rows, and the page names it. Spun about
+/// axes at all angles to the spin axis: it is told beyond 45°.
+#[test]
+fn what_goes_the_wrong_way_is_told() {
+    let base = ordinary(60, 0.01, NORMAL).to_toml();
+    let with = |speed: f64, spin: [f64; 3]| {
+        let mut table: toml::Table = base.parse().unwrap();
+        let list = |v: [f64; 3]| toml::Value::from(v.to_vec());
+        let payload = table["payload"].as_table_mut().unwrap();
+        payload.insert("velocity_m_per_s".to_owned(), list([0.0, 0.0, speed]));
+        payload.insert("angular_velocity_rad_per_s".to_owned(), list(spin));
+        Scenario::from_toml(&toml::to_string(&table).unwrap()).unwrap()
+    };
+    let mut seen = [0_u64; 2];
+    for speed in [-8.0, -5.0, -3.0, -0.1, 0.0, 2.0] {
+        let scenario = with(speed, [0.0, 0.0, 0.5]);
+        let (summary, runs) = study(&scenario);
+        let table = runs[0].table().unwrap();
+        let errors = Quantity::DirectionError.in_table(&table);
+        let expected = errors.iter().filter(|error| **error > 90.0).count() as u64;
+        let told = summary.head.alerts.iter().find_map(|alert| match alert {
+            Alert::Backwards { backwards, runs, .. } => Some([*backwards, *runs]),
+            _ => None,
+        });
+        assert_eq!(told, (expected > 0).then_some([expected, errors.len() as u64]), "{speed}");
+        seen[usize::from(expected > 0)] += 1;
+        let page = scenario.report(&summary).html();
+        assert_eq!(page.contains("the payload leaves the wrong way"), expected > 0);
+        assert!(page.contains("meant to spin about, (0, 0, 1) in its body axes"));
+    }
+    assert!(seen.iter().all(|seen| *seen > 1), "{seen:?}");
+    for turn in [0.0_f64, 30.0, 44.0, 46.0, 90.0, 180.0] {
+        let (sin, cos) = turn.to_radians().sin_cos();
+        // The momentum turns with the moments, 2000 and 1800 kg·m².
+        let scenario = with(0.0, [sin / 2000.0, 0.0, cos / 1800.0]);
+        let (summary, _) = study(&scenario);
+        let told = summary.head.alerts.iter().find_map(|alert| match alert {
+            Alert::OffAxis { angle_deg, .. } => Some(*angle_deg),
+            _ => None,
+        });
+        assert_eq!(told.is_some(), turn > 45.0, "{turn}");
+        assert!(told.is_none_or(|told| (told - turn).abs() < 1e-6), "{turn} {told:?}");
+    }
+    assert!(
+        study(&with(0.0, [0.0; 3]))
+            .0
+            .head
+            .alerts
+            .iter()
+            .all(|a| !matches!(a, Alert::OffAxis { .. }))
+    );
+}
+
 /// Matched to a principal law that is more and more uncertain: it is told exactly where the moments of what is drawn are not
 /// those of the principal law, and what is told of them is what the draws do.
 #[test]
@@ -188,6 +241,8 @@ proptest! {
             }
             Alert::NearBoundary { near, body, .. } => ("near", format!("{near} {body}")),
             Alert::Folded(root) => ("folded", format!("{} {}", root.body, root.quantity)),
+            Alert::Backwards { backwards, runs, .. } => ("backwards", format!("{backwards} of {runs}")),
+            Alert::OffAxis { angle_deg, .. } => ("off axis", angle_deg.to_string()),
             Alert::Unmatched(law) => ("unmatched", law.to_string()),
         });
         prop_assert_eq!(told.collect::<Vec<_>>(), expected);

@@ -196,16 +196,15 @@ impl Scenario {
             .map_err(separation_error)?;
         let push = push(&separation);
         sides::check(&separation, file.separation_direction, push)?;
-        // Defaults go by way of the file, so that the resolved scenario gives the same bits.
-        if file.separation_direction.is_none() {
-            file.separation_direction = push.map(|d| d.into_inner().into());
-        }
-        let separation_direction = file
-            .separation_direction
+        // What follows from other keys is not written into the resolved scenario: whoever changes those in a copy of it means
+        // what follows from the changed ones.
+        let separation_direction =
+            file.separation_direction.or(push.map(|d| d.into_inner().into()));
+        let separation_direction = separation_direction
             .map(|given| direction("separation_direction", given))
             .transpose()?;
         let intended = payload.moving().state().attitude * spin_axis;
-        let intended = *file.momentum_direction.get_or_insert(intended.into_inner().into());
+        let intended = file.momentum_direction.unwrap_or(intended.into_inner().into());
         let momentum_direction = direction("momentum_direction", intended)?;
         let settings =
             Settings::new(file.integration.relative_tolerance, file.integration.horizon_s)
