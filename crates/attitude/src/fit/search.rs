@@ -252,8 +252,12 @@ impl<'a> Search<'a> {
         let mut excess = |ln_tau: f64| {
             let start = Point { tau: libm::exp(ln_tau), ..place };
             let top = climb(self.sample, start, free, self.n);
-            place = top.place;
-            (2.0 * self.n * (best.height - top.height)).max(0.0).sqrt() - target
+            let excess = (2.0 * self.n * (best.height - top.height)).max(0.0).sqrt() - target;
+            // Far outside, wide laws climb to another maximum, from which none comes back.
+            if excess < 0.0 {
+                place = top.place;
+            }
+            excess
         };
         let mut inside = (libm::log(from), -target);
         let mut step = 0.5;
