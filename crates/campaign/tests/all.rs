@@ -10,4 +10,5 @@ mod formats;
 mod judged_tables;
 mod kept;
 mod requirement;
+mod scratch;
 mod together;

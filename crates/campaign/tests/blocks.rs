@@ -19,6 +19,8 @@ use std::{
     },
 };
 
+use crate::scratch::scratch;
+
 /// Numbers, texts and flags from a seed; it counts the runs that it does.
 struct Cheap {
     streams: Streams,
@@ -304,7 +306,7 @@ fn size(path: &Path) -> u64 {
 /// the folder alone.
 #[test]
 fn shards_are_held_by_one_process() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let campaign = Campaign { place: scratch.path().join("here"), seed: 4, block_runs: 16 };
     let in_place = OnceLock::new();
     let contents = campaign.contents(100, &in_place);
@@ -337,7 +339,7 @@ proptest! {
         events in prop::collection::vec(event(), 0..7),
     ) {
         let block_runs = if runs > 100 { block_runs.max(16) } else { block_runs };
-        let scratch = tempfile::tempdir().unwrap();
+        let scratch = scratch();
         let campaign = Campaign { place: scratch.path().join("here"), seed, block_runs };
         // Runs in sound blocks, and what should be in the files that are not sound.
         let (mut finished, mut broken) = (0, BTreeMap::new());
@@ -409,7 +411,7 @@ proptest! {
 /// take none away.
 #[test]
 fn another_campaign_is_refused() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let place = scratch.path().join("here");
     let campaign = |seed, block_runs| Campaign { place: place.clone(), seed, block_runs };
     let message = |c: &Campaign, runs| c.command(runs, None, false).map(|_| ()).unwrap_err();
@@ -446,7 +448,7 @@ fn another_campaign_is_refused() {
 /// Finished runs that are dropped by force are gone for good, also if that command is stopped itself.
 #[test]
 fn what_is_dropped_by_force_does_not_come_back() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let campaign = Campaign { place: scratch.path().join("here"), seed: 3, block_runs: 16 };
     assert!(campaign.command(300, Some(200), false).is_err());
     assert!(campaign.files().len() > 1);

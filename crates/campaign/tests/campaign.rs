@@ -13,6 +13,8 @@ use proptest::prelude::*;
 use rand::RngExt;
 use std::{ops::Range, sync::Mutex};
 
+use crate::scratch::scratch;
+
 /// Columns of every kind, filled from the streams of a seed.
 struct Everything {
     streams: Streams,
@@ -139,7 +141,7 @@ proptest! {
                 }
             }
         }
-        let scratch = tempfile::tempdir().unwrap();
+        let scratch = scratch();
         let path = scratch.path().join("runs.parquet");
         std::fs::write(&path, &file).unwrap();
         let whole = table.from_run(0).read_parquet(&path).unwrap();

@@ -10,7 +10,7 @@ use gyradius_campaign::{
 };
 use proptest::prelude::*;
 use rand::{Rng, RngExt};
-use std::{collections::BTreeSet, path::Path, time::Duration};
+use std::{collections::BTreeSet, path::Path, thread, time::Duration};
 
 const SEED: u64 = 2003;
 
@@ -272,14 +272,22 @@ fn what_is_no_file_is_told() {
 /// Whoever hangs is killed in time, in the first run and in any other, also if it does not read what is sent.
 #[test]
 fn hanging_is_no_answer_in_time() {
-    for (place, per_run) in [(0, false), (2, false), (1, true)] {
-        let simulator = simulator("echo 'step 7' >&2; sleep 1000", per_run, 1.5);
-        let places = BTreeSet::from([place]);
-        let table = table(&simulator, &places, 4, 1);
-        assert_rows(&table, &places, "no answer in time", "hangs");
-        let message = table.failures().next().unwrap().1.message().to_owned();
-        assert_eq!(message, "no answer within 1.5 s; its last line on standard error: step 7");
-    }
+    // At the same time, as all that they do is wait.
+    thread::scope(|scope| {
+        for (place, per_run) in [(0, false), (2, false), (1, true)] {
+            scope.spawn(move || {
+                let simulator = simulator("echo 'step 7' >&2; sleep 1000", per_run, 1.5);
+                let places = BTreeSet::from([place]);
+                let table = table(&simulator, &places, 4, 1);
+                assert_rows(&table, &places, "no answer in time", "hangs");
+                let message = table.failures().next().unwrap().1.message().to_owned();
+                assert_eq!(
+                    message,
+                    "no answer within 1.5 s; its last line on standard error: step 7"
+                );
+            });
+        }
+    });
     let deaf = Program::new(&["sleep".into(), "1000".into()], Path::new("/")).unwrap();
     let deaf = Simulator::start(deaf.with_timeout(0.2).unwrap()).unwrap();
     let told = simulation(&deaf, BTreeSet::new(), 10_000).replay(0);

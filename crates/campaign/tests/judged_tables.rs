@@ -8,6 +8,8 @@ use gyradius_statistics::{Acceptance, Confidence};
 use proptest::prelude::*;
 use std::fs;
 
+use crate::scratch::scratch;
+
 fn bound() -> impl Strategy<Value = Bound> {
     prop_oneof![
         (-3.0..3.0).prop_map(Bound::AtMost),
@@ -31,7 +33,7 @@ proptest! {
             let row = |x: &Option<i32>| x.map_or(missing.to_owned(), |x| x.to_string()) + more + end;
             format!("{name}{end}{}", rows.iter().map(row).collect::<String>())
         };
-        let scratch = tempfile::tempdir().unwrap();
+        let scratch = scratch();
         let path = scratch.path().join("it.csv");
         let judged = |text: &str| {
             fs::write(&path, text).unwrap();
@@ -157,7 +159,7 @@ fn a_run_counts_once() {
 /// The worst runs bear the numbers of a column `run`, in any order, if all of them are whole; else the numbers of their rows.
 #[test]
 fn the_worst_runs_have_the_numbers_of_the_table() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let path = scratch.path().join("it.csv");
     let requirement: Requirement = "x <= 0 in 90 % at 90 %".parse().unwrap();
     // Some more than are looked at together.

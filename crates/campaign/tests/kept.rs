@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use std::{collections::BTreeSet, fs, sync::OnceLock};
 
 use crate::blocks::{Campaign, assert_whole, whole};
+use crate::scratch::scratch;
 
 /// What a campaign keeps: rows, and columns, if not all.
 fn kept() -> impl Strategy<Value = Kept> {
@@ -27,7 +28,7 @@ proptest! {
         kept in kept(),
         whole_first in any::<bool>(),
     ) {
-        let scratch = tempfile::tempdir().unwrap();
+        let scratch = scratch();
         let campaign = Campaign { place: scratch.path().join("it"), seed, block_runs };
         if whole_first {
             campaign.command(runs, None, false).unwrap();
@@ -90,7 +91,7 @@ proptest! {
         more in 0_u64..20,
         kept in kept().prop_filter("less than all", |kept| !kept.is_all()),
     ) {
-        let scratch = tempfile::tempdir().unwrap();
+        let scratch = scratch();
         let campaign = Campaign { place: scratch.path().join("it"), seed, block_runs: 8 };
         campaign.keeping(runs, None, false, &kept).unwrap();
         let done = campaign.command(runs + more, None, true).unwrap();

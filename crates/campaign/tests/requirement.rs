@@ -14,6 +14,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::{fmt::Write, fs, path::Path, sync::Arc};
 
+use crate::scratch::scratch;
+
 /// Numbers of three columns, some of which are missing.
 fn rows() -> impl Strategy<Value = Vec<[Option<f64>; 3]>> {
     let number = prop_oneof![
@@ -123,7 +125,7 @@ proptest! {
         separator in prop::sample::select(vec![',', ';', '\t']),
         missing in prop::sample::select(vec!["", "nan", "NaN", "NA"]),
     ) {
-        let scratch = tempfile::tempdir().unwrap();
+        let scratch = scratch();
         let path = scratch.path().join("runs.csv");
         let text = csv(&rows, separator, missing);
         fs::write(&path, &text).unwrap();
@@ -292,7 +294,7 @@ fn what_is_wrong_with_a_requirement_is_said() {
 /// Every kind of number that Parquet has, in several groups and files; texts, dates and lists are refused.
 #[test]
 fn parquet_of_any_writer_is_read() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let schema = "message any {
         required boolean flag; optional int32 short; required int64 long (INTEGER(64, true)); optional float single;
         optional double number; required int32 day (DATE); required binary text (UTF8);
@@ -410,7 +412,7 @@ fn of_one_run_everything_is_said_that_is_known() {
 
 #[test]
 fn what_is_wrong_with_a_table_is_said() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let path = scratch.path().join("it.csv");
     let requirement = ["x <= 1 in 90 % at 90 %".parse::<Requirement>().unwrap()];
     for (text, expected) in [
@@ -448,7 +450,7 @@ fn what_is_wrong_with_a_table_is_said() {
 
 #[test]
 fn one_run_is_told_as_one() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let path = scratch.path().join("it.csv");
     fs::write(&path, "x\nnan\n").unwrap();
     let table = ForeignTable::open(&path).unwrap();

@@ -9,12 +9,13 @@ use std::{
 };
 
 use crate::blocks::{Campaign, assert_whole};
+use crate::scratch::scratch;
 
 /// Shards that are done at the same time, on any number of threads and in any numbers, leave the same files as one
 /// command.
 #[test]
 fn shards_at_the_same_time_are_one_campaign() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let campaign =
         |name: String| Campaign { place: scratch.path().join(name), seed: 9, block_runs: 16 };
     let runs = 1000;
@@ -46,7 +47,7 @@ fn shards_at_the_same_time_are_one_campaign() {
 /// Shards that all begin at once in a folder that is not there yet all get it.
 #[test]
 fn shards_that_begin_together_share_the_folder() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     for round in 0..200 {
         let place = scratch.path().join(round.to_string());
         let campaign = Campaign { place, seed: 9, block_runs: 16 };
@@ -73,7 +74,7 @@ fn shards_that_begin_together_share_the_folder() {
 #[test]
 fn campaigns_that_begin_together_are_not_mixed() {
     const SHARDS: u32 = 8;
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let pool = threads(Some(1)).unwrap();
     for round in 0..100 {
         let place = scratch.path().join(round.to_string());
