@@ -32,7 +32,7 @@ use crate::{
 const SCRIPT: &str = r#"
 while read -r line; do
     run=${line#*'"run":'}; run=${run%%,*}
-    x=${line#*'"x":'}; x=${x%%[,\}]*}
+    x=${line##*'"x":'}; x=${x%%[,\}]*}
     case $x in
         0.9*) echo "{\"run\":$run,\"error\":\"too large: $x\"}" ;;
         *) echo "{\"run\":$run,\"outputs\":{\"y\":$x}}" ;;

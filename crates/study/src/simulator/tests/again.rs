@@ -19,7 +19,7 @@ fn failed_runs_are_done_again() {
     const SOMETIMES: &str = r#"
 while read -r line; do
     echo . >> asked
-    x=${line#*'"x":'}; x=${x%%[,\}]*}
+    x=${line##*'"x":'}; x=${x%%[,\}]*}
     case $x in
         0.[123]*) [ -e busy ] && echo '{"error":"no licence"}' || echo "{\"outputs\":{\"y\":$x}}" ;;
         *) echo "{\"outputs\":{\"y\":$x}}" ;;
@@ -92,7 +92,7 @@ fn one_run_is_held_against_its_row() {
     const IMPORTS: &str = r#"
 . ./mod.sh
 while read -r line; do
-    x=${line#*'"x":'}; x=${x%%[,\}]*}
+    x=${line##*'"x":'}; x=${x%%[,\}]*}
     case $x in
         0.[456]*) echo "{\"error\":\"$WORDS $x\"}" ;;
         $BAD) echo '{"error":"bad"}' ;;

@@ -1,7 +1,7 @@
 //! Campaigns of vehicles and flights: they go on, are put together of shards, and tell what is independent.
 
 use gyradius_statistics::{Confidence, Moments, Proportion};
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, thread};
 
 use super::{
     AnyScenario, Options, Path, Shard, SimulatorReplay, SimulatorScenario, Status, folder, fs,
@@ -12,7 +12,7 @@ use crate::{Draw, DrawOptions, Which};
 /// Answers with a quantity and where the run belongs, and fails if the quantity is above 0.9.
 const SCRIPT: &str = r#"
 while read -r line; do
-    x=${line#*'"x":'}; x=${x%%[,\}]*}
+    x=${line##*'"x":'}; x=${x%%[,\}]*}
     v=${line#*'"vehicle":'}; v=${v%%,*}
     f=${line#*'"flight":'}; f=${f%%,*}
     case $x in
@@ -177,20 +177,26 @@ fn shards_of_vehicles_are_one_study() {
     };
     let whole = written("whole");
     assert!(whole.len() > 8, "{:?}", whole.keys());
-    for (of, threads) in [(1, 1), (1, 3), (4, 1), (4, 3), (7, 1), (7, 3)] {
-        let name = format!("{of}-{threads}");
-        for i in (1..=of).rev() {
-            let shard: Shard = format!("{i}/{of}").parse().unwrap();
-            any.run_shard(&options(&name, threads), shard, &|_| {}, &|_| {}).unwrap();
+    // At the same time: most of it waits for the script.
+    thread::scope(|scope| {
+        for (of, threads) in [(1, 1), (1, 3), (4, 1), (4, 3), (7, 1), (7, 3)] {
+            let (any, out, options, written, whole) = (&any, &out, &options, &written, &whole);
+            scope.spawn(move || {
+                let name = format!("{of}-{threads}");
+                for i in (1..=of).rev() {
+                    let shard: Shard = format!("{i}/{of}").parse().unwrap();
+                    any.run_shard(&options(&name, threads), shard, &|_| {}, &|_| {}).unwrap();
+                }
+                let models = Status::read(&out(&name)).unwrap().models;
+                let done: u64 = models.iter().map(|model| model.finished).sum();
+                assert_eq!(done, 2 * 63 * 30);
+                put_together(&out(&name), &Options::default(), &|_| {}).unwrap();
+                let own = written(&name);
+                assert!(own.keys().eq(whole.keys()), "{:?} {:?}", own.keys(), whole.keys());
+                for (file, bytes) in &own {
+                    assert!(*bytes == whole[file], "{name}: {file}");
+                }
+            });
         }
-        let done: u64 =
-            Status::read(&out(&name)).unwrap().models.iter().map(|model| model.finished).sum();
-        assert_eq!(done, 2 * 63 * 30);
-        put_together(&out(&name), &Options::default(), &|_| {}).unwrap();
-        let own = written(&name);
-        assert!(own.keys().eq(whole.keys()), "{:?} {:?}", own.keys(), whole.keys());
-        for (file, bytes) in &own {
-            assert!(*bytes == whole[file], "{name}: {file}");
-        }
-    }
+    });
 }
