@@ -133,27 +133,39 @@ fn bearing(extension: Option<&str>, problem: &FileProblem, bytes: &[u8]) -> Bear
 /// entries by itself. Sixteen bits a character make no difference.
 fn mentions(bytes: &[u8]) -> bool {
     let plain: Vec<u8> = bytes.iter().filter(|b| **b != 0).map(u8::to_ascii_lowercase).collect();
-    let bounded = |at: Option<&u8>| at.is_none_or(|b| !b.is_ascii_alphanumeric());
-    let starts = |word: &[u8], whole: bool| {
-        (0..plain.len()).any(|i| {
+    let bounded = |b: &u8| !b.is_ascii_alphanumeric();
+    let begins = |i: usize| {
+        WORDS.iter().any(|(word, whole)| {
             plain[i..].starts_with(word)
-                && bounded(i.checked_sub(1).and_then(|before| plain.get(before)))
-                && (!whole || bounded(plain.get(i + word.len())))
+                && (!whole || plain.get(i + word.len()).is_none_or(bounded))
         })
     };
-    starts(b"inerti", false)
-        || [
-            &b"ixx"[..],
-            b"i11",
-            b"i_xx",
-            b"ixxkgm2",
-            b"fullinertia",
-            b"diaginertia",
-            b"diagonalinertia",
-        ]
-        .iter()
-        .any(|word| starts(word, true))
+    // The first character alone decides nearly everywhere.
+    let mut first = [false; 256];
+    for (word, _) in WORDS {
+        first[usize::from(word[0])] = true;
+    }
+    let mut before = &b' ';
+    for (i, b) in plain.iter().enumerate() {
+        if first[usize::from(*b)] && bounded(before) && begins(i) {
+            return true;
+        }
+        before = b;
+    }
+    false
 }
+
+/// What says that a file speaks of inertias, and whether it must be a whole word.
+const WORDS: [(&[u8], bool); 8] = [
+    (b"inerti", false),
+    (b"ixx", true),
+    (b"i11", true),
+    (b"i_xx", true),
+    (b"ixxkgm2", true),
+    (b"fullinertia", true),
+    (b"diaginertia", true),
+    (b"diagonalinertia", true),
+];
 
 /// What a file holds.
 struct Parsed {
