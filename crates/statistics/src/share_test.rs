@@ -130,13 +130,19 @@ impl Stratum {
         let mut dealt = vec![vec![0.0; last + 1]; all + 1];
         dealt[0][0] = 1.0;
         let odds = self.failures as f64 / (self.runs - self.failures) as f64;
+        let (mut here, mut later) = (0, self.runs);
         for cell in &self.cells {
             let mut next = vec![vec![0.0; last + 1]; all + 1];
             let mut weight = 1.0;
-            for failures in 0..=all.min(usize::try_from(cell.runs).unwrap_or(usize::MAX)) {
+            later -= cell.runs;
+            // Most that can have been dealt before, and least with this cell, as later ones take no more than their runs.
+            let (most, least) = (here.min(all), (all as u64).saturating_sub(later) as usize);
+            let own = all.min(usize::try_from(cell.runs).unwrap_or(usize::MAX));
+            here = most + own;
+            for failures in 0..=own {
                 let term = steps(self.term(cell.runs, failures as u64)).min(last);
-                for (before, after) in dealt.iter().zip(&mut next[failures..]) {
-                    add_shifted(after, before, term, weight);
+                for before in least.saturating_sub(failures)..=most.min(all - failures) {
+                    add_shifted(&mut next[before + failures], &dealt[before], term, weight);
                 }
                 // (n choose k + 1) of (n choose k).
                 weight *= (cell.runs as f64 - failures as f64) / (failures as f64 + 1.0) * odds;
