@@ -422,7 +422,7 @@ fn nothing_stays() {
         let state = |stat: &str| stat.rsplit(") ").next().and_then(|rest| rest.chars().next());
         let is_gone = || matches!(state(&stat()), None | Some('Z' | 'X'));
         let gone = (0..1000).any(|_| {
-            std::thread::sleep(Duration::from_millis(10));
+            thread::sleep(Duration::from_millis(10));
             is_gone()
         });
         assert!(gone, "{pid} runs on: {}", stat());
