@@ -6,6 +6,8 @@ use crate::{Confidence, Interval, StatisticsError, law};
 const LARGEST: f64 = 700.0;
 /// Effective hits below which an estimate is not to be trusted.
 const FEW: f64 = 20.0;
+/// A probability above which an event is not rare.
+const RARE: f64 = 0.5;
 /// The share of one hit in the estimate from which it is not to be trusted.
 const DOMINANT: f64 = 0.2;
 
@@ -15,7 +17,8 @@ const DOMINANT: f64 = 0.2;
 /// which they were drawn from, both normalised. The estimate `p = mean(w [hit])` is unbiased if g is positive wherever an
 /// event can be (Kahn & Marshall 1953, doi:10.1287/opre.1.5.263). Its variance follows from that of `w [hit]`, and the interval
 /// is log-normal: `p exp(± t σ)` with `σ² = ln(1 + c²)`, where c is the coefficient of variation of p and t is of as
-/// many degrees of freedom as there are effective hits, less one.
+/// many degrees of freedom as there are effective hits, less one; it is cut off at 1. Above a half it is that of Clopper & Pearson
+/// of `1 - p`, for as many runs of equal weight as those that miss the event are worth.
 ///
 /// **No number of this can show what the runs have not seen.** If g hardly reaches some part of the event, the estimate is
 /// too small, and the runs look good. What can be seen is told by the [warnings](ImportanceEstimate::warnings), and by
@@ -46,12 +49,14 @@ pub struct ImportanceSampling {
     hits: u64,
     all: WeightSums,
     of_hits: WeightSums,
+    of_misses: WeightSums,
 }
 
 impl ImportanceSampling {
     /// Of no run yet.
     pub fn new() -> Self {
-        Self { runs: 0, hits: 0, all: WeightSums::new(), of_hits: WeightSums::new() }
+        let [all, of_hits, of_misses] = [WeightSums::new(); 3];
+        Self { runs: 0, hits: 0, all, of_hits, of_misses }
     }
 
     /// Adds a run: the natural logarithm of its weight, and whether it is the event.
@@ -68,6 +73,8 @@ impl ImportanceSampling {
         if hit {
             self.hits += 1;
             self.of_hits.add(log_weight);
+        } else {
+            self.of_misses.add(log_weight);
         }
         Ok(())
     }
@@ -83,14 +90,23 @@ impl ImportanceSampling {
         }
         let n = self.runs as f64;
         let probability = self.of_hits.total() / n;
+        // Of hits of weight 1 alone it is above 1 by rounding.
+        let probability = if probability < 1.0 + 1e-9 { probability.min(1.0) } else { probability };
         let effective_hits = self.of_hits.effective();
         // Σ(z − p)²/(n − 1)/n over p², of Σz² = (Σz)²/effective.
         let coefficient = (effective_hits > 0.0)
             .then(|| ((n / effective_hits - 1.0).max(0.0) / (n - 1.0)).sqrt());
         let interval = match coefficient {
+            Some(_) if probability > RARE => self.of_the_rest(probability, confidence),
             Some(c) => {
                 let t = law::students_t(confidence.tail(), (effective_hits - 1.0).max(1.0));
-                Interval::around_log(probability, t * libm::log1p(c * c).sqrt(), confidence)
+                let wide =
+                    Interval::around_log(probability, t * libm::log1p(c * c).sqrt(), confidence);
+                Interval::ordered(
+                    wide.lower(),
+                    wide.upper().min(1.0_f64.max(probability)),
+                    confidence,
+                )
             }
             None => Interval::ordered(0.0, 1.0, confidence),
         };
@@ -108,6 +124,33 @@ impl ImportanceSampling {
         };
         estimate.warnings = estimate.seen();
         Ok(estimate)
+    }
+}
+
+impl ImportanceSampling {
+    /// The interval of an event that is not rare, from the runs that are not the event: what they scatter decides, and there may be
+    /// none. It is that of Clopper & Pearson (1934, doi:10.1093/biomet/26.4.404) of as many runs of equal weight as
+    /// these are worth, which it is exactly for weights of 1.
+    fn of_the_rest(&self, probability: f64, confidence: Confidence) -> Interval {
+        let tail = confidence.tail();
+        let misses = self.of_misses.effective();
+        let runs = if misses > 0.0 {
+            self.runs as f64 * misses / self.of_misses.total()
+        } else {
+            self.all.effective().min(self.runs as f64)
+        };
+        let least = if misses == 0.0 {
+            0.0
+        } else if misses < runs {
+            law::beta_lower(tail, misses, runs - misses + 1.0)
+        } else {
+            1.0
+        };
+        let most =
+            if misses < runs { law::beta_upper(tail, misses + 1.0, runs - misses) } else { 1.0 };
+        // The mean weight is not quite 1, so that the estimate can lie beside the rest of 1.
+        let (lower, upper) = ((1.0 - most).min(probability), (1.0 - least).max(probability));
+        Interval::ordered(lower, upper, confidence)
     }
 }
 
@@ -173,7 +216,7 @@ pub struct ImportanceEstimate {
     probability: f64,
     /// Its standard error over the estimate; none without a hit.
     coefficient_of_variation: Option<f64>,
-    /// The interval; from 0 to 1 without a hit.
+    /// The interval, which ends at 1 unless the estimate is above it; from 0 to 1 without a hit.
     interval: Interval,
     /// How many hits of equal weight would be worth as much, `(Σ w)²/Σ w²` over hits.
     effective_hits: f64,

@@ -43,6 +43,47 @@ fn moved(by: f64, spread: f64, limit: f64) -> impl Fn(&mut ChaCha8Rng) -> (f64, 
     }
 }
 
+/// Events that are anything but rare, drawn from their own law, from one that is moved away from them, and from one that is moved on.
+#[test]
+fn probabilities_near_one_are_covered() {
+    for limit in [-0.5, -1.0, -2.5, -3.7] {
+        for (by, spread) in [(0.0, 1.0), (0.3, 1.2), (-0.5, 1.1), (-1.0, 1.3)] {
+            for runs in [50, 500, 3000] {
+                let truth = tail::normal(limit);
+                let (covered, mean) = coverage(truth, runs, moved(by, spread, limit));
+                assert!(
+                    covered > 0.92 && (mean - 1.0).abs() < 0.05,
+                    "{limit} {by} {runs}: {covered} {mean}"
+                );
+            }
+        }
+    }
+}
+
+proptest! {
+    /// Weights of 1 are none: the interval is that of counted runs where the event is not rare, never beyond 0 and 1, and never
+    /// without a width.
+    #[test]
+    fn weights_of_one_are_counts(runs in 2..3000_u64, share in 0.0..=1.0_f64, some in 0.0..=3.0_f64) {
+        let hits = ((share * runs as f64) as u64).max(runs.saturating_sub((some * 2.0) as u64));
+        let mut sums = ImportanceSampling::new();
+        for run in 0..runs {
+            sums.push(0.0, run < hits).unwrap();
+        }
+        let found = sums.finish(Confidence::default()).unwrap();
+        let exact = crate::Proportion::new(hits, runs).unwrap();
+        let interval = found.interval();
+        prop_assert!((found.probability() - exact.value()).abs() < 1e-12 && found.probability() <= 1.0);
+        prop_assert!(interval.contains(found.probability()) && interval.lower() < interval.upper());
+        prop_assert!(interval.lower() >= 0.0 && interval.upper() <= 1.0);
+        if exact.value() > 0.5 + 1e-9 {
+            let exact = exact.interval(Confidence::default());
+            prop_assert!((interval.lower() - exact.lower()).abs() < 1e-9, "{interval} {exact}");
+            prop_assert!((interval.upper() - exact.upper()).abs() < 1e-9, "{interval} {exact}");
+        }
+    }
+}
+
 #[test]
 fn known_probabilities_are_covered() {
     // A half space: up to 1e-15.
