@@ -87,7 +87,7 @@ impl Column {
                 RECOMPRESSED,
                 Text,
                 "Springs from 1 that were pressed below their free length after their release, while \
-                 others still pushed; none if there is no such spring.",
+                 others still pushed or had yet to start; none if there is no such spring.",
             ),
             Self::Drawn(i) => {
                 let name = drawn.get(i).cloned().unwrap_or_default();
