@@ -20,6 +20,8 @@ pub(crate) const HEAVY: f64 = 10.0;
 pub(crate) const NEAR: f64 = 0.01;
 /// A share of the drawn bodies: more of them must be near the boundary, that it is told.
 const MANY: f64 = 0.001;
+/// A factor between the mean of a law and the nominal value beside it that nobody means.
+const FAR: f64 = 10.0;
 /// Degrees between the angular momentum at the start and the spin axis: from here on, another principal axis may be nearer.
 const OFF_AXIS_DEG: f64 = 45.0;
 /// Outcomes with heavy tails that are named.
@@ -43,6 +45,8 @@ pub(crate) enum Alert {
     Backwards { model: String, backwards: u64, runs: u64 },
     /// The angular momentum of the payload at the start is far from the axis that it is to spin about.
     OffAxis { angle_deg: f64, spin_axis: [f64; 3] },
+    /// The mean of a law is far from the nominal value that the same scenario states.
+    FarFromNominal { quantity: String, nominal: f64, mean: f64 },
     /// The fourth moment of outcomes is large.
     HeavyTails {
         model: String,
@@ -85,6 +89,14 @@ impl Alert {
         let angle_deg = payload.spin_metrics(spin_axis).cone()?.to_degrees();
         let spin_axis = (*spin_axis.as_ref()).into();
         (angle_deg > OFF_AXIS_DEG).then_some(Self::OffAxis { angle_deg, spin_axis })
+    }
+
+    /// That the mean of what a law draws is ten times the nominal value, or a tenth of it, or of the other sign. Beside a nominal
+    /// value of zero any mean will do.
+    pub(crate) fn far_from_nominal(quantity: &str, nominal: f64, mean: f64) -> Option<Self> {
+        let is_far = nominal != 0.0 && !(1.0 / FAR..=FAR).contains(&(mean / nominal));
+        let quantity = quantity.to_owned();
+        is_far.then_some(Self::FarFromNominal { quantity, nominal, mean })
     }
 
     /// That outcomes, by their labels, have heavy tails.
@@ -143,6 +155,16 @@ impl Alert {
                 .plain(format!(": without dispersion, its angular momentum is {}° from ", significant(*angle_deg, 3)))
                 .code(format!("spin_axis = [{x}, {y}, {z}]"))
                 .plain(", which is body axis 1 where the scenario does not state it. Nutation, cone and wobble are about that axis."),
+            Self::FarFromNominal { quantity, nominal, mean } => Text::default()
+                .strong("A law is far from the nominal value")
+                .plain(": ")
+                .code(quantity)
+                .plain(format!(
+                    " is {} in the scenario, and the mean of its law is {}. Nominal bodies, intended directions and models \
+                     about the nominal bodies are those of the former. Is there a digit or a unit too much in one of them?",
+                    significant(*nominal, 4),
+                    significant(*mean, 4)
+                )),
             Self::HeavyTails { model, outcomes } => {
                 let mut heaviest: Vec<&(String, f64)> = outcomes.iter().collect();
                 heaviest.sort_by(|a, b| b.1.total_cmp(&a.1));

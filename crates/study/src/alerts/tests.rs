@@ -110,6 +110,67 @@ fn what_goes_the_wrong_way_is_told() {
     );
 }
 
+/// A law whose mean is beside the nominal value: it is told if they are ten times apart.
+#[test]
+fn laws_far_from_nominal_values_are_told() {
+    let base = ordinary(2, 0.01, NORMAL).to_toml();
+    for factor in [-1.0, 0.05, 0.11, 0.5, 1.0, 3.0, 9.0, 11.0, 100.0] {
+        for (key, nominal) in [("mass_kg", 3000.0), ("root_second_moments", 0.0)] {
+            if key != "mass_kg" && factor < 0.0 {
+                continue;
+            }
+            let mut table: toml::Table = base.parse().unwrap();
+            let dispersion = table["payload"]["dispersion"].as_table_mut().unwrap();
+            if key == "mass_kg" {
+                let law = toml::Table::from_iter([
+                    ("mean".to_owned(), toml::Value::from(nominal * (factor - 1.0))),
+                    ("sigma".to_owned(), toml::Value::from(0.1)),
+                ]);
+                dispersion.insert(key.to_owned(), law.into());
+            } else {
+                // The moments go with the squares of the roots.
+                let scale = f64::sqrt(factor);
+                let nominal = Scenario::from_toml(&base).unwrap();
+                let roots = nominal.payload().nominal().principal_axes().second_moments();
+                let law = |k: &f64| {
+                    toml::Value::from(toml::Table::from_iter([
+                        ("mean".to_owned(), toml::Value::from(k.sqrt() * scale)),
+                        ("sigma".to_owned(), toml::Value::from(0.001)),
+                    ]))
+                };
+                dispersion.remove("root_second_moment_variance_kg_m2");
+                dispersion.insert("roots".to_owned(), "independent".into());
+                dispersion.insert(
+                    "root_second_moment_laws_sqrt_kg_m".to_owned(),
+                    roots.iter().map(law).collect::<Vec<_>>().into(),
+                );
+            }
+            let scenario = match Scenario::from_toml(&toml::to_string(&table).unwrap()) {
+                Ok(scenario) => scenario,
+                Err(error) => {
+                    assert!(factor < 0.0, "{key} {factor}: {error}");
+                    continue;
+                }
+            };
+            let (summary, _) = study(&scenario);
+            let told: Vec<_> = summary
+                .head
+                .alerts
+                .iter()
+                .filter_map(|alert| match alert {
+                    Alert::FarFromNominal { quantity, nominal, mean } => {
+                        Some((quantity.clone(), mean / nominal))
+                    }
+                    _ => None,
+                })
+                .collect();
+            let is_far = !(0.1..=10.0).contains(&factor);
+            assert_eq!(told.len(), usize::from(is_far), "{key} {factor}: {told:?}");
+            assert!(told.iter().all(|(_, ratio)| (ratio / factor - 1.0).abs() < 1e-3), "{told:?}");
+        }
+    }
+}
+
 /// Matched to a principal law that is more and more uncertain: it is told exactly where the moments of what is drawn are not
 /// those of the principal law, and what is told of them is what the draws do.
 #[test]
@@ -242,6 +303,7 @@ proptest! {
             Alert::NearBoundary { near, body, .. } => ("near", format!("{near} {body}")),
             Alert::Folded(root) => ("folded", format!("{} {}", root.body, root.quantity)),
             Alert::Backwards { backwards, runs, .. } => ("backwards", format!("{backwards} of {runs}")),
+            Alert::FarFromNominal { quantity, .. } => ("far", quantity.clone()),
             Alert::OffAxis { angle_deg, .. } => ("off axis", angle_deg.to_string()),
             Alert::Unmatched(law) => ("unmatched", law.to_string()),
         });

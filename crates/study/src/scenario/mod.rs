@@ -414,6 +414,8 @@ pub(crate) fn read_file(path: &Path) -> Result<String, ScenarioError> {
 }
 
 #[cfg(test)]
+mod copies;
+#[cfg(test)]
 mod mutations;
 #[cfg(test)]
 pub(crate) mod tests;
