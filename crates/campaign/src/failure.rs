@@ -11,11 +11,14 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// A failure of a kind, which has no numbers, with its message. A kind `ok` or an empty one, which would be taken
-    /// for a run that did not fail, is `failed`.
+    /// A failure of a kind, which has no numbers, with its message. Neither may be `ok` or empty, with or without blanks
+    /// around it, because whoever reads the table would take the run for one that did not fail: such a kind is `failed`,
+    /// and such a message is the kind.
     pub fn new(kind: impl Into<String>, message: impl Into<String>) -> Self {
-        let kind = Some(kind.into()).filter(|kind| !kind.is_empty() && kind != OK);
-        Self { kind: kind.unwrap_or_else(|| "failed".to_owned()), message: message.into() }
+        let told = |text: &String| !matches!(text.trim(), "" | OK);
+        let kind = Some(kind.into()).filter(told).unwrap_or_else(|| "failed".to_owned());
+        let message = Some(message.into()).filter(told).unwrap_or_else(|| kind.clone());
+        Self { kind, message }
     }
 
     /// What kind it is, without numbers, so that failures of a kind can be counted.
@@ -43,10 +46,17 @@ mod tests {
 
     #[test]
     fn no_failure_looks_like_success() {
-        for kind in [OK, ""] {
-            let failure = Failure::new(kind, "spring 6");
+        for nothing in [OK, "", " ", " ok", "ok\t", "\nok\r\n"] {
+            let failure = Failure::new(nothing, "spring 6");
             assert_eq!((failure.kind(), failure.message()), ("failed", "spring 6"));
+            let failure = Failure::new("low", nothing);
+            assert_eq!((failure.kind(), failure.message()), ("low", "low"));
+            let failure = Failure::new(nothing, nothing);
+            assert_eq!((failure.kind(), failure.message()), ("failed", "failed"));
         }
-        assert_eq!(Failure::new("okay", "").kind(), "okay");
+        for told in ["okay", "OK", "not ok", " o k "] {
+            let failure = Failure::new(told, told);
+            assert_eq!((failure.kind(), failure.message()), (told, told));
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! Tables that say which run a row is, whether it has a number, and how the runs are to be counted.
 
 use gyradius_campaign::{
-    Bound, Cell, Column, Counting, FailedRuns, ForeignTable, Judgement, Judging, Looks, Measured,
-    Requirement, Runs, Table,
+    Bound, Cell, Column, Counting, Extent, FailedRuns, Failure, ForeignTable, Judgement, Judging,
+    Looks, Measured, Requirement, Runs, Table, TableFormat,
 };
 use gyradius_statistics::{Acceptance, Confidence};
 use proptest::prelude::*;
@@ -49,6 +49,37 @@ proptest! {
         // Comments are no rows, and blank lines none of a table of several columns.
         prop_assert_eq!(&alone, &judged(&format!("{}# end", table("x", ""))));
         prop_assert_eq!(&alone, &judged(&format!("{}{end}{end}# end", table("x,y", ",1"))));
+    }
+}
+
+/// A run that failed is one in every file of its table, whatever its failure says of itself.
+#[test]
+fn failures_are_none_of_success_in_any_file() {
+    let requirement: Requirement = "x >= 0 in 90 % at 90 %".parse().unwrap();
+    for (kind, message) in
+        [("low", "ok"), ("ok", "ok"), ("", ""), (" ok", "ok "), ("low", " "), ("low", "x < 0")]
+    {
+        let mut table = Table::new("m", 0, vec![Column::number("x", "1", "a number")]).unwrap();
+        for run in 0..200 {
+            let failure = (run % 10 == 3).then(|| Failure::new(kind, message));
+            table.push(failure, [Cell::Number(1.0)]).unwrap();
+        }
+        let scratch = tempfile::tempdir().unwrap();
+        let judging = Judging::new([requirement.clone()], 200, 1);
+        judging.look(&table);
+        let judged = judging.finish(&Runs::from(table.clone())).unwrap();
+        assert_eq!(judged[0].failures(), 20, "{kind:?} {message:?}");
+        for name in ["it.csv", "it.parquet"] {
+            let path = scratch.path().join(name);
+            let file = fs::File::create(&path).unwrap();
+            let format = TableFormat::of_path(&path).unwrap();
+            let mut writer = format.writer(&table, &Extent::default(), file).unwrap();
+            writer.write(&table).unwrap();
+            writer.finish().unwrap();
+            let table = ForeignTable::open(&path).unwrap();
+            let of_file = Judgement::of_table(std::slice::from_ref(&requirement), &table).unwrap();
+            assert_eq!(of_file[0].failures(), 20, "{kind:?} {message:?} {name}");
+        }
     }
 }
 
