@@ -63,7 +63,7 @@ impl Designs {
 
     /// Runs for each base run.
     fn each(self) -> u64 {
-        self.groups as u64 + 2
+        (self.groups as u64).saturating_add(2)
     }
 
     /// Which share of the variance of each output each group drives, as the runs of so many base runs tell, which stand in the
@@ -200,6 +200,21 @@ mod tests {
                 prop_assert_eq!(mix.base(), base);
                 let streams: Vec<u64> = (0..groups).map(|group| mix.stream(group, first)).collect();
                 prop_assert!(streams.iter().all(|s| *s == first || *s == first | 1 << 63));
+            }
+        }
+
+        /// Of any number of groups, any run has its draws, also where a base run takes more runs than there are numbers.
+        #[test]
+        fn any_number_of_groups_has_designs(groups: usize, run: u64, base: u64) {
+            for groups in [groups, usize::MAX, usize::MAX - 1, usize::MAX - 2, 0] {
+                let designs = Designs::new(groups);
+                for run in [run, u64::MAX, 0] {
+                    let mix = designs.of(run);
+                    prop_assert!(designs.runs(mix.base()) <= run);
+                    prop_assert!([7, 7 | SECOND].contains(&mix.stream(0, 7)));
+                }
+                prop_assert!(designs.runs(base) >= base);
+                prop_assert!(designs.runs(1) >= 2);
             }
         }
     }

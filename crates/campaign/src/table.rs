@@ -124,14 +124,18 @@ impl Table {
     /// order.
     ///
     /// # Errors
-    /// There are more or fewer cells than columns, or one does not go into its column. The table is as it was.
+    /// There are more or fewer cells than columns, one does not go into its column, or the run has no number, because there are
+    /// none after [`u64::MAX`]. The table is as it was.
     pub fn push<'c>(
         &mut self,
         failure: Option<Failure>,
         cells: impl IntoIterator<Item = Cell<'c>>,
     ) -> Result<(), TableError> {
-        let mut filled = 0;
-        let mut refused = None;
+        let (mut filled, mut refused) = (0, None);
+        // The number after the last run is one too.
+        if self.first.checked_add(self.len as u64 + 1).is_none() {
+            return Err(TableError::Runs { first: self.first });
+        }
         for cell in cells {
             let Some(values) = self.values.get_mut(filled) else {
                 refused = Some(TableError::Cells { columns: self.values.len() });
@@ -264,22 +268,14 @@ impl Table {
     /// The texts in a column of the simulation with what kind they are, of the runs that have one, in run
     /// order.
     pub fn notes(&self, column: &str) -> impl Iterator<Item = (&str, &str)> {
-        let texts = match self.column(column) {
-            Some(Values::Texts(texts)) => Some(texts),
-            Some(Values::Numbers(_) | Values::Integers(_) | Values::Flags(_)) | None => None,
-        };
-        texts.into_iter().flat_map(Texts::present)
+        self.texts(column).into_iter().flat_map(Texts::present)
     }
 
     /// The kinds of the texts in a column of the simulation, each with the first run that has such a text and how many
     /// have.
     pub(crate) fn kinds(&self, column: &str, which: impl Fn(u64) -> bool) -> Vec<(&str, u64, u64)> {
-        let texts = match self.column(column) {
-            Some(Values::Texts(texts)) => Some(texts),
-            Some(Values::Numbers(_) | Values::Integers(_) | Values::Flags(_)) | None => None,
-        };
         let run = |place: usize| self.first + place as u64;
-        let counted = texts.map(|texts| texts.counted(|place| which(run(place))));
+        let counted = self.texts(column).map(|texts| texts.counted(|place| which(run(place))));
         let of_run = |(kind, place, count)| (kind, run(place), count);
         counted.into_iter().flatten().map(of_run).collect()
     }
@@ -298,6 +294,13 @@ impl Table {
                 Values::Flags(flags) => flags.get(place)?.map(|flag| f64::from(u8::from(flag))),
                 Values::Texts(_) => None,
             }
+        }
+    }
+
+    fn texts(&self, column: &str) -> Option<&Texts> {
+        match self.column(column)? {
+            Values::Texts(texts) => Some(texts),
+            Values::Numbers(_) | Values::Integers(_) | Values::Flags(_) => None,
         }
     }
 
@@ -412,10 +415,7 @@ impl<'a> Row<'a> {
     /// The text in a column of the simulation; none if there is none.
     #[must_use]
     pub fn text(&self, column: &str) -> Option<&'a str> {
-        match self.table.column(column)? {
-            Values::Texts(texts) => Some(texts.get(self.place)?.0),
-            Values::Numbers(_) | Values::Integers(_) | Values::Flags(_) => None,
-        }
+        Some(self.table.texts(column)?.get(self.place)?.0)
     }
 
     /// The flag in a column; none if there is none.
@@ -482,6 +482,12 @@ pub enum TableError {
     Cells {
         /// How many there must be.
         columns: usize,
+    },
+    /// The runs are more than there are numbers for them.
+    #[error("runs from {first} on: their numbers must be below {}", u64::MAX)]
+    Runs {
+        /// The number of the first.
+        first: u64,
     },
     /// A cell does not go into its column.
     #[error("column {column:?}: {cell} does not go there")]

@@ -1,7 +1,7 @@
 //! Tables written in every form, and read back.
 
 use gyradius_campaign::{
-    Cell, Column, Extent, Failure, FormatError, Kind, Table, TableFormat, read_run,
+    Cell, Column, Extent, Failure, FormatError, Kind, Table, TableError, TableFormat, read_run,
 };
 use proptest::prelude::*;
 use std::collections::HashMap;
@@ -290,4 +290,23 @@ fn forms_are_known_by_name_and_by_extension() {
         assert_eq!(found.is_some(), path == "a.csv/", "{path}");
     }
     assert_eq!(TableFormat::named("CSV"), None);
+}
+
+/// A run that would have a number beyond the last is refused by name, and the table is as it was.
+#[test]
+fn runs_have_numbers_that_there_are() {
+    for room in 0..5_u64 {
+        let first = u64::MAX - room;
+        let mut table = Table::new("m", first, vec![Column::number("x", "1", "a number")]).unwrap();
+        for _ in 0..room {
+            table.push(None, [Cell::Number(1.0)]).unwrap();
+        }
+        for _ in 0..2 {
+            let refused = table.push(None, [Cell::Number(1.0)]).unwrap_err();
+            assert_eq!(refused, TableError::Runs { first });
+            assert!(refused.to_string().contains(&first.to_string()), "{refused}");
+        }
+        let runs: Vec<u64> = table.rows().map(|row| row.run()).collect();
+        assert_eq!(runs, (first..u64::MAX).collect::<Vec<_>>());
+    }
 }
