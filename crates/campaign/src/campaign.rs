@@ -25,7 +25,7 @@ pub(crate) const HELD: u64 = 1 << 23;
 pub struct Plan<'a> {
     /// Runs of each model.
     pub runs: u64,
-    /// Runs of a block.
+    /// Runs of a block; 0 is taken for 1.
     pub block_runs: u64,
     /// Which of the blocks that are missing.
     pub doing: Doing,
@@ -57,12 +57,11 @@ impl Plan<'_> {
     /// The runs of so many models that are to be done if none is there.
     #[must_use]
     pub fn total(&self, models: usize) -> u64 {
-        let blocks =
-            (0..self.runs).step_by(usize::try_from(self.block_runs.max(1)).unwrap_or(usize::MAX));
+        let blocks = (0..self.runs).step_by(usize::try_from(self.of_block()).unwrap_or(usize::MAX));
         let own = |place: usize| {
             let own =
                 blocks.clone().filter(move |first| self.doing.does(self.block(place, *first)));
-            own.map(|first| self.block_runs.min(self.runs - first)).sum::<u64>()
+            own.map(|first| self.of_block().min(self.runs - first)).sum::<u64>()
         };
         (0..models).map(own).sum()
     }
@@ -70,7 +69,7 @@ impl Plan<'_> {
     /// The runs of so many models that each of so many shards is to do if none is there, by their numbers.
     #[must_use]
     pub fn shares(&self, models: usize, shards: u32) -> Vec<u64> {
-        let runs = self.block_runs.max(1);
+        let runs = self.of_block();
         let mut shares = vec![0; shards as usize];
         for place in 0..models {
             for at in 0..self.runs.div_ceil(runs) {
@@ -84,9 +83,14 @@ impl Plan<'_> {
         shares
     }
 
+    /// Runs of a block, at least one.
+    fn of_block(&self) -> u64 {
+        self.block_runs.max(1)
+    }
+
     /// The place of a block among those of all models.
     fn block(&self, place: usize, first: u64) -> u64 {
-        let runs = self.block_runs.max(1);
+        let runs = self.of_block();
         place as u64 * self.runs.div_ceil(runs) + first / runs
     }
 }
@@ -180,7 +184,7 @@ mod tests {
         #[test]
         fn shares_are_those_of_shards(
             runs in 0..3000_u64,
-            block_runs in 1..200_u64,
+            block_runs in 0..200_u64,
             models in 0..5_usize,
             shards in 0..40_u32,
         ) {
@@ -189,6 +193,8 @@ mod tests {
                 plan(Doing::Shard(Shard::new(number, shards).unwrap())).total(models)
             });
             prop_assert_eq!(plan(Doing::All).shares(models, shards), own.collect::<Vec<_>>());
+            prop_assert_eq!(plan(Doing::All).total(models), runs * models as u64);
+            prop_assert_eq!(plan(Doing::Nothing).total(models), 0);
         }
     }
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
 use super::{Bound, Measured, RequirementError, text, words::Words};
-use crate::{number::plain, table::Table};
+use crate::table::Table;
 
 /// That a number of a run keeps a bound, which is rare.
 ///
@@ -60,14 +60,7 @@ impl From<Event> for String {
 
 impl fmt::Display for Event {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let quantity = &self.quantity;
-        match self.bound {
-            Bound::AtMost(limit) => write!(f, "{quantity} <= {}", plain(limit)),
-            Bound::AtLeast(limit) => write!(f, "{quantity} >= {}", plain(limit)),
-            Bound::Between(lower, upper) => {
-                write!(f, "{} <= {quantity} <= {}", plain(lower), plain(upper))
-            }
-        }
+        text::write_bounded(f, &self.quantity, self.bound)
     }
 }
 

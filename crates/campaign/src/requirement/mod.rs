@@ -50,6 +50,7 @@ pub(crate) use words::Words;
 /// // A run that failed has no rate, and keeps no bound.
 /// assert!(!requirement.is_kept(&[None]));
 /// assert_eq!(requirement.probability(), 0.9973);
+/// assert_eq!(requirement.to_string(), "abs(rate_deg_per_s) <= 1 in 99.73 % at 90 %");
 /// # Ok::<(), gyradius_campaign::RequirementError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -315,6 +316,16 @@ impl FromStr for Requirement {
 
     fn from_str(text: &str) -> Result<Self, RequirementError> {
         text::parse(text)
+    }
+}
+
+/// The line that says it, with neither its name, nor what becomes of failed runs, nor the model.
+impl fmt::Display for Requirement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        text::write_bounded(f, &self.quantity, self.bound)?;
+        let [probability, confidence] =
+            [self.probability, self.confidence.level()].map(text::share);
+        write!(f, " in {probability} at {confidence}")
     }
 }
 

@@ -1,6 +1,9 @@
 //! A requirement that is written in a line: `abs(x) <= 1 in 99.73 % at 90 %`.
 
+use std::fmt;
+
 use super::{Bound, Measured, Requirement, RequirementError, words::Words};
+use crate::number::plain;
 
 /// What a sign begins with.
 const SIGNS: [char; 4] = ['<', '>', '≤', '≥'];
@@ -52,4 +55,81 @@ pub(super) fn bounded(words: &mut Words<'_>) -> Result<(Measured, Bound), Requir
         }
     };
     Ok((measured, bound))
+}
+
+/// Writes what is bounded, and how.
+pub(super) fn write_bounded(
+    f: &mut fmt::Formatter<'_>,
+    quantity: &Measured,
+    bound: Bound,
+) -> fmt::Result {
+    match bound {
+        Bound::AtMost(limit) => write!(f, "{quantity} <= {}", plain(limit)),
+        Bound::AtLeast(limit) => write!(f, "{quantity} >= {}", plain(limit)),
+        Bound::Between(lower, upper) => {
+            write!(f, "{} <= {quantity} <= {}", plain(lower), plain(upper))
+        }
+    }
+}
+
+/// A share in percent, as it stands in a line, or as it is where percent would not read back to the bit.
+pub(super) fn share(share: f64) -> String {
+    // By the digits, as it is read.
+    let percent = format!("{share}e2").parse::<f64>().map(plain).unwrap_or_default();
+    if format!("{percent}e-2").parse() == Ok(share) { format!("{percent} %") } else { plain(share) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn limit() -> impl Strategy<Value = f64> {
+        let any = any::<f64>().prop_filter("finite", |x| x.is_finite());
+        prop_oneof![any, -1e6..1e6_f64, prop::sample::select(vec![0.0, 1e16, 5e-324, f64::MAX])]
+    }
+
+    fn a_share(from: f64) -> impl Strategy<Value = f64> {
+        let near = prop::sample::select(vec![0.5, 0.9, 0.9973, 0.99, 0.999_999, 1.0 - 1e-9]);
+        let digits = (1..10_000_u32).prop_map(|x| f64::from(x) / 1e4);
+        let any = prop_oneof![near, digits, from..1.0_f64, (1e-9..1.0_f64).prop_map(|x| x * x)];
+        any.prop_filter("in range", move |x| (from.max(1e-9)..=1.0 - 1e-9).contains(x))
+    }
+
+    proptest! {
+        /// A requirement is its line: read again, it is the same to the bit, but for a name of its own.
+        #[test]
+        fn lines_read_back(
+            columns in prop::collection::vec("[a-z_]{1,9}|norm|abs|1e3|.{0,6}", 1..4),
+            absolute: bool,
+            kind in 0..3_u8,
+            (x, y) in (limit(), limit()),
+            (probability, confidence) in (a_share(1e-9), a_share(0.5)),
+        ) {
+            let names: Vec<String> = columns.iter().map(|name| Words::quoted(name)).collect();
+            let quantity: Measured = match (absolute, &columns[..]) {
+                (true, _) => format!("abs({})", names[0]).parse().unwrap(),
+                (false, [one]) => Measured::column(one),
+                (false, _) => format!("norm({})", names.join(", ")).parse().unwrap(),
+            };
+            let bound = match kind {
+                0 => Bound::AtMost(x),
+                1 => Bound::AtLeast(x),
+                _ => Bound::Between(x.min(y), x.max(y)),
+            };
+            let requirement =
+                Requirement::new("", quantity, bound, probability, confidence).unwrap();
+            let line = requirement.to_string();
+            let again: Requirement = line.parse().unwrap();
+            prop_assert_eq!(&again, &Requirement { name: line.clone(), ..requirement }, "{}", line);
+            prop_assert_eq!(again.to_string(), line);
+        }
+    }
+
+    #[test]
+    fn shares_are_in_percent() {
+        let line = "abs(x) <= 1 in 99.73 % at 90 %";
+        assert_eq!(line.parse::<Requirement>().unwrap().to_string(), line);
+        assert_eq!([0.29, 0.57, 0.999_999, 0.5].map(share), ["29 %", "57 %", "99.9999 %", "50 %"]);
+    }
 }
