@@ -43,7 +43,9 @@ pub trait Simulation: Sync {
     }
 
     /// Does these runs and pushes a row for each of them, in their order. A run that fails is a row too, with
-    /// what it has and its [`Failure`](crate::Failure).
+    /// what it has and its [`Failure`](crate::Failure). A panic is no such failure: it passes through [`run`] and
+    /// [`run_missing`](crate::run_missing) to their caller and ends the campaign. Blocks that are finished by then stay in the folder,
+    /// and the same call goes on after them.
     ///
     /// # Errors
     /// A row does not fit the columns.

@@ -132,7 +132,6 @@ impl Table {
         cells: impl IntoIterator<Item = Cell<'c>>,
     ) -> Result<(), TableError> {
         let (mut filled, mut refused) = (0, None);
-        // The number after the last run is one too.
         if self.first.checked_add(self.len as u64 + 1).is_none() {
             return Err(TableError::Runs { first: self.first });
         }
@@ -470,6 +469,7 @@ impl fmt::Debug for Row<'_> {
 
 /// Why a table or a row of it is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TableError {
     /// Two columns have the same name, or one has none.
     #[error("column {column:?}: it must have a name, which no other column has")]
