@@ -1,7 +1,7 @@
 //! Quantiles of the normal, χ², F and beta laws.
 //!
 //! Every quantile takes the probability *beyond* it: `1 − α/2` would round to 1 long before `α/2`
-//! rounds to 0. The incomplete gamma function is that of `statrs`. Its incomplete beta function
+//! rounds to 0. The incomplete gamma function is that of `statrs` up to 10⁵ degrees of freedom. Its incomplete beta function
 //! stops after 140 terms, which costs the F law 0.002 at 10⁶ degrees of freedom and the t quantile
 //! 2 % at 10⁷; at one degree and a tail of 10⁻¹⁰ the latter is 36 times too small. Hence the
 //! function and the root search below.
@@ -11,6 +11,7 @@ use std::f64::consts::{SQRT_2, TAU};
 use statrs::function::erf::erfc_inv;
 use statrs::function::gamma::{checked_gamma_lr, ln_gamma};
 
+use crate::chi_squared::{MANY, tails};
 use crate::tail::chi_squared as chi_squared_tail;
 
 /// The value a standard normal variable exceeds with probability `tail`.
@@ -40,7 +41,13 @@ pub(crate) fn chi_squared_lower(tail: f64, freedom: f64) -> f64 {
     if leading < 1e-10 {
         return 2.0 * leading;
     }
-    bisect(0.0, f64::MAX, |x| checked_gamma_lr(shape, x / 2.0).is_ok_and(|p| p < tail))
+    bisect(0.0, f64::MAX, |x| {
+        if freedom >= MANY {
+            tails(x, freedom).0 < tail
+        } else {
+            checked_gamma_lr(shape, x / 2.0).is_ok_and(|p| p < tail)
+        }
+    })
 }
 
 /// The value a χ² variable exceeds with probability `tail`.

@@ -5,6 +5,7 @@ mod acceptance;
 mod binomial_sums;
 mod centred;
 mod checked;
+mod chi_squared;
 mod confidence_sequence;
 mod deviation;
 mod edges;

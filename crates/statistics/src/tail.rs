@@ -7,28 +7,42 @@
 //! assert!((tail::chi_squared(16.918978, 9.0) - 0.05).abs() < 1e-8);
 //! ```
 //!
-//! All but χ² of many or broken degrees of freedom are made from the elementary functions of `libm`, which
+//! Of a NaN, all are NaN.
+//!
+//! All but χ² of more than 30 or broken degrees of freedom, up to 10⁵, are made from the elementary functions of `libm`, which
 //! are the same on every platform.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use statrs::function::gamma::checked_gamma_ur;
 
+use crate::chi_squared::{MANY, tails};
+
 /// Up to this many degrees of freedom χ² has the finite sum, whose terms stay in range.
 const SUMMED: f64 = 30.0;
 
-/// The probability that χ² with `freedom` degrees, above zero, exceeds `x`: up to 30 whole degrees the
-/// finite sums (DLMF 8.8.6 from Q(½, x) = erfc √x or Q(1, x) = e⁻ˣ), else the incomplete gamma function of
-/// `statrs`. NaN is taken for zero, as is what lies below.
+/// The probability that χ² with `freedom` degrees exceeds `x`: up to 30 whole degrees the finite sums (DLMF 8.8.6
+/// from Q(½, x) = erfc √x or Q(1, x) = e⁻ˣ), from 10⁵ degrees on the uniform expansion of Temme (1979,
+/// doi:10.1137/0510071), else the incomplete gamma function of `statrs`.
+///
+/// It takes any positive number of degrees. From one degree on the relative error is below 1e-9, and from 10⁵ degrees on below
+/// 1e-12. NaN, and degrees that are not positive and finite, give NaN.
 #[must_use]
 pub fn chi_squared(x: f64, freedom: f64) -> f64 {
-    if !(x > 0.0) {
+    if x.is_nan() || !(freedom > 0.0 && freedom.is_finite()) {
+        return f64::NAN;
+    }
+    if x <= 0.0 {
         return 1.0;
+    }
+    if freedom >= MANY {
+        return tails(x, freedom).1;
     }
     let half = 0.5 * x;
     if !((1.0..=SUMMED).contains(&freedom) && freedom.fract() == 0.0 && half.is_finite()) {
-        // Refused are infinity and x that halve to zero.
-        return checked_gamma_ur(0.5 * freedom, half).unwrap_or(if x > 1.0 { 0.0 } else { 1.0 });
+        // Refused are infinity and what halves to zero.
+        let above = checked_gamma_ur(0.5 * freedom, half);
+        return above.map_or(if half > 0.0 { 0.0 } else { 1.0 }, |p| p.clamp(0.0, 1.0));
     }
     let even = freedom % 2.0 == 0.0;
     let (mut sum, mut term, mut shape) = if even {
@@ -76,7 +90,7 @@ pub fn anderson_darling_normal(statistic: f64, count: f64) -> f64 {
 #[must_use]
 pub fn anderson_darling(a: f64) -> f64 {
     let horner = |c: [f64; 6]| c.into_iter().rev().fold(0.0, |sum, c| sum * a + c);
-    let p = if !(a > 0.0) {
+    let p = if a <= 0.0 {
         1.0
     } else if a < 2.0 {
         let series = horner([2.00012, 0.247105, -0.0649821, 0.0347962, -0.011672, 0.00168691]);
@@ -90,12 +104,15 @@ pub fn anderson_darling(a: f64) -> f64 {
 }
 
 /// p-value of Rayleigh's test of a uniform angle, from the mean of its unit vectors (Zar 1999,
-/// eq. 27.4).
+/// eq. 27.4). NaN of a length that the mean of unit vectors cannot have, unless by rounding.
 #[must_use]
 pub fn rayleigh(resultant: f64, count: f64) -> f64 {
-    let r = resultant * count;
+    if !(0.0..=1.0 + 1e-9).contains(&resultant) {
+        return f64::NAN;
+    }
+    let r = resultant.min(1.0) * count;
     libm::exp((1.0 + 4.0 * count + 4.0 * (count * count - r * r)).sqrt() - (1.0 + 2.0 * count))
-        .min(1.0)
+        .clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -117,7 +134,7 @@ mod tests {
             assert!((found / expected - 1.0).abs() < 1e-12, "{x} {freedom}: {found:e}");
         }
         assert!((normal(1.5) - 0.06680720126885807).abs() < 1e-15);
-        assert_eq!((chi_squared(0.0, 3.0), chi_squared(f64::NAN, 3.0)), (1.0, 1.0));
+        assert_eq!([0.0, -1.0, f64::NEG_INFINITY].map(|x| chi_squared(x, 3.0)), [1.0; 3]);
     }
 
     #[test]
@@ -148,6 +165,20 @@ mod tests {
             last = p;
         }
         assert_eq!(anderson_darling(1e6), 0.0);
+    }
+
+    /// A NaN is no number that fits perfectly, whatever stands beside it.
+    #[test]
+    fn of_nan_all_are_nan() {
+        let nan = f64::NAN;
+        for other in [nan, f64::NEG_INFINITY, -1.0, 0.0, 0.5, 1.0, 100.0, 1e17, f64::INFINITY] {
+            for p in [chi_squared, anderson_darling_normal, rayleigh] {
+                assert!(p(nan, other).is_nan() && p(other, nan).is_nan(), "{other}");
+            }
+        }
+        assert!(normal(nan).is_nan() && anderson_darling(nan).is_nan());
+        assert!(rayleigh(-0.1, 9.0).is_nan() && rayleigh(1.1, 9.0).is_nan());
+        assert_eq!(rayleigh(1.0 + 1e-15, 1e6), rayleigh(1.0, 1e6));
     }
 
     #[test]
