@@ -124,7 +124,7 @@ impl Acceptance {
 
     /// 1 − c, and what rounding may add to it.
     pub(crate) fn risk(&self) -> f64 {
-        (1.0 - self.confidence.level()) * (1.0 + 1e-12)
+        (1.0 - self.confidence.level()) * (1.0 + law::ROUNDING)
     }
 }
 

@@ -14,6 +14,9 @@ use statrs::function::gamma::{checked_gamma_lr, ln_gamma};
 use crate::chi_squared::{MANY, tails};
 use crate::tail::chi_squared as chi_squared_tail;
 
+/// What rounding may add to a tail that is compared with a risk, as a part of the risk.
+pub(crate) const ROUNDING: f64 = 1e-12;
+
 /// The value a standard normal variable exceeds with probability `tail`.
 pub(crate) fn normal(tail: f64) -> f64 {
     SQRT_2 * erfc_inv(2.0 * tail)

@@ -87,7 +87,8 @@ impl SortedSample {
     /// with `P(B < l) ≤ α/2`, the upper the smallest `x_(u)` with `P(B ≥ u) ≤ α/2`. The coverage
     /// is at least the level for independent draws of **any** law, and exceeds it by little once
     /// `n·min(p, 1−p)` is some tens. A bound is infinite where even the extreme value of the
-    /// sample is no bound at that level: a 95 % upper bound for `p` needs `pⁿ ≤ 0.025`.
+    /// sample is no bound at that level: a 95 % upper bound for `p` needs `pⁿ ≤ 0.025`. A tail that is larger than α/2 by a
+    /// part in 10¹² or less counts as equal, as in [`Acceptance`](crate::Acceptance).
     ///
     /// # Errors
     ///
@@ -138,7 +139,8 @@ pub(crate) fn interval_ranks(n: u64, p: f64, confidence: Confidence) -> (Option<
 /// Of `n` values the rank, from 1, of the least that bounds the quantile `p = 1 − q` from above but for a
 /// probability of `tail`; none if not even the largest does.
 fn upper_rank(n: u64, p: f64, q: f64, tail: f64) -> Option<u64> {
-    let rank = law::first(1, n, |k| law::at_least(k, n, p, q) <= tail);
+    let most = tail * (1.0 + law::ROUNDING);
+    let rank = law::first(1, n, |k| law::at_least(k, n, p, q) <= most);
     (rank <= n).then_some(rank)
 }
 
@@ -234,6 +236,34 @@ mod tests {
         const TIES: &[f64] = &[f64::MIN, -1.0, -5e-324, -0.0, 0.0, 5e-324, 1.0, f64::MAX];
 
         prop_oneof![POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO, prop::sample::select(TIES)]
+    }
+
+    /// A tail that is α/2 exactly is a bound, of either side: halves and their sums have no rounding of their own.
+    #[test]
+    fn a_tail_of_just_so_much_is_a_bound() {
+        for n in 1..=50_u32 {
+            let (mut choose, mut outside) = (1_u64, 0_u64);
+            for beyond in 0..n / 2 {
+                outside += choose;
+                choose = choose * u64::from(n - beyond) / u64::from(beyond + 1);
+                // P(B ≤ beyond) = P(B ≥ n − beyond) of a fair coin.
+                let tail = outside as f64 / 2f64.powi(n as i32);
+                if tail >= 0.5 {
+                    break;
+                }
+                let level = Confidence::new(1.0 - 2.0 * tail).unwrap();
+                let interval = ranks(n).quantile_interval(0.5, level).unwrap();
+                let expected = (f64::from(beyond + 1), f64::from(n - beyond));
+                assert_eq!((interval.lower(), interval.upper()), expected, "{n} {tail}");
+                let more = Confidence::new(1.0 - 2.0 * tail * (1.0 - 1e-9));
+                if let Ok(more) = more
+                    && more.level() > level.level() * (1.0 + 1e-11)
+                {
+                    let wider = ranks(n).quantile_interval(0.5, more).unwrap();
+                    assert!(wider.lower() < expected.0 && wider.upper() > expected.1, "{n} {tail}");
+                }
+            }
+        }
     }
 
     proptest! {
