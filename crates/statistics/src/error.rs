@@ -48,9 +48,9 @@ pub enum StatisticsError {
         /// The probability given.
         value: f64,
     },
-    /// The bounds are out of order or NaN.
+    /// The bounds are out of order, NaN, or both the same infinity.
     #[error(
-        "the interval runs from {} to {}; the bounds must be numbers in order",
+        "the interval runs from {} to {}; the bounds must be in order, the lower one below inf and the upper one above -inf",
         plain(*lower),
         plain(*upper)
     )]

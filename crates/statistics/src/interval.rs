@@ -61,7 +61,7 @@ impl From<Confidence> for f64 {
 /// A two-sided confidence interval, both bounds included.
 ///
 /// A bound is infinite where the sample is too small to give one, or where the bound is beyond
-/// `f64`. JSON knows no infinity: `serde_json` writes `null`, which is read as no bound.
+/// `f64`; a lower bound above the largest number is that number. JSON knows no infinity: `serde_json` writes `null`, which is read as no bound.
 #[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
@@ -80,35 +80,36 @@ impl Interval {
     ///
     /// # Errors
     ///
-    /// [`StatisticsError::Bounds`] unless `lower ≤ upper`.
+    /// [`StatisticsError::Bounds`] unless `lower ≤ upper`, with a lower bound that is not `∞` and an upper one that is not
+    /// `−∞`: no number lies beyond these.
     pub fn new(lower: f64, upper: f64, confidence: Confidence) -> Result<Self, StatisticsError> {
-        if lower <= upper {
+        if lower <= upper && lower < f64::INFINITY && upper > f64::NEG_INFINITY {
             Ok(Self { lower, upper, confidence })
         } else {
             Err(StatisticsError::Bounds { lower, upper })
         }
     }
 
-    /// Bounds already known to be in order.
+    /// Bounds known to be in order, but for rounding. What is above the largest `f64` is above its lower bound, and what is
+    /// below the least, below its upper.
     pub(crate) fn ordered(lower: f64, upper: f64, confidence: Confidence) -> Self {
+        let (lower, upper) = if lower > upper { (upper, lower) } else { (lower, upper) };
+        let (lower, upper) = (f64::MAX.min(lower), f64::MIN.max(upper));
         Self { lower, upper, confidence }
     }
 
     /// `centre ± half_width`; where both are infinite the bound between them is unknown.
     pub(crate) fn around(centre: f64, half_width: f64, confidence: Confidence) -> Self {
         let or = |bound: f64, unknown: f64| if bound.is_nan() { unknown } else { bound };
-        Self {
-            lower: or(centre - half_width, f64::NEG_INFINITY),
-            upper: or(centre + half_width, f64::INFINITY),
-            confidence,
-        }
+        let lower = or(centre - half_width, f64::NEG_INFINITY);
+        Self::ordered(lower, or(centre + half_width, f64::INFINITY), confidence)
     }
 
     /// `exp(ln(centre) ± half_width)`.
     pub(crate) fn around_log(centre: f64, half_width: f64, confidence: Confidence) -> Self {
         // Bounded, so that a centre beyond `f64` is never divided by infinity.
         let factor = half_width.exp().min(f64::MAX);
-        Self { lower: centre / factor, upper: centre * factor, confidence }
+        Self::ordered(centre / factor, centre * factor, confidence)
     }
 
     /// The upper bound less the lower.
@@ -187,10 +188,48 @@ mod tests {
         ) {
             match Interval::new(lower, upper, Confidence::default()) {
                 Ok(interval) => {
-                    prop_assert!(lower <= upper);
+                    prop_assert!(lower <= upper && lower < f64::INFINITY && upper > f64::NEG_INFINITY);
                     prop_assert!(interval.contains(lower) && interval.contains(upper));
                 }
-                Err(_) => prop_assert!(lower.is_nan() || upper.is_nan() || lower > upper),
+                Err(_) => prop_assert!(
+                    !(lower <= upper) || lower == f64::INFINITY || upper == f64::NEG_INFINITY
+                ),
+            }
+        }
+
+        /// Whatever a sample and the confidence, also where that is so low that both bounds are one number.
+        #[test]
+        fn intervals_are_in_order_at_any_confidence(
+            sample in prop::collection::vec(prop_oneof![-9.0..9.0_f64, prop::num::f64::NORMAL], 5..40),
+            other in prop::collection::vec(prop_oneof![-9.0..9.0_f64, prop::num::f64::NORMAL], 5..40),
+            power in -300.0..0.0_f64,
+            p in 0.0..=1.0_f64,
+        ) {
+            use crate::{Deviation, Moments, Proportion, SortedSample};
+            let (n, m) = (sample.len() as u64, other.len() as u64);
+            let moments = [&sample, &other].map(|x| Moments::new(x).ok());
+            let deviations = [&sample, &other].map(|x| Deviation::new(x).ok());
+            let low = 10_f64.powf(power);
+            for level in [low, 1e-16, 5e-17, 5e-324, 0.5, 1.0 - low, 1.0 - 1e-16] {
+                let Ok(confidence) = Confidence::new(level) else { continue };
+                let mut intervals = vec![
+                    SortedSample::new(&sample).unwrap().quantile_interval(p, confidence).unwrap(),
+                    Proportion::new(n.min(m), n.max(m)).unwrap().interval(confidence),
+                ];
+                if let [Some(x), Some(y)] = &moments {
+                    intervals.extend([x.mean_interval(confidence), x.normal_deviation_interval(confidence)]);
+                    intervals.push(x.mean_difference_interval(y, confidence));
+                    intervals.extend(x.normal_ratio_interval(y, confidence));
+                }
+                if let [Some(x), Some(y)] = &deviations {
+                    intervals.extend(x.interval(confidence));
+                    intervals.extend(x.ratio_interval(y, confidence));
+                    intervals.extend(x.pooled_ratio_interval(y, confidence));
+                }
+                for interval in intervals {
+                    let again = Interval::new(interval.lower(), interval.upper(), confidence);
+                    prop_assert_eq!(again, Ok(interval), "{}", level);
+                }
             }
         }
     }
@@ -206,7 +245,8 @@ mod tests {
             assert_eq!(text, r#"{"lower":1.0,"upper":2.5,"confidence":0.95}"#);
             assert_eq!(serde_json::from_str::<Interval>(&text).unwrap(), interval);
             // JSON knows no infinity.
-            for (lower, upper) in [(1.0, f64::INFINITY), (f64::NEG_INFINITY, 1.0)] {
+            let open = (f64::NEG_INFINITY, f64::INFINITY);
+            for (lower, upper) in [(1.0, f64::INFINITY), (f64::NEG_INFINITY, 1.0), open] {
                 let interval = Interval::new(lower, upper, Confidence::default()).unwrap();
                 let text = serde_json::to_string(&interval).unwrap();
                 assert_eq!(serde_json::from_str::<Interval>(&text).unwrap(), interval);
