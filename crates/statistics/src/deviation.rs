@@ -78,7 +78,10 @@ pub struct Deviation {
 
 crate::checked::checked!(Deviation { n: usize, standard_deviation: f64, kurtosis: f64 }, |read| {
     crate::error::belong(
-        read.n >= FEWEST && read.standard_deviation > 0.0 && read.kurtosis > 0.0,
+        read.n >= FEWEST
+            && read.standard_deviation > 0.0
+            && (1.0 - 1e-9..=f64::MAX).contains(&read.kurtosis)
+            && read.log_variance(read.kurtosis) > 0.0,
         "sample",
     )
 });

@@ -6,7 +6,7 @@ use crate::Interval;
 ///
 /// Nothing is clipped here: the estimate of an index that is 0 may be negative.
 #[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[getset(get_copy = "pub")]
 pub struct Estimate {
     /// The estimate.
@@ -14,6 +14,10 @@ pub struct Estimate {
     /// The interval.
     interval: Interval,
 }
+
+crate::checked::checked!(Estimate { value: f64, interval: Interval }, |read| {
+    crate::error::belong(read.interval.contains(read.value), "estimate")
+});
 
 impl Estimate {
     /// Of a value and an interval that holds it.

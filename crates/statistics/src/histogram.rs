@@ -33,7 +33,12 @@ pub struct Histogram {
 
 crate::checked::checked!(
     Histogram { edges: BinEdges, counts: Vec<u64>, underflow: u64, overflow: u64 },
-    |read| crate::error::belong(read.counts.len() == read.edges.bins(), "histogram")
+    |read| {
+        let outside = read.underflow.checked_add(read.overflow);
+        let total = read.counts.iter().fold(outside, |sum, count| sum?.checked_add(*count));
+        let counted = total.is_some_and(|total| total > 0);
+        crate::error::belong(counted && read.counts.len() == read.edges.bins(), "histogram")
+    }
 );
 
 impl Histogram {

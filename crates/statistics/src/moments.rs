@@ -58,10 +58,7 @@ crate::checked::checked!(
     },
     |read| {
         crate::error::belong(
-            read.n > 0
-                && read.minimum <= read.mean
-                && read.mean <= read.maximum
-                && (0.0..=f64::MAX).contains(&read.standard_deviation),
+            read.n > 1 && read.is_in_range() && read.is_spread(),
             "sample",
         )
     }
@@ -126,6 +123,30 @@ impl Moments {
             kurtosis: None,
             minimum: value,
             maximum: value,
+        }
+    }
+
+    /// Whether mean and standard deviation can be those of finite values in the range.
+    #[cfg(feature = "serde")]
+    fn is_in_range(&self) -> bool {
+        let range = self.maximum - self.minimum;
+        self.minimum >= f64::MIN
+            && self.maximum <= f64::MAX
+            && (self.minimum..=self.maximum).contains(&self.mean)
+            && (0.0..=range.min(f64::MAX)).contains(&self.standard_deviation)
+    }
+
+    /// Whether skewness and kurtosis are there if values differ, and can be those of so many: g² + 1 ≤ b ≤ n.
+    #[cfg(feature = "serde")]
+    fn is_spread(&self) -> bool {
+        match (self.skewness, self.kurtosis) {
+            (None, None) => self.minimum == self.maximum,
+            (Some(g), Some(b)) => {
+                self.minimum < self.maximum
+                    && g * g + 1.0 <= b * (1.0 + 1e-9)
+                    && b <= self.n as f64 * (1.0 + 1e-9)
+            }
+            (Some(_), None) | (None, Some(_)) => false,
         }
     }
 

@@ -22,7 +22,7 @@ use crate::{Confidence, Interval, Proportion, QuantileCells, StatisticsError};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SuccessByDecile {
     tenths: Vec<Tenth>,
     /// Whether the share of failures differs between tenths at all. With many inputs, adjust the p-values by
@@ -30,6 +30,11 @@ pub struct SuccessByDecile {
     #[getset(get_copy = "pub")]
     test: ShareTest,
 }
+
+crate::checked::checked!(SuccessByDecile { tenths: Vec<Tenth>, test: ShareTest }, |read| {
+    let rising = read.tenths.is_sorted_by(|one, next| one.greatest < next.least);
+    crate::error::belong((1..=10).contains(&read.tenths.len()) && rising, "table of tenths")
+});
 
 impl SuccessByDecile {
     /// Of the values of an input and whether the run failed, with an interval of this confidence for each tenth.
@@ -88,7 +93,10 @@ pub struct Tenth {
 crate::checked::checked!(
     Tenth { least: f64, greatest: f64, runs: u64, failures: u64, interval: Interval },
     |read| crate::error::belong(
-        read.least <= read.greatest && read.runs > 0 && read.failures <= read.runs,
+        read.least <= read.greatest
+            && read.runs > 0
+            && read.failures <= read.runs
+            && read.interval.contains(read.failures as f64 / read.runs as f64),
         "tenth"
     )
 );

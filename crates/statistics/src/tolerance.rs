@@ -46,7 +46,7 @@ pub enum ToleranceSide {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case", remote = "Self"))]
 pub enum Tolerance {
     /// The bounds are these of the values in increasing order.
     Ranks {
@@ -95,6 +95,33 @@ impl SequentialAcceptance {
     /// is asked: the bounds after all numbers of runs hold together.
     pub fn tolerance(&self, side: ToleranceSide, values: u64, failed: u64) -> Tolerance {
         ranks(self, side, [values, failed], || self.requirement().confidence().level())
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Tolerance {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, to)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for Tolerance {
+    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let read = Self::deserialize(from)?;
+        let together = match read {
+            Self::Ranks { lower, upper, confidence } => {
+                let rising = match (lower, upper) {
+                    (Some(lower), Some(upper)) => 1 <= lower && lower <= upper,
+                    (Some(rank), None) | (None, Some(rank)) => 1 <= rank,
+                    (None, None) => false,
+                };
+                rising && (0.0..=1.0).contains(&confidence)
+            }
+            Self::TooFewRuns { needed } => needed != Some(0),
+        };
+        crate::error::belong(together, "tolerance").map_err(serde::de::Error::custom)?;
+        Ok(read)
     }
 }
 

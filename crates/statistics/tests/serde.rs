@@ -133,3 +133,135 @@ fn drivers_and_rare_events_are_read_back() {
         back::<SubsetEstimate>(&plan.run(&excess, confidence).unwrap());
     }
 }
+
+/// What belongs to no result is refused, and says of which: each field wrong by itself.
+#[test]
+fn numbers_that_do_not_belong_together_are_refused() {
+    fn refused<T: serde::de::DeserializeOwned>(whole: &Value, wrong: &[(&str, Value)]) {
+        from_value::<T>(whole.clone()).unwrap_or_else(|error| panic!("{whole}: {error}"));
+        for (field, value) in wrong {
+            let mut bad = whole.clone();
+            *bad.pointer_mut(field).unwrap() = value.clone();
+            let error = from_value::<T>(bad.clone()).err();
+            let text = error.unwrap_or_else(|| panic!("{bad}")).to_string();
+            assert!(text.contains("do not belong together"), "{bad}: {text}");
+        }
+    }
+    let interval = json!({"lower": 0.0, "upper": 1.0, "confidence": 0.9});
+    refused::<Estimate>(
+        &json!({"value": 0.5, "interval": interval}),
+        &[("/value", json!(5)), ("/value", json!(-0.1))],
+    );
+    refused::<Moments>(
+        &to_value(Moments::new(&SAMPLE).unwrap()).unwrap(),
+        &[
+            ("/n", json!(1)),
+            ("/mean", json!(6)),
+            ("/standard_deviation", json!(-1)),
+            ("/standard_deviation", json!(5)),
+            ("/skewness", json!(2)),
+            ("/skewness", Value::Null),
+            ("/kurtosis", json!(-3)),
+            ("/kurtosis", json!(0.5)),
+            ("/kurtosis", json!(6)),
+            ("/kurtosis", Value::Null),
+            ("/minimum", json!(5)),
+            ("/maximum", json!(1)),
+        ],
+    );
+    refused::<Moments>(
+        &to_value(Moments::new(&[2.0; 3]).unwrap()).unwrap(),
+        &[("/standard_deviation", json!(1)), ("/maximum", json!(3))],
+    );
+    refused::<Deviation>(
+        &to_value(Deviation::new(&SAMPLE).unwrap()).unwrap(),
+        &[
+            ("/n", json!(4)),
+            ("/standard_deviation", json!(0)),
+            ("/kurtosis", json!(0.1)),
+            ("/kurtosis", json!(0.99)),
+        ],
+    );
+    let most = u64::MAX;
+    refused::<Histogram>(
+        &json!({"edges": [0, 1], "counts": [1], "underflow": 0, "overflow": 0}),
+        &[
+            ("/counts", json!([0])),
+            ("/counts", json!([1, 1])),
+            ("/edges", json!([0, 1, 2])),
+            ("/underflow", json!(most)),
+            ("/overflow", json!(most)),
+            ("/counts", json!([])),
+        ],
+    );
+    let full = json!({"edges": [0, 1], "counts": [most - 2], "underflow": 1, "overflow": 1});
+    assert_eq!(from_value::<Histogram>(full.clone()).unwrap().total(), most);
+    refused::<Histogram>(&full, &[("/underflow", json!(2)), ("/counts", json!([most]))]);
+    let ranks = json!({"ranks": {"lower": 2, "upper": 5, "confidence": 0.95}});
+    refused::<Tolerance>(
+        &ranks,
+        &[
+            ("/ranks/lower", json!(0)),
+            ("/ranks/lower", json!(6)),
+            ("/ranks/upper", json!(1)),
+            ("/ranks/confidence", json!(7)),
+            ("/ranks/confidence", json!(-0.1)),
+        ],
+    );
+    for (lower, upper) in [(Value::Null, Value::Null), (json!(0), Value::Null)] {
+        let mut bad = ranks.clone();
+        (bad["ranks"]["lower"], bad["ranks"]["upper"]) = (lower, upper);
+        assert!(from_value::<Tolerance>(bad).is_err());
+    }
+    assert!(from_value::<Tolerance>(json!({"too_few_runs": {"needed": 0}})).is_err());
+    let failed = [false, true, true, false, false];
+    let shares = SuccessByDecile::new(&SAMPLE, &failed, Confidence::default()).unwrap();
+    let shares = to_value(shares).unwrap();
+    let tenth = shares["tenths"][0].clone();
+    refused::<SuccessByDecile>(
+        &shares,
+        &[
+            ("/tenths", json!([])),
+            ("/tenths", json!([tenth, tenth])),
+            ("/tenths/0/interval/lower", json!(0.5)),
+            ("/tenths/1/least", json!(9)),
+        ],
+    );
+}
+
+/// Every result that a sample of any size and scale has is read back as it is.
+#[test]
+fn all_that_samples_have_is_read_back() {
+    fn back<T>(value: &T)
+    where
+        T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,
+    {
+        let text = serde_json::to_string(value).unwrap();
+        assert_eq!(serde_json::from_str::<T>(&text).unwrap(), *value, "{text}");
+    }
+    for n in [2, 3, 5, 6, 17, 400_u32] {
+        for unit in [1.0, 1e300, 1e-300, 5e-324, 1e-12] {
+            for shape in 0..5 {
+                let value = |i: u32| match shape {
+                    0 => f64::from(i),
+                    1 => f64::from(i % 2),
+                    2 => f64::from(u8::from(i == 0)),
+                    3 => libm::exp(f64::from(i % 83)) / 1e36,
+                    _ => 1.0,
+                };
+                let sample: Vec<f64> = (0..n).map(|i| value(i) * unit).collect();
+                let Ok(moments) = Moments::new(&sample) else { continue };
+                back(&moments);
+                let _ = Deviation::new(&sample).map(|deviation| back(&deviation));
+                let sorted = SortedSample::new(&sample).unwrap();
+                let edges = BinEdges::freedman_diaconis(&[&sorted]).unwrap();
+                back(&Histogram::new(&sorted, &edges));
+                let failed: Vec<bool> = (0..n).map(|i| i % 3 == 1).collect();
+                back(&SuccessByDecile::new(&sample, &failed, Confidence::default()).unwrap());
+                if let Ok(rank) = RankCorrelation::new(&sample, &sample) {
+                    back(&rank.estimate(Confidence::new(1e-17).unwrap()));
+                }
+            }
+        }
+    }
+}
