@@ -283,21 +283,27 @@ impl Survey {
         self.finite()?.deviation.as_ref()
     }
 
-    /// A quantile that was asked for, as [`SortedSample::quantile`] has it.
+    /// A quantile that was asked for by [`quantiles`](Self::quantiles), as [`SortedSample::quantile`] has it; none of any other.
     #[must_use]
     pub fn quantile(&self, p: f64) -> Option<f64> {
+        if !self.quantiles.contains(&p) {
+            return None;
+        }
         let n = self.n();
         let (place, share) = type_7_place(n, p);
         let below = self.at(place)?;
         Some(if place + 1 < n { between(below, self.at(place + 1)?, share) } else { below })
     }
 
-    /// An interval that was asked for, as [`SortedSample::quantile_interval`] has it; of groups, that of the first run
-    /// of each.
+    /// An interval that was asked for by [`quantile_interval_at`](Self::quantile_interval_at), as
+    /// [`SortedSample::quantile_interval`] has it; of groups, that of the first run of each. None of any other.
     #[must_use]
     pub fn quantile_interval(&self, p: f64, confidence: Confidence) -> Option<Interval> {
         if let Some(groups) = &self.groups {
             return groups.first.quantile_interval(p, confidence);
+        }
+        if !self.intervals.contains(&(p, confidence)) {
+            return None;
         }
         self.finite()?;
         let (lower, upper) = interval_ranks(self.n(), p, confidence);

@@ -52,6 +52,12 @@ fn assert_same(survey: &Survey, runs: &[Option<f64>]) {
     let confidence = Confidence::default();
     let interval = sorted.as_ref().map(|s| s.quantile_interval(0.95, confidence).unwrap());
     assert_eq!(survey.quantile_interval(0.95, confidence), interval);
+    // What was not asked for, and what is no probability, is not there.
+    for p in [f64::NAN, -1.0, -1e-300, 1.5, f64::INFINITY, 0.3] {
+        assert_eq!((survey.quantile(p), survey.quantile_interval(p, confidence)), (None, None));
+    }
+    let other = Confidence::new(0.5).unwrap();
+    assert_eq!(survey.quantile_interval(0.95, other), None);
     let ends = |x: Option<(f64, u64)>| x.map(|(x, run)| (x.to_bits(), run));
     let run =
         |x: f64| runs.iter().position(|y| y.map(f64::to_bits) == Some(x.to_bits())).unwrap() as u64;
