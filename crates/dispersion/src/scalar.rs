@@ -109,6 +109,8 @@ const END: f64 = 38.0;
 /// [`sample`](Distribution::sample) draws a score. [`ScalarRoots`](crate::ScalarRoots) draw the same laws in quicker
 /// ways, which give other values.
 ///
+/// What is asked of a NaN is NaN, whatever the law.
+///
 /// With the feature `serde` it is read and written as a [`ScalarLawForm`].
 ///
 /// # Limits
@@ -126,13 +128,16 @@ impl ScalarLaw {
     /// The value at a standard normal score: it does not fall where the score rises.
     #[must_use]
     pub fn at_score(&self, z: f64) -> f64 {
-        self.0.at_score(z)
+        if z.is_nan() { z } else { self.0.at_score(z) }
     }
 
     /// The standard normal score of a value, by bisection where it has no formula: the least one at which
     /// [`at_score`](Self::at_score) is not below the value, within ±38.
     #[must_use]
     pub fn score(&self, x: f64) -> f64 {
+        if x.is_nan() {
+            return x;
+        }
         if let Some([mean, variance]) = self.as_normal()
             && variance > 0.0
         {
@@ -151,7 +156,7 @@ impl ScalarLaw {
     /// The probability of a value of at most x.
     #[must_use]
     pub fn cdf(&self, x: f64) -> f64 {
-        self.0.cdf(x)
+        if x.is_nan() { x } else { self.0.cdf(x) }
     }
 
     /// The probability of a value above x: 1 − F(x), without cancellation far out.
@@ -204,7 +209,7 @@ impl ScalarLaw {
         if x.is_finite() {
             self.0.ln_density(x)
         } else {
-            self.0.ln_density(0.0).map(|_| f64::NEG_INFINITY)
+            self.0.ln_density(0.0).map(|_| if x.is_nan() { x } else { f64::NEG_INFINITY })
         }
     }
 
