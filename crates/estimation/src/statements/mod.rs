@@ -3,7 +3,6 @@
 mod amount;
 mod diagnosis;
 mod entries;
-mod exponentials;
 pub(crate) mod levenberg_marquardt;
 mod nodes;
 mod parts;

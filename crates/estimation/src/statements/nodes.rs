@@ -4,8 +4,6 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::exponentials::exponentials;
-
 /// How many nodes there are.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rule {
@@ -64,7 +62,6 @@ impl Turns {
         let of_b = rule.midpoints(v[j], FRAC_PI_2);
         let of_c = rule.midpoints(v[wide], PI);
         let mut nodes = Vec::with_capacity(of_a.len() * of_b.len() * of_c.len());
-        let mut exponents = Vec::with_capacity(nodes.capacity());
         for &(sin_a, cos_a) in &of_a {
             for &(sin_b, cos_b) in &of_b {
                 for &(sin_c, cos_c) in &of_c {
@@ -72,15 +69,12 @@ impl Turns {
                     let (zi, w) = (r * sin_c, r * cos_c);
                     let exponent = 4.0 * (zi * zi / v[wide] + zj * zj / v[j] + zl * zl / v[l])
                         + (w - 1.0) * (w - 1.0) / self.radial_variance;
-                    exponents.push(-0.5 * exponent);
+                    let weight = cos_a * r * libm::exp(-0.5 * exponent);
                     let z = self.about[wide] * zi + self.about[j] * zj + self.about[l] * zl;
                     let turn = UnitQuaternion::new_normalize(Quaternion::new(w, z.x, z.y, z.z));
-                    nodes.push((cos_a * r, self.mean * turn));
+                    nodes.push((weight, self.mean * turn));
                 }
             }
-        }
-        for ((weight, _), density) in nodes.iter_mut().zip(exponentials(&exponents)) {
-            *weight *= density;
         }
         nodes
     }
