@@ -91,8 +91,10 @@ impl Interval {
     }
 
     /// Bounds known to be in order, but for rounding. What is above the largest `f64` is above its lower bound, and what is
-    /// below the least, below its upper.
+    /// below the least, below its upper; a bound that is NaN is unknown.
     pub(crate) fn ordered(lower: f64, upper: f64, confidence: Confidence) -> Self {
+        let lower = if lower.is_nan() { f64::NEG_INFINITY } else { lower };
+        let upper = if upper.is_nan() { f64::INFINITY } else { upper };
         let (lower, upper) = if lower > upper { (upper, lower) } else { (lower, upper) };
         let (lower, upper) = (f64::MAX.min(lower), f64::MIN.max(upper));
         Self { lower, upper, confidence }
@@ -100,9 +102,7 @@ impl Interval {
 
     /// `centre ± half_width`; where both are infinite the bound between them is unknown.
     pub(crate) fn around(centre: f64, half_width: f64, confidence: Confidence) -> Self {
-        let or = |bound: f64, unknown: f64| if bound.is_nan() { unknown } else { bound };
-        let lower = or(centre - half_width, f64::NEG_INFINITY);
-        Self::ordered(lower, or(centre + half_width, f64::INFINITY), confidence)
+        Self::ordered(centre - half_width, centre + half_width, confidence)
     }
 
     /// `exp(ln(centre) ± half_width)`.
@@ -194,6 +194,16 @@ mod tests {
                 Err(_) => prop_assert!(
                     !(lower <= upper) || lower == f64::INFINITY || upper == f64::NEG_INFINITY
                 ),
+            }
+        }
+
+        /// Whatever two bounds are computed, an interval of them is one that its constructor takes.
+        #[test]
+        fn what_is_computed_is_an_interval(lower in prop::num::f64::ANY, upper in prop::num::f64::ANY) {
+            let confidence = Confidence::default();
+            for [lower, upper] in [[lower, upper], [f64::NAN, upper], [lower, f64::NAN], [f64::NAN; 2]] {
+                let made = Interval::ordered(lower, upper, confidence);
+                prop_assert_eq!(Interval::new(made.lower(), made.upper(), confidence), Ok(made));
             }
         }
 
