@@ -64,8 +64,8 @@ impl Inertia {
     /// components to principal components (Peck 2003, Eq. 5-6).
     ///
     /// # Errors
-    /// The moments are not finite or break the triangle inequality, or the attitude is not a unit
-    /// quaternion.
+    /// The moments are not finite or break the triangle inequality, the attitude is not a unit
+    /// quaternion, or the moments are subnormal and their rounding is no small share of them.
     pub fn from_principal_moments(
         moments: [f64; 3],
         attitude: &UnitQuaternion<f64>,
@@ -75,7 +75,7 @@ impl Inertia {
         if !principal.is_realizable_within(UNROUNDED) {
             return Err(RealizabilityError::of(&principal));
         }
-        Ok(Self(principal.rotated(&attitude.inverse())?))
+        Self(principal.rotated(&attitude.inverse())?).kept()
     }
 
     /// Builds the inertia of second mass moments K (kg·m²) about principal axes at `attitude`,
@@ -83,7 +83,7 @@ impl Inertia {
     /// Whatever the K_k ≥ 0, the result is realizable (Peck 2003, Eq. 7).
     ///
     /// # Errors
-    /// The attitude is not a unit quaternion.
+    /// The attitude is not a unit quaternion, or the moments are subnormal and their rounding is no small share of them.
     #[inline]
     pub fn from_second_moments(
         moments: SecondMoments,
@@ -98,7 +98,7 @@ impl Inertia {
         };
         let (s11, s22, s33) = (sigma(0, 0), sigma(1, 1), sigma(2, 2));
         let (i12, i13, i23) = (-sigma(0, 1), -sigma(0, 2), -sigma(1, 2));
-        Ok(Self(InertiaMatrix::symmetrized(&Matrix3::new(
+        Self(InertiaMatrix::symmetrized(&Matrix3::new(
             s22 + s33,
             i12,
             i13,
@@ -108,7 +108,19 @@ impl Inertia {
             i13,
             i23,
             s11 + s22,
-        ))))
+        )))
+        .kept()
+    }
+
+    /// What is realizable by construction, unless it is so small that rounding has made another matrix of it.
+    #[inline]
+    fn kept(self) -> Result<Self, RealizabilityError> {
+        let size = self.matrix().diagonal().max();
+        if size >= f64::MIN_POSITIVE || self.0.is_realizable() {
+            return Ok(self);
+        }
+        let k = self.principal_axes().second_moments();
+        Err(SecondMomentsError::Lost { value: k.into_iter().fold(0.0, f64::max) }.into())
     }
 
     /// The full matrix.

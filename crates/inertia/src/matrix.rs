@@ -172,7 +172,8 @@ impl InertiaMatrix {
     /// The rotation is not a unit quaternion, or the turned entries are too large.
     pub fn rotated(&self, rotation: &UnitQuaternion<f64>) -> Result<Self, InertiaMatrixError> {
         let r = rotation_matrix(rotation)?;
-        Self::new(r * self.0 * r.transpose())
+        // Symmetric, but for the rounding of subnormal numbers, which is no small share of them.
+        Self::new(Self::symmetrized(&(r * self.0 * r.transpose())).0)
     }
 
     /// Whether some distribution of non-negative mass has this inertia: min K_k ≥

@@ -61,7 +61,7 @@ impl Repair {
     ///
     /// # Errors
     /// [`RepairMethod::Shape`] of a matrix whose trace is not positive or of a shape that is a point,
-    /// or a result too large to hold.
+    /// or a result too large to hold, or so small that rounding leaves no body of it.
     pub fn new(matrix: &InertiaMatrix, method: RepairMethod) -> Result<Self, RealizabilityError> {
         if let Ok(inertia) = Inertia::try_from(*matrix) {
             return Ok(Self { inertia, distance: 0.0, relative_distance: 0.0 });
@@ -146,7 +146,7 @@ fn sorted_like(mut values: [f64; 3], others: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::matrix::tests::any_attitude;
+    use crate::{SecondMomentsError, matrix::tests::any_attitude};
     use proptest::prelude::*;
 
     const METHODS: [RepairMethod; 3] =
@@ -199,6 +199,55 @@ mod tests {
                 let difference = (turned.inertia().matrix() - image.matrix()).map(|x| x / scale).amax();
                 prop_assert!(difference < 1e-13, "{method:?}: {difference:e}");
                 prop_assert!((turned.distance() - repair.distance()).abs() < 1e-13 * scale);
+            }
+        }
+
+        /// Of numbers so small that they have few digits or none: what is repaired is realizable, stays as it is, and is
+        /// read back, or is refused; so is what principal moments make.
+        #[test]
+        fn repairs_of_the_smallest_numbers(
+            moments in prop::array::uniform3(-1.0..5.0f64),
+            products in prop::array::uniform3(-2.0..2.0f64),
+            k in prop::array::uniform3(0.1..2.0f64),
+            q in any_attitude(),
+            exponent in -324.0..-300.0f64,
+        ) {
+            let scale = 10f64.powf(exponent);
+            let shape = Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &q).unwrap();
+            let small = |x: [f64; 3]| x.map(|x| x * scale);
+            let m = InertiaMatrix::from_entries(small(moments), small(products)).unwrap();
+            let mut bodies = vec![];
+            for method in METHODS.into_iter().chain([RepairMethod::Shape(shape)]) {
+                let repair = match Repair::new(&m, method) {
+                    Ok(repair) => repair,
+                    Err(RealizabilityError::SecondMoments(SecondMomentsError::Lost { value })) => {
+                        prop_assert!(value < f64::MIN_POSITIVE, "{value:e}");
+                        continue;
+                    }
+                    Err(_) => {
+                        // Or one of a few units in the last place.
+                        let no_trace = !(m.matrix().trace() > 1e-322);
+                        prop_assert!(no_trace && matches!(method, RepairMethod::Shape(_)));
+                        continue;
+                    }
+                };
+                let again = Repair::new(repair.inertia().as_inertia_matrix(), method).unwrap();
+                prop_assert_eq!((again.inertia(), again.distance()), (repair.inertia(), 0.0));
+                prop_assert!(repair.distance().is_finite() && repair.relative_distance().is_finite());
+                bodies.push(*repair.inertia());
+            }
+            let of = [k[1] + k[2], k[0] + k[2], k[0] + k[1]];
+            bodies.extend(Inertia::from_principal_moments(small(of), &q));
+            let of_second = SecondMoments::new(small(k)).unwrap();
+            bodies.extend(Inertia::from_second_moments(of_second, &q));
+            prop_assert!(exponent < -306.0 || bodies.len() >= 5);
+            for body in bodies {
+                for body in [Ok(body), body.rotated(&q)].into_iter().flatten() {
+                    let matrix = body.as_inertia_matrix();
+                    prop_assert!(matrix.is_realizable(), "{matrix:?}");
+                    prop_assert!(crate::RealizabilityReport::of(body.matrix()).is_realizable());
+                    prop_assert_eq!(Inertia::try_from(<[[f64; 3]; 3]>::from(body)), Ok(body));
+                }
             }
         }
 
