@@ -1,9 +1,10 @@
 //! A region as it stands in a file.
 
-use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
-use super::{Kind, Region, RegionError};
+use super::{Kind, Region, RegionError, pose, sizes, unit};
+use crate::RELATIVE_TOLERANCE;
 
 /// The serialized form: one of its fields. Attitudes take the region's own axes to body axes, scalar last.
 #[derive(Default, Serialize, Deserialize)]
@@ -45,18 +46,21 @@ impl TryFrom<RegionForm> for Region {
     type Error = RegionError;
 
     fn try_from(form: RegionForm) -> Result<Self, RegionError> {
-        let placed = |region: Self, middle: [f64; 3], attitude: Option<[f64; 4]>| {
+        let placed = |middle: [f64; 3], attitude: Option<[f64; 4]>| {
             let [x, y, z, w] = attitude.unwrap_or([0.0, 0.0, 0.0, 1.0]);
-            let turn = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
-            region.transformed(&Isometry3::from_parts(Vector3::from(middle).into(), turn))
+            let turn = turn(&Quaternion::new(w, x, y, z))?;
+            Ok::<_, RegionError>(Isometry3 { rotation: turn, ..pose(middle.into())? })
         };
         let two = |first, second| Err(RegionError::Shapes { first, second });
         match (form.ellipsoid, form.solid_box, form.hull) {
             (Some(form), None, None) => {
-                placed(Self::ellipsoid([0.0; 3], form.semi_axes_m)?, form.middle_m, form.attitude)
+                let semi_axes = sizes("semi-axis", form.semi_axes_m.into())?;
+                Ok(Self::of_ellipsoid(placed(form.middle_m, form.attitude)?, semi_axes))
             }
             (None, Some(form), None) => {
-                placed(Self::solid_box([0.0; 3], form.half_sides_m)?, form.middle_m, form.attitude)
+                let half_sides = sizes("half side", form.half_sides_m.into())?;
+                let pose = placed(form.middle_m, form.attitude)?;
+                Ok(Self(Kind::Box { pose, half_sides }))
             }
             (None, None, Some(form)) => Self::hull(&form.points_m),
             (None, None, None) => Err(RegionError::NoShape),
@@ -65,6 +69,13 @@ impl TryFrom<RegionForm> for Region {
             (None, Some(_), Some(_)) => two("box", "hull"),
         }
     }
+}
+
+/// The rotation of a quaternion of length one to 1e-6. One that has all of its digits stays as it is, so that a region is
+/// read as it was written.
+fn turn(q: &Quaternion<f64>) -> Result<UnitQuaternion<f64>, RegionError> {
+    let has_all_digits = (q.norm() - 1.0).abs() <= RELATIVE_TOLERANCE;
+    if has_all_digits { Ok(UnitQuaternion::new_unchecked(*q)) } else { unit(q) }
 }
 
 impl From<Region> for RegionForm {
@@ -101,7 +112,41 @@ impl From<Region> for RegionForm {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
     use super::*;
+
+    proptest! {
+        /// To the bit, however often they have been turned and moved; attitudes with few digits are made of unit length.
+        #[test]
+        fn files_keep_regions_to_the_bit(
+            sizes in prop::array::uniform3(1e-3..1e3_f64),
+            middle in prop::array::uniform3(-1e3..1e3_f64),
+            turns in prop::collection::vec((prop::array::uniform3(-3.0..3.0_f64), prop::array::uniform3(-9.0..9.0_f64)), 0..9),
+        ) {
+            for mut region in [Region::ellipsoid(middle, sizes).unwrap(), Region::solid_box(middle, sizes).unwrap()] {
+                for (axis, by) in &turns {
+                    let by = Isometry3::new((*by).into(), (*axis).into());
+                    region = region.transformed(&by).unwrap();
+                }
+                let json = serde_json::to_string(&region).unwrap();
+                let back: Region = serde_json::from_str(&json).unwrap();
+                prop_assert_eq!(&back, &region, "{}", json);
+                prop_assert_eq!(serde_json::to_string(&back).unwrap(), json);
+            }
+            if let Some((axis, _)) = turns.first() {
+                let q = UnitQuaternion::from_scaled_axis(Vector3::from(*axis));
+                let short = q.coords.map(|x| (x * 1e8).round() / 1e8);
+                let form = |q: &[f64]| serde_json::json!({"box": {"middle_m": middle, "half_sides_m": sizes, "attitude": q}});
+                let read: Region = serde_json::from_value(form(short.as_slice())).unwrap();
+                let Kind::Box { pose, .. } = read.0 else { return Err(TestCaseError::fail("no box")) };
+                prop_assert!((pose.rotation.norm() - 1.0).abs() < 1e-15);
+                let long = short * (1.0 + 1e-5);
+                prop_assert!(serde_json::from_value::<Region>(form(long.as_slice())).is_err());
+            }
+        }
+    }
 
     #[test]
     fn files_keep_regions() {

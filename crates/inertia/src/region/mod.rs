@@ -7,7 +7,7 @@ mod hull;
 mod non_negative;
 
 use hull::Hull;
-use nalgebra::{Isometry3, Matrix3, SVector, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Quaternion, SVector, Translation3, UnitQuaternion, Vector3};
 
 use crate::mass_properties::check_vector;
 use crate::{MassProperties, MassPropertiesError, RELATIVE_TOLERANCE};
@@ -132,11 +132,7 @@ impl Region {
     /// # Errors
     /// The region would be too far away, or the rotation is none.
     pub fn transformed(&self, by: &Isometry3<f64>) -> Result<Self, RegionError> {
-        let q = by.rotation.into_inner();
-        if !((q.norm() - 1.0).abs() <= 1e-6) {
-            return Err(RegionError::Rotation { norm: q.norm() });
-        }
-        let by = Isometry3::from_parts(by.translation, UnitQuaternion::new_normalize(q));
+        let by = Isometry3::from_parts(by.translation, unit(by.rotation.quaternion())?);
         let moved = |pose: &Isometry3<f64>| {
             let pose = by * pose;
             check_vector("middle", &pose.translation.vector)?;
@@ -412,6 +408,15 @@ fn pack(x: &Vector3<f64>, square: &Matrix3<f64>) -> SVector<f64, 10> {
         s[(0, 2)],
         s[(1, 2)],
     ])
+}
+
+/// The rotation of a quaternion of length one to 1e-6, which is made so.
+fn unit(q: &Quaternion<f64>) -> Result<UnitQuaternion<f64>, RegionError> {
+    let norm = q.norm();
+    if !((norm - 1.0).abs() <= 1e-6) {
+        return Err(RegionError::Rotation { norm });
+    }
+    Ok(UnitQuaternion::new_normalize(*q))
 }
 
 fn pose(middle: Vector3<f64>) -> Result<Isometry3<f64>, RegionError> {

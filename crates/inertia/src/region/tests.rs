@@ -225,7 +225,7 @@ fn what_is_no_region_is_refused_by_name() {
     assert_eq!(Region::hull(&[]), Err(RegionError::Empty));
     let error = Region::hull(&[[0.0; 3], [f64::NAN; 3]]).unwrap_err();
     assert!(error.to_string().starts_with("point 1: "), "{error}");
-    let long = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(2.0, 0.0, 0.0, 0.0));
+    let long = UnitQuaternion::new_unchecked(Quaternion::new(2.0, 0.0, 0.0, 0.0));
     let by = Isometry3::from_parts(Vector3::zeros().into(), long);
     assert!(Region::ellipsoid([0.0; 3], [1.0; 3]).unwrap().transformed(&by).is_err());
 }
