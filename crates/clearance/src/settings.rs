@@ -2,6 +2,11 @@
 
 /// How closely clearance is found, and what touching and parting mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Fields", into = "Fields")
+)]
 pub struct ClearanceSettings {
     tolerance: f64,
     relative: f64,
@@ -79,6 +84,40 @@ impl ClearanceSettings {
     }
 }
 
+/// The serialized form.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fields {
+    tolerance_m: f64,
+    #[serde(default)]
+    relative_tolerance: f64,
+    touch_m: f64,
+    parted_m: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Fields> for ClearanceSettings {
+    type Error = ClearanceSettingsError;
+
+    fn try_from(f: Fields) -> Result<Self, ClearanceSettingsError> {
+        Self::new(f.tolerance_m, f.touch_m, f.parted_m)?
+            .with_relative_tolerance(f.relative_tolerance)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<ClearanceSettings> for Fields {
+    fn from(settings: ClearanceSettings) -> Self {
+        Self {
+            tolerance_m: settings.tolerance,
+            relative_tolerance: settings.relative,
+            touch_m: settings.touch,
+            parted_m: settings.parted,
+        }
+    }
+}
+
 /// Why clearance settings are refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -111,4 +150,40 @@ pub enum ClearanceSettingsError {
         /// The distance of touching, m.
         touch: f64,
     },
+}
+
+#[cfg(all(test, feature = "serde"))]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// To the bit, and through the constructors: each number wrong by itself is refused.
+        #[test]
+        fn settings_are_read_as_they_were_written(
+            tolerance in -12.0..-2.0_f64,
+            touch in 0.0..3.0_f64,
+            parted in 0.31..4.0_f64,
+            relative in 0.0..0.1_f64,
+        ) {
+            let tolerance = 10_f64.powf(tolerance);
+            let touch = 100.0 * tolerance * 10_f64.powf(touch);
+            let settings = ClearanceSettings::new(tolerance, touch, touch * 10_f64.powf(parted)).unwrap();
+            let settings = settings.with_relative_tolerance(relative).unwrap();
+            let json = serde_json::to_value(settings).unwrap();
+            prop_assert_eq!(serde_json::from_str::<ClearanceSettings>(&json.to_string()).unwrap(), settings);
+            for (key, wrong) in [
+                ("tolerance_m", 0.02),
+                ("touch_m", 99.0 * tolerance),
+                ("parted_m", 2.0 * touch),
+                ("relative_tolerance", 0.2),
+                ("other", 1.0),
+            ] {
+                let mut bad = json.clone();
+                bad[key] = wrong.into();
+                prop_assert!(serde_json::from_value::<ClearanceSettings>(bad).is_err(), "{}", key);
+            }
+        }
+    }
 }

@@ -29,7 +29,7 @@ use crate::MovingBody;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 pub struct EnergySplit {
     stored: f64,
     payload_translation: f64,
@@ -93,6 +93,25 @@ impl EnergySplit {
     }
 }
 
+#[cfg(feature = "serde")]
+impl serde::Serialize for EnergySplit {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, to)
+    }
+}
+
+/// Energies that are finite.
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for EnergySplit {
+    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let read = Self::deserialize(from)?;
+        if read.stored.is_finite() && read.total_j().is_finite() {
+            return Ok(read);
+        }
+        Err(serde::de::Error::custom(format!("{read:?}: energies must be finite")))
+    }
+}
+
 /// Energies of translation of payload and stage relative to their common mass centre, J.
 pub(crate) fn translations(bodies: [&MovingBody; 2]) -> [f64; 2] {
     let [payload, stage] = bodies.map(|b| b.body().mass_kg());
@@ -141,6 +160,20 @@ mod tests {
             assert!(split.payload_rotation_j().abs() < 1e-25, "{split:?}");
             assert!(split.stage_rotation_j().abs() < 1e-25, "{split:?}");
             assert!((split.stored_j() - 4.0).abs() < 1e-15);
+            #[cfg(feature = "serde")]
+            {
+                let json = serde_json::to_value(split).unwrap();
+                let back = serde_json::from_str::<crate::EnergySplit>(&json.to_string());
+                assert_eq!(back.unwrap(), split);
+                for field in ["stored", "stage_rotation"] {
+                    // The sum of two of these is no number.
+                    let mut bad = json.clone();
+                    bad[field] = f64::MAX.into();
+                    bad["payload_translation"] = f64::MAX.into();
+                    let read = serde_json::from_value::<crate::EnergySplit>(bad);
+                    assert_eq!(read.is_err(), field == "stage_rotation");
+                }
+            }
         }
     }
 
