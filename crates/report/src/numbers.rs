@@ -2,11 +2,12 @@
 
 use gyradius_statistics::Interval;
 
-/// To a number of significant digits, plain where that is short, scientific where it is not.
+/// To a number of significant digits, one at least, plain where that is short, scientific where it is not.
 pub fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{x}");
     }
+    let digits = digits.max(1);
     let magnitude = x.abs().log10().floor();
     if !(-4.0..7.0).contains(&magnitude) {
         return format!("{x:.*e}", digits - 1);
@@ -66,6 +67,13 @@ mod tests {
             assert_eq!(round_below(x), expected);
         }
         assert!(round_below(0.0) > 0.0 && round_below(5e-324) > 0.0);
+    }
+
+    #[test]
+    fn no_digits_are_one() {
+        for x in [1e300, -1e300, 5e-324, f64::MAX, 0.012, 3.7, 1e6, 0.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(significant(x, 0), significant(x, 1));
+        }
     }
 
     #[test]

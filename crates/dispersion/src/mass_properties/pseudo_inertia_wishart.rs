@@ -13,6 +13,8 @@ use super::{MassPropertiesModel, TenMoments};
 const FREEDOM: [f64; 2] = [4.0, 1e14];
 /// Largest entry of the mean, so that covariances stay in range.
 const MAX_ENTRY: f64 = 1e150;
+/// Smallest one on its diagonal: with those above, squares of mass centres do not overflow, and draws are not lost.
+const MIN_ENTRY: f64 = 1e-150;
 
 /// A Wishart law of the pseudo-inertia J = ∫ (x, 1)(x, 1)ᵀ dm: J = L G Lᵀ/p, L Lᵀ the mean and G a 4×4 Wishart matrix of p
 /// degrees of freedom.
@@ -49,7 +51,7 @@ impl PseudoInertiaWishart {
     /// The mean body and the degrees of freedom p.
     ///
     /// # Errors
-    /// p is not in [4, 1e14], or the body is a rod, a plate, a point, or too large.
+    /// p is not in [4, 1e14], or the body is a rod, a plate, a point, too large, or too small.
     pub fn new(mean: &MassProperties, freedom: f64) -> Result<Self, PseudoInertiaWishartError> {
         Self::about(PseudoInertia::of(mean)?, freedom)
     }
@@ -64,6 +66,10 @@ impl PseudoInertiaWishart {
         let singular = PseudoInertiaWishartError::Singular;
         if !(largest <= MAX_ENTRY) {
             return Err(PseudoInertiaWishartError::TooLarge { value: largest });
+        }
+        let smallest = matrix.diagonal().min();
+        if smallest < MIN_ENTRY && smallest > 0.0 {
+            return Err(PseudoInertiaWishartError::TooSmall { value: smallest });
         }
         // Rows have different units: what is positive definite is the matrix of correlations.
         let sizes = matrix.diagonal().map(f64::sqrt);
@@ -203,6 +209,14 @@ pub enum PseudoInertiaWishartError {
         "largest entry of the mean pseudo-inertia = {value:e}: it must be at most {MAX_ENTRY:e}"
     )]
     TooLarge {
+        /// The value.
+        value: f64,
+    },
+    /// The mean body is too small.
+    #[error(
+        "smallest entry on the diagonal of the mean pseudo-inertia = {value:e}: it must be at least {MIN_ENTRY:e}"
+    )]
+    TooSmall {
         /// The value.
         value: f64,
     },

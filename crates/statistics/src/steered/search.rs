@@ -120,7 +120,8 @@ impl ScoreSearch {
                 return Err(StatisticsError::Probability { value });
             }
             let scores = self.start.len();
-            let columns = StatisticsError::Columns { first: scores, second: place + 1 };
+            let columns =
+                StatisticsError::Columns { first: scores, second: place.saturating_add(1) };
             let start = self.start.get_mut(place).ok_or(columns)?;
             let tail = Tail::new(value);
             let often = (STARTING / events.len() as f64).min(OFTEN_AT_FIRST);

@@ -361,8 +361,10 @@ fn what_cannot_be_is_refused() {
         let refused = search.clone().with_events(&[(0, value)]);
         assert!(matches!(refused, Err(StatisticsError::Probability { .. })), "{value}");
     }
-    let refused = search.clone().with_events(&[(2, 0.5)]);
-    assert!(matches!(refused, Err(StatisticsError::Columns { .. })));
+    for place in [2, usize::MAX] {
+        let refused = search.clone().with_events(&[(place, 0.5)]);
+        assert!(matches!(refused, Err(StatisticsError::Columns { .. })), "{place}");
+    }
     assert_eq!(search.level(), f64::NEG_INFINITY);
     let required = StatisticsError::TooFew { n: 0, required: 100 };
     assert_eq!(SteeredSampling::new(std::slice::from_ref(&search)).unwrap_err(), required);
