@@ -50,7 +50,7 @@ pub enum StatisticsError {
     },
     /// The bounds are out of order, NaN, or both the same infinity.
     #[error(
-        "the interval runs from {} to {}; the bounds must be in order, the lower one below inf and the upper one above -inf",
+        "the interval runs from {} to {}; bounds must be in order and hold a number",
         plain(*lower),
         plain(*upper)
     )]

@@ -13,8 +13,11 @@ use super::{MassPropertiesModel, TenMoments};
 const FREEDOM: [f64; 2] = [4.0, 1e14];
 /// Largest entry of the mean, so that covariances stay in range.
 const MAX_ENTRY: f64 = 1e150;
-/// Smallest one on its diagonal: with those above, squares of mass centres do not overflow, and draws are not lost.
-const MIN_ENTRY: f64 = 1e-150;
+/// Least entry on the diagonal of the mean, for the same reason.
+const LEAST_ENTRY: f64 = 1e-150;
+/// The least share of the largest entry that one on the diagonal may be, so that draws have a mass centre: √(Σ_ii/m) m and
+/// more from the origin.
+const LEAST_SHARE: f64 = 1e-180;
 
 /// A Wishart law of the pseudo-inertia J = ∫ (x, 1)(x, 1)ᵀ dm: J = L G Lᵀ/p, L Lᵀ the mean and G a 4×4 Wishart matrix of p
 /// degrees of freedom.
@@ -51,7 +54,8 @@ impl PseudoInertiaWishart {
     /// The mean body and the degrees of freedom p.
     ///
     /// # Errors
-    /// p is not in [4, 1e14], or the body is a rod, a plate, a point, too large, or too small.
+    /// p is not in [4, 1e14], or the body is a rod, a plate, a point, too large or too small, also in its mass beside its
+    /// second moments.
     pub fn new(mean: &MassProperties, freedom: f64) -> Result<Self, PseudoInertiaWishartError> {
         Self::about(PseudoInertia::of(mean)?, freedom)
     }
@@ -67,9 +71,10 @@ impl PseudoInertiaWishart {
         if !(largest <= MAX_ENTRY) {
             return Err(PseudoInertiaWishartError::TooLarge { value: largest });
         }
+        let least = LEAST_ENTRY.max(LEAST_SHARE * largest);
         let smallest = matrix.diagonal().min();
-        if smallest < MIN_ENTRY && smallest > 0.0 {
-            return Err(PseudoInertiaWishartError::TooSmall { value: smallest });
+        if smallest > 0.0 && smallest < least {
+            return Err(PseudoInertiaWishartError::TooSmall { value: smallest, least });
         }
         // Rows have different units: what is positive definite is the matrix of correlations.
         let sizes = matrix.diagonal().map(f64::sqrt);
@@ -212,12 +217,65 @@ pub enum PseudoInertiaWishartError {
         /// The value.
         value: f64,
     },
-    /// The mean body is too small.
+    /// The mean body is too small, or its mass beside its second moments.
     #[error(
-        "smallest entry on the diagonal of the mean pseudo-inertia = {value:e}: it must be at least {MIN_ENTRY:e}"
+        "smallest entry on the diagonal of the mean pseudo-inertia = {value:e}: it must be at least {least:e}"
     )]
     TooSmall {
         /// The value.
         value: f64,
+        /// The least that is allowed.
+        least: f64,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use gyradius_inertia::Inertia;
+    use nalgebra::{UnitQuaternion, Vector3};
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    /// Of any mass and size, as far as bodies have them: a law whose draws come to an end, or a refusal that says what is too small.
+    #[test]
+    fn laws_of_any_size_are_drawn_or_refused() {
+        let mut rng = ChaCha8Rng::seed_from_u64(17);
+        let (mut drawn, mut small) = (0, 0);
+        for mass in (-300..=140).step_by(5) {
+            for moment in (-300..=140).step_by(5) {
+                let [mass, moment] = [mass, moment].map(|power| 10_f64.powi(power));
+                let inertia =
+                    Inertia::from_principal_moments([moment; 3], &UnitQuaternion::identity())
+                        .unwrap();
+                let Ok(body) = MassProperties::new(mass, Vector3::zeros(), inertia) else {
+                    continue;
+                };
+                for freedom in [4.0, 20.0, 1e14] {
+                    match PseudoInertiaWishart::new(&body, freedom) {
+                        Ok(law) => {
+                            for _ in 0..8 {
+                                let draw = law.sample(&mut rng).mass_kg() / mass;
+                                assert!(draw > 0.0 && draw < 1e3, "{mass:e} {moment:e}: {draw}");
+                            }
+                            drawn += 1;
+                        }
+                        Err(PseudoInertiaWishartError::TooSmall { value, least }) => {
+                            assert!(value < least && value <= mass.min(moment), "{value:e}");
+                            small += 1;
+                        }
+                        Err(error) => panic!("{mass:e} {moment:e}: {error}"),
+                    }
+                }
+            }
+        }
+        assert!(drawn > 5000 && small > 1000, "{drawn} {small}");
+        let ordinary = [1e-200, 1e-40, 1.0].map(|mass| {
+            let inertia = Inertia::from_principal_moments([1e-30; 3], &UnitQuaternion::identity());
+            let body = MassProperties::new(mass, Vector3::zeros(), inertia.unwrap()).unwrap();
+            PseudoInertiaWishart::new(&body, 20.0).is_ok()
+        });
+        assert_eq!(ordinary, [false, true, true]);
+    }
 }
