@@ -1,6 +1,6 @@
 //! The probability of a rare event from runs that were drawn where it is less rare.
 
-use crate::{Confidence, Interval, StatisticsError, law};
+use crate::{Confidence, Interval, StatisticsError, law, proportion::exact};
 
 /// The largest logarithm of a weight.
 const LARGEST: f64 = 700.0;
@@ -125,29 +125,18 @@ impl ImportanceSampling {
         estimate.warnings = estimate.seen();
         Ok(estimate)
     }
-}
 
-impl ImportanceSampling {
     /// The interval of an event that is not rare, from the runs that are not the event: what they scatter decides, and there may be
-    /// none. It is that of Clopper & Pearson (1934, doi:10.1093/biomet/26.4.404) of as many runs of equal weight as
-    /// these are worth, which it is exactly for weights of 1.
+    /// none. It is the exact one of as many runs of equal weight as these are worth, which it is for weights of 1.
     fn of_the_rest(&self, probability: f64, confidence: Confidence) -> Interval {
-        let tail = confidence.tail();
         let misses = self.of_misses.effective();
         let runs = if misses > 0.0 {
             self.runs as f64 * misses / self.of_misses.total()
         } else {
             self.all.effective().min(self.runs as f64)
         };
-        let least = if misses == 0.0 {
-            0.0
-        } else if misses < runs {
-            law::beta_lower(tail, misses, runs - misses + 1.0)
-        } else {
-            1.0
-        };
-        let most =
-            if misses < runs { law::beta_upper(tail, misses + 1.0, runs - misses) } else { 1.0 };
+        let [least, most] =
+            if misses < runs { exact(misses, runs, confidence) } else { [1.0, 1.0] };
         // The mean weight is not quite 1, so that the estimate can lie beside the rest of 1.
         let (lower, upper) = ((1.0 - most).min(probability), (1.0 - least).max(probability));
         Interval::ordered(lower, upper, confidence)

@@ -58,12 +58,18 @@ impl Proportion {
     /// some width in small samples. The lower bound is exactly 0 without a success, the upper
     /// exactly 1 without a failure.
     pub fn interval(&self, confidence: Confidence) -> Interval {
-        let tail = confidence.tail();
-        let (k, n) = (self.successes as f64, self.trials as f64);
-        let lower = if k == 0.0 { 0.0 } else { law::beta_lower(tail, k, n - k + 1.0) };
-        let upper = if k == n { 1.0 } else { law::beta_upper(tail, k + 1.0, n - k) };
+        let [lower, upper] = exact(self.successes as f64, self.trials as f64, confidence);
         Interval::ordered(lower, upper, confidence)
     }
+}
+
+/// The bounds of the share of successes of k in n, which need not be whole (Clopper & Pearson 1934,
+/// doi:10.1093/biomet/26.4.404).
+pub(crate) fn exact(k: f64, n: f64, confidence: Confidence) -> [f64; 2] {
+    let tail = confidence.tail();
+    let lower = if k == 0.0 { 0.0 } else { law::beta_lower(tail, k, n - k + 1.0) };
+    let upper = if k == n { 1.0 } else { law::beta_upper(tail, k + 1.0, n - k) };
+    [lower, upper]
 }
 
 #[cfg(test)]
