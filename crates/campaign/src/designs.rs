@@ -167,7 +167,6 @@ impl Output {
 
 /// Why nothing is known of what drives an output.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum DesignsError {
     /// The runs cannot be read.
     #[error(transparent)]

@@ -89,9 +89,6 @@ pub enum StudyError {
     /// The runs cannot be judged.
     #[error("cannot judge the requirements: {0}")]
     Judgement(JudgementError),
-    /// What drives the outputs cannot be found.
-    #[error("cannot find what drives the outputs: {0}")]
-    Designs(DesignsError),
     /// The summary cannot be put into JSON.
     #[error("cannot write the summary: {0}")]
     Json(#[from] serde_json::Error),
@@ -111,7 +108,6 @@ impl From<DesignsError> for StudyError {
         match error {
             DesignsError::Runs(error) => error.into(),
             DesignsError::Statistics(error) => error.into(),
-            other => Self::Designs(other),
         }
     }
 }
