@@ -72,7 +72,9 @@ pub use histogram::HistogramGrid;
 pub use inline::{Text, Tone};
 pub use kinds::most_frequent;
 pub use lines::{Line, LineGrid, LinePanel, LinePoint, Range};
-pub use numbers::{below_hundred, interval, optional, round_below, significant, with_unit};
+pub use numbers::{
+    below_hundred, direction, interval, optional, round_below, significant, with_unit,
+};
 pub use overview::{Overview, spread};
 pub use page::page;
 pub use ranges::{Label, RangeGrid, RangePanel};

@@ -29,6 +29,13 @@ pub fn interval(interval: Option<Interval>, digits: usize) -> String {
     })
 }
 
+/// The entries of a direction, to a thousandth: `(0, 0.6, 0.8)`.
+pub fn direction(entries: [f64; 3]) -> String {
+    // Without a sign of zero.
+    let [x, y, z] = entries.map(|x| (1e3 * x).round() / 1e3 + 0.0);
+    format!("({x}, {y}, {z})")
+}
+
 /// A label with its unit, if it has one.
 pub fn with_unit(label: &str, unit: &str) -> String {
     if unit == "1" { label.to_owned() } else { format!("{label} ({unit})") }

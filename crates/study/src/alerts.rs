@@ -1,7 +1,7 @@
 //! What a reader should know before the results: only what is so.
 
 use gyradius_campaign::{SampleSummary, Table};
-use gyradius_report::{Section, Text, most_frequent, significant};
+use gyradius_report::{Section, Text, direction, most_frequent, significant};
 use gyradius_separation::MovingBody;
 use gyradius_statistics::Survey;
 use nalgebra::{Unit, Vector3};
@@ -79,7 +79,7 @@ impl Alert {
 
     /// That in so many runs, of those in which the bodies part, the payload leaves by more than 90° away from where it is to
     /// go, if it does in any.
-    pub(crate) fn backwards(model: &str, [backwards, runs]: [u64; 2]) -> Option<Self> {
+    pub(crate) fn backwards(model: &str, backwards: u64, runs: u64) -> Option<Self> {
         let model = model.to_owned();
         (backwards > 0).then_some(Self::Backwards { model, backwards, runs })
     }
@@ -150,11 +150,15 @@ impl Alert {
                 )
                 .code("[clearance]")
                 .plain(" in the scenario, would tell."),
-            Self::OffAxis { angle_deg, spin_axis: [x, y, z] } => Text::default()
+            Self::OffAxis { angle_deg, spin_axis } => Text::default()
                 .strong("The payload does not spin about its spin axis at the start")
                 .plain(format!(": without dispersion, its angular momentum is {}° from ", significant(*angle_deg, 3)))
-                .code(format!("spin_axis = [{x}, {y}, {z}]"))
-                .plain(", which is body axis 1 where the scenario does not state it. Nutation, cone and wobble are about that axis."),
+                .code("spin_axis")
+                .plain(format!(
+                    " = {}, which is body axis 1 where the scenario does not state it. Nutation, cone and wobble are about \
+                     that axis.",
+                    direction(*spin_axis)
+                )),
             Self::FarFromNominal { quantity, nominal, mean } => Text::default()
                 .strong("A law is far from the nominal value")
                 .plain(": ")

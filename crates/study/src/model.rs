@@ -38,7 +38,9 @@ impl Model {
     pub(crate) fn new(spec: &ModelSpec, scenario: &Scenario) -> Result<Self, ScenarioError> {
         let law = |which: Body, body: &UncertainBody| {
             let outside = |spec: &ModelSpec| scenario.outside_law(spec, which).cloned();
-            law(spec, which as usize, body, scenario.models(), &outside).map_err(|error| {
+            let models = scenario.models();
+            let modelled = Modelled { place: which as usize, body, models, outside: &outside };
+            modelled.law(spec).map_err(|error| {
                 let problem = format!("the {}: {error}", which.name());
                 let field = scenario.place(spec) + spec.law.key();
                 scenario.located(ScenarioError::field(field, problem))
@@ -196,108 +198,104 @@ impl Simulation for Separations<'_> {
 /// A law, and the deviations that it was given if it is entrywise.
 type GivenLaw = (Arc<dyn InertiaLaw>, Option<[f64; 6]>);
 
-/// The law of the body in a place, under a model that is one of several; `outside` is a program's own under a model, if it
-/// gave one.
-pub(crate) fn law(
-    spec: &ModelSpec,
-    place: usize,
-    body: &UncertainBody,
-    models: &[ModelSpec],
-    outside: &dyn Fn(&ModelSpec) -> Option<Arc<dyn InertiaLaw>>,
-) -> Result<GivenLaw, Box<dyn std::error::Error>> {
-    let model = match &spec.law {
-        Law::Outside(said) => {
-            let names = said.as_ref().map(|said| [&said.payload, &said.stage]);
-            let name = names.and_then(|names| names.get(place).map(|name| format!(" {name:?}")));
-            let name = name.unwrap_or_default();
-            let law = outside(spec).ok_or_else(|| {
-                format!(
-                    "its law{name} is a program's own, which no file holds: run or replay the study from that \
-                     program, which gives the law by Scenario::with_model"
-                )
-            })?;
-            return Ok((law, None));
+/// A body in its place among those of a scenario, and the models that the scenario has.
+pub(crate) struct Modelled<'a> {
+    pub(crate) place: usize,
+    pub(crate) body: &'a UncertainBody,
+    pub(crate) models: &'a [ModelSpec],
+    /// A program's own law under a model, if it gave one.
+    pub(crate) outside: &'a dyn Fn(&ModelSpec) -> Option<Arc<dyn InertiaLaw>>,
+}
+
+impl Modelled<'_> {
+    /// The law of the body under one of the models.
+    pub(crate) fn law(&self, spec: &ModelSpec) -> Result<GivenLaw, Box<dyn std::error::Error>> {
+        let model = match &spec.law {
+            Law::Outside(said) => {
+                let names = said.as_ref().map(|said| [&said.payload, &said.stage]);
+                let name = names.and_then(|names| names.get(self.place).copied());
+                let name = name.map_or_else(String::new, |name| format!(" {name:?}"));
+                let law = (self.outside)(spec).ok_or_else(|| {
+                    format!(
+                        "its law{name} is a program's own, which no file holds: run or replay the study from that \
+                         program, which gives the law by Scenario::with_model"
+                    )
+                })?;
+                return Ok((law, None));
+            }
+            Law::Principal(axes) => self.body.law(*axes)?,
+            Law::Given { kind, parameters } => {
+                let given = parameters.get(self.place).copied().unwrap_or_default();
+                DispersionModel::about(*kind, self.body.nominal(), &given)
+                    .map_err(|error| error.problem)?
+            }
+            Law::Matched { kind, to } => self.matched(*kind, &self.moments_of(to)?)?,
+        };
+        let given = if let DispersionModel::Entrywise(law) = &model {
+            Some(law.deviations())
+        } else {
+            None
+        };
+        Ok((Arc::new(model), given))
+    }
+
+    /// What the law of the body, which is called so, misses under a model that is to have the moments of another. Other kinds
+    /// than log-Cholesky say in their documentation which of the moments they have, whatever these are.
+    pub(crate) fn unmatched(&self, spec: &ModelSpec, name: &str) -> Option<UnmatchedLaw> {
+        let Law::Matched { kind: kind @ ModelKind::LogCholesky, to } = &spec.law else {
+            return None;
+        };
+        let asked = self.moments_of(to).ok()?;
+        let found = self.matched(*kind, &asked).ok()?.entry_moments()?;
+        UnmatchedLaw::of([&spec.name, to, name], &asked, &found)
+    }
+
+    /// The moments of the entries of the body under the model of a name.
+    fn moments_of(&self, name: &str) -> Result<EntryMoments, Box<dyn std::error::Error>> {
+        let model = self.models.iter().find(|m| m.name == name);
+        let model = model.filter(|m| matches!(m.law, Law::Principal(_) | Law::Outside(_)));
+        let model = model.ok_or_else(|| format!("matched_to {name:?}: no such model"))?;
+        let (of_model, _) = self.law(model)?;
+        let moments = match model.law.own_axes() {
+            Some(axes) => self.body.expected_moments(axes),
+            None => of_model.expected_moments(),
+        };
+        let of = of_model.name();
+        let unknown =
+            || format!("matched_to {name:?}: the moments of its law {of:?} are not known");
+        Ok(moments.ok_or_else(unknown)?)
+    }
+
+    /// The model of a kind that has these moments of the entries.
+    fn matched(
+        &self,
+        kind: ModelKind,
+        moments: &EntryMoments,
+    ) -> Result<DispersionModel, Box<dyn std::error::Error>> {
+        if let ModelKind::Entries { correlated: false, .. } = kind {
+            // The naive model knows the nominal body and how far its entries scatter, no more.
+            let given = ModelParameters::of_deviations(moments.deviations());
+            let nominal = self.body.nominal();
+            return Ok(DispersionModel::about(kind, nominal, &given).map_err(|e| e.problem)?);
         }
-        Law::Principal(axes) => body.law(*axes)?,
-        Law::Given { kind, parameters } => {
-            let given = parameters.get(place).copied().unwrap_or_default();
-            DispersionModel::about(*kind, body.nominal(), &given).map_err(|error| error.problem)?
-        }
-        Law::Matched { kind, to } => {
-            let moments = moments_of(to, place, body, models, outside)?;
-            matched(*kind, body, &moments)?
-        }
-    };
-    let given =
-        if let DispersionModel::Entrywise(law) = &model { Some(law.deviations()) } else { None };
-    Ok((Arc::new(model), given))
+        Ok(DispersionModel::matched(kind, moments)?.into_model())
+    }
 }
 
 impl Scenario {
     /// Laws of payload and stage that have not the moments to which they were to be matched, since no law of their kind has.
     #[must_use]
     pub fn unmatched(&self) -> Vec<UnmatchedLaw> {
-        let both = [(Body::Payload, self.payload()), (Body::Stage, self.stage())];
-        let pairs = self.models().iter().flat_map(|spec| both.map(|of| (spec, of)));
-        let of_pair = |(spec, (which, body)): (&ModelSpec, (Body, &UncertainBody))| {
-            let outside = |spec: &ModelSpec| self.outside_law(spec, which).cloned();
-            let place = (which as usize, which.name());
-            unmatched(spec, place, body, self.models(), &outside)
+        let models = self.models();
+        let of_model = |spec| {
+            self.bodies().into_iter().filter_map(move |(which, body)| {
+                let outside = |spec: &ModelSpec| self.outside_law(spec, which).cloned();
+                let body = Modelled { place: which as usize, body, models, outside: &outside };
+                body.unmatched(spec, which.name())
+            })
         };
-        pairs.filter_map(of_pair).collect()
+        models.iter().flat_map(of_model).collect()
     }
-}
-
-/// What the law of the body in a place and of a name misses under a model that is one of several and is to have the moments
-/// of another. Other kinds than log-Cholesky say in their documentation which of the moments they have, whatever these are.
-pub(crate) fn unmatched(
-    spec: &ModelSpec,
-    (place, name): (usize, &str),
-    body: &UncertainBody,
-    models: &[ModelSpec],
-    outside: &dyn Fn(&ModelSpec) -> Option<Arc<dyn InertiaLaw>>,
-) -> Option<UnmatchedLaw> {
-    let Law::Matched { kind: kind @ ModelKind::LogCholesky, to } = &spec.law else {
-        return None;
-    };
-    let asked = moments_of(to, place, body, models, outside).ok()?;
-    let found = matched(*kind, body, &asked).ok()?.entry_moments()?;
-    UnmatchedLaw::of([&spec.name, to, name], &asked, &found)
-}
-
-/// The moments of the entries of the body in a place under the model of a name.
-fn moments_of(
-    name: &str,
-    place: usize,
-    body: &UncertainBody,
-    models: &[ModelSpec],
-    outside: &dyn Fn(&ModelSpec) -> Option<Arc<dyn InertiaLaw>>,
-) -> Result<EntryMoments, Box<dyn std::error::Error>> {
-    let model = models.iter().find(|m| m.name == name);
-    let model = model.filter(|m| matches!(m.law, Law::Principal(_) | Law::Outside(_)));
-    let model = model.ok_or_else(|| format!("matched_to {name:?}: no such model"))?;
-    let (of_model, _) = law(model, place, body, models, outside)?;
-    let moments = match model.law.own_axes() {
-        Some(axes) => body.expected_moments(axes),
-        None => of_model.expected_moments(),
-    };
-    let of = of_model.name();
-    let unknown = || format!("matched_to {name:?}: the moments of its law {of:?} are not known");
-    Ok(moments.ok_or_else(unknown)?)
-}
-
-/// The model of a kind that has these moments of the entries.
-fn matched(
-    kind: ModelKind,
-    body: &UncertainBody,
-    moments: &EntryMoments,
-) -> Result<DispersionModel, Box<dyn std::error::Error>> {
-    if let ModelKind::Entries { correlated: false, .. } = kind {
-        // The naive model knows the nominal body and how far its entries scatter, no more.
-        let given = ModelParameters::of_deviations(moments.deviations());
-        return Ok(DispersionModel::about(kind, body.nominal(), &given).map_err(|e| e.problem)?);
-    }
-    Ok(DispersionModel::matched(kind, moments)?.into_model())
 }
 
 #[cfg(test)]

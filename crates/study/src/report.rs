@@ -2,8 +2,8 @@
 
 use gyradius_campaign::{Kept, Rows, SampleSummary};
 use gyradius_report::{
-    Document, Drawing, Figure, PageCell, PageTable, Section, Text, Tone, file_of, interval,
-    optional, percent, significant, spread,
+    Document, Drawing, Figure, PageCell, PageTable, Section, Text, Tone, direction, file_of,
+    interval, optional, percent, significant, spread,
 };
 use gyradius_statistics::Interval;
 use nalgebra::{Unit, Vector3};
@@ -115,7 +115,7 @@ fn results(scenario: &Scenario, summary: &Summary) -> Section {
             format!(
                 ": the angle between the axis that the payload is meant to spin about, {} in its body axes, and its nearest \
                  principal axis of inertia. It follows from the inertia alone. ",
-                entries(scenario.spin_axis())
+                direction((*scenario.spin_axis().as_ref()).into())
             ),
         )
         .strong("Nutation")
@@ -148,17 +148,11 @@ fn number(x: Option<f64>, digits: usize, interval: String) -> Text {
     Text::from(optional(x, digits)).tip(interval)
 }
 
-/// A direction, to a thousandth.
-fn entries(direction: &Unit<Vector3<f64>>) -> String {
-    let entries: Vec<_> =
-        direction.iter().map(|x| format!("{}", (1e3 * x).round() / 1e3 + 0.0)).collect();
-    format!("({})", entries.join(", "))
-}
-
 /// How the bodies part, a quantity a row.
 fn parting(scenario: &Scenario, summary: &Summary) -> Section {
-    let said = |direction: Option<&Unit<Vector3<f64>>>| {
-        direction.map_or_else(|| "none, for the springs' forces cancel".to_owned(), entries)
+    let said = |of: Option<&Unit<Vector3<f64>>>| match of {
+        Some(of) => direction((*of.as_ref()).into()),
+        None => "none, for the springs' forces cancel".to_owned(),
     };
     let clearance = scenario.outlines().map_or_else(String::new, |outlines| {
         format!(

@@ -29,8 +29,8 @@ pub(crate) struct Seen {
     pub(crate) far: [Option<u64>; 2],
     /// How many inertias of payload and stage are near the boundary of what is realizable, and how many there are.
     pub(crate) near_boundary: [[u64; 2]; 2],
-    /// In how many runs the payload leaves by more than 90° away from where it is to go, and in how many it leaves.
-    pub(crate) backwards: [u64; 2],
+    /// In how many runs the payload leaves by more than 90° away from where it is to go.
+    pub(crate) backwards: u64,
     /// Attitudes of the payload, of some runs that are evenly spaced, in their order.
     pub(crate) attitudes: Vec<UnitQuaternion<f64>>,
     /// What happens given each fault.
@@ -53,7 +53,7 @@ struct Drawn {
     drawn: [u64; 2],
     far: [Option<u64>; 2],
     near_boundary: [[u64; 2]; 2],
-    backwards: [u64; 2],
+    backwards: u64,
     kept: Vec<UnitQuaternion<f64>>,
 }
 
@@ -81,7 +81,7 @@ impl<'a> Looking<'a> {
         });
         let near = |body: usize| [0, 1].map(|i: usize| sum(&|block| block.near_boundary[body][i]));
         let near_boundary = [near(0), near(1)];
-        let backwards = [0, 1].map(|i: usize| sum(&|block| block.backwards[i]));
+        let backwards = sum(&|block| block.backwards);
         let attitudes = blocks.into_iter().flat_map(|block| block.kept).collect();
         let faults = self.faults.finish(&surveys, Confidence::default());
         Ok(Seen { surveys, drawn, far, near_boundary, backwards, attitudes, faults })
@@ -127,16 +127,13 @@ impl Drawn {
         let kept = all[Body::Payload as usize].iter();
         let errors = block.numbers(&Quantity::DirectionError.column());
         let errors =
-            || errors.into_iter().flat_map(|all| (0..block.len()).filter_map(move |i| all.get(i)));
+            errors.into_iter().flat_map(|all| (0..block.len()).filter_map(move |i| all.get(i)));
         Self {
             first: block.first(),
             drawn: [0, 1].map(|body: usize| all[body].len() as u64),
             far,
             near_boundary: Body::BOTH.map(|body| near_boundary(block, body)),
-            backwards: [
-                errors().filter(|error| *error > 90.0).count() as u64,
-                errors().count() as u64,
-            ],
+            backwards: errors.filter(|error| *error > 90.0).count() as u64,
             kept: kept.filter(|(run, _)| run.is_multiple_of(stride)).map(|(_, q)| *q).collect(),
         }
     }

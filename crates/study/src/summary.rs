@@ -324,8 +324,7 @@ fn far_from_nominal(scenario: &Scenario, models: &[ModelSummary]) -> Vec<Alert> 
     let numbers =
         in_all.filter_map(|d| Alert::far_from_nominal(&d.quantity, d.nominal, d.law_mean));
     let axes = scenario.models().iter().find_map(|model| model.law.own_axes());
-    let traces = [(Body::Payload, scenario.payload()), (Body::Stage, scenario.stage())];
-    let traces = traces.into_iter().filter_map(|(which, body)| {
+    let traces = scenario.bodies().into_iter().filter_map(|(which, body)| {
         let trace = |entries: [f64; 6]| entries[..3].iter().sum::<f64>();
         let mean = trace(body.expected_moments(axes?)?.mean());
         let nominal = trace(body.nominal().as_inertia_matrix().entries());
@@ -422,7 +421,8 @@ impl ModelSummary {
         let heavy = outcomes.map(|q| (q.quantity.label().into_owned(), &q.sample));
         let near = Body::BOTH.into_iter().zip(seen.near_boundary);
         let near = near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body, near, of));
-        let backwards = Alert::backwards(name, seen.backwards);
+        let parted = seen.quantity(Quantity::DirectionError).map_or(0, Survey::n);
+        let backwards = Alert::backwards(name, seen.backwards, parted);
         let first = failed.into_iter().chain(backwards).chain(unmoved);
         first.chain(Alert::heavy_tails(name, heavy)).chain(near).collect()
     }

@@ -132,11 +132,9 @@ impl Heading {
     pub(crate) fn unit_it_lacks(&self, beside: &[Self]) -> Option<usize> {
         let Self::Column(mut column) = *self else { return None };
         let (dimension, None) = column.unit()? else { return None };
-        beside.iter().position(|other| match *other {
-            Self::Column(Column::Value(i, Some(si))) => {
-                si != 1.0 && Group(i, 1).dimension() == dimension
-            }
-            _ => false,
+        beside.iter().position(|other| {
+            matches!(*other, Self::Column(Column::Value(i, Some(si)))
+                if si != 1.0 && Group(i, 1).dimension() == dimension)
         })
     }
 

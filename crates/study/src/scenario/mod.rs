@@ -257,8 +257,12 @@ impl Scenario {
     /// less than two standard deviations.
     #[must_use]
     pub fn folded(&self) -> Vec<FoldedRoot> {
-        let bodies = [(Body::Payload, &self.payload), (Body::Stage, &self.stage)];
-        bodies.into_iter().flat_map(|(body, own)| own.folded(body.name())).collect()
+        self.bodies().into_iter().flat_map(|(body, own)| own.folded(body.name())).collect()
+    }
+
+    /// Payload and stage.
+    pub(crate) fn bodies(&self) -> [(Body, &UncertainBody); 2] {
+        [(Body::Payload, &self.payload), (Body::Stage, &self.stage)]
     }
 
     /// The fleet, if flights of a vehicle have something in common, so that runs are not independent.

@@ -15,7 +15,8 @@ use super::{
     file::{BodyName, File, OutputFile},
 };
 use crate::{
-    Fleet, FoldedRoot, ScenarioError, UnmatchedLaw, model,
+    Fleet, FoldedRoot, ScenarioError, UnmatchedLaw,
+    model::Modelled,
     scenario::{
         Axes, Joint, List, ModelFile, ModelLaw, ModelSpec, Size, check_models, framed, parse_toml,
         place, refused,
@@ -231,14 +232,17 @@ impl SimulatorScenario {
     /// Laws of the bodies that have not the moments to which they were to be matched, since no law of their kind has.
     #[must_use]
     pub fn unmatched(&self) -> Vec<UnmatchedLaw> {
-        let models = &self.models;
-        let bodies = || self.bodies.iter().enumerate();
-        let pairs =
-            models.iter().flat_map(|spec| bodies().map(move |(place, body)| (spec, place, body)));
-        let of = |(spec, place, body): (&ModelSpec, usize, &SimulatedBody)| {
-            model::unmatched(spec, (place, &body.name), &body.uncertain, models, &|_| None)
+        let of_model = |spec| {
+            let bodies = self.bodies.iter().enumerate();
+            bodies.filter_map(move |(place, body)| self.modelled(place).unmatched(spec, &body.name))
         };
-        pairs.filter_map(of).collect()
+        self.models.iter().flat_map(of_model).collect()
+    }
+
+    /// The body in a place, under the models.
+    fn modelled(&self, place: usize) -> Modelled<'_> {
+        let body = &self.bodies[place].uncertain;
+        Modelled { place, body, models: &self.models, outside: &|_| None }
     }
 
     /// The law of a body under a model, both by their places, and whether it is the body's own.
@@ -248,8 +252,7 @@ impl SimulatorScenario {
         body: usize,
     ) -> Result<(Arc<dyn InertiaLaw>, bool), ScenarioError> {
         let (spec, body_of) = (&self.models[model], &self.bodies[body]);
-        let law = model::law(spec, body, &body_of.uncertain, &self.models, &|_| None);
-        let (law, _) = law.map_err(|error| {
+        let (law, _) = self.modelled(body).law(spec).map_err(|error| {
             let problem = format!("the body {}: {error}", body_of.name);
             ScenarioError::field(place(model) + spec.law.key(), problem)
         })?;
