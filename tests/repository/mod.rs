@@ -3,6 +3,7 @@
 mod arrows;
 mod circles;
 mod equations;
+mod errors;
 mod facade;
 mod files;
 mod layout;

@@ -161,7 +161,7 @@ impl Runs {
 
     fn read(&self, path: &Path) -> Result<Table, RunsError> {
         let read = self.empty.read_parquet(path);
-        read.map_err(|source| RunsError::Block { path: path.to_owned(), source })
+        read.map_err(|problem| RunsError::Block { path: path.to_owned(), problem })
     }
 }
 
@@ -186,12 +186,12 @@ impl From<Table> for Runs {
 #[non_exhaustive]
 pub enum RunsError {
     /// It cannot be read.
-    #[error("{}: {}", path.display(), said(source))]
+    #[error("{}: {}", path.display(), said(problem))]
     Block {
         /// Its file.
         path: PathBuf,
         /// Why.
-        source: ParquetError,
+        problem: ParquetError,
     },
     /// They are looked at no further.
     #[error("stopped")]

@@ -77,7 +77,7 @@ impl std::error::Error for FileError {}
 pub enum FileProblem {
     /// The system does not hand it out.
     #[error("it cannot be read: {0}")]
-    Io(#[from] io::Error),
+    Io(io::Error),
     /// A folder, a pipe, a device.
     #[error("it is not a regular file")]
     NotAFile,
@@ -159,6 +159,12 @@ pub enum FileProblem {
         /// What was found, and what is read.
         message: String,
     },
+}
+
+impl From<io::Error> for FileProblem {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
 }
 
 /// A place in a text that refuses the whole file, and why.

@@ -218,7 +218,7 @@ pub enum GeometryProblem {
     },
     /// Its frame or a number cannot be read.
     #[error("its geometry: {0}")]
-    Link(#[from] LinkProblem),
+    Link(LinkProblem),
     /// A size that is none.
     #[error("its geometry: {field} = {value}: it must be positive")]
     Size {
@@ -238,4 +238,10 @@ pub enum GeometryProblem {
     /// A mesh that is not read.
     #[error(transparent)]
     Mesh(#[from] MeshFileError),
+}
+
+impl From<LinkProblem> for GeometryProblem {
+    fn from(error: LinkProblem) -> Self {
+        Self::Link(error)
+    }
 }

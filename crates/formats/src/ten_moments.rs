@@ -181,7 +181,7 @@ fn malformed(message: &str) -> TenMomentsError {
 pub enum TenMomentsError {
     /// The system refuses, or it is no text.
     #[error("cannot be read: {0}")]
-    Io(#[from] io::Error),
+    Io(io::Error),
     /// It is of no known kind.
     #[error("extension {extension:?}: an estimate is read from .json, .toml or .csv")]
     Extension {
@@ -197,6 +197,12 @@ pub enum TenMomentsError {
         /// What is wrong.
         message: String,
     },
+}
+
+impl From<io::Error> for TenMomentsError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
 }
 
 impl From<Refusal> for TenMomentsError {

@@ -54,7 +54,7 @@ pub enum MassPropertiesError {
     Inertia(#[from] RealizabilityError),
     /// The inertia about another point is smaller than the parallel axis term allows.
     #[error("less the parallel axis term, which leaves the inertia about the mass centre: {0}")]
-    AboutMassCentre(#[source] RealizabilityError),
+    AboutMassCentre(RealizabilityError),
     /// A sum of no bodies.
     #[error("no bodies to add: there must be at least one")]
     Empty,
@@ -68,7 +68,7 @@ pub enum MassPropertiesError {
     },
     /// A part is removed that the whole cannot hold.
     #[error("the whole does not hold the part; of what is left: {0}")]
-    NotAPart(#[source] RealizabilityError),
+    NotAPart(RealizabilityError),
 }
 
 impl From<InertiaMatrixError> for MassPropertiesError {

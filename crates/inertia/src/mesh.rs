@@ -85,7 +85,13 @@ pub enum MeshError {
     },
     /// The enclosed mass has no possible inertia, or is too large.
     #[error("the surface may cross itself: {0}")]
-    MassProperties(#[from] MassPropertiesError),
+    MassProperties(MassPropertiesError),
+}
+
+impl From<MassPropertiesError> for MeshError {
+    fn from(error: MassPropertiesError) -> Self {
+        Self::MassProperties(error)
+    }
 }
 
 /// A body of uniform density inside a closed surface of triangles.

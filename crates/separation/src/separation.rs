@@ -15,20 +15,20 @@ use crate::{
 #[non_exhaustive]
 pub enum SeparationError {
     /// Something is wrong with a body or its state.
-    #[error("{body}: {source}")]
+    #[error("{body}: {problem}")]
     Body {
         /// Which of the two.
         body: Role,
         /// What.
-        source: BodyError,
+        problem: BodyError,
     },
     /// The values of a load make none.
-    #[error("{load}: {source}")]
+    #[error("{load}: {problem}")]
     Load {
         /// Which load.
         load: LoadId,
         /// What is wrong with it.
-        source: LoadError,
+        problem: LoadError,
     },
     /// There is no load.
     #[error("no {}: there must be at least one", kinds(" and no "))]
@@ -115,7 +115,7 @@ impl Separation {
             let state = moving.state().checked();
             state
                 .map(|s| moving.body().moving(s))
-                .map_err(|source| SeparationError::Body { body, source })
+                .map_err(|problem| SeparationError::Body { body, problem })
         };
         let (payload, stage) = (checked(Role::Payload, payload)?, checked(Role::Stage, stage)?);
         let loads = || loads.iter().map(|load| (*load).into());
@@ -149,7 +149,7 @@ impl Separation {
         let replace = |name, old: &MovingBody, inertia: InertiaMatrix| {
             let body: Result<Body, BodyError> = old.body().with_inertia(inertia);
             body.map(|b| old.with_body(b))
-                .map_err(|source| SeparationError::Body { body: name, source })
+                .map_err(|problem| SeparationError::Body { body: name, problem })
         };
         Ok(Self {
             payload: replace(Role::Payload, &self.payload, payload.into())?,

@@ -164,16 +164,16 @@ impl Stack {
         let body = |role: Role| {
             let placed = &self.bodies[role as usize];
             Body::new(placed.mass, placed.inertia)
-                .map_err(|source| SeparationError::Body { body: role, source })
+                .map_err(|problem| SeparationError::Body { body: role, problem })
         };
         let (payload, stage) = (body(Role::Payload)?, body(Role::Stage)?);
         let mut states = self.bodies.each_ref().map(Placed::state);
         let mut loads: SmallVec<[AnyLoad; INLINE_LOADS]> = SmallVec::new();
         for mounted in &self.loads {
-            loads.push(self.load(mounted, &states).map_err(|source| {
+            loads.push(self.load(mounted, &states).map_err(|problem| {
                 let kind = mounted.nominal.kind();
                 let number = loads.iter().filter(|load| load.kind() == kind).count();
-                SeparationError::Load { load: LoadId { kind, number }, source }
+                SeparationError::Load { load: LoadId { kind, number }, problem }
             })?);
         }
         self.move_whole(&mut states);

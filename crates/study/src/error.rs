@@ -85,13 +85,25 @@ pub enum StudyError {
     Runs(RunsError),
     /// The runs cannot be summarised.
     #[error("cannot summarise the runs: {0}")]
-    Statistics(#[from] StatisticsError),
+    Statistics(StatisticsError),
     /// The runs cannot be judged.
     #[error("cannot judge the requirements: {0}")]
     Judgement(JudgementError),
     /// The summary cannot be put into JSON.
     #[error("cannot write the summary: {0}")]
-    Json(#[from] serde_json::Error),
+    Json(serde_json::Error),
+}
+
+impl From<serde_json::Error> for StudyError {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Json(error)
+    }
+}
+
+impl From<StatisticsError> for StudyError {
+    fn from(error: StatisticsError) -> Self {
+        Self::Statistics(error)
+    }
 }
 
 impl From<RunsError> for StudyError {

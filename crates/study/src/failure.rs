@@ -15,12 +15,12 @@ pub enum Failure {
     #[error(transparent)]
     Broken(#[from] RunError),
     /// The outline of a body cannot be placed about its mass centre.
-    #[error("{body}: outline: {source}")]
+    #[error("{body}: outline: {problem}")]
     Outline {
         /// Whose.
         body: &'static str,
         /// Why.
-        source: OutlineError,
+        problem: OutlineError,
     },
 }
 
@@ -35,8 +35,8 @@ impl Failure {
     #[must_use]
     pub fn kind(&self) -> Cow<'static, str> {
         let plain: &'static str = match self {
-            Self::Refused(SeparationError::Body { body, source }) => {
-                let what = match source {
+            Self::Refused(SeparationError::Body { body, problem }) => {
+                let what = match problem {
                     BodyError::Mass { .. } => "mass not positive",
                     BodyError::NotPositiveDefinite { .. } => "inertia not positive definite",
                     _ => "state refused",

@@ -20,7 +20,7 @@ const SAME: f64 = 1e-6;
 pub enum FragmentError {
     /// The nominal inertia does not read back.
     #[error("nominal inertia: {0}")]
-    Inertia(#[from] RealizabilityError),
+    Inertia(RealizabilityError),
     /// The variances of the roots do not read back.
     #[error(transparent)]
     Roots(#[from] ScalarRootsError),
@@ -34,7 +34,7 @@ pub enum FragmentError {
     RootLaw,
     /// The covariance of the axes does not read back.
     #[error("axes: {0}")]
-    Axes(#[from] RcgError),
+    Axes(RcgError),
     /// The mass or the mass centre do not read back.
     #[error("{field} = {value:?}: it must be finite and not negative, and a share at most one")]
     Beside {
@@ -52,6 +52,18 @@ pub enum FragmentError {
         /// The angle between them.
         degrees: f64,
     },
+}
+
+impl From<RcgError> for FragmentError {
+    fn from(error: RcgError) -> Self {
+        Self::Axes(error)
+    }
+}
+
+impl From<RealizabilityError> for FragmentError {
+    fn from(error: RealizabilityError) -> Self {
+        Self::Inertia(error)
+    }
 }
 
 /// The part of a scenario file that says how uncertain the inertia of a body is: nominal inertia,

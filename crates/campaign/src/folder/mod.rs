@@ -419,7 +419,7 @@ impl FolderError {
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Problem {
     #[error("it cannot be written: {0}")]
-    Io(#[from] io::Error),
+    Io(io::Error),
     #[error("stopped")]
     Stopped,
     #[error("it is not a folder")]
@@ -471,5 +471,17 @@ pub(crate) enum Problem {
     #[error(transparent)]
     Name(#[from] name::NameError),
     #[error("its record cannot be written: {0}")]
-    Json(#[from] serde_json::Error),
+    Json(serde_json::Error),
+}
+
+impl From<serde_json::Error> for Problem {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Json(error)
+    }
+}
+
+impl From<io::Error> for Problem {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
 }

@@ -182,10 +182,10 @@ pub enum FormatError {
     #[error(transparent)]
     Io(#[from] io::Error),
     /// The library that writes Parquet refuses.
-    #[error("{0}")]
+    #[error(transparent)]
     Parquet(ParquetError),
     /// The library that writes JSON refuses.
-    #[error("{0}")]
+    #[error(transparent)]
     Json(#[from] serde_json::Error),
     /// The runs do not fit what stands in the head of the file.
     #[error("{what}: {found}, and the head of the file says {said}")]

@@ -76,10 +76,16 @@ pub enum PrincipalFitError {
     },
     /// The axes have no fit.
     #[error("axes: {0}")]
-    Axes(#[from] FitError),
+    Axes(FitError),
     /// The roots are out of range.
     #[error(transparent)]
     Roots(#[from] ScalarRootsError),
+}
+
+impl From<FitError> for PrincipalFitError {
+    fn from(error: FitError) -> Self {
+        Self::Axes(error)
+    }
 }
 
 impl PrincipalFitError {

@@ -58,12 +58,12 @@ pub enum ReplayError {
     #[error("the run ends well, but not its coast: {0}; ask for a shorter one")]
     Coasting(RunError),
     /// The run table cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {problem}", path.display())]
     Table {
         /// The table.
         path: PathBuf,
         /// Why.
-        source: ParquetError,
+        problem: ParquetError,
     },
     /// What the study tells of its run tables cannot be read.
     #[error("{}: {problem}", path.display())]

@@ -120,12 +120,12 @@ impl Comparison<'_> {
     /// What the table has of the run, if it has the run.
     fn found(&self) -> Result<Option<Vec<(String, Cell<'static>)>>, ReplayError> {
         let found = read_run(self.path, (self.own.model(), self.own.first()));
-        found.map_err(|source| ReplayError::Table { path: self.path.to_owned(), source })
+        found.map_err(|problem| ReplayError::Table { path: self.path.to_owned(), problem })
     }
 
     fn unreadable(&self, problem: &str) -> ReplayError {
-        let source = ParquetError::General(problem.to_owned());
-        ReplayError::Table { path: self.path.to_owned(), source }
+        let problem = ParquetError::General(problem.to_owned());
+        ReplayError::Table { path: self.path.to_owned(), problem }
     }
 
     fn differs(&self, column: &str, table: String, replayed: String) -> ReplayError {

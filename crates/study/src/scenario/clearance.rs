@@ -64,7 +64,9 @@ impl Outlines {
     /// The outlines of payload and stage about mass centres that lie so far off the nominal ones, body axes, m.
     pub(crate) fn about(&self, centres: &[Vector3<f64>; 2]) -> Result<[Outline; 2], Failure> {
         let about = |body: Body, outline: &Outline, centre: &Vector3<f64>| {
-            outline.about(*centre).map_err(|source| Failure::Outline { body: body.name(), source })
+            outline
+                .about(*centre)
+                .map_err(|problem| Failure::Outline { body: body.name(), problem })
         };
         let [payload, stage] = centres;
         let payload = about(Body::Payload, &self.payload, payload)?;

@@ -63,12 +63,12 @@ const PECK_2003: &str = include_str!("peck-2003.toml");
 #[non_exhaustive]
 pub enum ScenarioError {
     /// The file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {problem}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// Why.
-        source: std::io::Error,
+        problem: std::io::Error,
     },
     /// The file is not TOML, or has a wrong, missing or unknown key.
     #[error("{}{message}", path.as_ref().map(|p| format!("{}: ", p.display())).unwrap_or_default())]
@@ -411,7 +411,7 @@ pub(crate) fn scenario_file(path: &Path) -> PathBuf {
 
 /// The text of a scenario file. One in the folder of a study may have been put aside by a command that was killed.
 pub(crate) fn read_file(path: &Path) -> Result<String, ScenarioError> {
-    let unread = |source| ScenarioError::Read { path: path.to_owned(), source };
+    let unread = |problem| ScenarioError::Read { path: path.to_owned(), problem };
     gyradius_campaign::restore(gyradius_campaign::folder_of(path))
         .map_err(|error| unread(std::io::Error::other(error)))?;
     read_text(path, limits::BYTES).map_err(unread)
