@@ -1,8 +1,12 @@
-//! What MuJoCo's compiler is told that changes the inertias of a file.
+//! What MuJoCo's compiler is told that changes the inertias of a file, or makes several bodies of one.
 
 use std::fmt;
 
-use crate::{Format, Gap, GapKind, xml::Tree};
+use crate::{
+    Format, Gap, GapKind,
+    body::shortened,
+    xml::{Node, Tree},
+};
 
 /// What tells MuJoCo's compiler to compute all inertias from geoms, or to scale all masses to a total. Of several that
 /// state an attribute, it believes the last.
@@ -27,6 +31,11 @@ pub enum CompilerDoubt {
         /// The attribute.
         told: String,
     },
+    /// Bodies of an MJCF file stand in `<replicate>`, of which it makes several.
+    Replicated {
+        /// The first of them, as it is called in the file.
+        body: String,
+    },
     /// The file includes others, whose compiler counts for this one too.
     Included,
 }
@@ -41,6 +50,10 @@ impl fmt::Display for CompilerDoubt {
                 f,
                 "the element <mujoco> of the file has {told}: MuJoCo, and no other program, does not use the masses and \
                  inertias as they are written"
+            ),
+            Self::Replicated { body } => write!(
+                f,
+                "\"{body}\" stands in <replicate>: MuJoCo makes several bodies of it, which all have the same numbers"
             ),
             Self::Included => f.write_str(
                 "the files that this file includes are not read: MuJoCo does not use the masses and inertias as they are \
@@ -57,7 +70,12 @@ pub(crate) fn doubts(tree: &Tree<'_>, format: Format, gaps: &[Gap]) -> Vec<Compi
     match format {
         Format::Mjcf => {
             let includes = gaps.iter().any(|gap| gap.kind() == GapKind::Included);
-            raised.chain(includes.then_some(CompilerDoubt::Included)).collect()
+            let mut replicated = tree.all("replicate").flat_map(Node::descendants);
+            let body = replicated.find(|node| node.name() == "body");
+            let body = body.map(|body| body.attribute("name").map_or("unnamed", |name| name));
+            let replicated = body.map(|body| CompilerDoubt::Replicated { body: shortened(body) });
+            let all = raised.chain(replicated);
+            all.chain(includes.then_some(CompilerDoubt::Included)).collect()
         }
         Format::Urdf => {
             let of_urdf = overridden(tree).map(|told| CompilerDoubt::OfUrdf { told });

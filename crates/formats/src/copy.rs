@@ -22,7 +22,7 @@ pub(crate) fn edits(
         let spot = reading.mass_place.map(|place| Spot::Numbers(vec![place]));
         write(&mut edits, spot.as_ref().unwrap_or(&frame.mass_spot), &[after.mass_kg()], "mass")?;
     }
-    let centre: [f64; 3] = after.mass_centre_m().into();
+    let centre: [f64; 3] = frame.written_centre(after.mass_centre_m()).into();
     if frame.centre != after.mass_centre_m() {
         write(&mut edits, &frame.centre_spot, &centre, "mass centre")?;
     }
@@ -150,7 +150,7 @@ fn turned(
     let places: Option<Vec<Place>> = (0..3).map(|i| reading.places[i][i]).collect();
     let spot = places.map_or(Spot::Nowhere, Spot::Numbers);
     write(edits, &spot, &axes.moments(), "inertia")?;
-    let rotation: UnitQuaternion<f64> = frame.rotation * axes.attitude().inverse();
+    let rotation = frame.written_axes(frame.rotation * axes.attitude().inverse());
     let quaternion = [rotation.w, rotation.i, rotation.j, rotation.k];
     match &diagonal.quaternion {
         Some(places) => write(edits, &Spot::Numbers(places.clone()), &quaternion, "quat"),

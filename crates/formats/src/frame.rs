@@ -1,10 +1,11 @@
 //! The frame of an inertia in that of its link, and where its numbers stand or can be written.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
 use crate::{
     BodyError, Format, LinkProblem,
     body::{NAMES, Number, Place, shortened},
+    holder::frames,
     orientation::{ATTRIBUTES, Angles, of_mjcf, of_quaternion, of_roll_pitch_yaw},
     sdf_words::{has_attributes, truth},
     xml::{Node, Tree},
@@ -17,6 +18,8 @@ pub(crate) struct Frame {
     pub(crate) centre: Vector3<f64>,
     /// Takes components in this frame to those in the link's.
     pub(crate) rotation: UnitQuaternion<f64>,
+    /// The frames of MJCF in which the numbers stand, in that of the body, if there are any.
+    pub(crate) around: Option<Isometry3<f64>>,
     pub(crate) centre_spot: Spot,
     pub(crate) mass_spot: Spot,
     /// Where entries go that the file leaves to their defaults.
@@ -27,6 +30,18 @@ pub(crate) struct Frame {
     pub(crate) closed: Vec<(usize, String)>,
     /// Of MJCF with `diaginertia`.
     pub(crate) diagonal: Option<Diagonal>,
+}
+
+impl Frame {
+    /// A mass centre in the frame of the link, as the file writes it.
+    pub(crate) fn written_centre(&self, centre: Vector3<f64>) -> Vector3<f64> {
+        self.around.map_or(centre, |around| around.inverse_transform_point(&centre.into()).coords)
+    }
+
+    /// Axes in those of the link, as the file writes them.
+    pub(crate) fn written_axes(&self, axes: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+        self.around.map_or(axes, |around| around.rotation.inverse() * axes)
+    }
 }
 
 /// Where a principal inertia of MJCF says its axes, and where more than that can be written.
@@ -130,6 +145,7 @@ fn urdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
     Ok(Frame {
         centre: xyz.map_or_else(Vector3::zeros, |xyz| three(&xyz)),
         rotation: of_roll_pitch_yaw(three(&rpy.unwrap_or_default()).into()),
+        around: None,
         centre_spot,
         mass_spot: Spot::Nowhere,
         entry_spots: Vec::new(),
@@ -139,7 +155,19 @@ fn urdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
     })
 }
 
+/// Where the element is in the frames around it, and these in the body.
+fn around(node: Node<'_, '_>, angles: &Angles) -> Result<Option<Isometry3<f64>>, LinkProblem> {
+    let pose = |frame: Node<'_, '_>| {
+        let position = three(&frame.numbers("pos", 3).transpose()?.unwrap_or_default());
+        Ok(Isometry3::from_parts(Translation3::from(position), of_mjcf(frame, angles)?))
+    };
+    // From the inside.
+    let poses: Vec<_> = frames(node).map(pose).collect::<Result<_, LinkProblem>>()?;
+    Ok(poses.into_iter().reduce(|inner, outer| outer * inner))
+}
+
 fn mjcf(node: Node<'_, '_>, angles: &Angles) -> Result<Frame, LinkProblem> {
+    let around = around(node, angles)?;
     let position = node.numbers("pos", 3).transpose()?;
     let centre_spot = match &position {
         Some(numbers) => Spot::of(numbers),
@@ -159,9 +187,11 @@ fn mjcf(node: Node<'_, '_>, angles: &Angles) -> Result<Frame, LinkProblem> {
             Some(Spot::Missing { .. } | Spot::Nowhere) | None => None,
         },
     });
+    let centre = position.map_or_else(Vector3::zeros, |numbers| three(&numbers));
     Ok(Frame {
-        centre: position.map_or_else(Vector3::zeros, |numbers| three(&numbers)),
-        rotation,
+        centre: around.map_or(centre, |around| (around * Point3::from(centre)).coords),
+        rotation: around.map_or(rotation, |around| around.rotation * rotation),
+        around,
         centre_spot,
         mass_spot: Spot::Nowhere,
         entry_spots: Vec::new(),
@@ -241,6 +271,7 @@ fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
     Ok(Frame {
         centre: numbers.map_or_else(Vector3::zeros, |numbers| three(&numbers)),
         rotation,
+        around: None,
         centre_spot,
         mass_spot: Spot::child(node, "mass>", "mass", "</mass>"),
         entry_spots: NAMES.iter().map(|name| entry(name)).collect(),

@@ -36,6 +36,7 @@ mod file;
 mod frame;
 mod gap;
 mod geometry;
+mod holder;
 mod judge;
 mod kind;
 mod mesh_file;

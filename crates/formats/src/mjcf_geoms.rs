@@ -4,9 +4,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 use std::collections::HashMap;
 
 use crate::{
-    BodyError, LinkProblem,
+    BodyError, Format, LinkProblem,
     body::{Number, shortened},
     geometry::{GeometryProblem, Shape, Solid},
+    holder::holder,
     orientation::{ATTRIBUTES, Angles, from_third_axis, of_mjcf},
     references::in_folder,
     xml::{Node, Tree},
@@ -60,7 +61,9 @@ impl<'t, 'a> Geoms<'t, 'a> {
 
     /// The solids of the body around an inertia: of the geoms that can collide, or of all if none can.
     pub(crate) fn of(&self, inertial: Node<'t, 'a>) -> Result<Vec<Solid>, GeometryProblem> {
-        let Some(body) = inertial.parent() else { return Err(GeometryProblem::Nothing) };
+        let Some(body) = holder(inertial, Format::Mjcf) else {
+            return Err(GeometryProblem::Nothing);
+        };
         if !self.is_whole {
             return Err(GeometryProblem::Included);
         }

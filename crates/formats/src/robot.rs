@@ -1,7 +1,7 @@
 //! A robot: the mass, mass centre and inertia of its links in the links' own frames, and copies with other numbers.
 
 use gyradius_inertia::{InertiaMatrix, MassProperties, RELATIVE_TOLERANCE};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::{
     collections::{HashMap, HashSet},
     path::Path,
@@ -14,12 +14,12 @@ use crate::{
     edit::{Edit, edited},
     frame::{self, Frame},
     geometry::{self, GeometryProblem, Solid},
+    holder::{holder, inertials, is_body, is_in_gazebo},
     kind::known_extension,
     mjcf_geoms::Geoms,
-    references,
-    robots::{self, INERTIAL},
+    references, robots,
     text::Text,
-    xml::{Node, Tree},
+    xml::Tree,
 };
 
 /// A URDF, MJCF or SDF file as links with mass properties, which can be written with others.
@@ -203,10 +203,12 @@ impl RobotFile {
         let mut links = Vec::new();
         let extension = known_extension(file.path());
         let _ = robots::each(&tree, format, extension, Products::default(), |node, body| {
-            let repeated = node.is_repeated();
+            let of_body = holder(node, format).map(|body| inertials(body, format));
+            let of_body = of_body.unwrap_or_default();
+            let repeated = of_body.first().is_some_and(|first| *first != node);
             let name = if repeated { named(&body).to_owned() } else { names.next(named(&body)) };
             let read = match body.reading() {
-                _ if repeated && format == Format::Mjcf => Err(LinkProblem::SecondOfBody),
+                _ if of_body.len() > 1 && format == Format::Mjcf => Err(LinkProblem::Several),
                 _ if repeated => Err(LinkProblem::Second),
                 _ if format == Format::Urdf && is_in_gazebo(node) => Err(LinkProblem::Gazebo),
                 None => Err(body.inertia().err().map_or(LinkProblem::Gazebo, Into::into)),
@@ -237,7 +239,7 @@ impl RobotFile {
         let element = if format == Format::Mjcf { "body" } else { "link" };
         let without = tree
             .all(element)
-            .filter(|link| link.children().all(|child| child.name() != INERTIAL))
+            .filter(|link| is_body(*link, format) && inertials(*link, format).is_empty())
             .filter_map(|link| link.attribute("name").map(str::to_owned))
             .collect();
         let references = references::relative(&tree);
@@ -311,7 +313,7 @@ impl RobotFile {
     /// and MJCF's `diaginertia` becomes `fullinertia` where the axes are turned and nothing in the file says theirs.
     ///
     /// In a frame that is not turned, the copy reads back to the bit; in one that is, and with `diaginertia`, to
-    /// rounding of the largest entry.
+    /// rounding of the largest entry. In a `<frame>` of MJCF, the mass centre reads back to rounding, too.
     ///
     /// # Errors
     /// A link's numbers cannot be told or do not stand in the file as plain numbers, or the copy does not read back.
@@ -337,8 +339,8 @@ impl RobotFile {
         let same = again.links.len() == self.links.len()
             && self.links.iter().zip(&again.links).enumerate().all(|(index, (before, after))| {
                 before.name == after.name
-                    && match (expected.get(&index), before.numbers(), after.numbers()) {
-                        (None, Ok(before), Ok(after)) => before == after,
+                    && match (expected.get(&index), &before.read, &after.read) {
+                        (None, Ok((before, _)), Ok((after, _))) => before == after,
                         (None, Err(before), Err(after)) => before == after,
                         (Some(properties), Ok(_), Ok(after)) => is_that(after, properties),
                         _ => false,
@@ -348,15 +350,13 @@ impl RobotFile {
     }
 }
 
-/// Whether numbers are those of a body, the inertia to rounding.
-fn is_that(numbers: &LinkNumbers, body: &MassProperties) -> bool {
+/// Whether numbers are those of a body, the inertia to rounding; in frames of MJCF the mass centre as well.
+fn is_that((numbers, frame): &(LinkNumbers, Frame), body: &MassProperties) -> bool {
+    let off = (numbers.centre - body.mass_centre_m()).amax();
+    let size = |around: Isometry3<f64>| numbers.centre.amax() + around.translation.vector.amax();
+    let rounding = frame.around.map_or(0.0, |around| RELATIVE_TOLERANCE * size(around));
     let (read, meant): (&Matrix3<f64>, _) = (numbers.inertia.matrix(), body.inertia().matrix());
     numbers.mass == body.mass_kg()
-        && numbers.centre == body.mass_centre_m()
+        && off <= rounding
         && (read - meant).amax() <= RELATIVE_TOLERANCE * meant.amax()
-}
-
-/// Whether an inertia stands in a block of a URDF file for Gazebo alone.
-fn is_in_gazebo(node: Node<'_, '_>) -> bool {
-    node.ancestors().any(|above| above.name() == "gazebo")
 }

@@ -15,9 +15,11 @@ pub enum LinkProblem {
     /// Another one of the link stands before it.
     #[error("it is a second <inertial> of its link, and simulators read the first alone")]
     Second,
-    /// Another one of the body stands before it, in MJCF.
-    #[error("it is a second <inertial> of its body, and MuJoCo refuses the file")]
-    SecondOfBody,
+    /// It is one of several of its body, in MJCF.
+    #[error(
+        "its body has more than one <inertial>: MuJoCo refuses the file or, where they stand in frames, takes the last"
+    )]
+    Several,
     /// Its frame is given in another one than the link's.
     #[error("its pose is relative to \"{frame}\": it must be that in the link")]
     RelativeTo {
@@ -87,7 +89,7 @@ impl LinkProblem {
             Self::Orientation { .. }
             | Self::AngleUnit { .. }
             | Self::Word { .. }
-            | Self::SecondOfBody
+            | Self::Several
             | Self::OutOfRange => true,
             Self::Gazebo
             | Self::Second

@@ -5,6 +5,7 @@ use crate::{
     body::{ENTRIES, NAMES, Number, Reading, shortened},
     error::Refusal,
     gap::Gaps,
+    holder::{is_in_gazebo, is_in_place},
     sdf_words::{has_attributes, truth},
     xml::{MACROS, Node, Tree},
 };
@@ -97,6 +98,11 @@ pub(crate) fn each<'t, 'a>(
         } else if node.name() == INERTIAL {
             // The line of the numbers, not of the element around them.
             let line = node.child("inertia").unwrap_or(node).line();
+            // What a macro makes of what stands in it is not known.
+            if !node.ancestors().any(is_macro) && !is_in_place(node, format) {
+                gaps.add(GapKind::Misplaced, line);
+                continue;
+            }
             let reading = match read_one(node, format, products) {
                 Ok(reading) => Ok(reading),
                 Err(Trouble::Gap(kind)) => {
@@ -140,17 +146,11 @@ fn read_one(
     format: Format,
     products: Products,
 ) -> Result<Reading, Trouble> {
-    let is_gazebo = |node: Node<'_, '_>| node.name() == "gazebo";
     let reading = match format {
         Format::Mjcf => mjcf(inertial, products),
         // Gazebo puts what stands in such a block of a URDF file into the model or link that it makes
-        // of it as it stands: it is SDF. Other elements in it are for plugins, and may hold anything.
-        Format::Urdf if inertial.ancestors().any(is_gazebo) => {
-            if !inertial.parent().is_some_and(|above| is_gazebo(above) || above.name() == "link") {
-                return Err(Trouble::Gap(GapKind::Misplaced));
-            }
-            return sdf_or_computed(inertial, products);
-        }
+        // of it as it stands: it is SDF.
+        Format::Urdf if is_in_gazebo(inertial) => return sdf_or_computed(inertial, products),
         Format::Sdf => return sdf_or_computed(inertial, products),
         Format::Urdf | Format::Csv | Format::Toml | Format::Json => urdf(inertial, products),
     };

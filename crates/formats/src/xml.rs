@@ -281,9 +281,12 @@ impl<'t, 'a> Node<'t, 'a> {
     }
 
     pub(crate) fn children(self) -> impl Iterator<Item = Self> {
-        (self.index + 1..self.element().end)
-            .map(move |index| Self { tree: self.tree, index })
-            .filter(move |node| node.element().parent == Some(self.index))
+        self.descendants().filter(move |node| node.element().parent == Some(self.index))
+    }
+
+    /// What stands in it at any depth.
+    pub(crate) fn descendants(self) -> impl Iterator<Item = Self> {
+        (self.index + 1..self.element().end).map(move |index| Self { tree: self.tree, index })
     }
 
     /// The first child of this name with the prefix of this element, or of any prefix.
@@ -367,13 +370,6 @@ impl<'t, 'a> Node<'t, 'a> {
     /// Where `/>` stands that ends this element, and the end tag that it stands for.
     pub(crate) fn closed(self) -> Option<(usize, String)> {
         Some((self.element().closed?, format!("</{}>", self.element().name)))
-    }
-
-    /// Whether a sibling of its name stands before it.
-    pub(crate) fn is_repeated(self) -> bool {
-        let same = |node: &Self| node.name() == self.name();
-        let first = self.parent().and_then(|parent| parent.children().find(same));
-        first.is_some_and(|first| first.index != self.index)
     }
 
     /// The numbers that are the text of this element.

@@ -3,6 +3,7 @@
 
 mod dressings;
 mod mjcf_geoms;
+mod places;
 mod robots;
 mod samples;
 mod slips;

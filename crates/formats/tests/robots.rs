@@ -729,7 +729,7 @@ fn a_second_inertia_of_a_link_is_not_another_link() {
     for (name, root, link, inertial, problem) in [
         ("a.urdf", "robot", "link", urdf, LinkProblem::Second),
         ("a.sdf", "sdf", "link", "<inertial/>", LinkProblem::Second),
-        ("a.xml", "mujoco", "body", mjcf, LinkProblem::SecondOfBody),
+        ("a.xml", "mujoco", "body", mjcf, LinkProblem::Several),
     ] {
         let one = |name: &str, times: usize| {
             format!("<{link} name='{name}'>{}</{link}>", inertial.repeat(times))
@@ -739,7 +739,9 @@ fn a_second_inertia_of_a_link_is_not_another_link() {
         let names: Vec<&str> = file.links().iter().map(gyradius_formats::RobotLink::name).collect();
         assert_eq!(names, ["a", "a", "b", "a#2"], "{name}");
         let found: Vec<_> = file.links().iter().map(|link| link.numbers().err()).collect();
-        assert_eq!(found, [None, Some(&problem), None, None], "{name}");
+        // MuJoCo takes none of two, or the last.
+        let first = (problem == LinkProblem::Several).then_some(&problem);
+        assert_eq!(found, [first, Some(&problem), None, None], "{name}");
     }
 }
 
@@ -791,6 +793,20 @@ fn what_mujoco_may_change_is_told() {
             "r.xml",
             mjcf("<compiler boundmass='2' boundinertia='1e-3'/><include file='c.xml'/>"),
             &["boundmass=\"2\"", "boundinertia=\"1e-3\"", "includes are not read"],
+        ),
+        (
+            "r.xml",
+            format!(
+                "<mujoco><worldbody><replicate count='3'><frame><body name='b'>{inertial}</body></frame></replicate></worldbody></mujoco>"
+            ),
+            &["\"b\" stands in <replicate>"],
+        ),
+        (
+            "r.xml",
+            format!(
+                "<mujoco><worldbody><body name='b'>{inertial}<replicate count='3'><geom size='.1'/></replicate></body></worldbody></mujoco>"
+            ),
+            &[],
         ),
         ("r.urdf", urdf("fusestatic='true'"), &[]),
         ("r.urdf", urdf("settotalmass='5' boundmass='2'"), &["settotalmass=\"5\"", "boundmass"]),

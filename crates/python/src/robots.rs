@@ -1,7 +1,7 @@
 //! The links of robot files.
 
 use gyradius_dispersion::TenParameters;
-use gyradius_formats::{Gap, GapKind, LinkProblem, RobotFile, RobotLink};
+use gyradius_formats::{CompilerDoubt, Gap, GapKind, LinkProblem, RobotFile, RobotLink};
 use pyo3::{PyResult, Python, pyfunction};
 use std::path::PathBuf;
 
@@ -38,7 +38,12 @@ pub(crate) fn load_robot(py: Python<'_>, path: PathBuf) -> PyResult<(Vec<Link>, 
         let overridden = robot.overridden_by().map(|told| {
             format!("its compiler says {told}: MuJoCo takes other numbers than those of its links")
         });
-        Ok((links, overridden.into_iter().chain(robot.gaps().iter().filter_map(unread)).collect()))
+        // Files that are not read are told below.
+        let doubts =
+            robot.compiler_doubts().iter().filter(|doubt| **doubt != CompilerDoubt::Included);
+        let doubts = doubts.map(ToString::to_string);
+        let unread = robot.gaps().iter().filter_map(unread);
+        Ok((links, overridden.into_iter().chain(doubts).chain(unread).collect()))
     })
 }
 

@@ -296,11 +296,12 @@ def test_links_that_are_left_out_are_told_of(tmp_path: Path) -> None:
 
     file = tmp_path / "a.xml"
     body = '<body name="a"><inertial pos="0 0 0" mass="1" diaginertia="1 2 2.5"/></body>'
-    for words in ('settotalmass="5"', 'inertiafromgeom="true"'):
+    for words in ('settotalmass="5"', 'inertiafromgeom="true"', 'boundmass="3"', 'boundinertia="0.15"'):
         file.write_text(f"<mujoco><compiler {words}/><worldbody>{body}</worldbody></mujoco>", encoding="utf-8")
-        with pytest.warns(RuntimeWarning, match="MuJoCo takes other numbers"):
+        told = "MuJoCo raises smaller numbers" if words.startswith("bound") else "MuJoCo takes other numbers"
+        with pytest.warns(RuntimeWarning, match=told):
             gyradius.load(file)
-        with pytest.raises(ValueError, match="MuJoCo takes other numbers"):
+        with pytest.raises(ValueError, match=told):
             gyradius.load(file, strict=True)
 
 
