@@ -101,7 +101,7 @@ pub use column::{Column, ColumnSummary, Kind};
 pub use designs::{Designs, DesignsError, Mix, Output};
 pub use external::{
     ExternalSimulation, Inputs, Outputs, Program, ProgramError, RunInputs, Simulator,
-    SimulatorFunction, Told,
+    SimulatorFunction, Told, Unasked,
 };
 pub use failure::Failure;
 pub use folder::{

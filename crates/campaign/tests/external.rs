@@ -109,7 +109,7 @@ fn assert_rows(table: &Table, failed: &BTreeSet<u64>, kind: &str, what: &str) {
 
 /// What a misbehaving simulator does, and the kind of the failure if it is asked line by line and if it is started for
 /// each run; none if the run is all right.
-const MISCHIEF: [(&str, Option<&str>, Option<&str>); 32] = [
+const MISCHIEF: [(&str, Option<&str>, Option<&str>); 36] = [
     ("exit 3", Some("the simulator ended"), Some("the simulator ended")),
     ("answer $run; exit 3", None, Some("the simulator ended")),
     ("answer $run; exit 0", None, None),
@@ -129,8 +129,13 @@ const MISCHIEF: [(&str, Option<&str>, Option<&str>); 32] = [
     (r#"echo '{"outputs":[1,2]}'"#, NOT_AS_AGREED, NOT_AS_AGREED),
     ("head -c 2000000 /dev/zero | tr '\\0' a; echo", TOO_LONG, TOO_LONG),
     ("yes | tr -d '\\n'", TOO_LONG, None),
-    ("yes", Some("more than one answer"), None),
-    (r#"printf '{"outputs":{"y":1,"seed":2}}\n{}\n'"#, Some("more than one answer"), NOT_AS_AGREED),
+    ("yes", NOT_AS_AGREED, None),
+    // What comes after the answer fails no run, whenever it comes.
+    ("answer $run; echo done", None, NOT_AS_AGREED),
+    (AND_MORE, None, NOT_AS_AGREED),
+    ("answer $run; answer $run", None, NOT_AS_AGREED),
+    ("answer $run; sleep 0.002; echo done", None, NOT_AS_AGREED),
+    ("answer $run; yes | head -n 100000", None, NOT_AS_AGREED),
     ("answer 9007199254740993", Some("an answer out of turn"), Some("an answer out of turn")),
     (r#"echo '{"outputs":{"y":1}}'"#, Some("an output is missing"), Some("an output is missing")),
     (
@@ -187,6 +192,26 @@ fn misbehaviour_fails_its_own_runs_alone() {
                 assert_rows(&table, failed, kind.unwrap_or("ok"), mischief);
             }
         }
+    }
+}
+
+/// The answer and a line more in one write.
+const AND_MORE: &str =
+    r#"printf '{"run":%s,"outputs":{"y":%s,"seed":%s}}\nall done\n' "$run" "$x" "$seed""#;
+
+#[test]
+fn processes_that_write_unasked_are_counted() {
+    let mut rng = Streams::new(SEED, "unasked", "places").run(0);
+    for share in [0.0, 0.2, 0.5, 1.0] {
+        let simulator = simulator(AND_MORE, false, 60.0);
+        let places: BTreeSet<u64> = (0..20).filter(|_| rng.random_bool(share)).collect();
+        let table = table(&simulator, &places, 20, 1);
+        assert_rows(&table, &BTreeSet::new(), "ok", AND_MORE);
+        // What the last run leaves is noticed by nobody.
+        let ended = places.iter().filter(|run| **run < 19).count() as u64;
+        let found = simulator.unasked();
+        let told = found.as_ref().map(|found| (found.processes(), found.text()));
+        assert_eq!(told, (ended > 0).then_some((ended, "all done")), "{places:?}");
     }
 }
 

@@ -164,8 +164,14 @@ impl ScenarioCore {
             let total = models + scenario.driver_runs()?;
             let warnings = Mutex::new(Vec::new());
             let say = |notice: Notice| {
-                if let (Notice::Damaged { block, .. }, Ok(mut all)) = (notice, warnings.lock()) {
-                    all.push(block);
+                let warning = match notice {
+                    Notice::Damaged { block, .. } => format!("{block}: its runs were done again"),
+                    Notice::Unasked(unasked) => unasked.to_string(),
+                    // The enum may grow.
+                    _ => return,
+                };
+                if let Ok(mut all) = warnings.lock() {
+                    all.push(warning);
                 }
             };
             let outcome = scenario.run(&options, &|done| more(done, total), &say)?;

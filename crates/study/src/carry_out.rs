@@ -61,6 +61,7 @@ fn run_to_the_end<C: Subject>(
         let begin = || if again { Ok(()) } else { Ok(scenario.begin(&models)?) };
         threads.install(|| run_until(&simulations, &blocks, plan, progress, until, evidence, begin))
     })();
+    scenario.unasked(&models).into_iter().for_each(|unasked| say(Notice::Unasked(unasked)));
     ended(done.inspect_err(|_: &StudyError| blocks.abandon())?)
 }
 

@@ -1,6 +1,6 @@
 //! How a study is carried out, and what it says meanwhile.
 
-use gyradius_campaign::{Again, Forecast};
+use gyradius_campaign::{Again, Forecast, Unasked};
 use std::{
     path::{Path, PathBuf},
     sync::{Arc, atomic::AtomicBool},
@@ -23,7 +23,7 @@ pub struct Options {
     pub stop: Option<Arc<AtomicBool>>,
 }
 
-/// What a study says before its runs.
+/// What a study says before its runs, and of how they were done.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Notice {
@@ -47,6 +47,8 @@ pub enum Notice {
     Finished,
     /// Runs that had failed were done again.
     Again(Again),
+    /// The simulator wrote to standard output what it was not asked for.
+    Unasked(Unasked),
 }
 
 impl Options {

@@ -149,6 +149,7 @@ pub(crate) fn do_what_is_left<C: Subject>(
         Ok((runs, summary))
     });
     let (runs, mut summary) = done.inspect_err(|_| blocks.abandon())?;
+    scenario.unasked(&models).into_iter().for_each(|unasked| say(Notice::Unasked(unasked)));
 
     let complete = summary.head().missing.is_empty();
     let mut beside = None;

@@ -1,6 +1,6 @@
 //! What a study is of: a scenario of separations, or of a simulator of the user's own.
 
-use gyradius_campaign::{Column, FirstLook, Forecast, Runs, Simulation, Table, sha256};
+use gyradius_campaign::{Column, FirstLook, Forecast, Runs, Simulation, Table, Unasked, sha256};
 use gyradius_report::Document;
 use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
@@ -70,6 +70,10 @@ pub(crate) trait Subject: Framed + Sync {
     fn main_outcomes(&self) -> Vec<String>;
     /// A look at the runs of a model, which have these columns.
     fn look(&self, model: &str, columns: &[Column]) -> Self::Look<'_>;
+    /// What a simulator wrote that nobody had asked for.
+    fn unasked(&self, _: &Self::Prepared) -> Option<Unasked> {
+        None
+    }
     /// What the runs amount to: every number, judgement and figure, before any page is made.
     fn judge(
         &self,

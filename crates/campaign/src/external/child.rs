@@ -89,7 +89,13 @@ impl Child {
         self.arrived.is_empty() && matches!(self.read_output(), Ok(Arrived::Nothing))
     }
 
-    /// Sends a line, without its end, and takes the line that is the answer.
+    /// What it has written that was not asked for, as far as it was read.
+    pub(super) fn unasked(&self) -> &[u8] {
+        &self.arrived
+    }
+
+    /// Sends a line, without its end, and takes the line that is the answer. What comes after that was not asked for,
+    /// whether it comes at once or later.
     pub(super) fn ask(&mut self, line: &[u8], patience: Patience<'_>) -> Result<Vec<u8>, Trouble> {
         let mut left = line;
         // Lines that have no end yet are searched once.
@@ -129,11 +135,7 @@ impl Child {
                 }
                 let rest = self.arrived.split_off(length + 1);
                 self.arrived.truncate(length);
-                return if rest.is_empty() {
-                    Ok(std::mem::take(&mut self.arrived))
-                } else {
-                    Err(Trouble::Twice { rest })
-                };
+                return Ok(std::mem::replace(&mut self.arrived, rest));
             }
         }
     }

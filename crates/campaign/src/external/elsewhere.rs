@@ -27,6 +27,10 @@ impl Child {
         match self.0 {}
     }
 
+    pub(super) fn unasked(&self) -> &[u8] {
+        match self.0 {}
+    }
+
     pub(super) fn ask(&mut self, _: &[u8], _: Patience<'_>) -> Result<Vec<u8>, Trouble> {
         match self.0 {}
     }

@@ -18,6 +18,7 @@ mod trouble;
 
 pub use function::{Outputs, SimulatorFunction};
 pub use inputs::RunInputs;
+pub use processes::Unasked;
 pub use program::{Program, ProgramError};
 pub use simulation::{ExternalSimulation, Inputs, Told};
 pub use simulator::Simulator;

@@ -1,7 +1,7 @@
 //! The processes of a program that simulates, of which each thread that does runs has one.
 
 use std::{
-    fs,
+    fmt, fs,
     io::{self, ErrorKind, Read},
     path::Path,
     sync::{Mutex, PoisonError},
@@ -12,11 +12,14 @@ use super::{
     LIMIT,
     child::Child,
     program::{Program, ProgramError},
+    tail::shown,
     trouble::Trouble,
 };
 
 /// How long processes that are not needed any more may take to end by themselves.
 const PARTING: Duration = Duration::from_secs(1);
+/// Characters that are told of what nobody asked for.
+const TOLD: usize = 80;
 
 /// The processes of a [`Program`].
 ///
@@ -27,12 +30,47 @@ pub(super) struct Processes {
     program: Program,
     /// Processes that wait to be asked.
     idle: Mutex<Vec<Child>>,
+    unasked: Mutex<Option<Unasked>>,
+}
+
+/// What processes of a simulator wrote to standard output that nobody had asked for. Each was ended for it before its next run,
+/// which was sent to a new one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unasked {
+    processes: u64,
+    text: String,
+}
+
+impl fmt::Display for Unasked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (processes, text) = (self.processes, &self.text);
+        let many = if processes == 1 { "1 process" } else { &format!("{processes} processes") };
+        write!(
+            f,
+            "the simulator wrote more to standard output than its answers, such as `{text}`, and {many} had to be started again \
+             for it: messages belong on standard error"
+        )
+    }
+}
+
+impl Unasked {
+    /// How many processes were ended.
+    #[must_use]
+    pub fn processes(&self) -> u64 {
+        self.processes
+    }
+
+    /// What one of them wrote, shortened.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
 }
 
 impl Processes {
     /// Which are started when they are needed.
     pub(super) fn new(program: Program) -> Self {
-        Self { program, idle: Mutex::default() }
+        Self { program, idle: Mutex::default(), unasked: Mutex::default() }
     }
 
     /// Makes certain that the command can be started: starts the first process, or finds the program if it is to be started
@@ -91,15 +129,29 @@ impl Processes {
             }
             result
         };
-        if let Some(mut child) = kept.take()
-            && child.is_quiet()
-        {
-            let result = ask(child, kept);
-            if kept.is_some() || matches!(result, Err(Trouble::Stopped)) {
-                return result;
+        if let Some(mut child) = kept.take() {
+            if child.is_quiet() {
+                let result = ask(child, kept);
+                if kept.is_some() || matches!(result, Err(Trouble::Stopped)) {
+                    return result;
+                }
+            } else if !child.unasked().is_empty() {
+                self.note(child.unasked());
             }
         }
         ask(Child::start(&self.program).map_err(Trouble::Start)?, kept)
+    }
+
+    /// Notes that a process wrote what nobody had asked for.
+    fn note(&self, text: &[u8]) {
+        let mut unasked = self.unasked.lock().unwrap_or_else(PoisonError::into_inner);
+        let first = || Unasked { processes: 0, text: shown(text, TOLD) };
+        unasked.get_or_insert_with(first).processes += 1;
+    }
+
+    /// What processes wrote that nobody had asked for, if they did.
+    pub(super) fn unasked(&self) -> Option<Unasked> {
+        self.unasked.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Starts a process for one run, which reads and writes files.

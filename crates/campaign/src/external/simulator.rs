@@ -7,7 +7,7 @@ use super::{
     child::Child,
     function::{Outputs, SimulatorFunction},
     inputs::RunInputs,
-    processes::Processes,
+    processes::{Processes, Unasked},
     program::{Program, ProgramError},
     trouble::Trouble,
 };
@@ -73,6 +73,15 @@ impl Simulator {
     pub fn program(&self) -> Option<&Program> {
         match &self.0 {
             Way::Processes(processes) => Some(processes.program()),
+            Way::Function(_) => None,
+        }
+    }
+
+    /// What its processes wrote to standard output that nobody had asked for, if they did.
+    #[must_use]
+    pub fn unasked(&self) -> Option<Unasked> {
+        match &self.0 {
+            Way::Processes(processes) => processes.unasked(),
             Way::Function(_) => None,
         }
     }

@@ -27,8 +27,6 @@ pub(super) enum Trouble {
     Closed { last_line: Option<String> },
     /// The answer has more bytes than a line may have.
     TooLong { limit: usize },
-    /// There is more after the answer.
-    Twice { rest: Vec<u8> },
     /// There was something on standard output before the process read the run.
     Early { text: Vec<u8> },
     /// The answer is of another run.
@@ -76,7 +74,6 @@ impl Trouble {
             | Self::Ended { .. }
             | Self::Closed { .. }
             | Self::TooLong { .. }
-            | Self::Twice { .. }
             | Self::Early { .. }
             | Self::OutOfTurn { .. }
             | Self::NoFile
@@ -133,13 +130,6 @@ impl Trouble {
             Self::TooLong { limit } => {
                 ("the answer is too long", format!("the answer has more than {limit} bytes"))
             }
-            Self::Twice { rest } => (
-                "more than one answer",
-                format!(
-                    "after the answer, standard output has more: `{}`; messages belong on standard error",
-                    shown(&rest, 80)
-                ),
-            ),
             Self::Early { text } => (
                 "output before the run was read",
                 format!(

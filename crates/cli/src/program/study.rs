@@ -144,7 +144,7 @@ pub(crate) fn sized(
     Ok(scenario)
 }
 
-/// What is said before the runs.
+/// What is said before the runs, and of how they were done.
 pub(crate) fn notice(notice: Notice) {
     match notice {
         Notice::Forecast(forecast) if forecast.time() > Some(PATIENCE) => {
@@ -163,6 +163,7 @@ pub(crate) fn notice(notice: Notice) {
             let s = if runs == 1 { "" } else { "s" };
             say(&format!("{runs} run{s} that had failed, done again: {failed} failed again"));
         }
+        Notice::Unasked(unasked) => say(&format!("warning: {unasked}")),
         // What takes a moment is not worth a word.
         _ => {}
     }

@@ -401,8 +401,8 @@ def study(
         raise
     finally:
         close()
-    for block in done.warnings:
-        warnings.warn(f"{block}: its runs were done again", RuntimeWarning, stacklevel=2)
+    for warning in done.warnings:
+        warnings.warn(warning, RuntimeWarning, stacklevel=2)
     found = Study._of(done, temporary)
     for model, failed, of in done.failed:
         if failed == of > 0:

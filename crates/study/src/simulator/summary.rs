@@ -2,7 +2,7 @@
 
 use gyradius_campaign::{
     Column, ExternalSimulation, FirstLook, Forecast, Progress, Runs, SampleSummary, Simulator,
-    SimulatorFunction, Surveys,
+    SimulatorFunction, Surveys, Unasked,
 };
 use gyradius_report::{Document, Overview, file_of, most_frequent, optional, with_unit};
 use gyradius_statistics::Confidence;
@@ -178,6 +178,10 @@ impl Subject for SimulatorScenario {
         }
         let started = simulator.check();
         started.map_err(|error| self.located(ScenarioError::field("simulation.command", error)))
+    }
+
+    fn unasked(&self, simulator: &Simulator) -> Option<Unasked> {
+        simulator.unasked()
     }
 
     /// Nobody knows what a run costs, and one may take an hour.
