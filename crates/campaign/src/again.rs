@@ -47,6 +47,58 @@ pub fn run_again<S: Simulation>(
     Ok(all)
 }
 
+/// What a finished run has otherwise when it is done again: then something else does the runs now.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "run {run} of the model {model} has {column} = {there} there, and {now} when it is done again"
+)]
+#[non_exhaustive]
+pub struct Changed {
+    /// The model.
+    pub model: String,
+    /// The run.
+    pub run: u64,
+    /// The column.
+    pub column: String,
+    /// What the finished run has in it.
+    pub there: String,
+    /// What it has now.
+    pub now: String,
+}
+
+/// Does the first finished run again that did not fail, and says what of it is another now, bit by bit: nothing if all is the
+/// same, or if there is no such run. It is written nowhere.
+///
+/// # Errors
+/// A block cannot be read; the simulation writes rows that do not fit its columns.
+pub fn run_changed<S: Simulation>(
+    simulations: &[(&str, S)],
+    blocks: &Blocks,
+) -> Result<Option<Changed>, CampaignError> {
+    for (name, simulation) in simulations {
+        let empty = Table::new(name, 0, simulation.columns())?;
+        let runs = blocks.runs(&empty, Vec::new());
+        for range in blocks.finished(name) {
+            let Some(old) = runs.block(range.start)? else { continue };
+            let Some(row) = old.rows().find(|row| row.failure().is_none()) else { continue };
+            let run = row.run();
+            let new = run_range(simulation, &empty, run..run.saturating_add(1), &|_| Ok(()))?;
+            let Some(again) = new.rows().next() else { continue };
+            let mut pairs = row.cells().zip(again.cells());
+            return Ok(pairs.find(|((_, there), (_, now))| there != now).map(
+                |((column, there), (_, now))| Changed {
+                    model: (*name).to_owned(),
+                    run,
+                    column: column.name().to_owned(),
+                    there: there.to_string(),
+                    now: now.to_string(),
+                },
+            ));
+        }
+    }
+    Ok(None)
+}
+
 /// A table in which the runs that failed are those of the simulation now.
 fn redone<S: Simulation>(
     simulation: &S,

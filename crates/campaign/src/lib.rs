@@ -94,7 +94,7 @@ mod table;
 mod until;
 mod values;
 
-pub use again::{Again, run_again};
+pub use again::{Again, Changed, run_again, run_changed};
 pub use campaign::{Doing, Look, Plan, run_missing};
 pub use cell::Cell;
 pub use column::{Column, ColumnSummary, Kind};

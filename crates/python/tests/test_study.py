@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 import shutil
@@ -280,17 +281,17 @@ def test_a_folder_is_gone_on_with(tmp_path: Path) -> None:
     outputs = {"y": "m", "z": "1"}
     first = gyradius.study(scenario(), simulate, outputs=outputs, out=out)
     assert calls == list(range(100))
-    # It is complete: nothing is called, with the function and without.
+    # It is complete: one run is done again with a function, to see that it is the one, and none without.
     again = [
         gyradius.study(scenario(), simulate, outputs=outputs, out=out),
         gyradius.study(out),
         gyradius.study(out, simulate),
     ]
     assert [one.folder for one in again] == [out] * 3
-    assert len(calls) == 100
+    assert calls == [*range(100), 0, 0]
     assert all(one.to_numpy()["all"]["y"].tolist() == first.to_numpy()["all"]["y"].tolist() for one in again)
     more = gyradius.study(out, simulate, runs=130)
-    assert calls == list(range(130))
+    assert calls == [*range(100), 0, 0, 0, *range(100, 130)]
     assert more.runs == {"all": 130}
     # Another function is another study.
     for other in (scenario(), out):
@@ -301,7 +302,42 @@ def test_a_folder_is_gone_on_with(tmp_path: Path) -> None:
         gyradius.study(out, runs=200)
     with pytest.raises(ValueError, match=r"gyradius\.study\("):
         gyradius.study(out).replay(3)
-    assert len(calls) == 130
+    assert len(calls) == 133
+
+
+class Gain:
+    """A simulation with something of its own."""
+
+    def __init__(self, gain: float) -> None:
+        self.gain = gain
+
+    def __call__(self, inputs: dict[str, float]) -> dict[str, float]:
+        return {"y": self.gain * inputs["x"]}
+
+    def of_method(self, inputs: dict[str, float]) -> dict[str, float]:
+        return self(inputs)
+
+
+def gained(gain: float, inputs: dict[str, float]) -> dict[str, float]:
+    return {"y": gain * inputs["x"]}
+
+
+def closed_over(gain: float) -> Any:
+    return lambda inputs: {"y": gain * inputs["x"]}
+
+
+@pytest.mark.parametrize("made", [Gain, lambda gain: Gain(gain).of_method, lambda gain: functools.partial(gained, gain), closed_over])
+def test_another_function_of_the_same_source_is_refused(made: Any, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    first = gyradius.study(scenario(), made(2.0), out=out)
+    before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
+    with pytest.raises(ValueError, match=r"run \d+ of the model all has y = .*when it is done again"):
+        gyradius.study(scenario(), made(3.0), out=out)
+    with pytest.raises(ValueError, match="when it is done again"):
+        gyradius.study(scenario(), made(3.0), out=out, runs=400)
+    assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
+    again = gyradius.study(scenario(), made(2.0), out=out)
+    assert again.to_numpy()["all"]["y"].tolist() == first.to_numpy()["all"]["y"].tolist()
 
 
 def test_a_run_that_is_another_is_told() -> None:
@@ -483,7 +519,8 @@ def test_interrupts_stop_and_the_same_call_goes_on(way: str, tmp_path: Path) -> 
     assert found is not None, said
     # A block of 256 runs was finished.
     assert 400 <= int(found[1]) < 600
-    assert int(found[2]) == 600 - 256
+    # One of them is done again first, to see that the function is the one.
+    assert int(found[2]) == 1 + 600 - 256
     shutil.rmtree(out)
 
 

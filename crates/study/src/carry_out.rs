@@ -7,7 +7,7 @@ use crate::{
     contents::{contents, identity},
     decisions::{check_columns, group, requirements_of},
     ended::Ended,
-    study::{do_what_is_left, plan, to_be_done},
+    study::{do_what_is_left, plan, same_as_before, to_be_done},
     subject::Subject,
 };
 
@@ -44,6 +44,8 @@ fn run_to_the_end<C: Subject>(
     let blocks = folder.blocks((begun.0, &begun.1), scenario.runs(), options.force, &threads)?;
     let plan = plan(scenario, options, Doing::All);
     to_be_done(&simulations, plan, (&folder, &blocks), say)?;
+    same_as_before(scenario, &simulations, (folder.place(), &blocks), &threads)
+        .inspect_err(|_| blocks.abandon())?;
     let evidence = || {
         let own = scenario.model_names().map(|model| requirements_of(scenario, model)).collect();
         Evidence::new(until.rule().clone(), own, group(scenario))

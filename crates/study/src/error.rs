@@ -1,7 +1,7 @@
 //! Why a study could not be done.
 
 use gyradius_campaign::{
-    CampaignError, DesignsError, Difference, FolderError, JudgementError, Kept, RunsError,
+    CampaignError, Changed, DesignsError, Difference, FolderError, JudgementError, Kept, RunsError,
     rough_size,
 };
 use gyradius_statistics::StatisticsError;
@@ -76,6 +76,17 @@ pub enum StudyError {
         path: PathBuf,
         /// What is other there than here.
         difference: Difference,
+    },
+    /// The function that does the runs is not the one that did those that are finished.
+    #[error(
+        "{}: {changed}: the function is not the one that did the finished runs, or what it answers depends on more than its inputs and its \
+         seed; choose another folder, or delete this one", path.display()
+    )]
+    Changed {
+        /// The folder.
+        path: PathBuf,
+        /// What is other there than now.
+        changed: Changed,
     },
     /// The runs cannot be made on so many threads, or leave no rows.
     #[error(transparent)]

@@ -13,7 +13,7 @@ use crate::{
     decisions::check_columns,
     head::Missing,
     scenario::read_file,
-    study::{count, foretell, plan},
+    study::{count, foretell, plan, same_as_before},
     subject::Subject,
 };
 
@@ -90,6 +90,7 @@ pub(crate) fn run_shard<C: Subject>(
     agree(scenario, &place)?;
     let again = true;
     blocks.damaged().iter().for_each(|block| say(Notice::Damaged { block: block.clone(), again }));
+    same_as_before(scenario, &simulations, (&place, &blocks), &threads)?;
     let plan = plan(scenario, options, Doing::Shard(shard));
     let missing = |(place, (model, _)): (usize, &(&str, _))| plan.missing(&blocks, place, model);
     let left = simulations.iter().enumerate().map(|model| count(&missing(model))).sum::<u64>();
@@ -99,6 +100,7 @@ pub(crate) fn run_shard<C: Subject>(
         foretell(scenario, &simulations, [left, of], options, &threads, say)?;
     }
     threads.install(|| run_missing(&simulations, &blocks, plan, progress, None))?;
+    scenario.unasked(&models).into_iter().for_each(|unasked| say(Notice::Unasked(unasked)));
     Ok(())
 }
 

@@ -7,8 +7,8 @@ use crate::{
 };
 use gyradius_campaign::{
     Blocks, CampaignError, Counting, Doing, Folder, MANIFEST, Plan, Progress, Reduced, Runs,
-    RunsError, Simulation, Table, disk_left, is_stopped, memory_left, run_again, run_missing,
-    threads, told,
+    RunsError, Simulation, Table, disk_left, is_stopped, memory_left, run_again, run_changed,
+    run_missing, threads, told,
 };
 #[cfg(test)]
 use gyradius_campaign::{Cell, Row, run};
@@ -97,7 +97,11 @@ pub(crate) fn do_what_is_left<C: Subject>(
     let blocks = folder.blocks(begun, scenario.runs(), options.force, &threads)?;
     let plan = plan(scenario, options, doing);
     let left = to_be_done(&simulations, plan, (&folder, &blocks), say)?;
-    // What a rule ended was retried before the rule was asked.
+    // What a rule ended was held against its runs, and retried, before the rule was asked.
+    if ended.is_none() {
+        same_as_before(scenario, &simulations, (&place, &blocks), &threads)
+            .inspect_err(|_| blocks.abandon())?;
+    }
     let retries = options.retry_failed && ended.is_none();
     let again = retries && doing == Doing::All && blocks.any_failed();
     if again || left > 0 && doing == Doing::All {
@@ -173,6 +177,22 @@ pub(crate) fn do_what_is_left<C: Subject>(
         false => empty_tables(&simulations)?.into_iter().map(Runs::from).collect(),
     };
     Ok(Study { folder, runs, summary })
+}
+
+/// Makes certain that what does the runs now is what did those that are finished, where it may be another one.
+pub(crate) fn same_as_before<C: Subject>(
+    scenario: &C,
+    simulations: &[(&str, C::Simulation<'_>)],
+    (place, blocks): (&Path, &Blocks),
+    threads: &ThreadPool,
+) -> Result<(), StudyError> {
+    if !scenario.may_change() {
+        return Ok(());
+    }
+    match threads.install(|| run_changed(simulations, blocks))? {
+        None => Ok(()),
+        Some(changed) => Err(StudyError::Changed { path: place.to_owned(), changed }),
+    }
 }
 
 /// Tells which blocks are damaged, and checks that nothing is in the places of runs that are missing; returns how many they are.

@@ -70,6 +70,10 @@ pub(crate) trait Subject: Framed + Sync {
     fn main_outcomes(&self) -> Vec<String>;
     /// A look at the runs of a model, which have these columns.
     fn look(&self, model: &str, columns: &[Column]) -> Self::Look<'_>;
+    /// Whether what does the runs can be another one under the same name, as a function can.
+    fn may_change(&self) -> bool {
+        false
+    }
     /// What a simulator wrote that nobody had asked for.
     fn unasked(&self, _: &Self::Prepared) -> Option<Unasked> {
         None

@@ -324,6 +324,14 @@ impl Blocks {
         state.blocks.iter().filter(|b| b.model == model).map(|block| block.range().end).max()
     }
 
+    /// The runs of each block of a model, in their order.
+    pub(crate) fn finished(&self, model: &str) -> Vec<Range<u64>> {
+        let all = self.all();
+        let mut runs: Vec<_> = all.iter().filter(|b| b.model == model).map(Block::range).collect();
+        runs.sort_by_key(|range| range.start);
+        runs
+    }
+
     /// The runs of each block of a model in which runs failed.
     pub(crate) fn with_failures(&self, model: &str) -> Vec<Range<u64>> {
         let failed = |block: &Block| block.model == model && block.failed > 0;

@@ -326,8 +326,9 @@ def study(
     -----
     Draws depend on seed, model and run alone, so results are the same on any number of threads, if the simulation depends on its
     inputs and its seed alone. The study says in ``simulation.function`` which function it is, by module, name and SHA-256 of the source, so
-    that runs of different versions are not mixed in one folder. What the function calls and refers to is not looked at: say
-    ``{"simulation": {"function": "spin-up, version 3"}, ...}`` in the scenario if that matters.
+    that runs of different versions are not mixed in one folder. What the function calls and refers to is not in it; therefore one of the
+    finished runs in ``out`` is done again first, and a function that does it otherwise is refused. Say
+    ``{"simulation": {"function": "spin-up, version 3"}, ...}`` in the scenario to tell versions apart yourself.
 
     Examples
     --------

@@ -180,6 +180,10 @@ impl Subject for SimulatorScenario {
         started.map_err(|error| self.located(ScenarioError::field("simulation.command", error)))
     }
 
+    fn may_change(&self) -> bool {
+        self.function().is_some()
+    }
+
     fn unasked(&self, simulator: &Simulator) -> Option<Unasked> {
         simulator.unasked()
     }

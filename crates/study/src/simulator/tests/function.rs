@@ -124,6 +124,91 @@ proptest! {
     }
 }
 
+/// Answers as the script does but for a bit.
+fn other_answer() -> SimulatorFunction {
+    SimulatorFunction::new(|run: &RunInputs<'_>| {
+        let x = run.input("x").ok_or("no x")?;
+        if x >= 0.9 {
+            return Err(format!("too large: {x}"));
+        }
+        Ok(vec![("y".to_owned(), x.next_up())])
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    /// Whether a study was finished, stopped or done in shards, another function of the same name goes on with none of it, and
+    /// nothing is touched.
+    #[test]
+    fn another_function_does_not_go_on(
+        vehicles in any::<bool>(),
+        until in any::<bool>(),
+        in_shards in any::<bool>(),
+        threads in 1_usize..4,
+        stopped in 256_u64..900,
+        force in any::<bool>(),
+    ) {
+        let folder = folder();
+        let mut text = uniform().replace(COMMAND, FUNCTION);
+        text = text.replace("runs = 300", if vehicles { "vehicles = 75\nflights = 8" } else { "runs = 600" });
+        text += "\n[[requirements]]\nname = \"near\"\nquantity = \"y\"\nat_most = 0.8\nprobability = 0.5\nconfidence = 0.9\n";
+        if until && !in_shards {
+            text += "\n[until]\nrule = \"decided\"\n";
+        }
+        let waiting = AnyScenario::from_toml(&text, folder.path()).unwrap();
+        let [one, other] = [answer(), other_answer()].map(|function| waiting.clone().with_function(function).unwrap());
+        let out = folder.path().join("out");
+        let options = Options { threads: Some(threads), ..Options::to(out.clone()) };
+        let stop = Arc::new(AtomicBool::new(false));
+        let first = Options { stop: Some(Arc::clone(&stop)), ..options.clone() };
+        let progress = |done: u64| stop.store(done >= stopped, Ordering::Relaxed);
+        let shards = [1, 2].map(|number| Shard::new(number, 2).unwrap());
+        if in_shards {
+            one.run_shard(&options, shards[0], &|_| {}, &|_| {}).unwrap();
+        } else {
+            let _ = one.run(&first, &progress, &|_| {});
+        }
+        let before = tree(&out);
+        let any_block = before.keys().any(|name| name.ends_with(".parquet"));
+        let again = Options { force, ..options.clone() };
+        let refused = if in_shards {
+            other.run_shard(&options, shards[1], &|_| {}, &|_| {}).err()
+        } else {
+            other.run(&again, &|_| {}, &|_| {}).err()
+        };
+        if any_block {
+            let changed = matches!(refused, Some(StudyError::Changed { .. }));
+            prop_assert!(changed, "{refused:?}");
+            // A share has a lock and a record of its own.
+            let after = tree(&out);
+            let lost: Vec<_> = before.iter().filter(|(name, bytes)| after.get(*name) != Some(*bytes)).map(|(name, _)| name).collect();
+            prop_assert!(lost.is_empty(), "{lost:?}");
+            prop_assert!(in_shards || after.len() == before.len());
+            one.run(&options, &|_| {}, &|_| {}).unwrap();
+        } else {
+            prop_assert!(refused.is_none(), "{refused:?}");
+        }
+    }
+}
+
+/// All files below a folder.
+fn tree(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for path in fs::read_dir(next).into_iter().flatten().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
+                all.insert(name, fs::read(path).unwrap());
+            }
+        }
+    }
+    all
+}
+
 /// What drives a rare event is found with a function too, and shards are put together without it.
 #[test]
 fn rare_events_and_shards_take_functions() {
@@ -183,11 +268,11 @@ fn runs_need_the_function() {
     let given = waiting.clone().with_function(counting).unwrap();
     given.study(&options, &|_| {}, &|_| {}).unwrap();
     assert_eq!(calls.load(Ordering::Relaxed), 300);
-    // It is complete: nothing is called.
+    // It is complete: one run is done again, by the function, if there is one.
     for scenario in [&given, &waiting, &SimulatorScenario::read(&out).unwrap()] {
         assert_eq!(scenario.study(&options, &|_| {}, &|_| {}).unwrap().folder(), out);
     }
-    assert_eq!(calls.load(Ordering::Relaxed), 300);
+    assert_eq!(calls.load(Ordering::Relaxed), 301);
     // Another version is another study.
     let text = uniform().replace(COMMAND, "function = \"another\"\n");
     let other = scenario(&text, folder.path()).with_function(self::answer()).unwrap();
