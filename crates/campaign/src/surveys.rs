@@ -47,6 +47,8 @@ struct Counts {
     texts: BTreeMap<String, Tally>,
     flags: BTreeMap<String, [u64; 2]>,
     failures: Tally,
+    /// The first run that failed, and why.
+    first_failure: Option<(u64, String)>,
     /// Runs of each subset, and those of them that failed.
     of_subsets: Vec<[u64; 2]>,
 }
@@ -292,6 +294,12 @@ impl Surveys {
     pub fn failures(&self) -> Vec<(&str, u64)> {
         self.counts.failures.in_order()
     }
+
+    /// The first run that failed, and why, as its row says.
+    #[must_use]
+    pub fn first_failure(&self) -> Option<(u64, &str)> {
+        self.counts.first_failure.as_ref().map(|(run, why)| (*run, why.as_str()))
+    }
 }
 
 /// Runs of a block that are of a subset, and those of them that failed.
@@ -317,6 +325,7 @@ impl Counts {
             Self { runs: runs().filter(|run| which(*run)).count() as u64, ..Self::default() };
         for (run, failure) in block.failures().filter(|(run, _)| which(*run)) {
             counts.failures.add(failure.kind(), run, 1);
+            counts.first_failure.get_or_insert_with(|| (run, failure.to_string()));
         }
         for column in block.columns() {
             match column.kind() {
@@ -346,6 +355,8 @@ impl Counts {
     fn merge(&mut self, other: Self) {
         self.runs += other.runs;
         self.failures.merge(&other.failures);
+        let both = [self.first_failure.take(), other.first_failure];
+        self.first_failure = both.into_iter().flatten().min_by_key(|(run, _)| *run);
         self.of_subsets.resize(self.of_subsets.len().max(other.of_subsets.len()), [0; 2]);
         for (own, more) in self.of_subsets.iter_mut().zip(&other.of_subsets) {
             *own = [own[0] + more[0], own[1] + more[1]];

@@ -1,6 +1,6 @@
 //! What a reader should know before the results: only what is so.
 
-use gyradius_campaign::{SampleSummary, Table};
+use gyradius_campaign::{SampleSummary, Surveys, Table};
 use gyradius_report::{Section, Text, direction, most_frequent, significant};
 use gyradius_separation::MovingBody;
 use gyradius_statistics::Survey;
@@ -38,6 +38,9 @@ pub(crate) enum Alert {
         runs: u64,
         /// Kinds of failure, with how often.
         kinds: Vec<(String, u64)>,
+        /// The first run that failed, and all that its row says of why, where that is more than the kind.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        first: Option<(u64, String)>,
     },
     /// What is declared as dispersed is the same in all runs.
     Unmoved { model: String, column: String, value: f64, runs: u64 },
@@ -63,10 +66,20 @@ pub(crate) enum Alert {
 
 impl Alert {
     /// That runs of a model failed, if any did.
-    pub(crate) fn failed(model: &str, runs: u64, kinds: &[(String, u64)]) -> Option<Self> {
+    pub(crate) fn failed(surveys: &Surveys) -> Option<Self> {
+        let kinds = surveys.failures().into_iter().map(|(kind, count)| (kind.to_owned(), count));
+        let kinds: Vec<(String, u64)> = kinds.collect();
         let failed = kinds.iter().map(|(_, count)| count).sum();
-        let (model, kinds) = (model.to_owned(), kinds.to_vec());
-        (failed > 0).then_some(Self::Failed { model, failed, runs, kinds })
+        let (model, runs) = (surveys.model().to_owned(), surveys.runs());
+        let first = surveys.first_failure().map(|(run, why)| (run, why.to_owned()));
+        let first = first.filter(|(_, why)| kinds.iter().all(|(kind, _)| kind != why));
+        (failed > 0).then_some(Self::Failed { model, failed, runs, kinds, first })
+    }
+
+    /// Why the first run of a model failed, where there is more to say than the kind.
+    pub(crate) fn first_failure(&self, of: &str) -> Option<String> {
+        let Self::Failed { model, first: Some((run, why)), .. } = self else { return None };
+        (model == of).then(|| format!("the first, run {run}: {why}"))
     }
 
     /// That a column which is declared as dispersed is the same in all of several runs.
@@ -126,8 +139,11 @@ impl Alert {
 
     fn text(&self) -> Text {
         match self {
-            Self::Failed { model, failed, runs, kinds } => {
-                let kinds = most_frequent(kinds).join("; ");
+            Self::Failed { model, failed, runs, kinds, .. } => {
+                let mut kinds = most_frequent(kinds).join("; ");
+                if let Some(first) = self.first_failure(model) {
+                    kinds += &format!("; {first}");
+                }
                 Text::default()
                     .strong(format!("{model}: {failed} of {runs} runs failed"))
                     .plain(format!(" and are left out of means, deviations and percentiles: {kinds}; see "))

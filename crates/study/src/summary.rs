@@ -412,7 +412,7 @@ impl ModelSummary {
     /// What a reader should know of it first.
     fn alerts(&self, scenario: &Scenario, seen: &Seen) -> Vec<Alert> {
         let name = &self.name;
-        let failed = Alert::failed(name, seen.runs(), &self.failures);
+        let failed = Alert::failed(&seen.surveys);
         let unmoved = scenario.dispersions().all().iter().filter_map(|dispersed| {
             let column = &dispersed.column;
             Alert::unmoved(name, column, seen.surveys.column(column)?)

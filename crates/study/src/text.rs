@@ -1,6 +1,6 @@
 //! The short table that ends a study on the terminal.
 
-use gyradius_report::{optional, percent};
+use gyradius_report::{most_frequent, optional, percent};
 use std::fmt::{self, Display, Formatter};
 
 use crate::{
@@ -48,9 +48,11 @@ impl Display for Summary {
         for model in self.models.iter().filter(|m| m.failed > 0) {
             let (name, failed) = (&model.name, model.failed);
             writeln!(f, "\n{name}: {failed} of {} runs failed:", self.head.runs_per_model)?;
-            for (reason, count) in model.failures.iter().take(3) {
-                writeln!(f, "  {count} × {reason}")?;
+            for kind in most_frequent(&model.failures) {
+                writeln!(f, "  {kind}")?;
             }
+            let first = self.head.alerts.iter().find_map(|alert| alert.first_failure(name));
+            first.map_or(Ok(()), |first| writeln!(f, "  {first}"))?;
         }
         Ok(())
     }

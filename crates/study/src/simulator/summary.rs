@@ -77,8 +77,7 @@ impl SimulatorScenario {
     /// What a reader should know first of the model in a place.
     fn alerts(&self, overview: &Overview, place: usize, surveys: &Surveys) -> Vec<Alert> {
         let name = surveys.model();
-        let kinds = overview.failures().nth(place).map_or(&[][..], |(_, kinds)| kinds);
-        let failed = Alert::failed(name, surveys.runs(), kinds).into_iter();
+        let failed = Alert::failed(surveys).into_iter();
         let unmoved = self.dispersed().all.iter().filter_map(|dispersed| {
             let column = &dispersed.column;
             Alert::unmoved(name, column, surveys.column(column)?)
@@ -340,6 +339,8 @@ impl fmt::Display for SimulatorSummary {
             for kind in most_frequent(kinds) {
                 writeln!(f, "  {kind}")?;
             }
+            let first = self.head.alerts.iter().find_map(|alert| alert.first_failure(model));
+            first.map_or(Ok(()), |first| writeln!(f, "  {first}"))?;
             write!(f, "  {:width$}", "")?;
             for heading in ["mean", "deviation", "p05", "p95"] {
                 write!(f, " {heading:>12}")?;

@@ -82,6 +82,39 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// Page and terminal say all that the row of the first run that failed says of why.
+    #[test]
+    fn the_first_failure_is_told_in_full(limit in 0.1..1.0, runs in 1_u64..700, threads in 1_usize..3) {
+        let folder = folder();
+        let fails = SimulatorFunction::new(move |run: &RunInputs<'_>| {
+            let x = run.input("x").ok_or("no x")?;
+            if x > limit { Err(format!("diverged at {x:?} s")) } else { Ok(vec![("y".to_owned(), x)]) }
+        });
+        let text = format!("runs = {runs}\n{SCENARIO}");
+        let scenario = SimulatorScenario::from_toml(&text, folder.path()).unwrap();
+        let scenario = scenario.with_function(fails).unwrap();
+        let out = folder.path().join("out");
+        let options = Options { threads: Some(threads), ..Options::to(out.clone()) };
+        let study = scenario.study(&options, &|_| {}, &|_| {}).unwrap();
+        let page = fs::read_to_string(out.join("report.md")).unwrap();
+        let terminal = study.summary().to_string();
+        let x = study.tables().unwrap().remove(0).values("x").unwrap();
+        let first = x.iter().position(|x| *x > limit);
+        for text in [&page, &terminal] {
+            match first {
+                Some(run) => {
+                    let told = format!("the first, run {run}: simulator: diverged at {:?} s", x[run]);
+                    prop_assert!(text.contains(&told), "{told}\n{text}");
+                }
+                None => prop_assert!(!text.contains("the first, run"), "{text}"),
+            }
+        }
+    }
+}
+
 /// Outputs that are nearly always the same are named where their drivers are told, and no others.
 #[test]
 fn drivers_of_what_seldom_happens_are_warned_of() {
