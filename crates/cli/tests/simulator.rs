@@ -298,20 +298,31 @@ fn a_signal_ends_runs_that_take_long() {
             };
             fs::write(scratch.path("s.toml"), text).unwrap();
             fs::write(scratch.path("busy"), "").unwrap();
+            fs::create_dir(scratch.path("tmp")).unwrap();
             let study = ["study", "--scenario", "s.toml", "--out", "it"];
-            let mut child = scratch.command(&study);
-            let child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-            let process = || fs::read_to_string(scratch.path("process")).unwrap_or_default();
-            while !process().ends_with('\n') {
-                thread::sleep(Duration::from_millis(2));
+            let rare = ["rare", "y >= 2", "--scenario", "s.toml"];
+            for (words, told) in [
+                (&study[..], "the same command goes on"),
+                (&["replay", "s.toml", "--run", "0"], "the run had not ended"),
+                (&rare, "nothing is kept of the runs"),
+            ] {
+                let mut child = scratch.command(words);
+                child.env("TMPDIR", scratch.path("tmp"));
+                let child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+                let process = || fs::read_to_string(scratch.path("process")).unwrap_or_default();
+                while !process().ends_with('\n') {
+                    thread::sleep(Duration::from_millis(2));
+                }
+                let id = child.id().to_string();
+                Command::new("kill").args([&format!("-{signal}"), &id]).status().unwrap();
+                let output = child.wait_with_output().unwrap();
+                assert_eq!(output.status.code(), Some(code), "{words:?}: {:?}", said(&output));
+                assert!(said(&output)[1].contains(told), "{words:?}: {:?}", said(&output));
+                let alive = Command::new("kill").args(["-0", process().trim()]).output().unwrap();
+                assert!(!alive.status.success(), "{words:?} {per_run}");
+                assert_eq!(fs::read_dir(scratch.path("tmp")).unwrap().count(), 0, "{words:?}");
+                fs::remove_file(scratch.path("process")).unwrap();
             }
-            let id = child.id().to_string();
-            Command::new("kill").args([&format!("-{signal}"), &id]).status().unwrap();
-            let output = child.wait_with_output().unwrap();
-            assert_eq!(output.status.code(), Some(code), "{:?}", said(&output));
-            assert!(said(&output)[1].contains("the same command goes on"));
-            let alive = Command::new("kill").args(["-0", process().trim()]).output().unwrap();
-            assert!(!alive.status.success(), "{per_run}");
             fs::remove_file(scratch.path("busy")).unwrap();
             let output = scratch.run(&study);
             assert!(output.status.success(), "{:?}", said(&output));

@@ -71,11 +71,15 @@ impl<'a, C: Subject> EventRuns<'a, C> {
 
     /// By how much each of so many runs is beyond the limit; NaN of a run without a number.
     pub(super) fn excesses(&self, drawing: Drawing, runs: u64) -> Result<Vec<f64>, StudyError> {
-        if is_stopped(self.stop.as_deref()) {
-            return Err(StudyError::from(CampaignError::Stopped));
-        }
+        let go_on = || match is_stopped(self.stop.as_deref()) {
+            true => Err(StudyError::from(CampaignError::Stopped)),
+            false => Ok(()),
+        };
+        go_on()?;
         let simulation = self.scenario.drawing(&self.prepared, self.at, drawing)?;
         let table = run(&simulation, self.model, runs, &self.threads, &|_| {})?;
+        // Runs that were stopped look like failed ones.
+        go_on()?;
         let excesses = self.event.excesses(&table);
         if excesses.iter().all(|excess| excess.is_nan()) {
             let failure = table.failures().next();

@@ -57,6 +57,9 @@ pub enum ReplayError {
     /// The coast cannot be followed to its end.
     #[error("the run ends well, but not its coast: {0}; ask for a shorter one")]
     Coasting(RunError),
+    /// It was told to stop before the run had ended.
+    #[error("stopped")]
+    Stopped,
     /// The run table cannot be read.
     #[error("cannot read {}: {problem}", path.display())]
     Table {

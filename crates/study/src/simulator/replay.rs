@@ -1,7 +1,11 @@
 //! One run of a simulator again: what was sent, what was answered.
 
-use gyradius_campaign::{Table, Told};
-use std::{fmt, path::Path};
+use gyradius_campaign::{Table, Told, is_stopped};
+use std::{
+    fmt,
+    path::Path,
+    sync::{Arc, atomic::AtomicBool},
+};
 
 use super::scenario::SimulatorScenario;
 use crate::{
@@ -35,12 +39,37 @@ impl SimulatorReplay {
         model: Option<&str>,
         run: impl Into<Which>,
     ) -> Result<Self, ReplayError> {
-        let run = run.into().run(scenario)?;
+        Self::of(scenario, model, run.into(), None)
+    }
+
+    /// Sends a run again as [`new`](Self::new) does, until `stop` becomes true: then its process is killed.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and [`ReplayError::Stopped`].
+    pub fn until_stopped(
+        scenario: &SimulatorScenario,
+        model: Option<&str>,
+        run: impl Into<Which>,
+        stop: &Arc<AtomicBool>,
+    ) -> Result<Self, ReplayError> {
+        Self::of(scenario, model, run.into(), Some(stop))
+    }
+
+    fn of(
+        scenario: &SimulatorScenario,
+        model: Option<&str>,
+        run: Which,
+        stop: Option<&Arc<AtomicBool>>,
+    ) -> Result<Self, ReplayError> {
+        let run = run.run(scenario)?;
         let place = scenario.place_of(model)?;
-        let simulator = scenario.prepare(None)?;
+        let simulator = scenario.prepare(stop)?;
         scenario.begin(&simulator)?;
         let simulation = scenario.simulation(&simulator, place, Drawing::Plain)?;
         let told = simulation.replay(run);
+        if is_stopped(stop.map(|stop| &**stop)) {
+            return Err(ReplayError::Stopped);
+        }
         let own = simulation.table(run, &told)?;
         let outputs = scenario.outputs().iter();
         let outputs = outputs.map(|c| (c.name().to_owned(), c.unit().unwrap_or("1").to_owned()));
