@@ -16,8 +16,8 @@ use super::{
     BODY, HEAD, MODELS, SimulatorReplay, SimulatorScenario, folder, quantity, scenario, uniform,
 };
 use crate::{
-    AnyScenario, CampaignError, Kept, Options, RareOptions, ReplayError, Rows, Scenario, Shard,
-    Status, StudyError, put_together, write_report,
+    AnyScenario, CampaignError, Kept, Options, RareMethod, RareOptions, ReplayError, Rows,
+    Scenario, Shard, Status, StudyError, put_together, write_report,
 };
 
 const COMMAND: &str = "command = [\"sh\", \"answer.sh\"]\ntimeout_s = 60.0\n";
@@ -241,6 +241,46 @@ fn rare_events_and_shards_take_functions() {
     let whole = Options::to(folder.path().join("whole"));
     function.run(&whole, &|_| {}, &|_| {}).unwrap();
     assert_eq!(tables(&out), tables(&folder.path().join("whole")));
+}
+
+/// Told to stop in any run, the last ones too, a search for a rare event has no answer: runs that were stopped count for nothing.
+#[test]
+fn a_rare_event_that_was_stopped_has_no_answer() {
+    let folder = folder();
+    let text = HEAD.to_owned() + &quantity("x", "{ law = \"normal\", mean = 0.3, sigma = 0.1 }");
+    let waiting = AnyScenario::from_toml(&text.replace(COMMAND, FUNCTION), folder.path()).unwrap();
+    let event: Event = "y >= 0.6".parse().unwrap();
+    let (stop, calls) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
+    let last = Arc::new(AtomicU64::new(u64::MAX));
+    let (own, counted, at) = (Arc::clone(&stop), Arc::clone(&calls), Arc::clone(&last));
+    // As a process that is killed, a run that is stopped fails.
+    let function = SimulatorFunction::new(move |run: &RunInputs<'_>| {
+        let call = counted.fetch_add(1, Ordering::Relaxed) + 1;
+        own.fetch_or(call >= at.load(Ordering::Relaxed), Ordering::Relaxed);
+        if own.load(Ordering::Relaxed) { Err("stopped".to_owned()) } else { answer().run(run) }
+    });
+    let scenario = waiting.with_function(function).unwrap();
+    for method in [RareMethod::Subset { replicas: 2 }, RareMethod::Importance { sample: 100 }] {
+        let options = RareOptions {
+            per_level: 100,
+            method,
+            stop: Some(Arc::clone(&stop)),
+            threads: Some(1),
+            ..RareOptions::default()
+        };
+        calls.store(0, Ordering::Relaxed);
+        last.store(u64::MAX, Ordering::Relaxed);
+        scenario.rare(&event, &options, &|_| {}).unwrap();
+        let all = calls.load(Ordering::Relaxed);
+        for at in [1, 50, all / 2, all - 60, all] {
+            calls.store(0, Ordering::Relaxed);
+            last.store(at, Ordering::Relaxed);
+            let found = scenario.rare(&event, &options, &|_| {});
+            let stopped = matches!(found, Err(StudyError::Campaign(CampaignError::Stopped)));
+            assert!(stopped, "{method:?}, {at} of {all}: {found:?}");
+            stop.store(false, Ordering::Relaxed);
+        }
+    }
 }
 
 /// Without the function, runs are refused and nothing is left; what is done already is shown.
