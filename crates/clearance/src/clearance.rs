@@ -9,8 +9,11 @@ use crate::{
 
 /// Clearance of payload and stage over a span of time, shape by shape.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Clearance {
     shapes: Vec<ShapeClearance>,
+    #[cfg_attr(feature = "serde", serde(rename = "undecided_from_s"))]
     undecided: Option<f64>,
     looks: usize,
 }
@@ -135,10 +138,16 @@ impl Clearance {
 
 /// The closest that two shapes come.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, remote = "Self"))]
 pub struct Approach {
+    #[cfg_attr(feature = "serde", serde(rename = "distance_m"))]
     distance: f64,
+    #[cfg_attr(feature = "serde", serde(rename = "at_least_m"))]
     at_least: f64,
+    #[cfg_attr(feature = "serde", serde(rename = "time_s"))]
     time: f64,
+    #[cfg_attr(feature = "serde", serde(rename = "points_m"))]
     points: [Vector3<f64>; 2],
 }
 
@@ -175,14 +184,41 @@ impl Approach {
     }
 }
 
+#[cfg(feature = "serde")]
+impl serde::Serialize for Approach {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, to)
+    }
+}
+
+/// A distance that is none below its own bound.
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for Approach {
+    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let read = Self::deserialize(from)?;
+        let points = read.points.iter().flatten();
+        let is_finite = [read.distance, read.time].iter().chain(points).all(|x| x.is_finite());
+        if is_finite && read.distance >= 0.0 && read.at_least <= read.distance {
+            return Ok(read);
+        }
+        Err(serde::de::Error::custom(format!(
+            "{read:?}: the numbers must be finite, and the distance not negative and not below at_least_m"
+        )))
+    }
+}
+
 /// What becomes of the distance of one shape of the payload from one of the stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ShapeClearance {
     payload_shape: usize,
     stage_shape: usize,
     mated: bool,
+    #[cfg_attr(feature = "serde", serde(rename = "counts_from_s"))]
     counts_from: Option<f64>,
     closest: Option<Approach>,
+    #[cfg_attr(feature = "serde", serde(rename = "contact_s"))]
     contact: Option<f64>,
 }
 

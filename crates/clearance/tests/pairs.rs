@@ -102,6 +102,19 @@ fn shapes() -> impl Strategy<Value = (Vec<Form>, Vec<Form>)> {
     })
 }
 
+/// What was found reads back to the bit, and a distance that is none is refused.
+#[cfg(feature = "serde")]
+fn reads_back(clearance: &Clearance) {
+    let mut json = serde_json::to_value(clearance).unwrap();
+    assert_eq!(serde_json::from_str::<Clearance>(&json.to_string()).unwrap(), *clearance);
+    let near = json["shapes"].as_array().unwrap().iter().position(|s| !s["closest"].is_null());
+    if let Some(near) = near {
+        json["shapes"][near]["closest"]["distance_m"] = (-1.0).into();
+        let refused = serde_json::from_value::<Clearance>(json).unwrap_err().to_string();
+        assert!(refused.contains("not negative"), "{refused}");
+    }
+}
+
 const UNTIL: f64 = 30.0;
 const SAMPLES: u32 = 150;
 
@@ -129,6 +142,8 @@ proptest! {
         let mut coast = Coast::new(&moving, &turning, 0.0);
         let c = Clearance::new(&p, &s, &mut coast, 0.0, UNTIL, &settings).unwrap();
         prop_assert_eq!(c.undecided_from_s(), None);
+        #[cfg(feature = "serde")]
+        reads_back(&c);
 
         // What dense sampling finds: the first contact of all, and the least distance of those apart.
         let (mut first, mut least, mut all_mated) = (f64::INFINITY, f64::INFINITY, true);

@@ -27,7 +27,8 @@ use crate::nutation::Range;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(remote = "Self"))]
 pub struct SpinMetrics {
     spin_rate: f64,
     wobble: f64,
@@ -36,6 +37,7 @@ pub struct SpinMetrics {
     nutation_3: Option<f64>,
     nutation_bounds: Option<[f64; 2]>,
     cone: Option<f64>,
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
     inertia_ratio: f64,
 }
 
@@ -145,6 +147,42 @@ impl SpinMetrics {
     }
 }
 
+#[cfg(feature = "serde")]
+impl serde::Serialize for SpinMetrics {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, to)
+    }
+}
+
+/// Angles between 0 and π, and a rate and a ratio that are not negative.
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for SpinMetrics {
+    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let read = Self::deserialize(from)?;
+        let bounds = read.nutation_bounds.unwrap_or_default();
+        let angles = [read.nutation, read.nutation_2, read.nutation_3, read.cone];
+        let mut angles = angles.into_iter().flatten().chain(bounds).chain([read.wobble]);
+        let sound = angles.all(|angle| (0.0..=std::f64::consts::PI).contains(&angle))
+            && bounds[0] <= bounds[1]
+            && (0.0..=f64::MAX).contains(&read.spin_rate)
+            && read.inertia_ratio >= 0.0;
+        if sound {
+            return Ok(read);
+        }
+        Err(serde::de::Error::custom(format!(
+            "{read:?}: angles must lie between 0 and π, in order where they are bounds, and spin_rate and inertia_ratio must not be \
+             negative"
+        )))
+    }
+}
+
+/// JSON knows no infinity, which the ratio of a rod is: `serde_json` writes `null` for it.
+#[cfg(feature = "serde")]
+fn or_infinite<'de, D: serde::Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    let read: Option<f64> = serde::Deserialize::deserialize(from)?;
+    Ok(read.unwrap_or(f64::INFINITY))
+}
+
 fn inertia_ratio(i1: f64, i2: f64, i3: f64) -> f64 {
     let product = (1.0 - i1 / i2) * (1.0 - i1 / i3);
     if product > 0.0 { 1.0 + product.sqrt().copysign(i1 - i2) } else { 1.0 }
@@ -171,6 +209,32 @@ mod tests {
 
     fn matrix(moments: [f64; 3], products: [f64; 3]) -> InertiaMatrix {
         InertiaMatrix::from_entries(moments, products).unwrap()
+    }
+
+    #[cfg(feature = "serde")]
+    proptest! {
+        /// Of any body, also of rods, whose ratio is infinite, and of bodies at rest.
+        #[test]
+        fn metrics_read_back_to_the_bit(
+            roots in prop::array::uniform3(prop_oneof![Just(0.0), 1e-3..1e3]),
+            turn in prop::array::uniform3(-4.0..4.0),
+            rate in prop::array::uniform3(prop_oneof![Just(0.0), -10.0..10.0]),
+        ) {
+            let [a, b, c] = roots;
+            let axes = *nalgebra::Rotation3::new(Vector3::from(turn)).matrix();
+            let diagonal = nalgebra::Matrix3::from_diagonal(&Vector3::new(b + c, a + c, a + b));
+            let turned: nalgebra::Matrix3<f64> = axes * diagonal * axes.transpose();
+            let inertia = InertiaMatrix::new((turned + turned.transpose()) * 0.5).unwrap();
+            let metrics = SpinMetrics::new(&inertia, &Vector3::from(rate), &X);
+            prop_assume!(metrics.inertia_ratio() >= 0.0);
+            let json = serde_json::to_value(metrics).unwrap();
+            prop_assert_eq!(serde_json::from_str::<SpinMetrics>(&json.to_string()).unwrap(), metrics);
+            for (field, value) in [("wobble", 4.0), ("spin_rate", -1.0), ("inertia_ratio", -1.0), ("cone", -0.1)] {
+                let mut bad = json.clone();
+                bad[field] = value.into();
+                prop_assert!(serde_json::from_value::<SpinMetrics>(bad).is_err(), "{}", field);
+            }
+        }
     }
 
     /// Peck (2003), Results: "the central values … are 1.408 and 1.144°".
