@@ -118,8 +118,8 @@ pub use kept::{Kept, KeptError, Rows};
 pub use kept_runs::{KeptColumn, KeptRuns, KeptTexts, KeptValues};
 pub use memory::memory_left;
 pub use requirement::{
-    Bound, Counting, Distribution, DistributionPoint, Estimate, Event, FailedRuns, Judgement,
-    JudgementError, Judging, Looks, Measured, Requirement, RequirementError, RunBeyond,
+    Bound, ConvergencePoint, Counting, Distribution, DistributionPoint, Event, FailedRuns,
+    Judgement, JudgementError, Judging, Looks, Measured, Requirement, RequirementError, RunBeyond,
     VehiclesKeeping, one_decimal, percent_beside, percent_or_less, percent_or_more,
     share_in_percent, stated_in_percent,
 };

@@ -33,11 +33,11 @@ impl<A: Copy> Test<A> {
 /// Whether samples look like draws of the model that was fitted to them: tests of what `A` names.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Verdict<A> {
+pub struct Goodness<A> {
     tests: Vec<Test<A>>,
 }
 
-impl<A: Copy> Verdict<A> {
+impl<A: Copy> Goodness<A> {
     pub(crate) fn new(tests: Vec<Test<A>>) -> Self {
         Self { tests }
     }
@@ -82,7 +82,7 @@ mod tests {
         #[test]
         fn verdicts_are_those_of_their_tests(p_values in prop::collection::vec(0.0..=1.0_f64, 0..8)) {
             let tests = p_values.iter().enumerate().map(|(i, p)| Test::new(i, *p, 0.0)).collect();
-            let verdict = Verdict::<usize>::new(tests);
+            let verdict = Goodness::<usize>::new(tests);
             let m = p_values.len() as i32;
             let least = p_values.iter().copied().fold(1.0, f64::min);
             let expected = if m == 0 { 1.0 } else { 1.0 - (1.0 - least).powi(m) };

@@ -46,7 +46,7 @@ mod stated_body;
 mod statements;
 mod turns;
 
-pub use assessment::{Test, Verdict};
+pub use assessment::{Goodness, Test};
 pub use estimated::{
     EstimateDistance, EstimatedBody, EstimatedBodyError, TenEstimate, TenEstimateError, TenForm,
 };
@@ -55,8 +55,8 @@ pub use fit::{
     PrincipalFitError, RootEstimate, RootFit,
 };
 pub use mass_fit::{
-    Interval, MassAspect, MassAssessment, MassChoice, MassPropertiesFit, MassPropertiesFitError,
-    MassTest, MassTies, ScalarEstimate, ScalarFit,
+    MassAspect, MassAssessment, MassChoice, MassPropertiesFit, MassPropertiesFitError, MassTest,
+    MassTies, ScalarEstimate, ScalarFit, Tie,
 };
 pub use rollup::{
     Assembly, AssemblyError, AssemblyPart, AssemblyRow, FirstOrder, PartError, PartFinding,

@@ -1,6 +1,6 @@
 //! How the share of runs that fail a requirement comes to rest with the number of runs: a line a model, with its interval.
 
-use gyradius_campaign::{Estimate, Judgement, Looks, Requirement, stated_in_percent};
+use gyradius_campaign::{ConvergencePoint, Judgement, Looks, Requirement, stated_in_percent};
 
 use crate::Drawing;
 use crate::axis::{Spacing, Tick, Units, decades, ticks};
@@ -43,7 +43,7 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
         logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), x| (l.min(x), u.max(x)));
     let (first, end) = if first <= end { (first, end.max(first + 0.5)) } else { (1.0, 2.0) };
     let place = |log: f64| (log - first) / (end - first) * ACROSS;
-    let x = |e: &Estimate| px(place((e.runs as f64).log10()));
+    let x = |e: &ConvergencePoint| px(place((e.runs as f64).log10()));
     let across = decades([first, end]).into_iter();
     let across: Vec<Tick> = across.map(|tick| Tick { at: place(tick.at), ..tick }).collect();
 

@@ -15,7 +15,7 @@ static ENDS: LazyLock<Vec<u64>> = LazyLock::new(|| {
 
 /// The share of runs that fail a requirement, among the first so many.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Estimate {
+pub struct ConvergencePoint {
     /// Runs that count.
     pub runs: u64,
     /// Those of them that do not keep the requirement.
@@ -59,7 +59,7 @@ impl Prefixes {
     pub(super) fn estimates(
         &self,
         interval: impl Fn(u64, u64) -> Result<Interval, StatisticsError>,
-    ) -> Result<Vec<Estimate>, StatisticsError> {
+    ) -> Result<Vec<ConvergencePoint>, StatisticsError> {
         let mut all = [0; 2];
         let mut counts: Vec<[u64; 2]> = Vec::new();
         for [runs, failures] in self.counts.iter().filter(|[runs, _]| *runs > 0) {
@@ -71,7 +71,7 @@ impl Prefixes {
         told.reverse();
         let estimate = |[runs, failures]: [u64; 2]| {
             let (failing, interval) = (failures as f64 / runs as f64, interval(failures, runs)?);
-            Ok(Estimate { runs, failures, failing, interval })
+            Ok(ConvergencePoint { runs, failures, failing, interval })
         };
         told.into_iter().map(estimate).collect()
     }

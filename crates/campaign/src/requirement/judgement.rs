@@ -8,7 +8,7 @@ use std::fmt;
 
 use super::{
     Bound, FailedRuns, Requirement,
-    convergence::Estimate,
+    convergence::ConvergencePoint,
     deciding::Looks,
     distribution::Distribution,
     gathering::{Gathering, RunBeyond},
@@ -67,7 +67,7 @@ pub struct Judgement {
     distribution: Option<Distribution>,
     /// The share that fails it among the first so many runs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    convergence: Vec<Estimate>,
+    convergence: Vec<ConvergencePoint>,
     /// How many vehicles keep it, of runs that are flights of vehicles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     vehicles: Option<VehiclesKeeping>,
@@ -251,7 +251,7 @@ impl Judgement {
 
     /// The share of runs that fail it among the first so many, the fewest first.
     #[must_use]
-    pub fn convergence(&self) -> &[Estimate] {
+    pub fn convergence(&self) -> &[ConvergencePoint] {
         &self.convergence
     }
 

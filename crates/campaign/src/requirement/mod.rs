@@ -21,7 +21,7 @@ use std::{fmt, str::FromStr};
 
 use crate::{number::plain, table::Table};
 
-pub use convergence::Estimate;
+pub use convergence::ConvergencePoint;
 pub use counting::Counting;
 pub use deciding::Looks;
 pub use distribution::{Distribution, DistributionPoint};

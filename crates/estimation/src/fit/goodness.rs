@@ -6,7 +6,7 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::fmt;
 
-use crate::assessment::{Test, Verdict};
+use crate::assessment::{Goodness, Test};
 
 use super::{
     AxesFinding, PrincipalFit, matching::mean_attitude, relabel::Sample, root::RootEstimate,
@@ -66,7 +66,7 @@ impl fmt::Display for Aspect {
 pub type FitTest = Test<Aspect>;
 
 /// Whether samples look like draws of the fitted model of an inertia.
-pub type Assessment = Verdict<Aspect>;
+pub type Assessment = Goodness<Aspect>;
 
 impl fmt::Display for Assessment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

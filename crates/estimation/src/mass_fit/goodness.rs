@@ -5,7 +5,7 @@ use std::fmt;
 
 use super::{MassPropertiesFit, ScalarEstimate};
 use crate::{
-    assessment::{Test, Verdict},
+    assessment::{Goodness, Test},
     fit::{Aspect, FitTest, independence},
 };
 
@@ -50,7 +50,7 @@ impl fmt::Display for MassAspect {
 pub type MassTest = Test<MassAspect>;
 
 /// Whether samples look like draws of the fitted joint law.
-pub type MassAssessment = Verdict<MassAspect>;
+pub type MassAssessment = Goodness<MassAspect>;
 
 impl MassPropertiesFit {
     /// Tests whether the samples look like draws of the law: each scalar by Anderson and Darling's test with estimated

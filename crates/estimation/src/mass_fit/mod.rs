@@ -16,7 +16,7 @@ use crate::fit::{AxesFinding, PrincipalFit, PrincipalFitError, RootEstimate};
 
 pub use goodness::{MassAspect, MassAssessment, MassTest};
 pub use scalar::{ScalarEstimate, ScalarFit};
-pub use ties::{Interval, MassTies};
+pub use ties::{MassTies, Tie};
 
 /// How many scalars a joint law has.
 const SCALARS: usize = JointScalar::ALL.len();

@@ -63,7 +63,7 @@ fn known_parameters_come_back_within_the_stated_errors() {
                 z.push((deviation - known.1) / errors[1]);
             }
             let ties = fit.ties().unwrap();
-            let inside = |interval: Interval, known: f64| {
+            let inside = |interval: Tie, known: f64| {
                 if interval.low() < known && known < interval.high() { 0.0 } else { 9.0 }
             };
             // ln m and ln ρ of narrow laws are as correlated as m and ρ; that of the lognormal mass is its score.

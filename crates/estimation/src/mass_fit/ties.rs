@@ -13,7 +13,7 @@ const STILL: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[getset(get_copy = "pub")]
-pub struct Interval {
+pub struct Tie {
     /// The estimate.
     estimate: f64,
     /// The lower end.
@@ -32,10 +32,10 @@ pub struct MassTies {
     /// The power of the mass with which the trace of the inertia goes, by regression of the logarithms: 1 where the
     /// inertia follows the mass, 0 where it does not depend on it.
     #[getset(get_copy = "pub")]
-    power: Interval,
+    power: Tie,
     /// The correlations of ln m with the logarithms of the gyration lengths; none of a length that does not vary or is zero.
     #[getset(get = "pub")]
-    correlations: [Option<Interval>; 3],
+    correlations: [Option<Tie>; 3],
 }
 
 impl MassTies {
@@ -45,13 +45,13 @@ impl MassTies {
         let sizes = inertias.iter().map(|i| libm::log(i.matrix().trace()));
         let n = inertias.len() as f64;
         let power = match Centred::of(sizes) {
-            None => Interval { estimate: 1.0, low: 1.0, high: 1.0 },
+            None => Tie { estimate: 1.0, low: 1.0, high: 1.0 },
             Some(sizes) => {
                 let slope = masses.product(&sizes) / masses.square();
                 let rest = (sizes.square() - slope * slope * masses.square()).max(0.0);
                 let reach = NORMAL_95 * (rest / (n - 2.0) / masses.square()).sqrt();
                 let estimate = 1.0 + slope;
-                Interval { estimate, low: estimate - reach, high: estimate + reach }
+                Tie { estimate, low: estimate - reach, high: estimate + reach }
             }
         };
         let correlations = std::array::from_fn(|k| {
@@ -65,7 +65,7 @@ impl MassTies {
             let estimate = (masses.product(&values) / sizes).clamp(-1.0, 1.0);
             // Fisher's z.
             let (z, reach) = (libm::atanh(estimate), NORMAL_95 / (n - 3.0).sqrt());
-            Some(Interval { estimate, low: libm::tanh(z - reach), high: libm::tanh(z + reach) })
+            Some(Tie { estimate, low: libm::tanh(z - reach), high: libm::tanh(z + reach) })
         });
         Some(Self { power, correlations })
     }

@@ -2,8 +2,8 @@
 
 use gyradius_dispersion::{JointScalar, MassPropertiesLaw};
 use gyradius_estimation::{
-    Interval, MassAssessment, MassChoice, MassPropertiesFit, MassPropertiesFitError, MassTies,
-    RootEstimate, ScalarFit,
+    MassAssessment, MassChoice, MassPropertiesFit, MassPropertiesFitError, MassTies, RootEstimate,
+    ScalarFit, Tie,
 };
 use gyradius_inertia::MassProperties;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -28,8 +28,8 @@ pub(super) struct JointJson {
     mass_kg: ScalarFit,
     mass_centre_m: [ScalarFit; 3],
     gyration_lengths_m: Vec<LengthJson>,
-    inertia_power_of_mass: Option<Interval>,
-    mass_and_length_correlations: Option<[Option<Interval>; 3]>,
+    inertia_power_of_mass: Option<Tie>,
+    mass_and_length_correlations: Option<[Option<Tie>; 3]>,
     fits: bool,
     p_value: f64,
     tests: Vec<TestJson>,
