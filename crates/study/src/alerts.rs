@@ -45,7 +45,14 @@ pub(crate) enum Alert {
     /// What is declared as dispersed is the same in all runs.
     Unmoved { model: String, column: String, value: f64, runs: u64 },
     /// In runs the payload leaves by more than 90° away from where it is to go.
-    Backwards { model: String, backwards: u64, runs: u64 },
+    Backwards {
+        model: String,
+        backwards: u64,
+        runs: u64,
+        /// Whether the bodies have outlines, which tell whether they touch.
+        #[serde(default)]
+        outlines: bool,
+    },
     /// The angular momentum of the payload at the start is far from the axis that it is to spin about.
     OffAxis { angle_deg: f64, spin_axis: [f64; 3] },
     /// The mean of a law is far from the nominal value that the same scenario states.
@@ -92,9 +99,14 @@ impl Alert {
 
     /// That in so many runs, of those in which the bodies part, the payload leaves by more than 90° away from where it is to
     /// go, if it does in any.
-    pub(crate) fn backwards(model: &str, backwards: u64, runs: u64) -> Option<Self> {
+    pub(crate) fn backwards(
+        model: &str,
+        backwards: u64,
+        runs: u64,
+        outlines: bool,
+    ) -> Option<Self> {
         let model = model.to_owned();
-        (backwards > 0).then_some(Self::Backwards { model, backwards, runs })
+        (backwards > 0).then_some(Self::Backwards { model, backwards, runs, outlines })
     }
 
     /// That the payload without any dispersion starts with an angular momentum that is far from its spin axis.
@@ -158,14 +170,17 @@ impl Alert {
                     " is declared as dispersed, and is {} in all {runs} runs. The results say nothing of what it does.",
                     significant(*value, 5)
                 )),
-            Self::Backwards { model, backwards, runs } => Text::default()
-                .strong(format!("{model}: the payload leaves the wrong way in {backwards} of {runs} runs"))
-                .plain(
-                    ", more than 90° away from the direction that is intended. It may have gone through the stage, which no spring \
-                     hinders: outlines of the bodies, under ",
-                )
-                .code("[clearance]")
-                .plain(" in the scenario, would tell."),
+            Self::Backwards { model, backwards, runs, outlines } => {
+                let text = Text::default()
+                    .strong(format!("{model}: the payload leaves the wrong way in {backwards} of {runs} runs"))
+                    .plain(", more than 90° away from the direction that is intended. ");
+                if *outlines {
+                    return text.plain("Below is told in how many runs the outlines of the bodies touch.");
+                }
+                text.plain("It may have gone through the stage, which no spring hinders: outlines of the bodies, under ")
+                    .code("[clearance]")
+                    .plain(" in the scenario, would tell.")
+            }
             Self::OffAxis { angle_deg, spin_axis } => Text::default()
                 .strong("The payload does not spin about its spin axis at the start")
                 .plain(format!(": without dispersion, its angular momentum is {}° from ", significant(*angle_deg, 3)))

@@ -422,7 +422,8 @@ impl ModelSummary {
         let near = Body::BOTH.into_iter().zip(seen.near_boundary);
         let near = near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body, near, of));
         let parted = seen.quantity(Quantity::DirectionError).map_or(0, Survey::n);
-        let backwards = Alert::backwards(name, seen.backwards, parted);
+        let backwards =
+            Alert::backwards(name, seen.backwards, parted, scenario.outlines().is_some());
         let first = failed.into_iter().chain(backwards).chain(unmoved);
         first.chain(Alert::heavy_tails(name, heavy)).chain(near).collect()
     }

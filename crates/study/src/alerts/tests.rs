@@ -88,6 +88,18 @@ fn what_goes_the_wrong_way_is_told() {
         assert!(page.contains("meant to spin about, (0, 0, 1) in its body axes"));
     }
     assert!(seen.iter().all(|seen| *seen > 1), "{seen:?}");
+    // Whoever has given outlines is not told to give some.
+    for outlines in [false, true] {
+        let mut text = with(-8.0, [0.0, 0.0, 0.5]).to_toml();
+        if outlines {
+            text += "\n[clearance]\npayload = [{ points_m = [[0.0, 0.0, -0.5]] }]\nstage = [{ points_m = [[1.0, 0.0, 0.9]] }]\n";
+        }
+        let scenario = Scenario::from_toml(&text).unwrap();
+        let page = scenario.report(&study(&scenario).0).html();
+        assert!(page.contains("the payload leaves the wrong way"));
+        assert_eq!(page.contains("in the scenario, would tell"), !outlines);
+        assert_eq!(page.contains("in how many runs the outlines of the bodies touch"), outlines);
+    }
     for turn in [0.0_f64, 30.0, 44.0, 46.0, 90.0, 180.0] {
         let (sin, cos) = turn.to_radians().sin_cos();
         // The momentum turns with the moments, 2000 and 1800 kg·m².
