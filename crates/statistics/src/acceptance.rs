@@ -39,7 +39,11 @@ use crate::{Confidence, StatisticsError, law};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, remote = "Self")
+)]
 #[getset(get_copy = "pub")]
 pub struct Acceptance {
     /// The share of flights that must succeed, p.
@@ -48,11 +52,8 @@ pub struct Acceptance {
     confidence: Confidence,
 }
 
-crate::checked::checked!(
-    #[serde(deny_unknown_fields)]
-    Acceptance { probability: f64, confidence: Confidence },
-    |read| Acceptance::new(read.probability, read.confidence).map(drop)
-);
+crate::checked::checked!(Acceptance, |read| Acceptance::new(read.probability, read.confidence)
+    .map(drop));
 
 impl Acceptance {
     /// At least a share `probability` of the flights succeeds, with this confidence.

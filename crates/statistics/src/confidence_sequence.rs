@@ -35,7 +35,11 @@ use crate::{Confidence, Interval, StatisticsError, error, law};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, remote = "Self")
+)]
 pub struct ConfidenceSequence {
     about: f64,
     /// The confidence with which all intervals hold together.
@@ -43,11 +47,11 @@ pub struct ConfidenceSequence {
     confidence: Confidence,
 }
 
-crate::checked::checked!(
-    #[serde(deny_unknown_fields)]
-    ConfidenceSequence { about: f64, confidence: Confidence },
-    |read| ConfidenceSequence::about(read.about, read.confidence).map(drop)
-);
+crate::checked::checked!(ConfidenceSequence, |read| ConfidenceSequence::about(
+    read.about,
+    read.confidence
+)
+.map(drop));
 
 impl ConfidenceSequence {
     /// Of a share of which nothing is known.

@@ -65,7 +65,7 @@ impl Moments {
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct Deviation {
     /// Number of values.
@@ -76,7 +76,7 @@ pub struct Deviation {
     kurtosis: f64,
 }
 
-crate::checked::checked!(Deviation { n: usize, standard_deviation: f64, kurtosis: f64 }, |read| {
+crate::checked::checked!(Deviation, |read| {
     crate::error::belong(
         read.n >= FEWEST
             && read.standard_deviation > 0.0

@@ -6,7 +6,7 @@ use crate::Interval;
 ///
 /// Nothing is clipped here: the estimate of an index that is 0 may be negative.
 #[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct Estimate {
     /// The estimate.
@@ -15,7 +15,7 @@ pub struct Estimate {
     interval: Interval,
 }
 
-crate::checked::checked!(Estimate { value: f64, interval: Interval }, |read| {
+crate::checked::checked!(Estimate, |read| {
     crate::error::belong(read.interval.contains(read.value), "estimate")
 });
 

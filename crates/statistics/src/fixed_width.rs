@@ -24,13 +24,13 @@ use crate::{Confidence, StatisticsError, law};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 pub struct FixedWidth {
     within: f64,
     confidence: Confidence,
 }
 
-crate::checked::checked!(FixedWidth { within: f64, confidence: Confidence }, |read| {
+crate::checked::checked!(FixedWidth, |read| {
     FixedWidth::new(read.within, read.confidence).map(drop)
 });
 

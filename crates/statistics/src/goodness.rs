@@ -7,7 +7,7 @@ use crate::{SortedSample, StatisticsError, tail};
 /// The outcome of a test that a sample was drawn from a given law: the statistic, and the
 /// probability of one at least as large if it was.
 #[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct GoodnessOfFit {
     /// The statistic: `D` of Kolmogorov–Smirnov or `X²` of Pearson.
@@ -16,7 +16,7 @@ pub struct GoodnessOfFit {
     p_value: f64,
 }
 
-crate::checked::checked!(GoodnessOfFit { statistic: f64, p_value: f64 }, |read| {
+crate::checked::checked!(GoodnessOfFit, |read| {
     crate::error::belong(read.statistic >= 0.0 && (0.0..=1.0).contains(&read.p_value), "test")
 });
 

@@ -17,7 +17,7 @@ use crate::{BinEdges, SortedSample, StatisticsError};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 pub struct Histogram {
     /// The edges of the bins.
     #[getset(get = "pub")]
@@ -31,15 +31,12 @@ pub struct Histogram {
     overflow: u64,
 }
 
-crate::checked::checked!(
-    Histogram { edges: BinEdges, counts: Vec<u64>, underflow: u64, overflow: u64 },
-    |read| {
-        let outside = read.underflow.checked_add(read.overflow);
-        let total = read.counts.iter().fold(outside, |sum, count| sum?.checked_add(*count));
-        let counted = total.is_some_and(|total| total > 0);
-        crate::error::belong(counted && read.counts.len() == read.edges.bins(), "histogram")
-    }
-);
+crate::checked::checked!(Histogram, |read| {
+    let outside = read.underflow.checked_add(read.overflow);
+    let total = read.counts.iter().fold(outside, |sum, count| sum?.checked_add(*count));
+    let counted = total.is_some_and(|total| total > 0);
+    crate::error::belong(counted && read.counts.len() == read.edges.bins(), "histogram")
+});
 
 impl Histogram {
     /// The counts of the sample between the edges.

@@ -194,7 +194,7 @@ impl WeightSums {
 
 /// A probability by importance sampling, and how far to trust it.
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct ImportanceEstimate {
     /// Number of runs.
@@ -219,32 +219,18 @@ pub struct ImportanceEstimate {
     warnings: Vec<WeightWarning>,
 }
 
-crate::checked::checked!(
-    ImportanceEstimate {
-        runs: u64,
-        hits: u64,
-        probability: f64,
-        coefficient_of_variation: Option<f64>,
-        interval: Interval,
-        effective_hits: f64,
-        effective_runs: f64,
-        largest_share: f64,
-        mean_weight: f64,
-        warnings: Vec<WeightWarning>,
-    },
-    |read| {
-        crate::error::belong(
-            read.hits <= read.runs
-                && read.coefficient_of_variation.is_none_or(|x| x >= 0.0)
-                && (0.0..=1.0).contains(&read.largest_share)
-                && read.probability >= 0.0
-                && read.effective_hits >= 0.0
-                && read.effective_runs >= 0.0
-                && read.mean_weight >= 0.0,
-            "estimate",
-        )
-    }
-);
+crate::checked::checked!(ImportanceEstimate, |read| {
+    crate::error::belong(
+        read.hits <= read.runs
+            && read.coefficient_of_variation.is_none_or(|x| x >= 0.0)
+            && (0.0..=1.0).contains(&read.largest_share)
+            && read.probability >= 0.0
+            && read.effective_hits >= 0.0
+            && read.effective_runs >= 0.0
+            && read.mean_weight >= 0.0,
+        "estimate",
+    )
+});
 
 /// Why weighted runs should not be trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]

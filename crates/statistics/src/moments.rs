@@ -26,7 +26,7 @@ use crate::{ExactSum, StatisticsError};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct Moments {
     /// Number of values.
@@ -46,23 +46,9 @@ pub struct Moments {
     maximum: f64,
 }
 
-crate::checked::checked!(
-    Moments {
-        n: usize,
-        mean: f64,
-        standard_deviation: f64,
-        skewness: Option<f64>,
-        kurtosis: Option<f64>,
-        minimum: f64,
-        maximum: f64,
-    },
-    |read| {
-        crate::error::belong(
-            read.n > 1 && read.is_in_range() && read.is_spread(),
-            "sample",
-        )
-    }
-);
+crate::checked::checked!(Moments, |read| {
+    crate::error::belong(read.n > 1 && read.is_in_range() && read.is_spread(), "sample")
+});
 
 impl Moments {
     /// The moments of a sample of two values or more.

@@ -34,7 +34,7 @@ use crate::{QuantileCells, StatisticsError};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct PairSeparation {
     /// The deviance of the pair less the larger deviance of the two: 0 or more.
@@ -43,7 +43,7 @@ pub struct PairSeparation {
     p_value: f64,
 }
 
-crate::checked::checked!(PairSeparation { gain: f64, p_value: f64 }, |read| crate::error::belong(
+crate::checked::checked!(PairSeparation, |read| crate::error::belong(
     read.gain >= 0.0 && (0.0..=1.0).contains(&read.p_value),
     "test"
 ));

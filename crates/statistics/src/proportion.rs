@@ -14,7 +14,7 @@ use crate::{Confidence, Interval, StatisticsError, error::MAX_TRIALS, law};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct Proportion {
     /// Number of successes.
@@ -23,11 +23,7 @@ pub struct Proportion {
     trials: u64,
 }
 
-crate::checked::checked!(Proportion { successes: u64, trials: u64 }, |read| Proportion::new(
-    read.successes,
-    read.trials
-)
-.map(drop));
+crate::checked::checked!(Proportion, |read| Proportion::new(read.successes, read.trials).map(drop));
 
 impl Proportion {
     /// The most trials, up to which the quantiles of the beta law are tested.

@@ -17,7 +17,7 @@ use crate::selection::key;
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 pub struct QuantileCells {
     /// Number of cells, those without a value too.
     #[getset(get_copy = "pub")]
@@ -25,17 +25,14 @@ pub struct QuantileCells {
     of_values: Vec<u16>,
 }
 
-crate::checked::checked!(
-    QuantileCells { cells: usize, of_values: Vec<u16> },
-    |read| {
-        crate::error::belong(
-            (1..=MAX_BINS).contains(&read.cells)
-                && !read.of_values.is_empty()
-                && read.of_values.iter().all(|cell| usize::from(*cell) < read.cells),
-            "sample",
-        )
-    }
-);
+crate::checked::checked!(QuantileCells, |read| {
+    crate::error::belong(
+        (1..=MAX_BINS).contains(&read.cells)
+            && !read.of_values.is_empty()
+            && read.of_values.iter().all(|cell| usize::from(*cell) < read.cells),
+        "sample",
+    )
+});
 
 impl QuantileCells {
     /// So many cells of a sample.

@@ -18,7 +18,7 @@ use crate::{Confidence, Estimate, Interval, StatisticsError, law};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct RankCorrelation {
     /// Number of pairs.
@@ -27,7 +27,7 @@ pub struct RankCorrelation {
     value: f64,
 }
 
-crate::checked::checked!(RankCorrelation { n: usize, value: f64 }, |read| crate::error::belong(
+crate::checked::checked!(RankCorrelation, |read| crate::error::belong(
     read.n >= 4 && read.value.abs() <= 1.0,
     "correlation"
 ));

@@ -22,7 +22,7 @@ const ALL_STEPS: f64 = 1600.0;
 /// what was found if that is larger, which moves ties and leaves the test exact. Above, it is the tail of χ², after neighbouring cells
 /// have been put together until each expects five failures and five successes.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct ShareTest {
     /// The probability of cells at least as different, if all have the same share: 1 without a failure, without a success,
@@ -32,7 +32,7 @@ pub struct ShareTest {
     exact: bool,
 }
 
-crate::checked::checked!(ShareTest { p_value: f64, exact: bool }, |read| crate::error::belong(
+crate::checked::checked!(ShareTest, |read| crate::error::belong(
     (0.0..=1.0).contains(&read.p_value),
     "test"
 ));

@@ -214,7 +214,7 @@ impl SobolSums {
 
 /// The indices of all groups.
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct SobolIndices {
     /// Number of base runs, those with missing outputs too.
@@ -229,21 +229,12 @@ pub struct SobolIndices {
     groups: Vec<SobolIndex>,
 }
 
-crate::checked::checked!(
-    SobolIndices {
-        runs: u64,
-        mean: f64,
-        standard_deviation: f64,
-        apart: u64,
-        groups: Vec<SobolIndex>,
-    },
-    |read| {
-        let runs = |group: &SobolIndex| group.left_out.checked_add(group.runs);
-        let whole = read.groups.iter().all(|group| runs(group) == Some(read.runs));
-        let is_of_runs = read.apart <= read.runs.saturating_mul(2);
-        crate::error::belong(whole && is_of_runs && read.standard_deviation >= 0.0, "study")
-    }
-);
+crate::checked::checked!(SobolIndices, |read| {
+    let runs = |group: &SobolIndex| group.left_out.checked_add(group.runs);
+    let whole = read.groups.iter().all(|group| runs(group) == Some(read.runs));
+    let is_of_runs = read.apart <= read.runs.saturating_mul(2);
+    crate::error::belong(whole && is_of_runs && read.standard_deviation >= 0.0, "study")
+});
 
 impl SobolIndices {
     /// Variance of the same, in the unit of the output squared; infinite beyond `f64`.

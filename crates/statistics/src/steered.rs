@@ -204,7 +204,7 @@ impl SteeredSampling {
 
 /// A probability by importance sampling in scores, and how far to trust it.
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 pub struct SteeredEstimate {
     /// The estimate of the probability.
     #[getset(get_copy = "pub")]
@@ -224,23 +224,12 @@ pub struct SteeredEstimate {
     weighted: ImportanceEstimate,
 }
 
-crate::checked::checked!(
-    SteeredEstimate {
-        probability: f64,
-        interval: Interval,
-        evaluations: u64,
-        failed: u64,
-        warnings: Vec<SteeredWarning>,
-        weighted: ImportanceEstimate,
-    },
-    |read| {
-        crate::error::belong(
-            read.probability == read.weighted.probability()
-                && read.failed <= read.evaluations,
-            "estimate",
-        )
-    }
-);
+crate::checked::checked!(SteeredEstimate, |read| {
+    crate::error::belong(
+        read.probability == read.weighted.probability() && read.failed <= read.evaluations,
+        "estimate",
+    )
+});
 
 /// Why importance sampling in scores should not be trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -281,7 +281,7 @@ fn log_normal(
 
 /// A probability by subset simulation, and how far to trust it.
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct SubsetEstimate {
     /// The estimate of the probability: the mean of the replicas.
@@ -303,27 +303,15 @@ pub struct SubsetEstimate {
     warnings: Vec<SubsetWarning>,
 }
 
-crate::checked::checked!(
-    SubsetEstimate {
-        probability: f64,
-        coefficient_of_variation: Option<f64>,
-        interval: Interval,
-        evaluations: u64,
-        failed: u64,
-        replicas: Vec<f64>,
-        events: Vec<Vec<u64>>,
-        warnings: Vec<SubsetWarning>,
-    },
-    |read| {
-        crate::error::belong(
-            (0.0..=1.0).contains(&read.probability)
-                && read.coefficient_of_variation.is_none_or(|x| x >= 0.0)
-                && read.failed <= read.evaluations
-                && read.replicas.iter().all(|x| (0.0..=1.0).contains(x)),
-            "estimate",
-        )
-    }
-);
+crate::checked::checked!(SubsetEstimate, |read| {
+    crate::error::belong(
+        (0.0..=1.0).contains(&read.probability)
+            && read.coefficient_of_variation.is_none_or(|x| x >= 0.0)
+            && read.failed <= read.evaluations
+            && read.replicas.iter().all(|x| (0.0..=1.0).contains(x)),
+        "estimate",
+    )
+});
 
 /// Why a subset simulation should not be trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]

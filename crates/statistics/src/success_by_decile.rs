@@ -22,7 +22,7 @@ use crate::{Confidence, Interval, Proportion, QuantileCells, StatisticsError};
 /// # Ok::<(), gyradius_statistics::StatisticsError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 pub struct SuccessByDecile {
     tenths: Vec<Tenth>,
     /// Whether the share of failures differs between tenths at all. With many inputs, adjust the p-values by
@@ -31,7 +31,7 @@ pub struct SuccessByDecile {
     test: ShareTest,
 }
 
-crate::checked::checked!(SuccessByDecile { tenths: Vec<Tenth>, test: ShareTest }, |read| {
+crate::checked::checked!(SuccessByDecile, |read| {
     let rising = read.tenths.is_sorted_by(|one, next| one.greatest < next.least);
     crate::error::belong((1..=10).contains(&read.tenths.len()) && rising, "table of tenths")
 });
@@ -75,7 +75,7 @@ impl SuccessByDecile {
 
 /// Runs whose input stands in one tenth of its values.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
 pub struct Tenth {
     /// The least value of the input.
@@ -90,16 +90,13 @@ pub struct Tenth {
     interval: Interval,
 }
 
-crate::checked::checked!(
-    Tenth { least: f64, greatest: f64, runs: u64, failures: u64, interval: Interval },
-    |read| crate::error::belong(
-        read.least <= read.greatest
-            && read.runs > 0
-            && read.failures <= read.runs
-            && read.interval.contains(read.failures as f64 / read.runs as f64),
-        "tenth"
-    )
-);
+crate::checked::checked!(Tenth, |read| crate::error::belong(
+    read.least <= read.greatest
+        && read.runs > 0
+        && read.failures <= read.runs
+        && read.interval.contains(read.failures as f64 / read.runs as f64),
+    "tenth"
+));
 
 #[cfg(test)]
 mod tests {

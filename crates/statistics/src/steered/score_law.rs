@@ -9,7 +9,7 @@ pub(super) const OWN: f64 = 0.1;
 /// A law of scores: a mixture of the standard normal law, their own, and of others, in each of which the scores are independent. A score
 /// has another mean and standard deviation there; one that decides an event has it more often.
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 pub struct ScoreLaw {
     /// How many scores it is of.
     #[getset(get_copy = "pub")]
@@ -18,20 +18,17 @@ pub struct ScoreLaw {
     parts: Vec<Part>,
 }
 
-crate::checked::checked!(
-    ScoreLaw { scores: usize, parts: Vec<Part> },
-    |read| {
-        let is_sound = |part: &Part| {
-            part.singles.len() == read.scores && part.singles.iter().all(Single::is_sound)
-        };
-        crate::error::belong(
-            read.parts.first().is_some_and(|own| own.singles.is_empty())
-                && read.parts.iter().all(|part| (0.0..=1.0).contains(&part.share))
-                && read.parts.iter().skip(1).all(is_sound),
-            "law of scores",
-        )
-    }
-);
+crate::checked::checked!(ScoreLaw, |read| {
+    let is_sound = |part: &Part| {
+        part.singles.len() == read.scores && part.singles.iter().all(Single::is_sound)
+    };
+    crate::error::belong(
+        read.parts.first().is_some_and(|own| own.singles.is_empty())
+            && read.parts.iter().all(|part| (0.0..=1.0).contains(&part.share))
+            && read.parts.iter().skip(1).all(is_sound),
+        "law of scores",
+    )
+});
 
 /// A part of a mixture: its share, and the law of each score, which are none for the own law.
 #[derive(Clone, Debug, PartialEq)]
