@@ -43,6 +43,11 @@ impl Units {
         if k < -300 { x * 1e300 * power(-k - 300) } else { shift(x, -k) }
     }
 
+    /// The difference of two values that are `u` apart in these units.
+    pub(crate) fn length(self, u: f64) -> f64 {
+        shift(u, self.exponent)
+    }
+
     /// The value that is `u` in these units, to a thousandth of `step`, which is in them too.
     pub(crate) fn back(self, u: f64, step: f64) -> f64 {
         let x = self.base + shift(u, self.exponent);

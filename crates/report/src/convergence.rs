@@ -64,15 +64,27 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
         });
     }
     field.plot.path(&required_pen(), &format!("M0 {}h{}", y(allowed), px(ACROSS)));
-    for (i, (_, judgement)) in models.iter().enumerate() {
+    let mut above = Vec::new();
+    for (i, (model, judgement)) in models.iter().enumerate() {
         let (mut d, mut marks) = (String::new(), String::new());
-        for (k, e) in judgement.convergence().iter().enumerate() {
-            d.push_str(&format!("{}{} {}", if k > 0 { "L" } else { "M" }, x(e), y(e.failing)));
-            // What is above the plot is not a point in it.
-            if 100.0 * e.failing <= top {
-                let above = HIGH - 100.0 * e.failing / top * HIGH;
-                marks.push_str(&marker(i, place((e.runs as f64).log10()), above));
+        let all = judgement.convergence().iter();
+        let at = |e: &ConvergencePoint| [place((e.runs as f64).log10()), 100.0 * e.failing / top];
+        let points: Vec<[f64; 2]> = all.map(at).collect();
+        for pair in points.windows(2) {
+            // What is above the plot is not in it, nor is the line that leads there.
+            if let Some(ends) = below_top(pair[0], pair[1]) {
+                let [from, to] = ends.map(|[x, y]| format!("{} {}", px(x), px(HIGH - y * HIGH)));
+                d.push_str(&format!("M{from}L{to}"));
             }
+        }
+        for [x, up] in points.iter().filter(|[_, up]| *up <= 1.0) {
+            marks.push_str(&marker(i, *x, HIGH - up * HIGH));
+        }
+        if let Some(highest) =
+            points.iter().map(|[_, up]| *up).filter(|up| *up > 1.0).reduce(f64::max)
+        {
+            let highest = significant(highest * top, 3);
+            above.push(format!("{model}: up to {highest} % in the first runs, above this axis."));
         }
         field.plot.path(&line_pen(i), &d);
         let colour = style::model(i);
@@ -98,7 +110,20 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)], looks: &[u64]) 
         let pen = format!("fill=\"{}\" fill-opacity=\"0.3\"", style::MUTED);
         swatch.path(&pen, "M0 -6h26v12h-26z");
     });
+    above.into_iter().for_each(|note| field.note(note));
     field.finish(&title, &description(models))
+}
+
+/// What of the line between two points, whose heights are shares of the plot's, is not above the plot.
+fn below_top(a: [f64; 2], b: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    // Where the line crosses the upper edge.
+    let edge = || [a[0] + (b[0] - a[0]) * (1.0 - a[1]) / (b[1] - a[1]), 1.0];
+    match (a[1] <= 1.0, b[1] <= 1.0) {
+        (true, true) => Some([a, b]),
+        (true, false) => Some([a, edge()]),
+        (false, true) => Some([edge(), b]),
+        (false, false) => None,
+    }
 }
 
 /// The figure in words.

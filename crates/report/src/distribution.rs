@@ -9,6 +9,7 @@ use crate::Drawing;
 use crate::axis::Tick;
 use crate::field::{ACROSS, Across, Field, HIGH, band_pen, line_pen, required_pen};
 use crate::lines::marker;
+use crate::numbers::digits_of;
 use crate::style;
 use crate::svg::{Svg, px};
 use crate::text::{count, significant};
@@ -49,7 +50,8 @@ fn svg(requirement: &Requirement, models: &[(&str, &Judgement)]) -> String {
     }
     let limits: Vec<f64> = requirement.bound().limits().collect();
     for limit in limits.iter().filter(|limit| !beyond.contains(limit)) {
-        field.limit(across.x(*limit), &format!("limit {}", significant(*limit, 5)));
+        let digits = digits_of(*limit, across.span()).max(5);
+        field.limit(across.x(*limit), &format!("limit {}", significant(*limit, digits)));
     }
     let required: String =
         up.required().map(|y| format!("M0 {}h{}", px(y), px(ACROSS))).into_iter().collect();

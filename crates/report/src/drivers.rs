@@ -111,6 +111,7 @@ fn panel(svg: &mut Svg, output: &DrivenOutput, top: f64) -> f64 {
         let bars = [(0, group.first, y + 5.0), (1, group.total, y + 5.0 + BAR + 1.0)];
         for (place, share, y) in bars {
             let Some([lower, share, upper]) = share else { continue };
+            // What is beyond 0 or 1, where no share can be, is drawn there.
             let wide = (at(share) - left).max(0.5);
             svg.path(
                 &pen(place),
@@ -139,8 +140,9 @@ fn panel(svg: &mut Svg, output: &DrivenOutput, top: f64) -> f64 {
     end
 }
 
-/// A share in two digits after the point, or how small it is.
+/// A share in two digits after the point, or how small it is, where it is drawn: between 0 and 1.
 fn told(share: f64) -> String {
+    let share = share.clamp(0.0, 1.0);
     if share > 0.0 && share < 0.005 { "< 0.01".to_owned() } else { format!("{share:.2}") }
 }
 

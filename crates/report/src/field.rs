@@ -42,6 +42,11 @@ impl Across {
         Self { units, lower: low - room, upper: high + room }
     }
 
+    /// From one end to the other, in the unit of the values.
+    pub(crate) fn span(&self) -> f64 {
+        self.units.length(self.upper - self.lower)
+    }
+
     /// Where a value is.
     pub(crate) fn x(&self, value: f64) -> f64 {
         self.at(self.units.of(value))

@@ -5,7 +5,8 @@ use gyradius_statistics::Interval;
 /// To a number of significant digits, one at least, plain where that is short, scientific where it is not.
 pub fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
-        return format!("{x}");
+        // Without a sign of zero.
+        return format!("{}", x + 0.0);
     }
     let digits = digits.max(1);
     let magnitude = x.abs().log10().floor();
@@ -22,10 +23,27 @@ pub fn optional(x: Option<f64>, digits: usize) -> String {
     x.map_or_else(|| "–".to_owned(), |x| significant(x, digits))
 }
 
-/// `[lower, upper]`, or nothing.
+/// The same beside numbers that are so far apart: with two digits of that at least, so that it is told from them.
+pub fn resolved(x: Option<f64>, apart: Option<f64>, digits: usize) -> String {
+    optional(x, digits.max(digits_of(x.unwrap_or(0.0), apart.unwrap_or(0.0))))
+}
+
+/// How many digits a number must have for two of a difference to be seen; 17 tell all numbers apart.
+pub(crate) fn digits_of(x: f64, apart: f64) -> usize {
+    let places = [x.abs(), apart].map(|x| x.log10().floor());
+    if apart > 0.0 && places.iter().all(|place| place.is_finite()) {
+        (places[0] - places[1] + 2.0).clamp(1.0, 17.0) as usize
+    } else {
+        1
+    }
+}
+
+/// `[lower, upper]`, with as many digits as tell them apart at least, or nothing.
 pub fn interval(interval: Option<Interval>, digits: usize) -> String {
     interval.map_or_else(String::new, |i| {
-        format!("[{}, {}]", significant(i.lower(), digits), significant(i.upper(), digits))
+        let width = Some(i.upper() - i.lower());
+        let [lower, upper] = [i.lower(), i.upper()].map(|x| resolved(Some(x), width, digits));
+        format!("[{lower}, {upper}]")
     })
 }
 
@@ -64,7 +82,8 @@ pub fn round_below(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{round_below, significant};
+    use super::{resolved, round_below, significant};
+    use proptest::prelude::*;
 
     #[test]
     fn lengths_are_round() {
@@ -83,6 +102,23 @@ mod tests {
         }
     }
 
+    proptest! {
+        /// Numbers that differ by what they are apart are told apart, read back to a hundredth of it, and are not longer than asked for
+        /// where they are far apart.
+        #[test]
+        fn digits_follow_what_is_apart(x in -1.0..1.0_f64, order in -290..290_i32, nearer in 0..14_i32, digits in 1..6_usize) {
+            let x = x * 10_f64.powi(order);
+            prop_assume!(x.abs() > 1e-300);
+            let apart = x.abs() * 10_f64.powi(-nearer);
+            let [one, other] = [x, x + apart].map(|x| resolved(Some(x), Some(apart), digits));
+            prop_assert_ne!(&one, &other);
+            let read: f64 = one.parse().unwrap();
+            prop_assert!((read - x).abs() <= 0.06 * apart + 1e-15 * x.abs(), "{} {}", one, x);
+            prop_assert_eq!(resolved(Some(x), Some(1e6 * x.abs()), digits), significant(x, digits));
+            prop_assert_eq!(resolved(Some(x), None, digits), significant(x, digits));
+        }
+    }
+
     #[test]
     fn digits_are_significant() {
         let cases = [
@@ -94,6 +130,7 @@ mod tests {
             (1.234_56e-9, "1.235e-9"),
             (1.234_56e12, "1.235e12"),
             (0.0, "0"),
+            (-0.0, "0"),
         ];
         for (x, expected) in cases {
             assert_eq!(significant(x, 4), expected);

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     Document, Figure, HistogramGrid, PageCell, PageTable, Panel, Picture, Section, Series, Text,
     kinds::most_frequent,
-    numbers::{interval, optional, with_unit},
+    numbers::{interval, optional, resolved, with_unit},
     share::percent,
 };
 
@@ -254,9 +254,10 @@ fn failures(model: &Model) -> Option<Text> {
 #[must_use]
 pub fn spread(sample: Option<&SampleSummary>) -> PageCell {
     let Some(s) = sample.filter(|s| s.n > 0) else { return PageCell::from("–") };
-    let line = Text::from(optional(s.mean, 4)).tip(interval(s.mean_interval, 4)).plain(" ± ");
+    let told = |x| resolved(x, s.deviation, 4);
+    let line = Text::from(told(s.mean)).tip(interval(s.mean_interval, 4)).plain(" ± ");
     let line = line.plain(optional(s.deviation, 3)).tip(interval(s.deviation_interval, 4));
-    let range = format!("{} … {}", optional(s.p05, 4), optional(s.p95, 4));
+    let range = format!("{} … {}", told(s.p05), told(s.p95));
     PageCell::from(line).line(Text::default().quiet(range).tip(interval(s.p95_interval, 4)))
 }
 

@@ -3,7 +3,7 @@
 use gyradius_campaign::{Kept, Rows, SampleSummary};
 use gyradius_report::{
     Document, Drawing, Figure, PageCell, PageTable, Section, Text, Tone, direction, file_of,
-    interval, optional, percent, significant, spread,
+    interval, optional, percent, resolved, significant, spread,
 };
 use gyradius_statistics::Interval;
 use nalgebra::{Unit, Vector3};
@@ -398,7 +398,11 @@ fn dispersed(summary: &Summary) -> Option<Section> {
         table = table.numbers(format!("drawn by {}", model.name), |(i, _)| {
             let Some(drawn) = model.dispersed.get(*i) else { return PageCell::from("–") };
             let told = |mean: Option<f64>, deviation: Option<f64>| {
-                PageCell::from(format!("{} ± {}", optional(mean, 5), optional(deviation, 4)))
+                PageCell::from(format!(
+                    "{} ± {}",
+                    resolved(mean, deviation, 5),
+                    optional(deviation, 4)
+                ))
             };
             match drawn.late {
                 Some(LateSummary { runs: 0, .. }) => {

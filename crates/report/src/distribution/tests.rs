@@ -109,3 +109,50 @@ fn the_line_reaches_both_tails() {
     let seen = read(&svg(&far, &[("m", &judgement)]));
     assert!(seen.contains("is far off this axis"), "{seen}");
 }
+
+/// A share that is above the axis is not drawn along its edge, and is told in words.
+#[test]
+fn shares_above_the_axis_leave_the_plot() {
+    let requirement: Requirement = "x <= 1 in 99 % at 90 %".parse().unwrap();
+    let mut above = 0;
+    for failing in [&[0, 2][..], &[1500], &[0, 1, 2], &[40, 41], &[], &[10, 500, 1000]] {
+        let number = |i: u64| Some(if failing.contains(&i) { 2.0 } else { 0.5 });
+        let numbers: Vec<Option<f64>> = (0..3000).map(number).collect();
+        let judgement = judged(&numbers, &requirement).unwrap();
+        let most = judgement.convergence().iter().map(|e| e.failing).fold(0.0, f64::max);
+        let last = judgement.convergence().last().unwrap().interval.upper();
+        let expected = most > f64::max(1.8 * last, 2.2 * (1.0 - requirement.probability()));
+        above += usize::from(expected);
+        let svg = convergence_figure("f", "c", &requirement, &[("m", &judgement)], &[]).svg;
+        let seen = read(&svg);
+        assert_eq!(seen.contains("m: up to"), expected, "{failing:?}: {seen}");
+        // Both ends of a line at the upper edge would be a line along it.
+        let pen = format!("<path {} d=\"", line_pen(0));
+        assert!(svg.contains(&pen), "{svg}");
+        let line = svg.split(&pen).skip(1).map(|rest| rest.split('"').next().unwrap());
+        for piece in line.flat_map(|d| d.split('M').skip(1)) {
+            let ends: Vec<&str> =
+                piece.split('L').map(|end| end.split(' ').nth(1).unwrap()).collect();
+            assert!(ends.iter().any(|y| *y != "0"), "{failing:?}: {piece}");
+        }
+    }
+    assert!((2..5).contains(&above), "{above}");
+}
+
+/// Limits that differ in the last digits are told apart where the axis does.
+#[test]
+fn limits_of_a_narrow_axis_are_told_apart() {
+    for (middle, half) in
+        [(1e9, 1e-6), (7_000_123.0, 0.02), (293.15, 0.001), (-1e15, 0.5), (5.0, 1.0)]
+    {
+        let numbers: Vec<Option<f64>> =
+            (0..200).map(|i| Some(middle + half * (f64::from(i) / 100.0 - 1.0))).collect();
+        let bound = Bound::Between(middle - half, middle + half);
+        let requirement = Requirement::new("r", Measured::column("x"), bound, 0.9, 0.9).unwrap();
+        let judgement = judged(&numbers, &requirement).unwrap();
+        let seen = read(&svg(&requirement, &[("m", &judgement)]));
+        let told: Vec<&str> =
+            seen.split("limit ").skip(1).map(|rest| rest.lines().next().unwrap()).collect();
+        assert!(told.len() >= 2 && told[0] != told[1], "{middle} {half}: {told:?}\n{seen}");
+    }
+}

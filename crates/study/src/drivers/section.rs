@@ -139,8 +139,9 @@ impl Driven {
 
     fn drawn(&self, drivers: &Drivers) -> DrivenOutput {
         let share = |estimate: Option<&Estimate>| {
-            let shown = estimate?.clipped(0.0, 1.0);
-            Some([shown.interval().lower(), shown.value(), shown.interval().upper()])
+            let estimate = estimate?;
+            let interval = estimate.interval();
+            Some([interval.lower(), estimate.value(), interval.upper()])
         };
         let group = |(name, index): (&String, &SobolIndex)| DrivingGroup {
             name: name.clone(),

@@ -4,7 +4,7 @@ use gyradius_campaign::{
     Column, ExternalSimulation, FirstLook, Forecast, Progress, Runs, SampleSummary, Simulator,
     SimulatorFunction, Surveys, Unasked,
 };
-use gyradius_report::{Document, Overview, file_of, most_frequent, optional, with_unit};
+use gyradius_report::{Document, Overview, file_of, most_frequent, optional, resolved, with_unit};
 use gyradius_statistics::Confidence;
 use rayon::ThreadPool;
 use serde::{Deserialize, Serialize};
@@ -349,8 +349,9 @@ impl fmt::Display for SimulatorSummary {
             for (column, unit, samples) in overview.quantities() {
                 let Some(s) = samples.get(place).filter(|sample| sample.n > 0) else { continue };
                 write!(f, "  {:width$}", with_unit(column, unit))?;
-                for number in [s.mean, s.deviation, s.p05, s.p95] {
-                    write!(f, " {:>12}", optional(number, 4))?;
+                let told = |x| resolved(x, s.deviation, 4);
+                for number in [told(s.mean), optional(s.deviation, 4), told(s.p05), told(s.p95)] {
+                    write!(f, " {number:>12}")?;
                 }
                 writeln!(f)?;
             }
