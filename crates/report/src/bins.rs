@@ -2,6 +2,7 @@
 
 use gyradius_statistics::{BinEdges, Histogram, SortedSample};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 use crate::axis::Units;
 use crate::data::Field;
@@ -89,6 +90,19 @@ impl Binned {
             nominal,
             range,
             edges: edges.values().to_vec(),
+        })
+    }
+
+    /// The same of some of the series alone; none if they have no finite value.
+    pub(crate) fn of_series(&self, series: Range<usize>) -> Option<Self> {
+        let found = self.finite.get(series.clone())?.iter().any(|count| *count > 0);
+        found.then(|| Self {
+            counts: self.counts[series.clone()].to_vec(),
+            finite: self.finite[series.clone()].to_vec(),
+            below: self.below[series.clone()].to_vec(),
+            above: self.above[series].to_vec(),
+            edges: self.edges.clone(),
+            ..*self
         })
     }
 

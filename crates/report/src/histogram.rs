@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::bins::Binned;
 use crate::data::Sheet;
 use crate::legend::{Entry, legend};
-use crate::panel::{Cell, Counted, Frame, GUTTER, nominal_pen, outline_pen};
+use crate::panel::{Cell, Counted, Frame, GUTTER, most_bins, nominal_pen, outline_pen};
 use crate::samples::Panel;
 use crate::style::{self, MARGIN};
 use crate::svg::{Anchor, Look, Svg};
@@ -12,7 +13,7 @@ use crate::text::{count, significant};
 
 /// Histograms of quantities under several models, in a grid of panels: bins and counts.
 ///
-/// Bins are those of Freedman and Diaconis, shared by the series of a panel, and no more than are
+/// Bins are those of Freedman and Diaconis, shared by the series of a panel and by the panels of one label, and no more than are
 /// wide enough to be seen. The vertical axis counts runs if in every panel all series have as many
 /// values, and is a density otherwise. Extreme values that would squeeze the rest are drawn at the
 /// edges of the axis, in the colours of their models, and a note says how many they are and how far they
@@ -29,8 +30,11 @@ impl HistogramGrid {
     #[must_use]
     pub fn new(title: &str, panels: &[Option<Panel<'_>>], columns: usize) -> Self {
         let columns = columns.clamp(1, panels.len().max(1));
-        let counted = |panel: &Panel<'_>| Counted::new(panel, plot(columns).0);
-        let panels = panels.iter().map(|panel| panel.as_ref().map(counted)).collect();
+        let bins = shared_bins(panels, most_bins(plot(columns).0));
+        let counted = |(panel, bins): (&Option<Panel<'_>>, _)| {
+            panel.as_ref().map(|panel| Counted::new(panel, bins))
+        };
+        let panels = panels.iter().zip(bins).map(counted).collect();
         Self { title: title.to_owned(), columns, panels }
     }
 
@@ -44,6 +48,34 @@ impl HistogramGrid {
     pub(crate) fn sheets(&self) -> Vec<Sheet> {
         self.panels.iter().flatten().filter_map(Counted::sheet).collect()
     }
+}
+
+/// The bins of each panel. Panels of one label show one quantity, which can be compared on bins that they share.
+fn shared_bins(panels: &[Option<Panel<'_>>], most: usize) -> Vec<Option<Binned>> {
+    let mut bins = vec![None; panels.len()];
+    for (first, panel) in panels.iter().enumerate() {
+        let Some(panel) = panel else { continue };
+        let alike: Vec<usize> = (0..panels.len())
+            .filter(|i| panels[*i].as_ref().is_some_and(|other| other.label == panel.label))
+            .collect();
+        if alike.first() != Some(&first) {
+            continue;
+        }
+        let of_all = || alike.iter().filter_map(|i| panels[*i].as_ref());
+        let all = Panel {
+            label: panel.label.clone(),
+            series: of_all().flat_map(|panel| panel.series.iter().cloned()).collect(),
+            nominal: of_all().find_map(|panel| panel.nominal),
+        };
+        let shared = Binned::new(&all, most);
+        let mut next = 0;
+        for (i, panel) in alike.iter().zip(of_all()) {
+            let own = next..next + panel.series.len();
+            next = own.end;
+            bins[*i] = shared.as_ref().and_then(|shared| shared.of_series(own));
+        }
+    }
+    bins
 }
 
 /// Width and height of a plot among so many columns.
@@ -228,6 +260,34 @@ mod tests {
         assert!(same.contains("runs per bin") && !same.contains("density"));
         let other = read(&histogram_grid("", &[panel(&[&a, &b], None)], 1));
         assert!(other.contains("density") && !other.contains("runs per bin"));
+    }
+
+    /// Panels of one label have the edges, and each the counts that they have as series of one panel; others have edges of their own.
+    #[test]
+    fn panels_of_one_label_share_their_bins() {
+        let samples: Vec<Vec<f64>> = vec![
+            bell(300, 1.0),
+            bell(300, 0.1).iter().map(|x| x + 5.0).collect(),
+            vec![],
+            bell(20, 30.0),
+            vec![2.0; 50],
+        ];
+        for (i, a) in samples.iter().enumerate() {
+            for b in &samples {
+                let other = Panel { label: "other".to_owned(), ..panel(&[a], None).unwrap() };
+                let panels = [panel(&[a], Some(0.5)), Some(other), None, panel(&[b, a], Some(0.5))];
+                let grid = HistogramGrid::new("", &panels, 1);
+                let bins = |place: usize| grid.panels[place].as_ref().and_then(|p| p.bins.as_ref());
+                let together = HistogramGrid::new("", &[panel(&[a, b, a], Some(0.5))], 1);
+                let together = together.panels[0].as_ref().and_then(|p| p.bins.as_ref());
+                let alone = HistogramGrid::new("", &[panel(&[a], None)], 1);
+                assert_eq!(bins(1), alone.panels[0].as_ref().and_then(|p| p.bins.as_ref()), "{i}");
+                for (place, series) in [(0, 0..1), (3, 1..3)] {
+                    let expected = together.and_then(|all| all.of_series(series));
+                    assert_eq!(bins(place), expected.as_ref(), "{i} {place}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -76,9 +76,14 @@ pub(crate) struct CountedSeries {
     pub(crate) quantiles: Option<[f64; 3]>,
 }
 
+/// Bins that are wide enough to be seen in a plot of this width.
+pub(crate) fn most_bins(width: f64) -> usize {
+    (width / STEP) as usize
+}
+
 impl Counted {
-    /// Counts for a plot of this width.
-    pub(crate) fn new(panel: &Panel<'_>, width: f64) -> Self {
+    /// Of a panel and its bins.
+    pub(crate) fn new(panel: &Panel<'_>, bins: Option<Binned>) -> Self {
         let series = |series: &Series<'_>| CountedSeries {
             name: series.name.to_owned(),
             runs: series.runs,
@@ -89,7 +94,7 @@ impl Counted {
             label: panel.label.clone(),
             nominal: panel.nominal.filter(|x| x.is_finite()),
             series: panel.series.iter().map(series).collect(),
-            bins: Binned::new(panel, (width / STEP) as usize),
+            bins,
         }
     }
 
@@ -409,7 +414,7 @@ mod tests {
             };
             let density = round % 2 == 0;
             let size = [(500.0, 220.0), (350.0, 160.0), (232.0, 122.0)][round % 3];
-            let counted = Counted::new(&panel, size.0);
+            let counted = Counted::new(&panel, Binned::new(&panel, most_bins(size.0)));
             let cell = Cell::new(&counted, (0..series).collect(), density, size.1);
             let mut svg = Svg::new();
             let frame = Frame { left: 50.0, top: 20.0, width: size.0, height: size.1 };

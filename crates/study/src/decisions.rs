@@ -162,7 +162,7 @@ pub(crate) fn judged<C: Subject>(
 }
 
 /// The answers, before everything else, and the runs that come nearest to the limits or are beyond.
-pub(crate) fn sections(head: &Head) -> Vec<Section> {
+pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
     if head.requirements.is_empty() {
         return Vec::new();
     }
@@ -260,7 +260,7 @@ pub(crate) fn sections(head: &Head) -> Vec<Section> {
     }
     let section = Section::new("Requirements").table(table);
     let section = notes.into_iter().fold(section, Section::paragraph);
-    vec![section.sections([distributions(head), worst(head), convergence(head)])]
+    vec![section.sections([distributions(head), worst(scenario, head), convergence(head)])]
 }
 
 /// Where runs fail the requirements, and with which inputs outcomes rise and fall.
@@ -351,13 +351,22 @@ fn convergence(head: &Head) -> Section {
     Section::folded("Convergence").paragraph(reading).figures(drawings)
 }
 
-/// The worst runs, each with the command that does it again.
-fn worst(head: &Head) -> Section {
+/// The worst runs, each with the command, or the call, that does it again.
+fn worst(scenario: &impl Subject, head: &Head) -> Section {
     let all: Vec<(&Judged, &RunBeyond)> = head
         .requirements
         .iter()
         .flat_map(|judged| judged.judgement.worst().iter().map(move |run| (judged, run)))
         .collect();
+    type Again = fn(&str, u64) -> String;
+    let (to_see_it, again): (_, Again) = match scenario.function_name() {
+        Some(_) => ("to see it, in the program that has the function", |model, run| {
+            format!("study.replay({run}, model={model:?})")
+        }),
+        None => ("to see it, in the folder of the study", |model, run| {
+            format!("gyradius replay . --model {model} --run {run}")
+        }),
+    };
     let table = PageTable::of(&all)
         .groups(|(judged, _)| {
             format!("{}, {}", judged.judgement.requirement().name(), judged.model)
@@ -368,10 +377,7 @@ fn worst(head: &Head) -> Section {
         })
         .numbers("beyond the limit by", |(_, run)| significant(run.excess, 4))
         .words("unusual in what it drew", |(judged, run)| told_unusual(judged, run.run))
-        .words("to see it, in the folder of the study", |(judged, run)| {
-            let (model, run) = (&judged.model, run.run);
-            Text::default().code(format!("gyradius replay . --model {model} --run {run}"))
-        });
+        .words(to_see_it, |(judged, run)| Text::default().code(again(&judged.model, run.run)));
     let reading = "Unusual is what lies at least two standard deviations from the mean of all runs of the model, in brackets by \
                    how many: the three most unusual numbers of what the run drew, which need not be the reason.";
     Section::folded("The worst runs").paragraph(reading).table(table)

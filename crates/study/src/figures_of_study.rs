@@ -94,14 +94,14 @@ pub(crate) fn of_study(scenario: &Scenario, summary: &Summary, runs: &[Seen]) ->
     first.chain(pairs.collect::<Vec<_>>()).chain(last).chain(summary.every_model.figure()).collect()
 }
 
-/// How near the bodies come: a comparison a panel, or a model where nothing is compared.
+/// How near the bodies come: a comparison a panel, and each model that is not compared.
 fn clearance(scenario: &Scenario, summary: &Summary, runs: &[Seen]) -> Option<Figure> {
     let found = |i: &usize| runs[*i].quantity(Quantity::Clearance).is_some_and(|s| s.n() > 0);
     let compared = scenario.comparisons().iter().map(|c| vec![c.physical, c.naive]);
     let mut groups: Vec<Vec<usize>> = compared.collect();
-    if groups.is_empty() {
-        groups = (0..runs.len()).map(|i| vec![i]).collect();
-    }
+    let alone = |i: &usize| !groups.iter().flatten().any(|compared| compared == i);
+    let alone: Vec<Vec<usize>> = (0..runs.len()).filter(alone).map(|i| vec![i]).collect();
+    groups.extend(alone);
     let panels: Vec<Option<Panel<'_>>> = groups
         .into_iter()
         .filter(|group| group.iter().any(found))

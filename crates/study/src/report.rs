@@ -1,6 +1,6 @@
 //! The report of a study: what it says of separations and of the paper.
 
-use gyradius_campaign::{Kept, Rows, SampleSummary};
+use gyradius_campaign::{Rows, SampleSummary};
 use gyradius_report::{
     Document, Drawing, Figure, PageCell, PageTable, Section, Text, Tone, direction, file_of,
     interval, optional, percent, resolved, significant, spread,
@@ -57,7 +57,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     noting_what_is_missing(document, &summary.head)
         .sections(summary.head.about.section())
         .sections(alerts::section(&summary.head.alerts))
-        .sections(decisions::sections(&summary.head))
+        .sections(decisions::sections(scenario, &summary.head))
         .section(results(scenario, summary))
         .section(parting(scenario, summary))
         .sections(drivers::section(&summary.head, &scenario.main_outcomes()))
@@ -71,12 +71,7 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
         .sections(regions::section(summary.models.iter().map(|m| (&*m.name, &*m.regions))))
         .sections(summary.every_model.section())
         .section(Section::new("Figures").figures(drawn))
-        .section(inputs(
-            &summary.head,
-            &scenario.kept(),
-            scenario.to_toml(),
-            Some(sketch(scenario)),
-        ))
+        .section(inputs(scenario, &summary.head, Some(sketch(scenario))))
 }
 
 fn results(scenario: &Scenario, summary: &Summary) -> Section {
@@ -452,15 +447,18 @@ pub(crate) fn noting_what_is_missing(mut document: Document, head: &Head) -> Doc
 }
 
 /// The resolved scenario, and where what is.
-pub(crate) fn inputs(head: &Head, kept: &Kept, toml: String, sketch: Option<Drawing>) -> Section {
+pub(crate) fn inputs(scenario: &impl Subject, head: &Head, sketch: Option<Drawing>) -> Section {
+    let (kept, toml) = (scenario.kept(), scenario.to_toml());
     let version = &head.gyradius_version;
     let origin = Text::from(format!(
         "Run by gyradius {version} from the scenario below, every default spelled out; its SHA-256 is "
     ))
     .code(&head.fingerprint)
-    .plain(". The same scenario gives the same numbers on any number of threads: ")
-    .code("gyradius study --scenario scenario.toml")
-    .plain(".");
+    .plain(". The same scenario gives the same numbers on any number of threads");
+    let origin = match scenario.function_name() {
+        Some(name) => origin.plain(", in the program that has the function ").code(name).plain("."),
+        None => origin.plain(": ").code("gyradius study --scenario scenario.toml").plain("."),
+    };
     let rows = |which: &str| Text::from(format!("{which} is a row of ")).code("runs/<model>/");
     let files = match kept.rows() {
         Rows::All => rows("Every run"),

@@ -70,6 +70,10 @@ pub(crate) trait Subject: Framed + Sync {
     fn main_outcomes(&self) -> Vec<String>;
     /// A look at the runs of a model, which have these columns.
     fn look(&self, model: &str, columns: &[Column]) -> Self::Look<'_>;
+    /// The name of the function that does the runs, if one does: no file holds it, so that no command does them again.
+    fn function_name(&self) -> Option<&str> {
+        None
+    }
     /// Whether what does the runs can be another one under the same name, as a function can.
     fn may_change(&self) -> bool {
         false

@@ -179,6 +179,10 @@ impl Subject for SimulatorScenario {
         started.map_err(|error| self.located(ScenarioError::field("simulation.command", error)))
     }
 
+    fn function_name(&self) -> Option<&str> {
+        self.function_name()
+    }
+
     fn may_change(&self) -> bool {
         self.function().is_some()
     }
@@ -289,14 +293,14 @@ impl Subject for SimulatorScenario {
     fn report(&self, summary: &SimulatorSummary) -> Document {
         let first = summary.head.about.section().into_iter();
         let first = first.chain(alerts::section(&summary.head.alerts));
-        let first = first.chain(decisions::sections(&summary.head));
+        let first = first.chain(decisions::sections(self, &summary.head));
         let driven = drivers::section(&summary.head, &self.main_outcomes());
         let document = summary.overview.document_led_by(first).sections(driven);
         let document = document.sections(decisions::where_runs_fail(&summary.head));
         let kept = summary.regions.iter().map(|kept| (&*kept.model, &*kept.regions));
         let document = document.sections(regions::section(kept));
         let document = report::noting_vehicles(document, &summary.head);
-        let inputs = report::inputs(&summary.head, &self.kept(), self.to_toml(), None);
+        let inputs = report::inputs(self, &summary.head, None);
         report::noting_what_is_missing(document, &summary.head).section(inputs)
     }
 }
