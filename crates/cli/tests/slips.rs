@@ -110,6 +110,45 @@ fn amounts_that_are_refused_are_named_by_their_option() {
     }
 }
 
+/// What is beyond a link is a slip in any unit, and all links are named of which it is one; a table is refused as robots are.
+#[test]
+fn amounts_that_are_beyond_a_link_are_refused_with_its_name() {
+    let shell = Scratch::new();
+    // Beside a link of 1 kg with moments of .02, .03 and .04 kg·m² one of 20 g.
+    let finger = "<link name='finger'><inertial><mass value='.02'/><inertia ixx='2e-6' iyy='3e-6' izz='4e-6' \
+                  ixy='0' ixz='0' iyz='0'/></inertial></link></robot>";
+    let text = robot("1", ".04", "").replace("</robot>", finger);
+    fs::write(shell.path("a.urdf"), text).unwrap();
+    for (stated, finger, other) in [
+        (&["--mass", "15g"][..], None, None),
+        (&["--mass", "50g", "--sigmas", "3"], None, None),
+        (&["--mass", "0.2kg"], Some("at most the nominal mass, which is 0.02 kg"), None),
+        (&["--mass", "0.2kg", "--sigmas", "3"], Some("a standard deviation of 0.066667 kg"), None),
+        (&["--mass", "5kg"], Some("which is 0.02 kg"), Some("which is 1.0 kg")),
+        (&["--moments", "8e-6kgm2"], None, None),
+        (&["--moments", "1e-4kgm2"], Some("10 times the trace"), None),
+        (&["--moments", "1kgm2"], Some("which is 9e-6 kg·m²"), Some("which is 0.09 kg·m²")),
+    ] {
+        for out in [&["-o", "out/", "--force"][..], &[]] {
+            let all = [&["draw", "a.urdf", "-n", "1"], stated, out].concat();
+            let output = shell.run(&all);
+            let message = String::from_utf8(output.stderr).unwrap();
+            let is_refused = finger.is_some() || other.is_some();
+            let code = if is_refused { 2 } else { 0 };
+            assert_eq!(output.status.code(), Some(code), "{stated:?}: {message}");
+            let of = |link: &str| message.split_once(&format!("\"{link}\": ")).map(|(_, why)| why);
+            for (link, expected) in [("finger", finger), ("a", other)] {
+                let why = of(link);
+                assert_eq!(why.is_some(), expected.is_some(), "{stated:?}, {link}: {message}");
+                assert!(why.unwrap_or_default().contains(expected.unwrap_or_default()), "{message}");
+            }
+            assert!(!is_refused || message.contains("--links picks others"), "{message}");
+        }
+    }
+    let rest = ["draw", "a.urdf", "-n", "1", "--mass", "0.2kg", "--links", "a,b"];
+    assert!(shell.run(&rest).status.success());
+}
+
 /// Where nothing is said of the axes, or that they do not scatter, zero products stay as they are written, and so does what a file
 /// says of principal moments.
 #[test]

@@ -7,7 +7,7 @@ mod summary;
 mod table;
 
 use gyradius_campaign::{CampaignError, FormatError, Streams, TableError};
-use gyradius_estimation::{StatedBody, StatementError, Statements};
+use gyradius_estimation::{StatedBody, Statements};
 use gyradius_formats::{
     Format, LinkNumbers, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE, WriteError,
     judge,
@@ -110,7 +110,8 @@ impl<'a> RobotDraw<'a> {
         let picked = pick::picked(&names, robot.links_without_inertia(), &options.links)?;
         let (mut links, mut left) = (Vec::new(), Vec::new());
         let (mut impossible, mut outside) = (Vec::new(), Vec::new());
-        let (mut unreadable, named) = (Vec::new(), !options.links.is_empty());
+        let (mut unreadable, mut beyond) = (Vec::new(), Vec::new());
+        let named = !options.links.is_empty();
         for (index, link) in robot.links().iter().enumerate() {
             let name = link.name().to_owned();
             let numbers = match link.numbers() {
@@ -148,8 +149,13 @@ impl<'a> RobotDraw<'a> {
                 impossible.push(name);
                 continue;
             };
-            let law = StatedBody::new(&options.statements, &nominal)
-                .map_err(|error| RobotDrawError::Statement { link: name.clone(), error })?;
+            let law = match StatedBody::new(&options.statements, &nominal) {
+                Ok(law) => law,
+                Err(error) => {
+                    beyond.push(format!("\"{name}\": {error}"));
+                    continue;
+                }
+            };
             let streams = Streams::of_draws(options.seed, &name);
             let mut drawn = DrawnLink { name, index, law, streams, region: None };
             if let Some(inside) = options.inside {
@@ -168,6 +174,9 @@ impl<'a> RobotDraw<'a> {
         }
         if !impossible.is_empty() {
             return Err(RobotDrawError::Impossible { links: impossible.join(", ") });
+        }
+        if !beyond.is_empty() {
+            return Err(RobotDrawError::Statement { links: beyond.join("; ") });
         }
         let without = robot.links_without_inertia().iter();
         left.extend(without.map(|name| (name.clone(), LeftBecause::NoInertia)));
@@ -334,13 +343,11 @@ pub enum RobotDrawError {
         /// The links, and why.
         links: String,
     },
-    /// The statements are refused.
-    #[error("\"{link}\": {error}")]
+    /// The statements are refused of some links.
+    #[error("{links}: --links picks others")]
     Statement {
-        /// The link.
-        link: String,
-        /// Why.
-        error: StatementError,
+        /// The links, and why.
+        links: String,
     },
     /// The last draw would have a number that is too large.
     #[error("{draws} draws from draw {first} on: the number of the last must be below {MOST}")]

@@ -10,7 +10,8 @@ impl Statements {
     /// deviation is more than ten times the trace of the nominal inertia, and a mass of which it is more
     /// than the nominal mass.
     ///
-    /// [`model`](Self::model) makes a model of such statements, as far as there is one.
+    /// [`model`](Self::model) makes a model of such statements, as far as there is one. A
+    /// [`StatedBody`](crate::StatedBody) refuses them itself, but takes no statement at all for a body that does not scatter.
     ///
     /// # Errors
     /// As said, and a mass in kg without the nominal mass.
@@ -28,10 +29,20 @@ impl Statements {
     /// ```
     pub fn check(&self, nominal: &Inertia, mass_kg: Option<f64>) -> Result<(), StatementError> {
         let Self { moments, products, axes, mass, centre } = self;
-        let [i11, i22, i33, ..] = nominal.entries();
         if let (None, None, None, None, None) = (moments, products, axes, mass, centre) {
             return Err(StatementError::Nothing);
         }
+        self.within(nominal, mass_kg)
+    }
+
+    /// Refuses deviations that are beyond the body: the one place where these limits stand.
+    pub(crate) fn within(
+        &self,
+        nominal: &Inertia,
+        mass_kg: Option<f64>,
+    ) -> Result<(), StatementError> {
+        let Self { moments, products, mass, axes: _, centre: _ } = self;
+        let [i11, i22, i33, ..] = nominal.entries();
         let trace = nominal.matrix().trace();
         let of_entries = [
             (Part::Moments, moments.map(|moments| moments.deviations([i11, i22, i33]))),
