@@ -51,7 +51,7 @@ mod _core {
     #[pymodule_export]
     use super::scalars::{ScalarCore, checked_region, region_holds};
     #[pymodule_export]
-    use super::stated::stated_law;
+    use super::stated::StatementsCore;
     #[pymodule_export]
     use super::stream::Draws;
     #[pymodule_export]

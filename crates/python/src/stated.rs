@@ -1,10 +1,10 @@
-//! The law of plain statements about a body.
+//! Plain statements, and the laws that they make about bodies.
 
 use gyradius_dispersion::TenParameters;
 use gyradius_estimation::{StatedAmount, StatedBody, Statements};
 use gyradius_inertia::{MassProperties, Region};
 use gyradius_study::as_written;
-use pyo3::{PyResult, Python, pyfunction};
+use pyo3::{PyResult, Python, pyclass, pymethods};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::fmt::Display;
@@ -51,42 +51,53 @@ fn written(numbers: &[f64; 10]) -> Result<MassProperties, String> {
     })
 }
 
-/// The joint law that statements make about a body, the warnings, and the nominal body that it is about.
-#[pyfunction]
-#[pyo3(signature = (nominal, mass, centre, moments, products, axes, sigmas, inside))]
-#[expect(clippy::too_many_arguments, reason = "one for each thing that can be said")]
-pub(crate) fn stated_law(
-    py: Python<'_>,
-    nominal: [f64; 10],
-    mass: Option<&str>,
-    centre: Option<&str>,
-    moments: Option<&str>,
-    products: Option<&str>,
-    axes: Option<&str>,
-    sigmas: f64,
-    inside: Option<&str>,
-) -> PyResult<(BodyCore, Vec<String>, [f64; 10])> {
-    let statements = Statements {
-        mass: said("mass", mass, StatedAmount::mass, |amount| amount.mass_statement(sigmas))?,
-        centre: said("centre", centre, StatedAmount::centre, |amount| {
-            amount.centre_statement(sigmas)
-        })?,
-        moments: said("moments", moments, StatedAmount::moments, |amount| {
-            amount.moments_statement(sigmas)
-        })?,
-        products: said("products", products, StatedAmount::products, |amount| {
-            amount.products_statement(sigmas)
-        })?,
-        axes: said("axes", axes, StatedAmount::axes, |amount| amount.axes_statement(sigmas))?,
-    };
-    let region = inside.map(json::read::<Region>).transpose()?;
-    let nominal = written(&nominal).map_err(refused)?;
-    py.detach(|| {
-        let mut stated = StatedBody::new(&statements, &nominal).map_err(refused)?;
-        if let Some(region) = region {
-            stated = stated.inside(region).map_err(refused)?;
-        }
-        let warnings = stated.warnings().iter().map(ToString::to_string).collect();
-        Ok((BodyCore::joint_law(stated.law().clone()), warnings, ten(nominal)))
-    })
+/// What is stated, of one body or of all links of a robot.
+#[pyclass(frozen, module = "gyradius._core")]
+pub(crate) struct StatementsCore(Statements);
+
+#[pymethods]
+impl StatementsCore {
+    /// Of texts with units, or of the tables of a file.
+    #[new]
+    fn new(
+        mass: Option<&str>,
+        centre: Option<&str>,
+        moments: Option<&str>,
+        products: Option<&str>,
+        axes: Option<&str>,
+        sigmas: f64,
+    ) -> PyResult<Self> {
+        Ok(Self(Statements {
+            mass: said("mass", mass, StatedAmount::mass, |amount| amount.mass_statement(sigmas))?,
+            centre: said("centre", centre, StatedAmount::centre, |amount| {
+                amount.centre_statement(sigmas)
+            })?,
+            moments: said("moments", moments, StatedAmount::moments, |amount| {
+                amount.moments_statement(sigmas)
+            })?,
+            products: said("products", products, StatedAmount::products, |amount| {
+                amount.products_statement(sigmas)
+            })?,
+            axes: said("axes", axes, StatedAmount::axes, |amount| amount.axes_statement(sigmas))?,
+        }))
+    }
+
+    /// The joint law that they make about a body, the warnings, and the nominal body that it is about.
+    fn about(
+        &self,
+        py: Python<'_>,
+        nominal: [f64; 10],
+        inside: Option<&str>,
+    ) -> PyResult<(BodyCore, Vec<String>, [f64; 10])> {
+        let region = inside.map(json::read::<Region>).transpose()?;
+        let nominal = written(&nominal).map_err(refused)?;
+        py.detach(|| {
+            let mut stated = StatedBody::new(&self.0, &nominal).map_err(refused)?;
+            if let Some(region) = region {
+                stated = stated.inside(region).map_err(refused)?;
+            }
+            let warnings = stated.warnings().iter().map(ToString::to_string).collect();
+            Ok((BodyCore::joint_law(stated.law().clone()), warnings, ten(nominal)))
+        })
+    }
 }

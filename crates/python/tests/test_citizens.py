@@ -14,6 +14,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -218,13 +219,19 @@ def test_import_is_quick_and_brings_nothing() -> None:
 @pytest.mark.parametrize("page", ["README.md", "docs/python.md", "crates/python/README.md"])
 def test_the_pages(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = (Path(__file__).parents[3] / page).read_text()
-    (tmp_path / "robot.urdf").write_text(URDF)
+    # As many robots have one: a frame to which tools are fixed.
+    tool = '<link name="tool0"><inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>'
+    (tmp_path / "robot.urdf").write_text(URDF.replace("</robot>", f"{tool}</robot>"))
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
-    blocks = text.split("```python\n")[1:]
+    blocks = [block.split("```")[0] for block in text.split("```python\n")[1:]]
     assert blocks
-    for block in blocks:
-        exec(block.split("```")[0], names)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        for block in blocks:
+            exec(block, names)
+    assert all('left out: "tool0"' in str(one.message) for one in told)
+    assert bool(told) == any("gyradius.load(" in block for block in blocks)
     if page == "README.md":
         assert set(names["draws"]) == {"forearm", "hand"}  # type: ignore[call-overload]
 

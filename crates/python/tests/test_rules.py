@@ -198,10 +198,11 @@ def test_the_python_of_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
     blocks = [block.split("```")[0] for block in PAGE.read_text(encoding="utf-8").split("```python\n")[1:]]
     assert len(blocks) == 2
     monkeypatch.chdir(tmp_path)
-    links = f"{link('arm', 1.0, [1.0, 1.5, 2.0], 0.1)}{link('plate', 1.0, [1.0, 1.5, 2.5])}"
+    links = link("base", 0.0, [0.0] * 3) + link("arm", 1.0, [1.0, 1.5, 2.0], 0.1) + link("plate", 1.0, [1.0, 1.5, 2.5])
     Path("robot.urdf").write_text(f'<robot name="r">{links}</robot>', encoding="utf-8")
     found: dict = {"numpy": np}
-    exec(blocks[0], found)  # noqa: S102
+    with pytest.warns(RuntimeWarning, match='left out: "base"'):
+        exec(blocks[0], found)  # noqa: S102
     assert list(found["draws"]) == ["arm", "plate"]
     for draws in found["draws"].values():
         assert (draws.mass.shape, draws.centre.shape, draws.inertia.shape) == ((4096,), (4096, 3), (4096, 3, 3))

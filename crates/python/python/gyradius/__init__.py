@@ -7,8 +7,8 @@ Without any law
     `is_realizable`, `margin`, `report`, `nearest`, `principal_axes` of inertia matrices; `MassProperties`, which are added, moved
     and turned; `load` for the links of a robot.
 Laws
-    `law` of plain statements; `MassPropertiesLaw`, `InertiaLaw`, `AttitudeLaw` and `ScalarLaw` with ``rvs``, ``logpdf``, ``mean``,
-    ``cov`` and ``fit``; `from_estimate` of an identification.
+    `law` of plain statements about a body, and `laws` about the links of a robot; `MassPropertiesLaw`, `InertiaLaw`, `AttitudeLaw`
+    and `ScalarLaw` with ``rvs``, ``logpdf``, ``mean``, ``cov`` and ``fit``; `from_estimate` of an identification.
 Random numbers
     ``rng=`` an integer, a `numpy.random.Generator`, or a `key`, whose draws do not depend on what else is drawn.
 
@@ -57,7 +57,7 @@ from gyradius._inertia_laws import InertiaLaw
 from gyradius._law import Fit
 from gyradius._rng import key
 from gyradius._scalar_laws import ScalarLaw, normal, uniform
-from gyradius._stated import StatedLaw, law
+from gyradius._stated import StatedLaw, law, laws
 from gyradius._study import Replay, Study, Verdict, study
 
 __all__ = [
@@ -89,6 +89,7 @@ __all__ = [
     "is_realizable",
     "key",
     "law",
+    "laws",
     "load",
     "log_cholesky",
     "margin",

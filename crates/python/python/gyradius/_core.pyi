@@ -97,6 +97,19 @@ class BodyCore:
     def acceptance(self) -> float | None: ...
 
 @final
+class StatementsCore:
+    def __new__(
+        cls,
+        mass: str | None,
+        centre: str | None,
+        moments: str | None,
+        products: str | None,
+        axes: str | None,
+        sigmas: float,
+    ) -> StatementsCore: ...
+    def about(self, nominal: _Ten, inside: str | None) -> tuple[BodyCore, list[str], list[float]]: ...
+
+@final
 class ScenarioCore:
     @staticmethod
     def read(
@@ -177,16 +190,6 @@ def fit_bodies(samples: _Rows) -> tuple[str, str, bool, float, list[str]]: ...
 def from_estimate(
     mean: _Ten, covariance: _Rows, linear: bool
 ) -> tuple[list[float], float, tuple[str, str] | None, tuple[list[float], list[float], str] | None]: ...
-def stated_law(
-    nominal: _Ten,
-    mass: str | None,
-    centre: str | None,
-    moments: str | None,
-    products: str | None,
-    axes: str | None,
-    sigmas: float,
-    inside: str | None,
-) -> tuple[BodyCore, list[str], list[float]]: ...
 def checked_region(form: str) -> str: ...
 def region_holds(form: str, bodies: _Rows) -> _Rows: ...
 def load_robot(path: str | PathLike[str]) -> tuple[

@@ -1,8 +1,9 @@
-"""The law of plain statements about a body."""
+"""The laws of plain statements about a body, and about the links of a robot."""
 
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -69,11 +70,95 @@ def law(
     >>> draws.inertia.shape, bool(draws.is_realizable.all())
     ((4096, 3, 3), True)
     """
-    if not isinstance(body, MassProperties) or body.shape != ():
-        raise ValueError("body: it must be one MassProperties")
-    if inside is not None and not isinstance(inside, Region):
-        raise ValueError(f"inside = {inside!r}: it must be a box, an ellipsoid or a hull of gyradius")
+    _check_body("body", body)
+    _check_region("inside", inside)
+    return _about(body, _statements(mass, centre, moments, products, axes, sigmas), inside)
 
+
+def laws(
+    robot: Mapping[str, MassProperties],
+    *,
+    mass: Any = None,
+    centre: Any = None,
+    moments: Any = None,
+    products: Any = None,
+    axes: Any = None,
+    inside: Mapping[str, Region] | None = None,
+    sigmas: float = 1.0,
+) -> dict[str, StatedLaw]:
+    """The laws that plain statements make about the links of a robot, each about its own nominal numbers.
+
+    Each law is that of `gyradius.law`, and links are drawn independently of each other if each has its name as the term of a
+    `gyradius.key`. The draws are then those of ``gyradius draw`` with the same seed, which are drawn with ``inset=True``.
+
+    Parameters
+    ----------
+    robot : mapping of str to MassProperties
+        As `gyradius.load` returns it: one body for each name.
+    mass, centre, moments, products, axes, sigmas
+        As for `gyradius.law`. An amount with a unit is the same for all links.
+    inside : mapping of str to Region
+        Where all matter of a link must be possible, in the frame of that link, for the links that it names.
+
+    Returns
+    -------
+    dict of str to StatedLaw
+        In the order of `robot`, without the links that have a mass of 0, which stay as they are: a `RuntimeWarning` names them.
+
+    Raises
+    ------
+    ValueError
+        No body has the numbers of some links, or the statements are beyond what these links can have. All of them are named, with the reason.
+
+    Examples
+    --------
+    >>> import numpy as np, gyradius
+    >>> robot = {name: gyradius.MassProperties(2.0, [0.1, 0.0, 0.0], np.diag([0.002, 0.01, 0.011])) for name in ("arm", "hand")}
+    >>> laws = gyradius.laws(robot, mass="5%", centre="1cm", moments="10%", axes="2deg")
+    >>> draws = {name: law.rvs(4096, rng=gyradius.key(7, name)) for name, law in laws.items()}
+    >>> draws["hand"].inertia.shape, bool(draws["hand"].is_realizable.all())
+    ((4096, 3, 3), True)
+    """
+    if not isinstance(robot, Mapping):
+        raise ValueError(f"robot = {robot!r}: it must be a dict of bodies by the names of their links, as gyradius.load returns it")
+    if inside is not None and not isinstance(inside, Mapping):
+        raise ValueError(f"inside = {inside!r}: it must be a dict of regions by the names of their links")
+    regions: Mapping[str, Region] = {} if inside is None else inside
+    for name, body in robot.items():
+        _check_body(f"robot[{name!r}]", body)
+    for name, region in regions.items():
+        if name not in robot:
+            raise ValueError(f"inside: the robot has no link {name!r}")
+        _check_region(f"inside[{name!r}]", region)
+    statements = _statements(mass, centre, moments, products, axes, sigmas)
+    made, weightless, refused = {}, [], []
+    for name, body in robot.items():
+        if body.mass == 0.0:
+            weightless.append(name)
+            continue
+        try:
+            made[name] = _about(body, statements, regions.get(name))
+        except ValueError as error:
+            refused.append(f'"{name}": {error}')
+    if refused:
+        raise ValueError(f"{len(refused)} of {len(robot)} links have no law: {'; '.join(refused)}")
+    if weightless:
+        left_out = ", ".join(f'"{name}"' for name in weightless)
+        warnings.warn(f"links with a mass of 0 kg have no law, and are left out: {left_out}", RuntimeWarning, stacklevel=2)
+    return made
+
+
+def _check_body(name: str, body: Any) -> None:
+    if not isinstance(body, MassProperties) or body.shape != ():
+        raise ValueError(f"{name}: it must be one MassProperties")
+
+
+def _check_region(name: str, region: Any) -> None:
+    if region is not None and not isinstance(region, Region):
+        raise ValueError(f"{name} = {region!r}: it must be a box, an ellipsoid or a hull of gyradius")
+
+
+def _statements(mass: Any, centre: Any, moments: Any, products: Any, axes: Any, sigmas: float) -> _core.StatementsCore:
     def said(name: str, value: Any) -> str | None:
         if value is None:
             return None
@@ -85,17 +170,19 @@ def law(
             return form(name, value)
         raise ValueError(f'{name} = {value!r}: it must be a text with a unit, such as "5%", or a dict as in a file')
 
-    core, warnings, nominal = _core.stated_law(
-        ten_of(body),
+    return _core.StatementsCore(
         said("mass", mass),
         said("centre", centre),
         said("moments", moments),
         said("products", products),
         said("axes", axes),
         real("sigmas", sigmas),
-        None if inside is None else json.dumps(inside.form),
     )
-    return _stated(core, core.form(), tuple(warnings), tuple(nominal))
+
+
+def _about(body: MassProperties, statements: _core.StatementsCore, inside: Region | None) -> StatedLaw:
+    core, warned, nominal = statements.about(ten_of(body), None if inside is None else json.dumps(inside.form))
+    return _stated(core, core.form(), tuple(warned), tuple(nominal))
 
 
 class StatedLaw(MassPropertiesLaw):
