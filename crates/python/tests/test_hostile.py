@@ -30,6 +30,13 @@ def strided(array: np.ndarray) -> np.ndarray:
     return wide[..., 1]
 
 
+def unaligned(array: np.ndarray) -> np.ndarray:
+    """Contiguous, but at an odd address, as after a header of one byte."""
+    moved = np.frombuffer(b"x" + array.tobytes(), dtype=np.uint8)[1:].view(array.dtype).reshape(array.shape)
+    assert not moved.flags.aligned and moved.flags.c_contiguous
+    return moved
+
+
 def locked(array: np.ndarray) -> np.ndarray:
     array = array.copy()
     array.flags.writeable = False
@@ -54,6 +61,7 @@ WAYS = {
     "in the order of Fortran": np.asfortranarray,
     "backward": lambda a: a[..., ::-1].copy()[..., ::-1],
     "read only": locked,
+    "unaligned": unaligned,
     "a subclass": lambda a: a.view(Mine),
     "a masked array without a mask": np.ma.asarray,
     "long double": lambda a: a.astype(np.longdouble),
@@ -70,6 +78,12 @@ def test_arrays_of_any_make_say_the_same(way: str) -> None:
     assert (parts.array == SOME.array).all() and type(parts.centre) is np.ndarray
     q = gyradius.uniform_attitude().rvs(6, rng=1)
     assert (SOME.rotated(made(q)).array == SOME.rotated(q).array).all()
+    law, body = gyradius.uniform_attitude(), gyradius.law(SOME[0], mass="5%", moments="10%", axes="2deg")
+    assert (law.logpdf(made(q)) == law.logpdf(q)).all()
+    assert gyradius.normal(0.0, 1.0).cdf(made(q)).tolist() == gyradius.normal(0.0, 1.0).cdf(q).tolist()
+    if way not in ("lists", "long double"):
+        index = made(np.arange(6).reshape(2, 3))
+        assert (body.rvs(rng=gyradius.key(7, "a", index)).array == body.rvs((2, 3), rng=gyradius.key(7, "a")).array).all()
 
 
 @pytest.mark.parametrize("dtype", [np.float16, np.float32, np.int8, np.uint64, bool])

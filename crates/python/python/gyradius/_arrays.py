@@ -50,10 +50,15 @@ def frozen(array: A) -> A:
     return array.view()
 
 
-def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    """The value as an array of 64-bit floats, without a copy where it is one."""
+def unmasked(name: str, value: Any) -> None:
+    """Refuses arrays of which some entries are masked: NumPy would take what stands behind the mask."""
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise ValueError(f"{name}: some of its entries are masked")
+
+
+def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """The value as an array of aligned 64-bit floats, without a copy where it is one."""
+    unmasked(name, value)
     try:
         array = np.asarray(value)
     except (TypeError, ValueError) as error:
@@ -62,7 +67,8 @@ def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
         raise ValueError(f"{name}: it must be numbers, not {array.dtype}")
     if array.dtype.kind == "c":
         raise ValueError(f"{name}: it must be real numbers, not {array.dtype}")
-    return array.astype(np.float64, copy=False)
+    # What stands at odd addresses, as a field of packed records does, the compiled part cannot read.
+    return np.require(array.astype(np.float64, copy=False), requirements="A")
 
 
 def rows(name: str, value: ArrayLike, tail: tuple[int, ...]) -> tuple[NDArray[np.float64], tuple[int, ...]]:
@@ -175,6 +181,7 @@ def _plain(name: str, value: Any) -> Any:
     if isinstance(value, Mapping):
         return {str(key): _plain(f"{name}.{key}" if name else str(key), one) for key, one in value.items()}
     if isinstance(value, np.ndarray):
+        unmasked(name, value)
         value = value.tolist()
     if isinstance(value, (list, tuple)):
         return [_plain(f"{name}[{place}]", one) for place, one in enumerate(value)]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, Union
 import numpy as np
 
 from gyradius import _core
-from gyradius._arrays import frozen, whole
+from gyradius._arrays import frozen, unmasked, whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -87,6 +87,7 @@ RNG: TypeAlias = Union[None, int, np.integer[Any], np.random.SeedSequence, np.ra
 
 
 def _places(index: ArrayLike) -> NDArray[np.uint64]:
+    unmasked("index", index)
     array = np.asarray(index)
     if not np.issubdtype(array.dtype, np.integer):
         if array.size:
