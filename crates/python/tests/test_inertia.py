@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from conftest import inertias, rotations
@@ -152,6 +154,67 @@ def test_masked_entries_are_no_numbers() -> None:
     with pytest.raises(ValueError, match="masked"):
         gyradius.margin(masked)
     assert gyradius.is_realizable(np.ma.MaskedArray(np.eye(3)))
+    # Of whatever array it is, and by its name.
+    places = np.ma.MaskedArray([1, 2], mask=[False, True])
+    with pytest.raises(ValueError, match="^index: some of its entries are masked"):
+        gyradius.key(7, "a", places)
+    with pytest.raises(ValueError, match="^samples: some of its entries are masked"):
+        gyradius.ScalarLaw("samples", samples=places)
+    assert gyradius.key(7, "a", np.ma.MaskedArray([1, 2])) == gyradius.key(7, "a", [1, 2])
+
+
+@pytest.mark.parametrize(("dtype", "said"), [(np.float64, "1.4e-14"), (np.float32, "7.6e-6"), (np.float16, "0.0625")])
+def test_the_tolerance_of_each_type_is_the_one_that_is_said(dtype: type, said: str) -> None:
+    page = (Path(__file__).parents[3] / "docs" / "python.md").read_text()
+    for text in (str(gyradius.is_realizable.__doc__), page):
+        assert f"{said}" in text
+    assert float(said) == pytest.approx(64 * np.finfo(dtype).eps, rel=0.02)
+    for share in (0.9, 1.1):
+        # A second moment of so much of the trace, which is 16, below zero.
+        below = share * 64 * float(np.finfo(dtype).eps)
+        matrix = np.diag([4.0, 4.0 - 16 * below, 8.0 + 16 * below]).astype(dtype)
+        least = float(second_moments_by_numpy(matrix.astype(float))[0])
+        assert least == pytest.approx(-16 * below, rel=0.02)
+        assert gyradius.is_realizable(matrix) == (share < 1)
+        assert gyradius.report(matrix).is_realizable == (share < 1)
+
+
+@given(st.integers(0, 2**32))
+def test_which_way_attitudes_take_components(seed: int) -> None:
+    """Principal moments turned by the conjugate give the inertia, and the attitude itself turns them another way."""
+    rng = np.random.default_rng(seed)
+    made = inertias(rng, 20)
+    size = np.abs(made).max(axis=(1, 2), keepdims=True)
+    for order in ("xyzw", "wxyz"):
+        found = gyradius.principal_axes(made, order=order)
+        conjugate = np.where(np.arange(4) == (3 if order == "xyzw" else 0), 1.0, -1.0)
+        own = gyradius.MassProperties(np.ones(20), np.zeros((20, 3)), found.moments[:, :, None] * np.eye(3))
+        turned = own.rotated(found.attitude * conjugate, order=order).inertia
+        assert (np.abs(turned - made) <= 1e-13 * size).all()
+        same = gyradius.MassProperties(np.ones(20), np.zeros((20, 3)), made).to_mujoco().body_iquat
+        iquat = same if order == "wxyz" else same[:, [1, 2, 3, 0]]
+        assert np.allclose(np.abs((iquat * found.attitude * conjugate).sum(axis=1)), 1.0, atol=1e-12)
+        # Laws of axes take it as it is.
+        roots = np.sqrt(np.maximum(0.5 * found.moments.sum(axis=1, keepdims=True) - found.moments, 0.0))
+        for place in range(5):
+            axes = gyradius.fixed_attitude(found.attitude[place], order=order)
+            drawn = gyradius.InertiaLaw.principal(roots[place].tolist(), axes).rvs(rng=1)
+            joint = gyradius.MassPropertiesLaw.joint(1.0, [0.0] * 3, roots=roots[place].tolist(), axes=axes).rvs(rng=1)
+            # A root of zero is known to half of the digits.
+            for one in (drawn, joint.inertia):
+                assert (np.abs(one - made[place]) <= 1e-12 * size[place]).all()
+
+
+def test_docstrings_say_which_way_attitudes_take_components() -> None:
+    for one in (
+        gyradius.PrincipalAxes,
+        gyradius.principal_axes,
+        gyradius.AttitudeLaw,
+        gyradius.fixed_attitude,
+        gyradius.InertiaLaw.principal,
+        gyradius.MassPropertiesLaw.joint,
+    ):
+        assert "body components to principal components" in " ".join(str(one.__doc__).split()), one
 
 
 @given(st.integers(0, 2**32), st.sampled_from([0.0, 1e-16, 1e-9, 1e-6, 1e-3, 0.5]))

@@ -229,6 +229,25 @@ def test_plates_and_rods_stay_bodies_in_single_precision_with_a_millionth_more(m
         assert gyradius.is_realizable(thicker, tolerance=0.0).all()
 
 
+@pytest.mark.parametrize("moments", [[0.1, 0.2, 0.3], [1.0, 1.4, 2.4], [0.0, 1.0, 1.0]])
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_a_millionth_is_enough_for_principal_moments_in_single_precision_and_an_inset_is_not(moments: list[float], scale: float):
+    axes = np.linalg.qr(rng(11).standard_normal((3, 3)))[0]
+    body = gyradius.MassProperties(1.0, [0.1, 0.2, 0.3], scale * axes @ np.diag(moments) @ axes.T)
+    drawn = gyradius.law(body, mass="10%", axes="5deg").rvs(5000, rng=1, inset=True)
+    traces = np.trace(drawn.inertia, axis1=1, axis2=2)[:, None, None]
+    thicker = gyradius.MassProperties(drawn.mass, drawn.centre, drawn.inertia + 1e-6 * traces * np.eye(3))
+
+    def beyond(bodies: gyradius.MassProperties) -> int:
+        """How many have a moment larger than the sum of the others, exactly or in the arithmetic of 32 bits."""
+        small, middle, large = np.sort(bodies.to_mujoco(np.float32).body_inertia, axis=1).T
+        exact = large.astype(float) > small.astype(float) + middle.astype(float)
+        return int(np.count_nonzero(exact | (large > small + middle)))
+
+    assert beyond(thicker) == 0
+    assert moments[0] == 0.0 or beyond(drawn) > 0
+
+
 def test_a_mass_alone_or_a_mass_centre_alone_is_never_impossible():
     generator = rng(10)
     inertias = bodies(500, generator)

@@ -23,7 +23,8 @@ class AttitudeLaw(Law):
     `fisher_bingham`, `fixed_attitude` and `about_axis`.
 
     Quaternions are unit quaternions of which q and -q are the same attitude. Where an attitude is that of principal axes, it
-    takes body components to principal components.
+    takes body components to principal components, as ``principal_axes(inertia).attitude`` does, and MuJoCo's ``iquat`` does not: see
+    `fixed_attitude`.
     """
 
     __slots__ = ()
@@ -133,7 +134,21 @@ def fisher_bingham(precision: ArrayLike, linear: ArrayLike, *, order: str = "xyz
 
 
 def fixed_attitude(q: ArrayLike, *, order: str = "xyzw") -> AttitudeLaw:
-    """One attitude, which is known."""
+    """One attitude, which is known.
+
+    As the axes of a body it takes body components to principal components, as ``principal_axes(inertia).attitude`` does. A quaternion
+    that goes the other way, such as MuJoCo's ``iquat`` or the pose of an inertial frame in CAD, must be conjugated.
+
+    Examples
+    --------
+    >>> import numpy as np, gyradius
+    >>> iquat = np.array([0.9, 0.1, -0.3, 0.2])  # scalar first, as MuJoCo has it
+    >>> axes = gyradius.fixed_attitude(iquat * [1, -1, -1, -1], order="wxyz")
+    >>> law = gyradius.InertiaLaw.principal([0.1, 0.2, 0.3], axes)
+    >>> own = gyradius.MassProperties(1.0, [0.0, 0.0, 0.0], np.diag([0.13, 0.1, 0.05]))
+    >>> bool(np.allclose(law.rvs(rng=7), own.rotated(iquat, order="wxyz").inertia))
+    True
+    """
     return make(AttitudeLaw, "of_form", json.dumps({"law": "fixed", "attitude": one_attitude("q", q, order)}))
 
 

@@ -58,6 +58,8 @@ class MassPropertiesLaw(LawOfBodies):
         gyration_lengths, roots : three of them
             Radii of gyration in m, with which the inertia follows the mass, or roots of the second moments in √kg·m; about
             principal axes, which have the attitudes of `axes`.
+        axes : AttitudeLaw
+            Of the attitudes that take body components to principal components, the conjugate of MuJoCo's ``iquat``: see `fixed_attitude`.
         inertia : InertiaLaw
             In their place, any law whose draws are all bodies.
         follows, nominal_mass : float

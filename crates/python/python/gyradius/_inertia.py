@@ -24,8 +24,10 @@ def is_realizable(inertia: ArrayLike, tolerance: float | None = None) -> Any:
     inertia : array_like, shape (..., 3, 3)
         In kg·m² about any point, with products as tensor entries, I₁₂ = -∫ x₁ x₂ dm.
     tolerance : float, optional
-        How far below zero a second moment may be, and how far from symmetric a matrix, as a share of its trace: 1.4e-14
-        if it is not said, for rounding, and 7.6e-6 for arrays in 32 bits. Numbers with six digits need 1e-6.
+        How far below zero a second moment may be, and how far from symmetric a matrix, as a share of its trace. If it is not said,
+        64 units in the last place of the type of the array, for rounding: 1.4e-14 in 64 bits and 7.6e-6 in 32 bits. In 16 bits it is
+        0.0625, so that a moment may exceed the sum of the others by a tenth: convert such arrays, and state a tolerance. Numbers with
+        six digits need 1e-6.
 
     Returns
     -------
@@ -141,7 +143,9 @@ def nearest(
 ) -> NDArray[np.floating[Any]]:
     """The nearest inertia matrices that some body has.
 
-    What a body has is not moved by a bit, but for an asymmetry that is rounding: both entries become their mean.
+    What a body has to the rounding of 64 bits, 1.4e-14 of the trace, is not moved by a bit, but for an asymmetry that is rounding: both
+    entries become their mean. An array in 32 bits is judged so too, and results that are rounded to 32 bits with `dtype` may lie outside
+    of what bodies have by 1e-7 of the trace: `is_realizable` of an array in 32 bits allows for it.
 
     Parameters
     ----------
@@ -173,20 +177,29 @@ def nearest(
 
 
 class PrincipalAxes(NamedTuple):
-    """Principal moments and axes of inertia matrices."""
+    """Principal moments and axes of inertia matrices.
+
+    `attitude` is the unit quaternion that takes body components to principal components: I = R(q)ᵀ diag(moments) R(q). It is the
+    conjugate of what turns principal components into those of the body, as ``body_iquat`` of MuJoCo and `MassProperties.rotated` do.
+    `axes` has the principal axes in body components, as columns of a rotation: I = A diag(moments) Aᵀ, so that A = R(q)ᵀ.
+    """
 
     moments: Any
     """(..., 3) in kg·m²."""
     attitude: Any
-    """(..., 4): the unit quaternion that takes body components to principal components."""
+    """(..., 4): takes body components to principal components."""
     axes: Any
-    """(..., 3, 3): the principal axes in body components, as columns of a rotation, so that I = A diag(moments) Aᵀ."""
+    """(..., 3, 3): the principal axes in body components, as columns."""
 
 
 def principal_axes(
     inertia: ArrayLike, *, order: str = "xyzw", dtype: DTypeLike | None = None
 ) -> PrincipalAxes:
     """Principal moments and axes, named so that each axis is the nearest to the body axis of its number.
+
+    The attitude takes body components to principal components, as `fixed_attitude` and all laws of axes take it. MuJoCo's ``iquat``,
+    `MassProperties.rotated` and the pose of an inertial frame in a file go the other way: their quaternion is its conjugate, with the
+    signs of the first three components changed.
 
     Parameters
     ----------
@@ -203,6 +216,9 @@ def principal_axes(
     >>> inertia = np.array([[2.0, 0.1, 0.0], [0.1, 3.0, 0.0], [0.0, 0.0, 4.0]])
     >>> found = gyradius.principal_axes(inertia)
     >>> bool(np.allclose(found.axes @ np.diag(found.moments) @ found.axes.T, inertia))
+    True
+    >>> own = gyradius.MassProperties(1.0, [0.0, 0.0, 0.0], np.diag(found.moments))
+    >>> bool(np.allclose(own.rotated(found.attitude * [-1, -1, -1, 1]).inertia, inertia))
     True
     """
     flat, lead = rows("inertia", inertia, (3, 3))

@@ -199,8 +199,9 @@ class StatedLaw(MassPropertiesLaw):
         """Draws, as `MassProperties` of the shape `size`: see `AttitudeLaw.rvs` for `rng`.
 
         With `inset`, bodies that lie on the boundary of what bodies can have, such as flat plates and thin rods, are moved inside by 1e-9
-        of the trace of their inertia, as the robots are that ``gyradius draw`` writes: programs that compare without tolerance, or
-        hold numbers of 32 bits, take them then. Bodies of which no statement changes the inertia stay as they are.
+        of the trace of their inertia, as the robots are that ``gyradius draw`` writes: programs that compare 64-bit numbers without tolerance
+        take them then. Bodies of which no statement changes the inertia stay as they are. In 32 bits rounding is larger, up to 1e-7 of
+        the trace: for programs that compare those without tolerance, add 1e-6 of the trace to each of the three moments.
 
         Examples
         --------
@@ -209,6 +210,12 @@ class StatedLaw(MassPropertiesLaw):
         >>> law = gyradius.law(plate, axes="2deg")
         >>> [bool(gyradius.margin(law.rvs(rng=7, inset=inset).inertia) > 1e-10) for inset in (False, True)]
         [False, True]
+        >>> drawn = law.rvs(1000, rng=7)
+        >>> trace = np.trace(drawn.inertia, axis1=1, axis2=2)[:, None, None]
+        >>> thicker = gyradius.MassProperties(drawn.mass, drawn.centre, drawn.inertia + 1e-6 * trace * np.eye(3))
+        >>> moments = thicker.to_mujoco(np.float32).body_inertia
+        >>> bool((2 * moments.max(axis=1) <= moments.sum(axis=1)).all())
+        True
         """
         drawn = super().rvs(size, rng)
         if not inset:
