@@ -13,7 +13,7 @@ use crate::{
     gap::Gaps,
     kind::{all_extensions, is_generic, known_extension, not_read, sniffed},
     robots,
-    text::Text,
+    text::{Offsets, Text},
     xml::Tree,
 };
 
@@ -23,7 +23,7 @@ pub struct InertiaFile {
     path: PathBuf,
     format: Format,
     pub(crate) bytes: Vec<u8>,
-    pub(crate) base: usize,
+    pub(crate) offsets: Offsets,
     default: Products,
     bodies: Vec<Body>,
     gaps: Vec<Gap>,
@@ -75,9 +75,9 @@ impl InertiaFile {
         let extension = known_extension(path);
         let has_none = path.extension().is_none();
         match parse(extension, has_none, &bytes, products) {
-            Ok(Parsed { format, base, bodies, gaps }) => {
+            Ok(Parsed { format, offsets, bodies, gaps }) => {
                 let (path, gaps) = (path.to_owned(), gaps.into_vec());
-                Ok(Self { path, format, bytes, base, default: products, bodies, gaps })
+                Ok(Self { path, format, bytes, offsets, default: products, bodies, gaps })
             }
             Err(refusal) => {
                 let bearing = bearing(extension, &refusal.problem, &bytes);
@@ -170,7 +170,7 @@ const WORDS: [(&[u8], bool); 8] = [
 /// What a file holds.
 struct Parsed {
     format: Format,
-    base: usize,
+    offsets: Offsets,
     bodies: Vec<Body>,
     gaps: Gaps,
 }
@@ -209,7 +209,7 @@ fn parse(
             (format, robots::read(&tree, format, extension, products)?)
         }
     };
-    Ok(Parsed { format, base: text.base(), bodies, gaps })
+    Ok(Parsed { format, offsets: text.offsets().clone(), bodies, gaps })
 }
 
 #[cfg(test)]

@@ -31,6 +31,7 @@ mod copy;
 mod csv;
 mod data;
 mod edit;
+mod encoding;
 mod error;
 mod file;
 mod frame;

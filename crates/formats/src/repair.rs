@@ -219,7 +219,7 @@ impl InertiaFile {
         for (index, remedy) in bodies {
             edits.extend(self.change(*index, *remedy)?.into_iter().flat_map(|change| change.edits));
         }
-        let copy = edited(&self.bytes, self.base, edits).ok_or(RepairError::ReadsBackWrong)?;
+        let copy = edited(&self.bytes, &self.offsets, edits).ok_or(RepairError::ReadsBackWrong)?;
         self.reads_back(&copy, bodies)?;
         Ok(copy)
     }

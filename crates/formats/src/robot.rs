@@ -333,7 +333,7 @@ impl RobotFile {
             expected.insert(*index, properties);
         }
         let copy =
-            edited(&self.file.bytes, self.file.base, all).ok_or(RobotError::ReadsBackWrong)?;
+            edited(&self.file.bytes, &self.file.offsets, all).ok_or(RobotError::ReadsBackWrong)?;
         let again = self.file.reread(copy.clone()).map_err(RobotError::File).and_then(Self::new);
         let again = again.map_err(|_| RobotError::ReadsBackWrong)?;
         let same = again.links.len() == self.links.len()

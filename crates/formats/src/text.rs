@@ -2,24 +2,46 @@
 
 use std::cell::OnceCell;
 
-use crate::{FileProblem, error::Refusal};
+use crate::{FileProblem, encoding::Encoding, error::Refusal};
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
 
-/// The bytes of a file as a text whose offsets are those of the bytes, but for the byte order mark.
+/// The bytes of a file as a text.
 #[derive(Debug)]
 pub(crate) struct Text {
     text: String,
-    base: usize,
+    offsets: Offsets,
     newlines: OnceCell<Vec<usize>>,
 }
 
+/// Where in the bytes of a file the offsets of its text are.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Offsets {
+    /// Length of the byte order mark, which the text lacks.
+    mark: usize,
+    /// Offsets of bytes of the text that the file lacks, in order: those after the first of a character that is one byte there.
+    more: Vec<usize>,
+}
+
+impl Offsets {
+    /// The place in the file.
+    pub(crate) fn byte(&self, offset: usize) -> usize {
+        self.mark + offset - self.more.partition_point(|more| *more < offset)
+    }
+
+    /// Of a text whose characters are one byte each.
+    fn of_narrow(mark: usize, text: &str) -> Self {
+        let more = text.char_indices().flat_map(|(at, c)| at + 1..at + c.len_utf8()).collect();
+        Self { mark, more }
+    }
+}
+
 impl Text {
-    /// Takes UTF-8, and where `latin` allows it any encoding that extends ASCII byte by byte: what
+    /// Takes UTF-8, and of XML what declares an [`Encoding`]. Where `latin` allows it, any encoding that extends ASCII byte by byte: what
     /// is not ASCII becomes a question mark, and stays what it is in a copy.
     pub(crate) fn new(bytes: &[u8], latin: bool) -> Result<Self, Refusal> {
-        let base = if bytes.starts_with(BOM) { BOM.len() } else { 0 };
-        let body = &bytes[base..];
+        let mark = if bytes.starts_with(BOM) { BOM.len() } else { 0 };
+        let body = &bytes[mark..];
         if body.trim_ascii().is_empty() {
             return Err(FileProblem::Empty.into());
         }
@@ -33,27 +55,33 @@ impl Text {
         if latin && body.trim_ascii().contains(&b'\r') && !body.contains(&b'\n') {
             return Err(Refusal { line: Some(1), problem: FileProblem::CarriageReturns });
         }
-        let text = match std::str::from_utf8(body) {
-            Ok(text) => text.to_owned(),
-            Err(_) if latin || declares_latin(body) => {
-                body.iter().map(|b| if b.is_ascii() { char::from(*b) } else { '?' }).collect()
+        let (text, offsets) = match (std::str::from_utf8(body), Encoding::declared(body)) {
+            (Ok(text), _) => (text.to_owned(), Offsets { mark, more: Vec::new() }),
+            (Err(_), _) if latin => {
+                let text = body.iter().map(|b| if b.is_ascii() { char::from(*b) } else { '?' });
+                (text.collect(), Offsets { mark, more: Vec::new() })
             }
-            Err(error) => {
+            (Err(_), Some(encoding)) => {
+                let text = encoding.decode(body);
+                let offsets = Offsets::of_narrow(mark, &text);
+                (text, offsets)
+            }
+            (Err(error), None) => {
                 let before = &body[..error.valid_up_to()];
                 let line = 1 + before.iter().filter(|b| **b == b'\n').count();
                 return Err(Refusal { line: Some(line), problem: FileProblem::NotUtf8 });
             }
         };
-        Ok(Self { text, base, newlines: OnceCell::new() })
+        Ok(Self { text, offsets, newlines: OnceCell::new() })
     }
 
     pub(crate) fn as_str(&self) -> &str {
         &self.text
     }
 
-    /// Length of the byte order mark, which the text lacks.
-    pub(crate) fn base(&self) -> usize {
-        self.base
+    /// Where its offsets are in the file.
+    pub(crate) fn offsets(&self) -> &Offsets {
+        &self.offsets
     }
 
     /// Line of an offset, from 1.
@@ -87,18 +115,6 @@ pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") || zeros
 }
 
-/// Whether an XML declaration names an encoding that extends ASCII byte by byte.
-fn declares_latin(body: &[u8]) -> bool {
-    let head = String::from_utf8_lossy(&body[..body.len().min(200)]).to_ascii_lowercase();
-    let Some((declaration, _)) = head.strip_prefix("<?xml").and_then(|rest| rest.split_once("?>"))
-    else {
-        return false;
-    };
-    ["iso-8859-", "windows-125", "us-ascii", "latin1", "latin-1"]
-        .iter()
-        .any(|name| declaration.contains(name))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -106,7 +122,7 @@ mod tests {
     #[test]
     fn offsets_and_lines() {
         let text = Text::new(b"\xef\xbb\xbfa\r\nb\nc", false).unwrap();
-        assert_eq!((text.as_str(), text.base()), ("a\r\nb\nc", 3));
+        assert_eq!((text.as_str(), text.offsets().byte(0)), ("a\r\nb\nc", 3));
         assert_eq!([0, 2, 3, 5].map(|i| text.line(i)), [1, 1, 2, 3]);
         assert_eq!(text.offset_of(&text.as_str()[3..4]), Some(3));
         assert_eq!(text.offset_of("elsewhere"), None);
@@ -127,6 +143,10 @@ mod tests {
         assert_eq!(refusal.line, Some(2));
         assert_eq!(Text::new(b"m\xb2", true).unwrap().as_str(), "m?");
         let declared = b"<?xml version='1.0' encoding='ISO-8859-1'?><r n='\xe9'/>";
-        assert!(Text::new(declared, false).unwrap().as_str().ends_with("n='?'/>"));
+        let text = Text::new(declared, false).unwrap();
+        assert!(text.as_str().ends_with("n='é'/>"));
+        let (quote, end) = (declared.len() - 3, text.as_str().len());
+        assert_eq!(text.offsets().byte(text.as_str().find('é').unwrap()), quote - 1);
+        assert_eq!([end - 3, end].map(|at| text.offsets().byte(at)), [quote, declared.len()]);
     }
 }

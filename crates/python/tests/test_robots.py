@@ -109,6 +109,33 @@ def test_all_links_that_have_no_law_are_named() -> None:
     assert gyradius.laws({}, mass="10%") == {}
 
 
+NAMED = [*(f"iso8859_{part}" for part in range(1, 17) if part != 12), *(f"cp125{part}" for part in range(9))]
+
+
+@pytest.mark.parametrize("codec", NAMED)
+def test_names_have_the_characters_of_their_encoding(codec: str, tmp_path: Path) -> None:
+    """Every byte beyond ASCII against the codec of Python, and the stream of random numbers of such a name."""
+    declared = codec.replace("iso8859_", "ISO-8859-").replace("cp", "windows-")
+    names = {}
+    for byte in range(0xA0 if codec.startswith("iso") else 0x80, 0x100):
+        try:
+            names[f"link {bytes([byte]).decode(codec)}"] = byte
+        except UnicodeDecodeError:
+            continue
+    body = MassProperties(1.0, [0, 0, 0], np.diag([0.02, 0.03, 0.04]))
+    text = f'<?xml version="1.0" encoding="{declared}"?>\n{urdf(dict.fromkeys(names, body))}'
+    (tmp_path / "r.urdf").write_bytes(text.encode(codec))
+    robot = gyradius.load(tmp_path / "r.urdf")
+    assert list(robot) == list(names) and len(names) > 40
+    picked = list(names)[-1]
+    program = [sys.executable, "-m", "gyradius", "draw", "r.urdf", "-n", "3", "--mass", "10%", "--seed", "7", "--links", picked]
+    subprocess.run([*program, "-o", "links.jsonl"], cwd=tmp_path, check=True, capture_output=True)
+    rows = [json.loads(line) for line in (tmp_path / "links.jsonl").read_text(encoding="utf-8").splitlines()]
+    assert [row["link"] for row in rows] == [picked] * 3
+    drawn = gyradius.law(robot[picked], mass="10%").rvs(3, rng=key(7, picked))
+    assert [row["mass_kg"] for row in rows] == drawn.mass.tolist()
+
+
 def test_regions_belong_to_links() -> None:
     body = MassProperties(1.0, [0, 0, 0], np.diag([0.02, 0.03, 0.04]))
     robot, box = {"a": body, "b": body}, gyradius.box(sides=[0.7, 0.7, 0.7])
