@@ -1,9 +1,11 @@
 //! The links of robot files.
 
 use gyradius_dispersion::TenParameters;
-use gyradius_formats::{CompilerDoubt, Gap, GapKind, LinkProblem, RobotFile, RobotLink};
-use pyo3::{PyResult, Python, pyfunction};
-use std::path::PathBuf;
+use gyradius_formats::{
+    CompilerDoubt, FileProblem, Gap, GapKind, LinkProblem, RobotError, RobotFile, RobotLink,
+};
+use pyo3::{PyErr, PyResult, Python, exceptions::PyOSError, pyfunction};
+use std::path::{Path, PathBuf};
 
 use crate::error::refused;
 
@@ -15,7 +17,7 @@ type Link = (String, Option<[f64; 10]>, Option<String>, bool);
 #[pyfunction]
 pub(crate) fn load_robot(py: Python<'_>, path: PathBuf) -> PyResult<(Vec<Link>, Vec<String>)> {
     py.detach(|| {
-        let robot = RobotFile::read(&path).map_err(refused)?;
+        let robot = RobotFile::read(&path).map_err(|error| unreadable(&path, error))?;
         let of = |link: &RobotLink| match link.numbers() {
             Ok(numbers) => {
                 let ten = TenParameters {
@@ -45,6 +47,22 @@ pub(crate) fn load_robot(py: Python<'_>, path: PathBuf) -> PyResult<(Vec<Link>, 
         let unread = robot.gaps().iter().filter_map(unread);
         Ok((links, overridden.into_iter().chain(doubts).chain(unread).collect()))
     })
+}
+
+/// What the system does not hand out is the `OSError` that Python has for it, with path and number; all else is refused.
+fn unreadable(path: &Path, error: RobotError) -> PyErr {
+    let RobotError::File(file) = &error else { return refused(error) };
+    let FileProblem::Io(problem) = file.problem() else { return refused(error) };
+    let said = problem.to_string();
+    let path = path.display().to_string();
+    match problem.raw_os_error() {
+        // Python makes the class of it of the number.
+        Some(number) => {
+            let said = said.split(" (os error").next().unwrap_or_default().to_owned();
+            PyOSError::new_err((number, said, path))
+        }
+        None => PyOSError::new_err(format!("{path}: {said}")),
+    }
 }
 
 /// What is to be said of links that are not among those that were read.

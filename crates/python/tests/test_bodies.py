@@ -159,8 +159,26 @@ def test_robots(tmp_path: Path) -> None:
     assert gyradius.load(str(file)) == links
     with pytest.raises(ValueError, match="frame: no inertia"):
         gyradius.load(file, strict=True)
-    with pytest.raises(ValueError, match=r"nowhere\.urdf"):
-        gyradius.load(tmp_path / "nowhere.urdf")
+    for path in (tmp_path / "nowhere.urdf", tmp_path / "no folder" / "näher.xml", file / "below.sdf"):
+        with pytest.raises(NotADirectoryError if path.parent == file else FileNotFoundError) as told:
+            gyradius.load(path)
+        # As `open` says it.
+        with pytest.raises(OSError) as expected:
+            path.open()
+        assert type(told.value) is type(expected.value) and told.value.args == expected.value.args
+        assert told.value.filename == str(path)
+    for folder in (tmp_path, str(tmp_path)):
+        with pytest.raises(IsADirectoryError) as told_of_folder:
+            gyradius.load(folder)
+        assert told_of_folder.value.filename == str(tmp_path)
+    locked = tmp_path / "locked.urdf"
+    locked.write_text(URDF)
+    locked.chmod(0)
+    try:
+        locked.read_text()
+    except PermissionError:
+        with pytest.raises(PermissionError):
+            gyradius.load(locked)
     (tmp_path / "bad.urdf").write_text("<robot")
     with pytest.raises(ValueError):
         gyradius.load(tmp_path / "bad.urdf")

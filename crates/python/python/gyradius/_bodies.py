@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import html
 import json
+import os
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,8 +18,6 @@ from gyradius._arrays import attitudes, floating, frozen, numbers, ordered, out,
 from gyradius._arrays import form as _form
 
 if TYPE_CHECKING:
-    import os
-
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 COLUMNS: tuple[str, ...] = tuple(_core.COLUMNS)
@@ -417,7 +417,17 @@ def load(path: str | os.PathLike[str], *, strict: bool = False) -> dict[str, Mas
         In the order of the file, in the frame of each link. As they are in the file: `is_realizable` says whether they belong
         to a body. A `RuntimeWarning` tells of macros that are not expanded and of files that are not followed, in which there may be more
         links, and of words such as `settotalmass="5"` of MJCF with which a simulator takes other numbers; with `strict` it is an error.
+        `laws` makes the laws of all of them.
+
+    Raises
+    ------
+    OSError
+        The file cannot be read: `FileNotFoundError`, `IsADirectoryError`, `PermissionError`.
+    ValueError
+        It is no robot, or its text is malformed.
     """
+    if Path(path).is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     found, unread = _core.load_robot(Path(path))
     if strict:
         bad = [f"{name}: {why}" for name, ten, why, _ in found if ten is None] + unread
