@@ -140,13 +140,39 @@ fn amounts_that_are_beyond_a_link_are_refused_with_its_name() {
             for (link, expected) in [("finger", finger), ("a", other)] {
                 let why = of(link);
                 assert_eq!(why.is_some(), expected.is_some(), "{stated:?}, {link}: {message}");
-                assert!(why.unwrap_or_default().contains(expected.unwrap_or_default()), "{message}");
+                assert!(
+                    why.unwrap_or_default().contains(expected.unwrap_or_default()),
+                    "{message}"
+                );
             }
             assert!(!is_refused || message.contains("--links picks others"), "{message}");
         }
     }
     let rest = ["draw", "a.urdf", "-n", "1", "--mass", "0.2kg", "--links", "a,b"];
     assert!(shell.run(&rest).status.success());
+}
+
+/// What is stated of links makes a file no scenario: why it is not read as a robot is said.
+#[test]
+fn what_is_not_read_as_a_robot_says_why() {
+    let shell = Scratch::new();
+    for (name, expected) in [
+        ("a.usda", "a.usda: USD files are not read here: convert it to URDF, MJCF or SDF"),
+        ("a.mjb", "MuJoCo's binary files are not read here"),
+        ("a.urdf.jinja", "it is a template: expand it first"),
+        ("-", "-: a robot is not read from standard input: write it into a file first"),
+        ("a.toml", "a scenario says itself what is uncertain"),
+    ] {
+        let text = if name == "a.urdf.jinja" { "<robot/>" } else { "#usda 1.0" };
+        fs::write(shell.path(name), text).unwrap();
+        let message = refused(&shell, &[name, "-n", "1", "--mass", "10%", "-o", "out"]);
+        assert!(message.contains(expected), "{name}: {message}");
+    }
+    // Any name will do where the file itself tells.
+    for name in ["a.txt", "a", "a.v2"] {
+        fs::write(shell.path(name), robot("1", ".04", "")).unwrap();
+        draw(&shell, &[name, "-n", "1", "--mass", "10%", "-o", "table.csv", "--force"]);
+    }
 }
 
 /// Where nothing is said of the axes, or that they do not scatter, zero products stay as they are written, and so does what a file

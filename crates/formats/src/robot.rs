@@ -8,14 +8,14 @@ use std::{
 };
 
 use crate::{
-    Body, BodyError, CompilerDoubt, Format, Gap, InertiaFile, LinkProblem, Products, RobotError,
-    compiler,
+    Body, BodyError, CompilerDoubt, FileProblem, Format, Gap, InertiaFile, LinkProblem, Products,
+    RobotError, compiler,
     copy::edits,
     edit::{Edit, edited},
     frame::{self, Frame},
     geometry::{self, GeometryProblem, Solid},
     holder::{holder, inertials, is_body, is_in_gazebo},
-    kind::known_extension,
+    kind::{known_extension, not_read},
     mjcf_geoms::Geoms,
     references, robots,
     text::Text,
@@ -165,6 +165,8 @@ impl RobotFile {
         match known_extension(path) {
             Some("csv" | "toml" | "json") => false,
             Some(_) => true,
+            // What is said of a robot in a format that is not read is why it is not.
+            None if matches!(not_read(path), Some(FileProblem::NotRead { .. })) => true,
             None => begins
                 .strip_prefix(b"\xef\xbb\xbf")
                 .unwrap_or(begins)

@@ -25,6 +25,9 @@ pub(crate) fn draw(arguments: &DrawArgs) -> Result<ExitCode, Box<dyn Error>> {
         return draw_robot(arguments, robot);
     }
     if arguments.stated.is_any() || !arguments.links.is_empty() || arguments.inside.is_some() {
+        if arguments.scenario.as_deref() == Some(Path::new("-")) {
+            return Err("-: a robot is not read from standard input: write it into a file first, as with `xacro arm.xacro -o arm.urdf`".into());
+        }
         return Err("--mass, --centre, --moments, --axes, --links and --inside are for robots (URDF, MJCF, SDF): a scenario says \
                     itself what is uncertain"
             .into());

@@ -32,9 +32,10 @@ const LISTED: usize = 40;
 pub(crate) fn is_robot(path: &Path) -> bool {
     let mut begins = [0; 512];
     // What cannot be read is told by who reads it.
-    let read = match path.extension() {
-        None if path.is_file() => File::open(path).and_then(|mut file| file.read(&mut begins)),
-        Some(_) | None => Ok(0),
+    let read = if path.is_file() {
+        File::open(path).and_then(|mut file| file.read(&mut begins))
+    } else {
+        Ok(0)
     };
     RobotFile::is_one(path, &begins[..read.unwrap_or(0)])
 }
