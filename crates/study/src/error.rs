@@ -86,7 +86,7 @@ pub enum StudyError {
         /// The folder.
         path: PathBuf,
         /// What is other there than now.
-        changed: Changed,
+        changed: Box<Changed>,
     },
     /// The runs cannot be made on so many threads, or leave no rows.
     #[error(transparent)]

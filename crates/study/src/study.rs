@@ -191,7 +191,9 @@ pub(crate) fn same_as_before<C: Subject>(
     }
     match threads.install(|| run_changed(simulations, blocks))? {
         None => Ok(()),
-        Some(changed) => Err(StudyError::Changed { path: place.to_owned(), changed }),
+        Some(changed) => {
+            Err(StudyError::Changed { path: place.to_owned(), changed: Box::new(changed) })
+        }
     }
 }
 
