@@ -7,7 +7,7 @@ mod summary;
 mod table;
 
 use gyradius_campaign::{CampaignError, FormatError, Streams, TableError};
-use gyradius_estimation::{StatedBody, Statements};
+use gyradius_estimation::{StatedBody, StatementError, Statements};
 use gyradius_formats::{
     Format, LinkNumbers, LinkProblem, RobotError, RobotFile, RobotLink, TOLERANCE, WriteError,
     judge,
@@ -152,7 +152,7 @@ impl<'a> RobotDraw<'a> {
             let law = match StatedBody::new(&options.statements, &nominal) {
                 Ok(law) => law,
                 Err(error) => {
-                    beyond.push(format!("\"{name}\": {error}"));
+                    beyond.push((name, error));
                     continue;
                 }
             };
@@ -176,7 +176,7 @@ impl<'a> RobotDraw<'a> {
             return Err(RobotDrawError::Impossible { links: impossible.join(", ") });
         }
         if !beyond.is_empty() {
-            return Err(RobotDrawError::Statement { links: beyond.join("; ") });
+            return Err(RobotDrawError::Statement { links: beyond });
         }
         let without = robot.links_without_inertia().iter();
         left.extend(without.map(|name| (name.clone(), LeftBecause::NoInertia)));
@@ -344,10 +344,10 @@ pub enum RobotDrawError {
         links: String,
     },
     /// The statements are refused of some links.
-    #[error("{links}: --links picks others")]
+    #[error("{}: --links picks others", told(links))]
     Statement {
         /// The links, and why.
-        links: String,
+        links: Vec<(String, StatementError)>,
     },
     /// The last draw would have a number that is too large.
     #[error("{draws} draws from draw {first} on: the number of the last must be below {MOST}")]
@@ -398,4 +398,10 @@ pub enum RobotDrawError {
     /// The output refuses.
     #[error(transparent)]
     Output(#[from] FormatError),
+}
+
+/// Links with what is wrong with each.
+fn told(links: &[(String, StatementError)]) -> String {
+    let told = links.iter().map(|(name, error)| format!("\"{name}\": {error}"));
+    told.collect::<Vec<_>>().join("; ")
 }
