@@ -23,6 +23,8 @@ pub(crate) struct Field {
     pub(crate) plot: Svg,
     entries: Vec<Entry>,
     notes: Vec<String>,
+    /// From where to where the names of limits stand above the plot.
+    limits: Vec<[f64; 2]>,
 }
 
 /// A horizontal axis, linear in the units that it is labelled in.
@@ -84,7 +86,7 @@ impl Field {
         let name = fit(x_label, LABEL.size, ACROSS + LABELS);
         plot.text(middle, HIGH + 37.0, LABEL.at(Anchor::Middle), &name);
         plot.text(-LABELS, -24.0, TICK, &fit(y_label, TICK.size, ACROSS + LABELS));
-        Self { plot, entries: Vec::new(), notes: Vec::new() }
+        Self { plot, entries: Vec::new(), notes: Vec::new(), limits: Vec::new() }
     }
 
     /// The same with a linear horizontal axis, which says in which units it is labelled.
@@ -105,14 +107,23 @@ impl Field {
         self.notes.push(text.into());
     }
 
-    /// The vertical line of a limit, with its name above the plot, before or after it, where there is room.
+    /// The vertical line of a limit, with its name above the plot, where there is room beside other names, and else in the plot beside it.
     pub(crate) fn limit(&mut self, x: f64, name: &str) {
         let x = x.clamp(0.0, ACROSS);
         let pen = format!("stroke=\"{}\" stroke-width=\"1.6\"", style::INK);
         self.plot.path(&pen, &format!("M{} 0v{}", px(x), px(HIGH)));
         let half = 0.5 * width(name, TICK.size);
         let at = x.clamp(half - LABELS, ACROSS - half);
-        self.plot.text(at, -6.0, Look::new(TICK.size, style::INK).at(Anchor::Middle), name);
+        let look = Look::new(TICK.size, style::INK);
+        let (own, gap) = ([at - half, at + half], 6.0);
+        if self.limits.iter().all(|other| own[1] + gap < other[0] || other[1] + gap < own[0]) {
+            self.limits.push(own);
+            self.plot.text(at, -6.0, look.at(Anchor::Middle), name);
+        } else if x + 5.0 + 2.0 * half < ACROSS {
+            self.plot.text(x + 5.0, TICK.size + 2.0, look.at(Anchor::Start), name);
+        } else {
+            self.plot.text(x - 5.0, TICK.size + 2.0, look.at(Anchor::End), name);
+        }
     }
 
     /// The whole figure.
@@ -146,4 +157,49 @@ pub(crate) fn band_pen(model: usize) -> String {
 /// The line of a model.
 pub(crate) fn line_pen(model: usize) -> String {
     format!("stroke=\"{}\" stroke-width=\"1.6\"", style::model(model))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Where a text of a drawing is, from its baseline's left end: left, right and baseline.
+    fn place(text: &str, name: &str) -> [f64; 3] {
+        let attribute = |of: &str| {
+            let value = text.split_once(&format!(" {of}=\""))?.1;
+            value.split('"').next()
+        };
+        let number = |of: &str| attribute(of).unwrap().parse::<f64>().unwrap();
+        let wide = width(name, TICK.size);
+        let left = match attribute("text-anchor") {
+            None => number("x"),
+            Some("middle") => number("x") - 0.5 * wide,
+            Some(_) => number("x") - wide,
+        };
+        [left, left + wide, number("y")]
+    }
+
+    proptest! {
+        /// The names of two limits, as of a requirement between them, never stand over each other, and stay in the figure.
+        #[test]
+        fn names_of_limits_do_not_touch(
+            places in prop::array::uniform2(0.0..1.0_f64),
+            names in prop::array::uniform2("limit [0-9.]{1,12}"),
+        ) {
+            let mut field = Field::new(&[], &[], ["x", "y"]);
+            for (at, name) in places.iter().zip(&names) {
+                field.limit(at * ACROSS, name);
+            }
+            let svg = field.finish("", "");
+            let texts: Vec<&str> = svg.split("<text").filter(|text| text.contains(">limit ")).collect();
+            prop_assert_eq!(texts.len(), 2);
+            let [a, b] = [place(texts[0], &names[0]), place(texts[1], &names[1])];
+            let apart = a[1] < b[0] || b[1] < a[0] || (a[2] - b[2]).abs() >= TICK.size;
+            prop_assert!(apart, "{:?} {:?}", a, b);
+            for [left, right, _] in [a, b] {
+                prop_assert!(left >= -LABELS - 1.0 && right <= ACROSS + 1.0, "{left} {right}");
+            }
+        }
+    }
 }

@@ -113,17 +113,19 @@
   });
 
   // What is wider than its box is scrolled by keys too.
-  const boxes = () => each(".wide, .picture", document, (box) => {
+  const boxes = () => each(".wide, .picture, pre", document, (box) => {
     if (box.scrollWidth <= box.clientWidth + 1) {
       ["tabindex", "role", "aria-label"].forEach((name) => box.removeAttribute(name));
       return;
     }
-    const words = box.matches(".wide") ? box.querySelector("caption") : box.querySelector("title");
+    const words = box.querySelector(box.matches(".wide") ? "caption" : "title");
     box.tabIndex = 0; box.role = "group";
-    box.ariaLabel = `${words ? words.textContent : "Table"}, wider than the page`;
+    box.ariaLabel = `${words ? words.textContent : box.matches("pre") ? "Text" : "Table"}, wider than the page`;
   });
   boxes();
   window.addEventListener("resize", boxes);
+  // What is folded has no width before.
+  document.addEventListener("toggle", boxes, true);
   // Paper shows what is folded.
   let folded = [];
   window.addEventListener("beforeprint", () => {

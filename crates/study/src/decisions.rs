@@ -260,7 +260,8 @@ pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
     }
     let section = Section::new("Requirements").table(table);
     let section = notes.into_iter().fold(section, Section::paragraph);
-    vec![section.sections([distributions(head), worst(scenario, head), convergence(head)])]
+    let folded = [Some(distributions(head)), worst(scenario, head), Some(convergence(head))];
+    vec![section.sections(folded.into_iter().flatten())]
 }
 
 /// Where runs fail the requirements, and with which inputs outcomes rise and fall.
@@ -352,7 +353,7 @@ fn convergence(head: &Head) -> Section {
 }
 
 /// The worst runs, each with the command, or the call, that does it again.
-fn worst(scenario: &impl Subject, head: &Head) -> Section {
+fn worst(scenario: &impl Subject, head: &Head) -> Option<Section> {
     let all: Vec<(&Judged, &RunBeyond)> = head
         .requirements
         .iter()
@@ -380,7 +381,8 @@ fn worst(scenario: &impl Subject, head: &Head) -> Section {
         .words(to_see_it, |(judged, run)| Text::default().code(again(&judged.model, run.run)));
     let reading = "Unusual is what lies at least two standard deviations from the mean of all runs of the model, in brackets by \
                    how many: the three most unusual numbers of what the run drew, which need not be the reason.";
-    Section::folded("The worst runs").paragraph(reading).table(table)
+    // Where no run has a number, none is the worst.
+    (!all.is_empty()).then(|| Section::folded("The worst runs").paragraph(reading).table(table))
 }
 
 /// What is unusual in what a run drew, a line each.
