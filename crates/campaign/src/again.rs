@@ -31,7 +31,7 @@ pub fn run_again<S: Simulation>(
     let mut all = Again::default();
     for (name, simulation) in simulations {
         let empty = Table::new(name, 0, simulation.columns())?;
-        let with_failures = blocks.with_failures(name);
+        let with_failures = blocks.ranges(name, 1);
         let runs = blocks.runs(&empty, Vec::new());
         let each = with_failures.into_par_iter().map(|range| {
             go_on(stop)?;
@@ -78,7 +78,9 @@ pub fn run_changed<S: Simulation>(
     for (name, simulation) in simulations {
         let empty = Table::new(name, 0, simulation.columns())?;
         let runs = blocks.runs(&empty, Vec::new());
-        for range in blocks.finished(name) {
+        let mut finished = blocks.ranges(name, 0);
+        finished.sort_by_key(|range| range.start);
+        for range in finished {
             let Some(old) = runs.block(range.start)? else { continue };
             let Some(row) = old.rows().find(|row| row.failure().is_none()) else { continue };
             let run = row.run();

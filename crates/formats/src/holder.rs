@@ -1,6 +1,9 @@
 //! Which element an inertia belongs to, and whether its format has one there.
 
-use crate::{Format, robots::INERTIAL, xml::Node};
+use crate::{Format, xml::Node};
+
+/// The element around the inertia of a body, in every format.
+pub(crate) const INERTIAL: &str = "inertial";
 
 /// The body or link of an inertia. In MJCF it may stand in frames of its body.
 pub(crate) fn holder<'t, 'a>(inertial: Node<'t, 'a>, format: Format) -> Option<Node<'t, 'a>> {

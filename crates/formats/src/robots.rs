@@ -5,7 +5,7 @@ use crate::{
     body::{ENTRIES, NAMES, Number, Reading, shortened},
     error::Refusal,
     gap::Gaps,
-    holder::{is_in_gazebo, is_in_place},
+    holder::{INERTIAL, is_in_gazebo, is_in_place},
     sdf_words::{has_attributes, truth},
     xml::{MACROS, Node, Tree},
 };
@@ -58,9 +58,6 @@ fn form_of(inertial: Node<'_, '_>) -> Option<Format> {
         _ => None,
     }
 }
-
-/// The element around the inertia of a body, in every format.
-pub(crate) const INERTIAL: &str = "inertial";
 
 /// The bodies of a file, and what of it was not read.
 pub(crate) fn read(

@@ -1,6 +1,6 @@
 //! Whether two files are one robot with other mass properties.
 
-use crate::{edit::is_same_but_numbers, robots::INERTIAL, text::Text, xml::Tree};
+use crate::{edit::is_same_but_numbers, holder::INERTIAL, text::Text, xml::Tree};
 
 /// Whether two files are the same but for numbers and for what stands in elements `<inertial>`: copies of one robot
 /// are, whichever of their numbers were drawn. Comments count.

@@ -324,18 +324,10 @@ impl Blocks {
         state.blocks.iter().filter(|b| b.model == model).map(|block| block.range().end).max()
     }
 
-    /// The runs of each block of a model, in their order.
-    pub(crate) fn finished(&self, model: &str) -> Vec<Range<u64>> {
-        let all = self.all();
-        let mut runs: Vec<_> = all.iter().filter(|b| b.model == model).map(Block::range).collect();
-        runs.sort_by_key(|range| range.start);
-        runs
-    }
-
-    /// The runs of each block of a model in which runs failed.
-    pub(crate) fn with_failures(&self, model: &str) -> Vec<Range<u64>> {
-        let failed = |block: &Block| block.model == model && block.failed > 0;
-        self.all().iter().filter(|block| failed(block)).map(Block::range).collect()
+    /// The runs of each of the blocks of a model that have at least so many failed runs.
+    pub(crate) fn ranges(&self, model: &str, failed: u64) -> Vec<Range<u64>> {
+        let is_one = |block: &Block| block.model == model && block.failed >= failed;
+        self.all().iter().filter(|block| is_one(block)).map(Block::range).collect()
     }
 
     /// Whether any run of a finished block failed.
