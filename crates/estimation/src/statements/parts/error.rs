@@ -47,7 +47,7 @@ pub enum StatementError {
     },
     /// Moments or products that scatter far beyond the body.
     #[error(
-        "{part}: a standard deviation of {:?} kg·m² is stated, and it must be at most \
+        "{part}.kg_m2: a standard deviation of {:?} kg·m² is stated, and it must be at most \
          {MOST_TRACES} times the trace of the nominal inertia, which is {:?} kg·m²",
         rounded(*deviation),
         rounded(*trace)
@@ -62,7 +62,7 @@ pub enum StatementError {
     },
     /// A mass that scatters beyond itself.
     #[error(
-        "mass: a standard deviation of {:?} kg is stated, and it must be at most the \
+        "mass.kg: a standard deviation of {:?} kg is stated, and it must be at most the \
          nominal mass, which is {:?} kg",
         rounded(*deviation),
         rounded(*mass)
