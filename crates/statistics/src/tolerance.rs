@@ -98,32 +98,20 @@ impl SequentialAcceptance {
     }
 }
 
-#[cfg(feature = "serde")]
-impl serde::Serialize for Tolerance {
-    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        Self::serialize(self, to)
-    }
-}
-
-#[cfg(feature = "serde")]
-impl<'de> serde::Deserialize<'de> for Tolerance {
-    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let read = Self::deserialize(from)?;
-        let together = match read {
-            Self::Ranks { lower, upper, confidence } => {
-                let rising = match (lower, upper) {
-                    (Some(lower), Some(upper)) => 1 <= lower && lower <= upper,
-                    (Some(rank), None) | (None, Some(rank)) => 1 <= rank,
-                    (None, None) => false,
-                };
-                rising && (0.0..=1.0).contains(&confidence)
-            }
-            Self::TooFewRuns { needed } => needed != Some(0),
-        };
-        crate::error::belong(together, "tolerance").map_err(serde::de::Error::custom)?;
-        Ok(read)
-    }
-}
+crate::checked::checked!(Tolerance, |read| {
+    let together = match *read {
+        Tolerance::Ranks { lower, upper, confidence } => {
+            let rising = match (lower, upper) {
+                (Some(lower), Some(upper)) => 1 <= lower && lower <= upper,
+                (Some(rank), None) | (None, Some(rank)) => 1 <= rank,
+                (None, None) => false,
+            };
+            rising && (0.0..=1.0).contains(&confidence)
+        }
+        Tolerance::TooFewRuns { needed } => needed != Some(0),
+    };
+    crate::error::belong(together, "tolerance")
+});
 
 /// The values that leave as many runs out as a rule allows to fail: they bound the share p whenever those that are beyond
 /// the true bound would have met the requirement with a risk of 1 − c at most.
