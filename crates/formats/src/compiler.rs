@@ -72,7 +72,7 @@ pub(crate) fn doubts(tree: &Tree<'_>, format: Format, gaps: &[Gap]) -> Vec<Compi
             let includes = gaps.iter().any(|gap| gap.kind() == GapKind::Included);
             let mut replicated = tree.all("replicate").flat_map(Node::descendants);
             let body = replicated.find(|node| node.name() == "body");
-            let body = body.map(|body| body.attribute("name").map_or("unnamed", |name| name));
+            let body = body.map(|body| body.attribute("name").unwrap_or("unnamed"));
             let replicated = body.map(|body| CompilerDoubt::Replicated { body: shortened(body) });
             let all = raised.chain(replicated);
             all.chain(includes.then_some(CompilerDoubt::Included)).collect()

@@ -42,7 +42,7 @@ pub(crate) fn is_in_place(inertial: Node<'_, '_>, format: Format) -> bool {
         Some(body) if body.parent().is_none() => !is_whole(body),
         Some(body) => {
             let is_block = format == Format::Urdf && body.name() == GAZEBO;
-            is_block || (is_element(body, format) && is_body(body, format))
+            is_block || is_body(body, format)
         }
     }
 }

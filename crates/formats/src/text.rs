@@ -55,21 +55,22 @@ impl Text {
         if latin && body.trim_ascii().contains(&b'\r') && !body.contains(&b'\n') {
             return Err(Refusal { line: Some(1), problem: FileProblem::CarriageReturns });
         }
-        let (text, offsets) = match (std::str::from_utf8(body), Encoding::declared(body)) {
-            (Ok(text), _) => (text.to_owned(), Offsets { mark, more: Vec::new() }),
-            (Err(_), _) if latin => {
+        let after_mark = Offsets { mark, more: Vec::new() };
+        let (text, offsets) = match std::str::from_utf8(body) {
+            Ok(text) => (text.to_owned(), after_mark),
+            Err(_) if latin => {
                 let text = body.iter().map(|b| if b.is_ascii() { char::from(*b) } else { '?' });
-                (text.collect(), Offsets { mark, more: Vec::new() })
+                (text.collect(), after_mark)
             }
-            (Err(_), Some(encoding)) => {
-                let text = encoding.decode(body);
+            Err(error) => {
+                let text = Encoding::declared(body).map(|encoding| encoding.decode(body));
+                let text = text.ok_or_else(|| {
+                    let before = &body[..error.valid_up_to()];
+                    let line = 1 + before.iter().filter(|b| **b == b'\n').count();
+                    Refusal { line: Some(line), problem: FileProblem::NotUtf8 }
+                })?;
                 let offsets = Offsets::of_narrow(mark, &text);
                 (text, offsets)
-            }
-            (Err(error), None) => {
-                let before = &body[..error.valid_up_to()];
-                let line = 1 + before.iter().filter(|b| **b == b'\n').count();
-                return Err(Refusal { line: Some(line), problem: FileProblem::NotUtf8 });
             }
         };
         Ok(Self { text, offsets, newlines: OnceCell::new() })
