@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use crate::axis::Units;
 use crate::data::Field;
-use crate::samples::{Panel, Series};
+use crate::samples::Series;
 
 /// The histograms of one panel, in units that read well.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,8 +42,12 @@ const EDGE: f64 = 0.07;
 
 impl Binned {
     /// Counts on shared Freedman-Diaconis bins, `most` at most; `None` without a finite value.
-    pub(crate) fn new(panel: &Panel<'_>, most: usize) -> Option<Self> {
-        let samples: Vec<Option<&SortedSample>> = panel.series.iter().map(Series::sample).collect();
+    pub(crate) fn new<'a>(
+        series: impl Iterator<Item = &'a Series<'a>>,
+        nominal: Option<f64>,
+        most: usize,
+    ) -> Option<Self> {
+        let samples: Vec<Option<&SortedSample>> = series.map(Series::sample).collect();
         let fences = samples.iter().flatten().map(|sample| fence(sample));
         let (lower, upper) = fences.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
         let inside = |x: f64| lower <= x && x <= upper;
@@ -59,7 +63,7 @@ impl Binned {
                 SortedSample::new(&values.map(|&x| units.of(x)).collect::<Vec<_>>()).ok()
             })
             .collect();
-        let nominal = panel.nominal.map(|x| units.of(x)).filter(|x| x.is_finite());
+        let nominal = nominal.map(|x| units.of(x)).filter(|x| x.is_finite());
         let edges = edges(&kept.iter().flatten().collect::<Vec<_>>(), nominal, most)?;
         let bounds = (edges.values()[0], edges.values()[edges.bins()]);
         // Values are sorted: the farthest is the first or the last.
@@ -197,8 +201,9 @@ mod tests {
     use super::*;
 
     fn binned(samples: &[&[f64]], nominal: Option<f64>) -> Option<Binned> {
-        let series = samples.iter().map(|values| Series::new("", values, values.len())).collect();
-        Binned::new(&Panel { label: String::new(), series, nominal }, 50)
+        let series: Vec<Series<'_>> =
+            samples.iter().map(|values| Series::new("", values, values.len())).collect();
+        Binned::new(series.iter(), nominal, 50)
     }
 
     /// Quantiles of the Cauchy law.

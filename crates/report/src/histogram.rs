@@ -62,12 +62,8 @@ fn shared_bins(panels: &[Option<Panel<'_>>], most: usize) -> Vec<Option<Binned>>
             continue;
         }
         let of_all = || alike.iter().filter_map(|i| panels[*i].as_ref());
-        let all = Panel {
-            label: panel.label.clone(),
-            series: of_all().flat_map(|panel| panel.series.iter().cloned()).collect(),
-            nominal: of_all().find_map(|panel| panel.nominal),
-        };
-        let shared = Binned::new(&all, most);
+        let nominal = of_all().find_map(|panel| panel.nominal);
+        let shared = Binned::new(of_all().flat_map(|panel| &panel.series), nominal, most);
         let mut next = 0;
         for (i, panel) in alike.iter().zip(of_all()) {
             let own = next..next + panel.series.len();

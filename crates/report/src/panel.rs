@@ -414,7 +414,10 @@ mod tests {
             };
             let density = round % 2 == 0;
             let size = [(500.0, 220.0), (350.0, 160.0), (232.0, 122.0)][round % 3];
-            let counted = Counted::new(&panel, Binned::new(&panel, most_bins(size.0)));
+            let counted = Counted::new(
+                &panel,
+                Binned::new(panel.series.iter(), panel.nominal, most_bins(size.0)),
+            );
             let cell = Cell::new(&counted, (0..series).collect(), density, size.1);
             let mut svg = Svg::new();
             let frame = Frame { left: 50.0, top: 20.0, width: size.0, height: size.1 };
