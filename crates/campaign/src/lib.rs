@@ -128,7 +128,7 @@ pub use runs::{Runs, RunsError};
 pub use sample::{SampleSummary, bounded};
 pub use shard::{Shard, ShardError};
 pub use share::{Share, counted};
-pub use simulation::{CampaignError, Progress, Simulation, run, threads};
+pub use simulation::{CampaignError, Progress, Simulation, go_on, run, threads};
 pub use stop::is_stopped;
 pub use stored::read_run;
 pub use stream::stream;

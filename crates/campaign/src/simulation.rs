@@ -117,7 +117,10 @@ pub(crate) fn run_range<S: Simulation>(
 }
 
 /// Whether it goes on, or was told to stop.
-pub(crate) fn go_on(stop: Option<&AtomicBool>) -> Result<(), CampaignError> {
+///
+/// # Errors
+/// It was told to stop.
+pub fn go_on(stop: Option<&AtomicBool>) -> Result<(), CampaignError> {
     if is_stopped(stop) { Err(CampaignError::Stopped) } else { Ok(()) }
 }
 

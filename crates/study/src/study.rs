@@ -7,7 +7,7 @@ use crate::{
 };
 use gyradius_campaign::{
     Blocks, CampaignError, Counting, Doing, Folder, MANIFEST, Plan, Progress, Reduced, Runs,
-    RunsError, Simulation, Table, disk_left, is_stopped, memory_left, run_again, run_changed,
+    RunsError, Simulation, Table, disk_left, go_on, memory_left, run_again, run_changed,
     run_missing, threads, told,
 };
 #[cfg(test)]
@@ -240,9 +240,7 @@ fn write<C: Subject>(
     for (name, content) in report.files(report::NAME) {
         folder.write(&name, &content)?;
     }
-    if is_stopped(options.stop.as_deref()) {
-        return Err(CampaignError::Stopped.into());
-    }
+    go_on(options.stop.as_deref())?;
     Ok((folder.publish()?, summary))
 }
 

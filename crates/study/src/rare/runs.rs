@@ -1,8 +1,6 @@
 //! Runs of a model that are done to look for an event.
 
-use gyradius_campaign::{
-    CampaignError, Event, Progress, Simulation, Table, is_stopped, run, threads,
-};
+use gyradius_campaign::{CampaignError, Event, Progress, Simulation, Table, go_on, run, threads};
 use rayon::ThreadPool;
 use std::{
     cell::Cell,
@@ -71,15 +69,11 @@ impl<'a, C: Subject> EventRuns<'a, C> {
 
     /// By how much each of so many runs is beyond the limit; NaN of a run without a number.
     pub(super) fn excesses(&self, drawing: Drawing, runs: u64) -> Result<Vec<f64>, StudyError> {
-        let go_on = || match is_stopped(self.stop.as_deref()) {
-            true => Err(StudyError::from(CampaignError::Stopped)),
-            false => Ok(()),
-        };
-        go_on()?;
+        go_on(self.stop.as_deref())?;
         let simulation = self.scenario.drawing(&self.prepared, self.at, drawing)?;
         let table = run(&simulation, self.model, runs, &self.threads, &|_| {})?;
         // Runs that were stopped look like failed ones.
-        go_on()?;
+        go_on(self.stop.as_deref())?;
         let excesses = self.event.excesses(&table);
         if excesses.iter().all(|excess| excess.is_nan()) {
             let failure = table.failures().next();

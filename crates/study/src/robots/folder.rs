@@ -1,6 +1,6 @@
 //! The draws of a robot as robots: a file for each.
 
-use gyradius_campaign::{CampaignError, Progress, is_stopped, threads};
+use gyradius_campaign::{Progress, go_on, threads};
 use gyradius_formats::{WriteError, is_same_file, is_same_robot, must_write, write_file};
 use rayon::prelude::*;
 use std::{
@@ -83,9 +83,7 @@ impl RobotDraw<'_> {
                 Ok(())
             })?;
             draws.clone().into_par_iter().try_for_each(|draw| {
-                if is_stopped(self.options.stop.as_deref()) {
-                    return Err(CampaignError::Stopped.into());
-                }
+                go_on(self.options.stop.as_deref())?;
                 let changed = write_file(&path(draw), &self.robot(draw)?, force)?;
                 written.fetch_add(u64::from(changed), Ordering::Relaxed);
                 progress(done.fetch_add(1, Ordering::Relaxed) + 1);

@@ -1,8 +1,6 @@
 //! The draws of all links as one table.
 
-use gyradius_campaign::{
-    CampaignError, Cell, Column, Extent, Kind, Progress, Table, TableFormat, is_stopped, threads,
-};
+use gyradius_campaign::{Cell, Column, Extent, Kind, Progress, Table, TableFormat, go_on, threads};
 use gyradius_dispersion::TenParameters;
 use rayon::prelude::*;
 use std::io::Write;
@@ -60,9 +58,7 @@ impl RobotDraw<'_> {
         for link in &self.links {
             let mut first = self.options.first;
             while first < end {
-                if is_stopped(self.options.stop.as_deref()) {
-                    return Err(CampaignError::Stopped.into());
-                }
+                go_on(self.options.stop.as_deref())?;
                 let last = end.min(first.saturating_add(BLOCK));
                 take(&link.table(empty, first, last)?)?;
                 *done += last - first;
