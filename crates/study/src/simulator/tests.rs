@@ -13,6 +13,7 @@ mod vehicles;
 use gyradius_campaign::{Inputs, Simulation, Table};
 use proptest::prelude::*;
 use std::{
+    collections::BTreeMap,
     fs,
     path::Path,
     sync::{
@@ -76,6 +77,23 @@ name = "naive"
 law = "entrywise"
 matched_to = "proposed"
 "#;
+
+/// All files below a folder, by their paths from there.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for path in fs::read_dir(next).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().display().to_string();
+                all.insert(name, fs::read(path).unwrap());
+            }
+        }
+    }
+    all
+}
 
 fn quantity(name: &str, law: &str) -> String {
     format!("\n[[quantities]]\nname = \"{name}\"\nunit = \"m\"\nlaw = {law}\n")

@@ -1,10 +1,10 @@
 //! Campaigns of vehicles and flights: they go on, are put together of shards, and tell what is independent.
 
 use gyradius_statistics::{Confidence, Moments, Proportion};
-use std::{collections::BTreeMap, thread};
+use std::thread;
 
 use super::{
-    AnyScenario, Options, Path, Shard, SimulatorReplay, SimulatorScenario, Status, folder, fs,
+    AnyScenario, Options, Shard, SimulatorReplay, SimulatorScenario, Status, files, folder, fs,
     put_together, scenario, vehicles::text,
 };
 use crate::{Draw, DrawOptions, Which};
@@ -145,20 +145,6 @@ fn campaigns_of_vehicles_go_on() {
     }
 }
 
-/// All files that a study writes, below a folder.
-fn files(folder: &Path, below: &Path, all: &mut BTreeMap<String, Vec<u8>>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            files(&path, below, all);
-        } else {
-            let name = path.strip_prefix(below).unwrap().display().to_string();
-            all.insert(name, fs::read(&path).unwrap());
-        }
-    }
-    all.retain(|name, _| !name.starts_with(".gyradius"));
-}
-
 /// Shards with any number of threads make the bytes of one process.
 #[test]
 fn shards_of_vehicles_are_one_study() {
@@ -171,8 +157,8 @@ fn shards_of_vehicles_are_one_study() {
         |name: &str, threads| Options { threads: Some(threads), ..Options::to(out(name)) };
     scenario.study(&options("whole", 2), &|_| {}, &|_| {}).unwrap();
     let written = |name: &str| {
-        let mut all = BTreeMap::new();
-        files(&out(name), &out(name), &mut all);
+        let mut all = files(&out(name));
+        all.retain(|name, _| !name.starts_with(".gyradius"));
         all
     };
     let whole = written("whole");

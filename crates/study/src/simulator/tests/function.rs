@@ -13,7 +13,8 @@ use std::{
 };
 
 use super::{
-    BODY, HEAD, MODELS, SimulatorReplay, SimulatorScenario, folder, quantity, scenario, uniform,
+    BODY, HEAD, MODELS, SimulatorReplay, SimulatorScenario, files, folder, quantity, scenario,
+    uniform,
 };
 use crate::{
     AnyScenario, CampaignError, Kept, Options, RareMethod, RareOptions, ReplayError, Rows,
@@ -36,14 +37,7 @@ fn answer() -> SimulatorFunction {
 
 /// What stands in the run tables below a folder, by name.
 fn tables(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    for model in fs::read_dir(folder.join("runs")).unwrap().map(|entry| entry.unwrap().path()) {
-        for file in fs::read_dir(model).unwrap().map(|entry| entry.unwrap().path()) {
-            let name = file.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
-            all.insert(name, fs::read(file).unwrap());
-        }
-    }
-    all
+    files(&folder.join("runs"))
 }
 
 /// A summary, without what tells a command from a function.
@@ -175,7 +169,7 @@ proptest! {
         } else {
             let _ = one.run(&first, &progress, &|_| {});
         }
-        let before = tree(&out);
+        let before = files(&out);
         let any_block = before.keys().any(|name| name.ends_with(".parquet"));
         let again = Options { force, ..options.clone() };
         let refused = if in_shards {
@@ -187,7 +181,7 @@ proptest! {
             let changed = matches!(refused, Some(StudyError::Changed { .. }));
             prop_assert!(changed, "{refused:?}");
             // A share has a lock and a record of its own.
-            let after = tree(&out);
+            let after = files(&out);
             let lost: Vec<_> = before.iter().filter(|(name, bytes)| after.get(*name) != Some(*bytes)).map(|(name, _)| name).collect();
             prop_assert!(lost.is_empty(), "{lost:?}");
             prop_assert!(in_shards || after.len() == before.len());
@@ -196,23 +190,6 @@ proptest! {
             prop_assert!(refused.is_none(), "{refused:?}");
         }
     }
-}
-
-/// All files below a folder.
-fn tree(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for path in fs::read_dir(next).into_iter().flatten().map(|entry| entry.unwrap().path()) {
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
-                all.insert(name, fs::read(path).unwrap());
-            }
-        }
-    }
-    all
 }
 
 /// What drives a rare event is found with a function too, and shards are put together without it.
