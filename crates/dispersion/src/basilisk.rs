@@ -255,7 +255,8 @@ impl NamedModel for BasiliskDispersion {
         mean: InertiaMatrix,
         moments: &EntryMoments,
     ) -> Result<(Self, &'static str), NoMatch> {
-        const WHAT: &str = "nominal matrix; variances summed over moments and over products";
+        const WHAT: &str =
+            "the mean as its nominal matrix; variances summed over moments and over products";
         const STEPS: usize = 100;
         let sums = |c: &SMatrix<f64, 6, 6>| {
             let of = |range: std::ops::Range<usize>| range.map(|e| c[(e, e)]).sum::<f64>();

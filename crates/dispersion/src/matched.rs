@@ -48,7 +48,7 @@ impl DispersionModel {
     /// | `realizable-…` | as above *before* rejection, which moves both |
     /// | `log-cholesky` | mean and covariance; to first order where no such law has them |
     /// | `wishart` | mean, and E‖Σ − Σ̄‖² |
-    /// | `basilisk` | nominal matrix; variances summed over moments and over products |
+    /// | `basilisk` | the mean as its nominal matrix; variances summed over moments and over products |
     /// | `principal` | Gaussian roots and axes: mean, covariance of the principal moments, covariance of turns, the last two to first order |
     ///
     /// # Errors

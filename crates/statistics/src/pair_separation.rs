@@ -67,7 +67,7 @@ impl PairSeparation {
         }
         let by_y: Vec<Vec<Cell>> =
             (0..y.cells()).map(|y| by_x.iter().map(|row| row[y]).collect()).collect();
-        let alone = |rows: &[Vec<Cell>]| deviance(rows.iter().map(|row| sum(row)));
+        let alone = |rows: &[Vec<Cell>]| deviance(rows.iter().map(Cell::sum));
         let better = alone(&by_x).max(alone(&by_y));
         let gain = (deviance(by_x.iter().flatten().copied()) - better).max(0.0);
         let p_value = ShareTest::new(&by_x).p_value().max(ShareTest::new(&by_y).p_value());
@@ -75,13 +75,9 @@ impl PairSeparation {
     }
 }
 
-fn sum(cells: &[Cell]) -> Cell {
-    cells.iter().copied().fold(Cell::default(), Cell::and)
-}
-
 /// The deviance of cells from one share.
 fn deviance(cells: impl Iterator<Item = Cell> + Clone) -> f64 {
-    let all = cells.clone().fold(Cell::default(), Cell::and);
+    let all = Cell::sum(cells.clone());
     let share = all.failures as f64 / all.runs as f64;
     let part = |found: u64, expected: f64| {
         if found == 0 { 0.0 } else { found as f64 * libm::log(found as f64 / expected) }
