@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct SampleSummary {
     /// Runs that have one.
     pub n: u64,
-    /// Mean.
+    /// Mean; of one run it is its number.
     pub mean: Option<f64>,
     /// Where the true mean lies.
     pub mean_interval: Option<Interval>,
@@ -53,7 +53,7 @@ impl SampleSummary {
         let moments = survey.moments();
         Self {
             n: survey.n(),
-            mean: moments.map(Moments::mean),
+            mean: survey.mean(),
             mean_interval: survey.mean_interval(confidence),
             deviation: moments.map(Moments::standard_deviation),
             deviation_interval: survey.deviation_interval(confidence),
@@ -83,4 +83,31 @@ pub(crate) fn surveyed(runs: u64, confidence: Confidence) -> Survey {
 #[must_use]
 pub fn bounded(interval: Option<Interval>) -> Option<Interval> {
     interval.filter(|i| i.lower().is_finite() && i.upper().is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// One run has a mean and quantiles and no deviation; of more, all are between the smallest and the largest.
+        #[test]
+        fn a_sample_of_any_size_is_summarized(values in prop::collection::vec(-1e300..1e300_f64, 0..6)) {
+            let found = SampleSummary::new(&values, Confidence::default());
+            prop_assert_eq!(found.n, values.len() as u64);
+            let told = [found.mean, found.median, found.p05, found.p95, found.minimum, found.maximum];
+            prop_assert!(told.iter().all(|x| x.is_some() != values.is_empty()), "{:?}", found);
+            prop_assert_eq!(found.mean_interval.is_some(), values.len() > 1);
+            let range = found.minimum.zip(found.maximum);
+            prop_assert!(told.iter().flatten().all(|x| range.is_some_and(|(low, high)| (low..=high).contains(x))));
+            let n = values.len() as f64;
+            let mean = values.iter().map(|x| x / n).sum::<f64>();
+            prop_assert!(found.mean.is_none_or(|x| (x - mean).abs() <= 1e-15 * n * 1e300));
+            if let [value] = values[..] {
+                prop_assert_eq!((found.mean, found.deviation), (Some(value), None));
+            }
+        }
+    }
 }

@@ -300,7 +300,7 @@ fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {
         LateSummary::new(moments(&late.column)?, moments(&start.column)?, start.nominal)
     };
     let summary = |d: &Dispersed| {
-        let moments = moments(&d.column);
+        let survey = seen.surveys.column(&d.column);
         DispersedSummary {
             quantity: d.column.clone(),
             law: d.law.name().into(),
@@ -308,8 +308,8 @@ fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {
             nominal: d.nominal,
             law_mean: d.law.mean(),
             law_deviation: d.law.deviation(),
-            mean: moments.map(Moments::mean),
-            deviation: moments.map(Moments::standard_deviation),
+            mean: survey.and_then(Survey::mean),
+            deviation: survey.and_then(Survey::moments).map(Moments::standard_deviation),
             late: late(d),
         }
     };
@@ -476,13 +476,13 @@ impl Ratio {
     fn new(quantity: Quantity, physical: &Seen, naive: &Seen, confidence: Confidence) -> Self {
         let both = naive.quantity(quantity).zip(physical.quantity(quantity));
         let deviations = both.and_then(|(n, p)| n.deviation().zip(p.deviation()));
-        let moments = both.and_then(|(n, p)| n.moments().zip(p.moments()));
+        let means = both.and_then(|(n, p)| n.mean().zip(p.mean()));
         Self {
             quantity,
             deviation_ratio: deviations.map(|(n, p)| n.ratio(p)),
             deviation_ratio_interval: both
                 .and_then(|(n, p)| n.deviation_ratio_interval(p, confidence)),
-            mean_difference: moments.map(|(n, p)| n.mean() - p.mean()),
+            mean_difference: means.map(|(naive, physical)| naive - physical),
             mean_difference_interval: both
                 .and_then(|(n, p)| n.mean_difference_interval(p, confidence)),
         }

@@ -1,6 +1,6 @@
 //! What follows from a drawn inertia.
 
-use gyradius_statistics::{Confidence, Deviation, Interval, Moments, SortedSample};
+use gyradius_statistics::{Confidence, Deviation, ExactSum, Interval, Moments, SortedSample};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -110,7 +110,8 @@ impl Spread {
             unit: measure.unit().into(),
             n: kept.len() as u64,
             undefined,
-            mean: moments.map(|m| m.mean()),
+            mean: (!kept.is_empty())
+                .then(|| kept.iter().copied().collect::<ExactSum>().mean(kept.len() as u64)),
             deviation: moments.map(|m| m.standard_deviation()),
             deviation_interval: robust
                 .and_then(|d| d.interval(Confidence::default()).ok())
@@ -145,5 +146,7 @@ mod tests {
         assert_eq!(spread.headline(), Some(90.0));
         let none = Spread::new(Measure::Wobble, std::iter::empty());
         assert_eq!((none.n, none.headline(), none.mean), (0, None, None));
+        let one = Spread::new(Measure::Wobble, [Some(0.1)].into_iter());
+        assert_eq!((one.n, one.mean, one.median, one.deviation), (1, Some(0.1), Some(0.1), None));
     }
 }
