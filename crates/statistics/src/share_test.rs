@@ -3,29 +3,30 @@
 use crate::error::probability;
 use crate::{StatisticsError, tail};
 
-/// Up to this many failures (or successes, if they are fewer) in every stratum all cells are dealt exactly.
-const EXACT: u64 = 60;
-/// Expected failures of a cell from which χ² is trusted.
-const EXPECTED: f64 = 10.0;
-/// The probability below which numbers of failures in a cell are left out, where cells are too many to deal them all.
-const NEGLIGIBLE: f64 = 1e-30;
-/// Steps of the exact test's statistic: so many for 1, and in all about so many.
-const STEPS: f64 = 16.0;
-const ALL_STEPS: f64 = 1600.0;
+/// Failures to a cell are dealt one by one if it expects fewer than this.
+const EXPECTED: f64 = 8.0;
+/// Those to the smallest cell too, if it can have no more numbers of them than this.
+const NUMBERS: usize = 1500;
+/// The probability below which numbers of failures of a cell are left out.
+const NEGLIGIBLE: f64 = 1e-20;
+/// Steps of the statistic: so many for 1, and in all about so many.
+const STEPS: f64 = 8.0;
+const ALL_STEPS: f64 = 800.0;
 
 /// Whether the share of failed runs is the same in all cells.
 ///
 /// The statistic is Pearson's `X² = Σ (k − e)²/(e (1 − f/n))` of the failures k of the cells, where e is what is expected if the n
 /// runs with f failures are dealt to the cells at random.
 ///
-/// With up to 60 failures (or successes, if these are fewer) the p-value is exact, whatever the sizes of the cells: the
-/// share of all ways to deal the failures that have such a statistic or a larger one (Freeman & Halton 1951,
-/// doi:10.1093/biomet/38.1-2.141, with X² in the place of the probability). X² is rounded to 1/16, or to 1/1600 of
-/// what was found if that is larger, which moves ties and leaves the test exact.
+/// The p-value is the share of all ways to deal the failures that have such a statistic or a larger one (Freeman & Halton
+/// 1951, doi:10.1093/biomet/38.1-2.141, with X² in the place of the probability). X² is rounded to 1/8, or to 1/800 of
+/// what was found if that is larger, which moves ties and leaves the test exact. Two cells are dealt so up to some
+/// thousand failures, and more cells where failures are few.
 ///
-/// Above, only cells that expect fewer than ten failures are dealt so, against all others together. Of the others, X² from
-/// their own share is taken to be of χ². The p-value is that of both sums together, and is given as 10⁻³⁰ at least. A rare cell, say of
-/// eleven runs that all failed, is found by this however many others failed.
+/// With many failures only the smaller cells are dealt so, one by one against all larger ones together: at least those that expect
+/// fewer than eight failures (or successes, if these are fewer). Of the larger ones, X² from their own share is taken to be of χ²,
+/// and the p-value is that of both sums together. So a rare cell, say of eleven runs that all failed, is found however
+/// many others failed. A p-value is 10⁻²⁰ at least, which stands for all below.
 #[derive(Clone, Copy, Debug, PartialEq, getset::CopyGetters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 #[getset(get_copy = "pub")]
@@ -45,13 +46,8 @@ crate::checked::checked!(ShareTest, |read| crate::error::belong(
 impl ShareTest {
     /// Of cells in strata: within each stratum the failures are dealt at random.
     pub(crate) fn new(strata: &[Vec<Cell>]) -> Self {
-        let mut strata: Vec<Stratum> =
-            strata.iter().filter_map(|cells| Stratum::new(cells)).collect();
-        if strata.iter().any(|stratum| stratum.failures > EXACT) {
-            strata.iter_mut().for_each(Stratum::split);
-        }
-        let freedom: usize =
-            strata.iter().map(|stratum| stratum.large.len().saturating_sub(1)).sum();
+        let strata: Vec<Stratum> = strata.iter().filter_map(|cells| Stratum::new(cells)).collect();
+        let freedom = strata.iter().map(|stratum| stratum.large.len() - 1).sum();
         Self { p_value: p_value(&strata, freedom), exact: freedom == 0 }
     }
 }
@@ -79,127 +75,115 @@ impl Cell {
 
 /// Two cells or more, none of them empty, with failures and successes, of which failures are no more.
 struct Stratum {
-    /// The cells to which failures are dealt one by one.
-    cells: Vec<Cell>,
-    /// The others: to deal, they are one cell.
+    /// The smaller cells, to which failures are dealt one by one, with how many each can have.
+    dealt: Vec<(Cell, Numbers)>,
+    /// The others, one at least: to deal, they are one cell.
     large: Vec<Cell>,
-    runs: u64,
-    failures: u64,
+    all: Cell,
+}
+
+/// Numbers of failures from the first one on, and their weights.
+struct Numbers {
+    first: u64,
+    weights: Vec<f64>,
 }
 
 impl Stratum {
     fn new(cells: &[Cell]) -> Option<Self> {
         let mut cells: Vec<Cell> = cells.iter().copied().filter(|cell| cell.runs > 0).collect();
-        let all = Cell::sum(&cells);
+        let mut all = Cell::sum(&cells);
         if 2 * all.failures > all.runs {
-            cells.iter_mut().for_each(|cell| cell.failures = cell.runs - cell.failures);
+            let swap = |cell: &mut Cell| cell.failures = cell.runs - cell.failures;
+            cells.iter_mut().chain([&mut all]).for_each(swap);
         }
-        let failures = all.failures.min(all.runs - all.failures);
-        let large = Vec::new();
-        (cells.len() > 1 && failures > 0).then_some(Self { cells, large, runs: all.runs, failures })
-    }
-
-    /// Sets apart the cells that expect enough failures for χ²; failures are no more than successes, so these are enough too.
-    fn split(&mut self) {
-        let cells = std::mem::take(&mut self.cells);
-        (self.large, self.cells) =
-            cells.into_iter().partition(|cell| self.expected(cell.runs) >= EXPECTED);
+        if cells.len() < 2 || all.failures == 0 {
+            return None;
+        }
+        cells.sort_by_key(|cell| cell.runs);
+        let mut stratum = Self { dealt: Vec::new(), large: Vec::new(), all };
+        for (i, cell) in cells.iter().enumerate() {
+            let numbers = stratum.numbers(cell.runs);
+            let smallest = i == 0 && numbers.weights.len() <= NUMBERS;
+            let is_dealt = smallest || stratum.expected(cell.runs) < EXPECTED;
+            if !is_dealt || i + 1 == cells.len() {
+                stratum.large = cells.split_off(i);
+                break;
+            }
+            stratum.dealt.push((*cell, numbers));
+        }
+        Some(stratum)
     }
 
     /// What a cell of so many runs expects.
     fn expected(&self, runs: u64) -> f64 {
-        runs as f64 * (self.failures as f64 / self.runs as f64)
+        runs as f64 * (self.all.failures as f64 / self.all.runs as f64)
     }
 
     /// What so many failures in a cell of so many runs add to the statistic.
     fn term(&self, runs: u64, failures: u64) -> f64 {
-        if runs == 0 {
-            return 0.0;
-        }
         let expected = self.expected(runs);
-        let share = self.failures as f64 / self.runs as f64;
+        let share = self.all.failures as f64 / self.all.runs as f64;
         (failures as f64 - expected).powi(2) / (expected * (1.0 - share))
     }
 
     /// The terms of the cells to which failures are dealt, of which the last are all large ones.
     fn terms(&self) -> impl Iterator<Item = f64> {
-        let large = Cell::sum(&self.large);
-        self.cells.iter().copied().chain([large]).map(|cell| self.term(cell.runs, cell.failures))
+        let cells = self.dealt.iter().map(|(cell, _)| *cell).chain([Cell::sum(&self.large)]);
+        cells.map(|cell| self.term(cell.runs, cell.failures))
     }
 
     /// The statistic of the large cells from their own share.
     fn among_large(&self) -> f64 {
-        Self::new(&self.large).map_or(0.0, |large| large.terms().sum())
-    }
-
-    /// The odds of a failure.
-    fn odds(&self) -> f64 {
-        self.failures as f64 / (self.runs - self.failures) as f64
-    }
-
-    /// In how many ways a cell of so many runs can have 0, 1… failures, of all: their probabilities but for the others' ways.
-    fn weights(&self, runs: u64) -> Vec<f64> {
-        let odds = self.odds();
-        let most = runs.min(self.failures);
-        let mut weights = vec![1.0];
-        let mut sum = 1.0;
-        for failures in 0..most {
-            // (n choose k + 1) of (n choose k).
-            let ratio = (runs - failures) as f64 / (failures as f64 + 1.0) * odds;
-            let next = weights[weights.len() - 1] * ratio;
-            if !self.large.is_empty() && ratio < 1.0 && next < NEGLIGIBLE * sum {
-                break;
-            }
-            weights.push(next);
-            sum += next;
+        let all = Cell::sum(&self.large);
+        if all.failures == 0 || all.failures == all.runs {
+            return 0.0;
         }
-        weights.iter_mut().for_each(|weight| *weight /= sum);
-        weights
+        let own = Self { dealt: Vec::new(), large: Vec::new(), all };
+        self.large.iter().map(|cell| own.term(cell.runs, cell.failures)).sum()
     }
 
-    /// In how many ways, up to a factor, the large cells take what is left if so many failures are dealt before.
-    fn ways_of_large(&self, most: usize) -> Vec<f64> {
-        let (runs, all) = (Cell::sum(&self.large).runs, self.failures);
-        let least = all.saturating_sub(runs);
-        let mut ways = vec![0.0; most + 1];
-        let mut weight = 1.0;
-        for dealt in least..=all.min(most as u64) {
-            ways[dealt as usize] = weight;
-            let left = all - dealt;
-            weight *= left as f64 / (runs - left + 1) as f64 / self.odds();
-        }
-        ways
+    /// How many failures a cell of so many runs can have: the share of its own ways, `C(n, k) (f/(N − f))^k`, but for the
+    /// negligible ones.
+    fn numbers(&self, runs: u64) -> Numbers {
+        let odds = self.all.failures as f64 / (self.all.runs - self.all.failures) as f64;
+        // C(n, k + 1) of C(n, k).
+        let ratio = |k: u64| (runs - k) as f64 / (k + 1) as f64 * odds;
+        Numbers::around(self.expected(runs) as u64, 0..=runs.min(self.all.failures), ratio)
+    }
+
+    /// The same of the large cells together, by how many are dealt to the others, of these numbers:
+    /// `C(n, f − k) ((N − f)/f)^k`.
+    fn numbers_beside(&self, dealt: std::ops::RangeInclusive<u64>) -> Numbers {
+        let (runs, failures) = (Cell::sum(&self.large).runs, self.all.failures);
+        let odds = failures as f64 / (self.all.runs - failures) as f64;
+        let ratio = |k: u64| (failures - k) as f64 / (runs + k + 1 - failures) as f64 / odds;
+        let least = failures.saturating_sub(runs).max(*dealt.start());
+        let most = failures.min(*dealt.end());
+        Numbers::around(self.expected(self.all.runs - runs) as u64, least..=most, ratio)
     }
 
     /// The probabilities of a statistic of 0, 1… steps, the last of that or more.
     fn distribution(&self, steps: &dyn Fn(f64) -> usize, last: usize) -> Vec<f64> {
-        let all = self.failures as usize;
-        let weights: Vec<Vec<f64>> =
-            self.cells.iter().map(|cell| self.weights(cell.runs)).collect();
-        let most_dealt = weights.iter().map(|weights| weights.len() - 1).sum::<usize>().min(all);
-        // By failures dealt so far.
-        let mut dealt = vec![vec![0.0; last + 1]; most_dealt + 1];
+        // By failures dealt so far, from the first number on.
+        let mut first = 0;
+        let mut dealt = vec![vec![0.0; last + 1]];
         dealt[0][0] = 1.0;
-        let (mut most, mut later) = (0, self.runs);
-        for (cell, weights) in self.cells.iter().zip(&weights) {
-            let mut next = vec![vec![0.0; last + 1]; most_dealt + 1];
-            later -= cell.runs;
-            // The least with this cell, as later ones take no more than their runs.
-            let least = (all as u64).saturating_sub(later) as usize;
-            for (failures, weight) in weights.iter().enumerate() {
-                let term = steps(self.term(cell.runs, failures as u64)).min(last);
-                let before = least.saturating_sub(failures)..=most.min(most_dealt - failures);
-                for before in before {
-                    add_shifted(&mut next[before + failures], &dealt[before], term, *weight);
+        for (cell, numbers) in &self.dealt {
+            let mut next = vec![vec![0.0; last + 1]; dealt.len() + numbers.weights.len() - 1];
+            for (i, (failures, weight)) in numbers.all().enumerate() {
+                let term = steps(self.term(cell.runs, failures)).min(last);
+                for (to, of) in next[i..].iter_mut().zip(&dealt) {
+                    add_shifted(to, of, term, weight);
                 }
             }
-            most = (most + weights.len() - 1).min(most_dealt);
+            first += numbers.first;
             dealt = next;
         }
-        let (large, mut found) = (Cell::sum(&self.large), vec![0.0; last + 1]);
-        for (before, ways) in self.ways_of_large(most_dealt).iter().enumerate() {
-            let term = self.term(large.runs, (all - before) as u64);
-            add_shifted(&mut found, &dealt[before], steps(term).min(last), *ways);
+        let mut found = vec![0.0; last + 1];
+        let runs = Cell::sum(&self.large).runs;
+        for (before, weight) in self.numbers_beside(first..=first + dealt.len() as u64 - 1).all() {
+            let term = steps(self.term(runs, self.all.failures - before)).min(last);
+            add_shifted(&mut found, &dealt[(before - first) as usize], term, weight);
         }
         let total: f64 = found.iter().sum();
         found.iter_mut().for_each(|mass| *mass /= total);
@@ -207,18 +191,52 @@ impl Stratum {
     }
 }
 
+impl Numbers {
+    /// Of a range, from the ratios of the weight of each number to the one before it, which fall: outwards from a number
+    /// near the heaviest, as far as weights are not negligible.
+    fn around(
+        middle: u64,
+        range: std::ops::RangeInclusive<u64>,
+        ratio: impl Fn(u64) -> f64,
+    ) -> Self {
+        let (least, most) = range.into_inner();
+        let middle = middle.clamp(least, most.max(least));
+        let upwards = (middle..most).scan(1.0, |weight, k| {
+            *weight *= ratio(k);
+            Some(*weight)
+        });
+        let downwards = (least..middle).rev().scan(1.0, |weight, k| {
+            *weight /= ratio(k);
+            Some(*weight)
+        });
+        let kept = |weight: &f64| *weight >= NEGLIGIBLE;
+        let mut weights: Vec<f64> = downwards.take_while(kept).collect();
+        let first = middle - weights.len() as u64;
+        weights.reverse();
+        weights.push(1.0);
+        weights.extend(upwards.take_while(kept));
+        let sum: f64 = weights.iter().sum();
+        weights.iter_mut().for_each(|weight| *weight /= sum);
+        Self { first, weights }
+    }
+
+    fn all(&self) -> impl Iterator<Item = (u64, f64)> {
+        (self.first..).zip(self.weights.iter().copied())
+    }
+}
+
 /// The probability of such a sum of the strata's statistics or a larger one, with so many degrees of freedom of large cells.
 fn p_value(strata: &[Stratum], freedom: usize) -> f64 {
     let large: f64 = strata.iter().map(Stratum::among_large).sum();
-    let scale =
-        STEPS.min(ALL_STEPS / (large + strata.iter().flat_map(Stratum::terms).sum::<f64>()));
+    let statistic = strata.iter().flat_map(Stratum::terms).sum::<f64>();
+    let scale = STEPS.min(ALL_STEPS / (large + statistic));
     let steps = |x: f64| libm::round(x * scale) as usize;
     let found: usize = strata.iter().flat_map(Stratum::terms).map(steps).sum();
     // With so many steps the cells to which failures are dealt need nothing of the large ones.
     let last = found + libm::ceil(large * scale) as usize;
     let mut all = vec![0.0; last + 1];
     all[0] = 1.0;
-    for stratum in strata.iter().filter(|stratum| !stratum.cells.is_empty()) {
+    for stratum in strata {
         let own = stratum.distribution(&steps, last);
         let mut next = vec![0.0; last + 1];
         for (at, mass) in own.iter().enumerate().filter(|(_, mass)| **mass > 0.0) {
@@ -234,10 +252,7 @@ fn p_value(strata: &[Stratum], freedom: usize) -> f64 {
     };
     let beyond =
         |(at, mass): (usize, &f64)| mass * tail(large + (found as f64 - at as f64) / scale);
-    let p_value: f64 = all.iter().enumerate().map(beyond).sum();
-    let least =
-        if strata.iter().all(|stratum| stratum.large.is_empty()) { 0.0 } else { NEGLIGIBLE };
-    p_value.clamp(least, 1.0)
+    all.iter().enumerate().map(beyond).sum::<f64>().clamp(NEGLIGIBLE, 1.0)
 }
 
 /// Adds probabilities times a weight so many places further on; what would stand beyond the last place stands there.

@@ -74,7 +74,7 @@ struct Pair {
     adjusted_p_value: f64,
     #[serde(flatten)]
     separation: PairSeparation,
-    most_failures: Corner,
+    clearest_excess: Corner,
 }
 
 /// Runs with one input in one of its fifths and another one in one of its own.
@@ -323,8 +323,8 @@ impl Tenths {
 impl Pair {
     fn new(inputs: [String; 2], cells: [&QuantileCells; 2], failed: &[bool]) -> Option<Self> {
         let separation = PairSeparation::new(cells[0], cells[1], failed).ok()?;
-        let most_failures = Corner::with_most_failures(cells, failed);
-        Some(Self { inputs, adjusted_p_value: 1.0, separation, most_failures })
+        let clearest_excess = Corner::with_clearest_excess(cells, failed);
+        Some(Self { inputs, adjusted_p_value: 1.0, separation, clearest_excess })
     }
 
     fn p_value(&self) -> f64 {
@@ -333,7 +333,9 @@ impl Pair {
 }
 
 impl Corner {
-    fn with_most_failures([x, y]: [&QuantileCells; 2], failed: &[bool]) -> Self {
+    /// The one in which failures exceed what is expected by most standard deviations: neither a cell that has most failures because
+    /// it has most runs, nor one of a single run that failed.
+    fn with_clearest_excess([x, y]: [&QuantileCells; 2], failed: &[bool]) -> Self {
         let mut all = [[Self::default(); FIFTHS]; FIFTHS];
         for ((x, y), failed) in x.of_values().iter().zip(y.of_values()).zip(failed) {
             let own = &mut all[usize::from(*x)][usize::from(*y)];
@@ -341,8 +343,14 @@ impl Corner {
             own.runs += 1;
             own.failures += u64::from(*failed);
         }
-        let most = |a: Self, b: &Self| if b.failures > a.failures { *b } else { a };
-        all.iter().flatten().fold(Self::default(), most)
+        let share = failed.iter().filter(|failed| **failed).count() as f64 / failed.len() as f64;
+        let excess = |cell: &Self| {
+            let runs = cell.runs as f64;
+            (cell.failures as f64 - runs * share) / (runs * share * (1.0 - share)).sqrt()
+        };
+        let filled = all.iter().flatten().filter(|cell| cell.runs > 0);
+        let clearest = filled.reduce(|a, b| if excess(b) > excess(a) { b } else { a });
+        clearest.copied().unwrap_or_default()
     }
 }
 

@@ -153,14 +153,14 @@ fn table_of_pairs(pairs: &[Of<'_, Pair>]) -> PageTable {
             Text::default().code(x).plain(" and ").code(y)
         })
         .groups(|(model, failures, _)| heading(model, failures))
-        .words("fifths of both with the most failures", |(.., pair)| {
-            let named = pair.most_failures.fifths.map(|fifth| {
+        .words("fifths of both with the clearest excess of failures", |(.., pair)| {
+            let named = pair.clearest_excess.fifths.map(|fifth| {
                 FIFTHS.get(usize::from(fifth)).map_or_else(String::new, |name| (*name).to_owned())
             });
             named.join(" and ")
         })
         .numbers("share that fails there", |(.., pair)| {
-            share(pair.most_failures.failures, pair.most_failures.runs.max(1))
+            share(pair.clearest_excess.failures, pair.clearest_excess.runs.max(1))
         })
         .numbers("p", |(.., pair)| p(pair.adjusted_p_value))
         .into()

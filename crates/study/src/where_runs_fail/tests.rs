@@ -136,10 +136,17 @@ proptest! {
                     let [x, y] = [0, 1].map(|of: usize| (ranks[of][i] * 5.0 + 1e-9) as usize);
                     corners[x][y] = [corners[x][y][0] + 1, corners[x][y][1] + u64::from(*failed)];
                 }
-                let most = corners.iter().flatten().map(|[_, failures]| *failures).max().unwrap();
-                let [x, y] = pair.most_failures.fifths.map(usize::from);
-                prop_assert_eq!(corners[x][y], [pair.most_failures.runs, pair.most_failures.failures]);
-                prop_assert_eq!(pair.most_failures.failures, most);
+                let [x, y] = pair.clearest_excess.fifths.map(usize::from);
+                prop_assert_eq!(corners[x][y], [pair.clearest_excess.runs, pair.clearest_excess.failures]);
+                // Squared, with a sign: (k − e)|k − e|/e is largest where the standardized excess is.
+                let share = own.iter().filter(|(_, failed)| *failed).count() as f64 / own.len() as f64;
+                let excess = |[runs, failures]: [u64; 2]| {
+                    let expected = runs as f64 * share;
+                    (failures as f64 - expected) * (failures as f64 - expected).abs() / expected
+                };
+                let filled = corners.iter().flatten().filter(|[runs, _]| *runs > 0);
+                let own = excess(corners[x][y]);
+                prop_assert!(filled.map(|cell| excess(*cell)).all(|other| !(other > own + 1e-9)), "{corners:?}");
             }
         }
 
@@ -251,8 +258,26 @@ fn a_pair_that_decides_together_is_found() {
         // In two corners, with few failures.
         let found = looked_at(&made(seed, 2000, 6, |x| x[1] * x[4] > 0.6));
         assert_eq!(shown_pairs(&found)[0], ["x1", "x4"], "{seed}");
-        let most = found.requirements[0].pairs[0].most_failures;
-        assert!(most.fifths == [0, 0] || most.fifths == [4, 4], "{most:?}");
+        let corner = found.requirements[0].pairs[0].clearest_excess;
+        assert!(corner.fifths == [0, 0] || corner.fifths == [4, 4], "{corner:?}");
+    }
+}
+
+/// A flag that is set in few runs: failures are most where it is not, for so are the runs, and in excess where it is.
+#[test]
+fn the_corner_of_a_rare_flag_is_named() {
+    for seed in 0..5 {
+        let mut rows = made(seed, 3000, 3, |_| false);
+        for (i, row) in rows.iter_mut().enumerate() {
+            let flag = i % 20 == 0;
+            row.0[0] = Some(f64::from(u8::from(flag)));
+            let high = row.0[1].is_some_and(|x| x > 0.0);
+            row.1 = Some(f64::from(u8::from(if flag { high } else { i % 17 == 0 })));
+        }
+        let found = looked_at(&rows);
+        assert_eq!(shown_pairs(&found)[0], ["x0", "x1"], "{seed}");
+        let corner = found.requirements[0].pairs[0].clearest_excess;
+        assert!(corner.failures == corner.runs && corner.fifths[1] >= 3, "{corner:?}");
     }
 }
 
