@@ -2,45 +2,61 @@
 
 use std::collections::BTreeMap;
 
-/// Groups of so many consecutive runs each, and how many of them keep a requirement: in at least a share of their runs.
+/// Groups of so many consecutive runs each, and how many of them keep a requirement: in at least a share of their runs that
+/// count.
 #[derive(Clone, Debug)]
 pub(super) struct Groups {
     size: u64,
-    /// Runs of a group that may fail.
-    may_fail: u64,
-    /// Groups all runs of which were seen, and those of them that keep the requirement.
+    /// The share of a group's runs that must keep the requirement.
+    probability: f64,
+    /// Groups all runs of which were seen, and of which one counts at least, and those of them that keep the requirement.
     pub(super) whole: u64,
     pub(super) keeping: u64,
-    /// Runs that were seen of the other groups, and those of them that fail.
-    parts: BTreeMap<u64, (u64, u64)>,
+    /// Of the other groups.
+    parts: BTreeMap<u64, Seen>,
+}
+
+/// Runs of a group that were seen, those of them that count, and those that fail.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seen {
+    runs: u64,
+    counted: u64,
+    failing: u64,
+}
+
+impl Seen {
+    fn add(&mut self, other: Self) {
+        self.runs += other.runs;
+        self.counted += other.counted;
+        self.failing += other.failing;
+    }
 }
 
 impl Groups {
     /// Groups of so many runs, of which the share `probability` must keep the requirement.
     pub(super) fn new(size: u64, probability: f64) -> Self {
-        // The least number of runs that is not less than the share, whatever the product is rounded to.
-        let keep = (probability * size as f64 * (1.0 - 1e-12)).ceil() as u64;
-        let may_fail = size.saturating_sub(keep);
-        Self { size, may_fail, whole: 0, keeping: 0, parts: BTreeMap::new() }
+        Self { size, probability, whole: 0, keeping: 0, parts: BTreeMap::new() }
     }
 
-    /// Adds runs that come one after the other, and whether each keeps the requirement.
-    pub(super) fn add(&mut self, first: u64, runs: impl Iterator<Item = bool>) {
-        let mut now: Option<(u64, (u64, u64))> = None;
-        for (run, keeps) in (first..).zip(runs) {
+    /// Adds runs that come one after the other, and whether each fails the requirement; none of those that do not count.
+    pub(super) fn add(&mut self, first: u64, runs: impl Iterator<Item = Option<bool>>) {
+        let mut now: Option<(u64, Seen)> = None;
+        for (run, fails) in (first..).zip(runs) {
             let group = run / self.size;
-            let (seen, failing) = match now {
-                Some((own, counts)) if own == group => counts,
-                Some((other, counts)) => {
-                    self.take(other, counts);
-                    (0, 0)
+            let mut seen = match now {
+                Some((own, seen)) if own == group => seen,
+                Some((other, seen)) => {
+                    self.take(other, seen);
+                    Seen::default()
                 }
-                None => (0, 0),
+                None => Seen::default(),
             };
-            now = Some((group, (seen + 1, failing + u64::from(!keeps))));
+            let [counted, failing] = [fails.is_some(), fails == Some(true)].map(u64::from);
+            seen.add(Seen { runs: 1, counted, failing });
+            now = Some((group, seen));
         }
-        if let Some((group, counts)) = now {
-            self.take(group, counts);
+        if let Some((group, seen)) = now {
+            self.take(group, seen);
         }
     }
 
@@ -48,18 +64,19 @@ impl Groups {
     pub(super) fn merge(&mut self, other: Self) {
         self.whole += other.whole;
         self.keeping += other.keeping;
-        other.parts.into_iter().for_each(|(group, counts)| self.take(group, counts));
+        other.parts.into_iter().for_each(|(group, seen)| self.take(group, seen));
     }
 
-    fn take(&mut self, group: u64, (seen, failing): (u64, u64)) {
-        let (before, failing_before) = self.parts.remove(&group).unwrap_or_default();
-        let (seen, failing) = (seen + before, failing + failing_before);
-        if seen < self.size {
-            self.parts.insert(group, (seen, failing));
-            return;
+    fn take(&mut self, group: u64, mut seen: Seen) {
+        seen.add(self.parts.remove(&group).unwrap_or_default());
+        if seen.runs < self.size {
+            self.parts.insert(group, seen);
+        } else if seen.counted > 0 {
+            // The least number of runs that is not less than the share, whatever the product is rounded to.
+            let keep = (self.probability * seen.counted as f64 * (1.0 - 1e-12)).ceil() as u64;
+            self.whole += 1;
+            self.keeping += u64::from(seen.counted - seen.failing >= keep);
         }
-        self.whole += 1;
-        self.keeping += u64::from(failing <= self.may_fail);
     }
 }
 
@@ -72,13 +89,13 @@ mod tests {
         /// Blocks of any size, in any order, some of them counted together: as if all runs were looked at once.
         #[test]
         fn blocks_in_any_order_are_counted(
-            runs in prop::collection::vec(prop::bool::weighted(0.8), 0..300),
+            runs in prop::collection::vec(prop::option::weighted(0.8, prop::bool::weighted(0.2)), 0..300),
             size in 1_u64..12,
             block in 1_usize..40,
             probability in prop_oneof![0.01..0.999, Just(0.5), Just(0.75), Just(0.9)],
             order in prop::collection::vec(any::<u16>(), 300),
         ) {
-            let mut blocks: Vec<(usize, &[bool])> = runs.chunks(block).enumerate().collect();
+            let mut blocks: Vec<(usize, &[Option<bool>])> = runs.chunks(block).enumerate().collect();
             blocks.sort_by_key(|(i, _)| order[*i]);
             let mut parts = [Groups::new(size, probability), Groups::new(size, probability)];
             for (n, (i, runs)) in blocks.into_iter().enumerate() {
@@ -86,12 +103,13 @@ mod tests {
             }
             let [mut whole, other] = parts;
             whole.merge(other);
-            let groups = runs.chunks_exact(size as usize);
+            let counted = runs.chunks_exact(size as usize).map(|group| group.iter().flatten().collect::<Vec<_>>());
+            let groups: Vec<Vec<&bool>> = counted.filter(|group| !group.is_empty()).collect();
             prop_assert_eq!(whole.whole, groups.len() as u64);
-            let keeps = |group: &&[bool]| {
-                group.iter().filter(|keeps| **keeps).count() as f64 / size as f64 >= probability
+            let keeps = |group: &&Vec<&bool>| {
+                group.iter().filter(|fails| !***fails).count() as f64 / group.len() as f64 >= probability
             };
-            prop_assert_eq!(whole.keeping, groups.filter(keeps).count() as u64);
+            prop_assert_eq!(whole.keeping, groups.iter().filter(keeps).count() as u64);
         }
     }
 }

@@ -73,10 +73,11 @@ pub struct Judgement {
     vehicles: Option<VehiclesKeeping>,
 }
 
-/// How many vehicles keep a requirement: in at least the required share of their flights, those that failed counting against it.
+/// How many vehicles keep a requirement: in at least the required share of their flights that count, as the requirement counts
+/// those that failed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehiclesKeeping {
-    /// Vehicles all flights of which are done.
+    /// Vehicles all flights of which are done, and of which one flight counts at least.
     pub vehicles: u64,
     /// Those of them that keep it.
     pub keeping: u64,

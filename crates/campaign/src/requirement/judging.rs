@@ -68,10 +68,7 @@ impl Judging {
     fn count_groups(&self, block: &Table) -> Vec<Groups> {
         let mut counted = new_groups(&self.gatherings, self.group);
         for (gathering, groups) in self.gatherings.iter().zip(&mut counted) {
-            let (quantity, bound) =
-                (gathering.requirement.quantity(), gathering.requirement.bound());
-            let keeps = |number: Option<f64>| number.is_some_and(|x| bound.is_kept(x));
-            groups.add(block.first(), quantity.numbers(block).into_iter().map(keeps));
+            groups.add(block.first(), gathering.requirement.failing(block).into_iter());
         }
         counted
     }

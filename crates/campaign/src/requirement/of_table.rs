@@ -90,9 +90,8 @@ impl Judgement {
                     gathering.gather(part, of_runs.filter(|(run, _)| run.is_multiple_of(group)));
                 });
                 for (gathering, groups) in gatherings.iter().zip(&mut groups).filter(|_| !counted) {
-                    let bound = gathering.requirement.bound();
                     for (run, x) in runs.iter().zip(number(gathering)) {
-                        groups.add(*run, iter::once(x.is_some_and(|x| bound.is_kept(x))));
+                        groups.add(*run, iter::once(gathering.requirement.fails(x)));
                     }
                 }
             })?;

@@ -195,7 +195,10 @@ fn write_report(out: &mut String, file: &str, Told { model, body }: &Told) -> st
     }
     let roots = model.nominal().second_moments().roots().values();
     let scatter = model.root_deviations();
-    write!(out, "\nroots of the second moments, √kg·m:")?;
+    // The fragment has those at the nominal mass, beside the mass.
+    let follows = model.mass().is_some_and(|mass| mass.inertia_follows() > 0.0);
+    let with = if follows { " with what the mass does to them" } else { "" };
+    write!(out, "\nroots of the second moments{with}, √kg·m:")?;
     for k in 0..3 {
         let comma = if k == 0 { "" } else { "," };
         write!(out, "{comma} {} ± {}", short(roots[k]), short(scatter[k]))?;
@@ -215,10 +218,16 @@ fn write_report(out: &mut String, file: &str, Told { model, body }: &Told) -> st
     }
     if let Some(law) = body.as_ref().map(StatedBody::law).filter(|law| law.region().is_some()) {
         let (share, error) = law.acceptance();
-        let [share, error] = [share, error].map(|x| short(100.0 * x));
+        let [percent, error_percent] = [share, error].map(|x| short(100.0 * x));
+        // An error of none would say that the share is known.
+        let possible = if error > 0.0 {
+            format!("{percent} ± {error_percent} % are possible")
+        } else {
+            "all that were tried are possible".to_owned()
+        };
         let line = format!(
-            "inside: of the draws without the region {share} ± {error} % are possible for matter there, and only such are \
-             drawn; the deviations above are those without it"
+            "inside: of the draws without the region {possible} for matter there, and only such are drawn; the deviations \
+             above are those without it"
         );
         for line in wrapped(&line).into_iter().chain(wrapped(&in_region(law))) {
             writeln!(out, "{line}")?;

@@ -34,8 +34,8 @@ pub struct StatedModel {
     /// independent of the inertia about it.
     #[getset(get_copy = "pub")]
     centre_deviations: Option<[f64; 3]>,
-    /// Standard deviations of the roots of the second moments, √kg·m. Their means are those of the nominal
-    /// inertia.
+    /// Standard deviations of the roots of the second moments with all that a stated mass does to them, √kg·m. Their means are
+    /// those of the nominal inertia.
     #[getset(get_copy = "pub")]
     root_deviations: [f64; 3],
     rotations: [f64; 3],

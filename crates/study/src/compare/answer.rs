@@ -35,8 +35,15 @@ fn results(
 }
 
 fn impossible(comparison: &ModelComparison) -> Text {
-    let kinds = comparison.settings.models.iter().copied();
-    let said: Vec<String> = kinds.filter_map(|kind| draws_of(comparison, kind)).collect();
+    let is_drawn = |kind: &ModelKind| results(comparison).any(|(_, _, of, _)| of == *kind);
+    let kinds: Vec<ModelKind> =
+        comparison.settings.models.iter().copied().filter(is_drawn).collect();
+    let said: Vec<String> = kinds.iter().filter_map(|kind| draws_of(comparison, *kind)).collect();
+    if kinds.is_empty() {
+        return Text::default().strong("Nothing was drawn. ").plain(
+            "None of the models exists for these bodies at these levels. The reasons are said below.",
+        );
+    }
     if said.is_empty() {
         return Text::default().strong("Every draw is a body. ").plain(
             "None of the models drew a matrix that no body has at these levels. That a model never can is said below.",
@@ -45,7 +52,7 @@ fn impossible(comparison: &ModelComparison) -> Text {
     Text::default().strong("Some models draw matrices that no body has: ").plain(format!(
         "{}. {}",
         said.join(". "),
-        if said.len() < comparison.settings.models.len() {
+        if said.len() < kinds.len() {
             "The others drew none."
         } else {
             "There is no other model here."
@@ -125,7 +132,14 @@ mod tests {
     use crate::CompareOptions;
 
     fn said(models: Vec<ModelKind>, levels_percent: Vec<f64>) -> Vec<String> {
-        let bodies = vec!["slender-stage".to_owned(), "bus".to_owned()];
+        said_of(["slender-stage", "bus"].map(str::to_owned).into(), models, levels_percent)
+    }
+
+    fn said_of(
+        bodies: Vec<String>,
+        models: Vec<ModelKind>,
+        levels_percent: Vec<f64>,
+    ) -> Vec<String> {
         let options = CompareOptions {
             bodies,
             levels_percent,
@@ -155,5 +169,11 @@ mod tests {
         assert!(one[0].contains("Every draw is a body"), "{one:?}");
         let bad = said(vec![ModelKind::ENTRYWISE], vec![50.0]);
         assert!(bad[0].contains("no other model") && bad[0].contains("from 50 % on"), "{bad:?}");
+        // No such law is about a rod; a model that does not exist is not one that draws bodies alone.
+        let rod = || vec!["0,7,7".to_owned()];
+        let none = said_of(rod(), vec![ModelKind::LogCholesky], vec![1.0]);
+        assert!(none.len() == 1 && none[0].contains("Nothing was drawn"), "{none:?}");
+        let naive = said_of(rod(), vec![ModelKind::LogCholesky, ModelKind::ENTRYWISE], vec![1.0]);
+        assert!(naive[0].contains("no other model"), "{naive:?}");
     }
 }

@@ -104,7 +104,7 @@ impl Section {
         let (of_payload, of_stage) = (payload.levels.first()?, stage.levels.first()?);
         let reading = Text::from(format!(
             "Every model that gyradius has, given the mean and the covariance that the scenario's dispersion gives \
-             the six entries of a body, as far as its kind can have them: {} draws of each; nutation from {} \
+             the six entries of a body at its nominal mass, as far as its kind can have them: {} draws of each; nutation from {} \
              separations from the nominal stage. Numbers in brackets: the covariance is further off than that of \
              a body known exactly (100 %), so not like for like. ",
             self.draws, self.separations

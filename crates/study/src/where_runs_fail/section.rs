@@ -70,7 +70,8 @@ fn separating(found: &[WhereRunsFail], vehicles: bool) -> Option<Section> {
             "Two inputs together can separate failing runs that neither of them separates alone: runs may fail only where both are high, \
              say. The runs are cut into the fifths of both inputs, which makes 25 cells, and p says how often chance alone would make \
              the cells differ so much, if one of the two inputs added nothing to the other. It is corrected for the number of \
-             pairs in the same way. At most {PAIRS} pairs are shown."
+             pairs in the same way. It holds for inputs that are drawn independently of each other: of two that depend on each \
+             other, one may seem to add to the other only because fifths are wide. At most {PAIRS} pairs are shown."
         );
         section = section.paragraph(reading).table(table_of_pairs(&pairs));
     }
