@@ -126,9 +126,10 @@ fn asked(browser: &Path, folder: &Path, frames: &[(String, String)]) -> Vec<Look
          document.getElementById(\"found\").textContent = JSON.stringify(all); }});</script>{frames}</body></html>"
     );
     fs::write(&all, page).unwrap();
+    // Virtual time passes while a picture is encoded, and a page may save many of them.
     let mut child = Command::new(browser)
         .args(["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"])
-        .args(["--allow-file-access-from-files", "--virtual-time-budget=60000", "--dump-dom"])
+        .args(["--allow-file-access-from-files", "--virtual-time-budget=600000", "--dump-dom"])
         .arg(format!("--user-data-dir={}", folder.join("user").display()))
         .arg(format!("file://{}", all.display()))
         .stdin(Stdio::null())
