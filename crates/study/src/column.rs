@@ -98,7 +98,7 @@ impl Column {
                 Text,
                 "Why there is no clearance (all outlines are mated; the search failed), or not one of the \
                  whole coast (a body turns too far to be followed), or that the outlines come nearer before the \
-                 last release; none if there is nothing to say.",
+                 last release, or that some are mated and do not part; none if there is nothing to say.",
             )
             .with_kinds(),
         }

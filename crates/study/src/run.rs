@@ -211,6 +211,9 @@ pub(crate) enum ClearanceNote {
     /// All outlines touch at the start, and some of them do not part.
     #[error("all outlines are mated, and some do not part")]
     Together,
+    /// Some outlines touch at the start and do not part, beside others that have a clearance.
+    #[error("some outlines are mated and do not part: the clearance is that of the others")]
+    SomeTogether,
     /// The bodies turn so far that they are not followed to the end of the coast, in which they could
     /// still come nearer.
     #[error("followed to {until:?} s only: a body turns too far in the coast")]
@@ -246,11 +249,13 @@ impl ClearanceNote {
             let (distance, time) = (nearest.distance_m(), nearest.time_s());
             return Some(Self::NearerBefore { distance, time });
         }
-        if clearance.closest().is_some() {
-            return None;
-        }
         let parted = clearance.shapes().iter().all(|s| s.counts_from_s().is_some());
-        Some(if parted { Self::Mated } else { Self::Together })
+        match (clearance.closest().is_some(), parted) {
+            (true, true) => None,
+            (true, false) => Some(Self::SomeTogether),
+            (false, true) => Some(Self::Mated),
+            (false, false) => Some(Self::Together),
+        }
     }
 
     /// What kind it is, without numbers, so that those of a kind can be counted.
@@ -258,6 +263,7 @@ impl ClearanceNote {
         match self {
             Self::Mated => "all outlines are mated and do not touch again after parting",
             Self::Together => "all outlines are mated, and some do not part",
+            Self::SomeTogether => "some outlines are mated and do not part",
             Self::Partial { .. } => "a body turns too far to be followed to the end of the coast",
             Self::NearerBefore { .. } => {
                 "the outlines come nearer before the last release than after it"

@@ -103,6 +103,21 @@ fn every_row_agrees_with_itself() {
     );
 }
 
+/// Solids that are in each other to the end of a short coast: alone, and beside an antenna that has a clearance.
+#[test]
+fn outlines_that_do_not_part_are_told() {
+    let antenna = ", { points_m = [[0.0, 0.0, 3.4], [0.0, 2.0, 0.0]] }";
+    let spin = "angular_velocity_rad_per_s = 0.2";
+    for (shape, note) in [(antenna, ClearanceNote::SomeTogether), ("", ClearanceNote::Together)] {
+        let (_, tables) = rows(shape, spin, "stiffness_percent = 1.0", "0.001");
+        for row in tables[0].rows() {
+            let clearance = Quantity::Clearance.in_row(&row);
+            assert_eq!(clearance.is_some(), !shape.is_empty(), "{clearance:?}");
+            assert_eq!(row.text(CLEARANCE_NOTE), Some(note.to_string().as_str()));
+        }
+    }
+}
+
 /// 12 rad/s for 600 s: all but the clearance of the whole coast is known, and the row stays.
 #[test]
 fn fast_turning_fails_no_row() {
