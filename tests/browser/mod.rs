@@ -25,7 +25,7 @@ const AXE: &str = "target/axe-core/axe.min.js";
 /// Pages are to be sent by mail.
 const MOST: usize = 700_000;
 /// How often a browser may say nothing in a row.
-const SILENT: u32 = 2;
+const SILENT: u32 = 4;
 /// Width of a sheet between the margins of the pages, in pixels of a 96th of an inch.
 const A4: u32 = 703;
 const LETTER: u32 = 725;
