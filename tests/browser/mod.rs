@@ -12,6 +12,7 @@ use std::{
     io::Read,
     path::{Path, PathBuf},
     process::{Command, Stdio},
+    sync::LazyLock,
     thread,
     time::{Duration, Instant},
 };
@@ -170,7 +171,7 @@ fn asked(browser: &Path, folder: &Path, frames: &[(String, String)]) -> Vec<Look
 }
 
 /// A browser that shows pages, or a word that there is none; one that `CHROMIUM` names has to.
-fn installed() -> Option<PathBuf> {
+fn tried() -> Option<PathBuf> {
     let Some(found) = browser() else {
         println!("skipped: no browser is installed, none of {}", BROWSERS.join(", "));
         return None;
@@ -186,6 +187,12 @@ fn installed() -> Option<PathBuf> {
     None
 }
 
+/// The same, tried once for all tests.
+fn installed() -> Option<&'static Path> {
+    static TRIED: LazyLock<Option<PathBuf>> = LazyLock::new(tried);
+    TRIED.as_deref()
+}
+
 #[test]
 fn every_page_is_shown_as_it_should_be() {
     let Some(browser) = installed() else { return };
@@ -196,7 +203,7 @@ fn every_page_is_shown_as_it_should_be() {
     for (name, page) in &pages {
         assert!(page.len() < MOST, "{name} has {} bytes", page.len());
     }
-    let mut looks = look(&browser, &pages, &MODES);
+    let mut looks = look(browser, &pages, &MODES);
     looks.retain(|look| !look.found.is_empty());
     assert!(looks.is_empty(), "{looks:#?}");
 }
@@ -253,7 +260,7 @@ fn what_is_wrong_is_found() {
     ];
     let pages: Vec<(&str, String)> =
         cases.iter().map(|(name, page, _)| (*name, page.clone())).collect();
-    let looks = look(&browser, &pages, &MODES[..1]);
+    let looks = look(browser, &pages, &MODES[..1]);
     for (name, _, expected) in &cases {
         let own = |look: &&Look| look.name == format!("{name}, screen");
         let look = looks.iter().find(own).unwrap();

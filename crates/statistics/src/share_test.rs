@@ -71,6 +71,26 @@ impl Cell {
             Self { runs: all.runs + cell.runs, failures: all.failures + cell.failures }
         })
     }
+
+    fn share(self) -> f64 {
+        self.failures as f64 / self.runs as f64
+    }
+
+    /// The odds of a failure.
+    fn odds(self) -> f64 {
+        self.failures as f64 / (self.runs - self.failures) as f64
+    }
+
+    /// What so many of these runs expect.
+    fn expected(self, runs: u64) -> f64 {
+        runs as f64 * self.share()
+    }
+
+    /// What a part of these runs adds to the statistic.
+    fn term(self, part: Self) -> f64 {
+        let expected = self.expected(part.runs);
+        (part.failures as f64 - expected).powi(2) / (expected * (1.0 - self.share()))
+    }
 }
 
 /// Two cells or more, none of them empty, with failures and successes, of which failures are no more.
@@ -104,7 +124,7 @@ impl Stratum {
         for (i, cell) in cells.iter().enumerate() {
             let numbers = stratum.numbers(cell.runs);
             let smallest = i == 0 && numbers.weights.len() <= NUMBERS;
-            let is_dealt = smallest || stratum.expected(cell.runs) < EXPECTED;
+            let is_dealt = smallest || all.expected(cell.runs) < EXPECTED;
             if !is_dealt || i + 1 == cells.len() {
                 stratum.large = cells.split_off(i);
                 break;
@@ -114,22 +134,10 @@ impl Stratum {
         Some(stratum)
     }
 
-    /// What a cell of so many runs expects.
-    fn expected(&self, runs: u64) -> f64 {
-        runs as f64 * (self.all.failures as f64 / self.all.runs as f64)
-    }
-
-    /// What so many failures in a cell of so many runs add to the statistic.
-    fn term(&self, runs: u64, failures: u64) -> f64 {
-        let expected = self.expected(runs);
-        let share = self.all.failures as f64 / self.all.runs as f64;
-        (failures as f64 - expected).powi(2) / (expected * (1.0 - share))
-    }
-
     /// The terms of the cells to which failures are dealt, of which the last are all large ones.
     fn terms(&self) -> impl Iterator<Item = f64> {
         let cells = self.dealt.iter().map(|(cell, _)| *cell).chain([Cell::sum(&self.large)]);
-        cells.map(|cell| self.term(cell.runs, cell.failures))
+        cells.map(|cell| self.all.term(cell))
     }
 
     /// The statistic of the large cells from their own share.
@@ -138,28 +146,27 @@ impl Stratum {
         if all.failures == 0 || all.failures == all.runs {
             return 0.0;
         }
-        let own = Self { dealt: Vec::new(), large: Vec::new(), all };
-        self.large.iter().map(|cell| own.term(cell.runs, cell.failures)).sum()
+        self.large.iter().map(|cell| all.term(*cell)).sum()
     }
 
     /// How many failures a cell of so many runs can have: the share of its own ways, `C(n, k) (f/(N − f))^k`, but for the
     /// negligible ones.
     fn numbers(&self, runs: u64) -> Numbers {
-        let odds = self.all.failures as f64 / (self.all.runs - self.all.failures) as f64;
+        let odds = self.all.odds();
         // C(n, k + 1) of C(n, k).
         let ratio = |k: u64| (runs - k) as f64 / (k + 1) as f64 * odds;
-        Numbers::around(self.expected(runs) as u64, 0..=runs.min(self.all.failures), ratio)
+        Numbers::around(self.all.expected(runs) as u64, 0..=runs.min(self.all.failures), ratio)
     }
 
     /// The same of the large cells together, by how many are dealt to the others, of these numbers:
     /// `C(n, f − k) ((N − f)/f)^k`.
     fn numbers_beside(&self, dealt: std::ops::RangeInclusive<u64>) -> Numbers {
         let (runs, failures) = (Cell::sum(&self.large).runs, self.all.failures);
-        let odds = failures as f64 / (self.all.runs - failures) as f64;
+        let odds = self.all.odds();
         let ratio = |k: u64| (failures - k) as f64 / (runs + k + 1 - failures) as f64 / odds;
         let least = failures.saturating_sub(runs).max(*dealt.start());
         let most = failures.min(*dealt.end());
-        Numbers::around(self.expected(self.all.runs - runs) as u64, least..=most, ratio)
+        Numbers::around(self.all.expected(self.all.runs - runs) as u64, least..=most, ratio)
     }
 
     /// The probabilities of a statistic of 0, 1… steps, the last of that or more.
@@ -171,7 +178,7 @@ impl Stratum {
         for (cell, numbers) in &self.dealt {
             let mut next = vec![vec![0.0; last + 1]; dealt.len() + numbers.weights.len() - 1];
             for (i, (failures, weight)) in numbers.all().enumerate() {
-                let term = steps(self.term(cell.runs, failures)).min(last);
+                let term = steps(self.all.term(Cell { runs: cell.runs, failures })).min(last);
                 for (to, of) in next[i..].iter_mut().zip(&dealt) {
                     add_shifted(to, of, term, weight);
                 }
@@ -182,7 +189,8 @@ impl Stratum {
         let mut found = vec![0.0; last + 1];
         let runs = Cell::sum(&self.large).runs;
         for (before, weight) in self.numbers_beside(first..=first + dealt.len() as u64 - 1).all() {
-            let term = steps(self.term(runs, self.all.failures - before)).min(last);
+            let failures = self.all.failures - before;
+            let term = steps(self.all.term(Cell { runs, failures })).min(last);
             add_shifted(&mut found, &dealt[(before - first) as usize], term, weight);
         }
         let total: f64 = found.iter().sum();
@@ -200,7 +208,7 @@ impl Numbers {
         ratio: impl Fn(u64) -> f64,
     ) -> Self {
         let (least, most) = range.into_inner();
-        let middle = middle.clamp(least, most.max(least));
+        let middle = middle.min(most).max(least);
         let upwards = (middle..most).scan(1.0, |weight, k| {
             *weight *= ratio(k);
             Some(*weight)

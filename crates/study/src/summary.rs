@@ -299,19 +299,16 @@ fn dispersed(scenario: &Scenario, seen: &Seen) -> Vec<DispersedSummary> {
         let late = all.iter().find(of_start)?;
         LateSummary::new(moments(&late.column)?, moments(&start.column)?, start.nominal)
     };
-    let summary = |d: &Dispersed| {
-        let survey = seen.surveys.column(&d.column);
-        DispersedSummary {
-            quantity: d.column.clone(),
-            law: d.law.name().into(),
-            drawn: d.each,
-            nominal: d.nominal,
-            law_mean: d.law.mean(),
-            law_deviation: d.law.deviation(),
-            mean: survey.and_then(Survey::mean),
-            deviation: survey.and_then(Survey::moments).map(Moments::standard_deviation),
-            late: late(d),
-        }
+    let summary = |d: &Dispersed| DispersedSummary {
+        quantity: d.column.clone(),
+        law: d.law.name().into(),
+        drawn: d.each,
+        nominal: d.nominal,
+        law_mean: d.law.mean(),
+        law_deviation: d.law.deviation(),
+        mean: seen.surveys.column(&d.column).and_then(Survey::mean),
+        deviation: moments(&d.column).map(Moments::standard_deviation),
+        late: late(d),
     };
     all.iter().map(summary).collect()
 }

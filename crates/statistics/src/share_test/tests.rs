@@ -146,7 +146,8 @@ proptest! {
             let test = ShareTest::new(&[cells]);
             prop_assert!(test.exact());
             let expected = hypergeometric(cell, runs, failures, found);
-            let steps = |k: u64| Stratum::new(&[rare, rest]).unwrap().term(cell, k);
+            let all = Stratum::new(&[rare, rest]).unwrap().all;
+            let steps = |k: u64| all.term(Cell { runs: cell, failures: k });
             // Of tables that the rounding may or may not count, both ways.
             let near = |k: &u64| (steps(*k) - steps(found)).abs() <= 3.0 / STEPS.min(ALL_STEPS / steps(found).max(1e-9));
             let doubt: f64 = (0..=cell.min(failures)).filter(near).map(|k| {

@@ -333,8 +333,8 @@ impl Pair {
 }
 
 impl Corner {
-    /// The one in which failures exceed what is expected by most standard deviations: neither a cell that has most failures because
-    /// it has most runs, nor one of a single run that failed.
+    /// The one in which failures exceed what is expected by most standard deviations, and not one that has most failures because it
+    /// has most runs.
     fn with_clearest_excess([x, y]: [&QuantileCells; 2], failed: &[bool]) -> Self {
         let mut all = [[Self::default(); FIFTHS]; FIFTHS];
         for ((x, y), failed) in x.of_values().iter().zip(y.of_values()).zip(failed) {
