@@ -7,7 +7,7 @@ const LARGEST: f64 = 700.0;
 /// Effective hits below which an estimate is not to be trusted.
 const FEW: f64 = 20.0;
 /// A probability above which an event is not rare.
-const RARE: f64 = 0.5;
+pub(crate) const RARE: f64 = 0.5;
 /// The share of one hit in the estimate from which it is not to be trusted.
 const DOMINANT: f64 = 0.2;
 

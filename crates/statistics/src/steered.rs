@@ -11,7 +11,7 @@ use score_law::OWN;
 
 use crate::{
     Confidence, ImportanceEstimate, ImportanceSampling, Interval, Proportion, StatisticsError,
-    WeightWarning,
+    WeightWarning, importance::RARE,
 };
 
 /// So many standard errors between what two searches make of the event are no chance.
@@ -82,8 +82,9 @@ pub struct SteeredSampling {
     searches: Vec<Option<usize>>,
     not_reached: usize,
     evaluations: u64,
-    failed: u64,
+    without_excess: u64,
     hits: ImportanceSampling,
+    misses: ImportanceSampling,
     hits_of_search: Vec<ImportanceSampling>,
 }
 
@@ -110,8 +111,9 @@ impl SteeredSampling {
         Ok(Self {
             not_reached: searches.iter().filter(|search| !search.reached()).count(),
             evaluations: searches.iter().map(ScoreSearch::evaluations).sum(),
-            failed: searches.iter().map(ScoreSearch::failed).sum(),
+            without_excess: searches.iter().map(ScoreSearch::without_excess).sum(),
             hits,
+            misses: hits,
             hits_of_search: vec![hits; searches.len()],
             of_search: (0..searches.len())
                 .map(|i| law.of_parts(|part| of_part[part].is_none_or(|of| of == i)))
@@ -122,7 +124,7 @@ impl SteeredSampling {
     }
 
     /// Adds a run: the number between 0 and 1 by which the part of the law was chosen, its scores, and how far it is beyond the limit. The
-    /// event is an excess of 0 or more; NaN is a run that failed, and is not the event.
+    /// event is an excess of 0 or more; NaN is a run that has none, as one that failed, and is not the event.
     ///
     /// # Errors
     ///
@@ -136,6 +138,7 @@ impl SteeredSampling {
         crate::rank_correlation::same_length(self.law.scores(), scores.len())?;
         let (log_weight, hit) = (self.law.log_weight(scores), excess >= 0.0);
         self.hits.push(log_weight, hit)?;
+        self.misses.push(log_weight, !hit)?;
         // A run from the own law serves every search.
         let of_part = self.searches.get(self.law.part(choice)).copied().flatten();
         for (i, (law, hits)) in self.of_search.iter().zip(&mut self.hits_of_search).enumerate() {
@@ -144,7 +147,7 @@ impl SteeredSampling {
             }
         }
         self.evaluations += 1;
-        self.failed += u64::from(excess.is_nan());
+        self.without_excess += u64::from(excess.is_nan());
         Ok(())
     }
 
@@ -155,6 +158,7 @@ impl SteeredSampling {
     /// [`StatisticsError::TooFew`] below two runs.
     pub fn finish(&self, confidence: Confidence) -> Result<SteeredEstimate, StatisticsError> {
         let weighted = self.hits.finish(confidence)?;
+        let (probability, coefficient_of_variation) = self.probability(&weighted, confidence)?;
         let mut warnings = Vec::new();
         if self.not_reached > 0 {
             warnings.push(SteeredWarning::NotReached { searches: self.not_reached });
@@ -169,15 +173,37 @@ impl SteeredSampling {
             let none = Proportion::new(0, weighted.runs())?.interval(confidence);
             (0.0, none.upper() / self.law.share_of_own())
         };
-        let interval = Interval::ordered(lower.min(1.0), upper.min(1.0), confidence);
+        let (lower, upper) = (lower.min(probability), upper.clamp(probability, 1.0));
+        let interval = Interval::ordered(lower, upper, confidence);
         Ok(SteeredEstimate {
             interval,
             evaluations: self.evaluations,
-            failed: self.failed,
-            probability: weighted.probability(),
+            without_excess: self.without_excess,
+            probability,
+            coefficient_of_variation,
             warnings,
             weighted,
         })
+    }
+
+    /// The estimate and its standard error over it. Above a half they are those of the runs that miss the event: these scatter less, and
+    /// what they leave of 1 is no more than 1.
+    fn probability(
+        &self,
+        weighted: &ImportanceEstimate,
+        confidence: Confidence,
+    ) -> Result<(f64, Option<f64>), StatisticsError> {
+        let told = weighted.probability();
+        if told <= RARE {
+            return Ok((told, weighted.coefficient_of_variation()));
+        }
+        let misses = self.misses.finish(confidence)?;
+        let (missed, rest) = (misses.probability(), 1.0 - misses.probability());
+        if rest <= 0.0 {
+            return Ok((told.min(1.0), weighted.coefficient_of_variation()));
+        }
+        let error = missed * misses.coefficient_of_variation().unwrap_or(0.0);
+        Ok((rest, Some(error / rest)))
     }
 
     /// What two searches tell of the event, the most different ones, if that is no chance.
@@ -206,18 +232,21 @@ impl SteeredSampling {
 #[derive(Clone, Debug, PartialEq, getset::CopyGetters, getset::Getters)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(remote = "Self"))]
 pub struct SteeredEstimate {
-    /// The estimate of the probability.
+    /// The estimate of the probability: the mean weight of the runs that are the event, and above a half what those that are not leave of 1.
     #[getset(get_copy = "pub")]
     probability: f64,
     /// The interval. Without a hit, from 0 to a bound that holds whatever the event is, for no weight is above 10; it is not small.
     #[getset(get_copy = "pub")]
     interval: Interval,
-    /// Number of runs that were done, those of the searches and those that failed too.
+    /// Its standard error over the estimate; none without a hit.
+    #[getset(get_copy = "pub")]
+    coefficient_of_variation: Option<f64>,
+    /// Number of runs that were done, those of the searches and those without an excess too.
     #[getset(get_copy = "pub")]
     evaluations: u64,
-    /// How many of them failed.
+    /// How many of them had no excess.
     #[getset(get_copy = "pub")]
-    failed: u64,
+    without_excess: u64,
     warnings: Vec<SteeredWarning>,
     /// The weighted runs of the sample.
     #[getset(get = "pub")]
@@ -226,7 +255,10 @@ pub struct SteeredEstimate {
 
 crate::checked::checked!(SteeredEstimate, |read| {
     crate::error::belong(
-        read.probability == read.weighted.probability() && read.failed <= read.evaluations,
+        read.interval.contains(read.probability)
+            && (0.0..=1.0).contains(&read.probability)
+            && read.coefficient_of_variation.is_none_or(|x| x >= 0.0)
+            && read.without_excess <= read.evaluations,
         "estimate",
     )
 });

@@ -24,7 +24,7 @@ pub trait RareEvent {
     /// How far the run with these draws is beyond the limit: the event is an excess of 0 or more.
     ///
     /// `draws` has a number for each group of inputs. The values of a group depend on its own number alone, as
-    /// those of a stream of random numbers that is keyed by the group and has this number. NaN is a run that failed: it is
+    /// those of a stream of random numbers that is keyed by the group and has this number. NaN is a run that has no excess, as one that failed: it is
     /// not the event, and stands below all others. Return infinity where failing is the event.
     fn excess(&self, draws: &[u64]) -> f64;
 }
@@ -187,7 +187,7 @@ impl SubsetSimulation {
         let estimates: Vec<f64> =
             done.iter().map(|r| if r.reached() { r.probability() } else { 0.0 }).collect();
         let evaluations = total(pilot, &done, SubsetReplica::evaluations);
-        let failed = total(pilot, &done, SubsetReplica::failed);
+        let without_excess = total(pilot, &done, SubsetReplica::without_excess);
         let reached: Vec<_> = done.iter().filter(|replica| replica.reached()).collect();
         let events = reached.iter().flat_map(|replica| replica.events()).take(SHOWN).collect();
         if pilot.levels() == 0 {
@@ -201,7 +201,7 @@ impl SubsetSimulation {
                 coefficient_of_variation: (p > 0.0).then(|| ((1.0 - p) / (p * runs as f64)).sqrt()),
                 interval: plain.interval(confidence),
                 evaluations,
-                failed,
+                without_excess,
                 events,
                 replicas: estimates,
                 warnings: if p > 0.0 { Vec::new() } else { vec![none] },
@@ -244,7 +244,7 @@ impl SubsetSimulation {
             coefficient_of_variation: coefficient,
             interval,
             evaluations,
-            failed,
+            without_excess,
             events,
             replicas: estimates,
             warnings,
@@ -291,10 +291,10 @@ pub struct SubsetEstimate {
     coefficient_of_variation: Option<f64>,
     /// The interval. If no replica found an event, from 0 to a bound.
     interval: Interval,
-    /// Number of runs that were done, those of the pilot and those that failed too.
+    /// Number of runs that were done, those of the pilot and those without an excess too.
     evaluations: u64,
-    /// How many of them failed.
-    failed: u64,
+    /// How many of them had no excess.
+    without_excess: u64,
     #[getset(skip)]
     replicas: Vec<f64>,
     #[getset(skip)]
@@ -307,7 +307,7 @@ crate::checked::checked!(SubsetEstimate, |read| {
     crate::error::belong(
         (0.0..=1.0).contains(&read.probability)
             && read.coefficient_of_variation.is_none_or(|x| x >= 0.0)
-            && read.failed <= read.evaluations
+            && read.without_excess <= read.evaluations
             && read.replicas.iter().all(|x| (0.0..=1.0).contains(x)),
         "estimate",
     )

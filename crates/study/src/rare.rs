@@ -23,6 +23,8 @@ pub struct Rare {
     scenario: String,
     model: String,
     event: Event,
+    /// How many runs failed.
+    failed: u64,
     /// Groups of inputs that are drawn independently of each other.
     groups: Vec<String>,
     #[serde(flatten)]
@@ -62,7 +64,7 @@ impl RareEstimate {
     pub fn coefficient_of_variation(&self) -> Option<f64> {
         match self {
             Self::Subset(estimate) => estimate.coefficient_of_variation(),
-            Self::Importance { estimate, .. } => estimate.weighted().coefficient_of_variation(),
+            Self::Importance { estimate, .. } => estimate.coefficient_of_variation(),
         }
     }
 
@@ -84,12 +86,12 @@ impl RareEstimate {
         }
     }
 
-    /// How many of them failed.
+    /// How many of them have no number of the event's quantity, and so are not the event.
     #[must_use]
-    pub fn failed(&self) -> u64 {
+    pub fn without_excess(&self) -> u64 {
         match self {
-            Self::Subset(estimate) => estimate.failed(),
-            Self::Importance { estimate, .. } => estimate.failed(),
+            Self::Subset(estimate) => estimate.without_excess(),
+            Self::Importance { estimate, .. } => estimate.without_excess(),
         }
     }
 
@@ -129,6 +131,12 @@ impl Rare {
         &self.estimate
     }
 
+    /// How many runs failed.
+    #[must_use]
+    pub fn failed(&self) -> u64 {
+        self.failed
+    }
+
     /// How many plain runs would tell the probability as well: `(1 − p)/(p c²)` for a coefficient of variation c.
     #[must_use]
     pub fn plain_runs(&self) -> Option<f64> {
@@ -141,7 +149,7 @@ impl Rare {
 /// In lines, the answer first.
 impl fmt::Display for Rare {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { scenario, model, event, groups, estimate } = self;
+        let Self { scenario, model, event, failed, groups, estimate } = self;
         writeln!(f, "{scenario}, {model}: {event}\n")?;
         let (p, interval) = (estimate.probability(), estimate.interval());
         let percent = 100.0 * interval.confidence().level();
@@ -165,8 +173,13 @@ impl fmt::Display for Rare {
             write!(f, "; as many plain runs as would tell the same: {plain:.1e}")?;
         }
         writeln!(f)?;
-        if estimate.failed() > 0 {
-            writeln!(f, "  failed       {} runs, which are not the event", estimate.failed())?;
+        if *failed > 0 {
+            writeln!(f, "  failed       {failed} runs")?;
+        }
+        let without = estimate.without_excess();
+        if without > 0 {
+            let quantity = event.quantity();
+            writeln!(f, "  no number    {without} runs have no {quantity}, and are not the event")?;
         }
         match estimate {
             RareEstimate::Subset(_) => writeln!(f, "  groups       {}", groups.join(", "))?,
@@ -265,6 +278,7 @@ pub(crate) fn find<C: Subject>(
         scenario: scenario.name().to_owned(),
         model: runs.model().to_owned(),
         event: event.clone(),
+        failed: runs.failed(),
         groups: runs.groups().names().to_vec(),
         estimate,
     })

@@ -55,9 +55,9 @@ pub struct ScoreSearch {
     /// Number of runs that were done.
     #[getset(get_copy = "pub")]
     evaluations: u64,
-    /// How many of them failed.
+    /// How many of them had no excess.
     #[getset(get_copy = "pub")]
-    failed: u64,
+    without_excess: u64,
 }
 
 /// Where a search stands.
@@ -95,7 +95,7 @@ impl ScoreSearch {
             levels: 0,
             stalled: 0,
             evaluations: 0,
-            failed: 0,
+            without_excess: 0,
         })
     }
 
@@ -140,7 +140,7 @@ impl ScoreSearch {
     }
 
     /// Takes the runs that were asked for: the scores of each, and how far it is beyond the limit. The event is an excess of 0 or
-    /// more; NaN is a run that failed.
+    /// more; NaN is a run that has no excess, as one that failed.
     ///
     /// # Errors
     ///
@@ -162,7 +162,7 @@ impl ScoreSearch {
         }
         self.levels += 1;
         self.evaluations += runs.len() as u64;
-        self.failed += runs.iter().filter(|run| run.1.is_nan()).count() as u64;
+        self.without_excess += runs.iter().filter(|run| run.1.is_nan()).count() as u64;
         let Some(level) = self.next_level(runs) else {
             self.stalled += 1;
             if self.stalled >= MOST_STALLED {

@@ -123,6 +123,32 @@ fn sums_of_scores_down_to_a_ten_millionth() {
     }
 }
 
+/// What is not rare is told from 1 by the runs that miss it: no estimate is above 1, each lies in its interval, the truth nearly always,
+/// and the standard error is how far the estimates scatter.
+#[test]
+fn what_nearly_always_happens_is_told_from_one() {
+    let plan = Plan { per_level: 300, sample: 1000, ..PLAN };
+    for missed in [0.45, 0.1, 1e-2, 1e-3, 1e-5] {
+        let truth = 1.0 - missed;
+        let limit = -crate::law::normal(missed);
+        let found: Vec<SteeredEstimate> =
+            (0..40).map(|seed| estimate(plan, seed, &|scores, _| sum(scores) - limit)).collect();
+        let covered = found.iter().filter(|one| one.interval().contains(truth)).count();
+        for one in &found {
+            assert!(one.probability() <= 1.0 && one.interval().upper() <= 1.0, "{one:?}");
+            assert!(one.interval().contains(one.probability()), "{one:?}");
+        }
+        let squares = |of: &dyn Fn(&SteeredEstimate) -> f64| {
+            (found.iter().map(|one| of(one).powi(2)).sum::<f64>() / 40.0).sqrt()
+        };
+        let scatter = squares(&|one| one.probability() - truth);
+        let told = squares(&|one| one.probability() * one.coefficient_of_variation().unwrap());
+        println!("{truth}: covered {covered} of 40, scatter {scatter:.1e}, told {told:.1e}");
+        assert!(covered >= 34, "{truth}: {covered}");
+        assert!(told < 1.5 * scatter && scatter < 1.5 * told || missed < 1e-3, "{truth}");
+    }
+}
+
 #[test]
 fn two_ways_are_both_found() {
     for limit in [3.09, 5.2] {

@@ -5,7 +5,7 @@
 struct Member {
     /// The number of the draw of each group.
     draws: Vec<u64>,
-    /// Minus infinity for a run that failed.
+    /// Minus infinity for a run that has none.
     excess: f64,
     /// The first draw from which it descends.
     family: usize,
@@ -73,9 +73,9 @@ pub struct SubsetReplica {
     /// Number of runs that were done.
     #[getset(get_copy = "pub")]
     evaluations: u64,
-    /// How many of them failed.
+    /// How many of them had no excess.
     #[getset(get_copy = "pub")]
-    failed: u64,
+    without_excess: u64,
     /// The probability of the last level that was passed: of the event, if it was reached.
     #[getset(get_copy = "pub")]
     probability: f64,
@@ -125,7 +125,7 @@ impl SubsetReplica {
             next_draw: first + per_level as u64,
             levels: Vec::new(),
             evaluations: 0,
-            failed: 0,
+            without_excess: 0,
             probability: 1.0,
             moves: (0, 0),
         }
@@ -138,7 +138,7 @@ impl SubsetReplica {
     }
 
     /// Takes the outcomes of the runs that were asked for, in their order: the excess of each, which is the event from 0 on, and
-    /// NaN for a run that failed.
+    /// NaN for a run that has none, as one that failed.
     ///
     /// # Errors
     ///
@@ -146,7 +146,7 @@ impl SubsetReplica {
     pub fn tell(&mut self, excesses: &[f64]) -> Result<(), crate::StatisticsError> {
         crate::rank_correlation::same_length(self.asks.len(), excesses.len())?;
         self.evaluations += excesses.len() as u64;
-        self.failed += excesses.iter().filter(|excess| excess.is_nan()).count() as u64;
+        self.without_excess += excesses.iter().filter(|excess| excess.is_nan()).count() as u64;
         let asks = std::mem::take(&mut self.asks);
         let outcomes =
             asks.into_iter().zip(excesses.iter().map(|excess| excess.max(f64::NEG_INFINITY)));

@@ -28,6 +28,7 @@ pub(super) struct EventRuns<'a, C: Subject> {
     stop: Option<Arc<AtomicBool>>,
     progress: Progress<'a>,
     done: Cell<u64>,
+    failed: Cell<u64>,
 }
 
 impl<'a, C: Subject> EventRuns<'a, C> {
@@ -48,8 +49,20 @@ impl<'a, C: Subject> EventRuns<'a, C> {
         let groups = plain.groups().clone();
         drop(plain);
         let (threads, stop) = (threads(options.threads)?, options.stop.clone());
-        let done = Cell::new(0);
-        Ok(Self { scenario, prepared, at, model, event, groups, threads, stop, progress, done })
+        let [done, failed] = [(); 2].map(|()| Cell::new(0));
+        Ok(Self {
+            scenario,
+            prepared,
+            at,
+            model,
+            event,
+            groups,
+            threads,
+            stop,
+            progress,
+            done,
+            failed,
+        })
     }
 
     /// Makes certain that runs can be done.
@@ -67,22 +80,34 @@ impl<'a, C: Subject> EventRuns<'a, C> {
         &self.groups
     }
 
-    /// By how much each of so many runs is beyond the limit; NaN of a run without a number.
+    /// How many of the runs that were done failed.
+    pub(super) fn failed(&self) -> u64 {
+        self.failed.get()
+    }
+
+    /// By how much each of so many runs is beyond the limit; NaN of a run without a number. Refused if none of the first has one,
+    /// for then nothing leads to the event. Later ones may be few, as a step of few chains is, and have none by chance.
     pub(super) fn excesses(&self, drawing: Drawing, runs: u64) -> Result<Vec<f64>, StudyError> {
         go_on(self.stop.as_deref())?;
         let simulation = self.scenario.drawing(&self.prepared, self.at, drawing)?;
         let table = run(&simulation, self.model, runs, &self.threads, &|_| {})?;
         // Runs that were stopped look like failed ones.
         go_on(self.stop.as_deref())?;
+        let failed = table.failures().len() as u64;
         let excesses = self.event.excesses(&table);
-        if excesses.iter().all(|excess| excess.is_nan()) {
-            let failure = table.failures().next();
-            let why = failure.map_or_else(
-                || format!("none of {runs} runs has a number of {}", self.event.quantity()),
-                |(_, failure)| format!("all of {runs} runs failed, the first by “{failure}”"),
-            );
+        if self.done.get() == 0 && excesses.iter().all(|excess| excess.is_nan()) {
+            let why = match table.failures().next() {
+                Some((_, failure)) if failed == runs => {
+                    format!("all of {runs} runs failed, the first by “{failure}”")
+                }
+                Some(_) | None => format!(
+                    "none of {runs} runs has a number of {}, so that nothing leads to the event: take a quantity that most runs have",
+                    self.event.quantity()
+                ),
+            };
             return Err(ScenarioError::field("event", why).into());
         }
+        self.failed.set(self.failed.get() + failed);
         self.done.set(self.done.get() + runs);
         (self.progress)(self.done.get());
         Ok(excesses)

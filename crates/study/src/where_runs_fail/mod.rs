@@ -333,8 +333,9 @@ impl Pair {
 }
 
 impl Corner {
-    /// The one in which failures exceed what is expected by most standard deviations, and not one that has most failures because it
-    /// has most runs.
+    /// The one whose excess of failures over what is expected has the largest deviance (twice the logarithm of the ratio of
+    /// likelihoods), and not one that has most failures because it has most runs. In standard deviations a single failure among
+    /// few runs, where a thousandth of one is expected, would exceed fifty among a hundred.
     fn with_clearest_excess([x, y]: [&QuantileCells; 2], failed: &[bool]) -> Self {
         let mut all = [[Self::default(); FIFTHS]; FIFTHS];
         for ((x, y), failed) in x.of_values().iter().zip(y.of_values()).zip(failed) {
@@ -345,8 +346,13 @@ impl Corner {
         }
         let share = failed.iter().filter(|failed| **failed).count() as f64 / failed.len() as f64;
         let excess = |cell: &Self| {
-            let runs = cell.runs as f64;
-            (cell.failures as f64 - runs * share) / (runs * share * (1.0 - share)).sqrt()
+            let [runs, failures] = [cell.runs as f64, cell.failures as f64];
+            let passes = runs - failures;
+            // x ln(x / expected), whose limit at x = 0 is zero.
+            let part =
+                |x: f64, share: f64| if x > 0.0 { x * (x / (runs * share)).ln() } else { 0.0 };
+            let deviance = 2.0 * (part(failures, share) + part(passes, 1.0 - share));
+            if failures > runs * share { deviance } else { -deviance }
         };
         let filled = all.iter().flatten().filter(|cell| cell.runs > 0);
         let clearest = filled.reduce(|a, b| if excess(b) > excess(a) { b } else { a });

@@ -138,11 +138,13 @@ proptest! {
                 }
                 let [x, y] = pair.clearest_excess.fifths.map(usize::from);
                 prop_assert_eq!(corners[x][y], [pair.clearest_excess.runs, pair.clearest_excess.failures]);
-                // Squared, with a sign: (k − e)|k − e|/e is largest where the standardized excess is.
+                // The likelihood of the counts with the share of the cell itself over that with the share of all runs.
                 let share = own.iter().filter(|(_, failed)| *failed).count() as f64 / own.len() as f64;
+                let log = |count: u64, p: f64| if count == 0 { 0.0 } else { count as f64 * p.ln() };
                 let excess = |[runs, failures]: [u64; 2]| {
-                    let expected = runs as f64 * share;
-                    (failures as f64 - expected) * (failures as f64 - expected).abs() / expected
+                    let of = |p: f64| log(failures, p) + log(runs - failures, 1.0 - p);
+                    let p = failures as f64 / runs as f64;
+                    (p - share).signum() * (of(p) - of(share))
                 };
                 let filled = corners.iter().flatten().filter(|[runs, _]| *runs > 0);
                 let own = excess(corners[x][y]);
@@ -279,6 +281,23 @@ fn the_corner_of_a_rare_flag_is_named() {
         let corner = found.requirements[0].pairs[0].clearest_excess;
         assert!(corner.failures == corner.runs && corner.fifths[1] >= 3, "{corner:?}");
     }
+}
+
+/// One failure among few runs is no excess beside many, however small the share of failures is.
+#[test]
+fn a_single_failure_is_not_the_clearest_excess() {
+    let rows = 10_000;
+    let mut cells = [vec![0.0; rows], vec![0.0; rows]];
+    let mut failed = vec![false; rows];
+    for run in 0..rows {
+        // Four runs have both, and a hundred each have one of them alone.
+        cells[0][run] = f64::from(u8::from(run < 104));
+        cells[1][run] = f64::from(u8::from(run < 4 || (104..204).contains(&run)));
+        failed[run] = run == 0 || (4..14).contains(&run) || (run > 204 && run % 500 == 0);
+    }
+    let cells = cells.map(|values| QuantileCells::new(&values, FIFTHS).unwrap());
+    let corner = Corner::with_clearest_excess([&cells[0], &cells[1]], &failed);
+    assert_eq!((corner.runs, corner.failures), (100, 10));
 }
 
 #[test]
