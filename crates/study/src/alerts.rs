@@ -8,6 +8,7 @@ use nalgebra::{Unit, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    Fleet,
     body::{Body, Entry},
     folded::FoldedRoot,
     quantity::Quantity,
@@ -43,7 +44,15 @@ pub(crate) enum Alert {
         first: Option<(u64, String)>,
     },
     /// What is declared as dispersed is the same in all runs.
-    Unmoved { model: String, column: String, value: f64, runs: u64 },
+    Unmoved {
+        model: String,
+        column: String,
+        value: f64,
+        runs: u64,
+        /// Whether there is one vehicle, for which what vehicles differ in is drawn once.
+        #[serde(default)]
+        one_vehicle: bool,
+    },
     /// In runs the payload leaves by more than 90° away from where it is to go.
     Backwards {
         model: String,
@@ -89,12 +98,18 @@ impl Alert {
         (model == of).then(|| format!("the first, run {run}: {why}"))
     }
 
-    /// That a column which is declared as dispersed is the same in all of several runs.
-    pub(crate) fn unmoved(model: &str, column: &str, survey: &Survey) -> Option<Self> {
+    /// That a column which is declared as dispersed is the same in all of several runs, of these vehicles if there are any.
+    pub(crate) fn unmoved(
+        model: &str,
+        column: &str,
+        survey: &Survey,
+        fleet: Option<Fleet>,
+    ) -> Option<Self> {
         let (value, runs) = (survey.minimum()?.0, survey.n());
         let is_constant = runs > 1 && survey.maximum()?.0 == value;
         let (model, column) = (model.to_owned(), column.to_owned());
-        is_constant.then_some(Self::Unmoved { model, column, value, runs })
+        let one_vehicle = fleet.is_some_and(|fleet| fleet.vehicles() == 1);
+        is_constant.then_some(Self::Unmoved { model, column, value, runs, one_vehicle })
     }
 
     /// That in so many runs, of those in which the bodies part, the payload leaves by more than 90° away from where it is to
@@ -162,14 +177,21 @@ impl Alert {
                     .code("status")
                     .plain(" in the run table.")
             }
-            Self::Unmoved { model, column, value, runs } => Text::default()
-                .strong(format!("{model}: a dispersion moved nothing"))
-                .plain(": ")
-                .code(column)
-                .plain(format!(
-                    " is declared as dispersed, and is {} in all {runs} runs. The results say nothing of what it does.",
-                    significant(*value, 5)
-                )),
+            Self::Unmoved { model, column, value, runs, one_vehicle } => {
+                let why = if *one_vehicle {
+                    " There is one vehicle, for which what vehicles differ in is drawn once."
+                } else {
+                    ""
+                };
+                let value = significant(*value, 5);
+                Text::default()
+                    .strong(format!("{model}: a dispersion moved nothing"))
+                    .plain(": ")
+                    .code(column)
+                    .plain(format!(
+                        " is declared as dispersed, and is {value} in all {runs} runs.{why} The results say nothing of what it does.",
+                    ))
+            }
             Self::Backwards { model, backwards, runs, outlines } => {
                 let text = Text::default()
                     .strong(format!("{model}: the payload leaves the wrong way in {backwards} of {runs} runs"))

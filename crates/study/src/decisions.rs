@@ -381,8 +381,15 @@ fn worst(scenario: &impl Subject, head: &Head) -> Option<Section> {
         .words(to_see_it, |(judged, run)| Text::default().code(again(&judged.model, run.run)));
     let reading = "Unusual is what lies at least two standard deviations from the mean of all runs of the model, in brackets by \
                    how many: the three most unusual numbers of what the run drew, which need not be the reason.";
+    let first_flights = "These are the worst of the first flights of the vehicles, which alone are judged: a later flight may be worse.";
+    let of_vehicles = head.independent_runs_per_model.map(|_| first_flights);
+    let section = of_vehicles
+        .into_iter()
+        .fold(Section::folded("The worst runs"), Section::paragraph)
+        .paragraph(reading)
+        .table(table);
     // Where no run has a number, none is the worst.
-    (!all.is_empty()).then(|| Section::folded("The worst runs").paragraph(reading).table(table))
+    (!all.is_empty()).then_some(section)
 }
 
 /// What is unusual in what a run drew, a line each.

@@ -2,6 +2,7 @@
 
 use gyradius_clearance::{Approach, Clearance, ClearanceError};
 use gyradius_dispersion::ModelDraw;
+use gyradius_report::significant;
 use gyradius_separation::{EnergySplit, Outcome as Separated, RunError, Separation, SpinMetrics};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::fmt::Write;
@@ -222,9 +223,13 @@ pub(crate) enum ClearanceNote {
         until: f64,
     },
     /// Before the last release the bodies come nearer than when the clamp opened, and than after it.
-    #[error("the outlines come nearer before the last release: to {distance:?} m at {time:?} s")]
+    #[error(
+        "the outlines come nearer before the last release: to {} m at {} s",
+        significant(*distance, 3),
+        significant(*time, 3)
+    )]
     NearerBefore {
-        /// How near, m.
+        /// How near, m, known to 1 %.
         distance: f64,
         /// When, s.
         time: f64,

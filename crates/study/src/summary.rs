@@ -412,7 +412,7 @@ impl ModelSummary {
         let failed = Alert::failed(&seen.surveys);
         let unmoved = scenario.dispersions().all().iter().filter_map(|dispersed| {
             let column = &dispersed.column;
-            Alert::unmoved(name, column, seen.surveys.column(column)?)
+            Alert::unmoved(name, column, seen.surveys.column(column)?, scenario.fleet())
         });
         let outcomes = self.quantities.iter().filter(|q| q.quantity.is_told());
         let heavy = outcomes.map(|q| (q.quantity.label().into_owned(), &q.sample));

@@ -55,6 +55,28 @@ fn figures_say_for_how_many_looks_they_hold() {
     }
 }
 
+/// The worst runs of vehicles are those of first flights, which is said, and not of plain runs or of flights that have nothing in common.
+#[test]
+fn the_worst_first_flights_are_told_to_be_those() {
+    let required = "[[requirements]]\nname = \"light\"\nquantity = \"payload_i11\"\nat_most = 1.0\nprobability = 0.5\nconfidence = 0.9\n";
+    let plain = parting(required).to_toml();
+    let flights = plain.replace("runs = 40\n", "vehicles = 8\nflights = 5\n");
+    let drawn = "root_second_moment_variance_kg_m2 = [0.01, 0.01, 0.01]\n";
+    for (text, of_first) in [
+        (plain.clone(), false),
+        (flights.clone(), false),
+        (flights.replace(drawn, &format!("{drawn}inertia_drawn = \"vehicle\"\n")), true),
+    ] {
+        let (page, _) = pages(&Scenario::from_toml(&text).unwrap());
+        assert!(page.contains("The worst runs"), "{page}");
+        assert_eq!(
+            page.contains("the worst of the first flights of the vehicles"),
+            of_first,
+            "{text}"
+        );
+    }
+}
+
 /// Bodies that never touch have no time of contact: no run failed, and none has a number.
 #[test]
 fn runs_without_a_value_are_told() {

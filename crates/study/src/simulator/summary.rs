@@ -80,7 +80,7 @@ impl SimulatorScenario {
         let failed = Alert::failed(surveys).into_iter();
         let unmoved = self.dispersed().all.iter().filter_map(|dispersed| {
             let column = &dispersed.column;
-            Alert::unmoved(name, column, surveys.column(column)?)
+            Alert::unmoved(name, column, surveys.column(column)?, self.fleet())
         });
         let is_output = |column: &str| self.outputs().iter().any(|o| o.name() == column);
         let outputs = overview.quantities().filter(|(column, ..)| is_output(column));
