@@ -221,6 +221,26 @@ fn the_worst_runs_have_the_numbers_of_the_table() {
     }
 }
 
+/// Beside a limit so large that the excess is the same in all runs, the worst are still those of the largest or smallest numbers.
+#[test]
+fn the_worst_runs_are_those_beside_any_limit() {
+    let rows = 20_000_u64;
+    let x = |row: u64| row * 7919 % rows;
+    let text: String = (0..rows).map(|row| format!("{}\n", x(row))).collect();
+    let table = ForeignTable::read_csv("it".as_ref(), format!("x\n{text}").as_bytes()).unwrap();
+    for limit in ["0", "1e4", "1e17", "1e300", "-1e20", "-1e300"] {
+        for (bound, is_largest) in [("<=", true), (">=", false)] {
+            let requirement: Requirement =
+                format!("x {bound} {limit} in 90 % at 90 %").parse().unwrap();
+            let judged = Judgement::of_table(&[requirement], &table).unwrap();
+            let worst: Vec<u64> = judged[0].worst().iter().map(|run| x(run.run)).collect();
+            let expected: Vec<u64> =
+                (0..10).map(|i| if is_largest { rows - 1 - i } else { i }).collect();
+            assert_eq!(worst, expected, "{bound} {limit}");
+        }
+    }
+}
+
 /// What stands beside a limit does not look like it, and a share that passes does.
 #[test]
 fn what_is_said_of_a_judgement_is_true() {

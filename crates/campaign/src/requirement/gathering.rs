@@ -60,6 +60,8 @@ pub(crate) struct Tally {
 /// What one pass gathers.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
+    /// That of the requirement, which says what is worse.
+    bound: Bound,
     tally: Option<Tally>,
     numbers: Option<Pass>,
     excess: Option<Pass>,
@@ -98,7 +100,8 @@ impl Gathering {
         let tally = (!self.counted).then(Tally::default);
         let (numbers, excess) = (self.numbers.pass(), self.excess.as_ref().and_then(Survey::pass));
         let waits = tally.is_some() || numbers.is_some() || excess.is_some();
-        waits.then_some(Part { tally, numbers, excess })
+        let bound = self.requirement.bound();
+        waits.then_some(Part { bound, tally, numbers, excess })
     }
 
     /// Adds runs to what is gathered, each with what it has of the quantity.
@@ -183,7 +186,7 @@ impl Part {
     /// Takes in what was gathered of other runs.
     pub(super) fn merge(&mut self, other: Self) {
         if let (Some(tally), Some(more)) = (&mut self.tally, other.tally) {
-            tally.merge(more);
+            tally.merge(more, self.bound);
         }
         for (own, more) in [(&mut self.numbers, other.numbers), (&mut self.excess, other.excess)] {
             if let (Some(own), Some(more)) = (own, more) {
@@ -221,6 +224,7 @@ impl Tally {
         let excess = bound.excess(value);
         self.beyond += u64::from(excess > 0.0);
         let new = RunBeyond { run, value, excess };
+        let worse = |a: &RunBeyond, b: &RunBeyond| worse(bound, a, b);
         let is_worse = |last: &RunBeyond| worse(&new, last) == Ordering::Less;
         if self.worst.len() < WORST || self.worst.last().is_some_and(is_worse) {
             let place = self.worst.partition_point(|other| worse(other, &new) == Ordering::Less);
@@ -229,19 +233,26 @@ impl Tally {
         }
     }
 
-    fn merge(&mut self, other: Self) {
+    fn merge(&mut self, other: Self, bound: Bound) {
         self.runs += other.runs;
         self.without += other.without;
         self.infinite += other.infinite;
         self.beyond += other.beyond;
         self.prefixes.merge(&other.prefixes);
         self.worst.extend(other.worst);
-        self.worst.sort_by(worse);
+        self.worst.sort_by(|a, b| worse(bound, a, b));
         self.worst.truncate(WORST);
     }
 }
 
-/// The worse run first, of equal ones the one of the smaller number.
-fn worse(a: &RunBeyond, b: &RunBeyond) -> Ordering {
-    b.excess.total_cmp(&a.excess).then(a.run.cmp(&b.run))
+/// The worse run first, of equal ones the one of the smaller number. Beside a limit that is very large, the excess rounds to
+/// the same in runs of different numbers.
+fn worse(bound: Bound, a: &RunBeyond, b: &RunBeyond) -> Ordering {
+    let rounded_away = match bound {
+        Bound::AtMost(_) => b.value.total_cmp(&a.value),
+        Bound::AtLeast(_) => a.value.total_cmp(&b.value),
+        // The same excess is that of a number at either limit.
+        Bound::Between(..) => Ordering::Equal,
+    };
+    b.excess.total_cmp(&a.excess).then(rounded_away).then(a.run.cmp(&b.run))
 }
