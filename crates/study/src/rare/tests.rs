@@ -144,21 +144,21 @@ fn runs_without_a_number_are_no_step() {
     let event = "spring_2_release_s >= 0.0".parse().unwrap();
     let plain = options(RareMethod::default(), 100);
     let runs = EventRuns::new(&failing, &event, &plain, &|_| {}).unwrap();
-    let mut times = runs.excesses(Drawing::Plain, 20_000).unwrap();
+    let mut times = runs.excesses(Drawing::Plain, 10_000).unwrap();
     let undefined = times.iter().filter(|time| time.is_nan()).count();
-    assert!((undefined as f64 / 20_000.0 - 0.3).abs() < 0.02, "{undefined}");
+    assert!((undefined as f64 / 10_000.0 - 0.3).abs() < 0.02, "{undefined}");
     times.retain(|time| !time.is_nan());
     times.sort_unstable_by(f64::total_cmp);
     let limit = times[times.len() - 60];
     let event = format!("spring_2_release_s >= {limit}");
     for method in [RareMethod::Subset { replicas: 4 }, RareMethod::Importance { sample: 500 }] {
         let mut covered = 0;
-        for seed in 0..12 {
+        for seed in 0..5 {
             let failing = failing.clone().with_seed(seed).unwrap();
             let found =
                 find(&failing, &event.parse().unwrap(), &options(method, 100), &|_| {}).unwrap();
             let estimate = found.estimate();
-            covered += u32::from(estimate.interval().contains(60.0 / 20_000.0));
+            covered += u32::from(estimate.interval().contains(60.0 / 10_000.0));
             let without = estimate.without_excess();
             // Where every spring fails, the run does too.
             assert!(found.failed() < without && without < estimate.evaluations());
@@ -168,7 +168,7 @@ fn runs_without_a_number_are_no_step() {
             assert!(found.to_string().contains(&said), "{found}");
             assert_eq!(found.to_string().contains("\n  failed "), found.failed() > 0, "{found}");
         }
-        assert!(covered >= 9, "{method:?}: {covered}");
+        assert!(covered >= 4, "{method:?}: {covered}");
     }
 }
 
