@@ -79,6 +79,12 @@ impl ImportanceSampling {
         Ok(())
     }
 
+    /// The same runs, of which those that miss the event count as hits.
+    pub(crate) fn of_complement(&self) -> Self {
+        let (of_hits, of_misses) = (self.of_misses, self.of_hits);
+        Self { hits: self.runs - self.hits, of_hits, of_misses, ..*self }
+    }
+
     /// The estimate with an interval of this confidence.
     ///
     /// # Errors

@@ -84,7 +84,6 @@ pub struct SteeredSampling {
     evaluations: u64,
     without_excess: u64,
     hits: ImportanceSampling,
-    misses: ImportanceSampling,
     hits_of_search: Vec<ImportanceSampling>,
 }
 
@@ -113,7 +112,6 @@ impl SteeredSampling {
             evaluations: searches.iter().map(ScoreSearch::evaluations).sum(),
             without_excess: searches.iter().map(ScoreSearch::without_excess).sum(),
             hits,
-            misses: hits,
             hits_of_search: vec![hits; searches.len()],
             of_search: (0..searches.len())
                 .map(|i| law.of_parts(|part| of_part[part].is_none_or(|of| of == i)))
@@ -138,7 +136,6 @@ impl SteeredSampling {
         crate::rank_correlation::same_length(self.law.scores(), scores.len())?;
         let (log_weight, hit) = (self.law.log_weight(scores), excess >= 0.0);
         self.hits.push(log_weight, hit)?;
-        self.misses.push(log_weight, !hit)?;
         // A run from the own law serves every search.
         let of_part = self.searches.get(self.law.part(choice)).copied().flatten();
         for (i, (law, hits)) in self.of_search.iter().zip(&mut self.hits_of_search).enumerate() {
@@ -197,7 +194,7 @@ impl SteeredSampling {
         if told <= RARE {
             return Ok((told, weighted.coefficient_of_variation()));
         }
-        let misses = self.misses.finish(confidence)?;
+        let misses = self.hits.of_complement().finish(confidence)?;
         let (missed, rest) = (misses.probability(), 1.0 - misses.probability());
         if rest <= 0.0 {
             return Ok((told.min(1.0), weighted.coefficient_of_variation()));

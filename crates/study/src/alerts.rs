@@ -179,7 +179,7 @@ impl Alert {
             }
             Self::Unmoved { model, column, value, runs, one_vehicle } => {
                 let why = if *one_vehicle {
-                    " There is one vehicle, for which what vehicles differ in is drawn once."
+                    " There is only one vehicle, so that what is drawn once for each vehicle is the same in all of its flights."
                 } else {
                     ""
                 };

@@ -381,7 +381,7 @@ fn worst(scenario: &impl Subject, head: &Head) -> Option<Section> {
         .words(to_see_it, |(judged, run)| Text::default().code(again(&judged.model, run.run)));
     let reading = "Unusual is what lies at least two standard deviations from the mean of all runs of the model, in brackets by \
                    how many: the three most unusual numbers of what the run drew, which need not be the reason.";
-    let first_flights = "These are the worst of the first flights of the vehicles, which alone are judged: a later flight may be worse.";
+    let first_flights = "Only first flights are judged: these are the worst of the first flights of the vehicles, and a later flight may be worse.";
     let of_vehicles = head.independent_runs_per_model.map(|_| first_flights);
     let section = of_vehicles
         .into_iter()

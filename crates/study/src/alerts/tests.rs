@@ -92,7 +92,7 @@ fn one_vehicle_is_told_to_be_why() {
         let expected = if is_same { vec![("payload_mass_kg", true)] } else { vec![] };
         assert_eq!(told, expected, "{drawn}, {counts:?}");
         let page = scenario.report(&summary).html();
-        assert_eq!(page.contains("There is one vehicle, for which"), is_same);
+        assert_eq!(page.contains("There is only one vehicle, so that"), is_same);
     }
 }
 
