@@ -53,7 +53,7 @@ pub use histogram::Histogram;
 pub use importance::{ImportanceEstimate, ImportanceSampling, WeightWarning};
 pub use interval::{Confidence, Interval};
 pub use moments::Moments;
-pub use pair_separation::PairSeparation;
+pub use pair_separation::{PairSeparation, log_likelihood_ratio};
 pub use proportion::Proportion;
 pub use quantile::SortedSample;
 pub use quantile_cells::QuantileCells;

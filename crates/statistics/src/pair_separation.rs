@@ -79,14 +79,22 @@ impl PairSeparation {
 fn deviance(cells: impl Iterator<Item = Cell> + Clone) -> f64 {
     let all = Cell::sum(cells.clone());
     let share = all.failures as f64 / all.runs as f64;
+    2.0 * cells.map(|cell| log_likelihood_ratio(cell.runs, cell.failures, share)).sum::<f64>()
+}
+
+/// The logarithm of the likelihood of so many failures among runs by their own share over that by another: half the deviance of a
+/// cell, 0 or more, and 0 where the shares are the same. No more failures than runs.
+///
+/// ```
+/// let by_chance = gyradius_statistics::log_likelihood_ratio(100, 10, 0.01);
+/// assert!(by_chance > gyradius_statistics::log_likelihood_ratio(4, 1, 0.01));
+/// ```
+pub fn log_likelihood_ratio(runs: u64, failures: u64, share: f64) -> f64 {
     let part = |found: u64, expected: f64| {
         if found == 0 { 0.0 } else { found as f64 * libm::log(found as f64 / expected) }
     };
-    let of = |cell: Cell| {
-        let runs = cell.runs as f64;
-        part(cell.failures, runs * share) + part(cell.runs - cell.failures, runs - runs * share)
-    };
-    2.0 * cells.map(of).sum::<f64>()
+    let expected = runs as f64 * share;
+    part(failures, expected) + part(runs.saturating_sub(failures), runs as f64 - expected)
 }
 
 #[cfg(test)]

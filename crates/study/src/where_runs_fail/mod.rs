@@ -9,6 +9,7 @@ mod tests;
 use gyradius_campaign::{Measured, Requirement, Runs, RunsError};
 use gyradius_statistics::{
     Confidence, PairSeparation, QuantileCells, RankCorrelation, Ranks, SuccessByDecile, holm,
+    log_likelihood_ratio,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -333,8 +334,7 @@ impl Pair {
 }
 
 impl Corner {
-    /// The one whose excess of failures over what is expected has the largest deviance (twice the logarithm of the ratio of
-    /// likelihoods), and not one that has most failures because it has most runs. In standard deviations a single failure among
+    /// The one whose excess of failures over what is expected has the largest deviance, and not one that has most failures because it has most runs. In standard deviations a single failure among
     /// few runs, where a thousandth of one is expected, would exceed fifty among a hundred.
     fn with_clearest_excess([x, y]: [&QuantileCells; 2], failed: &[bool]) -> Self {
         let mut all = [[Self::default(); FIFTHS]; FIFTHS];
@@ -346,13 +346,9 @@ impl Corner {
         }
         let share = failed.iter().filter(|failed| **failed).count() as f64 / failed.len() as f64;
         let excess = |cell: &Self| {
-            let [runs, failures] = [cell.runs as f64, cell.failures as f64];
-            let passes = runs - failures;
-            // x ln(x / expected), whose limit at x = 0 is zero.
-            let part =
-                |x: f64, share: f64| if x > 0.0 { x * (x / (runs * share)).ln() } else { 0.0 };
-            let deviance = 2.0 * (part(failures, share) + part(passes, 1.0 - share));
-            if failures > runs * share { deviance } else { -deviance }
+            let deviance = log_likelihood_ratio(cell.runs, cell.failures, share);
+            let is_more = cell.failures as f64 > cell.runs as f64 * share;
+            if is_more { deviance } else { -deviance }
         };
         let filled = all.iter().flatten().filter(|cell| cell.runs > 0);
         let clearest = filled.reduce(|a, b| if excess(b) > excess(a) { b } else { a });
