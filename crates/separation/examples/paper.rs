@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("wobble              {:.4}°", metrics.wobble().to_degrees());
     println!("nutation            {:.4}°", degrees(metrics.nutation()));
     println!("cone                {:.4}°", degrees(metrics.cone()));
-    println!("inertia ratio       {:.4}", metrics.inertia_ratio());
+    println!("inertia ratio       {:.4}", metrics.inertia_ratio().unwrap_or(f64::NAN));
     println!("{} steps", outcome.steps());
     Ok(())
 }

@@ -22,7 +22,7 @@ use crate::nutation::Range;
 /// // The payload of Peck (2003), Table 1, spun about body axis 1.
 /// let inertia = InertiaMatrix::from_entries([5e3, 4e3, 3e3], [20.0, 2.0, -50.0])?;
 /// let metrics = SpinMetrics::new(&inertia, &(Vector3::x() * 0.1), &Vector3::x_axis());
-/// assert_eq!(format!("{:.3}", metrics.inertia_ratio()), "1.408");
+/// assert_eq!(metrics.inertia_ratio().map(|ratio| format!("{ratio:.3}")), Some("1.408".to_owned()));
 /// assert_eq!(format!("{:.3}", metrics.wobble().to_degrees()), "1.144");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -37,8 +37,7 @@ pub struct SpinMetrics {
     nutation_3: Option<f64>,
     nutation_bounds: Option<[f64; 2]>,
     cone: Option<f64>,
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "or_infinite"))]
-    inertia_ratio: f64,
+    inertia_ratio: Option<f64>,
 }
 
 impl SpinMetrics {
@@ -141,8 +140,9 @@ impl SpinMetrics {
 
     /// Inertia ratio σ = 1 + Re √((1 − I₁/I₂)(1 − I₁/I₃)) · sgn(I₁ − I₂) (Eq. 37), roll to pitch: above
     /// 1 for spin about the axis of largest moment, 1 for the intermediate. I₂ and I₃ may change places.
+    /// None of a rod that spins across its own axis: bodies as near to it as one likes have every ratio from 1 to 2.
     #[must_use]
-    pub fn inertia_ratio(&self) -> f64 {
+    pub fn inertia_ratio(&self) -> Option<f64> {
         self.inertia_ratio
     }
 }
@@ -154,7 +154,7 @@ impl serde::Serialize for SpinMetrics {
     }
 }
 
-/// Angles between 0 and π, and a rate and a ratio that are not negative.
+/// Angles between 0 and π, and a rate that is not negative. The ratio of a body that cannot exist may be any number.
 #[cfg(feature = "serde")]
 impl<'de> serde::Deserialize<'de> for SpinMetrics {
     fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
@@ -165,27 +165,24 @@ impl<'de> serde::Deserialize<'de> for SpinMetrics {
         let sound = angles.all(|angle| (0.0..=std::f64::consts::PI).contains(&angle))
             && bounds[0] <= bounds[1]
             && (0.0..=f64::MAX).contains(&read.spin_rate)
-            && read.inertia_ratio >= 0.0;
+            && read.inertia_ratio.is_none_or(f64::is_finite);
         if sound {
             return Ok(read);
         }
         Err(serde::de::Error::custom(format!(
-            "{read:?}: angles must lie between 0 and π, in order where they are bounds, and spin_rate and inertia_ratio must not be \
-             negative"
+            "{read:?}: angles must lie between 0 and π, in order where they are bounds, and spin_rate must not be negative"
         )))
     }
 }
 
-/// JSON knows no infinity, which the ratio of a rod is: `serde_json` writes `null` for it.
-#[cfg(feature = "serde")]
-fn or_infinite<'de, D: serde::Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
-    let read: Option<f64> = serde::Deserialize::deserialize(from)?;
-    Ok(read.unwrap_or(f64::INFINITY))
-}
-
-fn inertia_ratio(i1: f64, i2: f64, i3: f64) -> f64 {
+fn inertia_ratio(i1: f64, i2: f64, i3: f64) -> Option<f64> {
+    // Moments are known to a few ε of the largest, which moves the product by that over the least of the two divisors.
+    let largest = i1.abs().max(i2.abs()).max(i3.abs());
+    if i2.abs().min(i3.abs()) <= 1024.0 * f64::EPSILON * largest {
+        return None;
+    }
     let product = (1.0 - i1 / i2) * (1.0 - i1 / i3);
-    if product > 0.0 { 1.0 + product.sqrt().copysign(i1 - i2) } else { 1.0 }
+    Some(if product > 0.0 { 1.0 + product.sqrt().copysign(i1 - i2) } else { 1.0 })
 }
 
 /// Angle between a vector and a direction; none for a vector of length zero or that is not finite.
@@ -213,7 +210,7 @@ mod tests {
 
     #[cfg(feature = "serde")]
     proptest! {
-        /// Of any body, also of rods, whose ratio is infinite, and of bodies at rest.
+        /// Of any body, also of rods, which may have no ratio, and of bodies at rest.
         #[test]
         fn metrics_read_back_to_the_bit(
             roots in prop::array::uniform3(prop_oneof![Just(0.0), 1e-3..1e3]),
@@ -226,10 +223,9 @@ mod tests {
             let turned: nalgebra::Matrix3<f64> = axes * diagonal * axes.transpose();
             let inertia = InertiaMatrix::new((turned + turned.transpose()) * 0.5).unwrap();
             let metrics = SpinMetrics::new(&inertia, &Vector3::from(rate), &X);
-            prop_assume!(metrics.inertia_ratio() >= 0.0);
             let json = serde_json::to_value(metrics).unwrap();
             prop_assert_eq!(serde_json::from_str::<SpinMetrics>(&json.to_string()).unwrap(), metrics);
-            for (field, value) in [("wobble", 4.0), ("spin_rate", -1.0), ("inertia_ratio", -1.0), ("cone", -0.1)] {
+            for (field, value) in [("wobble", 4.0), ("spin_rate", -1.0), ("cone", -0.1)] {
                 let mut bad = json.clone();
                 bad[field] = value.into();
                 prop_assert!(serde_json::from_value::<SpinMetrics>(bad).is_err(), "{}", field);
@@ -242,7 +238,7 @@ mod tests {
     fn the_papers_central_values() {
         let payload = matrix([5000.0, 4000.0, 3000.0], [20.0, 2.0, -50.0]);
         let m = SpinMetrics::new(&payload, &Vector3::x(), &X);
-        assert!((m.inertia_ratio() - 1.4082601276539386).abs() < 1e-13);
+        assert!((m.inertia_ratio().unwrap() - 1.4082601276539386).abs() < 1e-13);
         assert!((m.wobble().to_degrees() - 1.1442306542559595).abs() < 1e-12);
     }
 
@@ -257,8 +253,39 @@ mod tests {
     #[test]
     fn spin_about_the_intermediate_axis_has_ratio_one_and_no_extremes() {
         let m = SpinMetrics::new(&matrix([2.5, 2.0, 3.0], [0.0; 3]), &Vector3::x(), &X);
-        assert_eq!(m.inertia_ratio(), 1.0);
+        assert_eq!(m.inertia_ratio(), Some(1.0));
         assert_eq!((m.nutation_2(), m.nutation_3()), (None, None));
+    }
+
+    proptest! {
+        /// A rod of any attitude that spins across itself has no ratio, along itself the ratio 0; one that is a little thick has
+        /// what Eq. 37 gives for I₁ = a + c, I₂ = b + c and I₃ = a + b with a above b and c: σ = 1 + Re √((b − c)(b − a) / ((b + c)(b + a))).
+        #[test]
+        fn rods_across_their_axis_have_no_ratio(
+            turn in prop::array::uniform3(-4.0..4.0),
+            length in 1e-3..1e3_f64,
+            thin in -6.0..-1.0_f64,
+            share in 0.0..1.0_f64,
+        ) {
+            let axes = *nalgebra::Rotation3::new(Vector3::from(turn)).matrix();
+            let of = |roots: [f64; 3], along: usize| {
+                let moments = Vector3::from(roots).map(|root| roots.iter().sum::<f64>() - root);
+                let turned: nalgebra::Matrix3<f64> = axes * nalgebra::Matrix3::from_diagonal(&moments) * axes.transpose();
+                let inertia = InertiaMatrix::new((turned + turned.transpose()) * 0.5).unwrap();
+                let axis = Unit::new_normalize(axes.column(along).into_owned());
+                SpinMetrics::new(&inertia, axis.as_ref(), &axis).inertia_ratio()
+            };
+            for across in [1, 2] {
+                prop_assert_eq!(of([length, 0.0, 0.0], across), None);
+            }
+            let along = of([length, 0.0, 0.0], 0).unwrap();
+            prop_assert!(along.abs() < 1e-13, "{}", along);
+
+            let [b, c] = [share, 1.0 - share].map(|x| x * length * 10.0_f64.powf(thin));
+            let expected = 1.0 + ((b - c) * (b - length) / ((b + c) * (b + length))).max(0.0).sqrt();
+            let found = of([length, b, c], 1).unwrap();
+            prop_assert!((found - expected).abs() < 1e-4, "{} {}", found, expected);
+        }
     }
 
     #[test]
@@ -267,7 +294,7 @@ mod tests {
         for (spin, transverse) in [(2.0, 1.5), (0.5, 2.0)] {
             let body = matrix([spin, transverse, transverse], [0.0; 3]);
             let m = SpinMetrics::new(&body, &Vector3::new(1.0, 0.1, -0.2), &X);
-            assert!((m.inertia_ratio() - spin / transverse).abs() < 1e-15);
+            assert!((m.inertia_ratio().unwrap() - spin / transverse).abs() < 1e-15);
             let nutation = m.nutation().unwrap();
             assert!((m.nutation_2().unwrap() - nutation).abs() < 1e-14);
             assert!((m.nutation_3().unwrap() - nutation).abs() < 1e-14);

@@ -8,8 +8,8 @@ use crate::{LoadId, load::named};
 pub enum RunError {
     /// Loads still act at the horizon.
     #[error(
-        "{} had not let go after {horizon:?} s: {} is {compression:e} m short \
-         of its free length and grows by {rate:e} m/s", named(.loads), .loads[0]
+        "{} had not let go after {horizon:?} s: {} is {:?} m short of its free length and grows by {:?} m/s",
+        named(.loads), .loads[0], three_digits(*.compression), three_digits(*.rate)
     )]
     NotReleased {
         /// The loads.
@@ -35,7 +35,7 @@ pub enum RunError {
         speed: f64,
     },
     /// Steps have become too small to go on.
-    #[error("the step at {time:?} s would be {step:e} s, too small to go on")]
+    #[error("the step at {time:?} s would be {:?} s, too small to go on", three_digits(*.step))]
     StepUnderflow {
         /// When, s.
         time: f64,
@@ -67,4 +67,25 @@ pub enum RunError {
         /// When, s.
         time: f64,
     },
+}
+
+/// Rounded to three digits, which a message needs; `{:?}` writes it short whatever its size.
+fn three_digits(x: f64) -> f64 {
+    // The largest numbers round to infinity.
+    format!("{x:.2e}").parse().ok().filter(|rounded: &f64| rounded.is_finite()).unwrap_or(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_of_any_size() {
+        let numbers = [9.999999999999998e-2, 0.0, -1.2345e-9, 98765.4, f64::MAX, f64::MIN_POSITIVE];
+        let told = numbers.map(|x| format!("{:?}", three_digits(x)));
+        assert_eq!(
+            told,
+            ["0.1", "0.0", "-1.23e-9", "98800.0", "1.7976931348623157e308", "2.23e-308"]
+        );
+    }
 }

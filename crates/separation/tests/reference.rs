@@ -65,7 +65,7 @@ fn fields(outcome: &Outcome) -> Vec<(&'static str, Vec<f64>)> {
         ("nutation_2_deg", degrees(metrics.nutation_2())),
         ("nutation_3_deg", degrees(metrics.nutation_3())),
         ("cone_deg", degrees(metrics.cone())),
-        ("inertia_ratio", vec![metrics.inertia_ratio()]),
+        ("inertia_ratio", vec![metrics.inertia_ratio().unwrap()]),
         ("payload_position_m", p.position.as_slice().to_vec()),
         ("payload_velocity_m_per_s", p.velocity.as_slice().to_vec()),
         ("stage_position_m", s.position.as_slice().to_vec()),

@@ -136,8 +136,8 @@ quantities! {
     Nutation3: "nutation_3_deg", "nutation θ₃", "deg", Table, |r| r.end()?.spin.nutation_3().map(f64::to_degrees);
     /// Angle between the spin axis and the angular momentum, Eq. 36; none where the payload does not turn.
     Cone: "cone_deg", "cone", "deg", Behaviour(2), |r| r.end()?.spin.cone().map(f64::to_degrees);
-    /// Inertia ratio of the payload, Eq. 37.
-    InertiaRatio: "inertia_ratio", "inertia ratio", "1", Behaviour(3), |r| Some(r.end()?.spin.inertia_ratio());
+    /// Inertia ratio of the payload, Eq. 37; none of a rod that spins across its own axis.
+    InertiaRatio: "inertia_ratio", "inertia ratio", "1", Behaviour(3), |r| r.end()?.spin.inertia_ratio();
     /// Velocity of the payload's mass centre from the stage's along inertial axis 1, after the last release.
     RelativeVelocity1: "relative_v1_m_per_s", "relative v₁", "m/s", Table, |r| Some(r.end()?.separated.relative_velocity()[0]);
     /// Velocity of the payload's mass centre from the stage's along inertial axis 2, after the last release.

@@ -51,7 +51,7 @@ impl Results {
 struct Drawn {
     entries: [f64; 6],
     realizable: bool,
-    measures: [f64; Measure::OF_DRAWS],
+    measures: [Option<f64>; Measure::OF_DRAWS],
 }
 
 impl Cell {
@@ -111,7 +111,7 @@ impl Results {
         let failures = counted(failed.map(|failure| failure.kind().into_owned()));
         let spreads = Measure::ALL.into_iter().enumerate().map(|(i, measure)| {
             if i < Measure::OF_DRAWS {
-                Spread::new(measure, drawn.iter().map(|d| Some(d.measures[i])))
+                Spread::new(measure, drawn.iter().map(|d| d.measures[i]))
             } else {
                 Spread::new(measure, separated.iter().flatten().copied())
             }
@@ -140,13 +140,18 @@ impl Drawn {
 }
 
 /// Principal moments in descending order, inertia ratio, wobble in degrees.
-pub(crate) fn measures(inertia: &InertiaMatrix, scenario: &Scenario) -> [f64; Measure::OF_DRAWS] {
+pub(crate) fn measures(
+    inertia: &InertiaMatrix,
+    scenario: &Scenario,
+) -> [Option<f64>; Measure::OF_DRAWS] {
     let mut moments = inertia.principal_axes().moments();
     moments.sort_by(f64::total_cmp);
     let [smallest, middle, largest] = moments;
     // Neither depends on how fast the body turns.
     let spin = SpinMetrics::new(inertia, scenario.spin_axis().as_ref(), scenario.spin_axis());
-    [largest, middle, smallest, spin.inertia_ratio(), spin.wobble().to_degrees()]
+    let [largest, middle, smallest, wobble] =
+        [largest, middle, smallest, spin.wobble().to_degrees()].map(Some);
+    [largest, middle, smallest, spin.inertia_ratio(), wobble]
 }
 
 /// Nutation in degrees after the separation of the scenario with this payload.

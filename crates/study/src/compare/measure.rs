@@ -25,7 +25,7 @@ impl Measure {
         Self::Wobble,
         Self::Nutation,
     ];
-    /// Those that every draw has, without a separation.
+    /// Those that need no separation.
     pub(crate) const OF_DRAWS: usize = 5;
 
     pub(crate) fn name(self) -> &'static str {

@@ -254,7 +254,7 @@ fn level(
 impl BodyResult {
     fn new(body: &NominalBody, scenario: &Scenario, levels: Vec<LevelResult>) -> Self {
         let matrix = *body.inertia().as_inertia_matrix();
-        let of_draws = measures(&matrix, scenario).map(Some);
+        let of_draws = measures(&matrix, scenario);
         let nutation = nutation(matrix, scenario).ok().flatten();
         let values = of_draws.into_iter().chain([nutation]);
         Self {
