@@ -140,7 +140,8 @@ impl SpinMetrics {
 
     /// Inertia ratio σ = 1 + Re √((1 − I₁/I₂)(1 − I₁/I₃)) · sgn(I₁ − I₂) (Eq. 37), roll to pitch: above
     /// 1 for spin about the axis of largest moment, 1 for the intermediate. I₂ and I₃ may change places.
-    /// None of a rod that spins across its own axis: bodies as near to it as one likes have every ratio from 1 to 2.
+    /// None where I₂ or I₃ is zero: of a rod that spins across its own axis, bodies as near to it as one likes have every
+    /// ratio from 1 to 2.
     #[must_use]
     pub fn inertia_ratio(&self) -> Option<f64> {
         self.inertia_ratio
@@ -176,7 +177,7 @@ impl<'de> serde::Deserialize<'de> for SpinMetrics {
 }
 
 fn inertia_ratio(i1: f64, i2: f64, i3: f64) -> Option<f64> {
-    // Moments are known to a few ε of the largest, which moves the product by that over the least of the two divisors.
+    // Moments are known to a few ε of the largest. Of a body, that moves the product by as much over the smaller of I₂ and I₃.
     let largest = i1.abs().max(i2.abs()).max(i3.abs());
     if i2.abs().min(i3.abs()) <= 1024.0 * f64::EPSILON * largest {
         return None;
@@ -231,6 +232,16 @@ mod tests {
                 prop_assert!(serde_json::from_value::<SpinMetrics>(bad).is_err(), "{}", field);
             }
         }
+    }
+
+    /// One of negative moment has a negative ratio: 1 − √((1 + ½)(1 + ½)).
+    #[cfg(feature = "serde")]
+    #[test]
+    fn metrics_of_a_body_that_cannot_exist_read_back() {
+        let metrics = SpinMetrics::new(&matrix([-0.5, 1.0, 1.0], [0.0; 3]), &Vector3::x(), &X);
+        assert_eq!(metrics.inertia_ratio(), Some(-0.5));
+        let json = serde_json::to_string(&metrics).unwrap();
+        assert_eq!(serde_json::from_str::<SpinMetrics>(&json).unwrap(), metrics);
     }
 
     /// Peck (2003), Results: "the central values … are 1.408 and 1.144°".

@@ -149,9 +149,8 @@ pub(crate) fn measures(
     let [smallest, middle, largest] = moments;
     // Neither depends on how fast the body turns.
     let spin = SpinMetrics::new(inertia, scenario.spin_axis().as_ref(), scenario.spin_axis());
-    let [largest, middle, smallest, wobble] =
-        [largest, middle, smallest, spin.wobble().to_degrees()].map(Some);
-    [largest, middle, smallest, spin.inertia_ratio(), wobble]
+    let wobble = spin.wobble().to_degrees();
+    [Some(largest), Some(middle), Some(smallest), spin.inertia_ratio(), Some(wobble)]
 }
 
 /// Nutation in degrees after the separation of the scenario with this payload.

@@ -254,9 +254,8 @@ fn level(
 impl BodyResult {
     fn new(body: &NominalBody, scenario: &Scenario, levels: Vec<LevelResult>) -> Self {
         let matrix = *body.inertia().as_inertia_matrix();
-        let of_draws = measures(&matrix, scenario);
         let nutation = nutation(matrix, scenario).ok().flatten();
-        let values = of_draws.into_iter().chain([nutation]);
+        let values = measures(&matrix, scenario).into_iter().chain([nutation]);
         Self {
             name: body.name().to_owned(),
             inertia_kg_m2: body.inertia().entries(),

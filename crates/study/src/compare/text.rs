@@ -179,7 +179,7 @@ impl Display for ModelComparison {
         )?;
         wrapped(
             f,
-            "–: no such model, see below, or no such number; *: covariance further off the \
+            "–: there is no such model, see below, or no such number; *: covariance further off the \
              reference than that of a body known exactly (100 %), so no like for like.",
             "",
         )?;
