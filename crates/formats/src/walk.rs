@@ -2,9 +2,10 @@
 
 use std::{
     collections::{HashMap, hash_map::Entry},
-    fs,
+    fs, io,
     path::{Path, PathBuf},
 };
+use walkdir::{DirEntry, WalkDir};
 
 use crate::{
     Bearing, FileError, FileProblem,
@@ -64,41 +65,38 @@ fn is_wanted(path: &Path) -> bool {
     (known_extension(path).is_some() || not_read(path).is_some()) && !is_copy(path)
 }
 
+/// Whether an entry of a folder is a folder to be walked, or a file that may hold inertias.
+fn is_taken(entry: &DirEntry) -> bool {
+    let path = entry.path();
+    if entry.file_name().to_string_lossy().starts_with('.') {
+        false
+    } else if entry.file_type().is_dir() {
+        !path.join("CACHEDIR.TAG").exists()
+    } else {
+        // A link to a folder, whatever its name, is none of these.
+        is_wanted(path) && !path.is_dir()
+    }
+}
+
 fn walk(folder: &Path, found: &mut Vec<Found>, errors: &mut Vec<FileError>, seen: &mut Seen) {
     let mut is_empty = true;
-    // A stack of our own: folders may be nested deeper than calls may.
-    let mut open = vec![folder.to_owned()];
-    while let Some(path) = open.pop() {
-        let is_link = fs::symlink_metadata(&path).is_ok_and(|m| m.file_type().is_symlink());
-        let is_folder = fs::metadata(&path).is_ok_and(|m| m.is_dir());
-        let given = path == folder;
-        if is_folder && !given && (is_link || path.join("CACHEDIR.TAG").exists()) {
-            continue;
-        }
-        if !is_folder {
-            is_empty = false;
-            add(path, false, found, seen);
-            continue;
-        }
-        let listed = fs::read_dir(&path)
-            .and_then(|entries| entries.map(|entry| entry.map(|entry| entry.path())).collect());
-        let mut entries: Vec<PathBuf> = match listed {
-            Ok(entries) => entries,
+    let entries = WalkDir::new(folder).min_depth(1).sort_by_file_name().into_iter();
+    for entry in entries.filter_entry(is_taken) {
+        match entry {
+            Ok(entry) if entry.file_type().is_dir() => continue,
+            Ok(entry) => add(entry.into_path(), false, found, seen),
             Err(error) => {
-                is_empty = false;
-                errors.push(FileError::new(&path, FileProblem::from(error).into(), Bearing::Holds));
-                continue;
+                let path = error.path().unwrap_or(folder).to_owned();
+                // Links to folders are not followed, without which there are no loops.
+                let problem = error.into_io_error().unwrap_or_else(|| io::Error::other("a loop"));
+                errors.push(FileError::new(
+                    &path,
+                    FileProblem::from(problem).into(),
+                    Bearing::Holds,
+                ));
             }
-        };
-        entries.retain(|entry| {
-            let hidden =
-                entry.file_name().is_none_or(|name| name.to_string_lossy().starts_with('.'));
-            let wanted = is_wanted(entry);
-            !hidden && (wanted || fs::metadata(entry).is_ok_and(|m| m.is_dir()))
-        });
-        // The stack hands out the last first.
-        entries.sort_by(|a, b| b.cmp(a));
-        open.extend(entries);
+        }
+        is_empty = false;
     }
     if is_empty {
         errors.push(FileError::new(folder, FileProblem::EmptyFolder.into(), Bearing::Holds));
@@ -108,6 +106,7 @@ fn walk(folder: &Path, found: &mut Vec<Found>, errors: &mut Vec<FileError>, seen
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::{prelude::*, sample::select};
 
     fn names(found: &[Found], root: &Path) -> Vec<String> {
         let below = |f: &Found| f.path.strip_prefix(root).unwrap_or(&f.path).display().to_string();
@@ -140,6 +139,44 @@ mod tests {
         assert_eq!(twice.len(), 4);
         assert!(twice.iter().any(|f| f.named && f.path.ends_with("z.urdf")));
         assert_eq!(find(&[root.join("nowhere")]).1.len(), 1);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Of any tree: what is below no hidden folder and no cache, and whose name says that it may hold inertias.
+        #[test]
+        fn trees_are_walked_whole(
+            tree in prop::collection::btree_set(
+                (
+                    prop::collection::vec(select(&["a", "B.urdf", "a b", ".git", "c.d", "a.csv.d"][..]), 0..4),
+                    select(&["x.urdf", "X.SDF", "z.csv", "CACHEDIR.TAG", "z.repaired.csv", "t.txt", ".x.urdf", "hand.USDA"][..]),
+                ),
+                1..20,
+            ),
+        ) {
+            let root = tempfile::tempdir().unwrap();
+            let root = root.path();
+            for (folders, name) in &tree {
+                let folder = root.join(folders.join("/"));
+                fs::create_dir_all(&folder).unwrap();
+                fs::write(folder.join(name), "").unwrap();
+            }
+            let is_cache = |folders: &[&'static str]| {
+                !folders.is_empty() && tree.contains(&(folders.to_vec(), "CACHEDIR.TAG"))
+            };
+            let expected = tree.iter().filter(|(folders, name)| {
+                let passed_over = folders.contains(&".git") || (1..=folders.len()).any(|n| is_cache(&folders[..n]));
+                !passed_over && ["x.urdf", "X.SDF", "z.csv", "hand.USDA"].contains(name)
+            });
+            let mut expected: Vec<PathBuf> =
+                expected.map(|(folders, name)| root.join(folders.join("/")).join(name)).collect();
+            expected.sort();
+            let (found, errors) = find(&[root.to_owned()]);
+            let paths: Vec<PathBuf> = found.into_iter().map(|found| found.path).collect();
+            prop_assert_eq!(&paths, &expected);
+            prop_assert_eq!(errors.len(), usize::from(expected.is_empty()));
+        }
     }
 
     #[cfg(unix)]
