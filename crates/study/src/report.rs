@@ -224,12 +224,12 @@ fn nearest(clearance: &ClearanceSummary) -> String {
         _ => "No run has a clearance".to_owned(),
     };
     if let Some(p01) = clearance.p01_m {
-        let p01 = format!("; 99 % of the runs keep {} m", significant(p01, 4));
+        let p01 = format!("; of the runs with a clearance, 99 % keep {} m", significant(p01, 4));
         let interval = interval(clearance.p01_interval_m, 4);
         text.push_str(format!("{p01} {interval}").trim_end());
     }
     if let Some(p05) = clearance.p05_m {
-        text.push_str(&format!(", 95 % {} m", significant(p05, 4)));
+        text.push_str(&format!(", and 95 % keep {} m", significant(p05, 4)));
     }
     text.push('.');
     for (note, count) in &clearance.notes {

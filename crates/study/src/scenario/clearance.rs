@@ -12,7 +12,7 @@ use super::{
     file::{ClearanceFile, ShapeFile},
     limits,
 };
-use crate::{body::Body, failure::Failure};
+use crate::{body::Body, failure::RunFailure};
 
 /// How well the distance is known before the last release, as a share of it, where most are smallest at the start:
 /// what counts then is whether they touch.
@@ -62,11 +62,11 @@ impl Outlines {
     }
 
     /// The outlines of payload and stage about mass centres that lie so far off the nominal ones, body axes, m.
-    pub(crate) fn about(&self, centres: &[Vector3<f64>; 2]) -> Result<[Outline; 2], Failure> {
+    pub(crate) fn about(&self, centres: &[Vector3<f64>; 2]) -> Result<[Outline; 2], RunFailure> {
         let about = |body: Body, outline: &Outline, centre: &Vector3<f64>| {
             outline
                 .about(*centre)
-                .map_err(|problem| Failure::Outline { body: body.name(), problem })
+                .map_err(|problem| RunFailure::Outline { body: body.name(), problem })
         };
         let [payload, stage] = centres;
         let payload = about(Body::Payload, &self.payload, payload)?;
@@ -81,7 +81,7 @@ impl Outlines {
         settings: &Settings,
         outcome: &Outcome,
         centres: &[Vector3<f64>; 2],
-    ) -> Result<Result<Watched, ClearanceError>, Failure> {
+    ) -> Result<Result<Watched, ClearanceError>, RunFailure> {
         let outlines = self.about(centres)?;
         let pushed = Pushed::new(separation, settings)?;
         Ok(Watched::new(&outlines, pushed, outcome, self.coast))
@@ -148,7 +148,7 @@ fn over<M: Motion>(
 struct Pushed(Vec<(Step, StepLimits)>);
 
 impl Pushed {
-    fn new(separation: &Separation, settings: &Settings) -> Result<Self, Failure> {
+    fn new(separation: &Separation, settings: &Settings) -> Result<Self, RunFailure> {
         let mut steps = Vec::new();
         separation.follow(settings, 0.0, |step| steps.push((step.clone(), step.limits())))?;
         Ok(Self(steps))
