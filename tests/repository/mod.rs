@@ -7,5 +7,6 @@ mod errors;
 mod facade;
 mod files;
 mod layout;
+mod names;
 mod pages;
 mod tokens;

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::BodyError;
+use crate::FileBodyError;
 
 /// Names of the six entries, in the order of [`ENTRIES`].
 pub(crate) const NAMES: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
@@ -61,12 +61,12 @@ impl Products {
     }
 
     /// What the cell of a table says; nothing if it is blank.
-    pub(crate) fn of_cell(text: &str) -> Result<Option<Self>, BodyError> {
+    pub(crate) fn of_cell(text: &str) -> Result<Option<Self>, FileBodyError> {
         match text.trim().to_lowercase().as_str() {
             "" => Ok(None),
             "-" => Ok(Some(Self::TensorEntries)),
             "+" => Ok(Some(Self::Integrals)),
-            word => Self::parse(word).map(Some).ok_or_else(|| BodyError::Word {
+            word => Self::parse(word).map(Some).ok_or_else(|| FileBodyError::Word {
                 field: "products",
                 value: shortened(word),
                 allowed: "tensor, integrals, - or +",
@@ -104,7 +104,7 @@ impl Number {
         field: &'static str,
         raw: &str,
         start: Option<usize>,
-    ) -> Result<Self, BodyError> {
+    ) -> Result<Self, FileBodyError> {
         let trimmed = raw.trim_start();
         let skipped = raw.len() - trimmed.len();
         let digits = trimmed.trim_end();
@@ -116,11 +116,11 @@ impl Number {
                 });
                 Ok(Self { value, place })
             }
-            Ok(_) => Err(BodyError::NotFinite { field, value: shortened(digits) }),
+            Ok(_) => Err(FileBodyError::NotFinite { field, value: shortened(digits) }),
             Err(_) if is_expression(digits) => {
-                Err(BodyError::Expression { field, value: shortened(digits) })
+                Err(FileBodyError::Expression { field, value: shortened(digits) })
             }
-            Err(_) => Err(BodyError::NotANumber { field, value: shortened(digits) }),
+            Err(_) => Err(FileBodyError::NotANumber { field, value: shortened(digits) }),
         }
     }
 
@@ -130,13 +130,13 @@ impl Number {
         raw: &str,
         start: Option<usize>,
         allowed: usize,
-    ) -> Result<Vec<Self>, BodyError> {
+    ) -> Result<Vec<Self>, FileBodyError> {
         let found = raw.split_ascii_whitespace().count();
         if found != allowed {
             if is_expression(raw) {
-                return Err(BodyError::Expression { field, value: shortened(raw) });
+                return Err(FileBodyError::Expression { field, value: shortened(raw) });
             }
-            return Err(BodyError::Count { field, found, allowed });
+            return Err(FileBodyError::Count { field, found, allowed });
         }
         let origin = raw.as_ptr() as usize;
         raw.split_ascii_whitespace()
@@ -220,14 +220,14 @@ impl Reading {
 
 /// One body of a file: its name, where it stands, and its inertia, if that could be read.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Body {
+pub struct FileBody {
     name: String,
     line: usize,
-    reading: Result<Reading, BodyError>,
+    reading: Result<Reading, FileBodyError>,
 }
 
-impl Body {
-    pub(crate) fn new(name: String, line: usize, reading: Result<Reading, BodyError>) -> Self {
+impl FileBody {
+    pub(crate) fn new(name: String, line: usize, reading: Result<Reading, FileBodyError>) -> Self {
         Self { name, line, reading }
     }
 
@@ -254,7 +254,7 @@ impl Body {
     ///
     /// # Errors
     /// It could not be read.
-    pub fn inertia(&self) -> Result<&Matrix3<f64>, BodyError> {
+    pub fn inertia(&self) -> Result<&Matrix3<f64>, FileBodyError> {
         self.reading.as_ref().map(|reading| &reading.matrix).map_err(Clone::clone)
     }
 

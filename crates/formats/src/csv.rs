@@ -1,7 +1,7 @@
 //! Tables: one body a row, under a header that names the six entries.
 
 use crate::{
-    Body, BodyError, FileProblem, MAX_BODIES, Products,
+    FileBody, FileBodyError, FileProblem, MAX_BODIES, Products,
     body::{Number, Reading},
     error::Refusal,
     products_comment::stated_products,
@@ -9,7 +9,7 @@ use crate::{
     text::Text,
 };
 
-pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal> {
+pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<FileBody>, Refusal> {
     let unclosed = |at| text.malformed(at, "a quotation mark is not closed");
     let (header, mut rows) = find_header(text)?;
     let products = stated_products(text)?.unwrap_or(default);
@@ -32,9 +32,9 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal>
                 .map(|reading| reading.in_units(header.mass_kg, header.inertia_kg_m2))
         } else {
             let (found, allowed) = (row.len(), header.row.len());
-            Err(BodyError::Count { field: "the row", found, allowed })
+            Err(FileBodyError::Count { field: "the row", found, allowed })
         };
-        bodies.push(Body::new(name, line, reading));
+        bodies.push(FileBody::new(name, line, reading));
     }
     Ok(bodies)
 }
@@ -42,7 +42,7 @@ pub(crate) fn read(text: &Text, default: Products) -> Result<Vec<Body>, Refusal>
 fn reading<'a>(
     cell: impl Fn(usize) -> Option<(&'a str, usize)>,
     default: Products,
-) -> Result<Reading, BodyError> {
+) -> Result<Reading, FileBodyError> {
     let stated = cell(PRODUCTS).map_or(Ok(None), |(word, _)| Products::of_cell(word))?;
     let products = stated.unwrap_or(default);
     let number = |column: usize| {
@@ -68,11 +68,11 @@ mod tests {
     use super::*;
     use crate::body::ENTRIES;
 
-    fn try_read(csv: &str) -> Result<Vec<Body>, Refusal> {
+    fn try_read(csv: &str) -> Result<Vec<FileBody>, Refusal> {
         read(&Text::new(csv.as_bytes(), true).unwrap(), Products::TensorEntries)
     }
 
-    fn six(body: &Body) -> [f64; 6] {
+    fn six(body: &FileBody) -> [f64; 6] {
         ENTRIES.map(|entry| body.inertia().unwrap()[entry])
     }
 

@@ -11,7 +11,7 @@ use toml::{
 };
 
 use crate::{
-    Body, BodyError, FileProblem, GapKind, MAX_BODIES, MAX_DEPTH, Products,
+    FileBody, FileBodyError, FileProblem, GapKind, MAX_BODIES, MAX_DEPTH, Products,
     body::{Number, Reading, entry_of, shortened},
     error::Refusal,
     gap::Gaps,
@@ -57,21 +57,21 @@ impl<'a> Item<'a> {
         }
     }
 
-    fn number(&self, field: &'static str) -> Result<Number, BodyError> {
+    fn number(&self, field: &'static str) -> Result<Number, FileBodyError> {
         match &self.value {
             Value::Number(raw, end) => {
                 let number = Number::parse(field, raw, Some(self.start))?;
                 let place = number.place.map(|place| crate::body::Place { end: *end, ..place });
                 Ok(Number { place, ..number })
             }
-            Value::Text(text) => Err(BodyError::NotANumber { field, value: shortened(text) }),
-            _ => Err(BodyError::Shape { field, allowed: "a number" }),
+            Value::Text(text) => Err(FileBodyError::NotANumber { field, value: shortened(text) }),
+            _ => Err(FileBodyError::Shape { field, allowed: "a number" }),
         }
     }
 }
 
 /// Reads a TOML file.
-pub(crate) fn toml(text: &Text, products: Products) -> Result<(Vec<Body>, Gaps), Refusal> {
+pub(crate) fn toml(text: &Text, products: Products) -> Result<(Vec<FileBody>, Gaps), Refusal> {
     let source = text.as_str();
     let table = DeTable::parse(source).map_err(|error| {
         let at = error.span().map_or(0, |span| span.start);
@@ -119,7 +119,7 @@ fn from_toml<'a>(value: &DeValue<'a>, span: &Range<usize>, depth: usize) -> Item
 }
 
 /// Reads a JSON file.
-pub(crate) fn json(text: &Text, products: Products) -> Result<(Vec<Body>, Gaps), Refusal> {
+pub(crate) fn json(text: &Text, products: Products) -> Result<(Vec<FileBody>, Gaps), Refusal> {
     let source = text.as_str();
     if let Some(at) = too_deep(source.as_bytes()) {
         return Err(text.refuse(at, FileProblem::TooDeep));
@@ -227,7 +227,7 @@ fn bodies(
     root: &Item<'_>,
     all: &[usize],
     default: Products,
-) -> Result<(Vec<Body>, Gaps), Refusal> {
+) -> Result<(Vec<FileBody>, Gaps), Refusal> {
     let products = match root.get("products") {
         None => default,
         Some(item) => products_of(item).map_err(|error| text.malformed(item.start, error))?,
@@ -320,7 +320,7 @@ fn all_in_json(source: &str) -> Vec<usize> {
     .collect()
 }
 
-fn body(text: &Text, key: &str, item: &Item<'_>, products: Products) -> Body {
+fn body(text: &Text, key: &str, item: &Item<'_>, products: Products) -> FileBody {
     let name = match item.get("name").map(|item| &item.value) {
         Some(Value::Text(name)) => name.clone(),
         _ => key.to_owned(),
@@ -329,23 +329,27 @@ fn body(text: &Text, key: &str, item: &Item<'_>, products: Products) -> Body {
     let line = text.line(inertia.unwrap_or(item).start);
     let reading = match inertia {
         Some(inertia) => reading(item, inertia, products),
-        None => Err(BodyError::Missing { field: INERTIA }),
+        None => Err(FileBodyError::Missing { field: INERTIA }),
     };
-    Body::new(name, line, reading)
+    FileBody::new(name, line, reading)
 }
 
 /// What a document, or a body in it, says of the products.
-fn products_of(item: &Item<'_>) -> Result<Products, BodyError> {
+fn products_of(item: &Item<'_>) -> Result<Products, FileBodyError> {
     let word = match &item.value {
         Value::Text(word) => Products::parse(word),
         _ => None,
     };
     let allowed = "\"tensor\" or \"integrals\"";
-    word.ok_or(BodyError::Shape { field: "products", allowed })
+    word.ok_or(FileBodyError::Shape { field: "products", allowed })
 }
 
-fn reading(item: &Item<'_>, inertia: &Item<'_>, products: Products) -> Result<Reading, BodyError> {
-    const SHAPE: BodyError = BodyError::Shape {
+fn reading(
+    item: &Item<'_>,
+    inertia: &Item<'_>,
+    products: Products,
+) -> Result<Reading, FileBodyError> {
+    const SHAPE: FileBodyError = FileBodyError::Shape {
         field: INERTIA,
         allowed: "three rows of three numbers, or ixx, iyy, izz, ixy, ixz and iyz",
     };
@@ -384,7 +388,7 @@ mod tests {
     use super::*;
     use crate::body::ENTRIES;
 
-    fn read(text: &str) -> Result<Vec<Body>, Refusal> {
+    fn read(text: &str) -> Result<Vec<FileBody>, Refusal> {
         let text = Text::new(text.as_bytes(), false).unwrap();
         if ["{", "[{", "[[["].iter().any(|start| text.as_str().starts_with(start)) {
             json(&text, Products::TensorEntries)
@@ -394,7 +398,7 @@ mod tests {
         .map(|(bodies, _)| bodies)
     }
 
-    fn six(body: &Body) -> [f64; 6] {
+    fn six(body: &FileBody) -> [f64; 6] {
         ENTRIES.map(|entry| body.inertia().unwrap()[entry])
     }
 

@@ -184,7 +184,7 @@ impl From<FileProblem> for Refusal {
 /// Why the inertia of one body could not be read; its neighbours can.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum BodyError {
+pub enum FileBodyError {
     /// A field is not there.
     #[error("{field} is missing")]
     Missing {

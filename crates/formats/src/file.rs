@@ -7,8 +7,8 @@ use std::{
 };
 
 use crate::{
-    Bearing, Body, FileError, FileProblem, Format, Gap, MAX_BYTES, MAX_TOML_BYTES, Products, csv,
-    data,
+    Bearing, FileBody, FileError, FileProblem, Format, Gap, MAX_BYTES, MAX_TOML_BYTES, Products,
+    csv, data,
     error::Refusal,
     gap::Gaps,
     kind::{all_extensions, is_generic, known_extension, not_read, sniffed},
@@ -25,7 +25,7 @@ pub struct InertiaFile {
     pub(crate) bytes: Vec<u8>,
     pub(crate) offsets: Offsets,
     default: Products,
-    bodies: Vec<Body>,
+    bodies: Vec<FileBody>,
     gaps: Vec<Gap>,
 }
 
@@ -100,7 +100,7 @@ impl InertiaFile {
 
     /// The bodies, in the order of the file.
     #[must_use]
-    pub fn bodies(&self) -> &[Body] {
+    pub fn bodies(&self) -> &[FileBody] {
         &self.bodies
     }
 
@@ -171,7 +171,7 @@ const WORDS: [(&[u8], bool); 8] = [
 struct Parsed {
     format: Format,
     offsets: Offsets,
-    bodies: Vec<Body>,
+    bodies: Vec<FileBody>,
     gaps: Gaps,
 }
 

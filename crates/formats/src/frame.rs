@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
 use crate::{
-    BodyError, Format, LinkProblem,
+    FileBodyError, Format, LinkProblem,
     body::{NAMES, Number, Place, shortened},
     holder::frames,
     orientation::{ATTRIBUTES, Angles, of_mjcf, of_quaternion, of_roll_pitch_yaw},
@@ -176,7 +176,7 @@ fn mjcf(node: Node<'_, '_>, angles: &Angles) -> Result<Frame, LinkProblem> {
     let rotation = of_mjcf(node, angles)?;
     let orientation = ATTRIBUTES.into_iter().find(|name| node.attribute(name).is_some());
     if let Some(second) = orientation.filter(|_| node.attribute("fullinertia").is_some()) {
-        return Err(BodyError::Both { first: "fullinertia", second }.into());
+        return Err(FileBodyError::Both { first: "fullinertia", second }.into());
     }
     let quaternion = node.numbers("quat", 4).transpose()?.map(|numbers| Spot::of(&numbers));
     let diagonal = node.whole("diaginertia").map(|moments| Diagonal {
@@ -212,7 +212,7 @@ fn sdf(node: Node<'_, '_>) -> Result<Frame, LinkProblem> {
     }
     let origin = node.child("origin").and_then(|origin| origin.numbers("pose", 6)).transpose()?;
     if origin.is_some() && !has_attributes(node) {
-        return Err(BodyError::Attribute { field: "pose of origin" }.into());
+        return Err(FileBodyError::Attribute { field: "pose of origin" }.into());
     }
     let is_quaternion = match pose.and_then(|pose| pose.attribute("rotation_format")) {
         None | Some("euler_rpy") => false,

@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use std::path::Path;
 
 use crate::{
-    BodyError, Format, LinkProblem,
+    FileBodyError, Format, LinkProblem,
     frame::{self, Frame},
     mesh_file::{self, MeshFileError},
     orientation::Angles,
@@ -85,7 +85,7 @@ fn solid(around: Node<'_, '_>, format: Format, angles: &Angles) -> Result<Solid,
         let numbers = match (shape.numbers(name, allowed), shape.child(name)) {
             (Some(numbers), _) => numbers,
             (None, Some(element)) => element.numbers_inside(name, allowed),
-            (None, None) => Err(BodyError::Missing { field: name }),
+            (None, None) => Err(FileBodyError::Missing { field: name }),
         };
         let numbers: Vec<f64> =
             numbers.map_err(LinkProblem::from)?.iter().map(|number| number.value).collect();

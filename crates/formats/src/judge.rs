@@ -35,13 +35,13 @@ pub enum Note {
 
 /// The judgement of one body.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judgement {
+pub struct BodyJudgement {
     report: RealizabilityReport,
     mass_fault: Option<MassFault>,
     note: Option<Note>,
 }
 
-impl Judgement {
+impl BodyJudgement {
     /// Whether some distribution of mass has this inertia, by what margin, and if none, why.
     #[must_use]
     pub fn report(&self) -> &RealizabilityReport {
@@ -75,7 +75,7 @@ pub(crate) fn with_flipped_products(matrix: &Matrix3<f64>) -> Matrix3<f64> {
 /// Judges an inertia about the mass centre, products as tensor entries, at a tolerance as a share of
 /// its trace (see [`RealizabilityReport::within`]), and the mass beside it, if there is one.
 #[must_use]
-pub fn judge(matrix: &Matrix3<f64>, mass_kg: Option<f64>, tolerance: f64) -> Judgement {
+pub fn judge(matrix: &Matrix3<f64>, mass_kg: Option<f64>, tolerance: f64) -> BodyJudgement {
     let report = RealizabilityReport::within(matrix, tolerance);
     let no_inertia = *matrix == Matrix3::zeros();
     let mass_fault = match mass_kg {
@@ -94,7 +94,7 @@ pub fn judge(matrix: &Matrix3<f64>, mass_kg: Option<f64>, tolerance: f64) -> Jud
         Some(mass) if no_inertia && mass == 0.0 => Some(Note::Massless),
         _ => None,
     };
-    Judgement { report, mass_fault, note }
+    BodyJudgement { report, mass_fault, note }
 }
 
 #[cfg(test)]

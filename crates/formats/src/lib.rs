@@ -65,17 +65,17 @@ mod units;
 mod walk;
 mod xml;
 
-/// What a [`Judgement`] says of an inertia.
+/// What a [`BodyJudgement`] says of an inertia.
 pub use gyradius_inertia::{Fault, RELATIVE_TOLERANCE, RealizabilityReport};
 
-pub use body::{Body, Products};
+pub use body::{FileBody, Products};
 pub use compiler::CompilerDoubt;
 pub use edit::is_same_but_numbers;
-pub use error::{Bearing, BodyError, FileError, FileProblem};
+pub use error::{Bearing, FileBodyError, FileError, FileProblem};
 pub use file::InertiaFile;
 pub use gap::{Gap, GapKind};
 pub use geometry::GeometryProblem;
-pub use judge::{Judgement, MassFault, Note, judge};
+pub use judge::{BodyJudgement, MassFault, Note, judge};
 pub use kind::Format;
 pub use mesh_file::MeshFileError;
 pub use new_file::{NewFile, WriteError};

@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use std::collections::HashMap;
 
 use crate::{
-    BodyError, Format, LinkProblem,
+    FileBodyError, Format, LinkProblem,
     body::{Number, shortened},
     geometry::{GeometryProblem, Shape, Solid},
     holder::holder,
@@ -223,7 +223,7 @@ fn numbers(
     allowed: std::ops::RangeInclusive<usize>,
 ) -> Result<Vec<f64>, GeometryProblem> {
     let text = node.attribute(name).unwrap_or_default();
-    let all: Result<Vec<f64>, BodyError> = text
+    let all: Result<Vec<f64>, FileBodyError> = text
         .split_ascii_whitespace()
         .map(|word| Ok(Number::parse(name, word, None)?.value))
         .collect();
@@ -232,7 +232,7 @@ fn numbers(
         return Ok(all);
     }
     let (found, allowed) = (all.len(), *allowed.start());
-    Err(LinkProblem::from(BodyError::Count { field: name, found, allowed }).into())
+    Err(LinkProblem::from(FileBodyError::Count { field: name, found, allowed }).into())
 }
 
 fn last_part(path: &str) -> &str {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use crate::{BodyError, LinkProblem, xml::Node};
+use crate::{FileBodyError, LinkProblem, xml::Node};
 
 /// What MJCF may say of an orientation, of which one may be given.
 pub(crate) const ATTRIBUTES: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
@@ -45,7 +45,7 @@ pub(crate) fn of_mjcf(
     let mut given = ATTRIBUTES.into_iter().filter(|name| node.attribute(name).is_some());
     let Some(name) = given.next() else { return Ok(UnitQuaternion::identity()) };
     if let Some(second) = given.next() {
-        return Err(BodyError::Both { first: name, second }.into());
+        return Err(FileBodyError::Both { first: name, second }.into());
     }
     let list = |allowed| -> Result<Vec<f64>, LinkProblem> {
         let numbers = node.numbers(name, allowed).unwrap_or(Ok(Vec::new()))?;

@@ -11,7 +11,7 @@ use std::{
 };
 
 use crate::{
-    Body, InertiaFile, MassFault, TOLERANCE, WriteError,
+    FileBody, InertiaFile, MassFault, TOLERANCE, WriteError,
     body::Reading,
     edit::{Edit, edited},
     judge::{judge, with_flipped_products},
@@ -241,7 +241,7 @@ impl InertiaFile {
 }
 
 /// The numbers of a body that must change, and what they become.
-fn change(body: &Body, reading: &Reading, remedy: Remedy) -> Result<Change, RepairError> {
+fn change(body: &FileBody, reading: &Reading, remedy: Remedy) -> Result<Change, RepairError> {
     let (name, line) = (body.name().to_owned(), body.line());
     if let Some(fault) = judge(&reading.matrix, reading.mass_kg, TOLERANCE).mass_fault() {
         return Err(RepairError::NoMass { name, line, fault });

@@ -8,8 +8,8 @@ use std::{
 };
 
 use crate::{
-    Body, BodyError, CompilerDoubt, FileProblem, Format, Gap, InertiaFile, LinkProblem, Products,
-    RobotError, compiler,
+    CompilerDoubt, FileBody, FileBodyError, FileProblem, Format, Gap, InertiaFile, LinkProblem,
+    Products, RobotError, compiler,
     copy::edits,
     edit::{Edit, edited},
     frame::{self, Frame},
@@ -130,7 +130,7 @@ struct Names {
 }
 
 impl Names {
-    fn of(bodies: &[Body]) -> Self {
+    fn of(bodies: &[FileBody]) -> Self {
         let taken = bodies.iter().map(|body| named(body).to_owned()).collect();
         Self { taken, counts: HashMap::new() }
     }
@@ -154,7 +154,7 @@ impl Names {
 }
 
 /// The name of a body, or what it is called without one.
-fn named(body: &Body) -> &str {
+fn named(body: &FileBody) -> &str {
     if body.name().is_empty() { "unnamed" } else { body.name() }
 }
 
@@ -220,7 +220,7 @@ impl RobotFile {
                     let inertia = matrix.map_err(|_| LinkProblem::OutOfRange)?;
                     // As it is written, where nothing is turned.
                     let numbers = LinkNumbers {
-                        mass: reading.mass_kg.ok_or(BodyError::Missing { field: "mass" })?,
+                        mass: reading.mass_kg.ok_or(FileBodyError::Missing { field: "mass" })?,
                         centre: frame.centre,
                         inertia,
                     };

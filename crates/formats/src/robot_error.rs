@@ -1,6 +1,6 @@
 //! Why a robot, or one of its links, cannot be read or written.
 
-use crate::{BodyError, FileError, Format};
+use crate::{FileBodyError, FileError, Format};
 
 /// Why the numbers of one link cannot be told or written; those of its neighbours can.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -8,7 +8,7 @@ use crate::{BodyError, FileError, Format};
 pub enum LinkProblem {
     /// A number is missing, or none.
     #[error(transparent)]
-    Body(#[from] BodyError),
+    Body(#[from] FileBodyError),
     /// It stands beside the link's own, for Gazebo.
     #[error("it stands in a block for Gazebo, beside the link's own")]
     Gazebo,
@@ -75,16 +75,16 @@ impl LinkProblem {
     pub fn is_a_slip(&self) -> bool {
         match self {
             Self::Body(error) => match error {
-                BodyError::NotFinite { .. }
-                | BodyError::NotANumber { .. }
-                | BodyError::NotPlain { .. }
-                | BodyError::Expression { .. }
-                | BodyError::Count { .. }
-                | BodyError::Shape { .. }
-                | BodyError::Word { .. }
-                | BodyError::Attribute { .. }
-                | BodyError::Both { .. } => true,
-                BodyError::Missing { .. } => false,
+                FileBodyError::NotFinite { .. }
+                | FileBodyError::NotANumber { .. }
+                | FileBodyError::NotPlain { .. }
+                | FileBodyError::Expression { .. }
+                | FileBodyError::Count { .. }
+                | FileBodyError::Shape { .. }
+                | FileBodyError::Word { .. }
+                | FileBodyError::Attribute { .. }
+                | FileBodyError::Both { .. } => true,
+                FileBodyError::Missing { .. } => false,
             },
             Self::Orientation { .. }
             | Self::AngleUnit { .. }

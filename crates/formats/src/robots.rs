@@ -1,7 +1,7 @@
 //! URDF, MJCF and SDF: where each keeps its inertias, and what its numbers mean.
 
 use crate::{
-    Body, BodyError, FileProblem, Format, GapKind, MAX_BODIES, Products,
+    FileBody, FileBodyError, FileProblem, Format, GapKind, MAX_BODIES, Products,
     body::{ENTRIES, NAMES, Number, Reading, shortened},
     error::Refusal,
     gap::Gaps,
@@ -65,7 +65,7 @@ pub(crate) fn read(
     format: Format,
     extension: Option<&str>,
     products: Products,
-) -> Result<(Vec<Body>, Gaps), Refusal> {
+) -> Result<(Vec<FileBody>, Gaps), Refusal> {
     let mut bodies = Vec::new();
     let gaps = each(tree, format, extension, products, |_, body| bodies.push(body))?;
     Ok((bodies, gaps))
@@ -77,7 +77,7 @@ pub(crate) fn each<'t, 'a>(
     format: Format,
     extension: Option<&str>,
     products: Products,
-    mut take: impl FnMut(Node<'t, 'a>, Body),
+    mut take: impl FnMut(Node<'t, 'a>, FileBody),
 ) -> Result<Gaps, Refusal> {
     let declared = tree.macro_prefixes();
     let is_macro = |node: Node<'_, '_>| {
@@ -106,12 +106,14 @@ pub(crate) fn each<'t, 'a>(
                     gaps.add(kind, line);
                     continue;
                 }
-                Err(Trouble::Body(BodyError::Expression { .. })) if has_macros => {
+                Err(Trouble::Body(FileBodyError::Expression { .. })) if has_macros => {
                     gaps.add(GapKind::Macros, line);
                     continue;
                 }
                 // What is missing is made by the macros in it, which are counted themselves.
-                Err(Trouble::Body(BodyError::Missing { .. })) if node.children().any(is_macro) => {
+                Err(Trouble::Body(FileBodyError::Missing { .. }))
+                    if node.children().any(is_macro) =>
+                {
                     continue;
                 }
                 Err(Trouble::Body(error)) => Err(error),
@@ -120,7 +122,7 @@ pub(crate) fn each<'t, 'a>(
                 return Err(Refusal { line: Some(line), problem: FileProblem::TooManyBodies });
             }
             bodies += 1;
-            take(node, Body::new(node.name_above(), line, reading));
+            take(node, FileBody::new(node.name_above(), line, reading));
         } else if includes(node, format) {
             let file = ["file", "href"].iter().find_map(|name| node.attribute(name));
             let file = file.or_else(|| Some(node.child("uri")?.text()));
@@ -135,7 +137,7 @@ pub(crate) fn each<'t, 'a>(
 /// Why an inertia is not that of a body with numbers.
 enum Trouble {
     Gap(GapKind),
-    Body(BodyError),
+    Body(FileBodyError),
 }
 
 fn read_one(
@@ -174,8 +176,8 @@ fn is_stray(node: Node<'_, '_>) -> bool {
 /// `<mass value=""/>`, `<inertia ixx="" ixy="" ixz="" iyy="" iyz="" izz=""/>`, all required:
 /// entries of the inertia matrix in the axes of `<origin>`, whose rotation therefore does not
 /// matter here.
-fn urdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError> {
-    let missing = |field| BodyError::Missing { field };
+fn urdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, FileBodyError> {
+    let missing = |field| FileBodyError::Missing { field };
     let mass = inertial.child("mass").ok_or(missing("mass"))?;
     let mass = mass.number("value", "mass").ok_or(missing("mass value"))??;
     let inertia = inertial.child("inertia").ok_or(missing("inertia"))?;
@@ -189,13 +191,14 @@ fn urdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError
 /// `mass=""` and one of `diaginertia="3 numbers"` and `fullinertia="6 numbers"`, the latter in the
 /// order M(1,1), M(2,2), M(3,3), M(1,2), M(1,3), M(2,3). MuJoCo's reference wants one of the two; files
 /// without either exist, and mean zeros.
-fn mjcf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError> {
-    let mass = inertial.number("mass", "mass").ok_or(BodyError::Missing { field: "mass" })??;
+fn mjcf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, FileBodyError> {
+    let mass =
+        inertial.number("mass", "mass").ok_or(FileBodyError::Missing { field: "mass" })??;
     let (diagonal, full) = (inertial.numbers("diaginertia", 3), inertial.numbers("fullinertia", 6));
     let mut six = [Number::default(); 6];
     match (diagonal, full) {
         (Some(_), Some(_)) => {
-            return Err(BodyError::Both { first: "diaginertia", second: "fullinertia" });
+            return Err(FileBodyError::Both { first: "diaginertia", second: "fullinertia" });
         }
         (Some(three), None) => six[..3].copy_from_slice(&three?),
         (None, Some(all)) => six.copy_from_slice(&all?),
@@ -203,7 +206,7 @@ fn mjcf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError
             // Zeros stand for what is not stated, never for what is spelled in another way.
             let near = |name: &str| name.to_ascii_lowercase().contains("inertia");
             if names_in(inertial).any(near) {
-                return Err(BodyError::Missing { field: "diaginertia" });
+                return Err(FileBodyError::Missing { field: "diaginertia" });
             }
         }
     }
@@ -213,21 +216,23 @@ fn mjcf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError
 /// `<mass>`, `<inertia><ixx>…`: entries of the inertia matrix ("the product of inertia convention
 /// -m x y (not +m x y) is used", says SDFormat 1.10), absent ones being those of the unit matrix,
 /// an absent mass 1 kg. In SDFormat 1.0 they are attributes: `<inertial mass=""><inertia ixx=""/>`.
-fn sdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError> {
-    const SHAPE: BodyError =
-        BodyError::Shape { field: "inertia", allowed: "ixx, iyy, izz, ixy, ixz and iyz in it" };
+fn sdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, FileBodyError> {
+    const SHAPE: FileBodyError =
+        FileBodyError::Shape { field: "inertia", allowed: "ixx, iyy, izz, ixy, ixz and iyz in it" };
     let allowed = has_attributes(inertial);
     let entry = |node: Node<'_, '_>, name| match (node.number(name, name), node.child(name)) {
-        (Some(_), Some(_)) => Err(BodyError::Both { first: "an attribute", second: "an element" }),
+        (Some(_), Some(_)) => {
+            Err(FileBodyError::Both { first: "an attribute", second: "an element" })
+        }
         (Some(number), None) if allowed => number.map(Some),
-        (Some(_), None) => Err(BodyError::Attribute { field: name }),
+        (Some(_), None) => Err(FileBodyError::Attribute { field: name }),
         (None, Some(element)) => element.number_inside(name).map(Some),
         (None, None) => Ok(None),
     };
     // Defaults stand for what is not stated, never for what is spelled in another way.
     for (name, near) in names_in(inertial).flat_map(|name| ["mass", "inertia"].map(|n| (name, n))) {
         if name != near && name.eq_ignore_ascii_case(near) {
-            return Err(BodyError::Missing { field: near });
+            return Err(FileBodyError::Missing { field: near });
         }
     }
     let inertia = inertial.child("inertia");
@@ -250,9 +255,10 @@ fn sdf(inertial: Node<'_, '_>, products: Products) -> Result<Reading, BodyError>
 fn sdf_or_computed(inertial: Node<'_, '_>, products: Products) -> Result<Reading, Trouble> {
     match inertial.attribute("auto").map(truth) {
         Some(Some(true)) => Err(Trouble::Gap(GapKind::Computed)),
-        Some(None) => {
-            Err(Trouble::Body(BodyError::Shape { field: "auto", allowed: "true or false in it" }))
-        }
+        Some(None) => Err(Trouble::Body(FileBodyError::Shape {
+            field: "auto",
+            allowed: "true or false in it",
+        })),
         Some(Some(false)) | None => sdf(inertial, products).map_err(Trouble::Body),
     }
 }
@@ -268,14 +274,14 @@ mod tests {
     use super::*;
     use crate::text::Text;
 
-    fn bodies(xml: &str) -> Vec<Body> {
+    fn bodies(xml: &str) -> Vec<FileBody> {
         let text = Text::new(xml.as_bytes(), false).unwrap();
         let tree = Tree::parse(&text).unwrap();
         let format = format_of(&tree, None).unwrap();
         read(&tree, format, None, Products::TensorEntries).unwrap().0
     }
 
-    fn six(body: &Body) -> [f64; 6] {
+    fn six(body: &FileBody) -> [f64; 6] {
         let matrix = body.inertia().unwrap();
         assert_eq!(matrix, &matrix.transpose());
         ENTRIES.map(|entry| matrix[entry])

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::{
-    BodyError, FileProblem, Format, InertiaFile, UnitError,
+    FileBodyError, FileProblem, Format, InertiaFile, UnitError,
     body::{ENTRIES, Number, shortened},
     error::Refusal,
     parts::heading::VALUES,
@@ -38,7 +38,7 @@ pub struct TenTable {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TenRow {
     line: usize,
-    values: Result<[f64; 10], BodyError>,
+    values: Result<[f64; 10], FileBodyError>,
 }
 
 /// Why a table is not read as one of ten numbers.
@@ -125,13 +125,13 @@ impl TenTable {
         for body in file.bodies() {
             // The rows of the bodies, in their order.
             let Some(Ok(row)) = rows.next() else { break };
-            let ten = || -> Result<[f64; 10], BodyError> {
+            let ten = || -> Result<[f64; 10], FileBodyError> {
                 let inertia = body.inertia()?;
                 let mut ten = [0.0; 10];
-                ten[0] = body.mass_kg().ok_or(BodyError::Missing { field: VALUES[0] })?;
+                ten[0] = body.mass_kg().ok_or(FileBodyError::Missing { field: VALUES[0] })?;
                 let fields = kind.fields().into_iter().zip(places);
                 for (value, (name, at)) in ten[1..4].iter_mut().zip(fields) {
-                    let field = row.get(at).ok_or(BodyError::Missing { field: name })?;
+                    let field = row.get(at).ok_or(FileBodyError::Missing { field: name })?;
                     *value = Number::parse(name, field.of(text.as_str()), None)?.value * unit;
                 }
                 for (value, entry) in ten[4..].iter_mut().zip(ENTRIES) {
@@ -174,7 +174,7 @@ impl TenRow {
     ///
     /// # Errors
     /// A cell holds no number.
-    pub fn values(&self) -> Result<&[f64; 10], &BodyError> {
+    pub fn values(&self) -> Result<&[f64; 10], &FileBodyError> {
         self.values.as_ref()
     }
 }

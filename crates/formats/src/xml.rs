@@ -10,7 +10,7 @@ use quick_xml::{
 use std::borrow::Cow;
 
 use crate::{
-    BodyError, FileProblem, MAX_ATTRIBUTES, MAX_DEPTH,
+    FileBodyError, FileProblem, MAX_ATTRIBUTES, MAX_DEPTH,
     body::{Number, Place, shortened},
     error::Refusal,
     text::Text,
@@ -339,7 +339,7 @@ impl<'t, 'a> Node<'t, 'a> {
         self,
         name: &str,
         field: &'static str,
-    ) -> Option<Result<Number, BodyError>> {
+    ) -> Option<Result<Number, FileBodyError>> {
         self.find(name).map(|a| Number::parse(field, &a.value, a.start))
     }
 
@@ -348,7 +348,7 @@ impl<'t, 'a> Node<'t, 'a> {
         self,
         name: &'static str,
         allowed: usize,
-    ) -> Option<Result<Vec<Number>, BodyError>> {
+    ) -> Option<Result<Vec<Number>, FileBodyError>> {
         self.find(name).map(|a| Number::parse_list(name, &a.value, a.start, allowed))
     }
 
@@ -377,19 +377,19 @@ impl<'t, 'a> Node<'t, 'a> {
         self,
         field: &'static str,
         allowed: usize,
-    ) -> Result<Vec<Number>, BodyError> {
+    ) -> Result<Vec<Number>, FileBodyError> {
         let text = self.plain_text(field)?;
         Number::parse_list(field, text, self.tree.source.offset_of(text), allowed)
     }
 
     /// The number that is the text of this element.
-    pub(crate) fn number_inside(self, field: &'static str) -> Result<Number, BodyError> {
+    pub(crate) fn number_inside(self, field: &'static str) -> Result<Number, FileBodyError> {
         let text = self.plain_text(field)?;
         Number::parse(field, text, self.tree.source.offset_of(text))
     }
 
     /// The text of this element where there is nothing else in it; programs do not agree on what the rest means.
-    fn plain_text(self, field: &'static str) -> Result<&'a str, BodyError> {
+    fn plain_text(self, field: &'static str) -> Result<&'a str, FileBodyError> {
         let element = self.element();
         if !element.broken {
             return Ok(element.text);
@@ -397,7 +397,7 @@ impl<'t, 'a> Node<'t, 'a> {
         let inside = element.inside.unwrap_or(element.after)..element.after;
         let inside = self.tree.source.as_str().get(inside).unwrap_or_default();
         let content = inside.rsplit_once("</").map_or(inside, |(content, _)| content).trim();
-        Err(BodyError::NotPlain { field, value: shortened(content) })
+        Err(FileBodyError::NotPlain { field, value: shortened(content) })
     }
 }
 

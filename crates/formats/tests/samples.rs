@@ -1,7 +1,7 @@
 //! The same rover in every format: read, judged, repaired, and mutilated.
 
 use gyradius_formats::{
-    Body, InertiaFile, Products, Remedy, RepairError, TOLERANCE, copy_path, judge, write_copy,
+    FileBody, InertiaFile, Products, Remedy, RepairError, TOLERANCE, copy_path, judge, write_copy,
 };
 use gyradius_inertia::InertiaMatrix;
 use proptest::prelude::*;
@@ -45,9 +45,9 @@ fn without_numbers(bytes: &[u8]) -> String {
 fn every_format_says_the_same() {
     for (name, bytes) in SAMPLES {
         let file = parse(name, bytes, Products::TensorEntries);
-        let names: Vec<_> = file.bodies().iter().map(Body::name).collect();
+        let names: Vec<_> = file.bodies().iter().map(FileBody::name).collect();
         assert_eq!(names, ["chassis", "strut", "wheel"], "{name}");
-        let masses: Vec<_> = file.bodies().iter().map(Body::mass_kg).collect();
+        let masses: Vec<_> = file.bodies().iter().map(FileBody::mass_kg).collect();
         assert_eq!(masses, [Some(12.5), Some(3.0), Some(1.5)], "{name}");
         let chassis = file.bodies()[0].inertia().unwrap();
         let rows = [[0.4, 0.01, -0.02], [0.01, 0.5, 0.0], [-0.02, 0.0, 0.7]];

@@ -8,7 +8,7 @@ mod words;
 
 use gyradius_campaign::{Kept, Rows, StoppingRule, Verdict, begun, folder_of};
 use gyradius_study::{
-    AnyScenario, Judged, Notice, Options, Outcome, Replay, SimulatorReplay, Which,
+    AnyScenario, Judged, Notice, Options, Replay, SimulatorReplay, StudyOutcome, Which,
 };
 use pyo3::{Bound, Py, PyAny, PyResult, Python, pyclass, pymethods, types::PyDict};
 use std::{
@@ -30,7 +30,7 @@ pub(crate) struct ScenarioCore {
 #[pyclass(frozen, module = "gyradius._core")]
 pub(crate) struct StudyCore {
     scenario: AnyScenario,
-    outcome: Outcome,
+    outcome: StudyOutcome,
     called: Option<Called>,
     /// What there was to warn of.
     warnings: Vec<String>,
@@ -187,7 +187,7 @@ impl StudyCore {
     /// The one in a folder, as its files tell.
     #[staticmethod]
     fn read(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
-        let (scenario, outcome) = py.detach(|| Outcome::read(&folder)).map_err(refused)?;
+        let (scenario, outcome) = py.detach(|| StudyOutcome::read(&folder)).map_err(refused)?;
         Ok(Self { scenario, outcome, called: None, warnings: Vec::new() })
     }
 

@@ -247,9 +247,9 @@ impl AnyScenario {
         options: &Options,
         progress: Progress<'_>,
         say: &dyn Fn(Notice),
-    ) -> Result<Outcome, StudyError> {
+    ) -> Result<StudyOutcome, StudyError> {
         of_either!(self, scenario =>
-            carry_out(&**scenario, options, progress, say).map(|study| Outcome::of(&study)))
+            carry_out(&**scenario, options, progress, say).map(|study| StudyOutcome::of(&study)))
     }
 
     /// Finds how often a rare event happens: by subset simulation (Au & Beck 2001) that draws one group of inputs anew at a time, see
@@ -317,14 +317,14 @@ pub fn put_together(
     folder: &Path,
     options: &Options,
     say: &dyn Fn(Notice),
-) -> Result<Outcome, StudyError> {
+) -> Result<StudyOutcome, StudyError> {
     let text = begun(folder).ok_or_else(|| StudyError::Absent {
         path: folder.to_owned(),
         problem: "it holds no study that was begun".to_owned(),
     })?;
     let scenario = AnyScenario::from_toml(&text, folder)?;
     of_either!(&scenario, scenario =>
-        study::put_together(&**scenario, folder, options, say).map(|study| Outcome::of(&study)))
+        study::put_together(&**scenario, folder, options, say).map(|study| StudyOutcome::of(&study)))
 }
 
 /// Makes the figures and the report of the study in a folder again, there or in another folder; returns the folder.
@@ -360,7 +360,7 @@ fn is_of_simulator(text: &str) -> bool {
 /// What became of a study: where it is, and what there is to say of it. Serialized, it is what other programs want to know;
 /// every number is in `summary.json`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Outcome {
+pub struct StudyOutcome {
     folder: PathBuf,
     #[serde(flatten)]
     head: Head,
@@ -378,7 +378,7 @@ struct ModelOutcome {
     failed: u64,
 }
 
-impl Outcome {
+impl StudyOutcome {
     fn of<S: Summarized>(study: &Study<S>) -> Self {
         Self::of_summary(study.folder(), study.summary())
     }
@@ -402,9 +402,9 @@ impl Outcome {
     /// # Errors
     /// As [`Results::read`](crate::Results::read).
     pub fn read(folder: &Path) -> Result<(AnyScenario, Self), ResultsError> {
-        fn of<C: Subject>(folder: &Path) -> Result<(C, Outcome), ResultsError> {
+        fn of<C: Subject>(folder: &Path) -> Result<(C, StudyOutcome), ResultsError> {
             let (scenario, summary) = results::read::<C>(folder)?.into_parts();
-            Ok((scenario, Outcome::of_summary(folder, &summary)))
+            Ok((scenario, StudyOutcome::of_summary(folder, &summary)))
         }
         if SimulatorScenario::is_in(folder) {
             let (scenario, outcome) = of(folder)?;
@@ -439,7 +439,7 @@ impl Outcome {
 }
 
 /// What there is to say on a terminal.
-impl fmt::Display for Outcome {
+impl fmt::Display for StudyOutcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (head, report) = (&self.head, self.folder.join("report.html"));
         let (name, runs, seed) = (&head.scenario, head.runs_per_model, head.seed);

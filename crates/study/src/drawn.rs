@@ -9,7 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::{
     body::Body,
-    failure::Failure,
+    failure::RunFailure,
     groups::{BodyLaw, Drawing, Groups},
     scenario::{Dispersions, Each, Joint, Number, Scenario, Size, Target},
     steering::{Steered, Steering},
@@ -181,9 +181,9 @@ pub(crate) fn separation(
     drawn: &[f64],
     payload: InertiaMatrix,
     stage: InertiaMatrix,
-) -> Result<Separation, Failure> {
+) -> Result<Separation, RunFailure> {
     if drawn.is_empty() {
-        return scenario.separation().with_inertias(payload, stage).map_err(Failure::from);
+        return scenario.separation().with_inertias(payload, stage).map_err(RunFailure::from);
     }
     let mut stack = Stack::from(scenario.separation());
     stack.set_inertia(Body::Payload, payload);
@@ -197,7 +197,7 @@ pub(crate) fn separation(
             Target::Fails(_) | Target::Late(..) => {}
         }
     }
-    stack.separation().map_err(Failure::from)
+    stack.separation().map_err(RunFailure::from)
 }
 
 #[cfg(test)]
@@ -207,7 +207,12 @@ mod tests {
     use nalgebra::UnitQuaternion;
 
     /// The paper's separation with something dispersed, and what the drawn values make of it.
-    fn drawn(body: &str, spring: &str, rest: &str, values: &[f64]) -> Result<Separation, Failure> {
+    fn drawn(
+        body: &str,
+        spring: &str,
+        rest: &str,
+        values: &[f64],
+    ) -> Result<Separation, RunFailure> {
         let text = Scenario::peck_2003().unwrap().to_toml();
         let mut text =
             text.replace("[payload.dispersion]\n", &format!("[payload.dispersion]\n{body}\n"));

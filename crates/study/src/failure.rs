@@ -7,7 +7,7 @@ use std::borrow::Cow;
 /// Why a run failed, with the numbers of the run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Failure {
+pub enum RunFailure {
     /// What was drawn makes no separation.
     #[error(transparent)]
     Refused(#[from] SeparationError),
@@ -24,13 +24,13 @@ pub enum Failure {
     },
 }
 
-impl From<&Failure> for gyradius_campaign::Failure {
-    fn from(failure: &Failure) -> Self {
+impl From<&RunFailure> for gyradius_campaign::Failure {
+    fn from(failure: &RunFailure) -> Self {
         Self::new(failure.kind(), failure.to_string())
     }
 }
 
-impl Failure {
+impl RunFailure {
     /// What kind it is, without numbers, so that failures of a kind can be counted.
     #[must_use]
     pub fn kind(&self) -> Cow<'static, str> {

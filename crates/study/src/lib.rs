@@ -73,14 +73,14 @@ mod unmatched;
 mod unusual;
 mod where_runs_fail;
 
-pub use any::{AnyScenario, Outcome, is_begun, put_together, write_report};
+pub use any::{AnyScenario, StudyOutcome, is_begun, put_together, write_report};
 pub use body::Entry;
 pub use compare::{CompareOptions, ModelComparison, Reference};
 pub use draw::{Draw, DrawError, DrawOptions};
 pub use driven::{Driven, Drivers};
 pub use ended::Ended;
 pub use error::StudyError;
-pub use failure::Failure;
+pub use failure::RunFailure;
 pub use fleet::Fleet;
 pub use folded::FoldedRoot;
 pub use fragment::{Fragment, FragmentBody, FragmentError};

@@ -10,7 +10,7 @@ use std::fmt::Write;
 use crate::{
     body::Body,
     drawn,
-    failure::Failure,
+    failure::RunFailure,
     loads::Short,
     scenario::{Scenario, Watched},
 };
@@ -20,7 +20,7 @@ use crate::{
 pub(crate) struct Case {
     /// Of payload and stage.
     pub(crate) bodies: [ModelDraw; 2],
-    pub(crate) separation: Result<Separation, Failure>,
+    pub(crate) separation: Result<Separation, RunFailure>,
     /// What else was drawn, in the order of the scenario's dispersions.
     pub(crate) drawn: Box<[f64]>,
     /// Which vehicle it is and which of its flights, from 0, if there are vehicles.
@@ -32,7 +32,7 @@ pub(crate) struct Case {
 pub(crate) struct Run<'a> {
     pub(crate) case: &'a Case,
     /// None if it is only drawn.
-    end: Option<Result<End<'a>, Failure>>,
+    end: Option<Result<End<'a>, RunFailure>>,
 }
 
 /// The end of a run in which the bodies part.
@@ -94,7 +94,7 @@ impl Case {
         scenario: &Scenario,
         separation: &Separation,
         separated: &Separated,
-    ) -> Result<Option<Result<Watched, ClearanceError>>, Failure> {
+    ) -> Result<Option<Result<Watched, ClearanceError>>, RunFailure> {
         let watched = scenario.outlines().map(|outlines| {
             let centres = drawn::mass_centres(scenario.dispersions(), &self.drawn);
             outlines.watch(separation, scenario.settings(), separated, &centres)
@@ -105,7 +105,7 @@ impl Case {
 
 impl<'a> Run<'a> {
     /// Why it failed, if it did.
-    pub(crate) fn failure(&self) -> Option<&Failure> {
+    pub(crate) fn failure(&self) -> Option<&RunFailure> {
         self.end.as_ref()?.as_ref().err()
     }
 

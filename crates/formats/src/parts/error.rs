@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::{BodyError, FileProblem, UnitError, body::shortened, error::Refusal};
+use crate::{FileBodyError, FileProblem, UnitError, body::shortened, error::Refusal};
 
 /// Which of the two tables of a list of parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,7 +117,7 @@ pub enum PartsProblem {
     },
     /// A number is missing, none, or not finite, or the row has too many or too few.
     #[error(transparent)]
-    Number(#[from] BodyError),
+    Number(#[from] FileBodyError),
     /// A shape that cannot be made.
     #[error("shape: {message}")]
     Shape {

@@ -10,7 +10,7 @@ pub use row::{PartNumbers, PartRow};
 use std::collections::BTreeMap;
 
 use crate::{
-    BodyError, FileProblem, MAX_BODIES, Products,
+    FileBodyError, FileProblem, MAX_BODIES, Products,
     body::shortened,
     error::Refusal,
     products_comment::stated_products,
@@ -206,12 +206,12 @@ fn edges_of(bytes: &[u8]) -> Result<Vec<(usize, String, String)>, PartsError> {
         let line = line_of(&text, &fields);
         let (found, allowed) = (fields.len(), headings.len());
         if found != allowed {
-            let problem = BodyError::Count { field: "the row", found, allowed }.into();
+            let problem = FileBodyError::Count { field: "the row", found, allowed }.into();
             return Err(PartsError::new(line, None, problem));
         }
         let of = |(field, place): (&'static str, usize)| {
             let found = fields.get(place).map(|field| cell(&text, field));
-            let missing = BodyError::Missing { field };
+            let missing = FileBodyError::Missing { field };
             let missing = || PartsError::new(line, None, PartsProblem::Number(missing));
             found.filter(|name| !name.is_empty()).ok_or_else(missing)
         };

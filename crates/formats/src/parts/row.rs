@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use super::error::{PartsError, PartsFile, PartsProblem};
 use super::heading::{self, Column, Group, Heading, Scale, VALUES};
 use crate::{
-    BodyError, Products,
+    FileBodyError, Products,
     body::{Number, shortened},
 };
 
@@ -125,11 +125,11 @@ impl Cells<'_> {
     pub(super) fn row(&self, line: usize) -> Result<PartRow, PartsError> {
         let (found, allowed) = (self.cells.len(), self.columns.len());
         if found != allowed {
-            let problem = BodyError::Count { field: "the row", found, allowed }.into();
+            let problem = FileBodyError::Count { field: "the row", found, allowed }.into();
             return Err(PartsError::new(line, None, problem));
         }
         let Some(name) = self.text(Column::Name).map(str::to_owned) else {
-            let problem = BodyError::Missing { field: "name" }.into();
+            let problem = FileBodyError::Missing { field: "name" }.into();
             return Err(PartsError::new(line, None, problem));
         };
         let parent = self.text(Column::Parent).map(str::to_owned);
@@ -181,7 +181,7 @@ impl Cells<'_> {
         }
         for i in 0..4 {
             if values[i].is_none() {
-                return Err(BodyError::Missing { field: VALUES[i] }.into());
+                return Err(FileBodyError::Missing { field: VALUES[i] }.into());
             }
         }
         let [mass_kg, x, y, z] = std::array::from_fn(|i| values[i].unwrap_or_default());
@@ -263,7 +263,7 @@ impl Cells<'_> {
         }
         for e in 0..3 {
             if given[e].is_none() {
-                return Err(BodyError::Missing { field: VALUES[4 + e] }.into());
+                return Err(FileBodyError::Missing { field: VALUES[4 + e] }.into());
             }
         }
         let stated = self.text(Column::Products).map_or(Ok(None), Products::of_cell)?;
@@ -338,7 +338,7 @@ impl Cells<'_> {
         }
         for (i, field) in FIELDS.into_iter().enumerate() {
             if found[i].is_none() {
-                return Err(BodyError::Missing { field }.into());
+                return Err(FileBodyError::Missing { field }.into());
             }
         }
         let [x, y, z, w] = found.map(Option::unwrap_or_default);
@@ -358,7 +358,7 @@ fn boolean(field: &'static str, word: &str) -> Result<bool, PartsProblem> {
         "false" | "no" | "0" | "f" => Ok(false),
         _ => {
             let (value, allowed) = (shortened(word), "yes or no");
-            Err(BodyError::Word { field, value, allowed }.into())
+            Err(FileBodyError::Word { field, value, allowed }.into())
         }
     }
 }

@@ -15,7 +15,7 @@ use super::{
     options::Size,
     reference::{Candidate, Target},
 };
-use crate::{failure::Failure, scenario::Scenario};
+use crate::{failure::RunFailure, scenario::Scenario};
 
 /// How a model did, or why there is none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -76,7 +76,7 @@ impl Cell {
                     .into_par_iter()
                     .map(|run| Drawn::new(&draw(run), scenario))
                     .collect();
-                let separated: Vec<Result<Option<f64>, Failure>> = (0..size.separations)
+                let separated: Vec<Result<Option<f64>, RunFailure>> = (0..size.separations)
                     .into_par_iter()
                     .map(|run| nutation(draw(run), scenario))
                     .collect();
@@ -104,7 +104,7 @@ impl Results {
         fit: Fit,
         acceptance: Option<f64>,
         drawn: &[Drawn],
-        separated: &[Result<Option<f64>, Failure>],
+        separated: &[Result<Option<f64>, RunFailure>],
     ) -> Result<Self, StatisticsError> {
         let unrealizable = drawn.iter().filter(|d| !d.realizable).count() as u64;
         let failed = separated.iter().filter_map(|s| s.as_ref().err());
@@ -157,7 +157,7 @@ pub(crate) fn measures(
 pub(crate) fn nutation(
     payload: InertiaMatrix,
     scenario: &Scenario,
-) -> Result<Option<f64>, Failure> {
+) -> Result<Option<f64>, RunFailure> {
     let stage = *scenario.stage().nominal().as_inertia_matrix();
     let separated =
         scenario.separation().with_inertias(payload, stage)?.run(scenario.settings())?;

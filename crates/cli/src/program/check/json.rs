@@ -1,6 +1,6 @@
 //! The report as one JSON object.
 
-use gyradius_formats::{Change, Judgement, RealizabilityReport, Remedy};
+use gyradius_formats::{BodyJudgement, Change, RealizabilityReport, Remedy};
 use nalgebra::Matrix3;
 use serde::Serialize;
 use std::io::{self, Write};
@@ -145,7 +145,7 @@ fn body(finding: &Finding) -> BodyJson<'_> {
             (None, Err(error)) => vec![error.to_string()],
             (None, Ok(_)) => Vec::new(),
         },
-        note: judgement.and_then(Judgement::note).map(|note| note.to_string()),
+        note: judgement.and_then(BodyJudgement::note).map(|note| note.to_string()),
         possible_with_flipped_products: finding.is_flipped(),
     }
 }

@@ -1,8 +1,8 @@
 //! What is said of all files: bodies, what was not read, what was repaired, and the exit code.
 
 use gyradius_formats::{
-    Bearing, Body, Change, FileError, FileProblem, Format, Found, Gap, InertiaFile, Judgement,
-    Note, RealizabilityReport, Remedy, RepairError, copy_path, judge, write_copy_of,
+    Bearing, BodyJudgement, Change, FileBody, FileError, FileProblem, Format, Found, Gap,
+    InertiaFile, Note, RealizabilityReport, Remedy, RepairError, copy_path, judge, write_copy_of,
 };
 use std::{
     cmp::Ordering,
@@ -24,8 +24,8 @@ const FOUND: u8 = 1;
 pub(super) struct Finding {
     pub(super) path: PathBuf,
     pub(super) format: Format,
-    pub(super) body: Body,
-    pub(super) judgement: Option<Judgement>,
+    pub(super) body: FileBody,
+    pub(super) judgement: Option<BodyJudgement>,
 }
 
 /// What a body is counted as, the worst first.
@@ -48,12 +48,12 @@ impl Finding {
     }
 
     pub(super) fn report(&self) -> Option<&RealizabilityReport> {
-        self.judgement.as_ref().map(Judgement::report)
+        self.judgement.as_ref().map(BodyJudgement::report)
     }
 
     /// Whether a body could have its inertia with the signs of its products flipped.
     pub(super) fn is_flipped(&self) -> bool {
-        self.judgement.as_ref().and_then(Judgement::note) == Some(Note::FlippedProducts)
+        self.judgement.as_ref().and_then(BodyJudgement::note) == Some(Note::FlippedProducts)
     }
 
     /// The worst first; otherwise in the order of the files.

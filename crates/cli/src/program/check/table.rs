@@ -1,7 +1,7 @@
 //! The report as a table, a list of what was passed over, what was repaired, and a summary.
 
 use gyradius_formats::{
-    Change, Fault, Judgement, Note, RELATIVE_TOLERANCE, RealizabilityReport, Remedy,
+    BodyJudgement, Change, Fault, Note, RELATIVE_TOLERANCE, RealizabilityReport, Remedy,
 };
 use nalgebra::Matrix3;
 use std::{
@@ -128,7 +128,7 @@ pub(super) fn write(
         for ([percent, body, reason, file], finding) in lines.iter().zip(&report.findings) {
             writeln!(out, "{percent:>10}  {body:name$}  {reason:words$}  {file}")?;
             if finding.status() == Status::Impossible
-                && let Some(note) = finding.judgement.as_ref().and_then(Judgement::note)
+                && let Some(note) = finding.judgement.as_ref().and_then(BodyJudgement::note)
             {
                 writeln!(out, "{:>10}  {note}", "")?;
             }

@@ -3,8 +3,8 @@
 use gyradius_dispersion::TenParameters;
 use gyradius_estimation::TenForm;
 use gyradius_formats::{
-    Body, BodyError, FileError, InertiaFile, Products, TOLERANCE, TenCentre, TenRow, TenTable,
-    TenTableError, judge,
+    FileBody, FileBodyError, FileError, InertiaFile, Products, TOLERANCE, TenCentre, TenRow,
+    TenTable, TenTableError, judge,
 };
 use gyradius_inertia::{Inertia, InertiaMatrix, MassProperties, Repair, RepairMethod};
 use std::{collections::HashMap, path::Path};
@@ -15,7 +15,7 @@ pub(super) enum TableError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error("{place}: {error}")]
-    Row { place: String, error: BodyError },
+    Row { place: String, error: FileBodyError },
     #[error(
         "{place}: {reason}\n(sample {index}; {more}--skip-impossible sets such samples aside, \
          `gyradius check` lists them)"
@@ -84,7 +84,7 @@ pub(super) fn read(
         bodies: ten.is_some().then(Vec::new),
         unused,
     };
-    let mut refused: Option<(usize, &Body, String)> = None;
+    let mut refused: Option<(usize, &FileBody, String)> = None;
     for (index, body) in file.bodies().iter().enumerate() {
         let at = || format!("{place}:{}", body.line());
         let mut matrix = *body.inertia().map_err(|error| row_error(at(), &error))?;
@@ -92,7 +92,7 @@ pub(super) fn read(
         if let Some((ten, form)) = &ten {
             let values = ten
                 .get(&body.line())
-                .ok_or_else(|| row_error(at(), &BodyError::Missing { field: "mass" }))?;
+                .ok_or_else(|| row_error(at(), &FileBodyError::Missing { field: "mass" }))?;
             let values = values.as_ref().map_err(|error| row_error(at(), error))?;
             match natural(*values, *form) {
                 Some(values) => {
@@ -160,12 +160,12 @@ pub(super) fn read(
     }
 }
 
-fn row_error(place: String, error: &BodyError) -> TableError {
+fn row_error(place: String, error: &FileBodyError) -> TableError {
     TableError::Row { place, error: error.clone() }
 }
 
 /// The ten numbers of each line, and what they are.
-type Lines = (HashMap<usize, Result<[f64; 10], BodyError>>, TenForm);
+type Lines = (HashMap<usize, Result<[f64; 10], FileBodyError>>, TenForm);
 
 /// The lines of a table that has more than inertias, and the columns of it that are not used.
 fn ten(
