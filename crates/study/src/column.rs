@@ -104,6 +104,12 @@ impl Column {
         }
     }
 
+    /// What such columns of a scenario are called, hold and mean.
+    pub(crate) fn declarations(columns: &[Self], scenario: &Scenario) -> Vec<RunColumn> {
+        let names = scenario.dispersions().columns();
+        columns.iter().map(|column| column.declaration(&names)).collect()
+    }
+
     /// Whether it tells what is drawn, so that a run has it before it is separated.
     pub(crate) fn is_drawn(self) -> bool {
         match self {

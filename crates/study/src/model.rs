@@ -13,7 +13,6 @@ use crate::{
     run::{Case, Run},
     scenario::{KeptShares, Law, ModelLaw, ModelSpec, Scenario, ScenarioError, UncertainBody},
     steering::Steered,
-    subject::Subject,
     unmatched::UnmatchedLaw,
 };
 
@@ -136,6 +135,14 @@ impl<'a> Separations<'a> {
         Self { drawing, ..self }
     }
 
+    /// The same, whose runs write only the columns of these names.
+    pub(crate) fn writing(mut self, names: &[String]) -> Self {
+        let drawn = self.scenario.dispersions().columns();
+        self.columns
+            .retain(|column| names.iter().any(|name| name == column.declaration(&drawn).name()));
+        self
+    }
+
     /// Whose bodies they have.
     pub(crate) fn model(&self) -> &Model {
         self.model
@@ -171,7 +178,7 @@ impl Simulation for Separations<'_> {
     type Worker = Batch;
 
     fn columns(&self) -> Vec<RunColumn> {
-        self.scenario.run_columns()
+        Column::declarations(&self.columns, self.scenario)
     }
 
     fn worker(&self) -> Batch {

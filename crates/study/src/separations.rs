@@ -29,6 +29,10 @@ impl Grouped for Separations<'_> {
     fn steered(&self, runs: u64) -> Vec<Steered> {
         self.scores(runs)
     }
+
+    fn wanted(self, names: &[String]) -> Self {
+        self.writing(names)
+    }
 }
 
 impl Subject for Scenario {
@@ -76,8 +80,7 @@ impl Subject for Scenario {
     }
 
     fn run_columns(&self) -> Vec<Column> {
-        let names = self.dispersions().columns();
-        Declared::of(self).into_iter().map(|column| column.declaration(&names)).collect()
+        Declared::declarations(&Declared::of(self), self)
     }
 
     fn is_outcome(&self, column: &Column) -> bool {
@@ -125,5 +128,48 @@ impl Subject for Scenario {
 
     fn report(&self, summary: &Summary) -> Document {
         report::report(self, summary)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use gyradius_campaign::run;
+
+    use super::*;
+
+    /// Of every column alone, of some together and of none: what all columns have, and the same failures.
+    #[test]
+    fn wanted_columns_are_those_of_a_run_that_writes_all() {
+        let text = include_str!("../tests/data/dispersed.toml");
+        let scenario = Scenario::from_toml(text).unwrap();
+        let models = Model::all(&scenario).unwrap();
+        let threads = gyradius_campaign::threads(Some(2)).unwrap();
+        let of =
+            |simulation: Separations<'_>| run(&simulation, "m", 70, &threads, &|_| {}).unwrap();
+        for place in 0..models.len() {
+            let drawing = || scenario.drawing(&models, place, Drawing::Plain).unwrap();
+            let all = of(drawing());
+            let names: Vec<String> =
+                scenario.run_columns().iter().map(|column| column.name().to_owned()).collect();
+            let ones = names.iter().map(std::slice::from_ref);
+            for wanted in ones.chain(names.chunks(7)).chain([&[][..]]) {
+                let some = of(drawing().wanted(wanted));
+                let written: Vec<&str> = some
+                    .columns()
+                    .iter()
+                    .map(Column::name)
+                    .filter(|name| names.iter().any(|n| n == name))
+                    .collect();
+                assert_eq!(written, wanted);
+                assert!(some.failures().eq(all.failures()));
+                for (row, whole) in some.rows().zip(all.rows()) {
+                    assert_eq!(row.run(), whole.run());
+                    assert!(
+                        wanted.iter().all(|name| row.cell(name) == whole.cell(name)),
+                        "{wanted:?}"
+                    );
+                }
+            }
+        }
     }
 }

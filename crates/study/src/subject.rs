@@ -114,6 +114,8 @@ pub(crate) trait Grouped: Simulation {
     fn groups(&self) -> &Groups;
     /// The scores of so many of these runs; none unless they are steered.
     fn steered(&self, runs: u64) -> Vec<Steered>;
+    /// The same, of whose columns only those of these names are wanted: its runs may leave out others.
+    fn wanted(self, names: &[String]) -> Self;
 }
 
 /// What runs amount to, for a terminal, for a file and for a report.

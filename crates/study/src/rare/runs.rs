@@ -90,6 +90,7 @@ impl<'a, C: Subject> EventRuns<'a, C> {
     pub(super) fn excesses(&self, drawing: Drawing, runs: u64) -> Result<Vec<f64>, StudyError> {
         go_on(self.stop.as_deref())?;
         let simulation = self.scenario.drawing(&self.prepared, self.at, drawing)?;
+        let simulation = simulation.wanted(self.event.quantity().columns());
         let table = run(&simulation, self.model, runs, &self.threads, &|_| {})?;
         // Runs that were stopped look like failed ones.
         go_on(self.stop.as_deref())?;

@@ -126,6 +126,11 @@ impl Grouped for ExternalSimulation<'_, SimulatorDraws<'_>> {
     fn steered(&self, runs: u64) -> Vec<Steered> {
         self.inputs().steered(runs)
     }
+
+    /// A simulator tells all that it has, and takes longer than it takes to write that.
+    fn wanted(self, _: &[String]) -> Self {
+        self
+    }
 }
 
 impl Subject for SimulatorScenario {
