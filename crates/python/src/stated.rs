@@ -1,7 +1,7 @@
 //! Plain statements, and the laws that they make about bodies.
 
 use gyradius_dispersion::TenParameters;
-use gyradius_estimation::{StatedAmount, StatedBody, Statements};
+use gyradius_estimation::{StatedAmount, StatedAmountError, StatedBody, Statements};
 use gyradius_inertia::{MassProperties, Region};
 use gyradius_study::as_written;
 use pyo3::{PyResult, Python, pyclass, pymethods};
@@ -21,7 +21,7 @@ use crate::{
 fn said<T: DeserializeOwned, E: Display>(
     part: &str,
     given: Option<&str>,
-    read: fn(&str) -> Result<StatedAmount, String>,
+    read: fn(&str) -> Result<StatedAmount, StatedAmountError>,
     make: impl Fn(StatedAmount) -> Result<T, E>,
 ) -> PyResult<Option<T>> {
     let Some(given) = given else { return Ok(None) };

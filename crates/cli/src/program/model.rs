@@ -109,7 +109,8 @@ pub(crate) fn model(arguments: &ModelArgs) -> Result<(), Box<dyn Error>> {
 
 /// What the text of a file states; an error names the key.
 fn stated(text: &str) -> Result<Told, String> {
-    let Stated { nominal, moments, products, axes, mass, centre, inside } = parse_toml(text)?;
+    let Stated { nominal, moments, products, axes, mass, centre, inside } =
+        parse_toml(text).map_err(|error| error.to_string())?;
     let Nominal { inertia_kg_m2, mass_kg, mass_centre_m } = nominal;
     let inertia = Inertia::try_from(inertia_kg_m2)
         .map_err(|error| format!("nominal.inertia_kg_m2: {error}"))?;

@@ -30,40 +30,40 @@ impl StatedAmount {
     /// Of a mass: `%`, `kg` or `g`.
     ///
     /// # Errors
-    /// What must be written.
-    pub fn mass(text: &str) -> Result<Self, String> {
+    /// The text is not such an amount; the error says what must be written.
+    pub fn mass(text: &str) -> Result<Self, StatedAmountError> {
         amounts(text, &[PERCENT, ("kg", Some(1.0)), ("g", Some(1e-3))], 1)
     }
 
     /// Of a mass centre along the body axes: `mm`, `cm` or `m`.
     ///
     /// # Errors
-    /// What must be written.
-    pub fn centre(text: &str) -> Result<Self, String> {
+    /// The text is not such an amount; the error says what must be written.
+    pub fn centre(text: &str) -> Result<Self, StatedAmountError> {
         amounts(text, &[("mm", Some(1e-3)), ("cm", Some(1e-2)), ("m", Some(1.0))], 3)
     }
 
     /// Of the moments of inertia about the body axes: `%` or `kgm2`, also written `kg·m²`.
     ///
     /// # Errors
-    /// What must be written.
-    pub fn moments(text: &str) -> Result<Self, String> {
+    /// The text is not such an amount; the error says what must be written.
+    pub fn moments(text: &str) -> Result<Self, StatedAmountError> {
         amounts(text, &[&[PERCENT], &INERTIA[..]].concat(), 3)
     }
 
     /// Of the products of inertia I₁₂, I₁₃, I₂₃: `kgm2`, also written `kg·m²`.
     ///
     /// # Errors
-    /// What must be written.
-    pub fn products(text: &str) -> Result<Self, String> {
+    /// The text is not such an amount; the error says what must be written.
+    pub fn products(text: &str) -> Result<Self, StatedAmountError> {
         amounts(text, &INERTIA, 3)
     }
 
     /// Of the rotation about the principal axes: `deg` or `rad`; `°` is `deg`.
     ///
     /// # Errors
-    /// What must be written.
-    pub fn axes(text: &str) -> Result<Self, String> {
+    /// The text is not such an amount; the error says what must be written.
+    pub fn axes(text: &str) -> Result<Self, StatedAmountError> {
         let units = [("deg", Some(1.0)), ("°", Some(1.0)), ("rad", Some(1_f64.to_degrees()))];
         amounts(text, &units, 3)
     }
@@ -116,6 +116,37 @@ impl StatedAmount {
     }
 }
 
+/// Why a text is not an amount with its unit. The text itself is told by who has read it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StatedAmountError {
+    /// There are neither one nor as many amounts as there may be.
+    #[error("it must be one number with its unit{}", or_more(*most))]
+    Count {
+        /// How many there may be.
+        most: usize,
+    },
+    /// A part is not a number with one of the units that are allowed.
+    #[error("it must be a number and its unit, {}", allowed.join(" or "))]
+    Unit {
+        /// The units.
+        allowed: Vec<&'static str>,
+    },
+    /// A number is negative, NaN or infinite.
+    #[error("it must be finite and not negative")]
+    Number {
+        /// The number.
+        value: f64,
+    },
+    /// One part is in percent, another is not.
+    #[error("percent and another unit do not go together")]
+    Mixed,
+}
+
+fn or_more(most: usize) -> String {
+    if most > 1 { format!(", or {most} with commas between them") } else { String::new() }
+}
+
 /// A unit as it is written, and how much of the program's unit it is; nothing of percent.
 type Unit = (&'static str, Option<f64>);
 
@@ -124,30 +155,28 @@ const PERCENT: Unit = ("%", None);
 const INERTIA: [Unit; 3] = [("kgm2", Some(1.0)), ("kg·m²", Some(1.0)), ("kg m²", Some(1.0))];
 
 /// One amount, or as many as there may be, with commas between them.
-fn amounts(text: &str, units: &[Unit], most: usize) -> Result<StatedAmount, String> {
-    let names: Vec<&str> = units.iter().map(|unit| unit.0).collect();
+fn amounts(text: &str, units: &[Unit], most: usize) -> Result<StatedAmount, StatedAmountError> {
     let parts: Vec<&str> = text.split(',').collect();
     if parts.len() != 1 && parts.len() != most {
-        let more =
-            if most > 1 { format!(", or {most} with commas between them") } else { String::new() };
-        return Err(format!("it must be one number with its unit{more}"));
+        return Err(StatedAmountError::Count { most });
     }
     let mut read = Vec::with_capacity(most);
     for part in parts {
         let part = part.trim().trim_start_matches('±').trim_start();
         let unit = units.iter().find(|unit| part.ends_with(unit.0));
-        let allowed = || format!("it must be a number and its unit, {}", names.join(" or "));
+        let allowed =
+            || StatedAmountError::Unit { allowed: units.iter().map(|unit| unit.0).collect() };
         let (unit, factor) = unit.ok_or_else(allowed)?;
         let number = part.strip_suffix(unit).unwrap_or(part).trim_end();
         let number: f64 = number.parse().map_err(|_| allowed())?;
         if !(number >= 0.0 && number.is_finite()) {
-            return Err("it must be finite and not negative".to_owned());
+            return Err(StatedAmountError::Number { value: number });
         }
         read.push((number * factor.unwrap_or(1.0), factor.is_none()));
     }
     let is_percent = read[0].1;
     if read.iter().any(|one| one.1 != is_percent) {
-        return Err("percent and another unit do not go together".to_owned());
+        return Err(StatedAmountError::Mixed);
     }
     // The constructors of the statements check how large the numbers are.
     let values = std::array::from_fn(|i| read.get(i).unwrap_or(&read[0]).0);
@@ -160,7 +189,7 @@ mod tests {
 
     #[test]
     fn amounts_have_units() {
-        let values = |read: Result<StatedAmount, String>| read.unwrap().values;
+        let values = |read: Result<StatedAmount, StatedAmountError>| read.unwrap().values;
         assert_eq!(values(StatedAmount::mass("10%")), [10.0; 3]);
         assert!(
             StatedAmount::mass("10 %").unwrap().is_percent
@@ -172,24 +201,31 @@ mod tests {
         assert!((values(StatedAmount::axes("0.1rad"))[0].to_radians() - 0.1).abs() < 1e-16);
         assert_eq!(values(StatedAmount::moments("1e-3kgm2,1kgm2,2kgm2")), [1e-3, 1.0, 2.0]);
         assert_eq!(values(StatedAmount::products("5 kgm2")), [5.0; 3]);
-        for (read, text) in [
-            (StatedAmount::mass as fn(&str) -> Result<StatedAmount, String>, "10"),
-            (StatedAmount::mass, "10%,10%,10%"),
-            (StatedAmount::mass, "%"),
-            (StatedAmount::centre, "5"),
-            (StatedAmount::centre, "5%"),
-            (StatedAmount::centre, "5mm,5mm"),
-            (StatedAmount::moments, "5%,1kgm2,1kgm2"),
-            (StatedAmount::axes, "five deg"),
-            (StatedAmount::axes, ""),
-            (StatedAmount::products, "5%"),
-            (StatedAmount::products, "5kg"),
-            (StatedAmount::mass, "nan%"),
-            (StatedAmount::mass, "-1kg"),
-            (StatedAmount::centre, "infmm"),
-            (StatedAmount::axes, "1deg,-1deg,1deg"),
+        let count = |most| StatedAmountError::Count { most };
+        let unit = |allowed: &[&'static str]| StatedAmountError::Unit { allowed: allowed.to_vec() };
+        let number = |value| StatedAmountError::Number { value };
+        let (masses, lengths) = (unit(&["%", "kg", "g"]), unit(&["mm", "cm", "m"]));
+        let angles = unit(&["deg", "°", "rad"]);
+        let inertias = unit(&["kgm2", "kg·m²", "kg m²"]);
+        for (read, text, expected) in [
+            (StatedAmount::mass as fn(&str) -> _, "10", masses.clone()),
+            (StatedAmount::mass, "10%,10%,10%", count(1)),
+            (StatedAmount::mass, "%", masses),
+            (StatedAmount::centre, "5", lengths.clone()),
+            (StatedAmount::centre, "5%", lengths),
+            (StatedAmount::centre, "5mm,5mm", count(3)),
+            (StatedAmount::moments, "5%,1kgm2,1kgm2", StatedAmountError::Mixed),
+            (StatedAmount::axes, "five deg", angles.clone()),
+            (StatedAmount::axes, "", angles),
+            (StatedAmount::products, "5%", inertias.clone()),
+            (StatedAmount::products, "5kg", inertias),
+            (StatedAmount::mass, "-1kg", number(-1.0)),
+            (StatedAmount::centre, "infmm", number(f64::INFINITY)),
+            (StatedAmount::axes, "1deg,-1deg,1deg", number(-1.0)),
         ] {
-            assert!(read(text).is_err(), "{text}");
+            assert_eq!(read(text).unwrap_err(), expected, "{text}");
         }
+        let refused = StatedAmount::mass("nan%").unwrap_err();
+        assert!(matches!(refused, StatedAmountError::Number { value } if value.is_nan()));
     }
 }

@@ -19,7 +19,7 @@ use diagnosis::{Context, Outcome};
 use scatter::Body;
 use task::{Asked, Task};
 
-pub use amount::StatedAmount;
+pub use amount::{StatedAmount, StatedAmountError};
 pub use parts::{
     Amount, AxesStatement, CentreStatement, MassStatement, MomentsStatement, Part,
     ProductsStatement, StatementError,

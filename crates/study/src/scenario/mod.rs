@@ -50,7 +50,7 @@ pub(crate) use load::Uncertain;
 pub(crate) use model::{Comparison, Law, ModelSpec, check_models, place};
 pub(crate) use model_file::{AxesFile as Axes, ModelFile, ModelLaw, Owner};
 use outside::OutsideLaws;
-pub use parse::{parse_toml, whole_number};
+pub use parse::{TomlError, parse_toml, whole_number};
 pub(crate) use parse::{some_whole, whole};
 pub(crate) use scalar::ScalarLawFile;
 pub(crate) use {each::Each, until::UntilFile, vehicles::Size};
@@ -163,7 +163,7 @@ impl Scenario {
     /// It is not TOML, has an unknown key, or a value that is not allowed.
     pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
         let file = parse_toml::<ScenarioFile>(text)
-            .map_err(|message| ScenarioError::Parse { path: None, message })?;
+            .map_err(|error| ScenarioError::Parse { path: None, message: error.to_string() })?;
         limits::check(&file)?;
         Self::check(file)
     }

@@ -19,11 +19,22 @@ const WHOLE_NUMBER: &str = "a whole number must be";
 /// Longest word of the file that is told.
 const MOST_OF_A_WORD: usize = 40;
 
-/// What stands in the text of a TOML file, or what is wrong with it: key, reason and line.
+/// What is wrong with the text of a TOML file: the key, the reason and the line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct TomlError {
+    message: String,
+}
+
+/// What stands in the text of a TOML file.
 ///
 /// # Errors
 /// The text is no TOML, or a key of it is missing, unknown or has a value that is not allowed.
-pub fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+pub fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
+    parsed(text).map_err(|message| TomlError { message })
+}
+
+fn parsed<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     // From values, which know no lines: the line is looked up where something is wrong.
     let values: toml::Table = toml::from_str(text).map_err(|error| {
         let span = error.span();

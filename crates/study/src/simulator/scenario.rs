@@ -51,7 +51,7 @@ impl SimulatorScenario {
     /// Of the text of a file that is in a folder; what models need of the bodies is not checked yet.
     pub(super) fn parse(text: &str, folder: &Path) -> Result<Self, ScenarioError> {
         let mut file = parse_toml::<File>(text)
-            .map_err(|message| ScenarioError::Parse { path: None, message })?;
+            .map_err(|error| ScenarioError::Parse { path: None, message: error.to_string() })?;
         let (size, until) = file.check_frame()?;
         file.simulation.fill()?;
         let is_function = file.simulation.function.is_some();
