@@ -48,6 +48,40 @@ impl Clearance {
         to_s: f64,
         settings: &ClearanceSettings,
     ) -> Result<Self, ClearanceError> {
+        Self::over([payload, stage], motion, [from_s, to_s], settings, |_| false)
+    }
+
+    /// As [`new`](Self::new), over the span that follows one of the same outlines: shapes that touched when that began, and
+    /// had not parted when it ended, are mated still, however little they are apart by then.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn following<M: Motion>(
+        before: &Self,
+        payload: &Outline,
+        stage: &Outline,
+        motion: &mut M,
+        [from_s, to_s]: [f64; 2],
+        settings: &ClearanceSettings,
+    ) -> Result<Self, ClearanceError> {
+        let together: Vec<[usize; 2]> = before
+            .shapes
+            .iter()
+            .filter(|shapes| shapes.counts_from.is_none())
+            .map(|shapes| [shapes.payload_shape, shapes.stage_shape])
+            .collect();
+        let is_mated = |shapes| together.contains(&shapes);
+        Self::over([payload, stage], motion, [from_s, to_s], settings, is_mated)
+    }
+
+    /// `is_mated` tells of which shapes of payload and stage it is known before.
+    fn over<M: Motion>(
+        [payload, stage]: [&Outline; 2],
+        motion: &mut M,
+        [from_s, to_s]: [f64; 2],
+        settings: &ClearanceSettings,
+        is_mated: impl Fn([usize; 2]) -> bool,
+    ) -> Result<Self, ClearanceError> {
         if !(from_s.is_finite() && to_s.is_finite() && from_s <= to_s) {
             return Err(ClearanceError::Span { from: from_s, to: to_s });
         }
@@ -58,7 +92,8 @@ impl Clearance {
         for (i, p) in payload.shapes().iter().enumerate() {
             for (j, s) in stage.shapes().iter().enumerate() {
                 let mut search = Search::new(motion, p, s, settings);
-                let mut found = shape_clearance(&mut search, from_s, until, settings)?;
+                let mut found =
+                    shape_clearance(&mut search, [from_s, until], settings, is_mated([i, j]))?;
                 (found.payload_shape, found.stage_shape) = (i, j);
                 looks += search.nodes();
                 shapes.push(found);
@@ -235,7 +270,7 @@ impl ShapeClearance {
         self.stage_shape
     }
 
-    /// Whether they touch at the start of the span: they count from when they have parted.
+    /// Whether they touch at the start of the span, or have not parted since they did: they count from when they have parted.
     #[must_use]
     pub fn is_mated(&self) -> bool {
         self.mated
@@ -268,12 +303,12 @@ const MOST_EVEN_STEPS: usize = 5000;
 
 fn shape_clearance<M: Motion>(
     search: &mut Search<'_, M>,
-    from: f64,
-    to: f64,
+    [from, to]: [f64; 2],
     settings: &ClearanceSettings,
+    is_mated: bool,
 ) -> Result<ShapeClearance, ClearanceError> {
     let mut first = search.begin(from, to)?;
-    let mated = first.distance <= settings.touch_m();
+    let mated = is_mated || first.distance <= settings.touch_m();
     let start = if mated { parting(search, from, to, settings)? } else { Some(from) };
     let mut result = ShapeClearance {
         payload_shape: 0,

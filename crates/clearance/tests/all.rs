@@ -3,5 +3,6 @@
 
 mod brute;
 mod clearance;
+mod following;
 mod forms;
 mod pairs;

@@ -22,18 +22,18 @@ fn at_rest() -> FreeBody {
     ball(V::zeros(), V::zeros(), V::zeros())
 }
 
-fn cuboid(half: [f64; 3]) -> Outline {
+pub(crate) fn cuboid(half: [f64; 3]) -> Outline {
     let corners: Vec<V> = (0..8_u32)
         .map(|i| V::from_fn(|k, _| if i >> k & 1 == 0 { -half[k] } else { half[k] }))
         .collect();
     OutlineShape::hull(&corners).unwrap().into()
 }
 
-fn ring(centre: V, axis: V, radius: f64) -> Outline {
+pub(crate) fn ring(centre: V, axis: V, radius: f64) -> Outline {
     OutlineShape::ring(centre, axis, radius).unwrap().into()
 }
 
-fn points(p: &[V]) -> Outline {
+pub(crate) fn points(p: &[V]) -> Outline {
     OutlineShape::points(p).unwrap().into()
 }
 
@@ -271,9 +271,9 @@ fn a_point_on_the_axis_of_a_ring() {
 }
 
 /// Up and down again along z, z = vt − ½at², the stage turning the while.
-struct Thrown {
-    speed: f64,
-    deceleration: f64,
+pub(crate) struct Thrown {
+    pub(crate) speed: f64,
+    pub(crate) deceleration: f64,
 }
 
 impl Motion for Thrown {

@@ -8,8 +8,8 @@ use crate::{LoadId, load::named};
 pub enum RunError {
     /// Loads still act at the horizon.
     #[error(
-        "{} had not let go after {horizon:?} s: {} is {:?} m short of its free length and grows by {:?} m/s",
-        named(.loads), .loads[0], three_digits(*.compression), three_digits(*.rate)
+        "{} had not let go after {horizon:?} s: {} {}is {:?} m short of its free length and grows by {:?} m/s",
+        named(.loads), .loads[0], unstarted(*.start), three_digits(*.compression), three_digits(*.rate)
     )]
     NotReleased {
         /// The loads.
@@ -20,6 +20,8 @@ pub enum RunError {
         compression: f64,
         /// How fast it grows, m/s.
         rate: f64,
+        /// When it would start, s, if that is not before the horizon.
+        start: Option<f64>,
     },
     /// The two points of a load have come together, and its force has lost its direction.
     #[error(
@@ -67,6 +69,11 @@ pub enum RunError {
         /// When, s.
         time: f64,
     },
+}
+
+/// That a load has not started yet.
+fn unstarted(start: Option<f64>) -> String {
+    start.map_or_else(String::new, |start| format!("starts at {start:?} s only, "))
 }
 
 /// Rounded to three digits, which a message needs; `{:?}` writes it short whatever its size.

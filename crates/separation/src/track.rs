@@ -103,12 +103,14 @@ impl Track {
         match self.open().next() {
             Some(load) if self.time >= settings.horizon_s() => {
                 let loads = run.seated();
-                let gap = loads.get(load).gap(state);
+                let first = loads.get(load);
+                let gap = first.gap(state);
                 Err(RunError::NotReleased {
                     loads: self.open().map(|load| loads.id(load)).collect(),
                     horizon: settings.horizon_s(),
                     compression: -gap.value,
                     rate: gap.rate,
+                    start: first.start_s().filter(|start| *start >= settings.horizon_s()),
                 })
             }
             _ => Ok(()),

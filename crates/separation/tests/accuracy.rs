@@ -335,10 +335,10 @@ fn what_cannot_be_followed_is_said_to_be_so() {
     let weak = Spring::new(1e-9, 0.1, Vector3::z() * -0.9, Vector3::z() * 0.9).unwrap();
     let weak = Separation::new(ball.at(Vector3::z()), ball.at(-Vector3::z()), &[weak]).unwrap();
     let error = weak.run(&Settings::default()).unwrap_err();
-    let RunError::NotReleased { loads, horizon, compression, rate } = &error else {
+    let RunError::NotReleased { loads, horizon, compression, rate, start } = &error else {
         panic!("{error}");
     };
-    assert_eq!((loads.as_slice(), *horizon), (&[load][..], 60.0));
+    assert_eq!((loads.as_slice(), *horizon, *start), (&[load][..], 60.0, None));
     assert!(error.to_string().starts_with("springs [1] had not let go after 60.0 s: spring 1 is "));
     assert!(*compression > 0.09 && *compression < 0.1 && *rate > 0.0, "{error}");
     for bad in [-1.0, f64::NAN, f64::INFINITY] {

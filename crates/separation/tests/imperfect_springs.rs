@@ -98,8 +98,14 @@ fn a_late_spring_alone_waits() {
     near(outcome.relative_speed(), 0.1, 1e-14);
     near(outcome.release_time(), 2.0, 1e-12);
     // Beyond the horizon.
-    let error = coaxial(&[late], 0.0).run(&Settings::new(1e-13, 2.5).unwrap()).unwrap_err();
-    assert!(matches!(error, RunError::NotReleased { .. }), "{error}");
+    for horizon in [0.5 * start, start, start.next_up(), start + 0.1 / w] {
+        let settings = Settings::new(1e-13, horizon).unwrap();
+        let error = coaxial(&[late], 0.0).run(&settings).unwrap_err();
+        let RunError::NotReleased { start: waits, .. } = error else { panic!("{error}") };
+        assert_eq!(waits, (start >= horizon).then_some(start));
+        let told = format!("spring 1 starts at {start:?} s only, is ");
+        assert_eq!(error.to_string().contains(&told), start >= horizon, "{error}");
+    }
     // Points that come together while nothing pushes do not matter; later they do.
     let through = |start| {
         let late = spring(k, stroke).starting_at(start).unwrap();

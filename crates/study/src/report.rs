@@ -152,8 +152,9 @@ fn parting(scenario: &Scenario, summary: &Summary) -> Section {
     let clearance = scenario.outlines().map_or_else(String::new, |outlines| {
         format!(
             "Clearance: the smallest distance of the outlines in the {} s after the last release, 0 where any \
-             two of them touch, before it too. Outlines that touch when the clamp opens are mated: they count \
-             only if they touch again after they have parted. ",
+             two of them touch, before it too. Outlines that touch when the clamp opens are mated: those \
+             that have parted by the last release count from then on, and the others only if they touch again after \
+             they have parted. ",
             outlines.coast_s()
         )
     });

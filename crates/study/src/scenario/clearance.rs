@@ -105,15 +105,15 @@ impl Watched {
         outcome: &Outcome,
         coast_s: f64,
     ) -> Result<Self, ClearanceError> {
-        let release = outcome.release_time();
+        let ([payload, stage], release) = (outlines, outcome.release_time());
         let rough = ClearanceSettings::default().with_relative_tolerance(ROUGH).unwrap_or_default();
         let mut over_push = |to| over(outlines, &mut pushed, [0.0, to], &rough);
         let (at_start, pushed) = (over_push(0.0)?, over_push(release)?);
         let at_start = at_start.closest().map(Approach::distance_m);
         let coast = pushed.contact_s().is_none().then(|| {
             let mut coast = Coast::new(&free(outcome.payload()), &free(outcome.stage()), release);
-            let span = [release, release + coast_s];
-            over(outlines, &mut coast, span, &ClearanceSettings::default())
+            let (span, settings) = ([release, release + coast_s], ClearanceSettings::default());
+            Clearance::following(&pushed, payload, stage, &mut coast, span, &settings)
         });
         Ok(Self { pushed, coast: coast.transpose()?, at_start })
     }
@@ -255,5 +255,55 @@ fn shape_key(file: &ShapeFile, error: &OutlineError) -> &'static str {
         (ShapeFile::Ring { .. }, OutlineError::Axis { .. }) => "ring.axis",
         (ShapeFile::Ring { .. }, OutlineError::Radius { .. }) => "ring.radius_m",
         (ShapeFile::Ring { .. }, _) => "ring",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Scenario, run::Case};
+
+    /// Deck and ring, mated, that springs of so short a stroke push apart: by less than a millimetre at the last release they are
+    /// mated still and have no clearance, and by more they have that of the last release.
+    #[test]
+    fn outlines_that_have_not_parted_by_the_last_release_are_mated_in_the_coast() {
+        let body = |z: f64| {
+            format!(
+                "mass_kg = 500.0\ninertia_kg_m2 = [[60.0, 0.0, 0.0], [0.0, 60.0, 0.0], [0.0, 0.0, 60.0]]\n\
+                 position_m = [0.0, 0.0, {z:?}]\ndispersion = {{ root_second_moment_variance_kg_m2 = [0.0, 0.0, 0.0], axes = \"fixed\" }}\n"
+            )
+        };
+        for (stroke, others) in
+            [(3e-4, ""), (3e-3, ""), (3e-4, ", { points_m = [[0.0, 0.0, 0.0]] }")]
+        {
+            let text = format!(
+                "name = \"deck\"\nruns = 1\nseed = 1\n[payload]\n{}[stage]\n{}\
+                 [[springs]]\nstiffness_n_per_m = 1e6\nstroke_m = {stroke:?}\n\
+                 payload_point_m = [0.0, 0.0, -1.0]\nstage_point_m = [0.0, 0.0, 0.9]\n\
+                 [[models]]\nname = \"own\"\nlaw = \"principal\"\naxes = \"whole-sphere\"\n\
+                 [clearance]\ncoast_s = 20.0\n\
+                 payload = [{{ hull_m = [[0.5, 0.5, -0.9], [-0.5, 0.5, -0.9], [0.0, -0.5, -0.9]] }}{others}]\n\
+                 stage = [{{ ring = {{ centre_m = [0.0, 0.0, 1.1], axis = [0.0, 0.0, 1.0], radius_m = 0.3 }} }}]\n",
+                body(1.0),
+                body(-1.0)
+            );
+            let scenario = Scenario::from_toml(&text).unwrap();
+            let case = Case::nominal(&scenario);
+            let result = scenario.separation().run(scenario.settings());
+            let run = case.ended(&scenario, Some(result));
+            let end = run.end().unwrap();
+            let found = end.closest().map(gyradius_clearance::Approach::distance_m);
+            match (stroke < 1e-3, others.is_empty()) {
+                (true, true) => {
+                    assert_eq!(found, None, "{:?}", end.clearance());
+                    assert!(end.clearance_note().is_some());
+                }
+                (false, true) => assert!((found.unwrap() - stroke).abs() < 1e-6, "{found:?}"),
+                // The point on the axis of the ring is 0.3 m from it all around.
+                (_, false) => assert!(
+                    (found.unwrap() - 0.3_f64.hypot(0.9 + stroke)).abs() < 1e-6,
+                    "{found:?}"
+                ),
+            }
+        }
     }
 }

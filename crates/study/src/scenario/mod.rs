@@ -22,7 +22,6 @@ mod parse;
 mod placed;
 mod scalar;
 mod sides;
-mod starts;
 mod until;
 mod vehicles;
 
@@ -214,7 +213,6 @@ impl Scenario {
                     let field = if horizon { "horizon_s" } else { "relative_tolerance" };
                     ScenarioError::field(format!("integration.{field}"), e)
                 })?;
-        starts::check(&separation, &settings)?;
         let both = [&payload, &stage];
         let dispersions = Dispersions::new(&file, size.fleet(), &separation, both)?;
         for (i, body) in [&mut payload, &mut stage].into_iter().enumerate() {
