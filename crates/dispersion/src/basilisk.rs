@@ -163,11 +163,13 @@ impl KnownMoments for BasiliskDispersion {
         let (shift, variance) = self.diagonal_moments();
         let centre = self.nominal.matrix() + Matrix3::from_diagonal_element(shift);
         let angles: [f64; NODES] = std::array::from_fn(|j| TAU * j as f64 / NODES as f64);
-        // Σ w f(θ) = E f under the Gaussian: E cos nθ = e^{−n²σ²/2}.
-        let damping = |n: f64| libm::exp(-0.5 * (n * self.angle_deviation).powi(2));
-        let weights = angles.map(|t| {
-            let sum: f64 = (1..5).map(f64::from).map(|n| damping(n) * libm::cos(n * t)).sum();
-            (1.0 + 2.0 * sum) / NODES as f64
+        // Σ w f(θ) = E f under the Gaussian: E cos nθ = e^{−n²σ²/2}. Without any scatter all of the weight is on the first node; what
+        // scatter takes from there is computed as such, so that small variances have all their digits.
+        let taken = |n: f64| libm::expm1(-0.5 * (n * self.angle_deviation).powi(2));
+        let weights: [f64; NODES] = std::array::from_fn(|j| {
+            let shift = |n: f64| taken(n) * libm::cos(n * angles[j]);
+            let sum: f64 = (1..5).map(f64::from).map(shift).sum();
+            f64::from(u8::from(j == 0)) + 2.0 * sum / NODES as f64
         });
         let mut nodes = Vec::with_capacity(NODES * NODES * NODES);
         for i in 0..NODES {
@@ -313,6 +315,7 @@ crate::written!(
 mod tests {
     use super::*;
     use crate::entry_moments::tests::check_entries;
+    use nalgebra::Vector3;
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
     const NONE: [f64; 2] = BasiliskDispersion::NO_BOUNDS;
@@ -335,6 +338,35 @@ mod tests {
             let law = BasiliskDispersion::new(payload(), diagonal, bounds, angle).unwrap();
             let seed = 130 + i as u64;
             check_entries::<InertiaMatrix>(&format!("{i}"), &law.entry_moments(), &law, seed);
+        }
+    }
+
+    /// Small deviations, down to none: to first order a small turn v takes I to I + [v×]I − I[v×], and what is put on the diagonal
+    /// comes to that.
+    #[test]
+    fn small_deviations_have_their_digits() {
+        let nominal = payload();
+        let units: [Matrix3<f64>; 3] = std::array::from_fn(|k| Vector3::ith(k, 1.0).cross_matrix());
+        for angle in [0.0, 1e-14, 1e-11, 1e-9, 1e-6, 1e-4] {
+            for diagonal in [0.0, 1e-15, 1e-9, 1e-3] {
+                let law = BasiliskDispersion::new(nominal, diagonal, NONE, angle).unwrap();
+                let moments = law.entry_moments();
+                for (e, (i, j)) in ENTRIES.into_iter().enumerate() {
+                    let turned = units.map(|unit| {
+                        (unit * nominal.matrix() - nominal.matrix() * unit)[(i, j)] * angle
+                    });
+                    let own = if i == j { diagonal } else { 0.0 };
+                    let expected = turned.into_iter().chain([own]).map(|x| x * x).sum::<f64>();
+                    let found = moments.covariance()[(e, e)];
+                    let reach =
+                        1e-6 * expected + (1e-15 + 20.0 * angle * (angle + diagonal)).powi(2);
+                    assert!(
+                        (found - expected).abs() <= reach,
+                        "{angle} {diagonal} {e}: {found} {expected}"
+                    );
+                    assert!(found >= 0.0 && moments.deviations()[e].is_finite());
+                }
+            }
         }
     }
 
