@@ -11,6 +11,8 @@ use crate::second_moment_matrix::{body, inertia_covariance, inertia_map};
 use crate::semidefinite::{Covariance, CovarianceError, of_rows};
 use crate::{EntryMoments, KnownMoments, ModelParameterError, ModelParameters};
 
+mod wide;
+
 /// Draws farther out than this many deviations have probability 1e-349.
 const FAR: f64 = 40.0;
 /// Exponents of draws, and roots of second moments.
@@ -131,29 +133,38 @@ impl LogCholeskyGaussian {
     /// The law with this mean and covariance of the six entries, to 1e-9 of the largest of each.
     ///
     /// # Algorithm
-    /// Newton's steps with the derivative of the linearised map, from
-    /// [`linearised`](Self::linearised).
+    /// Newton's steps with the derivative of the linearised map, from [`linearised`](Self::linearised). Where these lead
+    /// nowhere, as with wide spreads, Newton's method along a path from no spread to all of it.
     ///
     /// # Errors
-    /// The mean is no body or one on the boundary, or no such law is found: wide spreads have none.
+    /// The mean is no body or one on the boundary, or no such law is found: the widest spreads have none.
     pub fn matched(moments: &EntryMoments) -> Result<Self, LogCholeskyGaussianError> {
         const STEPS: usize = 200;
-        let Start { mut mean, mut covariance, inverse } = Start::new(moments)?;
+        let start = Start::new(moments)?;
         let target = SVector::<f64, 6>::from(moments.mean());
         let tolerances = (1e-9 * target.amax(), 1e-9 * moments.covariance().amax());
-        for _ in 0..STEPS {
-            let law = Self::new(mean.into(), (covariance + covariance.transpose()) * 0.5)
-                .map_err(|_| LogCholeskyGaussianError::NoMatch)?;
+        let gaps_of = |law: &Self| {
             let found = law.entry_moments();
             let gap = target - SVector::<f64, 6>::from(found.mean());
-            let gaps = moments.covariance() - found.covariance();
+            (gap, moments.covariance() - found.covariance())
+        };
+        let (mut mean, mut covariance) = (start.mean, start.covariance);
+        for _ in 0..STEPS {
+            let symmetric = (covariance + covariance.transpose()) * 0.5;
+            let Ok(law) = Self::new(mean.into(), symmetric) else { break };
+            let (gap, gaps) = gaps_of(&law);
             if gap.amax() <= tolerances.0 && gaps.amax() <= tolerances.1 {
                 return Ok(law);
             }
-            mean += inverse * gap;
-            covariance += inverse * gaps * inverse.transpose();
+            mean += start.inverse * gap;
+            covariance += start.inverse * gaps * start.inverse.transpose();
         }
-        Err(LogCholeskyGaussianError::NoMatch)
+        let none = LogCholeskyGaussianError::NoMatch;
+        let (mean, covariance) = wide::matched(&start, moments).ok_or(none)?;
+        let law = Self::new(mean.into(), covariance).map_err(|_| none)?;
+        let (gap, gaps) = gaps_of(&law);
+        let is_close = gap.amax() <= tolerances.0 && gaps.amax() <= tolerances.1;
+        if is_close { Ok(law) } else { Err(none) }
     }
 
     /// Means of d₁, d₂, d₃, s₁₂, s₂₃, s₁₃.
@@ -225,11 +236,15 @@ fn coordinates(body: &Inertia) -> Result<[f64; 6], LogCholeskyError> {
     Ok([d1, d2, d3, s12, s23, s13])
 }
 
+/// Mean and covariance of the entries of I, of coordinates with these.
+fn moments_of(mean: &SVector<f64, 6>, covariance: &SMatrix<f64, 6, 6>) -> EntryMoments {
+    let (mean, covariance) = moments(&log_cholesky_entries::<6>(None, 0), mean, covariance);
+    EntryMoments::unchecked((inertia_map() * mean).into(), inertia_covariance(&covariance))
+}
+
 impl KnownMoments for LogCholeskyGaussian {
     fn entry_moments(&self) -> EntryMoments {
-        let (mean, covariance) =
-            moments(&log_cholesky_entries::<6>(None, 0), &self.mean, self.covariance.matrix());
-        EntryMoments::unchecked((inertia_map() * mean).into(), inertia_covariance(&covariance))
+        moments_of(&self.mean, self.covariance.matrix())
     }
 }
 

@@ -46,7 +46,7 @@ impl DispersionModel {
     /// | `entrywise` | mean and six deviations; no correlation |
     /// | `correlated-entries` | mean and covariance |
     /// | `realizable-…` | as above *before* rejection, which moves both |
-    /// | `log-cholesky` | mean and covariance; to first order where no such law has them |
+    /// | `log-cholesky` | mean and covariance; to first order where no such law is found |
     /// | `wishart` | mean, and E‖Σ − Σ̄‖² |
     /// | `basilisk` | the mean as its nominal matrix; variances summed over moments and over products |
     /// | `principal` | Gaussian roots and axes: mean, covariance of the principal moments, covariance of turns, the last two to first order |

@@ -1,4 +1,4 @@
-//! Laws that have not the moments to which they were to be matched, since no law of their kind has.
+//! Laws that have not the moments to which they were to be matched, since no law of their kind is found that has.
 
 use gyradius_dispersion::EntryMoments;
 use gyradius_report::significant;
@@ -10,7 +10,7 @@ use std::fmt;
 const TOLD: f64 = 1e-3;
 
 /// The log-Cholesky law of a body that was to have mean and covariance of another law, which is so wide that no
-/// log-Cholesky law has them: the law to first order is taken in its place.
+/// log-Cholesky law with them is found: the law to first order is taken in its place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UnmatchedLaw {
     /// The model.
@@ -54,7 +54,7 @@ impl fmt::Display for UnmatchedLaw {
         let Self { model, matched_to, body, mean_off, deviation_ratio } = self;
         write!(
             f,
-            "{model}: no log-cholesky law has the mean and covariance that {matched_to:?} has for the inertia of the {body}. \
+            "{model}: no log-cholesky law is found with the mean and covariance that {matched_to:?} has for the inertia of the {body}. \
              The law to first order is drawn in its place: a mean is off by up to {} standard deviations, and a standard \
              deviation is {} times what it should be",
             significant(*mean_off, 2),

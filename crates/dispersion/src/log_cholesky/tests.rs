@@ -98,3 +98,35 @@ fn bad_parameters_are_named() {
     let error = LogCholeskyGaussian::about(&plate, full(0.1)).unwrap_err();
     assert!(error.to_string().contains("a plate"), "{error}");
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// The moments of any law, narrow or wide, are those of a law that is found.
+    #[test]
+    fn what_a_law_has_is_found_again(
+        seed in any::<u64>(),
+        spread in 0.02..0.6_f64,
+        roots in prop::array::uniform3(0.3..3.0_f64),
+        scale in -6..7_i32,
+    ) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let [a, b, c] = roots.map(|root| root * 10_f64.powi(scale));
+        let diagonal = [b * b + c * c, a * a + c * c, a * a + b * b];
+        let inertia = InertiaMatrix::from_entries(diagonal, [0.0; 3]).unwrap();
+        let inertia = Inertia::try_from(inertia).unwrap();
+        let normal = |_, _| rand_distr::StandardNormal.sample(&mut rng);
+        let factor = SMatrix::<f64, 6, 6>::from_fn(normal) * (spread / 6_f64.sqrt());
+        let units = SMatrix::<f64, 6, 6>::from_diagonal(&[1.0, 1.0, 1.0, b, c, c].into());
+        let covariance = units * factor * factor.transpose() * units;
+        let law = LogCholeskyGaussian::about(&inertia, (covariance + covariance.transpose()) * 0.5).unwrap();
+        let expected = law.entry_moments();
+        let found = LogCholeskyGaussian::matched(&expected).unwrap().entry_moments();
+        for e in 0..6 {
+            let off = (found.mean()[e] - expected.mean()[e]).abs();
+            prop_assert!(off <= 1.1e-9 * SVector::<f64, 6>::from(expected.mean()).amax());
+        }
+        let off = (found.covariance() - expected.covariance()).amax();
+        prop_assert!(off <= 1.1e-9 * expected.covariance().amax());
+    }
+}

@@ -79,7 +79,7 @@ class InertiaLaw(LawOfBodies):
     def matched(kind: str, mean: ArrayLike, cov: ArrayLike) -> InertiaLaw:
         """The model of a kind whose six entries have this mean (6,) and covariance (6, 6), as far as the kind can.
 
-        `correlated-entries` has them, and `log-cholesky` where there is such a law: of wide spreads there is none, and a `RuntimeWarning`
+        `correlated-entries` has them, and `log-cholesky` where such a law is found: of the widest spreads none is, and a `RuntimeWarning`
         tells of the law to first order that is taken in its place. What the other kinds have is seen in `mean` and `cov`.
         """
         sought = vector("mean", mean, 6)
@@ -89,7 +89,7 @@ class InertiaLaw(LawOfBodies):
             gap = np.abs(law.mean[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]] - sought)
             off = float(np.max(np.divide(gap, deviations, out=np.zeros(6), where=deviations > 0)))
             if off > _EXACT:
-                what = f"no log-cholesky law has this mean and covariance: of the one to first order the mean is off by {off:.2g} deviations"
+                what = f"no log-cholesky law is found with this mean and covariance: of the one to first order the mean is off by {off:.2g} deviations"
                 warnings.warn(what, RuntimeWarning, stacklevel=2)
         return law
 

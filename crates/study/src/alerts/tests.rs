@@ -227,9 +227,21 @@ fn laws_far_from_nominal_values_are_told() {
 #[test]
 fn a_model_without_the_moments_it_is_matched_to_is_told() {
     let mut seen = [0; 2];
-    for spread in [0.01, 0.1, 0.3, 0.5, 0.7] {
-        let text = ordinary(2, spread, NORMAL).to_toml()
+    let fixed = [0.01, 0.1, 0.3, 0.5, 0.7, 1.0, 1.4].map(|spread| (spread, false));
+    for (spread, turned) in fixed.into_iter().chain([0.01, 0.1].map(|spread| (spread, true))) {
+        let mut text = ordinary(2, spread, NORMAL).to_toml()
             + "\n[[models]]\nname = \"log\"\nlaw = \"log-cholesky\"\nmatched_to = \"principal\"\n";
+        if turned {
+            // Slender, and turned anyhow.
+            let mut table: toml::Table = toml::from_str(&text).unwrap();
+            let slender = [[9e3, 0.0, 0.0], [0.0, 1e4, 0.0], [0.0, 0.0, 4e3]];
+            let slender = toml::Value::try_from(slender).unwrap();
+            let payload = table["payload"].as_table_mut().unwrap();
+            payload.insert("inertia_kg_m2".to_owned(), slender);
+            let dispersion = payload["dispersion"].as_table_mut().unwrap();
+            dispersion.insert("axes".to_owned(), "uniform".into());
+            text = toml::to_string(&table).unwrap();
+        }
         let scenario = Scenario::from_toml(&text).unwrap();
         let told = scenario.unmatched();
         let draws = |model: &Model| -> Vec<[f64; 6]> {
@@ -269,7 +281,7 @@ fn a_model_without_the_moments_it_is_matched_to_is_told() {
                 seen[1] += 1;
                 let (summary, _) = study(&scenario);
                 let page = scenario.report(&summary).html();
-                assert!(page.contains("no log-cholesky law has the mean and covariance"));
+                assert!(page.contains("no log-cholesky law is found with the mean and covariance"));
             }
         }
     }
