@@ -4,7 +4,7 @@
 //! that a machine may have, and picks at run time. What a kernel calls must be inlined. The loops use sums, products, quotients, square roots and bits
 //! only, each correctly rounded and never fused, so that every machine gets the same values.
 
-use std::f64::consts::{FRAC_PI_2, LN_2};
+use std::f64::consts::{FRAC_PI_2, LN_2, LOG2_E};
 
 /// [1, 2) from the upper 52 bits.
 #[inline(always)]
@@ -90,12 +90,40 @@ pub(crate) fn rounded(x: f64) -> u64 {
     (x + 4_503_599_627_370_496.0).to_bits()
 }
 
+/// e^x for x from −700 to 0.
+#[inline(always)]
+pub(crate) fn exp(x: f64) -> f64 {
+    // Numbers so far above 2⁵² are whole, with their lowest bits those of k.
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    // ln 2 in two parts, so that products of the first with k are exact; and R, as x = k ln 2 + r
+    // and e^r = 1 + 2r/(R(r) − r), by the minimax polynomial of fdlibm (Sun Microsystems 1993).
+    const LN_2_HIGH: f64 = 6.931_471_803_691_238e-1;
+    const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+    let shifted = x * LOG2_E + SHIFT;
+    let k = shifted - SHIFT;
+    let (high, low) = (x - k * LN_2_HIGH, k * LN_2_LOW);
+    let r = high - low;
+    let z = r * r;
+    let r45 = -1.653_390_220_546_525e-6 + z * 4.138_136_797_057_238_5e-8;
+    let r345 = 6.613_756_321_437_934e-5 + z * r45;
+    let r2345 = -2.777_777_777_701_559_3e-3 + z * r345;
+    let c = r - z * (1.666_666_666_666_660_2e-1 + z * r2345);
+    let y = 1.0 + (r * c / (2.0 - c) - low + high);
+    y * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
 
     proptest! {
+        #[test]
+        fn powers_are_right(x in prop_oneof![-700.0..=0.0_f64, -2.0..=0.0_f64, (-60.0..0.0_f64).prop_map(|p| -p.exp2())]) {
+            let exact = libm::exp(x);
+            prop_assert!((exp(x) - exact).abs() <= 2.3e-16 * exact, "{x}");
+        }
+
         #[test]
         fn points_are_at_their_radius_and_angle(bits: u64, radius in 0.1..9.0f64) {
             let (x, y) = on_circle(bits, radius);

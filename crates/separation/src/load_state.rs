@@ -46,7 +46,8 @@ impl LoadState {
     }
 
     /// How far it is short of its end, m, whether it pushes or not: of a spring, the length at which it lets go
-    /// less its length; with a friction f it lets go f/k short of its free length.
+    /// less its length; with a friction f it lets go f/k short of its free length. Of a spring that never pushes, its
+    /// free length less its length.
     #[must_use]
     pub fn compression_m(&self) -> f64 {
         self.compression

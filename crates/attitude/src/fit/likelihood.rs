@@ -5,15 +5,13 @@ use nalgebra::{Matrix4, SMatrix, UnitQuaternion, Vector4};
 use super::{
     centered::{Centered, PAIRS, PRODUCTS, STATISTICS, Statistics},
     climb::Evaluation,
+    means::Means,
 };
 use crate::{
     contour::{C64, Contour},
     fisher_bingham::LN_PI_SQUARED,
     jacobi,
 };
-
-/// Attitudes whose two signs differ by more than e^40 have one.
-const CERTAIN: f64 = 20.0;
 
 /// Attitudes in the frame of their second moment, each coordinate over its root mean square: then
 /// parameters are of order one however concentrated the sample is.
@@ -23,7 +21,8 @@ pub(crate) struct Sample {
     pub(crate) frame: Matrix4<f64>,
     /// Root mean squares of the coordinates.
     pub(crate) scale: [f64; 4],
-    points: Vec<Vector4<f64>>,
+    /// The coordinates, one after the other.
+    columns: [Vec<f64>; 4],
 }
 
 impl Sample {
@@ -47,18 +46,27 @@ impl Sample {
             squares = order.map(|j| values[j].max(0.0));
         }
         let scale = squares.map(f64::sqrt);
-        for point in &mut points {
-            *point = Vector4::from_fn(|i, _| point[i] / scale[i]);
-        }
-        Self { frame, scale, points }
+        let columns =
+            std::array::from_fn(|i| points.iter().map(|point| point[i] / scale[i]).collect());
+        Self { frame, scale, columns }
     }
 
     pub(crate) fn len(&self) -> f64 {
-        self.points.len() as f64
+        self.columns[0].len() as f64
     }
 
-    pub(crate) fn points(&self) -> &[Vector4<f64>] {
-        &self.points
+    pub(super) fn columns(&self) -> &[Vec<f64>; 4] {
+        &self.columns
+    }
+
+    pub(crate) fn points(&self) -> impl Iterator<Item = Vector4<f64>> {
+        let [x, y, z, w] = &self.columns;
+        let points = x.iter().zip(y).zip(z.iter().zip(w));
+        points.map(|((x, y), (z, w))| Vector4::new(*x, *y, *z, *w))
+    }
+
+    pub(crate) fn point(&self, index: usize) -> Vector4<f64> {
+        Vector4::from_fn(|i, _| self.columns[i][index])
     }
 
     /// Means of the scaled sample with signs that hold one half of it together: the local maxima
@@ -84,13 +92,13 @@ impl Sample {
 
     /// Mean size of the scaled coordinate.
     pub(crate) fn mean_size(&self, coordinate: usize) -> f64 {
-        self.points.iter().map(|u| u[coordinate].abs()).sum::<f64>() / self.len()
+        self.columns[coordinate].iter().map(|x| x.abs()).sum::<f64>() / self.len()
     }
 
     fn signed_mean(&self, direction: &Vector4<f64>) -> Vector4<f64> {
         let mut sum = Vector4::zeros();
-        for u in &self.points {
-            sum += u * 1.0_f64.copysign(direction.dot(u));
+        for u in self.points() {
+            sum += u * 1.0_f64.copysign(direction.dot(&u));
         }
         sum / self.len()
     }
@@ -111,11 +119,8 @@ impl Sample {
     pub(crate) fn thickness(&self, law: &Centered) -> f64 {
         let scale = Vector4::from(self.scale);
         let b = (law.axes * Vector4::from(law.linear())).component_mul(&scale);
-        let points: Vec<Vector4<f64>> = self
-            .points
-            .iter()
-            .map(|u| u.component_mul(&scale) * 1.0_f64.copysign(b.dot(u)))
-            .collect();
+        let points: Vec<Vector4<f64>> =
+            self.points().map(|u| u.component_mul(&scale) * 1.0_f64.copysign(b.dot(&u))).collect();
         let n = self.len();
         let center = points.iter().sum::<Vector4<f64>>() / n;
         let mut axes = Matrix4::identity();
@@ -136,21 +141,21 @@ impl Sample {
     }
 
     /// u ↦ v.
-    fn turn(&self, law: &Centered) -> Matrix4<f64> {
+    pub(super) fn turn(&self, law: &Centered) -> Matrix4<f64> {
         Matrix4::from_fn(|i, j| law.axes[(j, i)] * self.scale[j])
     }
 
     /// Mean ln-likelihood alone.
     pub(crate) fn height(&self, law: &Centered) -> f64 {
         let contour = Contour::new(law.lambda, law.center, law.slack());
-        self.means(law).exponent - contour.ln_integral() + LN_PI_SQUARED
+        Means::new(self, law).exponent - contour.ln_integral() + LN_PI_SQUARED
     }
 
     /// Derivatives are by the factors of the law's own statistics, of which one depends on the others.
     pub(crate) fn evaluate(&self, law: &Centered) -> Evaluation<STATISTICS> {
         let contour = Contour::new(law.lambda, law.center, law.slack());
         let (expected, information) = model_moments(law, &contour);
-        let means = self.means(law);
+        let means = Means::new(self, law);
         // By how much the statistics of u are ahead of those of −u: linear in v.
         let roots = law.roots();
         let mut ahead = SMatrix::<f64, STATISTICS, 4>::zeros();
@@ -173,62 +178,6 @@ impl Sample {
         let hessian = ahead * means.doubt * ahead.transpose() - information;
         Evaluation { value, gradient, hessian, information }
     }
-
-    fn means(&self, law: &Centered) -> Means {
-        let (turn, roots, b) = (self.turn(law), Vector4::from(law.roots()), law.linear());
-        let (center, b) = (Vector4::from(law.center), Vector4::from(b));
-        let mut sum = Means::default();
-        // The product of 1 + odds, whose logarithm is taken before it could overflow.
-        let mut product = 1.0;
-        for u in &self.points {
-            let v = turn * u;
-            let linear = b.dot(&v);
-            // Of u and −u the one that the law prefers. The exponent is centred, as the plain one is
-            // a difference of large terms.
-            let v = v * 1.0_f64.copysign(linear);
-            let w = (v - center).component_mul(&roots);
-            sum.exponent -= 0.5 * w.norm_squared();
-            sum.first += w;
-            for i in 0..4 {
-                for j in 0..=i {
-                    sum.second[(i, j)] += w[i] * w[j];
-                }
-            }
-            if linear.abs() < CERTAIN {
-                let odds = libm::exp(-2.0 * linear.abs());
-                let share = odds / (1.0 + odds);
-                product *= 1.0 + odds;
-                if product > 1e300 {
-                    sum.exponent += libm::log(product);
-                    product = 1.0;
-                }
-                sum.other += v * share;
-                sum.doubt += v * (v * (share * (1.0 - share))).transpose();
-            }
-        }
-        let n = self.len();
-        Means {
-            exponent: (sum.exponent + libm::log(product)) / n,
-            first: sum.first / n,
-            second: sum.second / n,
-            other: sum.other / n,
-            doubt: sum.doubt / n,
-        }
-    }
-}
-
-/// Averages over the sample, of each attitude the sign that the law prefers.
-#[derive(Default)]
-struct Means {
-    /// ln of the density of ±u, not normalised.
-    exponent: f64,
-    /// w.
-    first: Vector4<f64>,
-    /// w_i w_j, for i ≥ j.
-    second: Matrix4<f64>,
-    /// v times the share of the other sign, and v vᵀ times the product of the shares.
-    other: Vector4<f64>,
-    doubt: Matrix4<f64>,
 }
 
 /// Mean and covariance of the statistics under the law. At every node of the contour the w are

@@ -1,9 +1,15 @@
 //! Laws of two lobes that share the sample as a mixture of two clusters does: where a search starts.
 
 use nalgebra::{Matrix3, Matrix3x4, Matrix4, Vector3, Vector4};
+use std::array;
 
-use super::{centered::turn_of_last_axis, likelihood::Sample, point::Point};
-use crate::jacobi;
+use super::{
+    blocks::{Block, LANES, add, add_products, blocks, product, total},
+    centered::turn_of_last_axis,
+    likelihood::Sample,
+    point::Point,
+};
+use crate::{jacobi, vector};
 
 /// Rounds of expectation and maximisation after which equal lobes are told apart, and further ones.
 const FIRST_ROUNDS: usize = 4;
@@ -12,6 +18,8 @@ const ROUNDS: usize = 6;
 const FIRST_SHARE: f64 = 0.02;
 /// Attitudes that belong to the light lobe with less than e^−9 do not count.
 const NOTHING: f64 = -9.0;
+/// Attitudes that belong to the light lobe with e^700 belong to it alone.
+const EVERYTHING: f64 = 700.0;
 
 /// The chord of a law of two lobes meets the sphere at m and at m′. Of the light lobe the attitudes
 /// show the axis ±m′ only, so that two laws have their lobes where the sample has them.
@@ -39,12 +47,12 @@ fn keep_new(known: &mut Vec<Lobes>, found: Option<Lobes>) {
 /// The attitudes that lie farthest out along 13 lines, either way, in units of the sample's spread.
 fn outermost(sample: &Sample) -> Vec<Vector4<f64>> {
     // Through the centre of a cube and its corners, edges and faces.
-    let lines: [Vector3<f64>; 13] = std::array::from_fn(|code| {
+    let lines: [Vector3<f64>; 13] = array::from_fn(|code| {
         let entry = |place: usize| ((code + 14) / place % 3) as f64 - 1.0;
         Vector3::new(entry(9), entry(3), entry(1)).normalize()
     });
     let mut ends = [(0.0, None); 26];
-    for (index, u) in sample.points().iter().enumerate() {
+    for (index, u) in sample.points().enumerate() {
         let across = u.fixed_rows::<3>(0) * 1.0_f64.copysign(u[3]);
         for (line, pair) in lines.iter().zip(ends.chunks_exact_mut(2)) {
             let reach = line.dot(&across);
@@ -57,7 +65,7 @@ fn outermost(sample: &Sample) -> Vec<Vector4<f64>> {
     let mut seeds: Vec<usize> = ends.iter().filter_map(|end| end.1).collect();
     seeds.sort_unstable();
     seeds.dedup();
-    seeds.into_iter().map(|index| sample.points()[index]).collect()
+    seeds.into_iter().map(|index| sample.point(index)).collect()
 }
 
 /// Two clusters of axes, of unit length, and the scatter about them, in scaled coordinates u: there
@@ -106,15 +114,12 @@ impl Lobes {
         // An axis has the sign with which it is nearer to both.
         let scale = Vector4::from(sample.scale);
         let side = (self.heavy + self.light).component_mul(&scale).component_mul(&scale);
-        let (mut light, mut count) = (Matrix4::zeros(), 0.0);
-        for u in sample.points() {
-            let ahead = normal.dot(u) * 1.0_f64.copysign(side.dot(u)) - threshold;
-            if ahead > NOTHING {
-                let member = 1.0 / (1.0 + libm::exp(-ahead));
-                light += u * (u * member).transpose();
-                count += member;
-            }
-        }
+        let (light, count) = pulp::Arch::new().dispatch(Membership {
+            sample,
+            normal: normal.into(),
+            side: side.into(),
+            threshold,
+        });
         let n = sample.len();
         if !(0.5..=0.5 * n).contains(&count) {
             return None;
@@ -179,8 +184,98 @@ impl Lobes {
     }
 }
 
+/// Sums u uᵀ and 1 over the light lobe, each attitude with the share that belongs to it.
+struct Membership<'a> {
+    sample: &'a Sample,
+    /// By how much ln of the odds grows with u.
+    normal: [f64; 4],
+    /// Tells the sign of u.
+    side: [f64; 4],
+    threshold: f64,
+}
+
+impl pulp::WithSimd for Membership<'_> {
+    type Output = (Matrix4<f64>, f64);
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> (Matrix4<f64>, f64) {
+        let (mut second, mut count) = ([[[0.0; LANES]; 4]; 4], [0.0; LANES]);
+        for (u, len) in blocks(self.sample.columns()) {
+            let (along, side) = (product(&self.normal, &u), product(&self.side, &u));
+            let ahead: Block =
+                array::from_fn(|i| along[i] * 1.0_f64.copysign(side[i]) - self.threshold);
+            if ahead[..len].iter().all(|ahead| *ahead <= NOTHING) {
+                continue;
+            }
+            let member: Block = array::from_fn(|i| {
+                let odds = vector::exp(-ahead[i].abs().min(EVERYTHING));
+                let share = if ahead[i] < 0.0 { odds } else { 1.0 } / (1.0 + odds);
+                if ahead[i] > NOTHING && i < len { share } else { 0.0 }
+            });
+            add(&mut count, &member);
+            for i in 0..4 {
+                let weighted: Block = array::from_fn(|k| u[i][k] * member[k]);
+                for j in 0..=i {
+                    add_products(&mut second[i][j], &weighted, &u[j]);
+                }
+            }
+        }
+        (Matrix4::from_fn(|i, j| total(&second[i.max(j)][i.min(j)])), total(&count))
+    }
+}
+
 fn largest_axis(m: &Matrix4<f64>) -> Vector4<f64> {
     let (values, axes) = jacobi::eigen(m);
     let largest = (0..4).fold(0, |l, j| if values[j] > values[l] { j } else { l });
     axes.column(largest).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Quaternion, UnitQuaternion};
+    use proptest::prelude::*;
+    use pulp::Simd;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Of samples of any size, whether all, some or none belong to the lobe; and the same bits on any vector unit.
+        #[test]
+        fn shares_are_those_of_a_plain_loop(
+            seeds in prop::collection::vec(prop::array::uniform4(-1.0..1.0_f64), 5..700),
+            normal in prop::array::uniform4(-1.0..1.0_f64),
+            side in prop::array::uniform4(-1.0..1.0_f64),
+            steep in -2.0..10.0_f64,
+            threshold in -1.0..1.0_f64,
+        ) {
+            let attitudes: Vec<_> = seeds
+                .into_iter()
+                .map(|[x, y, z, w]| UnitQuaternion::from_quaternion(Quaternion::new(1.5 + w, x, y, z)))
+                .collect();
+            let sample = Sample::new(&attitudes);
+            let normal = normal.map(|x| x * steep.exp2());
+            let lobe = || Membership { sample: &sample, normal, side, threshold: threshold * steep.exp2() };
+            let (mut second, mut count) = (Matrix4::zeros(), 0.0);
+            for u in sample.points() {
+                let sign = 1.0_f64.copysign(Vector4::from(side).dot(&u));
+                let ahead = Vector4::from(normal).dot(&u) * sign - lobe().threshold;
+                if ahead > NOTHING {
+                    let member = 1.0 / (1.0 + libm::exp(-ahead));
+                    second += u * u.transpose() * member;
+                    count += member;
+                }
+            }
+            let found = pulp::Arch::new().dispatch(lobe());
+            prop_assert!((found.1 - count).abs() <= 1e-12 * count, "{} {count}", found.1);
+            prop_assert!((found.0 - second).amax() <= 1e-12 * second.trace());
+            for other in [
+                pulp::Scalar::new().vectorize(lobe()),
+                pulp::Scalar256b.vectorize(lobe()),
+                pulp::Scalar512b.vectorize(lobe()),
+            ] {
+                prop_assert_eq!(other, found);
+            }
+        }
+    }
 }

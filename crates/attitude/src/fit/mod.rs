@@ -1,5 +1,6 @@
 //! The most likely law of attitudes, within a family that is chosen or given.
 
+mod blocks;
 #[cfg(test)]
 mod census;
 mod centered;
@@ -7,6 +8,7 @@ mod climb;
 mod intervals;
 mod likelihood;
 mod lobes;
+mod means;
 mod point;
 mod search;
 #[cfg(test)]

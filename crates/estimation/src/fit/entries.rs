@@ -9,7 +9,8 @@ use super::{
     relabel::Sample,
 };
 
-/// Draws of the law by which the covariances of what is compared are known, to a few per cent.
+/// Draws of the law by which the covariances of what is compared are known, to a few per cent; and as many others, which the
+/// samples are compared with.
 const DRAWS: usize = 4000;
 /// Directions in which less of the variance than this is left over by the parameters of the law are not compared.
 const LEAST: f64 = 0.05;
@@ -159,14 +160,18 @@ impl PrincipalFit {
             return None;
         }
         let rows = Rows::of(self);
-        let drawn: Vec<Sample> = (0..DRAWS).map(|_| self.draw(rng)).collect();
-        let drawn = rows.matrix(drawn.into_iter());
+        let mut draws = || {
+            let drawn: Vec<Sample> = (0..DRAWS).map(|_| self.draw(rng)).collect();
+            let drawn = rows.matrix(drawn.into_iter());
+            let mean = drawn.column_mean();
+            DMatrix::from_fn(drawn.nrows(), DRAWS, |i, j| drawn[(i, j)] - mean[i])
+        };
+        // Covariances suit the draws that they are estimated from better than others, as the samples are.
+        let (centred, others) = (draws(), draws());
         let own = rows.matrix(self.samples.iter().copied());
-        let mean = drawn.column_mean();
-        let centred = DMatrix::from_fn(drawn.nrows(), DRAWS, |i, j| drawn[(i, j)] - mean[i]);
         let covariance = &centred * centred.transpose() / DRAWS as f64;
         let compared = covariance.view((0, 0), (COMPARED, COMPARED)).into_owned();
-        let slopes = drawn.nrows() - COMPARED;
+        let slopes = centred.nrows() - COMPARED;
         let cross = covariance.view((0, COMPARED), (COMPARED, slopes)).into_owned();
         let own_slopes = covariance.view((COMPARED, COMPARED), (slopes, slopes)).into_owned();
         // Cov(s)⁻¹ where it has one, in deviations.
@@ -191,7 +196,7 @@ impl PrincipalFit {
         if !observed.is_finite() {
             return None;
         }
-        let law = reduced(&centred);
+        let law = reduced(&others);
         Some(bootstrap(observed, n, tick, || {
             let mut sum = DVector::zeros(kept.len());
             for _ in 0..n {

@@ -61,18 +61,33 @@ impl Turns {
         let of_a = rule.midpoints(v[l], FRAC_PI_2);
         let of_b = rule.midpoints(v[j], FRAC_PI_2);
         let of_c = rule.midpoints(v[wide], PI);
-        let mut nodes = Vec::with_capacity(of_a.len() * of_b.len() * of_c.len());
-        for &(sin_a, cos_a) in &of_a {
-            for &(sin_b, cos_b) in &of_b {
-                for &(sin_c, cos_c) in &of_c {
+        // Angles of either sign weigh the same: one exponential serves eight nodes.
+        let half = |angles: &[(f64, f64)]| angles.len().div_ceil(2);
+        let (half_b, half_c) = (half(&of_b), half(&of_c));
+        let mut weights = Vec::with_capacity(half(&of_a) * half_b * half_c);
+        for &(sin_a, cos_a) in &of_a[..half(&of_a)] {
+            for &(sin_b, cos_b) in &of_b[..half_b] {
+                for &(sin_c, cos_c) in &of_c[..half_c] {
                     let (zl, zj, r) = (sin_a, cos_a * sin_b, cos_a * cos_b);
                     let (zi, w) = (r * sin_c, r * cos_c);
                     let exponent = 4.0 * (zi * zi / v[wide] + zj * zj / v[j] + zl * zl / v[l])
                         + (w - 1.0) * (w - 1.0) / self.radial_variance;
-                    let weight = cos_a * r * libm::exp(-0.5 * exponent);
-                    let z = self.about[wide] * zi + self.about[j] * zj + self.about[l] * zl;
-                    let turn = UnitQuaternion::new_normalize(Quaternion::new(w, z.x, z.y, z.z));
-                    nodes.push((weight, self.mean * turn));
+                    weights.push(cos_a * r * libm::exp(-0.5 * exponent));
+                }
+            }
+        }
+        let from_end = |place: usize, angles: &[(f64, f64)]| place.min(angles.len() - 1 - place);
+        let mut nodes = Vec::with_capacity(of_a.len() * of_b.len() * of_c.len());
+        for (a, &(sin_a, cos_a)) in of_a.iter().enumerate() {
+            for (b, &(sin_b, cos_b)) in of_b.iter().enumerate() {
+                let row = (from_end(a, &of_a) * half_b + from_end(b, &of_b)) * half_c;
+                let (zl, zj, r) = (sin_a, cos_a * sin_b, cos_a * cos_b);
+                let across = self.about[j] * zj + self.about[l] * zl;
+                for (c, &(sin_c, cos_c)) in of_c.iter().enumerate() {
+                    let z = across + self.about[wide] * (r * sin_c);
+                    let turn =
+                        UnitQuaternion::new_normalize(Quaternion::new(r * cos_c, z.x, z.y, z.z));
+                    nodes.push((weights[row + from_end(c, &of_c)], self.mean * turn));
                 }
             }
         }

@@ -54,7 +54,8 @@ impl NominalBody {
         BUILT_IN.iter().map(|(name, entries)| Self::of_entries(name, entries)).collect()
     }
 
-    /// A body by the name of a known one, or by three moments or six entries with commas between.
+    /// A body by the name of a known one, or by three moments or six entries with commas between, which are its name
+    /// in the same form however they are written: the random streams depend on it.
     pub(crate) fn read(text: &str, known: &[Self]) -> Result<Self, ScenarioError> {
         let text = text.trim();
         if let Some(body) = known.iter().find(|body| body.name == text) {
@@ -75,7 +76,10 @@ impl NominalBody {
             Ok(&[a, b, c, d, e, f]) => [a, b, c, d, e, f],
             _ => return Err(refuse()),
         };
-        Self::of_entries(&text.replace(' ', ""), &entries)
+        // Zero has one sign.
+        let entries = entries.map(|entry| entry + 0.0);
+        let told = if entries[3..] == [0.0; 3] { &entries[..3] } else { &entries[..] };
+        Self::of_entries(&told.iter().map(in_full).collect::<Vec<_>>().join(","), &entries)
     }
 
     fn of_entries(name: &str, &[a, b, c, d, e, f]: &[f64; 6]) -> Result<Self, ScenarioError> {
@@ -98,8 +102,17 @@ impl NominalBody {
     }
 }
 
+/// The shortest text that reads back as the number, with a power of ten where there would be many zeros.
+fn in_full(number: &f64) -> String {
+    let size = number.abs();
+    let plain = size == 0.0 || (1e-5..1e15).contains(&size);
+    if plain { number.to_string() } else { format!("{number:e}") }
+}
+
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     #[test]
@@ -120,6 +133,33 @@ mod tests {
         assert_eq!(of_scenario[1].name(), "stage");
     }
 
+    proptest! {
+        /// Bodies that are the same have the same name, on which their draws depend.
+        #[test]
+        fn a_body_has_one_name_however_its_numbers_are_written(
+            size in -20.0..20.0_f64,
+            moments in prop::array::uniform3(1.0..1.9_f64),
+            product in prop_oneof![Just(0.0), -0.02..0.02_f64],
+        ) {
+            let known = NominalBody::known(None).unwrap();
+            let [a, b, c] = moments.map(|moment| moment * 10.0_f64.powf(size));
+            let d = product * 10.0_f64.powf(size);
+            let mut texts = vec![
+                format!("{a},{b},{c},{d},0,0"),
+                format!(" {a:e} , {b:?}, +{c}, {d:e}, -0, 0.0e5 "),
+            ];
+            if d == 0.0 {
+                texts.push(format!("{a},{b},{c}"));
+            }
+            let bodies: Vec<_> = texts.iter().map(|text| NominalBody::read(text, &known).unwrap()).collect();
+            for body in &bodies {
+                prop_assert_eq!(body, &bodies[0]);
+            }
+            // And its name is a way to write it.
+            prop_assert_eq!(&NominalBody::read(bodies[0].name(), &known).unwrap(), &bodies[0]);
+        }
+    }
+
     #[test]
     fn what_is_no_body_is_refused_by_name() {
         let known = NominalBody::known(None).unwrap();
@@ -133,7 +173,7 @@ mod tests {
             ("inf,1,1", "inf"),
             ("1,1,9", "no body has this inertia"),
             ("0,0,0", "body 0,0,0: largest moment 0e0 kg·m²"),
-            ("1e300,1e300,1e300", "largest moment 1e300"),
+            ("1e300,1e300,1e300", "body 1e300,1e300,1e300: largest moment 1e300"),
             ("5e-324,5e-324,5e-324", "largest moment"),
             ("-1,-1,-1", "no body has"),
         ] {
