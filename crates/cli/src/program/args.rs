@@ -163,11 +163,12 @@ pub(crate) struct ManArgs {
     pub(crate) verb: Option<String>,
 }
 
+/// A scenario, and what its runs are in the place of those that it says.
 #[derive(Args, Debug)]
-pub(crate) struct StudyArgs {
+pub(crate) struct ScenarioArgs {
     /// Scenario file (TOML) [default: the built-in study of Peck (2003)]
-    #[arg(long, value_name = "FILE")]
-    pub(crate) scenario: Option<PathBuf>,
+    #[arg(long = "scenario", value_name = "FILE")]
+    pub(crate) file: Option<PathBuf>,
 
     /// Runs of each model [default: as in the scenario]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
@@ -180,6 +181,12 @@ pub(crate) struct StudyArgs {
     /// Seed of all random numbers [default: as in the scenario]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = whole)]
     pub(crate) seed: Option<u64>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct StudyArgs {
+    #[command(flatten)]
+    pub(crate) scenario: ScenarioArgs,
 
     /// Folder to write [default: target/study/<scenario name>]
     #[arg(long, value_name = "DIR")]
@@ -357,21 +364,8 @@ pub(crate) struct VerdictArgs {
 
 #[derive(Args, Debug)]
 pub(crate) struct SlurmArgs {
-    /// Scenario file (TOML) [default: the built-in study of Peck (2003)]
-    #[arg(long, value_name = "FILE")]
-    pub(crate) scenario: Option<PathBuf>,
-
-    /// Runs of each model [default: as in the scenario]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
-    pub(crate) runs: Option<u64>,
-
-    /// Vehicles, in the place of runs, of a scenario with vehicles and flights [default: as in the scenario]
-    #[arg(long, value_name = "V", allow_negative_numbers = true, value_parser = whole, conflicts_with = "runs")]
-    pub(crate) vehicles: Option<u64>,
-
-    /// Seed of all random numbers [default: as in the scenario]
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = whole)]
-    pub(crate) seed: Option<u64>,
+    #[command(flatten)]
+    pub(crate) scenario: ScenarioArgs,
 
     /// Folder of the study, on a file system that all nodes have in common
     #[arg(long, value_name = "DIR")]

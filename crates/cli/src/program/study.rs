@@ -8,7 +8,7 @@ use serde_json::json;
 use std::{error::Error, path::Path, process::ExitCode, time::Duration};
 
 use crate::program::{
-    args::StudyArgs,
+    args::{ScenarioArgs, StudyArgs},
     number::short,
     output::{complain, print, print_json, say},
     progress,
@@ -23,8 +23,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Runs the verb.
 pub(crate) fn study(arguments: &StudyArgs) -> Result<ExitCode, Box<dyn Error>> {
-    let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
-    let scenario = sized(scenario, arguments.runs, arguments.vehicles)?;
+    let scenario = stated(&arguments.scenario)?;
     let scenario = match &arguments.until {
         Some(rule) => scenario.with_until(rule.clone(), arguments.look_every)?,
         None => scenario,
@@ -129,16 +128,13 @@ pub(crate) fn scenario(
     }
 }
 
-/// The same scenario with other numbers of runs and vehicles, if they are given.
-pub(crate) fn sized(
-    mut scenario: AnyScenario,
-    runs: Option<u64>,
-    vehicles: Option<u64>,
-) -> Result<AnyScenario, ScenarioError> {
-    if let Some(runs) = runs {
+/// The scenario that is asked for.
+pub(crate) fn stated(arguments: &ScenarioArgs) -> Result<AnyScenario, ScenarioError> {
+    let mut scenario = scenario(arguments.file.as_deref(), arguments.seed)?;
+    if let Some(runs) = arguments.runs {
         scenario = scenario.with_runs(runs)?;
     }
-    if let Some(vehicles) = vehicles {
+    if let Some(vehicles) = arguments.vehicles {
         scenario = scenario.with_vehicles(vehicles)?;
     }
     Ok(scenario)

@@ -18,21 +18,20 @@ use crate::program::{
     args::SlurmArgs,
     draw_output::refuse_input,
     output::{print, say, to_standard_output},
-    study::{scenario, sized},
+    study::stated,
 };
 use script::{Limits, Script};
 use shards::{LARGEST_ARRAY, choose};
 
 /// Runs the verb.
 pub(crate) fn slurm(arguments: &SlurmArgs) -> Result<(), Box<dyn Error>> {
-    let scenario = scenario(arguments.scenario.as_deref(), arguments.seed)?;
-    let scenario = sized(scenario, arguments.runs, arguments.vehicles)?;
+    let scenario = stated(&arguments.scenario)?;
     scenario.check_shards()?;
     let script = script(arguments, &scenario)?.to_string();
     let Some(path) = arguments.output.as_deref().filter(|path| *path != Path::new("-")) else {
         return Ok(to_standard_output(&script)?);
     };
-    if let Some(input) = &arguments.scenario {
+    if let Some(input) = &arguments.scenario.file {
         refuse_input(path, input)?;
     }
     let mut file = NewFile::create(path, arguments.force)?;
@@ -95,10 +94,10 @@ fn script(arguments: &SlurmArgs, scenario: &AnyScenario) -> Result<Script, Box<d
         models,
         program: env::current_exe()?,
         folder: env::current_dir()?,
-        scenario: arguments.scenario.as_deref().map(place).transpose()?,
+        scenario: arguments.scenario.file.as_deref().map(place).transpose()?,
         runs: scenario.runs(),
         vehicles: scenario.fleet().map(Fleet::vehicles),
-        seed: arguments.seed,
+        seed: arguments.scenario.seed,
         out,
         logs,
         threads,
