@@ -117,6 +117,7 @@ pub use identity::{Difference, Identity};
 pub use kept::{Kept, KeptError, Rows};
 pub use kept_runs::{KeptColumn, KeptRuns, KeptTexts, KeptValues};
 pub use memory::memory_left;
+pub use number::plain;
 pub use requirement::{
     Bound, ConvergencePoint, Counting, Distribution, DistributionPoint, Event, FailedRuns,
     Judgement, JudgementError, Judging, Looks, Measured, Requirement, RequirementError, RunBeyond,
@@ -125,7 +126,7 @@ pub use requirement::{
 };
 pub use room::disk_left;
 pub use runs::{Runs, RunsError};
-pub use sample::{SampleSummary, bounded};
+pub use sample::{SampleSummary, bounded, varies};
 pub use shard::{Shard, ShardError};
 pub use share::{Share, counted};
 pub use simulation::{CampaignError, Progress, Simulation, go_on, run, threads};

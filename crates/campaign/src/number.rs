@@ -1,7 +1,8 @@
 //! Numbers for people, as they are and never in hundreds of digits.
 
 /// A number in the fewest digits that read back as it: with a power of ten from 1e16 on, and below 1e-9.
-pub(crate) fn plain(x: f64) -> String {
+#[must_use]
+pub fn plain(x: f64) -> String {
     if x == 0.0 || !x.is_finite() || (1e-9..1e16).contains(&x.abs()) {
         format!("{x}")
     } else {

@@ -201,7 +201,12 @@ impl KnownMoments for BasiliskDispersion {
                 }
             }
         }
-        EntryMoments::unchecked(mean, (covariance + covariance.transpose()) * 0.5)
+        let mut covariance = (covariance + covariance.transpose()) * 0.5;
+        // Where an entry moves to second order in the angles alone, rounding may be more than all of it.
+        for e in 0..6 {
+            covariance[(e, e)] = covariance[(e, e)].max(0.0);
+        }
+        EntryMoments::unchecked(mean, covariance)
     }
 }
 
@@ -366,6 +371,14 @@ mod tests {
                     );
                     assert!(found >= 0.0 && moments.deviations()[e].is_finite());
                 }
+            }
+        }
+        // Equal moments, which a small angle moves to second order: nearly nothing, and no NaN.
+        let equal = InertiaMatrix::from_entries([2.0, 2.0, 3.0], [0.0; 3]).unwrap();
+        for angle in [1e-14, 1e-11, 1e-9, 1e-8, 1e-7, 1e-6] {
+            let law = BasiliskDispersion::new(equal, 0.0, NONE, angle).unwrap();
+            for deviation in law.entry_moments().deviations() {
+                assert!((0.0..2.0 * angle).contains(&deviation), "{angle} {deviation}");
             }
         }
     }

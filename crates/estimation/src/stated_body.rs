@@ -55,12 +55,15 @@ impl StatedBody {
     /// The law of these statements about a nominal body.
     ///
     /// # Errors
-    /// The nominal body is out of range, or the statements are refused: also where a standard deviation is beyond this body, more than its
+    /// The nominal body is out of range, or the statements are refused: an arm of the mass centre, which has no meaning here, and also where a standard deviation is beyond this body, more than its
     /// mass, or of moments and products more than ten times the trace of its inertia.
     pub fn new(statements: &Statements, nominal: &MassProperties) -> Result<Self, StatementError> {
         let kilograms = nominal.mass_kg();
         if !MASSES_KG.contains(&kilograms) {
             return Err(StatementError::Mass { value: kilograms });
+        }
+        if statements.centre.is_some_and(|centre| centre.has_arm()) {
+            return Err(StatementError::ArmBesideCentre);
         }
         let inertia = nominal.inertia();
         statements.within(inertia, Some(kilograms))?;
@@ -183,6 +186,18 @@ mod tests {
     use nalgebra::{Quaternion, UnitQuaternion, Vector3};
     use proptest::{prelude::*, sample::select};
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+    /// An arm says where an inertia was measured, and here it is about the mass centre as drawn.
+    #[test]
+    fn an_arm_is_refused() {
+        let nominal = Shape::sphere(0.1).unwrap().of_mass(2.0).unwrap();
+        let of = |arm: [f64; 3]| {
+            let centre = Some(CentreStatement::new([0.01; 3], 1.0, arm).unwrap());
+            StatedBody::new(&Statements { centre, ..Statements::default() }, &nominal)
+        };
+        assert_eq!(of([0.0, 0.0, 1.5]).unwrap_err(), StatementError::ArmBesideCentre);
+        assert!(of([0.0; 3]).is_ok());
+    }
 
     /// Any subset of statements.
     fn statements(which: u8, [mass, moments, axes, metres]: [f64; 4]) -> Statements {

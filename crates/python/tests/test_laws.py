@@ -444,3 +444,28 @@ def test_a_plate_that_is_written_with_six_digits_is_drawn() -> None:
         assert np.allclose(draws.inertia.mean(axis=0), plate.inertia, atol=0.02)
         again = pickle.loads(pickle.dumps(law))
         assert np.array_equal(again.rvs(100, rng=1, inset=True).inertia, draws.inertia)
+
+
+def test_scalar_laws_are_equal_if_they_say_the_same() -> None:
+    one = gyradius.ScalarLaw("normal", mean=0, sigma=1)
+    for other in (
+        gyradius.ScalarLaw("normal", sigma=1.0, mean=0.0),
+        gyradius.ScalarLaw(**one.form),
+        pickle.loads(pickle.dumps(one)),
+    ):
+        assert one == other and hash(one) == hash(other)
+    assert one != gyradius.ScalarLaw("normal", mean=0, sigma=2)
+
+
+def test_an_arm_is_refused_beside_a_drawn_centre() -> None:
+    body = gyradius.MassProperties(10.0, [0, 0, 0], np.diag([5.0, 4, 3]))
+    with pytest.raises(ValueError, match="arm_m"):
+        gyradius.law(body, centre={"mm": 10, "sigmas": 1, "arm_m": [0, 0, 1.5]})
+
+
+def test_axes_limit_the_turns_beside_products() -> None:
+    """Products of 0.1 would take turns of several degrees: the axes allow 0.1."""
+    body = gyradius.MassProperties(10.0, [0, 0, 0], np.diag([5.0, 4, 3]))
+    law = gyradius.law(body, axes="0.1deg", products="0.1kgm2")
+    most = np.deg2rad(0.1) * np.array([1.0, 2.0, 1.0])
+    assert (law.std[7:] <= 1.01 * most).all()

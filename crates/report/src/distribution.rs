@@ -1,7 +1,7 @@
 //! The distribution of what a requirement is about, on a probability axis: a line a model, its band, the limit, the tolerance point.
 
 use gyradius_campaign::{
-    Bound, DistributionPoint, FailedRuns, Judgement, Looks, Requirement, stated_in_percent,
+    Bound, DistributionPoint, FailedRuns, Judgement, Looks, Requirement, plain, stated_in_percent,
 };
 use gyradius_statistics::tail;
 
@@ -279,10 +279,11 @@ fn description(requirement: &Requirement, models: &[(&str, &Judgement)]) -> Stri
         let bound = judgement.tolerance().map_or_else(
             || "no tolerance bound".to_owned(),
             |bound| {
-                let digits = |x: f64| requirement.bound().digits_beside(x, 4);
-                let bound: Vec<String> =
-                    bound.limits().map(|x| significant(x, digits(x))).collect();
-                format!("tolerance bound {}", bound.join(" and "))
+                let told = bound.outwards(requirement.bound(), 4);
+                format!(
+                    "tolerance bound {}",
+                    told.limits().map(plain).collect::<Vec<_>>().join(" and ")
+                )
             },
         );
         text.push_str(&format!(" {model}: {range}, {bound}."));

@@ -73,7 +73,8 @@ pub use inline::{Text, Tone};
 pub use kinds::most_frequent;
 pub use lines::{Line, LineGrid, LinePanel, LinePoint, Range};
 pub use numbers::{
-    below_hundred, direction, interval, optional, resolved, round_below, significant, with_unit,
+    below_hundred, direction, estimate, interval, optional, resolved, round_below, significant,
+    with_unit,
 };
 pub use overview::{Overview, spread};
 pub use page::page;

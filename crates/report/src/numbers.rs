@@ -1,6 +1,6 @@
 //! Numbers for people.
 
-use gyradius_statistics::Interval;
+use gyradius_statistics::{Estimate, Interval};
 
 /// To a number of significant digits, one at least, plain where that is short, scientific where it is not.
 pub fn significant(x: f64, digits: usize) -> String {
@@ -45,6 +45,13 @@ pub fn interval(interval: Option<Interval>, digits: usize) -> String {
         let [lower, upper] = [i.lower(), i.upper()].map(|x| resolved(Some(x), width, digits));
         format!("[{lower}, {upper}]")
     })
+}
+
+/// An estimate with its interval, which it lies in as it is told: `0.42 [0.38, 0.47]`.
+pub fn estimate(estimate: &Estimate, digits: usize) -> String {
+    let own = estimate.interval();
+    let value = resolved(Some(estimate.value()), Some(own.upper() - own.lower()), digits);
+    format!("{value} {}", interval(Some(own), digits))
 }
 
 /// The entries of a direction, to a thousandth: `(0, 0.6, 0.8)`.

@@ -1,6 +1,6 @@
 //! What a reader should know before the results: only what is so.
 
-use gyradius_campaign::{SampleSummary, Surveys, Table};
+use gyradius_campaign::{SampleSummary, Surveys, Table, varies};
 use gyradius_report::{Section, Text, direction, most_frequent, significant};
 use gyradius_separation::MovingBody;
 use gyradius_statistics::Survey;
@@ -139,15 +139,16 @@ impl Alert {
         is_far.then_some(Self::FarFromNominal { quantity, nominal, mean })
     }
 
-    /// That outcomes, by their labels, have heavy tails.
+    /// That outcomes, by their labels and of these scales, have heavy tails: they vary by more than rounding.
     pub(crate) fn heavy_tails<'a>(
         model: &str,
-        outcomes: impl IntoIterator<Item = (String, &'a SampleSummary)>,
+        outcomes: impl IntoIterator<Item = (String, f64, &'a SampleSummary)>,
     ) -> Option<Self> {
-        let heavy = |sample: &SampleSummary| sample.kurtosis.filter(|kurtosis| *kurtosis > HEAVY);
-        let outcomes = outcomes.into_iter();
-        let outcomes: Vec<(String, f64)> =
-            outcomes.filter_map(|(label, sample)| Some((label, heavy(sample)?))).collect();
+        let heavy = |(label, scale, sample): (String, f64, &SampleSummary)| {
+            let kurtosis = sample.kurtosis.filter(|kurtosis| *kurtosis > HEAVY)?;
+            varies(sample.minimum?, sample.maximum?, scale).then_some((label, kurtosis))
+        };
+        let outcomes: Vec<(String, f64)> = outcomes.into_iter().filter_map(heavy).collect();
         let model = model.to_owned();
         (!outcomes.is_empty()).then_some(Self::HeavyTails { model, outcomes })
     }

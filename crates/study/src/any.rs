@@ -444,7 +444,8 @@ impl fmt::Display for StudyOutcome {
         let (head, report) = (&self.head, self.folder.join("report.html"));
         let (name, runs, seed) = (&head.scenario, head.runs_per_model, head.seed);
         let vehicles = head.fleet.map_or_else(String::new, |fleet| format!("{fleet}, "));
-        writeln!(f, "{name}: {vehicles}{runs} runs a model, seed {seed}\n")?;
+        let s = if runs == 1 { "" } else { "s" };
+        writeln!(f, "{name}: {vehicles}{runs} run{s} a model, seed {seed}\n")?;
         if let Some(ended) = &head.ended {
             writeln!(f, "{ended}\n")?;
         }
@@ -456,12 +457,15 @@ impl fmt::Display for StudyOutcome {
             for driven in drivers.outputs.iter().filter(|driven| driven.unit.is_none()) {
                 let ranked = driven.ranked(&drivers.groups).into_iter().take(3);
                 let shares = ranked.filter_map(|(group, index)| {
-                    let total = index.total()?.clipped(0.0, 1.0).value();
-                    Some(format!("{group} {total:.2}"))
+                    Some(format!("{group} {}", drivers::told(index.total()?)))
                 });
                 let shares = shares.collect::<Vec<_>>().join(", ");
                 let (output, model) = (&driven.output, &drivers.model);
-                writeln!(f, "what fails {output}, {model}, by total Sobol' indices: {shares}\n")?;
+                let few = if driven.indices.is_of_few() { "; too few runs differ" } else { "" };
+                writeln!(
+                    f,
+                    "what fails {output}, {model}, by total Sobol' indices: {shares}{few}\n"
+                )?;
             }
         }
         writeln!(f, "{}", self.table)?;

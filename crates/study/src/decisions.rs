@@ -2,7 +2,7 @@
 
 use gyradius_campaign::{
     Bound, Column, Counting, FailedRuns, Judgement, Judging, Looks, Measured, Requirement,
-    RunBeyond, Runs, Table, one_decimal, percent_beside, percent_or_less, percent_or_more,
+    RunBeyond, Runs, Table, one_decimal, percent_beside, percent_or_less, percent_or_more, plain,
     stated_in_percent,
 };
 use gyradius_report::{
@@ -164,7 +164,11 @@ pub(crate) fn judged<C: Subject>(
 /// The answers, before everything else, and the runs that come nearest to the limits or are beyond.
 pub(crate) fn sections(scenario: &impl Subject, head: &Head) -> Vec<Section> {
     if head.requirements.is_empty() {
-        return Vec::new();
+        let of = |ended: &Ended| {
+            let text = format!("{ended} {}.", ended.until.rule().reason());
+            Section::new("What ended the runs").paragraph(text)
+        };
+        return head.ended.iter().map(of).collect();
     }
     let table = PageTable::of(&head.requirements)
         .words("requirement", |judged| {
@@ -436,13 +440,12 @@ fn without_number(judgement: &Judgement) -> Option<String> {
     (without > 0).then(|| format!("{without} of {runs} have no number: {fate}"))
 }
 
-/// The bound that a share keeps, in the digits that tell it from the limits.
+/// The bound that a share keeps, rounded outwards, in the digits that tell it from the limits.
 fn bound(bound: Bound, limits: Bound) -> String {
-    let told = |x: f64| beside(x, 5, limits);
-    match bound {
-        Bound::AtMost(limit) => format!("≤ {}", told(limit)),
-        Bound::AtLeast(limit) => format!("≥ {}", told(limit)),
-        Bound::Between(lower, upper) => format!("{} … {}", told(lower), told(upper)),
+    match bound.outwards(limits, 5) {
+        Bound::AtMost(limit) => format!("≤ {}", plain(limit)),
+        Bound::AtLeast(limit) => format!("≥ {}", plain(limit)),
+        Bound::Between(lower, upper) => format!("{} … {}", plain(lower), plain(upper)),
     }
 }
 

@@ -307,6 +307,12 @@ impl Quantity {
         self.declaration().unit
     }
 
+    /// How large a value is that rounding is measured by, whatever the values are: a degree of angles, which may be zero but for
+    /// rounding, and nothing else.
+    pub(crate) fn scale(self) -> f64 {
+        if self.unit() == "deg" { 1.0 } else { 0.0 }
+    }
+
     /// What it means, in a sentence.
     #[must_use]
     pub fn meaning(self) -> Cow<'static, str> {

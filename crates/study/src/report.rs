@@ -43,9 +43,10 @@ pub(crate) fn report(scenario: &Scenario, summary: &Summary) -> Document {
     let models: Vec<&str> = summary.models.iter().map(|m| m.name.as_str()).collect();
     let vehicles = summary.head.fleet.map_or_else(String::new, |fleet| format!("{fleet}, "));
     let lead = Text::from("Scenario ").strong(&summary.head.scenario).plain(format!(
-        ": {vehicles}{} runs of each of the models {}, seed {}. Intervals have a confidence of {} %; p95 is the 95th \
+        ": {vehicles}{} {} of each of the models {}, seed {}. Intervals have a confidence of {} %; p95 is the 95th \
          percentile.",
         summary.head.runs_per_model,
+        if summary.head.runs_per_model == 1 { "run" } else { "runs" },
         models.join(", "),
         summary.head.seed,
         100.0 * summary.head.confidence
@@ -225,12 +226,12 @@ fn nearest(clearance: &ClearanceSummary) -> String {
         _ => "No run has a clearance".to_owned(),
     };
     if let Some(p01) = clearance.p01_m {
-        let p01 = format!("; of the runs with a clearance, 99 % keep {} m", significant(p01, 4));
+        let p01 = format!("; the 1st percentile of the clearances is {} m", significant(p01, 4));
         let interval = interval(clearance.p01_interval_m, 4);
         text.push_str(format!("{p01} {interval}").trim_end());
     }
     if let Some(p05) = clearance.p05_m {
-        text.push_str(&format!(", and 95 % keep {} m", significant(p05, 4)));
+        text.push_str(&format!(", and the 5th {} m", significant(p05, 4)));
     }
     text.push('.');
     for (note, count) in &clearance.notes {

@@ -1,6 +1,6 @@
 //! Every number that the report shows.
 
-use gyradius_campaign::{Column, SampleSummary, Share, Surveys, bounded};
+use gyradius_campaign::{Column, SampleSummary, Share, Surveys, bounded, varies};
 use gyradius_report::Figure;
 use gyradius_statistics::{Confidence, Interval, Moments, StatisticsError, Survey};
 use rayon::prelude::*;
@@ -415,7 +415,8 @@ impl ModelSummary {
             Alert::unmoved(name, column, seen.surveys.column(column)?, scenario.fleet())
         });
         let outcomes = self.quantities.iter().filter(|q| q.quantity.is_told());
-        let heavy = outcomes.map(|q| (q.quantity.label().into_owned(), &q.sample));
+        let heavy =
+            outcomes.map(|q| (q.quantity.label().into_owned(), q.quantity.scale(), &q.sample));
         let near = Body::BOTH.into_iter().zip(seen.near_boundary);
         let near = near.filter_map(|(body, [near, of])| Alert::near_boundary(name, body, near, of));
         let parted = seen.quantity(Quantity::DirectionError).map_or(0, Survey::n);
@@ -472,12 +473,17 @@ impl QuantitySummary {
 impl Ratio {
     fn new(quantity: Quantity, physical: &Seen, naive: &Seen, confidence: Confidence) -> Self {
         let both = naive.quantity(quantity).zip(physical.quantity(quantity));
-        let deviations = both.and_then(|(n, p)| n.deviation().zip(p.deviation()));
+        // Over a spread of rounding no ratio means anything.
+        let moving = both.filter(|(_, physical)| {
+            let range = physical.minimum().zip(physical.maximum());
+            range.is_some_and(|((least, _), (most, _))| varies(least, most, quantity.scale()))
+        });
+        let deviations = moving.and_then(|(n, p)| n.deviation().zip(p.deviation()));
         let means = both.and_then(|(n, p)| n.mean().zip(p.mean()));
         Self {
             quantity,
             deviation_ratio: deviations.map(|(n, p)| n.ratio(p)),
-            deviation_ratio_interval: both
+            deviation_ratio_interval: moving
                 .and_then(|(n, p)| n.deviation_ratio_interval(p, confidence)),
             mean_difference: means.map(|(naive, physical)| naive - physical),
             mean_difference_interval: both

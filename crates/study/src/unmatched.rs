@@ -1,7 +1,7 @@
 //! Laws that have not the moments to which they were to be matched, since no law of their kind is found that has.
 
 use gyradius_dispersion::EntryMoments;
-use gyradius_report::significant;
+use gyradius_report::{resolved, significant};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -58,7 +58,7 @@ impl fmt::Display for UnmatchedLaw {
              The law to first order is drawn in its place: a mean is off by up to {} standard deviations, and a standard \
              deviation is {} times what it should be",
             significant(*mean_off, 2),
-            significant(*deviation_ratio, 3)
+            resolved(Some(*deviation_ratio), Some((deviation_ratio - 1.0).abs()), 3)
         )
     }
 }

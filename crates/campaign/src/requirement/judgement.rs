@@ -260,7 +260,8 @@ impl Judgement {
     #[must_use]
     pub fn line(&self) -> String {
         let Self { failures, counted, .. } = self;
-        let keep = if *failures == 1 { "does not keep it" } else { "do not keep it" };
+        let keep =
+            if *failures == 1 || *counted == 1 { "does not keep it" } else { "do not keep it" };
         let allowed = self.allowed_failures.map_or_else(
             || format!("so few {} cannot show that it is met", self.unit(0)),
             |allowed| format!("at most {allowed} may fail"),
@@ -339,7 +340,7 @@ impl fmt::Display for Judgement {
             Some(bound) => writeln!(
                 f,
                 "  bound        {share} of {of_which} are {}, with {confidence} confidence",
-                bound.beside(requirement.bound())
+                bound.outwards(requirement.bound(), 5)
             )?,
             None => writeln!(f, "  bound        none: too few runs, or too many failed")?,
         }

@@ -275,17 +275,6 @@ impl Bound {
         }
     }
 
-    /// With its limits in the digits that tell them from those of another.
-    fn beside(self, other: Self) -> Self {
-        match self {
-            Self::AtMost(limit) => Self::AtMost(other.rounded(limit)),
-            Self::AtLeast(limit) => Self::AtLeast(other.rounded(limit)),
-            Self::Between(lower, upper) => {
-                Self::Between(other.rounded(lower), other.rounded(upper))
-            }
-        }
-    }
-
     fn check(self) -> Result<(), RequirementError> {
         let limits = match self {
             Self::AtMost(limit) | Self::AtLeast(limit) => [limit, limit],

@@ -81,6 +81,28 @@ impl Bound {
         rounded(x, self.digits_beside(x, 5))
     }
 
+    /// Its limits in at least so many digits, and in so many more that each lies on the same sides of the limits of
+    /// another as the limit itself: rounded outwards, so that what keeps the bound keeps the rounded one.
+    #[must_use]
+    pub fn outwards(self, other: Self, least: usize) -> Self {
+        let rounded = |x: f64, up: bool| {
+            let lies_beside = |rounded: &f64| {
+                other.limits().all(|limit| rounded.partial_cmp(&limit) == x.partial_cmp(&limit))
+            };
+            (least..ALL_DIGITS)
+                .map(|digits| rounded_to(x, digits, up))
+                .find(lies_beside)
+                .unwrap_or(x)
+        };
+        match self {
+            Self::AtMost(limit) => Self::AtMost(rounded(limit, true)),
+            Self::AtLeast(limit) => Self::AtLeast(rounded(limit, false)),
+            Self::Between(lower, upper) => {
+                Self::Between(rounded(lower, false), rounded(upper, true))
+            }
+        }
+    }
+
     /// Its limits.
     pub fn limits(self) -> impl Iterator<Item = f64> {
         let (one, other) = match self {
@@ -94,6 +116,23 @@ impl Bound {
 /// A number to so many digits.
 pub(super) fn rounded(x: f64, digits: usize) -> f64 {
     format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x)
+}
+
+/// A number to so many digits, that is not below it if it is to be rounded up, else not above.
+fn rounded_to(x: f64, digits: usize, up: bool) -> f64 {
+    let nearest = format!("{x:.*e}", digits.saturating_sub(1));
+    let value = nearest.parse().unwrap_or(x);
+    if x == value || (x < value) == up {
+        return value;
+    }
+    // The next number of so many digits.
+    let Some((digits, exponent)) = nearest.split_once('e') else { return x };
+    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len() as i64);
+    let (whole, exponent) = (digits.replace('.', "").parse::<i64>(), exponent.parse::<i64>());
+    let (Ok(whole), Ok(exponent)) = (whole, exponent) else { return x };
+    let next = whole + if up { 1 } else { -1 };
+    let next = format!("{next}e{}", exponent - decimals).parse().unwrap_or(x);
+    if next.is_finite() { next } else { x }
 }
 
 /// How many decimals a percentage has: three digits of what it lacks to 0 or 100 %.
@@ -191,10 +230,34 @@ mod tests {
             for x in [limit + off, limit + width + off] {
                 let told = bound.rounded(x);
                 prop_assert!((told - x).abs() <= 5.1e-5 * x.abs());
+                let [up, down] = [Bound::AtMost(x), Bound::AtLeast(x)].map(|own| own.outwards(bound, 5));
+                let [up, down] = [up, down].map(|own| own.limits().next().unwrap());
+                prop_assert!(down <= x && x <= up && up - down <= 1.01e-4 * x.abs(), "{} {} {}", down, x, up);
                 for limit in bound.limits() {
-                    prop_assert_eq!(told.partial_cmp(&limit), x.partial_cmp(&limit), "{} {}", told, x);
+                    for told in [told, up, down] {
+                        prop_assert_eq!(told.partial_cmp(&limit), x.partial_cmp(&limit), "{} {}", told, x);
+                    }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn bounds_are_rounded_outwards() {
+        let limits = Bound::AtMost(60.0);
+        for (bound, told) in [
+            (Bound::AtMost(59.92022), Bound::AtMost(59.921)),
+            (Bound::AtMost(59.92), Bound::AtMost(59.92)),
+            (Bound::AtMost(59.99999), Bound::AtMost(59.99999)),
+            (Bound::AtMost(-59.92022), Bound::AtMost(-59.92)),
+            (Bound::AtMost(99.9999), Bound::AtMost(100.0)),
+            (Bound::AtMost(0.0), Bound::AtMost(0.0)),
+            (Bound::AtMost(f64::MAX), Bound::AtMost(f64::MAX)),
+            (Bound::AtMost(1e-300 / 3.0), Bound::AtMost(3.3334e-301)),
+            (Bound::AtLeast(640.817_000_4), Bound::AtLeast(640.81)),
+            (Bound::Between(-1.000_049, 1.000_049), Bound::Between(-1.0001, 1.0001)),
+        ] {
+            assert_eq!(bound.outwards(limits, 5), told);
         }
     }
 

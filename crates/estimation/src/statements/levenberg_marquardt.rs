@@ -52,13 +52,13 @@ pub(crate) struct Range {
 }
 
 /// The least sum of squares that is found downhill from a point (Levenberg 1944, Marquardt 1963, doi:10.1137/0111030).
-/// Unknowns at a bound stay there while the slope leads beyond it.
+/// Unknowns at a bound stay there while the slope leads beyond it; a start that is beyond one begins at it.
 pub(crate) fn least_squares<P: Problem>(
     problem: &P,
     start: P::Point,
     effort: Effort,
 ) -> (P::Point, f64) {
-    let mut point = start;
+    let mut point = inside(problem, start);
     let mut residuals = problem.residuals(&point);
     let mut cost = residuals.norm_squared();
     let mut damping = DAMPING;
@@ -113,6 +113,16 @@ pub(crate) fn least_squares<P: Problem>(
         }
     }
     (point, cost)
+}
+
+/// The nearest point within the bounds.
+fn inside<P: Problem>(problem: &P, point: P::Point) -> P::Point {
+    let values = problem.values(&point);
+    let nearest = DVector::from_fn(values.len(), |i, _| {
+        let Range { least, most, .. } = problem.range(&point, i);
+        values[i].clamp(least, most)
+    });
+    if nearest == values { point } else { problem.at(nearest, &point) }
 }
 
 /// Where a damped step leads. Unknowns that it would take beyond a bound go to that bound, and the others are solved for
@@ -211,11 +221,12 @@ mod tests {
             b in prop::collection::vec(-1.0..1.0f64, 5),
             others in prop::collection::vec(prop::array::uniform4(0.0..1.0f64), 20),
             most in 0.05..3.0f64,
+            start in prop_oneof![Just([0.5; 4]), prop::array::uniform4(-1.0..2.0f64)],
         ) {
             let a = DMatrix::from_vec(5, 4, a);
             prop_assume!(a.clone().svd(false, false).singular_values.min() > 0.05);
             let problem = Boxed { a, b: DVector::from_vec(b), most };
-            let (x, cost) = least_squares(&problem, DVector::from_element(4, 0.5 * most), Effort::FULL);
+            let (x, cost) = least_squares(&problem, DVector::from_row_slice(&start) * most, Effort::FULL);
             prop_assert!(x.iter().all(|x| (0.0..=most).contains(x)));
             for other in &others {
                 let other = DVector::from_row_slice(other) * most;

@@ -132,6 +132,10 @@ impl Task {
                     }
                 };
                 let found = with_mass(e, found[e]);
+                // Nor may roots that are open for the mass centre alone scatter for the products.
+                let is_beyond = e < 3 && !asked.is_stated() && found > wanted;
+                let counts =
+                    if is_beyond && self.products.is_stated() { MOMENTS_FIRST } else { counts };
                 let is_still = e < 3 && wanted == 0.0 && asked.is_stated();
                 let least = if is_still { still.max(least) } else { least };
                 compared.push(Compared { entry: e, wanted, found, least, counts });

@@ -46,8 +46,10 @@ class ScalarLaw(Law):
 
     def __init__(self, law: str, **keys: Any) -> None:
         said = form("", {"law": law, **keys})
-        object.__setattr__(self, "_core", _core.ScalarCore.of_form(said))
-        object.__setattr__(self, "_made", ("of_form", (said,)))
+        core = _core.ScalarCore.of_form(said)
+        object.__setattr__(self, "_core", core)
+        # Equal laws say the same, however they were said.
+        object.__setattr__(self, "_made", ("of_form", (core.form(),)))
 
     @property
     def mean(self) -> float:

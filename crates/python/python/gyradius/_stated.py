@@ -54,7 +54,8 @@ def law(
         How many standard deviations ± stands for in all of these.
 
     Each statement may also be a dict as in the file of `gyradius model`, such as ``{"percent": 10, "sigmas": 3}``; what a dict says of
-    ``sigmas`` comes first.
+    ``sigmas`` comes first. It may not have ``arm_m``: mass centre and inertia are drawn together, and the inertia is about the
+    mass centre as it is drawn.
 
     Returns
     -------

@@ -1,5 +1,6 @@
 //! A body of a comparison.
 
+use gyradius_campaign::plain;
 use gyradius_inertia::{Inertia, InertiaMatrix};
 
 use crate::scenario::{Scenario, ScenarioError};
@@ -79,7 +80,7 @@ impl NominalBody {
         // Zero has one sign.
         let entries = entries.map(|entry| entry + 0.0);
         let told = if entries[3..] == [0.0; 3] { &entries[..3] } else { &entries[..] };
-        Self::of_entries(&told.iter().map(in_full).collect::<Vec<_>>().join(","), &entries)
+        Self::of_entries(&told.iter().map(|x| plain(*x)).collect::<Vec<_>>().join(","), &entries)
     }
 
     fn of_entries(name: &str, &[a, b, c, d, e, f]: &[f64; 6]) -> Result<Self, ScenarioError> {
@@ -100,13 +101,6 @@ impl NominalBody {
     pub(crate) fn largest_moment(&self) -> f64 {
         self.inertia.principal_axes().moments().into_iter().fold(0.0, f64::max)
     }
-}
-
-/// The shortest text that reads back as the number, with a power of ten where there would be many zeros.
-fn in_full(number: &f64) -> String {
-    let size = number.abs();
-    let plain = size == 0.0 || (1e-5..1e15).contains(&size);
-    if plain { number.to_string() } else { format!("{number:e}") }
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ use crate::{
     subject::{Grouped, Subject, Summarized},
 };
 
-pub(crate) use section::{figure_names, section};
+pub(crate) use section::{figure_names, section, told};
 
 /// Where their runs are until they are counted.
 const BESIDE: &str = "drivers";

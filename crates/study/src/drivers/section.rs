@@ -1,8 +1,8 @@
 //! What drives the outcome, as the report tells it.
 
 use gyradius_report::{
-    DrivenOutput, DrivingGroup, PageCell, PageTable, Section, Text, drivers_figure, interval,
-    significant, with_unit,
+    DrivenOutput, DrivingGroup, PageCell, PageTable, Section, Text, drivers_figure, estimate,
+    with_unit,
 };
 use gyradius_statistics::{Estimate, SobolIndex};
 
@@ -62,6 +62,12 @@ pub(crate) fn section(head: &Head, main: &[String]) -> Option<Section> {
     Some(section.sections(head.drivers.iter().filter_map(all)))
 }
 
+/// A total index with its interval.
+pub(crate) fn told(total: &Estimate) -> String {
+    // Differences of rounding are none.
+    if total.value().abs() < 1e-12 { "0".to_owned() } else { estimate(total, 2) }
+}
+
 /// Which outputs of a model are nearly always the same, so that their indices are not known.
 fn of_few(drivers: &Drivers) -> Option<Text> {
     let few: Vec<&Driven> = drivers.outputs.iter().filter(|d| d.indices.is_of_few()).collect();
@@ -112,12 +118,7 @@ fn all(drivers: &Drivers) -> Option<Section> {
             let ranked = driven.ranked(&drivers.groups);
             let Some((group, index)) = ranked.get(place) else { return PageCell::from("–") };
             let Some(total) = index.total() else { return PageCell::from("–") };
-            // Differences of rounding are none.
-            let nothing = total.value().abs() < 1e-12;
-            let share = if nothing { "0".to_owned() } else { significant(total.value(), 2) };
-            PageCell::from(Text::from(*group)).line(
-                Text::default().quiet(format!("{share} {}", interval(Some(total.interval()), 2))),
-            )
+            PageCell::from(Text::from(*group)).line(Text::default().quiet(told(total)))
         });
     }
     let heading = format!("All outputs: {}", drivers.model);

@@ -85,7 +85,7 @@ impl SimulatorScenario {
         let is_output = |column: &str| self.outputs().iter().any(|o| o.name() == column);
         let outputs = overview.quantities().filter(|(column, ..)| is_output(column));
         let heavy = outputs
-            .filter_map(|(column, _, samples)| Some((column.to_owned(), samples.get(place)?)));
+            .filter_map(|(column, _, samples)| Some((column.to_owned(), 0.0, samples.get(place)?)));
         failed.chain(unmoved).chain(Alert::heavy_tails(name, heavy)).collect()
     }
 

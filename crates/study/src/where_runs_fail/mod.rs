@@ -81,7 +81,7 @@ struct Pair {
 /// Runs with one input in one of its fifths and another one in one of its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 struct Corner {
-    /// From 0.
+    /// From 0, that of the lowest values; 4 is that of the highest.
     fifths: [u16; 2],
     runs: u64,
     failures: u64,
@@ -352,7 +352,17 @@ impl Corner {
         };
         let filled = all.iter().flatten().filter(|cell| cell.runs > 0);
         let clearest = filled.reduce(|a, b| if excess(b) > excess(a) { b } else { a });
-        clearest.copied().unwrap_or_default()
+        let mut corner = clearest.copied().unwrap_or_default();
+        // Of few values, the lowest may stand in the middle by its rank.
+        for (fifth, cells) in corner.fifths.iter_mut().zip([x, y]) {
+            let of_values = cells.of_values().iter();
+            if of_values.clone().all(|other| other >= fifth) {
+                *fifth = 0;
+            } else if of_values.clone().all(|other| other <= fifth) {
+                *fifth = FIFTHS as u16 - 1;
+            }
+        }
+        corner
     }
 }
 

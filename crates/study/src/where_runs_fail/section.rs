@@ -1,7 +1,7 @@
 //! Where runs fail, as the report tells it.
 
 use gyradius_campaign::share_in_percent;
-use gyradius_report::{PageCell, PageTable, Section, Text, interval, significant};
+use gyradius_report::{PageCell, PageTable, Section, Text, interval, resolved, significant};
 use gyradius_statistics::{Confidence, Estimate, Tenth};
 
 use super::{Correlation, Failures, LEAST, Pair, RANKED, RUNS, Tenths, WhereRunsFail};
@@ -193,7 +193,10 @@ fn correlations(found: &[WhereRunsFail], vehicles: bool) -> Option<Section> {
     let table = PageTable::of(&rows)
         .words("input", |(_, input, _)| Text::default().code(*input))
         .groups(|(heading, ..)| heading.clone())
-        .numbers("rank correlation", |(.., estimate)| significant(estimate.value(), 2))
+        .numbers("rank correlation", |(.., estimate)| {
+            let interval = estimate.interval();
+            resolved(Some(estimate.value()), Some(interval.upper() - interval.lower()), 2)
+        })
         .numbers("interval", |(.., estimate)| interval(Some(estimate.interval()), 2));
     let section = Section::folded("Rank correlations of inputs and outcomes");
     (!rows.is_empty()).then(|| section.paragraph(reading).table(table))

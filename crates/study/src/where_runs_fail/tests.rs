@@ -298,6 +298,8 @@ fn a_single_failure_is_not_the_clearest_excess() {
     let cells = cells.map(|values| QuantileCells::new(&values, FIFTHS).unwrap());
     let corner = Corner::with_clearest_excess([&cells[0], &cells[1]], &failed);
     assert_eq!((corner.runs, corner.failures), (100, 10));
+    // Of two values one is the lowest and one the highest, however many runs have them.
+    assert_eq!(corner.fifths, [4, 0]);
 }
 
 #[test]

@@ -73,6 +73,11 @@ pub enum StatementError {
         /// The nominal mass, kg.
         mass: f64,
     },
+    /// An arm where the inertia is drawn about the drawn mass centre, which needs none.
+    #[error(
+        "centre.arm_m: mass centre and inertia are drawn together here, the inertia about the mass centre as it is drawn; an arm          is of an inertia that was measured about another point: leave it out"
+    )]
+    ArmBesideCentre,
     /// An arm that is not finite or is very long.
     #[error("centre.arm_m[{}] = {value:?}: it must be between -{most:e} and {most:e}", index + 1)]
     Arm {

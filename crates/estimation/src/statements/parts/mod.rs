@@ -192,6 +192,11 @@ impl CentreStatement {
         }
     }
 
+    /// Whether it says from where the inertia was measured.
+    pub(crate) fn has_arm(&self) -> bool {
+        self.arm != [0.0; 3]
+    }
+
     /// Variances of the six entries, (kg·m²)², in the order 11, 22, 33, 12, 13, 23.
     ///
     /// With the mass centre off by d and the arm L, the inertia moved to the nominal centre is wrong by
