@@ -117,7 +117,7 @@ fn recontact_is_an_outcome() {
         assert!(clearance.iter().all(|c| *c == 0.0));
     }
     let report = fs::read_to_string(study.folder().join("report.html")).unwrap();
-    assert!(report.contains("The bodies touch again in all (over 98.8 %) of the runs"));
+    assert!(report.contains("The bodies touch again in all (over 98.77 %) of the runs"));
     let replay = Replay::open(study.folder(), None, 5, 0.0).unwrap().to_string();
     assert!(replay.contains("clearance") && replay.contains("recontact"), "{replay}");
 

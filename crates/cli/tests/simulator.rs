@@ -326,7 +326,7 @@ fn a_signal_ends_runs_that_take_long() {
             fs::remove_file(scratch.path("busy")).unwrap();
             let output = scratch.run(&study);
             assert!(output.status.success(), "{:?}", said(&output));
-            assert!(said(&output)[0].contains("1 runs a model"), "{:?}", said(&output));
+            assert!(said(&output)[0].contains("1 run a model"), "{:?}", said(&output));
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Every number of a run, each declared in one place: its column, what it is called, its unit, where the report shows
 //! it, what it means and how it follows from a run.
 
-use gyradius_campaign::{Row, Table};
+use gyradius_campaign::{Row, Table, varies};
 use gyradius_report::with_unit;
 use gyradius_separation::{AnyLoad, LoadId, LoadKind, Separation};
+use gyradius_statistics::Survey;
 use std::borrow::Cow;
 
 use crate::{
@@ -311,6 +312,12 @@ impl Quantity {
     /// rounding, and nothing else.
     pub(crate) fn scale(self) -> f64 {
         if self.unit() == "deg" { 1.0 } else { 0.0 }
+    }
+
+    /// Whether its values differ by more than rounding.
+    pub(crate) fn varies(self, survey: &Survey) -> bool {
+        let range = survey.minimum().zip(survey.maximum());
+        range.is_some_and(|((least, _), (most, _))| varies(least, most, self.scale()))
     }
 
     /// What it means, in a sentence.

@@ -1,6 +1,6 @@
 //! Every number that the report shows.
 
-use gyradius_campaign::{Column, SampleSummary, Share, Surveys, bounded, varies};
+use gyradius_campaign::{Column, SampleSummary, Share, Surveys, bounded};
 use gyradius_report::Figure;
 use gyradius_statistics::{Confidence, Interval, Moments, StatisticsError, Survey};
 use rayon::prelude::*;
@@ -474,10 +474,7 @@ impl Ratio {
     fn new(quantity: Quantity, physical: &Seen, naive: &Seen, confidence: Confidence) -> Self {
         let both = naive.quantity(quantity).zip(physical.quantity(quantity));
         // Over a spread of rounding no ratio means anything.
-        let moving = both.filter(|(_, physical)| {
-            let range = physical.minimum().zip(physical.maximum());
-            range.is_some_and(|((least, _), (most, _))| varies(least, most, quantity.scale()))
-        });
+        let moving = both.filter(|(_, physical)| quantity.varies(physical));
         let deviations = moving.and_then(|(n, p)| n.deviation().zip(p.deviation()));
         let means = both.and_then(|(n, p)| n.mean().zip(p.mean()));
         Self {

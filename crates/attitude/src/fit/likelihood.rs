@@ -148,14 +148,15 @@ impl Sample {
     /// Mean ln-likelihood alone.
     pub(crate) fn height(&self, law: &Centered) -> f64 {
         let contour = Contour::new(law.lambda, law.center, law.slack());
-        Means::new(self, law).exponent - contour.ln_integral() + LN_PI_SQUARED
+        Means::new(&self.columns, self.turn(law), law).exponent - contour.ln_integral()
+            + LN_PI_SQUARED
     }
 
     /// Derivatives are by the factors of the law's own statistics, of which one depends on the others.
     pub(crate) fn evaluate(&self, law: &Centered) -> Evaluation<STATISTICS> {
         let contour = Contour::new(law.lambda, law.center, law.slack());
         let (expected, information) = model_moments(law, &contour);
-        let means = Means::new(self, law);
+        let means = Means::new(&self.columns, self.turn(law), law);
         // By how much the statistics of u are ahead of those of −u: linear in v.
         let roots = law.roots();
         let mut ahead = SMatrix::<f64, STATISTICS, 4>::zeros();

@@ -6,7 +6,6 @@ use std::array;
 use super::{
     blocks::{Block, LANES, Sum, add, add_products, blocks, map, product, total},
     centered::Centered,
-    likelihood::Sample,
 };
 use crate::vector;
 
@@ -30,14 +29,16 @@ pub(super) struct Means {
 }
 
 impl Means {
-    pub(super) fn new(sample: &Sample, law: &Centered) -> Self {
-        pulp::Arch::new().dispatch(Sums { sample, law })
+    /// Of a sample by its coordinates, which are turned and stretched into those of the law.
+    pub(super) fn new(columns: &[Vec<f64>; 4], turn: Matrix4<f64>, law: &Centered) -> Self {
+        pulp::Arch::new().dispatch(Sums { columns, turn, law })
     }
 }
 
 /// Sums over a sample: attitude i is added to lane i mod 8 of each, on any machine.
 struct Sums<'a> {
-    sample: &'a Sample,
+    columns: &'a [Vec<f64>; 4],
+    turn: Matrix4<f64>,
     law: &'a Centered,
 }
 
@@ -46,14 +47,14 @@ impl pulp::WithSimd for Sums<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Means {
-        let Self { sample, law } = self;
-        let (turn, roots, b, center) = (sample.turn(law), law.roots(), law.linear(), law.center);
+        let Self { columns, turn, law } = self;
+        let (roots, b, center) = (law.roots(), law.linear(), law.center);
         let [mut first, mut other] = [[[0.0; LANES]; 4]; 2];
         let [mut second, mut doubt] = [[[[0.0; LANES]; 4]; 4]; 2];
         // Of 1 + odds, whose logarithms sum to what the other sign adds.
         let mut odds_of_all = [1.0; LANES];
         let mut logarithms = 0.0;
-        for (u, len) in blocks(sample.columns()) {
+        for (u, len) in blocks(columns) {
             let mut v = map(&turn, &u);
             let linear = product(&b, &v);
             // Of u and −u the one that the law prefers. The exponent is centred, as the plain one is
@@ -98,7 +99,7 @@ impl pulp::WithSimd for Sums<'_> {
             }
         }
         logarithms += logarithm(&mut odds_of_all);
-        let n = sample.len();
+        let n = columns[0].len() as f64;
         let mean = |sum: &Sum| total(sum) / n;
         let second = Matrix4::from_fn(|i, j| mean(&second[i][j]));
         Means {
@@ -121,6 +122,7 @@ fn logarithm(product: &mut Sum) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::likelihood::Sample;
     use nalgebra::{Quaternion, UnitQuaternion};
     use proptest::prelude::*;
     use pulp::Simd;
@@ -181,7 +183,8 @@ mod tests {
             let steep = steep.exp2();
             let law = Centered::of(&(half * half.transpose() * steep / width), &(Vector4::from(b) * steep / width));
             let (expected, size) = plain(&sample, &law);
-            let found = Means::new(&sample, &law);
+            let sums = || Sums { columns: sample.columns(), turn: sample.turn(&law), law: &law };
+            let found = Means::new(sample.columns(), sample.turn(&law), &law);
             prop_assert!((found.exponent - expected.exponent).abs() <= 1e-13 * size);
             let root = size.sqrt();
             prop_assert!((found.first - expected.first).amax() <= 1e-13 * root);
@@ -193,9 +196,9 @@ mod tests {
             prop_assert!((found.other - expected.other).amax() <= 1e-13);
             prop_assert!((found.doubt - expected.doubt).amax() <= 1e-13);
             for other in [
-                pulp::Scalar::new().vectorize(Sums { sample: &sample, law: &law }),
-                pulp::Scalar256b.vectorize(Sums { sample: &sample, law: &law }),
-                pulp::Scalar512b.vectorize(Sums { sample: &sample, law: &law }),
+                pulp::Scalar::new().vectorize(sums()),
+                pulp::Scalar256b.vectorize(sums()),
+                pulp::Scalar512b.vectorize(sums()),
             ] {
                 prop_assert_eq!(bits(&other), bits(&found));
             }

@@ -89,7 +89,7 @@ impl Bound {
             let lies_beside = |rounded: &f64| {
                 other.limits().all(|limit| rounded.partial_cmp(&limit) == x.partial_cmp(&limit))
             };
-            (least..ALL_DIGITS)
+            (other.digits_beside(x, least)..ALL_DIGITS)
                 .map(|digits| rounded_to(x, digits, up))
                 .find(lies_beside)
                 .unwrap_or(x)
@@ -121,7 +121,10 @@ pub(super) fn rounded(x: f64, digits: usize) -> f64 {
 /// A number to so many digits, that is not below it if it is to be rounded up, else not above.
 fn rounded_to(x: f64, digits: usize, up: bool) -> f64 {
     let nearest = format!("{x:.*e}", digits.saturating_sub(1));
-    let value = nearest.parse().unwrap_or(x);
+    let value: f64 = nearest.parse().unwrap_or(x);
+    if !value.is_finite() {
+        return x;
+    }
     if x == value || (x < value) == up {
         return value;
     }
@@ -253,6 +256,7 @@ mod tests {
             (Bound::AtMost(99.9999), Bound::AtMost(100.0)),
             (Bound::AtMost(0.0), Bound::AtMost(0.0)),
             (Bound::AtMost(f64::MAX), Bound::AtMost(f64::MAX)),
+            (Bound::AtMost(60.000_000_1), Bound::AtMost(60.000_000_1)),
             (Bound::AtMost(1e-300 / 3.0), Bound::AtMost(3.3334e-301)),
             (Bound::AtLeast(640.817_000_4), Bound::AtLeast(640.81)),
             (Bound::Between(-1.000_049, 1.000_049), Bound::Between(-1.0001, 1.0001)),

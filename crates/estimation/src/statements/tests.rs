@@ -2,7 +2,6 @@
 
 use super::*;
 use gyradius_attitude::UniformAttitude;
-use gyradius_dispersion::{EntryMoments, PrincipalDispersion, ScalarRoots};
 use gyradius_inertia::{InertiaMatrix, SecondMoments};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -444,44 +443,6 @@ fn a_law_or_an_error(k: [f64; 3], turn: [f64; 3], statements: &Statements) -> Te
         }
     }
     Ok(())
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
-
-    /// A mass centre that is nearly known adds what it adds, also where the axes do not let the products be what is stated.
-    #[test]
-    fn a_small_uncertainty_of_the_centre_adds_little(
-        k in prop::array::uniform3(1.0..100.0_f64),
-        turn in prop::array::uniform3(-3.0..3.0_f64),
-        products in prop::array::uniform3(0.0..50.0_f64),
-        degrees in prop::array::uniform3(0.05..2.0_f64),
-        centre in 1e-5..3e-3_f64,
-    ) {
-        let q = UnitQuaternion::from_scaled_axis(Vector3::from(turn));
-        let nominal = Inertia::from_second_moments(SecondMoments::new(k).unwrap(), &q).unwrap();
-        let centre = CentreStatement::new([centre; 3], 1.0, [1.0, 0.0, 0.0]).unwrap();
-        let with = Statements {
-            products: Some(ProductsStatement::new(products, 1.0).unwrap()),
-            axes: Some(AxesStatement::each(degrees, 1.0).unwrap()),
-            centre: Some(centre),
-            ..Statements::default()
-        };
-        let model = with.model(&nominal, Some(50.0)).unwrap();
-        for (found, most) in model.turns().iter().zip(degrees) {
-            prop_assert!(*found <= most.to_radians() * (1.0 + 1e-6), "{found} {most}");
-        }
-        // Moments move as the axes move them, and as the centre adds.
-        let law = model.law();
-        let still = ScalarRoots::normal(nominal.second_moments().roots(), [0.0; 3]).unwrap();
-        let axes = EntryMoments::of(&PrincipalDispersion::new(still, law.axes().clone()));
-        for e in 0..3 {
-            let found = model.implied().deviations()[e];
-            let (axes, added) = (axes.deviations()[e], centre.entry_variances(50.0)[e].sqrt());
-            let most = 1.1 * axes + 3.0 * added + 1e-4 * nominal.matrix().trace();
-            prop_assert!(found < most, "{e}: {found} {axes} {added}");
-        }
-    }
 }
 
 // Two tests, so that two threads do them: a case takes a second.

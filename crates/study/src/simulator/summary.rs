@@ -344,7 +344,8 @@ impl fmt::Display for SimulatorSummary {
             overview.failed().zip(overview.failures()).enumerate()
         {
             let blank = if place > 0 { "\n" } else { "" };
-            writeln!(f, "{blank}{model}: {runs} runs, {failed} failed")?;
+            let s = if runs == 1 { "" } else { "s" };
+            writeln!(f, "{blank}{model}: {runs} run{s}, {failed} failed")?;
             for kind in most_frequent(kinds) {
                 writeln!(f, "  {kind}")?;
             }
