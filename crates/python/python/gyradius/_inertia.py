@@ -60,7 +60,7 @@ def margin(inertia: ArrayLike, *, dtype: DTypeLike | None = None) -> Any:
     Returns
     -------
     float or array, shape (...)
-        1/6 for a ball, 0 for plates, rods and points, negative for what no body has; NaN where an entry is not finite.
+        1/6 for a ball, 0 for plates, rods and points, negative for what no body has; NaN where an entry is not finite, or beyond 2.8e306.
 
     Examples
     --------
@@ -82,7 +82,7 @@ class Report(NamedTuple):
     excess_percent: Any
     """By how many percent the largest principal moment exceeds the sum of the other two; 0 if it does not."""
     principal_moments: Any
-    """(..., 3) in kg·m², NaN where an entry is not finite."""
+    """(..., 3) in kg·m², NaN where an entry is not finite, or beyond 2.8e306."""
     second_moments: Any
     """(..., 3) in kg·m² about the principal axes; one that is negative belongs to no body."""
     faults: Any
