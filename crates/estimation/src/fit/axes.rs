@@ -9,7 +9,7 @@ use super::{
     relabel::Sample,
     root::RootFit,
 };
-use crate::turns::{FIXED, law_of_turns};
+use crate::turns::{FIXED, law_of_turns, law_of_turns_about};
 
 /// Uniform angles are taken for not uniform this often.
 const SIZE: f64 = 0.01;
@@ -134,16 +134,25 @@ impl AxesFit {
     }
 
     pub(super) fn plain(mean: UnitQuaternion<f64>, local: [f64; 3], finding: AxesFinding) -> Self {
-        let r = *mean.to_rotation_matrix().matrix();
+        Self::turning(mean, mean.to_rotation_matrix().matrix(), local, finding)
+    }
+
+    /// The same of independent turns about the rows of `about`, in body axes.
+    fn turning(
+        mean: UnitQuaternion<f64>,
+        about: &Matrix3<f64>,
+        local: [f64; 3],
+        finding: AxesFinding,
+    ) -> Self {
         // Infinite variances have no matrix: the finding tells them.
         let finite = local.map(|v| if v.is_finite() { v } else { 0.0 });
         let turns = Matrix3::from_diagonal(&Vector3::from(finite));
         // Turning back leaves rounding where there was nothing.
         let rounding = f64::EPSILON * turns.amax();
-        let turned = r.tr_mul(&(turns * r));
+        let turned = about.tr_mul(&(turns * about));
         let turn_covariance = turned.map(|x| if x.abs() > 8.0 * rounding { x } else { 0.0 });
         // Refused only for means that are no attitudes.
-        let law = law_of_turns(mean, local)
+        let law = law_of_turns_about(mean, about, local)
             .or_else(|_| law_of_turns(UnitQuaternion::identity(), local))
             .unwrap_or_else(|_| unreachable!("variances are clamped"));
         Self {
@@ -265,15 +274,12 @@ impl AxesFit {
         })
     }
 
-    /// Attitudes on a sphere of lower dimension: independent turns about the principal axes, as far
-    /// as there are any.
+    /// Attitudes on a sphere of lower dimension: turns about the directions in which there are any, whatever these are.
     fn still(samples: &[Sample], mean: UnitQuaternion<f64>) -> Self {
-        let local = squared_turns(samples, &mean);
-        Self::plain(
-            mean,
-            local.map(|v| if v > FIXED * FIXED { v } else { 0.0 }),
-            AxesFinding::Still,
-        )
+        let eigen = products_of_turns(samples, &mean).symmetric_eigen();
+        let about = eigen.eigenvectors.transpose() * mean.to_rotation_matrix().matrix();
+        let local = eigen.eigenvalues.map(|v| if v > FIXED * FIXED { v } else { 0.0 });
+        Self::turning(mean, &about, local.into(), AxesFinding::Still)
     }
 
     /// p-value of equal tilt in all directions, which is all that the law can hold where one turn
@@ -285,15 +291,13 @@ impl AxesFit {
 
 /// Mean squares of the turns about the principal axes of a mean, rad², where they are small.
 fn squared_turns(samples: &[Sample], mean: &UnitQuaternion<f64>) -> [f64; 3] {
-    let n = samples.len() as f64;
-    let mut squares = [0.0; 3];
-    for s in samples {
-        let t = vector_part(mean, &s.attitude);
-        for k in 0..3 {
-            squares[k] += 4.0 * t[k] * t[k] / n;
-        }
-    }
-    squares
+    products_of_turns(samples, mean).diagonal().into()
+}
+
+/// The same of all products of two.
+fn products_of_turns(samples: &[Sample], mean: &UnitQuaternion<f64>) -> Matrix3<f64> {
+    let turns = samples.iter().map(|s| vector_part(mean, &s.attitude) * 2.0);
+    turns.map(|t| t * t.transpose()).sum::<Matrix3<f64>>() / samples.len() as f64
 }
 
 /// θ/2 with θ − 1/(e^{1/θ} − 1) = `share`, the mean of an exponential law cut off at one.

@@ -3,6 +3,7 @@
 mod hard_tables;
 
 use super::*;
+use gyradius_attitude::UniformAttitude;
 use gyradius_dispersion::ScalarLaw;
 use gyradius_inertia::InertiaMatrix;
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
@@ -176,7 +177,7 @@ fn departures_are_noticed_and_named() {
 
 /// A random attitude.
 fn any_attitude(rng: &mut ChaCha8Rng) -> UnitQuaternion<f64> {
-    gyradius_attitude::UniformAttitude.sample(rng)
+    UniformAttitude.sample(rng)
 }
 
 /// Tails of the turns heavier than any law of the model has, at any width from 0.1° to 10° and any

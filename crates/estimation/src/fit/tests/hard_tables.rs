@@ -1,4 +1,4 @@
-//! Fits of tables that say little: names of axes in doubt, and few samples.
+//! Fits of tables that say little: names of axes in doubt, few samples, and axes that turn about fewer than three directions.
 
 use super::*;
 
@@ -65,4 +65,30 @@ fn few_samples_are_said_to_have_too_small_errors() {
     let share = f64::from(within) / f64::from(of);
     assert!((0.86..0.935).contains(&share), "{share}");
     assert!(PrincipalFit::new(&draws(&truth, 50, 1)).unwrap().notes().is_empty());
+}
+
+/// Turns about one direction of the body or about two, which are no principal axes: the fitted law turns about the same.
+#[test]
+fn axes_turn_about_the_directions_of_the_samples() {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    for case in 0..12 {
+        let mean: UnitQuaternion<f64> = UniformAttitude.sample(&mut rng);
+        let directions: UnitQuaternion<f64> = UniformAttitude.sample(&mut rng);
+        let r = *directions.to_rotation_matrix().matrix();
+        let spread = Vector3::new(0.035, if case % 2 == 0 { 0.0 } else { 0.02 }, 0.0);
+        let expected = r * Matrix3::from_diagonal(&spread.component_mul(&spread)) * r.transpose();
+        let samples: Vec<Inertia> = (0..400)
+            .map(|_| {
+                let [a, b, c] = three(&mut rng);
+                let k = RootSecondMoments::new([60.0 + 0.1 * a, 45.0 + 0.1 * b, 30.0 + 0.1 * c]);
+                let turn = r * Vector3::from(three(&mut rng)).component_mul(&spread);
+                // A turn of the body about its own axes.
+                let q = mean * UnitQuaternion::from_scaled_axis(turn);
+                Inertia::from_second_moments(k.unwrap().squared(), &q).unwrap()
+            })
+            .collect();
+        let fit = PrincipalFit::new(&samples).unwrap();
+        let found = fit.axes().turn_covariance();
+        assert!((found - expected).amax() < 0.25 * expected.amax(), "{case} {found} {expected}");
+    }
 }
