@@ -55,15 +55,16 @@ impl StatedBody {
     /// The law of these statements about a nominal body.
     ///
     /// # Errors
-    /// The nominal body is out of range, or the statements are refused: an arm of the mass centre, which has no meaning here, and also where a standard deviation is beyond this body, more than its
-    /// mass, or of moments and products more than ten times the trace of its inertia.
+    /// The nominal body is out of range, or the statements are refused: an arm of the mass centre, which has no meaning here, and a
+    /// standard deviation that is beyond this body, more than its mass, or of moments and products more than ten times the trace of its
+    /// inertia.
     pub fn new(statements: &Statements, nominal: &MassProperties) -> Result<Self, StatementError> {
         let kilograms = nominal.mass_kg();
         if !MASSES_KG.contains(&kilograms) {
             return Err(StatementError::Mass { value: kilograms });
         }
-        if statements.centre.is_some_and(|centre| centre.has_arm()) {
-            return Err(StatementError::ArmBesideCentre);
+        if let Some(arm) = statements.centre.and_then(|centre| centre.arm()) {
+            return Err(StatementError::ArmBesideCentre { arm });
         }
         let inertia = nominal.inertia();
         statements.within(inertia, Some(kilograms))?;
@@ -195,7 +196,11 @@ mod tests {
             let centre = Some(CentreStatement::new([0.01; 3], 1.0, arm).unwrap());
             StatedBody::new(&Statements { centre, ..Statements::default() }, &nominal)
         };
-        assert_eq!(of([0.0, 0.0, 1.5]).unwrap_err(), StatementError::ArmBesideCentre);
+        let error = of([0.0, 0.0, 1.5]).unwrap_err();
+        assert_eq!(error, StatementError::ArmBesideCentre { arm: [0.0, 0.0, 1.5] });
+        let text = error.to_string();
+        assert!(text.starts_with("centre.arm_m = [0.0, 0.0, 1.5]: it must be left out"), "{text}");
+        assert!(!text.contains("  "), "{text}");
         assert!(of([0.0; 3]).is_ok());
     }
 

@@ -12,6 +12,8 @@ pub(super) const LANES: usize = 8;
 pub(super) type Block = [f64; BLOCK];
 /// What adds up to a sum.
 pub(super) type Sum = [f64; LANES];
+/// What adds up to a symmetric matrix, for i ≥ j.
+pub(super) type Squares = [[Sum; 4]; 4];
 
 /// The coordinates of a sample by blocks, each with how many attitudes it has. Beyond the last one all is zero.
 #[inline(always)]
@@ -58,6 +60,23 @@ pub(super) fn add_products(sum: &mut Sum, a: &Block, b: &Block) {
             *sum += a * b;
         }
     }
+}
+
+/// Adds v vᵀ times the weight of each attitude, for i ≥ j.
+#[inline(always)]
+pub(super) fn add_squares(sums: &mut Squares, v: &[Block; 4], weights: &Block) {
+    for i in 0..4 {
+        let weighted: Block = array::from_fn(|k| v[i][k] * weights[k]);
+        for j in 0..=i {
+            add_products(&mut sums[i][j], &weighted, &v[j]);
+        }
+    }
+}
+
+/// The symmetric matrix of what has been added for i ≥ j.
+#[inline(always)]
+pub(super) fn symmetric(sums: &Squares) -> Matrix4<f64> {
+    Matrix4::from_fn(|i, j| total(&sums[i.max(j)][i.min(j)]))
 }
 
 /// What has been added.

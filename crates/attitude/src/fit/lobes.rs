@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Matrix3x4, Matrix4, Vector3, Vector4};
 use std::array;
 
 use super::{
-    blocks::{Block, LANES, add, add_products, blocks, product, total},
+    blocks::{Block, Squares, Sum, add, add_squares, blocks, product, symmetric, total},
     centered::turn_of_last_axis,
     likelihood::Sample,
     point::Point,
@@ -199,7 +199,7 @@ impl pulp::WithSimd for Membership<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> (Matrix4<f64>, f64) {
-        let (mut second, mut count) = ([[[0.0; LANES]; 4]; 4], [0.0; LANES]);
+        let (mut second, mut count): (Squares, Sum) = Default::default();
         for (u, len) in blocks(self.sample.columns()) {
             let (along, side) = (product(&self.normal, &u), product(&self.side, &u));
             let ahead: Block =
@@ -213,14 +213,9 @@ impl pulp::WithSimd for Membership<'_> {
                 if ahead[i] > NOTHING && i < len { share } else { 0.0 }
             });
             add(&mut count, &member);
-            for i in 0..4 {
-                let weighted: Block = array::from_fn(|k| u[i][k] * member[k]);
-                for j in 0..=i {
-                    add_products(&mut second[i][j], &weighted, &u[j]);
-                }
-            }
+            add_squares(&mut second, &u, &member);
         }
-        (Matrix4::from_fn(|i, j| total(&second[i.max(j)][i.min(j)])), total(&count))
+        (symmetric(&second), total(&count))
     }
 }
 

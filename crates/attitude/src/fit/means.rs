@@ -4,7 +4,10 @@ use nalgebra::{Matrix4, Vector4};
 use std::array;
 
 use super::{
-    blocks::{Block, LANES, Sum, add, add_products, blocks, map, product, total},
+    blocks::{
+        Block, LANES, Squares, Sum, add, add_products, add_squares, blocks, map, product,
+        symmetric, total,
+    },
     centered::Centered,
 };
 use crate::vector;
@@ -21,7 +24,7 @@ pub(super) struct Means {
     pub(super) exponent: f64,
     /// w.
     pub(super) first: Vector4<f64>,
-    /// w_i w_j, for i ≥ j.
+    /// w wᵀ.
     pub(super) second: Matrix4<f64>,
     /// v times the share of the other sign, and v vᵀ times the product of the shares.
     pub(super) other: Vector4<f64>,
@@ -49,8 +52,8 @@ impl pulp::WithSimd for Sums<'_> {
     fn with_simd<S: pulp::Simd>(self, _: S) -> Means {
         let Self { columns, turn, law } = self;
         let (roots, b, center) = (law.roots(), law.linear(), law.center);
-        let [mut first, mut other] = [[[0.0; LANES]; 4]; 2];
-        let [mut second, mut doubt] = [[[[0.0; LANES]; 4]; 4]; 2];
+        let [mut first, mut other]: [[Sum; 4]; 2] = Default::default();
+        let [mut second, mut doubt]: [Squares; 2] = Default::default();
         // Of 1 + odds, whose logarithms sum to what the other sign adds.
         let mut odds_of_all = [1.0; LANES];
         let mut logarithms = 0.0;
@@ -92,22 +95,20 @@ impl pulp::WithSimd for Sums<'_> {
             }
             for i in 0..4 {
                 add_products(&mut other[i], &v[i], &share);
-                let weighted: Block = array::from_fn(|k| v[i][k] * (share[k] * (1.0 - share[k])));
-                for j in 0..=i {
-                    add_products(&mut doubt[i][j], &weighted, &v[j]);
-                }
             }
+            let both: Block = array::from_fn(|i| share[i] * (1.0 - share[i]));
+            add_squares(&mut doubt, &v, &both);
         }
         logarithms += logarithm(&mut odds_of_all);
         let n = columns[0].len() as f64;
-        let mean = |sum: &Sum| total(sum) / n;
-        let second = Matrix4::from_fn(|i, j| mean(&second[i][j]));
+        let mean = |sums: &[Sum; 4]| Vector4::from_fn(|i, _| total(&sums[i])) / n;
+        let second = symmetric(&second) / n;
         Means {
             exponent: logarithms / n - 0.5 * second.trace(),
-            first: Vector4::from_fn(|i, _| mean(&first[i])),
+            first: mean(&first),
             second,
-            other: Vector4::from_fn(|i, _| mean(&other[i])),
-            doubt: Matrix4::from_fn(|i, j| mean(&doubt[i.max(j)][i.min(j)])),
+            other: mean(&other),
+            doubt: symmetric(&doubt) / n,
         }
     }
 }

@@ -80,7 +80,7 @@ impl NominalBody {
         // Zero has one sign.
         let entries = entries.map(|entry| entry + 0.0);
         let told = if entries[3..] == [0.0; 3] { &entries[..3] } else { &entries[..] };
-        Self::of_entries(&told.iter().map(|x| plain(*x)).collect::<Vec<_>>().join(","), &entries)
+        Self::of_entries(&told.iter().copied().map(plain).collect::<Vec<_>>().join(","), &entries)
     }
 
     fn of_entries(name: &str, &[a, b, c, d, e, f]: &[f64; 6]) -> Result<Self, ScenarioError> {

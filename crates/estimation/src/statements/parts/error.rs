@@ -73,11 +73,15 @@ pub enum StatementError {
         /// The nominal mass, kg.
         mass: f64,
     },
-    /// An arm where the inertia is drawn about the drawn mass centre, which needs none.
+    /// An arm where mass centre and inertia are drawn together.
     #[error(
-        "centre.arm_m: mass centre and inertia are drawn together here, the inertia about the mass centre as it is drawn; an arm          is of an inertia that was measured about another point: leave it out"
+        "centre.arm_m = {arm:?}: it must be left out here, where the inertia is drawn about the mass centre as it is drawn: an arm \
+         says that the inertia was measured about another point"
     )]
-    ArmBesideCentre,
+    ArmBesideCentre {
+        /// The arm, m.
+        arm: [f64; 3],
+    },
     /// An arm that is not finite or is very long.
     #[error("centre.arm_m[{}] = {value:?}: it must be between -{most:e} and {most:e}", index + 1)]
     Arm {

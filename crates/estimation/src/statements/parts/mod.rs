@@ -192,9 +192,9 @@ impl CentreStatement {
         }
     }
 
-    /// Whether it says from where the inertia was measured.
-    pub(crate) fn has_arm(&self) -> bool {
-        self.arm != [0.0; 3]
+    /// The mass centre as seen from where the inertia was measured, m; none if that was at the mass centre.
+    pub(crate) fn arm(&self) -> Option<[f64; 3]> {
+        (self.arm != [0.0; 3]).then_some(self.arm)
     }
 
     /// Variances of the six entries, (kg·m²)², in the order 11, 22, 33, 12, 13, 23.
